@@ -1,0 +1,447 @@
+//! Estimates with their uncertainty, limits, decision rules, verdicts.
+//!
+//! A value never travels without its uncertainty: [`Estimate`] carries a [`Spread`], the confidence distribution
+//! of the quantity, from which every interval, every one-sided bound and every risk is read.
+//!
+//! Sources: JCGM 100:2008 (GUM), JCGM 106:2012 (specific risk, guard bands), ISO 14253-1:2017 (guard band of
+//! one-sided 5 %), ILAC-G8:09/2019 (simple acceptance).
+
+use crate::text::Note;
+use schemars::JsonSchema;
+use serde::Serialize;
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+
+/// The standard normal quantile of a probability.
+pub fn normal_quantile(probability: f64) -> f64 {
+    Normal::standard().inverse_cdf(probability.clamp(1e-15, 1.0 - 1e-15))
+}
+
+/// The standard normal cumulative probability.
+pub fn normal_probability(z: f64) -> f64 {
+    Normal::standard().cdf(z)
+}
+
+/// The quantile of χ² with `dof` degrees of freedom (not necessarily whole).
+pub fn chi_square_quantile(probability: f64, dof: f64) -> f64 {
+    match ChiSquared::new(dof.max(1e-3)) {
+        Ok(d) => d.inverse_cdf(probability.clamp(1e-12, 1.0 - 1e-12)),
+        Err(_) => f64::NAN,
+    }
+}
+
+/// A two-sided interval with its coverage probability.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct Interval {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Probability with which such intervals contain the true value.
+    pub coverage: f64,
+}
+
+/// A one-sided bound for a quantity that the record cannot show.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct UpperLimit {
+    /// The quantity is at most this much.
+    pub value: f64,
+    /// Probability with which such bounds lie above the true value.
+    pub coverage: f64,
+}
+
+/// The confidence distribution of an estimate.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Spread {
+    /// Gaussian with a standard uncertainty.
+    Normal {
+        /// Standard uncertainty, unit of the estimate.
+        standard_uncertainty: f64,
+    },
+    /// Student's t with a standard uncertainty and degrees of freedom.
+    StudentT {
+        /// Standard uncertainty, unit of the estimate.
+        standard_uncertainty: f64,
+        /// Effective degrees of freedom.
+        dof: f64,
+    },
+    /// A standard deviation whose square is a scaled χ² with `dof` equivalent degrees of freedom.
+    ChiSquare {
+        /// Equivalent degrees of freedom.
+        dof: f64,
+    },
+    /// Pairs of (normal score, value), ascending: read off a profile likelihood.
+    Curve(Vec<(f64, f64)>),
+    /// No uncertainty known: limits cannot be decided with it.
+    Unknown,
+}
+
+impl Spread {
+    /// The value that the quantity stays below with the given confidence.
+    pub fn bound(&self, value: f64, confidence: f64) -> Option<f64> {
+        match self {
+            Spread::Normal { standard_uncertainty } => {
+                Some(value + normal_quantile(confidence) * standard_uncertainty)
+            }
+            Spread::StudentT { standard_uncertainty, dof } => {
+                let t = StudentsT::new(0.0, 1.0, dof.max(1.0)).ok()?;
+                Some(value + t.inverse_cdf(confidence) * standard_uncertainty)
+            }
+            Spread::ChiSquare { dof } => {
+                let q = chi_square_quantile(1.0 - confidence, *dof);
+                (q > 0.0 && value.is_finite()).then(|| value * (dof / q).sqrt())
+            }
+            Spread::Curve(points) => interpolate(points, normal_quantile(confidence)),
+            Spread::Unknown => None,
+        }
+    }
+
+    /// Probability, in the sense of the confidence distribution, that the quantity lies above `threshold`.
+    pub fn probability_above(&self, value: f64, threshold: f64) -> Option<f64> {
+        match self {
+            Spread::Normal { standard_uncertainty: u } => {
+                if *u > 0.0 {
+                    Some(1.0 - normal_probability((threshold - value) / u))
+                } else {
+                    Some(if value > threshold { 1.0 } else { 0.0 })
+                }
+            }
+            Spread::StudentT { standard_uncertainty: u, dof } => {
+                let t = StudentsT::new(0.0, 1.0, dof.max(1.0)).ok()?;
+                (*u > 0.0).then(|| 1.0 - t.cdf((threshold - value) / u))
+            }
+            Spread::ChiSquare { dof } => {
+                let d = ChiSquared::new(dof.max(1e-3)).ok()?;
+                (threshold > 0.0).then(|| d.cdf(dof * (value / threshold).powi(2)))
+            }
+            Spread::Curve(points) => {
+                let flipped: Vec<(f64, f64)> = points.iter().map(|(z, v)| (*v, *z)).collect();
+                interpolate(&flipped, threshold).map(|z| 1.0 - normal_probability(z))
+            }
+            Spread::Unknown => None,
+        }
+    }
+
+    /// The two-sided interval with the given coverage, equal tails.
+    pub fn interval(&self, value: f64, coverage: f64) -> Option<Interval> {
+        let tail = 0.5 * (1.0 - coverage);
+        let (low, high) = (self.bound(value, tail)?, self.bound(value, 1.0 - tail)?);
+        (low.is_finite() && high.is_finite()).then_some(Interval { low, high, coverage })
+    }
+}
+
+/// Linear interpolation in ascending pairs; the end segments are held, not extended.
+fn interpolate(points: &[(f64, f64)], x: f64) -> Option<f64> {
+    let (first, last) = (points.first()?, points.last()?);
+    if x <= first.0 {
+        return Some(first.1);
+    }
+    if x >= last.0 {
+        return Some(last.1);
+    }
+    let i = points.partition_point(|p| p.0 <= x);
+    let (a, b) = (points[i - 1], points[i]);
+    Some(if b.0 > a.0 { a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0) } else { a.1 })
+}
+
+/// One measured quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// Id of the measurand, for example `angle_random_walk`.
+    pub id: &'static str,
+    /// Channel it belongs to.
+    pub channel: String,
+    /// Best value, in the unit below; `None` when the record cannot show it.
+    pub value: Option<f64>,
+    /// Unit of the value: the one the result contract fixes for this id.
+    pub unit: &'static str,
+    /// Confidence distribution.
+    pub spread: Spread,
+    /// Bound, where the value is `None`.
+    pub upper_limit: Option<UpperLimit>,
+    /// How it was obtained, short and stable: `whittle`, `overlapping_allan`, ...
+    pub method: &'static str,
+    /// What a reader must know with it: conventions, averaging times, numbers of clusters.
+    pub notes: Vec<Note>,
+}
+
+impl Estimate {
+    /// A measured value with its spread.
+    pub fn measured(
+        id: &'static str,
+        channel: &str,
+        value: f64,
+        unit: &'static str,
+        spread: Spread,
+        method: &'static str,
+    ) -> Self {
+        let value = value.is_finite().then_some(value);
+        Estimate {
+            id,
+            channel: channel.to_owned(),
+            value,
+            unit,
+            spread,
+            upper_limit: None,
+            method,
+            notes: vec![],
+        }
+    }
+
+    /// A quantity the record cannot show, with what it is at most (`None`: nothing can be said).
+    pub fn not_identifiable(
+        id: &'static str,
+        channel: &str,
+        upper_limit: Option<UpperLimit>,
+        unit: &'static str,
+        method: &'static str,
+    ) -> Self {
+        Estimate {
+            id,
+            channel: channel.to_owned(),
+            value: None,
+            unit,
+            spread: Spread::Unknown,
+            upper_limit,
+            method,
+            notes: vec![],
+        }
+    }
+
+    /// Adds a note.
+    #[must_use]
+    pub fn note(mut self, note: Note) -> Self {
+        self.notes.push(note);
+        self
+    }
+
+    /// The two-sided 95 % interval.
+    pub fn interval95(&self) -> Option<Interval> {
+        self.spread.interval(self.value?, 0.95)
+    }
+}
+
+/// How a measured value with its uncertainty is compared with a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Rule {
+    /// The value itself is compared; the risk of a wrong decision is shared (ILAC-G8). Up to 50 % at the limit.
+    Simple,
+    /// The one-sided bound at the stated risk is compared (JCGM 106, ISO 14253-1).
+    GuardBand,
+}
+
+/// What a unit must satisfy.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// Lowest value allowed, in the unit of the estimate.
+    pub min: Option<f64>,
+    /// Highest value allowed, in the unit of the estimate.
+    pub max: Option<f64>,
+    /// Decision rule.
+    pub rule: Rule,
+    /// Risk of a wrong acceptance (and of a wrong rejection) that the guard band is set for.
+    pub risk: f64,
+    /// File the limit was read from.
+    pub source: String,
+}
+
+/// The verdict of a row or of a whole run. Worst wins, in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Nothing was to be decided.
+    None,
+    /// The requirement is shown to be met.
+    Pass,
+    /// Neither met nor broken, as far as this test shows.
+    Indeterminate,
+    /// The requirement is shown not to be met.
+    Fail,
+    /// The test could not be carried out as required.
+    Error,
+}
+
+impl Verdict {
+    /// The id used in files and tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            Verdict::None => "none",
+            Verdict::Pass => "pass",
+            Verdict::Indeterminate => "indeterminate",
+            Verdict::Fail => "fail",
+            Verdict::Error => "error",
+        }
+    }
+}
+
+/// A limit applied to an estimate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judgement {
+    /// What was decided.
+    pub verdict: Verdict,
+    /// The largest measured value that would be accepted under `max`.
+    pub acceptance_max: Option<f64>,
+    /// The smallest measured value that would be accepted under `min`.
+    pub acceptance_min: Option<f64>,
+    /// Probability that the unit lies outside the limit, given what was measured (JCGM 106, specific risk).
+    pub specific_risk: Option<f64>,
+    /// Distance to the nearest limit, positive inside, unit of the estimate.
+    pub margin: Option<f64>,
+}
+
+/// Decides one row.
+///
+/// A quantity that the record cannot show passes when its upper limit is inside the limit and is otherwise
+/// indeterminate, never failed; a lower limit cannot be shown by it.
+pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
+    let Some(value) = estimate.value else {
+        let inside = limit.min.is_none_or(|m| m <= 0.0)
+            && match (limit.max, estimate.upper_limit) {
+                (Some(max), Some(bound)) => bound.value <= max && bound.coverage >= 1.0 - limit.risk - 1e-9,
+                (Some(_), None) => false,
+                (None, _) => limit.min.is_some(),
+            };
+        let margin = limit.max.zip(estimate.upper_limit).map(|(max, bound)| max - bound.value);
+        let verdict = if inside { Verdict::Pass } else { Verdict::Indeterminate };
+        return Judgement {
+            verdict,
+            acceptance_max: None,
+            acceptance_min: None,
+            specific_risk: None,
+            margin,
+        };
+    };
+    let margin = [limit.max.map(|max| max - value), limit.min.map(|min| value - min)]
+        .into_iter()
+        .flatten()
+        .reduce(f64::min);
+    let above = limit.max.and_then(|max| estimate.spread.probability_above(value, max));
+    let below = limit.min.and_then(|min| estimate.spread.probability_above(value, min)).map(|p| 1.0 - p);
+    let specific_risk = match (above, below) {
+        (Some(a), Some(b)) => Some((a + b).min(1.0)),
+        (a, b) => a.or(b),
+    };
+    if limit.rule == Rule::Simple {
+        let outside = limit.max.is_some_and(|max| value > max) || limit.min.is_some_and(|min| value < min);
+        let verdict = if outside { Verdict::Fail } else { Verdict::Pass };
+        return Judgement {
+            verdict,
+            acceptance_max: limit.max,
+            acceptance_min: limit.min,
+            specific_risk,
+            margin,
+        };
+    }
+    let (low, high) =
+        (estimate.spread.bound(value, limit.risk), estimate.spread.bound(value, 1.0 - limit.risk));
+    let (Some(low), Some(high)) = (low, high) else {
+        return Judgement {
+            verdict: Verdict::Indeterminate,
+            acceptance_max: None,
+            acceptance_min: None,
+            specific_risk,
+            margin,
+        };
+    };
+    // A spread that grows with the value (a deviation) moves the limit by a factor, any other by a difference.
+    let scales = matches!(estimate.spread, Spread::ChiSquare { .. } | Spread::Curve(_)) && value > 0.0;
+    let shift = |limit: f64, bound: f64| {
+        if scales && bound > 0.0 { limit * value / bound } else { limit - (bound - value) }
+    };
+    let passes = limit.max.is_none_or(|max| high <= max) && limit.min.is_none_or(|min| low >= min);
+    let fails = limit.max.is_some_and(|max| low > max) || limit.min.is_some_and(|min| high < min);
+    Judgement {
+        verdict: if passes {
+            Verdict::Pass
+        } else if fails {
+            Verdict::Fail
+        } else {
+            Verdict::Indeterminate
+        },
+        acceptance_max: limit.max.map(|max| shift(max, high)),
+        acceptance_min: limit.min.map(|min| shift(min, low)),
+        specific_risk,
+        margin,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limit(max: f64, rule: Rule) -> Limit {
+        Limit { min: None, max: Some(max), rule, risk: 0.05, source: "test".into() }
+    }
+
+    fn normal(value: f64, u: f64) -> Estimate {
+        Estimate::measured(
+            "static_bias",
+            "rate",
+            value,
+            "deg/h",
+            Spread::Normal { standard_uncertainty: u },
+            "mean",
+        )
+    }
+
+    #[test]
+    fn guard_band_follows_iso_14253() {
+        // ISO 14253-1: acceptance limit is 1.645 u inside the tolerance limit.
+        let j = judge(&normal(0.5, 0.1), &limit(1.0, Rule::GuardBand));
+        assert_eq!(j.verdict, Verdict::Pass);
+        assert!((j.acceptance_max.unwrap() - (1.0 - 0.164_485_363)).abs() < 1e-6);
+        assert_eq!(judge(&normal(0.9, 0.1), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Indeterminate);
+        assert_eq!(judge(&normal(1.1, 0.1), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Indeterminate);
+        assert_eq!(judge(&normal(1.2, 0.1), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Fail);
+        assert_eq!(judge(&normal(1.0001, 0.1), &limit(1.0, Rule::Simple)).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn specific_risk_is_that_of_jcgm_106() {
+        let j = judge(&normal(0.9, 0.1), &limit(1.0, Rule::GuardBand));
+        assert!((j.specific_risk.unwrap() - 0.158_655_25).abs() < 1e-6);
+        let j = judge(&normal(1.0, 0.1), &limit(1.0, Rule::Simple));
+        assert!((j.specific_risk.unwrap() - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn chi_square_bounds_scale_with_the_value() {
+        // edf 10: 95 % factors on a deviation are 0.70 and 1.75 (NIST SP 1065 practice).
+        let i = Spread::ChiSquare { dof: 10.0 }.interval(1.0, 0.95).unwrap();
+        assert!((i.low - 0.6987).abs() < 1e-3 && (i.high - 1.7549).abs() < 1e-3, "{i:?}");
+        let e = Estimate::measured(
+            "russian_drift_100s",
+            "rate",
+            1.0,
+            "deg/h",
+            Spread::ChiSquare { dof: 10.0 },
+            "s",
+        );
+        let j = judge(&e, &limit(2.0, Rule::GuardBand));
+        let acceptance = j.acceptance_max.unwrap();
+        let at_limit = Spread::ChiSquare { dof: 10.0 }.bound(acceptance, 0.95).unwrap();
+        assert!((at_limit - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_a_record_cannot_show_is_never_failed() {
+        let bound = |v| Some(UpperLimit { value: v, coverage: 0.95 });
+        let e = |v| Estimate::not_identifiable("bias_instability", "rate", bound(v), "deg/h", "whittle");
+        assert_eq!(judge(&e(0.5), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Pass);
+        assert_eq!(judge(&e(5.0), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Indeterminate);
+    }
+
+    #[test]
+    fn curves_are_read_both_ways() {
+        let curve =
+            Spread::Curve((-40..=40).map(|i| (f64::from(i) / 10.0, 2.0 + 0.03 * f64::from(i))).collect());
+        assert!((curve.bound(2.0, 0.975).unwrap() - (2.0 + 0.3 * 1.959_964)).abs() < 1e-6);
+        assert!((curve.probability_above(2.0, 2.3).unwrap() - 0.158_655).abs() < 1e-5);
+    }
+
+    #[test]
+    fn worst_wins_in_the_stated_order() {
+        use Verdict::{Error, Fail, Indeterminate, None, Pass};
+        assert!(None < Pass && Pass < Indeterminate && Indeterminate < Fail && Fail < Error);
+    }
+}

@@ -1,0 +1,19 @@
+//! Sagnac: an automated acceptance-test harness for precision gyroscopes.
+//!
+//! A declarative procedure (TOML) and a unit's recording go in; a report comes out in which every quantity carries
+//! its uncertainty and is set against its limit: pass, fail, or indeterminate.
+//!
+//! Data flows one way, and modules depend downwards only:
+//!
+//! ```text
+//! numeric, units, text <- estimate, figure <- recording <- {ingest, noise} <- measurand <- procedure <- run <- report <- cli
+//! ```
+#![forbid(unsafe_code)]
+
+pub mod estimate;
+pub mod figure;
+pub mod noise;
+pub mod record;
+pub mod recording;
+pub mod text;
+pub mod units;

@@ -1,0 +1,3 @@
+//! Noise of a gyro at rest: Allan family, spectra, autocorrelation, identification, simulation. Knows no procedure.
+
+pub mod data;

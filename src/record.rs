@@ -1,0 +1,490 @@
+//! The run record: everything a report says, in one serialisable value.
+//!
+//! Clock, host and operator are passed in, so that a run is a pure function of its inputs and a whole report can be
+//! compared byte for byte. `result.json` is this value; HTML and Markdown are views of it; nothing is computed in a
+//! template.
+
+use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
+use crate::text::Note;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// Version of the result format.
+pub const RESULT_FORMAT: &str = "result/1";
+
+/// A whole run.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct RunRecord {
+    /// Always `result/1`.
+    pub format: &'static str,
+    /// The program that wrote this.
+    pub program: Program,
+    /// `run` or `analyze`.
+    pub kind: &'static str,
+    /// The procedure, absent for `analyze`.
+    pub procedure: Option<ProcedureRecord>,
+    /// The unit that was tested.
+    pub unit_under_test: UnitUnderTest,
+    /// Who tested, where, when.
+    pub session: Session,
+    /// The files that were read.
+    pub recording: Vec<RecordingFile>,
+    /// Worst verdict of all rows and conditions.
+    pub verdict: Verdict,
+    /// Why the verdict is what it is, in one or more sentences.
+    #[schemars(with = "Vec<NoteSchema>")]
+    pub summary: Vec<Note>,
+    /// Conditions of the test with their evidence.
+    pub conditions: Vec<ConditionRecord>,
+    /// Faults of the recording.
+    pub integrity: Integrity,
+    /// The part of the recording that was evaluated, and what was left out of it.
+    pub window: Window,
+    /// Measured quantities.
+    pub measurands: Vec<MeasurandRecord>,
+    /// Spectral lines that were found.
+    pub lines: Vec<LineRecord>,
+    /// The noise model that was fitted, per channel.
+    pub noise_models: Vec<NoiseModelRecord>,
+    /// What this test can decide: power of each limit.
+    pub power: Vec<PowerRecord>,
+    /// Instruments that were used.
+    pub instruments: Vec<InstrumentRecord>,
+    /// Waivers: records beside the verdict, never part of it.
+    pub waivers: Vec<WaiverRecord>,
+    /// Clauses of the standard and where they are dealt with.
+    pub clauses: Vec<ClauseRecord>,
+    /// Options that the analysis used, by name.
+    pub options: Vec<OptionRecord>,
+    /// Figures, by id, in the order of the report.
+    pub figures: Vec<FigureRecord>,
+    /// Errors that made the verdict `error`.
+    #[schemars(with = "Vec<NoteSchema>")]
+    pub errors: Vec<Note>,
+}
+
+/// How a [`Note`] appears in JSON.
+#[derive(Debug, JsonSchema)]
+#[allow(dead_code)]
+pub struct NoteSchema {
+    /// The sentence in English.
+    text: String,
+    /// Its name in the locale tables.
+    id: String,
+    /// Its arguments.
+    args: std::collections::BTreeMap<String, serde_json::Value>,
+}
+
+/// The program that wrote a result.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Program {
+    /// `sagnac`.
+    pub name: &'static str,
+    /// Version of the program.
+    pub version: String,
+}
+
+/// Identity of the procedure.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ProcedureRecord {
+    /// Id, for example `static-bias`.
+    pub id: String,
+    /// Title shown on the report.
+    pub title: String,
+    /// Revision.
+    pub revision: String,
+    /// Standard followed.
+    pub standard: Option<String>,
+    /// Clause of the standard.
+    pub clause: Option<String>,
+    /// Who wrote it.
+    pub author: Option<String>,
+    /// File it was read from, as given.
+    pub path: String,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// The limits file, when one was given.
+    pub limits: Option<LimitsFile>,
+}
+
+/// Identity of a limits file.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct LimitsFile {
+    /// Id of the limits.
+    pub id: String,
+    /// Title.
+    pub title: String,
+    /// Revision.
+    pub revision: String,
+    /// Where the values come from.
+    pub source: Option<String>,
+    /// File it was read from, as given.
+    pub path: String,
+    /// SHA-256 of the file.
+    pub sha256: String,
+}
+
+/// Identity of the unit that was tested.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+pub struct UnitUnderTest {
+    /// Serial number.
+    pub serial: Option<String>,
+    /// Family, for example `OIUS-501`.
+    pub family: Option<String>,
+    /// Part number.
+    pub part: Option<String>,
+    /// Revision of the part.
+    pub revision: Option<String>,
+    /// Lot or batch.
+    pub lot: Option<String>,
+}
+
+/// Who tested, where, when.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+pub struct Session {
+    /// Operator.
+    pub operator: Option<String>,
+    /// Station.
+    pub station: Option<String>,
+    /// When the evaluation ran, RFC 3339, UTC.
+    pub evaluated_at: String,
+}
+
+/// One file of the recording.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct RecordingFile {
+    /// Path as given.
+    pub path: String,
+    /// SHA-256 of the bytes of the file.
+    pub sha256: String,
+    /// Size of the file, bytes.
+    pub bytes: u64,
+    /// Rows read.
+    pub samples: u64,
+    /// Measured mean sample interval, s.
+    pub sample_interval_s: f64,
+    /// Start of the recording, RFC 3339, when the stamps are absolute.
+    pub start: Option<String>,
+    /// Last stamp minus first stamp plus one interval, s.
+    pub duration_s: f64,
+    /// Columns that were used: name, role, unit.
+    pub columns: Vec<ColumnRecord>,
+}
+
+/// One column and what it was taken for.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ColumnRecord {
+    /// Name in the file.
+    pub name: String,
+    /// Channel id used in this result, for example `rate`.
+    pub channel: String,
+    /// Role, for example `temperature`.
+    pub role: String,
+    /// Unit in the file.
+    pub unit: String,
+}
+
+/// State of a condition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ConditionStatus {
+    /// Shown to be met.
+    Ok,
+    /// Met with a remark, or not decidable without harm.
+    Remark,
+    /// Not met or not shown: the test was not done right.
+    Invalid,
+}
+
+/// One condition with its evidence.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ConditionRecord {
+    /// Id, for example `temperature`.
+    pub id: String,
+    /// State.
+    pub status: ConditionStatus,
+    /// What was observed, by name, in the unit of `required`.
+    pub observed: serde_json::Map<String, serde_json::Value>,
+    /// What was required, as text with unit.
+    pub required: String,
+    /// The sentence that explains the state, English.
+    pub note: String,
+    /// The same sentence by name.
+    #[schemars(with = "Option<NoteSchema>")]
+    pub message: Option<Note>,
+}
+
+/// Faults of the recording, counted; the first of each kind listed with row and time.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+pub struct Integrity {
+    /// Places where samples are missing.
+    pub gaps: u64,
+    /// Samples missing in them.
+    pub missing_samples: u64,
+    /// Rows whose stamp equals the one before.
+    pub duplicate_timestamps: u64,
+    /// Rows whose stamp is earlier than one before.
+    pub backward_timestamps: u64,
+    /// Fields that hold NaN or infinity, or are empty.
+    pub non_finite: u64,
+    /// Fields that are no number.
+    pub unparsable: u64,
+    /// Samples far outside the noise about them.
+    pub outliers: u64,
+    /// Samples at a rail.
+    pub saturated: u64,
+    /// Samples that repeat the one before for longer than chance allows.
+    pub stuck: u64,
+    /// Rms deviation of the stamps from a uniform clock, s.
+    pub timestamp_jitter_s: Option<f64>,
+    /// Size of a step of the rate output, deg/h, when the values lie on a lattice.
+    pub quantization_step_deg_h: Option<f64>,
+    /// Threshold of the outlier test, in robust standard deviations.
+    pub outlier_threshold: Option<f64>,
+    /// The faults one by one, at most 100 of a kind.
+    pub faults: Vec<FaultRecord>,
+}
+
+/// One fault.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct FaultRecord {
+    /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `non_finite`, `unparsable`, `outlier`, `saturated`, `stuck`.
+    pub kind: String,
+    /// Channel, when the fault is of one channel.
+    pub channel: Option<String>,
+    /// Time of the first sample concerned, s on the recording's own scale.
+    pub time_s: Option<f64>,
+    /// Row of the first sample concerned, counted from 1 without header lines.
+    pub row: u64,
+    /// Samples concerned.
+    pub count: u64,
+    /// What was seen, English.
+    pub note: String,
+}
+
+/// The evaluated part of a recording.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+pub struct Window {
+    /// First time evaluated, s from the start of the recording.
+    pub from_s: f64,
+    /// Last time evaluated, s from the start of the recording.
+    pub to_s: f64,
+    /// Time that holds usable samples, s.
+    pub usable_s: f64,
+    /// Spans left out, with the reason.
+    pub excluded: Vec<ExcludedSpan>,
+}
+
+/// A span left out of the evaluation.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ExcludedSpan {
+    /// Start, s from the start of the recording.
+    pub from_s: f64,
+    /// End, s from the start of the recording.
+    pub to_s: f64,
+    /// `warm_up`, `declared`, `gap`.
+    pub reason: String,
+}
+
+/// One measurand row.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct MeasurandRecord {
+    /// Id, see the contract.
+    pub id: String,
+    /// Channel.
+    pub channel: String,
+    /// Value, `null` where the record cannot show it.
+    pub value: Option<f64>,
+    /// Unit.
+    pub unit: String,
+    /// 95 % interval.
+    pub interval: Option<Interval>,
+    /// Whether the record can show the quantity.
+    pub identifiable: bool,
+    /// Bound where it cannot.
+    pub upper_limit: Option<UpperLimit>,
+    /// How it was obtained.
+    pub method: String,
+    /// The limit it was judged by.
+    pub limit: Option<LimitRecord>,
+    /// Published or data-sheet value for comparison.
+    pub reference: Option<ReferenceRecord>,
+    /// Verdict of this row.
+    pub verdict: Verdict,
+    /// Distance to the nearest limit, positive inside.
+    pub margin: Option<f64>,
+    /// Probability that the unit is outside its limit, given what was measured.
+    pub specific_risk: Option<f64>,
+    /// What must be known with the value.
+    #[schemars(with = "Vec<NoteSchema>")]
+    pub notes: Vec<Note>,
+}
+
+/// A limit as applied.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct LimitRecord {
+    /// Lower limit.
+    pub min: Option<f64>,
+    /// Upper limit.
+    pub max: Option<f64>,
+    /// Unit of both.
+    pub unit: String,
+    /// Decision rule.
+    pub rule: Rule,
+    /// Risk the guard band is set for.
+    pub risk: f64,
+    /// Smallest measured value accepted.
+    pub acceptance_min: Option<f64>,
+    /// Largest measured value accepted.
+    pub acceptance_max: Option<f64>,
+    /// File the limit stands in.
+    pub source: String,
+}
+
+/// A published value set beside the measured one.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ReferenceRecord {
+    /// Value in the unit of the row.
+    pub value: f64,
+    /// Where it was published.
+    pub source: String,
+}
+
+/// A spectral line.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct LineRecord {
+    /// Channel.
+    pub channel: String,
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Resolution of the spectrum at which it was found, Hz.
+    pub resolution_hz: f64,
+    /// Amplitude of the equivalent sinusoid, deg/h.
+    pub amplitude_deg_h: f64,
+    /// Power over the local noise floor.
+    pub excess: f64,
+    /// Probability that noise alone shows such a peak anywhere in the spectrum.
+    pub false_alarm_probability: f64,
+}
+
+/// A fitted noise model.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct NoiseModelRecord {
+    /// Channel.
+    pub channel: String,
+    /// Method of the fit.
+    pub method: String,
+    /// Terms in the model that were claimed.
+    pub terms: Vec<String>,
+    /// Angle random walk, deg/sqrt(h).
+    pub angle_random_walk: f64,
+    /// Flicker coefficient B, deg/h.
+    pub bias_instability: f64,
+    /// Rate random walk, deg/h/sqrt(h).
+    pub rate_random_walk: f64,
+    /// Rate ramp, deg/h/h.
+    pub rate_ramp: f64,
+    /// Quantisation, arcsec.
+    pub quantization: f64,
+    /// Chi-square like misfit per degree of freedom of the spectrum about the model (1 when the model fits).
+    pub misfit: f64,
+    /// Probability of a larger misfit if the model is right.
+    pub misfit_probability: f64,
+    /// Frequency range with the largest misfit, Hz, when the model does not fit.
+    pub misfit_band_hz: Option<[f64; 2]>,
+}
+
+/// Power of one limit.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct PowerRecord {
+    /// Measurand.
+    pub id: String,
+    /// Channel.
+    pub channel: String,
+    /// Limit, in the unit of the measurand.
+    pub limit: f64,
+    /// Unit.
+    pub unit: String,
+    /// Probability that a unit 1.5 times over the limit would be failed.
+    pub power: f64,
+    /// Probability that a unit at half the limit would be passed.
+    pub pass_probability: f64,
+    /// Record length, h, with which the limit could be decided, when this one is too short.
+    pub needed_h: Option<f64>,
+    /// The same in words.
+    #[schemars(with = "NoteSchema")]
+    pub message: Note,
+}
+
+/// An instrument and its calibration.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct InstrumentRecord {
+    /// Name.
+    pub name: String,
+    /// Serial number.
+    pub serial: Option<String>,
+    /// Date until which its calibration holds, ISO 8601.
+    pub calibration_due: Option<String>,
+    /// State on the day of the test.
+    pub status: ConditionStatus,
+}
+
+/// A waiver: who lets a row pass although it does not, why and when. Beside the verdict, never part of it.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct WaiverRecord {
+    /// Measurand or condition concerned.
+    pub row: String,
+    /// Who decided.
+    pub by: String,
+    /// Why.
+    pub reason: String,
+    /// When, ISO 8601 date.
+    pub date: String,
+}
+
+/// A clause of the standard.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ClauseRecord {
+    /// Clause, for example `12.11`.
+    pub clause: String,
+    /// Its title.
+    pub title: String,
+    /// `here`, `elsewhere`, `not_applicable`.
+    pub status: String,
+    /// Where or why.
+    pub note: String,
+}
+
+/// An option that the analysis used.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct OptionRecord {
+    /// Name, dotted.
+    pub name: String,
+    /// Value as text with unit.
+    pub value: String,
+}
+
+/// A figure of the report.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct FigureRecord {
+    /// Id, also the stem of the file in `figures/`.
+    pub id: String,
+    /// File, relative to the result.
+    pub file: String,
+}
+
+impl LimitRecord {
+    /// The record of a limit with the acceptance limits of a judgement.
+    pub fn new(limit: &crate::estimate::Limit, unit: &str, judgement: &Judgement) -> LimitRecord {
+        LimitRecord {
+            min: limit.min,
+            max: limit.max,
+            unit: unit.to_owned(),
+            rule: limit.rule,
+            risk: limit.risk,
+            acceptance_min: judgement.acceptance_min,
+            acceptance_max: judgement.acceptance_max,
+            source: limit.source.clone(),
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Words: every sentence a report, a diagnostic or a result shows goes through one table per language.
+//!
+//! A [`Note`] is a sentence by name with its numbers; it becomes words only where it is shown, so that the same
+//! result can be read in any language. The tables are `templates/locale/*.toml`.
+
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// A language a document can be written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Lang {
+    /// English.
+    #[default]
+    En,
+}
+
+static ENGLISH: LazyLock<BTreeMap<String, String>> =
+    LazyLock::new(|| flatten(include_str!("../templates/locale/en.toml")));
+
+/// Turns the nested tables of a locale file into dotted keys.
+fn flatten(source: &str) -> BTreeMap<String, String> {
+    fn walk(prefix: &str, table: &toml::Table, out: &mut BTreeMap<String, String>) {
+        for (key, value) in table {
+            let path = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
+            match value {
+                toml::Value::Table(inner) => walk(&path, inner, out),
+                toml::Value::String(text) => {
+                    out.insert(path, text.clone());
+                }
+                _ => {}
+            }
+        }
+    }
+    let mut out = BTreeMap::new();
+    if let Ok(table) = source.parse::<toml::Table>() {
+        walk("", &table, &mut out);
+    }
+    out
+}
+
+/// The table of a language: dotted key → text with `{argument}` places.
+pub fn table(lang: Lang) -> &'static BTreeMap<String, String> {
+    match lang {
+        Lang::En => &ENGLISH,
+    }
+}
+
+/// The text of a key, or `None` when the table lacks it.
+pub fn lookup(lang: Lang, key: &str) -> Option<&'static str> {
+    table(lang).get(key).map(String::as_str)
+}
+
+/// One argument of a note.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Arg {
+    /// A number; shown with up to four significant digits.
+    Number(f64),
+    /// A count; shown in full.
+    Count(u64),
+    /// A text, shown as it is.
+    Text(String),
+}
+
+impl From<f64> for Arg {
+    fn from(v: f64) -> Self {
+        Arg::Number(v)
+    }
+}
+impl From<u64> for Arg {
+    fn from(v: u64) -> Self {
+        Arg::Count(v)
+    }
+}
+impl From<usize> for Arg {
+    fn from(v: usize) -> Self {
+        Arg::Count(v as u64)
+    }
+}
+impl From<&str> for Arg {
+    fn from(v: &str) -> Self {
+        Arg::Text(v.to_owned())
+    }
+}
+impl From<String> for Arg {
+    fn from(v: String) -> Self {
+        Arg::Text(v)
+    }
+}
+
+/// A sentence by name, with its arguments. Serialised as the English text plus name and arguments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// Key in the locale tables, for example `note.record_too_short`.
+    pub id: &'static str,
+    /// Arguments by name.
+    pub args: BTreeMap<&'static str, Arg>,
+}
+
+impl Note {
+    /// A note with no arguments yet.
+    pub fn new(id: &'static str) -> Note {
+        Note { id, args: BTreeMap::new() }
+    }
+
+    /// Adds an argument.
+    #[must_use]
+    pub fn with(mut self, name: &'static str, value: impl Into<Arg>) -> Note {
+        self.args.insert(name, value.into());
+        self
+    }
+
+    /// The sentence in a language. A key the table lacks shows as itself, so that it is noticed.
+    pub fn say(&self, lang: Lang) -> String {
+        fill(lookup(lang, self.id).unwrap_or(self.id), |name| {
+            self.args.get(name).map(|arg| match arg {
+                Arg::Number(v) => significant(*v, 4),
+                Arg::Count(v) => v.to_string(),
+                Arg::Text(t) => t.clone(),
+            })
+        })
+    }
+}
+
+impl Serialize for Note {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut s = serializer.serialize_struct("Note", 3)?;
+        s.serialize_field("text", &self.say(Lang::En))?;
+        s.serialize_field("id", self.id)?;
+        s.serialize_field("args", &self.args)?;
+        s.end()
+    }
+}
+
+/// Replaces every `{name}` in a pattern.
+fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> String {
+    let mut out = String::with_capacity(pattern.len() + 16);
+    let mut rest = pattern;
+    while let Some(open) = rest.find('{') {
+        let Some(close) = rest[open..].find('}').map(|i| open + i) else { break };
+        out.push_str(&rest[..open]);
+        let name = &rest[open + 1..close];
+        match value(name) {
+            Some(text) => out.push_str(&text),
+            None => out.push_str(&rest[open..=close]),
+        }
+        rest = &rest[close + 1..];
+    }
+    out.push_str(rest);
+    out
+}
+
+/// A number with the given count of significant digits, plain where that reads well and with an exponent elsewhere.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    let digits = digits.max(1);
+    // Rounding may carry into the next decade (9.9996 → 10.00), so the exponent is read after rounding.
+    let scientific = format!("{:.*e}", digits - 1, value);
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    if (-5..7).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        let plain = format!("{value:.decimals$}");
+        if plain.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".into() } else { plain }
+    } else {
+        format!("{mantissa}e{exponent}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_significant_digits() {
+        assert_eq!(significant(0.0023149, 3), "0.00231");
+        assert_eq!(significant(-9.9996, 4), "-10.00");
+        assert_eq!(significant(36000.0, 4), "36000");
+        assert_eq!(significant(1.5e-9, 3), "1.50e-9");
+        assert_eq!(significant(f64::NAN, 3), "–");
+    }
+
+    #[test]
+    fn arguments_are_put_in_and_missing_ones_show() {
+        assert_eq!(fill("{a} of {b}", |n| (n == "a").then(|| "1".to_owned())), "1 of {b}");
+    }
+
+    #[test]
+    fn the_english_table_is_valid_toml() {
+        assert!(!table(Lang::En).is_empty());
+    }
+}
