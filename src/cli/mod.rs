@@ -1,0 +1,178 @@
+//! The command line: one file a verb. The only place that prints and that knows exit codes.
+
+mod analyze;
+mod check;
+mod inspect;
+mod place;
+mod progress;
+mod run;
+mod schema;
+mod selftest;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit codes, as the README documents them.
+pub mod exit {
+    /// Every row passed, or there were no limits.
+    pub const PASS: u8 = 0;
+    /// At least one row failed.
+    pub const FAIL: u8 = 1;
+    /// The test could not be run, or not as required.
+    pub const ERROR: u8 = 2;
+    /// Neither pass nor fail.
+    pub const INDETERMINATE: u8 = 3;
+}
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "sagnac",
+    version,
+    about = "Acceptance tests for precision gyroscopes: a procedure and a recording in, a report out",
+    after_help = "Exit codes: 0 pass (or no limits), 1 fail, 2 could not run, 3 indeterminate.\n\n\
+        Example:\n  sagnac run procedures/static-bias.toml recording.csv --limits procedures/limits/oius-501.toml --serial SN-0042"
+)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Test a recording by a procedure and write the acceptance report
+    #[command(
+        after_help = "Example:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
+        --serial SN-0042 --operator \"A. Ivanova\" --out reports/SN-0042"
+    )]
+    Run(RunArgs),
+    /// Validate procedures and limits without data, and say what they cannot show
+    #[command(after_help = "Example:\n  sagnac check procedures/static-bias.toml procedures/limits/*.toml")]
+    Check(CheckArgs),
+    /// Say what a recording holds and which tests it can support
+    #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]
+    Inspect(InspectArgs),
+    /// Analyse the noise of a recording without a procedure
+    #[command(after_help = "Example:\n  sagnac analyze unit-0042.csv --rate gyro_x --unit deg/s --out analysis-0042")]
+    Analyze(AnalyzeArgs),
+    /// Print the JSON Schema of a file format, for completion in editors
+    #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]
+    Schema(SchemaArgs),
+    /// Re-run the published oracles on this machine and print the differences, for the QA file
+    #[command(after_help = "Example:\n  sagnac selftest > selftest-2026-11-21.txt")]
+    Selftest,
+}
+
+#[derive(Debug, Args)]
+struct RunArgs {
+    /// Procedure (TOML)
+    procedure: PathBuf,
+    /// Recording: CSV (plain, .gz, .zst) or Parquet
+    recording: PathBuf,
+    /// Limits file; replaces limits of the procedure for the same measurand
+    #[arg(long, value_name = "FILE")]
+    limits: Option<PathBuf>,
+    /// Serial number of the unit under test
+    #[arg(long, value_name = "SN")]
+    serial: Option<String>,
+    /// Who tests
+    #[arg(long, value_name = "NAME")]
+    operator: Option<String>,
+    /// Station the recording was made on
+    #[arg(long, value_name = "NAME")]
+    station: Option<String>,
+    /// Folder for the results [default: named after procedure, serial and UTC start]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Folder with templates that replace the built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
+    #[command(flatten)]
+    grid: GridArgs,
+}
+
+/// Choice of the averaging times.
+#[derive(Debug, Args)]
+struct GridArgs {
+    /// Averaging times: octave, decade, all, or a list in seconds (1,10,100), each a multiple of the sample interval
+    #[arg(long, value_name = "GRID")]
+    taus: Option<String>,
+    /// Sum every overlapping term at any length (8 bytes of memory a sample)
+    #[arg(long)]
+    exact: bool,
+}
+
+#[derive(Debug, Args)]
+struct CheckArgs {
+    /// Procedures and limits files (TOML)
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+struct InspectArgs {
+    /// Recording: CSV (plain, .gz, .zst) or Parquet
+    recording: PathBuf,
+    /// Sample rate, where the recording has no time column
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+struct AnalyzeArgs {
+    /// Recording: CSV (plain, .gz, .zst) or Parquet
+    recording: PathBuf,
+    /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
+    #[arg(long, value_name = "COLUMN")]
+    rate: Vec<String>,
+    /// Unit of the rate columns [default: from their names]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<String>,
+    /// Time column by name or position, or `none` to go by the sample rate alone [default: from the names]
+    #[arg(long, value_name = "COLUMN")]
+    time: Option<String>,
+    /// Sample rate, needed where there is no time column
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+    /// Time left out at the start, s
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    warm_up: f64,
+    /// Folder for the results [default: named after the recording and UTC start]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Folder with templates that replace the built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
+    #[command(flatten)]
+    grid: GridArgs,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SchemaKind {
+    /// A test procedure
+    Procedure,
+    /// A limits file
+    Limits,
+    /// result.json
+    Result,
+}
+
+#[derive(Debug, Args)]
+struct SchemaArgs {
+    /// Which format
+    kind: SchemaKind,
+}
+
+/// Parses the command line, runs the verb, gives the exit code.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let code = match cli.verb {
+        Verb::Run(args) => run::main(&args),
+        Verb::Check(args) => check::main(&args),
+        Verb::Inspect(args) => inspect::main(&args),
+        Verb::Analyze(args) => analyze::main(&args),
+        Verb::Schema(args) => schema::main(&args),
+        Verb::Selftest => selftest::main(),
+    };
+    ExitCode::from(code)
+}

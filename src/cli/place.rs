@@ -1,0 +1,46 @@
+//! Where results go, and how text reaches the user.
+
+use chrono::{DateTime, Utc};
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Writes to standard output; a reader that went away (`| head`) is no error.
+pub fn print(text: &str) {
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+}
+
+/// Writes to standard error.
+pub fn complain(text: &str) {
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// The default name of an output folder: what, which unit, when.
+pub fn default_folder(what: &str, serial: Option<&str>, now: DateTime<Utc>) -> PathBuf {
+    let clean = |text: &str| -> String {
+        let safe: String =
+            text.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+        safe.trim_matches('.').to_owned()
+    };
+    PathBuf::from(format!(
+        "{}_{}_{}",
+        clean(what),
+        clean(serial.unwrap_or("no-serial")),
+        now.format("%Y%m%dT%H%M%SZ")
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folder_names_are_safe_in_any_file_system() {
+        let t = DateTime::from_timestamp(0, 0).unwrap();
+        assert_eq!(
+            default_folder("static-bias", Some("SN/42:а"), t),
+            PathBuf::from("static-bias_SN_42_а_19700101T000000Z")
+        );
+        let odd = default_folder("static-bias", Some("../.."), t);
+        assert_eq!(odd.components().count(), 1);
+    }
+}

@@ -1,0 +1,38 @@
+//! Progress on stderr, when it is a terminal and the work takes more than about a second.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// A progress bar that stays silent for short work and where nobody watches.
+pub struct Progress {
+    bar: ProgressBar,
+    began: Instant,
+    shown: bool,
+}
+
+impl Progress {
+    /// Begins, hidden.
+    pub fn new() -> Progress {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{msg:18} {bar:32} {percent:>3} % {bytes_per_sec} {eta}") {
+            bar.set_style(style);
+        }
+        Progress { bar, began: Instant::now(), shown: false }
+    }
+
+    /// Says how far the work is.
+    pub fn update(&mut self, message: &str, done: u64, total: u64) {
+        if !self.shown && self.began.elapsed() > Duration::from_secs(1) {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.bar.set_message(message.to_owned());
+            self.shown = true;
+        }
+        self.bar.set_length(total.max(done));
+        self.bar.set_position(done);
+    }
+
+    /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,14 @@
+//! `sagnac schema`: JSON Schema of the formats.
+
+use super::{SchemaArgs, SchemaKind, exit};
+use crate::record::RunRecord;
+
+pub fn main(args: &SchemaArgs) -> u8 {
+    let schema = match args.kind {
+        SchemaKind::Procedure => crate::procedure::schema::procedure(),
+        SchemaKind::Limits => crate::procedure::schema::limits(),
+        SchemaKind::Result => serde_json::to_value(schemars::schema_for!(RunRecord)).unwrap_or_default(),
+    };
+    super::place::print(&format!("{schema:#}\n"));
+    exit::PASS
+}

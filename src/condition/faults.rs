@@ -1,0 +1,81 @@
+//! Faults of the recording against the budget of the procedure.
+
+use super::{Condition, Facts, record};
+use crate::procedure::model::Allowance;
+use crate::record::{ConditionRecord, ConditionStatus};
+use crate::text::Note;
+
+pub(super) struct Faults;
+
+impl Condition for Faults {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        let budget = &facts.procedure.conditions.faults;
+        let found = facts.integrity;
+        let counted: [(&str, u64, Option<Allowance>); 9] = [
+            ("gaps", found.gaps, budget.gaps),
+            ("missing_samples", found.missing_samples, budget.missing_samples),
+            ("duplicate_timestamps", found.duplicate_timestamps, budget.duplicate_timestamps),
+            ("backward_timestamps", found.backward_timestamps, budget.backward_timestamps),
+            ("non_finite", found.non_finite, budget.non_finite),
+            ("unparsable", found.unparsable, budget.unparsable),
+            ("outliers", found.outliers, budget.outliers),
+            ("saturated", found.saturated, budget.saturated),
+            ("stuck", found.stuck, budget.stuck),
+        ];
+        let mut records = Vec::new();
+        for (id, count, allowance) in counted {
+            let share = count as f64 / facts.rows.max(1) as f64;
+            let Some(allowance) = allowance else {
+                if count > 0 {
+                    let note = note("note.condition.fault_unbudgeted", id, count, share);
+                    records.push(record(
+                        id,
+                        ConditionStatus::Remark,
+                        &[("count", count as f64), ("share", share)],
+                        "",
+                        note,
+                    ));
+                }
+                continue;
+            };
+            let (status, key) = if !allowance.allows(count, facts.rows) {
+                (ConditionStatus::Invalid, "note.condition.fault_over")
+            } else if count > 0 {
+                (ConditionStatus::Remark, "note.condition.fault_within")
+            } else {
+                (ConditionStatus::Ok, "note.condition.fault_none")
+            };
+            let required = match allowance {
+                Allowance::Count(most) => format!("at most {most}"),
+                Allowance::Share(most) => format!("at most {} %", most * 100.0),
+            };
+            let observed = [("count", count as f64), ("share", share)];
+            records.push(record(id, status, &observed, required, note(key, id, count, share)));
+        }
+        if let Some(most_s) = budget.longest_gap_s {
+            let (status, key) = if facts.longest_gap_s <= most_s {
+                (ConditionStatus::Ok, "note.condition.longest_gap_within")
+            } else {
+                (ConditionStatus::Invalid, "note.condition.longest_gap_over")
+            };
+            let note = Note::new(key).with("seconds", facts.longest_gap_s);
+            let observed = [("seconds", facts.longest_gap_s)];
+            records.push(record("longest_gap", status, &observed, format!("at most {most_s} s"), note));
+        }
+        if let (Some(most_s), Some(jitter_s)) = (budget.timestamp_jitter_s, found.timestamp_jitter_s) {
+            let (status, key) = if jitter_s <= most_s {
+                (ConditionStatus::Ok, "note.condition.jitter_within")
+            } else {
+                (ConditionStatus::Invalid, "note.condition.jitter_over")
+            };
+            let note = Note::new(key).with("seconds", jitter_s);
+            let required = format!("at most {most_s} s rms");
+            records.push(record("timestamp_jitter", status, &[("seconds", jitter_s)], required, note));
+        }
+        records
+    }
+}
+
+fn note(key: &'static str, id: &str, count: u64, share: f64) -> Note {
+    Note::new(key).with("kind", id.replace('_', " ")).with("count", count).with("percent", share * 100.0)
+}

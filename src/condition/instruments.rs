@@ -1,0 +1,39 @@
+//! Calibration of the instruments on the day of the test.
+
+use super::{Condition, Facts, record};
+use crate::procedure::model::Instrument;
+use crate::record::{ConditionRecord, ConditionStatus};
+use crate::text::Note;
+use chrono::NaiveDate;
+
+pub(super) struct Instruments;
+
+/// State of an instrument on a day: its calibration holds to the end of the due day.
+pub fn status(instrument: &Instrument, today: NaiveDate) -> ConditionStatus {
+    match instrument.calibration_due {
+        Some(due) if due >= today => ConditionStatus::Ok,
+        _ if instrument.required => ConditionStatus::Invalid,
+        _ => ConditionStatus::Remark,
+    }
+}
+
+impl Condition for Instruments {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        let instruments = &facts.procedure.instruments;
+        instruments
+            .iter()
+            .map(|instrument| {
+                let status = status(instrument, facts.today);
+                let key = match (status, instrument.calibration_due) {
+                    (ConditionStatus::Ok, _) => "note.condition.calibration_valid",
+                    (_, Some(_)) => "note.condition.calibration_overdue",
+                    (_, None) => "note.condition.calibration_unknown",
+                };
+                let due = instrument.calibration_due.map(|d| d.to_string()).unwrap_or_default();
+                let note = Note::new(key).with("instrument", instrument.name.clone()).with("due", due);
+                let required = format!("valid on {}", facts.today);
+                record("calibration", status, &[], required, note)
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,105 @@
+//! Conditions of a test, judged from the recording. One file a condition; adding one is one file and one line in
+//! [`CONDITIONS`].
+//!
+//! A condition is met only when it is shown to be met, the sensor's uncertainty included. One that is not makes the
+//! whole indeterminate: a test that was not done right neither passes nor fails a unit.
+
+mod duration;
+mod faults;
+mod held;
+mod instruments;
+mod sample_rate;
+mod supply;
+mod temperature;
+pub mod temperature_track;
+mod warm_up;
+
+use crate::procedure::Procedure;
+use crate::record::{ConditionRecord, ConditionStatus, Integrity};
+use crate::text::{Lang, Note};
+use chrono::NaiveDate;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use temperature_track::TemperatureFacts;
+
+/// What conditions are judged by.
+#[derive(Debug)]
+pub struct Facts<'a> {
+    /// The procedure.
+    pub procedure: &'a Procedure,
+    /// Faults of the recording.
+    pub integrity: &'a Integrity,
+    /// Rows of the recording.
+    pub rows: u64,
+    /// Measured mean sample interval, s.
+    pub sample_interval_s: f64,
+    /// True when the interval was measured from stamps.
+    pub has_stamps: bool,
+    /// Time with usable samples in the evaluated window, s.
+    pub usable_s: f64,
+    /// Longest gap, s.
+    pub longest_gap_s: f64,
+    /// Smoothed values of channels that must be held, by channel and position of the condition.
+    pub held: &'a BTreeMap<(String, usize), TemperatureFacts>,
+    /// Means of consecutive tenths of the first hours of each gyro channel: (channel, residual of the warm-up fit).
+    pub warm_up: &'a [WarmUpFact],
+    /// Day of the test.
+    pub today: NaiveDate,
+}
+
+/// What is left of a warm-up transient at the start of the evaluated window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WarmUpFact {
+    /// Channel.
+    pub channel: String,
+    /// Transient at the start of the window, deg/h.
+    pub residual_deg_h: f64,
+    /// Its time constant, s.
+    pub time_constant_s: f64,
+    /// Significance of the transient against the noise of the means, standard deviations.
+    pub significance: f64,
+    /// Standard uncertainty of the bias of the channel, deg/h.
+    pub bias_uncertainty_deg_h: f64,
+}
+
+/// One kind of condition.
+pub trait Condition: Sync {
+    /// Judges it; no record when the procedure does not ask for it.
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord>;
+}
+
+/// Every condition, in the order of the report.
+pub static CONDITIONS: &[&dyn Condition] = &[
+    &temperature::Temperature,
+    &supply::Supply,
+    &duration::Duration,
+    &warm_up::WarmUp,
+    &sample_rate::SampleRate,
+    &faults::Faults,
+    &instruments::Instruments,
+];
+
+/// Judges every condition.
+pub fn judge_all(facts: &Facts<'_>) -> Vec<ConditionRecord> {
+    CONDITIONS.iter().flat_map(|c| c.judge(facts)).collect()
+}
+
+/// A record with its sentence in both forms.
+fn record(
+    id: impl Into<String>,
+    status: ConditionStatus,
+    observed: &[(&str, f64)],
+    required: impl Into<String>,
+    note: Note,
+) -> ConditionRecord {
+    let observed: Map<String, Value> =
+        observed.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect();
+    ConditionRecord {
+        id: id.into(),
+        status,
+        observed,
+        required: required.into(),
+        note: note.say(Lang::En),
+        message: Some(note),
+    }
+}

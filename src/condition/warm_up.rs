@@ -1,0 +1,40 @@
+//! Whether the warm-up left out was long enough.
+
+use super::{Condition, Facts, record};
+use crate::record::{ConditionRecord, ConditionStatus};
+use crate::text::Note;
+
+pub(super) struct WarmUp;
+
+/// Standard deviations from which a transient counts as seen.
+const SEEN: f64 = 4.0;
+
+impl Condition for WarmUp {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        let warm_up_s = facts.procedure.conditions.warm_up_s;
+        let mut records = Vec::new();
+        for fact in facts.warm_up {
+            // A transient matters when it moves the mean by more than a third of the uncertainty of the mean.
+            let shift = fact.residual_deg_h * fact.time_constant_s / facts.usable_s.max(fact.time_constant_s);
+            let matters = shift.abs() > fact.bias_uncertainty_deg_h / 3.0;
+            let seen = fact.significance > SEEN && matters;
+            let (status, key) = if seen {
+                (ConditionStatus::Remark, "note.condition.warm_up_short")
+            } else {
+                (ConditionStatus::Ok, "note.condition.warm_up_enough")
+            };
+            let note = Note::new(key)
+                .with("channel", fact.channel.clone())
+                .with("residual", fact.residual_deg_h)
+                .with("time_constant_min", fact.time_constant_s / 60.0)
+                .with("warm_up_min", warm_up_s / 60.0);
+            let mut observed = vec![("left_out_s", warm_up_s)];
+            if seen {
+                observed.push(("residual_deg_h", fact.residual_deg_h));
+                observed.push(("time_constant_s", fact.time_constant_s));
+            }
+            records.push(record("warm_up", status, &observed, format!("{} min left out", warm_up_s / 60.0), note));
+        }
+        records
+    }
+}

@@ -1,0 +1,83 @@
+//! Modules depend downwards only. The table is the architecture; a module that reaches up fails here.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Modules from the ground up; each may use those of lower floors, and its own.
+const FLOORS: &[&[&str]] = &[
+    &["numeric", "units", "text"],
+    &["estimate", "figure", "output"],
+    &["record", "recording"],
+    &["ingest", "noise"],
+    &["measurand"],
+    &["procedure"],
+    &["run"],
+    &["report"],
+    &["cli"],
+];
+
+fn floor(module: &str) -> Option<usize> {
+    FLOORS.iter().position(|f| f.contains(&module))
+}
+
+fn sources(dir: &Path, out: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(dir).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            sources(&path, out);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            out.push(path);
+        }
+    }
+}
+
+/// The modules that a source text names after `crate::`.
+fn uses(text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for (at, _) in text.match_indices("crate::") {
+        let rest = &text[at + "crate::".len()..];
+        if let Some(group) = rest.strip_prefix('{') {
+            let body = group.split('}').next().unwrap_or_default();
+            found
+                .extend(body.split(',').filter_map(|item| item.trim().split("::").next()).map(str::to_owned));
+        } else {
+            found.push(rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect());
+        }
+    }
+    found
+}
+
+#[test]
+fn every_module_stands_on_a_floor_and_looks_down_only() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    let mut checked = 0;
+    let mut wrong = Vec::new();
+    for file in files {
+        let relative = file.strip_prefix(&src).unwrap();
+        let first = relative.components().next().unwrap().as_os_str().to_string_lossy().into_owned();
+        let module = first.trim_end_matches(".rs");
+        if module == "lib" || module == "main" {
+            continue;
+        }
+        let Some(own) = floor(module) else {
+            wrong.push(format!("{module} stands on no floor"));
+            continue;
+        };
+        for used in uses(&fs::read_to_string(&file).unwrap()) {
+            checked += 1;
+            match floor(&used) {
+                Some(other) if other < own || used == module => {}
+                // Neighbours on one floor may know each other only where the table says so: nowhere yet but `record`.
+                Some(other) if other == own && (used == "record" || used == "recording") => {}
+                Some(_) => {
+                    wrong.push(format!("{} uses {used}, which is not below {module}", relative.display()))
+                }
+                None => wrong.push(format!("{} uses crate::{used}, which is no module", relative.display())),
+            }
+        }
+    }
+    assert!(checked > 50, "the search found only {checked} uses");
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
