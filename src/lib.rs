@@ -12,7 +12,9 @@
 
 pub mod estimate;
 pub mod figure;
+pub mod measurand;
 pub mod noise;
+pub mod procedure;
 pub mod record;
 pub mod recording;
 pub mod text;
