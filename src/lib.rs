@@ -12,8 +12,10 @@
 
 pub mod estimate;
 pub mod figure;
+pub mod measurand;
 pub mod noise;
 pub mod output;
+pub mod procedure;
 pub mod record;
 pub mod recording;
 pub mod text;

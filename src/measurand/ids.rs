@@ -1,0 +1,164 @@
+//! Every measurand by id: its unit, the test that gives it, whether this version gives it.
+//!
+//! The ids and units are the contract of `result.json`.
+
+/// The test that gives a measurand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Test {
+    /// Rate at rest at constant temperature.
+    Static,
+    /// Rate at rest over temperature.
+    Temperature,
+    /// Rate about the input axis given by a table.
+    RateTable,
+    /// Rate at rest over an influence other than temperature, or over switching on and off.
+    Influence,
+}
+
+impl Test {
+    /// The test in words.
+    pub fn title(self) -> &'static str {
+        match self {
+            Test::Static => "the static test",
+            Test::Temperature => "the temperature test",
+            Test::RateTable => "the rate-table test",
+            Test::Influence => "an influence or repeatability test",
+        }
+    }
+}
+
+/// One measurand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MeasurandId {
+    /// Id in procedures, limits and results.
+    pub id: &'static str,
+    /// Unit in results; limits and references are converted to it. Empty: as recorded.
+    pub unit: &'static str,
+    /// Test that gives it.
+    pub test: Test,
+    /// True when this version gives it.
+    pub available: bool,
+    /// True when it can be negative, so that a limit on its magnitude makes sense.
+    pub signed: bool,
+    /// Options that a procedure may set for it.
+    pub options: &'static [&'static str],
+    /// What it is, in one line.
+    pub doc: &'static str,
+}
+
+const fn given(
+    id: &'static str,
+    unit: &'static str,
+    options: &'static [&'static str],
+    doc: &'static str,
+) -> MeasurandId {
+    MeasurandId { id, unit, test: Test::Static, available: true, signed: false, options, doc }
+}
+
+const fn signed(mut m: MeasurandId) -> MeasurandId {
+    m.signed = true;
+    m
+}
+
+const fn later(id: &'static str, unit: &'static str, test: Test, doc: &'static str) -> MeasurandId {
+    MeasurandId { id, unit, test, available: false, signed: false, options: &[], doc }
+}
+
+use Test::{Influence, RateTable, Static, Temperature};
+
+/// Every measurand, in the order of reports.
+#[rustfmt::skip]
+pub const MEASURANDS: &[MeasurandId] = &[
+    signed(given("static_bias", "deg/h", &["earth_rate"], "mean rate at rest, Earth rate removed")),
+    signed(given("earth_rate_component", "deg/h", &[], "Earth rate along the input axis, from the site")),
+    given("angle_random_walk", "deg/sqrt(h)", &[], "N of the joint noise fit"),
+    given("bias_instability", "deg/h", &[], "flicker coefficient B of the joint noise fit"),
+    given("bias_instability_minimum", "deg/h", &[], "minimum of the overlapping Allan deviation over octaves up to a fifth of the record"),
+    given("bias_instability_minimum_scaled", "deg/h", &[], "that minimum divided by 0.664"),
+    given("rate_random_walk", "deg/h/sqrt(h)", &[], "K of the joint noise fit"),
+    given("rate_ramp", "deg/h/h", &[], "R of the joint noise fit"),
+    given("quantization", "arcsec", &[], "Q of the joint noise fit"),
+    given("russian_drift_100s", "deg/h", &[], "standard deviation of consecutive 100-s means, one sigma"),
+    given("russian_drift_100s_3sigma", "deg/h", &[], "three times the standard deviation of consecutive 100-s means"),
+    given("russian_sigma_10s", "deg/h", &[], "standard deviation of consecutive 10-s means"),
+    given("russian_arw_10s", "deg/sqrt(h)", &[], "angle random walk from 10-s means: sqrt(10) sigma / 60"),
+    given("line_frequency", "Hz", &[], "frequency of the strongest spectral line"),
+    given("line_amplitude", "deg/h", &[], "amplitude of the strongest spectral line"),
+    later("markov_sigma", "deg/h", Static, "standard deviation of exponentially correlated noise"),
+    later("markov_correlation_time", "s", Static, "its correlation time"),
+    later("quasi_periodic_amplitude", "deg/h", Static, "rms of a narrow-band disturbance"),
+    later("quasi_periodic_frequency", "Hz", Static, "its centre frequency"),
+    later("quasi_periodic_coherence_time", "s", Static, "its coherence time"),
+    later("russian_drift_100s_predicted", "deg/h", Static, "what the identified noise predicts for 100-s means"),
+    later("ratio_russian_to_allan_bias", "1", Static, "Russian 100-s drift over the Allan minimum"),
+    later("ratio_russian_to_allan_arw", "1", Static, "Russian 10-s angle random walk over N"),
+    signed(later("bias_temperature_sensitivity", "deg/h/degC", Temperature, "slope of bias over temperature")),
+    signed(later("bias_temperature_sensitivity_max", "deg/h/degC", Temperature, "steepest local slope")),
+    signed(later("bias_temperature_rate_sensitivity", "deg/h/(degC/min)", Temperature, "bias per rate of temperature (Shupe)")),
+    later("thermal_lag", "s", Temperature, "delay between temperature sensor and coil"),
+    signed(later("thermal_hysteresis", "deg/h", Temperature, "largest gap between the heating and the cooling branch")),
+    later("bias_over_temperature_peak_to_peak", "deg/h", Temperature, "range of bias over temperature"),
+    later("bias_over_temperature_rms", "deg/h", Temperature, "rms of bias over temperature"),
+    later("bias_residual_rms", "deg/h", Temperature, "rms left after the temperature model"),
+    signed(later("ramp_rate", "degC/h", Temperature, "rate of a temperature ramp")),
+    later("warm_up_time", "s", Temperature, "time after switching on until the bias stays in its band"),
+    later("angle_random_walk_at_temperature", "deg/sqrt(h)", Temperature, "N in one temperature zone"),
+    signed(later("scale_factor", "", RateTable, "output per input")),
+    signed(later("scale_factor_error", "ppm", RateTable, "deviation from the nominal scale factor")),
+    signed(later("scale_factor_nonlinearity", "ppm", RateTable, "largest residual of full scale")),
+    signed(later("scale_factor_nonlinearity_of_rate", "ppm", RateTable, "largest residual of the rate itself")),
+    signed(later("scale_factor_asymmetry", "ppm", RateTable, "difference between positive and negative rates")),
+    later("scale_factor_repeatability", "ppm", RateTable, "spread between repeated runs"),
+    signed(later("scale_factor_hysteresis", "ppm", RateTable, "difference between rates reached from below and above")),
+    signed(later("scale_factor_temperature_sensitivity", "ppm/degC", RateTable, "change of scale factor with temperature")),
+    signed(later("misalignment_x", "mrad", RateTable, "tilt of the input axis about the first reference axis")),
+    signed(later("misalignment_y", "mrad", RateTable, "tilt of the input axis about the second reference axis")),
+    signed(later("cross_axis", "1", RateTable, "output of one axis per rate about another")),
+    later("dead_zone", "deg/h", RateTable, "half width of the zone without response"),
+    later("threshold", "deg/h", RateTable, "smallest rate that is shown"),
+    later("resolution", "deg/h", RateTable, "smallest change of rate that is shown"),
+    later("table_harmonic_1", "deg/h", RateTable, "error once per revolution"),
+    later("table_harmonic_2", "deg/h", RateTable, "error twice per revolution"),
+    signed(later("magnetic_sensitivity", "deg/h/mT", Influence, "bias per magnetic field")),
+    signed(later("supply_sensitivity", "deg/h/V", Influence, "bias per supply voltage")),
+    signed(later("vibration_sensitivity", "deg/h/g^2", Influence, "bias per vibration power")),
+    later("bias_repeatability", "deg/h", Influence, "spread of bias between switchings-on"),
+];
+
+/// The measurand of an id.
+pub fn find(id: &str) -> Option<&'static MeasurandId> {
+    MEASURANDS.iter().find(|m| m.id == id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Unit;
+
+    #[test]
+    fn ids_are_unique_and_units_are_units() {
+        for (i, m) in MEASURANDS.iter().enumerate() {
+            assert!(m.unit.is_empty() || Unit::parse(m.unit).is_ok(), "{} {}", m.id, m.unit);
+            assert!(MEASURANDS[..i].iter().all(|other| other.id != m.id), "{}", m.id);
+            assert!(!m.doc.is_empty());
+        }
+    }
+
+    #[test]
+    fn units_are_those_of_the_result_contract() {
+        for (id, unit) in [
+            ("static_bias", "deg/h"),
+            ("angle_random_walk", "deg/sqrt(h)"),
+            ("rate_random_walk", "deg/h/sqrt(h)"),
+            ("rate_ramp", "deg/h/h"),
+            ("quantization", "arcsec"),
+            ("russian_arw_10s", "deg/sqrt(h)"),
+            ("bias_temperature_rate_sensitivity", "deg/h/(degC/min)"),
+            ("scale_factor_temperature_sensitivity", "ppm/degC"),
+            ("vibration_sensitivity", "deg/h/g^2"),
+            ("line_frequency", "Hz"),
+        ] {
+            assert_eq!(find(id).unwrap().unit, unit);
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Measurands: what a test determines.
+
+pub mod ids;

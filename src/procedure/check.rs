@@ -1,0 +1,112 @@
+//! Validates procedures and limits files with no data.
+
+use super::diagnostics::{Problem, Problems};
+use super::limits::{LimitsFile, effective};
+use super::load::{load, load_limits};
+use super::model::{Loaded, Procedure};
+use std::path::Path;
+
+/// What a file turned out to be.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Checked {
+    /// A sound procedure.
+    Procedure(Box<Loaded<Procedure>>),
+    /// A sound limits file.
+    Limits(Box<Loaded<LimitsFile>>),
+}
+
+/// Reads a file as what its first table says it is: a file with `[limits]` or `format = "limits/..."` is a limits file,
+/// any other a procedure.
+///
+/// # Errors
+/// Every problem of the file.
+pub fn check(path: &Path) -> Result<Checked, Problems> {
+    if is_limits(path) {
+        load_limits(path).map(|l| Checked::Limits(Box::new(l)))
+    } else {
+        load(path).map(|p| Checked::Procedure(Box::new(p)))
+    }
+}
+
+/// The result of checking several files, ready to be shown.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct CheckReport {
+    /// One paragraph a file, problems first.
+    pub text: String,
+    /// Files that cannot be used.
+    pub failed: usize,
+}
+
+/// Checks files one by one. With `limits`, each procedure is also checked against those limits.
+pub fn check_report(paths: &[&Path], limits: Option<&Loaded<LimitsFile>>) -> CheckReport {
+    check_report_with(paths, limits, |_, _| vec![])
+}
+
+/// As [`check_report`]; `extra` gives further warnings for a procedure with its limits, such as those of
+/// [`super::power::warnings`].
+pub fn check_report_with(
+    paths: &[&Path],
+    limits: Option<&Loaded<LimitsFile>>,
+    extra: impl Fn(&Loaded<Procedure>, Option<&Loaded<LimitsFile>>) -> Vec<Problem>,
+) -> CheckReport {
+    let mut report = CheckReport::default();
+    for path in paths {
+        match check(path) {
+            Ok(checked) => {
+                let (sentence, warnings) = match &checked {
+                    Checked::Procedure(p) => {
+                        let mut warnings = p.warnings.clone();
+                        warnings.extend(effective(p, limits).warnings);
+                        warnings.extend(extra(p, limits));
+                        (procedure_sentence(p), warnings)
+                    }
+                    Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
+                };
+                for warning in warnings {
+                    report.text.push_str(&format!("{warning}\n"));
+                }
+                report.text.push_str(&format!("{}: {sentence}\n", path.display()));
+            }
+            Err(problems) => {
+                report.failed += 1;
+                let count = problems.list.len();
+                let word = if count == 1 { "problem" } else { "problems" };
+                report.text.push_str(&format!("{problems}\n{}: {count} {word}\n", path.display()));
+            }
+        }
+    }
+    report
+}
+
+fn procedure_sentence(p: &Loaded<Procedure>) -> String {
+    let p = &p.value;
+    format!(
+        "procedure `{}` revision {}: {} channels, {} measurands, {} limits; sound",
+        p.id,
+        p.revision,
+        p.channels.len(),
+        p.measurands.len(),
+        p.limits.limits.len()
+    )
+}
+
+fn limits_sentence(l: &Loaded<LimitsFile>) -> String {
+    let l = &l.value;
+    format!(
+        "limits `{}` revision {}: {} limits, {} reference values; sound",
+        l.id,
+        l.revision,
+        l.set.limits.len(),
+        l.set.references.len()
+    )
+}
+
+/// True when the beginning of the file says that it holds limits. Nothing is reported here: reading does that.
+fn is_limits(path: &Path) -> bool {
+    let Ok(bytes) = super::load::bytes_of(path) else { return false };
+    let text = String::from_utf8_lossy(&bytes);
+    let mut lines = text.lines().map(str::trim);
+    lines.any(|line| {
+        line == "[limits]" || line.strip_prefix("format").is_some_and(|rest| rest.contains("\"limits/"))
+    })
+}

@@ -1,0 +1,291 @@
+//! What is wrong with a file, where, and what to do: all problems of a file together.
+//!
+//! A [`Problem`] carries the line it is about, so that it can be shown without the file. The rendering is plain text:
+//! no colours, columns counted in characters, so that it lines up for text in any alphabet.
+
+use std::fmt;
+use std::ops::Range;
+
+/// Byte range in a file.
+pub type Span = Range<usize>;
+
+/// Longest piece of a line that is shown, in characters.
+const SHOWN: usize = 120;
+
+/// Most problems that are written out; more are counted.
+const MOST_SHOWN: usize = 100;
+
+/// How serious a problem is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Worth knowing; the file can be used.
+    Warning,
+    /// The file cannot be used.
+    Error,
+}
+
+/// One problem of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// How serious it is.
+    pub severity: Severity,
+    /// File, as the user named it.
+    pub file: String,
+    /// Byte range of the offending text.
+    pub span: Span,
+    /// Line, counted from 1; 0 when the problem is of the file as a whole.
+    pub line: usize,
+    /// Column in characters, counted from 1; 0 when the problem is of the file as a whole.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+    /// The offending text, up to the end of its first line.
+    pub token: String,
+    excerpt: Excerpt,
+}
+
+/// The part of a line that is shown, and where in it the offending text stands.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Excerpt {
+    text: String,
+    start: usize,
+    width: usize,
+}
+
+impl Problem {
+    /// A problem of a file that is not about one place in it (it cannot be opened, for example).
+    pub fn of_file(file: &str, message: impl Into<String>, help: Option<String>) -> Problem {
+        Problem {
+            severity: Severity::Error,
+            file: file.to_owned(),
+            span: 0..0,
+            line: 0,
+            column: 0,
+            message: message.into(),
+            help,
+            token: String::new(),
+            excerpt: Excerpt::default(),
+        }
+    }
+
+    /// The same problem with what to do about it.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Problem {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+impl fmt::Display for Problem {
+    /// `severity: message`, the place, the line with the text underlined, and what to do.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = match self.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        writeln!(f, "{word}: {}", self.message)?;
+        if self.line == 0 {
+            writeln!(f, " --> {}", self.file)?;
+        } else {
+            let number = self.line.to_string();
+            let margin = " ".repeat(number.len());
+            writeln!(f, "{margin}--> {}:{}:{}", self.file, self.line, self.column)?;
+            writeln!(f, "{margin} |")?;
+            writeln!(f, "{number} | {}", self.excerpt.text.trim_end())?;
+            let (indent, carets) = (" ".repeat(self.excerpt.start), "^".repeat(self.excerpt.width));
+            writeln!(f, "{margin} | {indent}{carets}")?;
+        }
+        if let Some(help) = &self.help {
+            writeln!(f, "  help: {help}")?;
+        }
+        Ok(())
+    }
+}
+
+/// All problems of one or more files.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Problems {
+    /// The problems, in the order of the text.
+    pub list: Vec<Problem>,
+}
+
+impl Problems {
+    /// True when one of them forbids the use of the file.
+    pub fn has_errors(&self) -> bool {
+        self.list.iter().any(|p| p.severity == Severity::Error)
+    }
+
+    /// Puts the problems in the order of the text and drops repeated ones.
+    pub(crate) fn sort(&mut self) {
+        self.list.sort_by(|a, b| (a.span.start, a.span.end).cmp(&(b.span.start, b.span.end)));
+        self.list.dedup();
+    }
+}
+
+impl From<Problem> for Problems {
+    fn from(problem: Problem) -> Self {
+        Problems { list: vec![problem] }
+    }
+}
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, problem) in self.list.iter().take(MOST_SHOWN).enumerate() {
+            if i > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{problem}")?;
+        }
+        if self.list.len() > MOST_SHOWN {
+            writeln!(f, "\nand {} more", self.list.len() - MOST_SHOWN)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Problems {}
+
+/// A text file with its name, able to say where a byte stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SourceText {
+    /// Name as the user gave it.
+    pub name: String,
+    /// The text.
+    pub text: String,
+    line_starts: Vec<usize>,
+}
+
+impl SourceText {
+    /// Takes a text and notes where its lines begin.
+    pub fn new(name: &str, text: String) -> SourceText {
+        let line_starts = std::iter::once(0)
+            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1));
+        let line_starts = line_starts.collect();
+        SourceText { name: name.to_owned(), text, line_starts }
+    }
+
+    /// An error at a byte range.
+    pub fn error(&self, span: &Span, message: impl Into<String>) -> Problem {
+        self.problem(Severity::Error, span, message.into())
+    }
+
+    /// A warning at a byte range.
+    pub fn warning(&self, span: &Span, message: impl Into<String>) -> Problem {
+        self.problem(Severity::Warning, span, message.into())
+    }
+
+    fn problem(&self, severity: Severity, span: &Span, message: String) -> Problem {
+        let start = self.floor(span.start);
+        let end = self.floor(span.end.max(start));
+        let line = self.line_starts.partition_point(|s| *s <= start).max(1);
+        let line_start = self.line_starts.get(line - 1).copied().unwrap_or(0);
+        let line_end = self.line_starts.get(line).map_or(self.text.len(), |next| next - 1);
+        let before = self.text.get(line_start..start).unwrap_or("").chars().count();
+        let token = self.text.get(start..end.min(line_end.max(start))).unwrap_or("").trim_end();
+        let shown = self.text.get(line_start..line_end).unwrap_or("");
+        Problem {
+            severity,
+            file: self.name.clone(),
+            span: start..end,
+            line,
+            column: before + 1,
+            message,
+            help: None,
+            token: token.to_owned(),
+            excerpt: excerpt(shown, before, token.chars().count()),
+        }
+    }
+
+    /// The nearest character boundary at or before a byte.
+    fn floor(&self, at: usize) -> usize {
+        let mut at = at.min(self.text.len());
+        while !self.text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at
+    }
+}
+
+/// Cuts a long line around the offending text. Control characters are shown as `·`, so that a file cannot steer a
+/// terminal and one character stays one column.
+fn excerpt(line: &str, start: usize, width: usize) -> Excerpt {
+    let from = if start > SHOWN / 2 && line.chars().count() > SHOWN { start - SHOWN / 2 } else { 0 };
+    let visible = |c: char| match c {
+        '\t' => ' ',
+        '\r' => ' ',
+        c if c.is_control() => '·',
+        c => c,
+    };
+    let text: String = line.chars().skip(from).take(SHOWN).map(visible).collect();
+    let start = start - from;
+    Excerpt { text, start, width: width.clamp(1, SHOWN.saturating_sub(start).max(1)) }
+}
+
+/// The candidate that is spelt most nearly like `word`, when one is near enough to be meant.
+pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if word.len() > 100 {
+        return None;
+    }
+    let plain = |s: &str| s.to_lowercase().replace(['-', ' '], "_");
+    let wanted = plain(word);
+    candidates
+        .into_iter()
+        .map(|c| (strsim::damerau_levenshtein(&wanted, &plain(c)), c))
+        .filter(|(distance, c)| *distance <= 1 + c.chars().count().min(wanted.chars().count()) / 4)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, c)| c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_caret_stands_under_the_text_in_any_alphabet() {
+        let source = SourceText::new("a.toml", "x = 1\ntitle = \"Дрейф\" # Ω\nlast".to_owned());
+        let at = source.text.find("# Ω").unwrap();
+        let p = source.error(&(at..at + 4), "bad").help("do better");
+        assert_eq!((p.line, p.column, p.token.as_str()), (2, 17, "# Ω"));
+        let shown = p.to_string();
+        let lines: Vec<&str> = shown.lines().collect();
+        assert_eq!(lines[0], "error: bad");
+        assert_eq!(lines[1], " --> a.toml:2:17");
+        assert_eq!(lines[3], "2 | title = \"Дрейф\" # Ω");
+        assert_eq!(lines[4], "  |                 ^^^");
+        assert_eq!(lines[5], "  help: do better");
+    }
+
+    #[test]
+    fn long_and_hostile_lines_are_shown_safely() {
+        let text = format!("{}\u{1b}[31mX{}", "ж".repeat(500), "y".repeat(500));
+        let source = SourceText::new("a", text);
+        let at = source.text.find('X').unwrap();
+        let p = source.error(&(at..at + 1), "m");
+        let shown = p.to_string();
+        assert!(!shown.contains('\u{1b}'));
+        let line = shown.lines().nth(3).unwrap();
+        let caret = shown.lines().nth(4).unwrap().chars().position(|c| c == '^').unwrap();
+        assert_eq!(line.chars().nth(caret), Some('X'));
+        assert!(line.chars().count() < 140);
+    }
+
+    #[test]
+    fn places_outside_the_text_do_no_harm() {
+        let source = SourceText::new("a", "é".to_owned());
+        for span in [0..0, 1..1, 1..9, 7..9, 5..2] {
+            let p = source.error(&Span { start: span.start, end: span.end }, "m");
+            assert_eq!(p.line, 1);
+            assert!(!p.to_string().is_empty());
+        }
+        assert_eq!(SourceText::new("a", String::new()).error(&(0..0), "m").column, 1);
+    }
+
+    #[test]
+    fn only_near_spellings_are_offered() {
+        assert_eq!(nearest("warmup", ["warm_up", "site"]), Some("warm_up"));
+        assert_eq!(nearest("angle-random-walk", ["angle_random_walk"]), Some("angle_random_walk"));
+        assert_eq!(nearest("zebra", ["warm_up", "site"]), None);
+    }
+}

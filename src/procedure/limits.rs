@@ -1,0 +1,344 @@
+//! Limits, reference values and typical values; and how a limits file goes over the limits of a procedure.
+
+use super::diagnostics::{Problem, SourceText, Span};
+use super::model::{Loaded, Procedure};
+use super::reader::{Entry, Reader, Section};
+use crate::estimate::{Limit, Rule};
+use crate::measurand::ids::MeasurandId;
+use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
+
+/// Limits, references and typical values of one file, in the units of the measurands.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LimitSet {
+    /// Limits.
+    pub limits: Vec<LimitSpec>,
+    /// Published values, in the order of the file.
+    pub references: Vec<Reference>,
+    /// Typical values of the family.
+    pub expected: Vec<Expected>,
+}
+
+/// A limit and what it is for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitSpec {
+    /// Measurand judged.
+    pub measurand: &'static MeasurandId,
+    /// Channel judged; `None`: every one without a limit of its own.
+    pub channel: Option<String>,
+    /// The limit, in the unit of the measurand.
+    pub limit: Limit,
+    /// Where it is declared, in the file `limit.source`.
+    pub span: Span,
+}
+
+/// A published value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// Measurand.
+    pub measurand: &'static MeasurandId,
+    /// Channel; `None`: every one.
+    pub channel: Option<String>,
+    /// Value and where it was published.
+    pub record: ReferenceRecord,
+    /// Conventions a reader must know.
+    pub note: Option<String>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A typical value of the family.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// Measurand.
+    pub measurand: &'static MeasurandId,
+    /// Value in its unit.
+    pub value: f64,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A limits file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitsFile {
+    /// Id.
+    pub id: String,
+    /// Title.
+    pub title: String,
+    /// Revision.
+    pub revision: String,
+    /// Family of devices.
+    pub family: Option<String>,
+    /// Where the values come from.
+    pub source: Option<String>,
+    /// What it states. Limits made by a factor are among them.
+    pub set: LimitSet,
+}
+
+impl Loaded<LimitsFile> {
+    /// The identity of the file as it stands in results.
+    pub fn record(&self) -> LimitsFileRecord {
+        LimitsFileRecord {
+            id: self.value.id.clone(),
+            title: self.value.title.clone(),
+            revision: self.value.revision.clone(),
+            source: self.value.source.clone(),
+            path: self.path.clone(),
+            sha256: self.sha256.clone(),
+        }
+    }
+}
+
+/// The limits that hold in a run: those of the procedure with those of a limits file over them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct EffectiveLimits {
+    /// What holds.
+    pub set: LimitSet,
+    /// Things worth knowing, such as limits that this procedure does not measure.
+    pub warnings: Vec<Problem>,
+}
+
+impl EffectiveLimits {
+    /// The limit of a measurand on a channel: one for that channel goes before one for every channel.
+    pub fn limit(&self, measurand: &str, channel: &str) -> Option<&LimitSpec> {
+        best(self.set.limits.iter().map(|l| (l, l.measurand.id, l.channel.as_deref())), measurand, channel)
+    }
+
+    /// The reference value of a measurand on a channel; the first where there are several.
+    pub fn reference(&self, measurand: &str, channel: &str) -> Option<&Reference> {
+        best(
+            self.set.references.iter().map(|r| (r, r.measurand.id, r.channel.as_deref())),
+            measurand,
+            channel,
+        )
+    }
+
+    /// The typical value of a measurand.
+    pub fn expected(&self, measurand: &str) -> Option<f64> {
+        self.set.expected.iter().find(|e| e.measurand.id == measurand).map(|e| e.value)
+    }
+}
+
+/// The first entry for the channel, or else the first for every channel.
+fn best<'a, T>(
+    entries: impl Iterator<Item = (&'a T, &'static str, Option<&'a str>)> + Clone,
+    measurand: &str,
+    channel: &str,
+) -> Option<&'a T> {
+    let of = |wanted: Option<&str>| {
+        entries.clone().find(|(_, id, own)| *id == measurand && *own == wanted).map(|(entry, _, _)| entry)
+    };
+    of(Some(channel)).or_else(|| of(None))
+}
+
+/// Puts a limits file over the limits of a procedure.
+///
+/// A limit of the file replaces those of the procedure for the same measurand and channel; one for every channel
+/// replaces all of that measurand. References and typical values go the same way.
+pub fn effective(procedure: &Loaded<Procedure>, file: Option<&Loaded<LimitsFile>>) -> EffectiveLimits {
+    let own = &procedure.value.limits;
+    let Some(file) = file else {
+        return EffectiveLimits { set: own.clone(), warnings: vec![] };
+    };
+    let over = &file.value.set;
+    let replaced = |id: &str, channel: &Option<String>, by: &[(&str, &Option<String>)]| {
+        by.iter().any(|(other, c)| *other == id && (c.is_none() || *c == channel))
+    };
+    let limits: Vec<_> = over.limits.iter().map(|l| (l.measurand.id, &l.channel)).collect();
+    let references: Vec<_> = over.references.iter().map(|r| (r.measurand.id, &r.channel)).collect();
+    let mut set = over.clone();
+    set.limits.extend(own.limits.iter().filter(|l| !replaced(l.measurand.id, &l.channel, &limits)).cloned());
+    set.references.extend(
+        own.references.iter().filter(|r| !replaced(r.measurand.id, &r.channel, &references)).cloned(),
+    );
+    set.expected.extend(
+        own.expected.iter().filter(|e| over.expected.iter().all(|o| o.measurand != e.measurand)).cloned(),
+    );
+    EffectiveLimits { set, warnings: not_measured(&procedure.value, file) }
+}
+
+/// Limits of a file that the procedure does not measure. The file may serve other procedures too, so this is worth
+/// knowing and no error.
+fn not_measured(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Vec<Problem> {
+    let mut warnings = vec![];
+    for limit in &file.value.set.limits {
+        if !procedure.measures(limit.measurand.id, limit.channel.as_deref()) {
+            let message =
+                format!("this limit is not judged: procedure `{}` does not measure it", procedure.id);
+            let help = format!("add a [[measurand]] with id = \"{}\" to the procedure", limit.measurand.id);
+            warnings.push(file.source.warning(&limit.span, message).help(help));
+        } else if let Some(channel) = limit.channel.as_deref()
+            && procedure.channel(channel).is_none()
+        {
+            let message = format!("procedure `{}` has no channel `{channel}`", procedure.id);
+            warnings.push(file.source.warning(&limit.span, message));
+        }
+    }
+    warnings
+}
+
+/// Reads limits, references and typical values from the root of a file.
+pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut Reader<'_>) -> LimitSet {
+    let mut set = LimitSet::default();
+    for section in root.tables("reference") {
+        let (Some(measurand), Some(value)) = (section.measurand("measurand"), section.number("value")) else {
+            continue;
+        };
+        set.references.push(Reference {
+            measurand,
+            channel: section.text("channel"),
+            record: ReferenceRecord { value, source: section.text("source").unwrap_or_default() },
+            note: section.text("note"),
+            span: section.span.clone(),
+        });
+    }
+    if let Some(Entry::Quantities(list)) = root.entry("expected") {
+        for (measurand, value, span) in list {
+            if *value < 0.0 && !measurand.signed {
+                reader.error(span, format!("`{}` cannot be negative", measurand.id), None);
+            }
+            set.expected.push(Expected { measurand, value: *value, span: span.clone() });
+        }
+    }
+    for section in root.tables("limit") {
+        if let Some(limit) = read_limit(section, &set.references, reader) {
+            set.limits.push(limit);
+        }
+    }
+    if let Some(factor) = general_factor {
+        add_limits_by_factor(&mut set, factor, &reader.source.name);
+    }
+    duplicates(&set, reader);
+    set
+}
+
+/// Makes an upper limit of every first reference value that has no limit of its own.
+fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
+    for reference in &set.references {
+        let taken = |l: &LimitSpec| {
+            l.measurand == reference.measurand && (l.channel.is_none() || l.channel == reference.channel)
+        };
+        if set.limits.iter().any(taken) {
+            continue;
+        }
+        set.limits.push(LimitSpec {
+            measurand: reference.measurand,
+            channel: reference.channel.clone(),
+            limit: Limit {
+                min: None,
+                max: Some(factor * reference.record.value),
+                rule: Rule::GuardBand,
+                risk: 0.05,
+                source: source.to_owned(),
+            },
+            span: reference.span.clone(),
+        });
+    }
+}
+
+fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'_>) -> Option<LimitSpec> {
+    let measurand = section.measurand("measurand")?;
+    let channel = section.text("channel");
+    let given = ["min", "max", "max_abs", "factor"].map(|key| section.number(key));
+    let [mut min, mut max, max_abs, factor] = given;
+    let states = |key: &str| section.entry(key).is_some();
+    if !["min", "max", "max_abs", "factor"].iter().any(|key| states(key)) {
+        let help = "add one of: max = \"...\", min = \"...\", max_abs = \"...\", factor = 1.5";
+        reader.error(
+            &section.span,
+            format!("this limit of `{}` states no value", measurand.id),
+            Some(help.into()),
+        );
+        return None;
+    }
+    let alone =
+        |key: &str| states(key) && ["min", "max", "max_abs", "factor"].iter().any(|k| *k != key && states(k));
+    for key in ["max_abs", "factor"] {
+        if alone(key) {
+            let message = format!("`{key}` stands alone: it already says the whole limit");
+            reader.error(
+                &section.span_of(key),
+                message,
+                Some("remove the other values of this limit".into()),
+            );
+            return None;
+        }
+    }
+    if let Some(bound) = max_abs {
+        let at = section.span_of("max_abs");
+        if !measurand.signed {
+            let message = format!("`{}` is never negative", measurand.id);
+            reader.error(&at, message, Some("write `max` in place of `max_abs`".into()));
+            return None;
+        }
+        if bound <= 0.0 {
+            reader.error(&at, "`max_abs` must be above 0", None);
+            return None;
+        }
+        (min, max) = (Some(-bound), Some(bound));
+    }
+    if let Some(factor) = factor {
+        let matching =
+            |r: &&Reference| r.measurand == measurand && (r.channel == channel || r.channel.is_none());
+        match references.iter().find(matching) {
+            Some(reference) => max = Some(factor * reference.record.value),
+            None => {
+                let message = format!("`factor` needs a reference value of `{}` in this file", measurand.id);
+                let help = "add a [[reference]], or state the limit with `max`";
+                reader.error(&section.span_of("factor"), message, Some(help.into()));
+                return None;
+            }
+        }
+    }
+    if let (Some(low), Some(high)) = (min, max)
+        && low > high
+    {
+        let message = format!("`min` ({low} {unit}) is above `max` ({high} {unit})", unit = measurand.unit);
+        reader.error(&section.span_of("min"), message, Some("no unit can meet this limit".into()));
+        return None;
+    }
+    if let Some(high) = max.filter(|high| !measurand.signed && *high <= 0.0) {
+        let message = format!(
+            "no unit can meet this: `{}` is never {}",
+            measurand.id,
+            if high < 0.0 { "negative" } else { "0" }
+        );
+        reader.error(&section.span_of(if factor.is_some() { "factor" } else { "max" }), message, None);
+        return None;
+    }
+    if min.is_none() && max.is_none() {
+        return None;
+    }
+    let rule = if section.word("rule") == Some("simple") { Rule::Simple } else { Rule::GuardBand };
+    let risk = section.number("risk").unwrap_or(0.05);
+    let limit = Limit { min, max, rule, risk, source: reader.source.name.clone() };
+    Some(LimitSpec { measurand, channel, limit, span: section.span.clone() })
+}
+
+/// Two limits for the same measurand and channel contradict each other.
+fn duplicates(set: &LimitSet, reader: &mut Reader<'_>) {
+    for (i, limit) in set.limits.iter().enumerate() {
+        if set.limits[..i].iter().any(|l| l.measurand == limit.measurand && l.channel == limit.channel) {
+            let message = format!("a second limit for `{}`", limit.measurand.id);
+            let help =
+                "one limit may hold both `min` and `max`; limits for single channels name their `channel`";
+            reader.error(&limit.span, message, Some(help.into()));
+        }
+    }
+}
+
+/// Says what is worth knowing about limits that can be used.
+pub(super) fn warnings(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
+    let mut found = vec![];
+    for limit in &set.limits {
+        let typical = set.references.iter().find(|r| r.measurand == limit.measurand).map(|r| r.record.value);
+        let too_tight = matches!((limit.limit.max, typical), (Some(max), Some(value)) if max <= value);
+        if too_tight && limit.limit.rule == Rule::GuardBand {
+            let message = format!(
+                "a unit at the typical value of `{}` fails this guarded limit half the time or more",
+                limit.measurand.id
+            );
+            found.push(source.warning(&limit.span, message).help("set the limit above the typical value"));
+        }
+    }
+    found
+}

@@ -1,0 +1,248 @@
+//! From checked tables to the model.
+
+use super::diagnostics::{Problems, SourceText};
+use super::limits::{self, LimitsFile};
+use super::model::{
+    Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, FaultBudget, Instrument, MeasurandSpec,
+    Orientation, Procedure, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition, UnitSpec, Waiver,
+};
+use super::reader::{self, Entry, Reader, Section};
+use super::spec::TableSpec;
+use super::tables::PROCEDURE_FILE;
+use super::tables_limits::LIMITS_FILE;
+use super::{channel, validate};
+use crate::record::{ClauseRecord, WaiverRecord};
+
+/// Reads a procedure from its text. The second value holds every problem, warnings among them.
+pub(super) fn procedure(source: &SourceText) -> (Option<Procedure>, Problems) {
+    read(source, &PROCEDURE_FILE, |root, reader| {
+        let procedure = build(root, reader);
+        validate::procedure(&procedure, root, reader);
+        let warnings = validate::warnings(&procedure, root, reader.source);
+        reader.problems.list.extend(warnings);
+        procedure
+    })
+}
+
+/// Reads a limits file from its text.
+pub(super) fn limits_file(source: &SourceText) -> (Option<LimitsFile>, Problems) {
+    read(source, &LIMITS_FILE, |root, reader| {
+        let identity = root.table("limits");
+        let text = |key| identity.and_then(|i| i.text(key));
+        let set = limits::read_set(root, identity.and_then(|i| i.number("factor")), reader);
+        let warnings = limits::warnings(&set, reader.source);
+        reader.problems.list.extend(warnings);
+        LimitsFile {
+            id: text("id").unwrap_or_default(),
+            title: text("title").unwrap_or_default(),
+            revision: text("revision").unwrap_or_default(),
+            family: text("family"),
+            source: text("source"),
+            set,
+        }
+    })
+}
+
+/// Reads by description, builds, and gives the value only when nothing forbids its use.
+fn read<T>(
+    source: &SourceText,
+    spec: &'static TableSpec,
+    build: impl FnOnce(&Section, &mut Reader<'_>) -> T,
+) -> (Option<T>, Problems) {
+    let (root, problems) = reader::read(source, spec);
+    let Some(root) = root else { return (None, problems) };
+    let mut reader = Reader::resume(source, spec, problems);
+    let value = build(&root, &mut reader);
+    let mut problems = reader.problems;
+    problems.sort();
+    ((!problems.has_errors()).then_some(value), problems)
+}
+
+fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
+    let identity = root.table("procedure");
+    let text = |key| identity.and_then(|i| i.text(key));
+    let recording = root.table("recording");
+    Procedure {
+        id: text("id").unwrap_or_default(),
+        title: text("title").unwrap_or_default(),
+        revision: text("revision").unwrap_or_default(),
+        standard: text("standard"),
+        clause: text("clause"),
+        author: text("author"),
+        unit_under_test: unit(root.table("unit_under_test")),
+        sample_rate_hz: recording.and_then(|r| r.number("sample_rate")),
+        sample_rate_tolerance: recording.and_then(|r| r.number("sample_rate_tolerance")).unwrap_or(0.01),
+        channels: root.tables("channel").iter().filter_map(|s| one_channel(s, reader)).collect(),
+        conditions: root.table("conditions").map(conditions).unwrap_or_default(),
+        exclusions: root.tables("exclude").iter().map(exclusion).collect(),
+        site: root.table("site").map(site),
+        instruments: root.tables("instrument").iter().map(instrument).collect(),
+        analysis: analysis(root.table("analysis")),
+        measurands: root.tables("measurand").iter().filter_map(measurand).collect(),
+        limits: limits::read_set(root, None, reader),
+        clauses: root.tables("clause").iter().map(clause).collect(),
+        report: report(root.table("report")),
+        waivers: root.tables("waiver").iter().map(waiver).collect(),
+    }
+}
+
+fn unit(section: Option<&Section>) -> UnitSpec {
+    let Some(section) = section else {
+        return UnitSpec { serial_required: true, ..UnitSpec::default() };
+    };
+    UnitSpec {
+        family: section.text("family"),
+        part: section.text("part"),
+        revision: section.text("revision"),
+        serial_required: section.flag("serial_required"),
+    }
+}
+
+fn one_channel(section: &Section, reader: &mut Reader<'_>) -> Option<ChannelSpec> {
+    let (channel, unit_in_file) = channel::read(section, reader)?;
+    Some(ChannelSpec {
+        channel,
+        unit_in_file,
+        rail_low: section.number("rail_low"),
+        rail_high: section.number("rail_high"),
+        required: section.flag("required"),
+        span: section.span.clone(),
+    })
+}
+
+fn conditions(section: &Section) -> Conditions {
+    Conditions {
+        minimum_duration_s: section.number("minimum_duration"),
+        warm_up_s: section.number("warm_up").unwrap_or(0.0),
+        temperatures: section.tables("temperature").iter().map(temperature).collect(),
+        supplies: section.tables("supply").iter().map(supply).collect(),
+        faults: section.table("faults").map(faults).unwrap_or_default(),
+    }
+}
+
+fn temperature(section: &Section) -> TemperatureCondition {
+    TemperatureCondition {
+        channel: section.text("channel").unwrap_or_default(),
+        nominal_deg_c: section.number("nominal").unwrap_or(0.0),
+        tolerance_deg_c: section.number("tolerance").unwrap_or(0.0),
+        sensor_uncertainty_deg_c: section.number("sensor_uncertainty").unwrap_or(0.0),
+        coverage_factor: section.number("coverage_factor").unwrap_or(2.0),
+        smoothing_s: section.number("smoothing").unwrap_or(0.0),
+    }
+}
+
+fn supply(section: &Section) -> SupplyCondition {
+    SupplyCondition {
+        channel: section.text("channel").unwrap_or_default(),
+        nominal_v: section.number("nominal").unwrap_or(0.0),
+        tolerance_v: section.number("tolerance").unwrap_or(0.0),
+        sensor_uncertainty_v: section.number("sensor_uncertainty").unwrap_or(0.0),
+        coverage_factor: section.number("coverage_factor").unwrap_or(2.0),
+    }
+}
+
+fn faults(section: &Section) -> FaultBudget {
+    FaultBudget {
+        gaps: section.allowance("gaps"),
+        missing_samples: section.allowance("missing_samples"),
+        longest_gap_s: section.number("longest_gap"),
+        duplicate_timestamps: section.allowance("duplicate_timestamps"),
+        backward_timestamps: section.allowance("backward_timestamps"),
+        non_finite: section.allowance("non_finite"),
+        unparsable: section.allowance("unparsable"),
+        outliers: section.allowance("outliers"),
+        saturated: section.allowance("saturated"),
+        stuck: section.allowance("stuck"),
+        timestamp_jitter_s: section.number("timestamp_jitter"),
+    }
+}
+
+fn exclusion(section: &Section) -> Exclusion {
+    Exclusion {
+        from_s: section.number("from").unwrap_or(0.0),
+        to_s: section.number("to").unwrap_or(0.0),
+        reason: section.text("reason").unwrap_or_default(),
+    }
+}
+
+fn orientation(section: &Section) -> Orientation {
+    Orientation {
+        heading_deg: section.number("heading").unwrap_or(0.0),
+        heading_uncertainty_deg: section.number("heading_uncertainty").unwrap_or(0.0),
+        elevation_deg: section.number("elevation").unwrap_or(0.0),
+        elevation_uncertainty_deg: section.number("elevation_uncertainty").unwrap_or(0.0),
+    }
+}
+
+fn site(section: &Section) -> Site {
+    let axis = |s: &Section| (s.text("channel").unwrap_or_default(), orientation(s));
+    Site {
+        latitude_deg: section.number("latitude").unwrap_or(0.0),
+        latitude_uncertainty_deg: section.number("latitude_uncertainty").unwrap_or(0.0),
+        orientation: orientation(section),
+        axes: section.tables("axis").iter().map(axis).collect(),
+    }
+}
+
+fn instrument(section: &Section) -> Instrument {
+    Instrument {
+        name: section.text("name").unwrap_or_default(),
+        serial: section.text("serial"),
+        calibration_due: section.date("calibration_due"),
+        required: section.flag("required"),
+    }
+}
+
+fn analysis(section: Option<&Section>) -> Analysis {
+    let taus = match section.and_then(|s| s.entry("taus")) {
+        Some(Entry::Taus(taus)) => taus.clone(),
+        _ => Taus::Octave,
+    };
+    Analysis {
+        taus,
+        exact: section.is_some_and(|s| s.flag("exact")),
+        line_false_alarm: section.and_then(|s| s.number("line_false_alarm")).unwrap_or(0.01),
+    }
+}
+
+fn measurand(section: &Section) -> Option<MeasurandSpec> {
+    let earth_rate = match section.table("options").and_then(|o| o.word("earth_rate")) {
+        Some("keep") => EarthRate::Keep,
+        _ => EarthRate::Remove,
+    };
+    let id = section.measurand("id")?;
+    Some(MeasurandSpec { id, channel: section.text("channel"), earth_rate, span: section.span.clone() })
+}
+
+fn clause(section: &Section) -> ClauseRecord {
+    ClauseRecord {
+        clause: section.text("clause").unwrap_or_default(),
+        title: section.text("title").unwrap_or_default(),
+        status: section.word("status").unwrap_or_default().to_owned(),
+        note: section.text("note").unwrap_or_default(),
+    }
+}
+
+fn report(section: Option<&Section>) -> ReportSpec {
+    let figures = match section.and_then(|s| s.entry("figures")) {
+        Some(Entry::Words(words)) => Some(words.clone()),
+        _ => None,
+    };
+    ReportSpec {
+        title: section.and_then(|s| s.text("title")),
+        figures,
+        show_reference: section.is_none_or(|s| s.flag("show_reference")),
+    }
+}
+
+fn waiver(section: &Section) -> Waiver {
+    Waiver {
+        serial: section.text("serial").unwrap_or_default(),
+        record: WaiverRecord {
+            row: section.text("row").unwrap_or_default(),
+            by: section.text("by").unwrap_or_default(),
+            reason: section.text("reason").unwrap_or_default(),
+            date: section.date("date").map(|d| d.to_string()).unwrap_or_default(),
+        },
+    }
+}

@@ -1,0 +1,480 @@
+//! Reads a TOML file by its description: unknown keys, missing keys, types, units and ranges are checked here, all
+//! at once, each with its place.
+
+use super::diagnostics::{Problem, Problems, SourceText, Span, nearest};
+use super::spec::{KeySpec, Kind, Need, TableSpec};
+use super::values;
+use crate::measurand::ids::{self, MeasurandId};
+use crate::recording::{ColumnRef, Role};
+use crate::units::Unit;
+use chrono::NaiveDate;
+use std::collections::BTreeMap;
+use toml::de::{DeTable, DeValue};
+
+/// Largest file that is read, bytes. A procedure is a few kilobytes.
+const LARGEST_FILE: usize = 1 << 20;
+
+/// Errors after which the reader stops looking for more.
+const ENOUGH: usize = 200;
+
+/// Longest chain of dotted keys and nested brackets in one line that is handed to the TOML parser.
+const DEEPEST: usize = 64;
+
+/// A checked value.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Entry {
+    Text(String),
+    Flag(bool),
+    Number(f64),
+    Date(NaiveDate),
+    Word(&'static str),
+    Words(Vec<&'static str>),
+    Unit(Unit),
+    Column(ColumnRef),
+    Taus(Taus),
+    Allowance(Allowance),
+    Measurand(&'static MeasurandId),
+    Quantities(Vec<(&'static MeasurandId, f64, Span)>),
+    Table(Section),
+    Tables(Vec<Section>),
+}
+
+/// Averaging times asked for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Taus {
+    /// Powers of two times the sample interval.
+    #[default]
+    Octave,
+    /// 1, 2, 5 per decade.
+    Decade,
+    /// Every multiple of the sample interval.
+    All,
+    /// Exactly these, s.
+    List(Vec<f64>),
+}
+
+/// How many faults are tolerated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Allowance {
+    /// At most this many.
+    Count(u64),
+    /// At most this share of the samples, 0 to 1.
+    Share(f64),
+}
+
+impl Allowance {
+    /// True when `count` faults among `samples` are tolerated.
+    pub fn allows(self, count: u64, samples: u64) -> bool {
+        match self {
+            Allowance::Count(most) => count <= most,
+            Allowance::Share(share) => count as f64 <= share * samples as f64,
+        }
+    }
+}
+
+/// A table that was read: the values that are sound.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Section {
+    /// Where the table begins.
+    pub span: Span,
+    entries: BTreeMap<&'static str, (Entry, Span)>,
+}
+
+impl Section {
+    pub fn entry(&self, key: &str) -> Option<&Entry> {
+        self.entries.get(key).map(|(entry, _)| entry)
+    }
+
+    /// Where a value stands; the table itself where there is none.
+    pub fn span_of(&self, key: &str) -> Span {
+        self.entries.get(key).map_or_else(|| self.span.clone(), |(_, span)| span.clone())
+    }
+
+    pub fn text(&self, key: &str) -> Option<String> {
+        match self.entry(key) {
+            Some(Entry::Text(text)) => Some(text.clone()),
+            _ => None,
+        }
+    }
+
+    pub fn flag(&self, key: &str) -> bool {
+        matches!(self.entry(key), Some(Entry::Flag(true)))
+    }
+
+    pub fn number(&self, key: &str) -> Option<f64> {
+        match self.entry(key) {
+            Some(Entry::Number(number)) => Some(*number),
+            _ => None,
+        }
+    }
+
+    pub fn word(&self, key: &str) -> Option<&'static str> {
+        match self.entry(key) {
+            Some(Entry::Word(word)) => Some(word),
+            _ => None,
+        }
+    }
+
+    pub fn date(&self, key: &str) -> Option<NaiveDate> {
+        match self.entry(key) {
+            Some(Entry::Date(date)) => Some(*date),
+            _ => None,
+        }
+    }
+
+    pub fn measurand(&self, key: &str) -> Option<&'static MeasurandId> {
+        match self.entry(key) {
+            Some(Entry::Measurand(id)) => Some(id),
+            _ => None,
+        }
+    }
+
+    pub fn allowance(&self, key: &str) -> Option<Allowance> {
+        match self.entry(key) {
+            Some(Entry::Allowance(allowance)) => Some(*allowance),
+            _ => None,
+        }
+    }
+
+    pub fn table(&self, key: &str) -> Option<&Section> {
+        match self.entry(key) {
+            Some(Entry::Table(section)) => Some(section),
+            _ => None,
+        }
+    }
+
+    /// The tables of a list; one table alone counts as a list of one.
+    pub fn tables(&self, key: &str) -> &[Section] {
+        match self.entry(key) {
+            Some(Entry::Tables(sections)) => sections,
+            Some(Entry::Table(section)) => std::slice::from_ref(section),
+            _ => &[],
+        }
+    }
+}
+
+/// Reads a file by its description.
+///
+/// The section is there whenever the text is TOML at all, with the values that are sound; the problems tell the rest.
+pub(super) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Problems) {
+    let mut reader = Reader { source, root, problems: Problems::default() };
+    if let Some(problem) = unreadable(source) {
+        return (None, problem.into());
+    }
+    let (table, errors) = DeTable::parse_recoverable(&source.text);
+    if !errors.is_empty() {
+        for error in errors.iter().take(ENOUGH) {
+            let span = error.span().unwrap_or(0..0);
+            let problem = source.error(&span, format!("this is not TOML: {}", error.message()));
+            reader.problems.list.push(with_syntax_help(problem));
+        }
+        reader.problems.sort();
+        return (None, reader.problems);
+    }
+    let section = reader.table(root, table.get_ref(), &(0..0));
+    reader.problems.sort();
+    (Some(section), reader.problems)
+}
+
+/// Refuses a text that is no procedure by its size or nesting, before the parser sees it.
+fn unreadable(source: &SourceText) -> Option<Problem> {
+    if source.text.len() > LARGEST_FILE {
+        let message =
+            format!("the file has {} bytes; a procedure has at most {LARGEST_FILE}", source.text.len());
+        return Some(Problem::of_file(&source.name, message, None));
+    }
+    let mut start = 0;
+    for line in source.text.split('\n') {
+        let depth = line.bytes().filter(|b| matches!(b, b'.' | b'[' | b'{')).count();
+        if depth > DEEPEST && !line.trim_start().starts_with('#') && nests(line) {
+            return Some(source.error(&(start..start + line.len()), "this line is nested too deeply"));
+        }
+        start += line.len() + 1;
+    }
+    None
+}
+
+/// True when the dots and brackets of a line outside quotes exceed the bound.
+fn nests(line: &str) -> bool {
+    let (mut quote, mut count) = (None, 0);
+    for c in line.chars() {
+        match (quote, c) {
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(q), c) if c == q => quote = None,
+            (None, '.' | '[' | '{') => count += 1,
+            (None, '#') => break,
+            _ => {}
+        }
+    }
+    count > DEEPEST
+}
+
+/// Adds what to do to the syntax errors that people make most.
+fn with_syntax_help(problem: Problem) -> Problem {
+    let help = if problem.message.contains("duplicate key") {
+        "a key or table may stand only once; lists of tables are written [[name]]"
+    } else if problem.token.starts_with(|c: char| c.is_ascii_alphanumeric())
+        || problem.message.contains("string")
+    {
+        "texts, and numbers with a unit, stand in double quotes: warm_up = \"30 min\""
+    } else {
+        return problem;
+    };
+    problem.help(help)
+}
+
+pub(super) struct Reader<'s> {
+    pub source: &'s SourceText,
+    root: &'static TableSpec,
+    pub problems: Problems,
+}
+
+impl<'s> Reader<'s> {
+    /// Goes on with the problems found so far, for the checks that need the whole file.
+    pub fn resume(source: &'s SourceText, root: &'static TableSpec, problems: Problems) -> Reader<'s> {
+        Reader { source, root, problems }
+    }
+}
+
+impl Reader<'_> {
+    pub fn error(&mut self, span: &Span, message: impl Into<String>, help: Option<String>) {
+        if self.problems.list.len() < ENOUGH {
+            let mut problem = self.source.error(span, message);
+            problem.help = help;
+            self.problems.list.push(problem);
+        }
+    }
+
+    fn table(&mut self, spec: &'static TableSpec, table: &DeTable<'_>, span: &Span) -> Section {
+        let mut section = Section { span: span.clone(), entries: BTreeMap::new() };
+        let mut dependent = vec![];
+        for (key, value) in table.iter() {
+            let Some(described) = spec.key(key.get_ref()) else {
+                self.unknown_key(spec, key.get_ref(), &key.span());
+                continue;
+            };
+            if let Kind::QuantityBy(by) = described.kind {
+                dependent.push((described, by, value));
+                section.entries.insert(described.name, (Entry::Flag(true), key.span()));
+                continue;
+            }
+            let entry = self.value(described, value.get_ref(), &value.span(), &key.span());
+            // A key that is there but wrong must not be reported as missing too.
+            let entry = entry.unwrap_or(Entry::Flag(false));
+            section
+                .entries
+                .insert(described.name, (entry, span_of_value(described, value.span(), key.span())));
+        }
+        self.missing_keys(spec, &mut section);
+        for (described, by, value) in dependent {
+            let entry = dependent_unit(&section, by)
+                .and_then(|unit| values::quantity_by(self, described, &unit, value.get_ref(), &value.span()));
+            let entry = entry.map_or(Entry::Flag(false), Entry::Number);
+            section.entries.insert(described.name, (entry, value.span()));
+        }
+        section
+    }
+
+    fn missing_keys(&mut self, spec: &'static TableSpec, section: &mut Section) {
+        for key in spec.keys {
+            if section.entries.contains_key(key.name) {
+                continue;
+            }
+            match key.need {
+                Need::Optional => {}
+                Need::Required => {
+                    let message = format!("{} is missing{}", written(key), in_table(spec));
+                    let example = if key.example.is_empty() {
+                        format!("{}: {}", written(key), key.doc)
+                    } else {
+                        format!("add for example: {} = {}", key.name, key.example)
+                    };
+                    self.error(&section.span.clone(), message, Some(example));
+                }
+                Need::Default(text) => {
+                    let Ok(value) = DeValue::parse(text) else { continue };
+                    if let Some(entry) = self.value(key, value.get_ref(), &section.span, &section.span) {
+                        section.entries.insert(key.name, (entry, section.span.clone()));
+                    }
+                }
+            }
+        }
+    }
+
+    fn unknown_key(&mut self, spec: &'static TableSpec, key: &str, span: &Span) {
+        let known: Vec<&str> = spec.keys.iter().map(|k| k.name).collect();
+        let elsewhere = || {
+            self.root.walk().into_iter().find(|t| t.name != spec.name && t.key(key).is_some()).map(|t| {
+                if t.name.is_empty() {
+                    format!("`{key}` stands at the beginning of the file, before the first table")
+                } else {
+                    format!("`{key}` belongs in [{}]", t.name)
+                }
+            })
+        };
+        let help = match nearest(key, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => elsewhere().unwrap_or_else(|| format!("known here: {}", known.join(", "))),
+        };
+        self.error(span, format!("unknown key `{}`{}", shorten(key), in_table(spec)), Some(help));
+    }
+
+    fn value(
+        &mut self,
+        key: &'static KeySpec,
+        value: &DeValue<'_>,
+        span: &Span,
+        key_span: &Span,
+    ) -> Option<Entry> {
+        match key.kind {
+            Kind::Table(spec) => match value {
+                DeValue::Table(table) => Some(Entry::Table(self.table(spec, table, key_span))),
+                _ => self.wrong(key, value, span),
+            },
+            Kind::Tables(spec) | Kind::TableOrTables(spec) => match value {
+                DeValue::Table(table) if matches!(key.kind, Kind::TableOrTables(_)) => {
+                    Some(Entry::Table(self.table(spec, table, key_span)))
+                }
+                DeValue::Table(_) => {
+                    let message = format!("`{}` is a list: there may be several", key.name);
+                    self.error(key_span, message, Some(format!("write [[{}]]", spec.name)));
+                    None
+                }
+                DeValue::Array(items) if items.is_empty() && key.need == Need::Required => {
+                    self.error(
+                        span,
+                        format!("`{}` is empty", key.name),
+                        Some(format!("add a [[{}]]", spec.name)),
+                    );
+                    None
+                }
+                DeValue::Array(items) => {
+                    let mut sections = vec![];
+                    for item in items.iter() {
+                        match item.get_ref() {
+                            DeValue::Table(table) => {
+                                let start = item.span();
+                                sections.push(self.table(spec, table, &first_line(self.source, &start)));
+                            }
+                            other => {
+                                let _: Option<Entry> = self.wrong(key, other, &item.span());
+                            }
+                        }
+                    }
+                    Some(Entry::Tables(sections))
+                }
+                _ => self.wrong(key, value, span),
+            },
+            Kind::QuantityMap => match value {
+                DeValue::Table(table) => Some(Entry::Quantities(self.quantities(key, table))),
+                _ => self.wrong(key, value, span),
+            },
+            _ => values::scalar(self, key, value, span),
+        }
+    }
+
+    fn quantities(
+        &mut self,
+        key: &'static KeySpec,
+        table: &DeTable<'_>,
+    ) -> Vec<(&'static MeasurandId, f64, Span)> {
+        let mut found = vec![];
+        for (name, value) in table.iter() {
+            let Some(id) = self.measurand(name.get_ref(), &name.span()) else { continue };
+            if let Some(number) = values::quantity_by(self, key, id.unit, value.get_ref(), &value.span()) {
+                found.push((id, number, name.span()));
+            }
+        }
+        found
+    }
+
+    /// Looks up a measurand, and says why when it cannot be used.
+    pub fn measurand(&mut self, name: &str, span: &Span) -> Option<&'static MeasurandId> {
+        match ids::find(name) {
+            Some(id) if id.available => return Some(id),
+            Some(id) => {
+                let message = format!("`{name}` is not available in this version");
+                self.error(span, message, Some(format!("it belongs to {}", id.test.title())));
+            }
+            None => {
+                let usable = || ids::MEASURANDS.iter().filter(|m| m.available).map(|m| m.id);
+                let help = match nearest(name, usable()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => format!("measurands: {}", usable().collect::<Vec<_>>().join(", ")),
+                };
+                self.error(span, format!("unknown measurand `{}`", shorten(name)), Some(help));
+            }
+        }
+        None
+    }
+
+    /// Reports a value of the wrong type.
+    pub fn wrong<T>(&mut self, key: &KeySpec, value: &DeValue<'_>, span: &Span) -> Option<T> {
+        let message = format!("`{}` must be {}, this is {}", key.name, key.kind.describe(), type_name(value));
+        let help = if key.example.is_empty() {
+            key.kind.table().map(|t| format!("write a table [{}] with its keys below it", t.name))
+        } else {
+            Some(format!("for example: {} = {}", key.name, key.example))
+        };
+        self.error(span, message, help);
+        None
+    }
+}
+
+/// The unit a dependent quantity is converted to; `None` when the key it depends on is unusable.
+fn dependent_unit(section: &Section, by: &str) -> Option<String> {
+    match section.entry(by)? {
+        Entry::Measurand(id) => Some(id.unit.to_owned()),
+        Entry::Word(role) => {
+            let role = Role::ALL.iter().find(|r| r.id() == *role)?;
+            match (role.internal_unit(), section.entry("unit")) {
+                (Some(unit), _) => Some(unit.to_owned()),
+                (None, Some(Entry::Unit(unit))) => Some(unit.text().to_owned()),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}
+
+fn span_of_value(key: &KeySpec, value: Span, name: Span) -> Span {
+    if key.kind.table().is_some() { name } else { value }
+}
+
+/// The first line of a span: the header of a table.
+fn first_line(source: &SourceText, span: &Span) -> Span {
+    let text = source.text.get(span.clone()).unwrap_or("");
+    span.start..span.start + text.find('\n').unwrap_or(text.len())
+}
+
+fn in_table(spec: &TableSpec) -> String {
+    if spec.name.is_empty() { String::new() } else { format!(" in [{}]", spec.name) }
+}
+
+fn written(key: &KeySpec) -> String {
+    match key.kind {
+        Kind::Table(t) | Kind::TableOrTables(t) => format!("[{}]", t.name),
+        Kind::Tables(t) => format!("[[{}]]", t.name),
+        _ => format!("`{}`", key.name),
+    }
+}
+
+/// A name short enough for a message.
+pub(super) fn shorten(name: &str) -> String {
+    if name.chars().count() <= 60 {
+        name.to_owned()
+    } else {
+        name.chars().take(57).chain("...".chars()).collect()
+    }
+}
+
+fn type_name(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}

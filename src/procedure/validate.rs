@@ -1,0 +1,303 @@
+//! What a procedure says as a whole: references between its tables, contradictions, conditions that cannot be met.
+
+use super::diagnostics::{Problem, SourceText, nearest};
+use super::model::{ChannelSpec, EarthRate, MeasurandSpec, Procedure, Taus};
+use super::reader::{Reader, Section, shorten};
+use crate::recording::{ColumnRef, Role};
+
+/// Reports every contradiction.
+pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    channels(procedure, root, reader);
+    sample_rate(procedure, root, reader);
+    conditions(procedure, root, reader);
+    site(procedure, root, reader);
+    measurands(procedure, root, reader);
+    limits(procedure, reader);
+    averaging_times(procedure, root, reader);
+}
+
+/// What is worth knowing about a procedure that can be used.
+pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceText) -> Vec<Problem> {
+    let mut found = super::limits::warnings(&procedure.limits, source);
+    for section in root.tables("instrument") {
+        if section.flag("required") && section.entry("calibration_due").is_none() {
+            let message =
+                "this instrument is required and has no `calibration_due`: its calibration cannot be shown";
+            found.push(source.warning(&section.span, message).help("add calibration_due = 2030-12-31"));
+        }
+    }
+    let column = |c: &ChannelSpec| c.channel.column.clone();
+    for (i, channel) in procedure.channels.iter().enumerate() {
+        if let Some(other) = procedure.channels[..i].iter().find(|o| column(o) == column(channel)) {
+            let message = format!(
+                "channels `{}` and `{}` read the same column {}",
+                other.channel.id,
+                channel.channel.id,
+                shown(&channel.channel.column)
+            );
+            found.push(source.warning(&channel.span, message));
+        }
+    }
+    if procedure.conditions.minimum_duration_s.is_none() {
+        let message = "no `minimum_duration`: a record of any length is a valid test";
+        let at = root.table("conditions").map_or(0..0, |c| c.span.clone());
+        found.push(source.warning(&at, message).help("add minimum_duration = \"10 h\" to [conditions]"));
+    }
+    found
+}
+
+fn shown(column: &ColumnRef) -> String {
+    match column {
+        ColumnRef::Name(name) => format!("`{name}`"),
+        ColumnRef::Position(position) => position.to_string(),
+    }
+}
+
+fn channels(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    let sections = root.tables("channel");
+    let mut seen: Vec<String> = vec![];
+    let mut time: Option<String> = None;
+    for section in sections {
+        if let Some(id) = section.text("id") {
+            if seen.contains(&id) {
+                let help = "give every channel an id of its own";
+                reader.error(&section.span_of("id"), format!("a second channel `{id}`"), Some(help.into()));
+            }
+            seen.push(id);
+        }
+        if section.word("role") == Some("time") {
+            let id = section.text("id").unwrap_or_default();
+            if let Some(first) = &time {
+                let message = format!("a second channel with the role `time`; the first is `{first}`");
+                let help = "one channel gives the time; use role = \"auxiliary\" for the other";
+                reader.error(&section.span_of("role"), message, Some(help.into()));
+            } else {
+                time = Some(id);
+            }
+        }
+        if let (Some(low), Some(high)) = (section.number("rail_low"), section.number("rail_high"))
+            && low >= high
+        {
+            reader.error(&section.span_of("rail_low"), "`rail_low` must be below `rail_high`", None);
+        }
+    }
+    // A gyro channel with a problem of its own is reported there and not as missing too.
+    let gyro = sections.iter().any(|s| matches!(s.word("role"), Some("rate" | "angle_increment") | None));
+    if !gyro && !sections.is_empty() && procedure.gyro_channels().next().is_none() {
+        let message = "no channel delivers the output of a gyro";
+        let help = "add a [[channel]] with role = \"rate\" or role = \"angle_increment\"";
+        reader.error(&sections.first().map_or(0..0, |s| s.span.clone()), message, Some(help.into()));
+    }
+}
+
+fn sample_rate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    if procedure.sample_rate_hz.is_some()
+        || root.table("recording").is_some_and(|r| r.entry("sample_rate").is_some())
+    {
+        return;
+    }
+    let sections = root.tables("channel");
+    let Some(first) = sections.first() else { return };
+    let help = "add to [recording]: sample_rate = \"10 Hz\"";
+    match sections.iter().find(|s| s.word("role") == Some("time")) {
+        None if sections.iter().all(|s| s.word("role").is_some()) => {
+            let message = "no channel has the role `time` and no `sample_rate` is declared: the time of the samples is unknown";
+            reader.error(&first.span.clone(), message, Some(help.into()));
+        }
+        Some(time) if !time.flag("required") => {
+            let message = "a recording may lack this time channel and no `sample_rate` is declared";
+            reader.error(&time.span_of("required"), message, Some(help.into()));
+        }
+        _ => {}
+    }
+}
+
+/// Checks that a named channel is declared with a role that suits; says what is there otherwise.
+fn channel_of(
+    section: &Section,
+    procedure: &Procedure,
+    root: &Section,
+    suits: fn(Role) -> bool,
+    wanted: &str,
+    reader: &mut Reader<'_>,
+) {
+    let Some(id) = section.text("channel") else { return };
+    let at = section.span_of("channel");
+    let declared = root.tables("channel").iter().find(|s| s.text("id").as_deref() == Some(id.as_str()));
+    let Some(declared) = declared else {
+        let known: Vec<String> = root.tables("channel").iter().filter_map(|s| s.text("id")).collect();
+        let help = match nearest(&id, known.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("declared: {}", known.join(", ")),
+        };
+        reader.error(&at, format!("no channel `{}` is declared", shorten(&id)), Some(help));
+        return;
+    };
+    let role = Role::ALL.iter().copied().find(|r| Some(r.id()) == declared.word("role"));
+    if let Some(role) = role.filter(|r| !suits(*r)) {
+        let message = format!("channel `{id}` has the role `{}`; {wanted} is needed here", role.id());
+        let fits: Vec<&str> = procedure
+            .channels
+            .iter()
+            .filter(|c| suits(c.channel.role))
+            .map(|c| c.channel.id.as_str())
+            .collect();
+        let help =
+            if fits.is_empty() { None } else { Some(format!("channels that suit: {}", fits.join(", "))) };
+        reader.error(&at, message, help);
+    }
+}
+
+fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    if let Some(section) = root.table("conditions") {
+        if let (Some(least), Some(warm_up)) = (section.number("minimum_duration"), section.number("warm_up"))
+            && warm_up >= least
+        {
+            let message = "`warm_up` is not shorter than `minimum_duration`";
+            let help =
+                "`minimum_duration` is the usable time after warm-up; is one of the two in a wrong unit?";
+            reader.error(&section.span_of("warm_up"), message, Some(help.into()));
+        }
+        for held in section.tables("temperature") {
+            channel_of(held, procedure, root, |r| r == Role::Temperature, "role `temperature`", reader);
+            provable(held, "degC", reader);
+        }
+        for held in section.tables("supply") {
+            channel_of(held, procedure, root, |r| r == Role::Supply, "role `supply`", reader);
+            provable(held, "V", reader);
+        }
+    }
+    for section in root.tables("exclude") {
+        if let (Some(from), Some(to)) = (section.number("from"), section.number("to"))
+            && to <= from
+        {
+            reader.error(&section.span_of("to"), "`to` must be later than `from`", None);
+        }
+    }
+}
+
+/// A tolerance that the sensor's own uncertainty uses up can never be shown to hold.
+fn provable(section: &Section, unit: &str, reader: &mut Reader<'_>) {
+    let value = |key| section.number(key);
+    let (Some(tolerance), Some(u), Some(k)) =
+        (value("tolerance"), value("sensor_uncertainty"), value("coverage_factor"))
+    else {
+        return;
+    };
+    if k * u >= tolerance {
+        let message = format!(
+            "this sensor can never show the tolerance: {k} times {u} {unit} is not less than {tolerance} {unit}"
+        );
+        let help = "use a better sensor, or widen the tolerance";
+        reader.error(&section.span_of("sensor_uncertainty"), message, Some(help.into()));
+    }
+}
+
+fn site(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    let Some(site) = root.table("site") else { return };
+    for section in std::iter::once(site).chain(site.tables("axis")) {
+        let vertical = section.number("elevation").is_none_or(|e| (e.abs() - 90.0).abs() < 1e-9);
+        if !vertical && section.entry("heading").is_none() {
+            let message = "`heading` is missing: the input axis is not vertical";
+            let help = "add for example: heading = \"90 deg\" (from true north, positive to the east)";
+            reader.error(&section.span_of("elevation"), message, Some(help.into()));
+        }
+    }
+    let mut seen: Vec<String> = vec![];
+    for axis in site.tables("axis") {
+        channel_of(axis, procedure, root, Role::is_gyro, "role `rate` or `angle_increment`", reader);
+        let id = axis.text("channel").unwrap_or_default();
+        if seen.contains(&id) {
+            reader.error(&axis.span_of("channel"), format!("a second direction of channel `{id}`"), None);
+        }
+        seen.push(id);
+    }
+}
+
+fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    let sections = root.tables("measurand");
+    let has_site = root.entry("site").is_some();
+    for (i, section) in sections.iter().enumerate() {
+        channel_of(section, procedure, root, Role::is_gyro, "role `rate` or `angle_increment`", reader);
+        let Some(measurand) = section.measurand("id") else { continue };
+        let clash = sections[..i].iter().any(|other| {
+            let (a, b) = (other.text("channel"), section.text("channel"));
+            other.measurand("id") == Some(measurand) && (a == b || a.is_none() || b.is_none())
+        });
+        if clash {
+            let message = format!("`{}` is declared twice", measurand.id);
+            reader.error(
+                &section.span_of("id"),
+                message,
+                Some("remove one, or give each its `channel`".into()),
+            );
+        }
+        let options = section.table("options");
+        let removes = options.and_then(|o| o.word("earth_rate")) != Some("keep");
+        let needs_site = measurand.id == "earth_rate_component" || measurand.id == "static_bias" && removes;
+        if needs_site && !has_site {
+            let message = format!(
+                "`{}` needs the Earth rate along the input axis, and there is no [site]",
+                measurand.id
+            );
+            let help = if measurand.id == "static_bias" {
+                "add [site] with latitude and elevation, or set options.earth_rate = \"keep\" for the mean as recorded"
+            } else {
+                "add [site] with latitude and elevation of the input axis"
+            };
+            reader.error(&section.span_of("id"), message, Some(help.into()));
+        }
+        for key in super::tables::MEASURAND_OPTIONS.keys {
+            let set = options.is_some_and(|o| o.entry(key.name).is_some());
+            if set && !measurand.options.contains(&key.name) {
+                let at = options.map_or_else(|| section.span.clone(), |o| o.span_of(key.name));
+                reader.error(&at, format!("`{}` is no option of `{}`", key.name, measurand.id), None);
+            }
+        }
+    }
+}
+
+/// A limit on what is not measured would be met by saying nothing.
+fn limits(procedure: &Procedure, reader: &mut Reader<'_>) {
+    for limit in &procedure.limits.limits {
+        if let Some(channel) = limit.channel.as_deref().filter(|c| procedure.channel(c).is_none()) {
+            let known: Vec<&str> = procedure.channels.iter().map(|c| c.channel.id.as_str()).collect();
+            let help = nearest(channel, known.iter().copied()).map(|near| format!("did you mean `{near}`?"));
+            let message = format!("this limit is for channel `{}`, which is not declared", shorten(channel));
+            reader.error(&limit.span, message, help);
+        } else if !procedure.measures(limit.measurand.id, limit.channel.as_deref()) {
+            let message =
+                format!("a limit of `{}`, which this procedure does not measure", limit.measurand.id);
+            let help =
+                format!("add a [[measurand]] with id = \"{}\", or remove the limit", limit.measurand.id);
+            reader.error(&limit.span, message, Some(help));
+        }
+    }
+}
+
+/// Averaging times are multiples of the sample interval.
+fn averaging_times(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    let (Taus::List(list), Some(rate)) = (&procedure.analysis.taus, procedure.sample_rate_hz) else { return };
+    for tau in list {
+        let samples = tau * rate;
+        let multiple = samples >= 0.5 && (samples - samples.round()).abs() <= 1e-6 * samples.max(1.0);
+        if !multiple {
+            let at = root.table("analysis").map_or(0..0, |a| a.span_of("taus"));
+            let message = format!(
+                "an averaging time of {tau} s is no multiple of the sample interval of {} s",
+                1.0 / rate
+            );
+            reader.error(&at, message, None);
+        }
+    }
+}
+
+impl MeasurandSpec {
+    /// True when the Earth rate along the input axis is needed.
+    pub fn needs_earth_rate(&self) -> bool {
+        match self.id.id {
+            "static_bias" => self.earth_rate == EarthRate::Remove,
+            id => id == "earth_rate_component",
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! Single values: texts, numbers, dates, words, quantities, each checked against its kind.
+
+use super::diagnostics::{Span, nearest};
+use super::quantity::{self, QuantityError};
+use super::reader::{Allowance, Entry, Reader, Taus, shorten};
+use super::spec::{KeySpec, Kind, Range, Word};
+use super::tables::ALLOWANCE_SHARE;
+use crate::recording::ColumnRef;
+use crate::units::Unit;
+use chrono::NaiveDate;
+use toml::de::DeValue;
+
+/// Longest text that is taken, characters.
+const LONGEST_TEXT: usize = 2000;
+
+/// Most averaging times in a list.
+const MOST_TAUS: usize = 1000;
+
+/// Reads a value that is no table.
+pub(super) fn scalar(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Entry> {
+    match key.kind {
+        Kind::Text => text(reader, key, value, span).map(Entry::Text),
+        Kind::Format(wanted) => {
+            let given = text(reader, key, value, span)?;
+            if given == wanted {
+                return Some(Entry::Text(given));
+            }
+            let message = format!("`{}` is not a format that is read here", shorten(&given));
+            reader.error(span, message, Some(format!("this kind of file begins with format = \"{wanted}\"")));
+            None
+        }
+        Kind::Id => id(reader, key, value, span).map(Entry::Text),
+        Kind::Flag => match value {
+            DeValue::Boolean(flag) => Some(Entry::Flag(*flag)),
+            _ => reader.wrong(key, value, span),
+        },
+        Kind::Number(range) => {
+            let Some(given) = number(value) else { return reader.wrong(key, value, span) };
+            in_range(reader, key, given, range, "", span).then_some(Entry::Number(given))
+        }
+        Kind::Date => date(reader, key, value, span).map(Entry::Date),
+        Kind::Choice(words) => word(reader, key, words, value, span).map(Entry::Word),
+        Kind::Choices(words) => {
+            let DeValue::Array(items) = value else { return reader.wrong(key, value, span) };
+            let found =
+                items.iter().filter_map(|v| word(reader, key, words, v.get_ref(), &v.span())).collect();
+            Some(Entry::Words(found))
+        }
+        Kind::Quantity { unit, difference, range } => {
+            quantity_in(reader, key, unit, difference, range, value, span).map(Entry::Number)
+        }
+        Kind::UnitText => unit(reader, key, value, span).map(Entry::Unit),
+        Kind::Column => column(reader, key, value, span).map(Entry::Column),
+        Kind::Taus => taus(reader, key, value, span).map(Entry::Taus),
+        Kind::Allowance => allowance(reader, key, value, span).map(Entry::Allowance),
+        Kind::Measurand => {
+            let name = text(reader, key, value, span)?;
+            reader.measurand(&name, &inside_quotes(reader, &name, span)).map(Entry::Measurand)
+        }
+        Kind::QuantityBy(_)
+        | Kind::QuantityMap
+        | Kind::Table(_)
+        | Kind::Tables(_)
+        | Kind::TableOrTables(_) => reader.wrong(key, value, span),
+    }
+}
+
+fn text(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<String> {
+    let DeValue::String(text) = value else { return reader.wrong(key, value, span) };
+    if text.trim().is_empty() {
+        reader.error(
+            span,
+            format!("`{}` is empty", key.name),
+            Some("fill it in, or leave the key out".into()),
+        );
+        return None;
+    }
+    if text.chars().count() > LONGEST_TEXT || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t') {
+        let message = format!("`{}` is no text for a report", key.name);
+        let help = format!("at most {LONGEST_TEXT} characters, none of them a control character");
+        reader.error(span, message, Some(help));
+        return None;
+    }
+    Some(text.trim().to_owned())
+}
+
+fn id(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<String> {
+    let given = text(reader, key, value, span)?;
+    let plain = given.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
+    if plain && given.len() <= 64 && given.starts_with(|c: char| c.is_ascii_alphanumeric()) {
+        return Some(given);
+    }
+    let message = format!("`{}` is not a name for `{}`", shorten(&given), key.name);
+    let help = "use at most 64 letters (a-z), digits, `_`, `-` and `.`, a letter or digit first";
+    reader.error(span, message, Some(help.into()));
+    None
+}
+
+/// A TOML number as a float; `None` for anything else and for what a float cannot hold.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    let parsed = match value {
+        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|i| i as f64),
+        DeValue::Float(f) => f.as_str().parse::<f64>().ok(),
+        _ => None,
+    };
+    parsed.filter(|v| v.is_finite())
+}
+
+fn in_range(
+    reader: &mut Reader<'_>,
+    key: &KeySpec,
+    value: f64,
+    range: Range,
+    unit: &str,
+    span: &Span,
+) -> bool {
+    let fits = range.holds(value);
+    if !fits {
+        let message = format!("`{}` must be {}", key.name, range.describe(unit));
+        reader.error(span, message, Some(format!("for example: {} = {}", key.name, key.example)));
+    }
+    fits
+}
+
+fn date(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<NaiveDate> {
+    let parsed = match value {
+        DeValue::Datetime(stamp) if stamp.time.is_none() && stamp.offset.is_none() => stamp
+            .date
+            .and_then(|d| NaiveDate::from_ymd_opt(i32::from(d.year), u32::from(d.month), u32::from(d.day))),
+        DeValue::String(text) => NaiveDate::parse_from_str(text.trim(), "%Y-%m-%d").ok(),
+        DeValue::Datetime(_) => None,
+        _ => return reader.wrong(key, value, span),
+    };
+    if parsed.is_none() {
+        let help = format!("write year, month and day: {} = 2030-12-31", key.name);
+        reader.error(span, format!("`{}` is not a date", key.name), Some(help));
+    }
+    parsed
+}
+
+fn word(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    words: &'static [Word],
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<&'static str> {
+    let DeValue::String(given) = value else { return reader.wrong(key, value, span) };
+    if let Some((known, _)) = words.iter().find(|(known, _)| known == given) {
+        return Some(known);
+    }
+    let help = match nearest(given, words.iter().map(|(known, _)| *known)) {
+        Some(near) => format!("did you mean \"{near}\"?"),
+        None => format!("one of: {}", words.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ")),
+    };
+    let at = inside_quotes(reader, given, span);
+    reader.error(&at, format!("`{}` is not a value of `{}`", shorten(given), key.name), Some(help));
+    None
+}
+
+fn unit(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<Unit> {
+    let given = text(reader, key, value, span)?;
+    match Unit::parse(&given) {
+        Ok(unit) => Some(unit),
+        Err(e) => {
+            let at = inside_quotes(reader, &given, span);
+            reader.error(
+                &at,
+                e.to_string(),
+                Some("examples: deg/h, deg/s, arcsec, count, degC, V, s".into()),
+            );
+            None
+        }
+    }
+}
+
+fn column(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<ColumnRef> {
+    match value {
+        DeValue::String(_) => text(reader, key, value, span).map(ColumnRef::Name),
+        DeValue::Integer(_) => match number(value) {
+            Some(position) if (1.0..=100_000.0).contains(&position) => {
+                Some(ColumnRef::Position(position as usize))
+            }
+            _ => {
+                reader.error(span, "columns are counted from 1", None);
+                None
+            }
+        },
+        _ => reader.wrong(key, value, span),
+    }
+}
+
+fn allowance(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Allowance> {
+    match value {
+        DeValue::Integer(_) => match number(value) {
+            Some(count) if count >= 0.0 => Some(Allowance::Count(count as u64)),
+            _ => {
+                reader.error(span, format!("`{}` must be a count of 0 or more", key.name), None);
+                None
+            }
+        },
+        DeValue::String(_) => {
+            quantity_in(reader, key, "1", false, ALLOWANCE_SHARE, value, span).map(Allowance::Share)
+        }
+        _ => reader.wrong(key, value, span),
+    }
+}
+
+fn taus(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<Taus> {
+    match value {
+        DeValue::String(name) => match name.as_ref() {
+            "octave" => Some(Taus::Octave),
+            "decade" => Some(Taus::Decade),
+            "all" => Some(Taus::All),
+            other => {
+                let at = inside_quotes(reader, other, span);
+                let message = format!("`{}` is not a value of `{}`", shorten(other), key.name);
+                reader.error(&at, message, Some(key.kind.describe()));
+                None
+            }
+        },
+        DeValue::Array(items) if !items.is_empty() && items.len() <= MOST_TAUS => {
+            let list: Vec<f64> = items
+                .iter()
+                .filter_map(|v| quantity_in(reader, key, "s", false, Range::POSITIVE, v.get_ref(), &v.span()))
+                .collect();
+            Some(Taus::List(list))
+        }
+        _ => reader.wrong(key, value, span),
+    }
+}
+
+fn quantity_in(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    unit: &str,
+    difference: bool,
+    range: Range,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<f64> {
+    let number = quantity_text(reader, key, unit, difference, value, span)?;
+    in_range(reader, key, number, range, unit, span).then_some(number)
+}
+
+/// Reads a quantity whose unit follows from elsewhere.
+pub(super) fn quantity_by(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    unit: &str,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<f64> {
+    quantity_text(reader, key, unit, false, value, span)
+}
+
+fn quantity_text(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    unit: &str,
+    difference: bool,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<f64> {
+    let shown = if unit == "1" { "%" } else { unit };
+    match value {
+        DeValue::String(text) => match quantity::parse(text, unit, difference, false) {
+            Ok(number) => Some(number),
+            Err(QuantityError { span: part, message, help }) => {
+                let inner = inside_quotes(reader, text, span);
+                let at =
+                    if inner == *span { inner } else { inner.start + part.start..inner.start + part.end };
+                reader.error(&at, message, help);
+                None
+            }
+        },
+        DeValue::Integer(_) | DeValue::Float(_) => {
+            let given = reader.source.text.get(span.clone()).unwrap_or("").to_owned();
+            let message = format!("`{}` has no unit", key.name);
+            reader.error(
+                span,
+                message,
+                Some(format!("write it as a text with its unit: \"{given} {shown}\"")),
+            );
+            None
+        }
+        _ => reader.wrong(key, value, span),
+    }
+}
+
+/// The place of a text between its quotes; the whole value where escapes make the two differ.
+fn inside_quotes(reader: &Reader<'_>, text: &str, span: &Span) -> Span {
+    let raw = reader.source.text.get(span.clone()).unwrap_or("");
+    let inner = raw.get(1..raw.len().saturating_sub(1)).unwrap_or("");
+    if raw.len() >= 2 && inner == text { span.start + 1..span.end - 1 } else { span.clone() }
+}
