@@ -1,3 +1,10 @@
 //! Noise of a gyro at rest: Allan family, spectra, autocorrelation, identification, simulation. Knows no procedure.
 
+pub mod allan;
 pub mod data;
+mod difference_sums;
+pub mod family;
+mod phase;
+pub mod stretches;
+mod strided;
+pub mod tau_grid;

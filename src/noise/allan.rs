@@ -1,0 +1,236 @@
+//! The Allan family of a record that arrives in blocks: σ(τ) of unbroken stretches, pooled.
+//!
+//! Up to [`KEPT_SAMPLES`] samples, or at any length on request, the phase is kept and every overlapping term is summed:
+//! values agree with the textbook sum to rounding. Beyond, the sums go on in a few MB with steps of at most m/64.
+//! A gap splits the record: only terms whose points all lie in unbroken data are used.
+//!
+//! Source: IEEE Std 952 annex C; Riley, NIST SP 1065 (2008), sections 5.2.4 to 5.2.11.
+
+use super::data::DeviationPoint;
+use super::difference_sums::{all_modified, all_overlapping, with_reflection};
+use super::family::Estimator;
+use super::phase::{BLOCK, Compensated, PhaseBuilder};
+use super::stretches::StretchLengths;
+use super::strided::StridedSums;
+use super::tau_grid::TauGrid;
+
+/// Samples up to which every phase is kept without being asked for.
+pub const KEPT_SAMPLES: u64 = 4_000_000;
+
+/// Largest factor at which white angle noise makes a strided record sum every term.
+const DENSE_FACTOR_LIMIT: u64 = 1 << 16;
+
+/// What is to be computed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AllanPlan {
+    /// Sample interval, s.
+    pub tau0_s: f64,
+    /// Averaging times. Check the grid first: times that are no multiple of `tau0_s` are rounded here.
+    pub grid: TauGrid,
+    /// Keeps every phase (8 bytes a sample) and sums every term, whatever the length.
+    pub exact: bool,
+    /// Deviations wanted.
+    pub estimators: Vec<Estimator>,
+}
+
+/// One σ(τ) curve, ascending in τ. Deviations in the unit of the samples (deg/h).
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviationCurve {
+    /// Which deviation.
+    pub estimator: Estimator,
+    /// Points that have at least one term.
+    pub points: Vec<DeviationPoint>,
+    /// Samples and lengths of the unbroken stretches that the curve was computed from: all of them, or the longest
+    /// one only for the total deviation.
+    pub stretches: StretchLengths,
+}
+
+/// All curves of one channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviationSet {
+    /// Sample interval, s.
+    pub tau0_s: f64,
+    /// One curve for each estimator of the plan; a total deviation is left out of a record that was not kept.
+    pub curves: Vec<DeviationCurve>,
+    /// The unbroken stretches of the record.
+    pub stretches: StretchLengths,
+}
+
+impl DeviationSet {
+    /// The curve of one estimator.
+    pub fn curve(&self, estimator: Estimator) -> Option<&DeviationCurve> {
+        self.curves.iter().find(|c| c.estimator == estimator)
+    }
+}
+
+#[derive(Debug, Clone)]
+enum Store {
+    Kept { phases: Vec<f64>, starts: Vec<usize> },
+    Strided(Box<StridedSums>),
+}
+
+/// Streaming Allan family of one channel.
+#[derive(Debug, Clone)]
+pub struct AllanAccumulator {
+    plan: AllanPlan,
+    builder: PhaseBuilder,
+    store: Store,
+    stretches: StretchLengths,
+    current: u64,
+    next_index: u64,
+}
+
+impl AllanAccumulator {
+    /// An empty accumulator.
+    pub fn new(plan: AllanPlan) -> Self {
+        AllanAccumulator {
+            plan,
+            builder: PhaseBuilder::default(),
+            store: Store::Kept { phases: vec![], starts: vec![] },
+            stretches: StretchLengths::default(),
+            current: 0,
+            next_index: 0,
+        }
+    }
+
+    /// Takes finite contiguous samples, deg/h. `continues` says that they follow the last ones without a gap; a
+    /// `first_index` that does not follow starts a new stretch all the same.
+    pub fn push(&mut self, samples: &[f64], first_index: u64, continues: bool) {
+        if samples.is_empty() {
+            return;
+        }
+        if !continues || first_index != self.next_index {
+            self.end_stretch();
+        }
+        let store = &mut self.store;
+        let starts = self.current == 0;
+        if let (true, Store::Kept { phases, starts }) = (starts, &mut *store) {
+            starts.push(phases.len());
+        }
+        self.builder.push(samples, &mut |x| store.extend(x));
+        self.current += samples.len() as u64;
+        self.next_index = first_index + samples.len() as u64;
+        if !self.plan.exact
+            && self.stretches.samples() + self.current > KEPT_SAMPLES
+            && matches!(self.store, Store::Kept { .. })
+        {
+            self.stop_keeping();
+        }
+    }
+
+    /// The curves of everything pushed so far.
+    pub fn finish(mut self) -> DeviationSet {
+        self.end_stretch();
+        let longest = self.stretches.longest();
+        let mut curves = vec![];
+        for &estimator in &self.plan.estimators {
+            let factors = self.plan.grid.factors(
+                self.plan.tau0_s,
+                Some(self.stretches.samples()),
+                longest / estimator.span(),
+            );
+            let points = match &self.store {
+                Store::Kept { phases, starts } => kept_points(estimator, &factors, phases, starts),
+                Store::Strided(_) if estimator == Estimator::Total => continue,
+                Store::Strided(sums) => sums.points(estimator),
+            };
+            let stretches = if estimator == Estimator::Total {
+                StretchLengths::of(longest)
+            } else {
+                self.stretches.clone()
+            };
+            curves.push(DeviationCurve { estimator, points, stretches });
+        }
+        DeviationSet { tau0_s: self.plan.tau0_s, curves, stretches: self.stretches }
+    }
+
+    fn end_stretch(&mut self) {
+        if self.current == 0 {
+            return;
+        }
+        let store = &mut self.store;
+        self.builder.end_stretch(&mut |x| store.extend(x));
+        if let Store::Strided(sums) = store {
+            sums.end_stretch();
+        }
+        self.stretches.add(self.current);
+        self.current = 0;
+    }
+
+    /// Goes over from kept phases to strided sums, which get everything kept so far.
+    fn stop_keeping(&mut self) {
+        let Store::Kept { phases, starts } = &mut self.store else { return };
+        let (phases, starts) = (std::mem::take(phases), std::mem::take(starts));
+        let factors = self.plan.grid.factors(self.plan.tau0_s, None, u64::MAX);
+        let dense = white_angle_reach(&phases, &starts);
+        let mut sums = StridedSums::new(&self.plan.estimators, &factors, dense);
+        for (k, stretch) in stretches_of(&phases, &starts).enumerate() {
+            if k > 0 {
+                sums.end_stretch();
+            }
+            stretch.chunks(BLOCK).for_each(|block| sums.push(block));
+        }
+        self.store = Store::Strided(Box::new(sums));
+    }
+}
+
+impl Store {
+    fn extend(&mut self, block: &[f64]) {
+        match self {
+            Store::Kept { phases, .. } => phases.extend_from_slice(block),
+            Store::Strided(sums) => sums.push(block),
+        }
+    }
+}
+
+fn stretches_of<'a>(phases: &'a [f64], starts: &'a [usize]) -> impl Iterator<Item = &'a [f64]> + 'a {
+    starts.iter().enumerate().map(|(k, &from)| {
+        let to = starts.get(k + 1).copied().unwrap_or(phases.len());
+        phases.get(from..to).unwrap_or_default()
+    })
+}
+
+/// Averaging factor below which white angle noise rules: σ falls nearly as 1/τ over the octave. There a strided sum
+/// would lose degrees of freedom in proportion to the terms left out.
+fn white_angle_reach(phases: &[f64], starts: &[usize]) -> u64 {
+    let octaves = TauGrid::Octave.factors(1.0, None, 2 * DENSE_FACTOR_LIMIT);
+    let points = kept_points(Estimator::Allan, &octaves, phases, starts);
+    let steep = |w: &&[DeviationPoint]| w[1].deviation < 0.6 * w[0].deviation;
+    points.windows(2).filter(steep).map(|w| 2 * w[1].m).max().unwrap_or(0).min(2 * DENSE_FACTOR_LIMIT)
+}
+
+fn kept_points(
+    estimator: Estimator,
+    factors: &[u64],
+    phases: &[f64],
+    starts: &[usize],
+) -> Vec<DeviationPoint> {
+    let mut sums = vec![Compensated::default(); factors.len()];
+    let mut terms = vec![0u64; factors.len()];
+    let longest = stretches_of(phases, starts).max_by_key(|x| x.len());
+    let every = stretches_of(phases, starts).filter(|_| estimator != Estimator::Total);
+    let only = longest.filter(|_| estimator == Estimator::Total);
+    for x in every.chain(only) {
+        let samples = x.len().saturating_sub(1) as u64;
+        let usable = factors.partition_point(|m| m.saturating_mul(estimator.span()) <= samples);
+        let factors = &factors[..usable];
+        let of_stretch = match estimator {
+            Estimator::Modified => all_modified(x, factors),
+            _ => all_overlapping(x, factors, estimator.span() as usize),
+        };
+        for (k, (&m, sum)) in factors.iter().zip(of_stretch).enumerate() {
+            let sum = if estimator == Estimator::Total { with_reflection(x, m as usize, sum) } else { sum };
+            sums[k].add(sum);
+            terms[k] += estimator.terms(samples, m, 1);
+        }
+    }
+    let point = |((&m, sum), &terms): ((&u64, &Compensated), &u64)| {
+        let deviation = estimator.deviation(sum.value(), terms, m)?;
+        Some(DeviationPoint { m, terms, stride: 1, deviation })
+    };
+    factors.iter().zip(&sums).zip(&terms).filter_map(point).collect()
+}
+
+#[cfg(test)]
+#[path = "allan_tests.rs"]
+mod tests;

@@ -1,0 +1,160 @@
+//! Sums of squared second and third differences of phase: the inner loops of the Allan family.
+
+use super::phase::Compensated;
+use rayon::prelude::*;
+
+const LANES: usize = 8;
+/// Starting points taken through every averaging factor before the next are fetched from memory.
+const CHUNK: usize = 2048;
+/// Starting points in one parallel task. Fixed, so that sums do not depend on the number of threads.
+const TASK: usize = 8 * CHUNK;
+
+/// Σ (c − 2b + a)² over the common length.
+pub(crate) fn second(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
+    let n = a.len().min(b.len()).min(c.len());
+    let (a, b, c) = (&a[..n], &b[..n], &c[..n]);
+    let mut sums = [0.0; LANES];
+    let mut chunks = (a.chunks_exact(LANES), b.chunks_exact(LANES), c.chunks_exact(LANES));
+    for ((a, b), c) in (&mut chunks.0).zip(&mut chunks.1).zip(&mut chunks.2) {
+        for k in 0..LANES {
+            let d = (c[k] - b[k]) - (b[k] - a[k]);
+            sums[k] += d * d;
+        }
+    }
+    let rest = chunks.0.remainder().iter().zip(chunks.1.remainder()).zip(chunks.2.remainder());
+    sums.iter().sum::<f64>()
+        + rest
+            .map(|((a, b), c)| {
+                let d = (c - b) - (b - a);
+                d * d
+            })
+            .sum::<f64>()
+}
+
+/// Σ (d − 3c + 3b − a)² over the common length.
+pub(crate) fn third(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> f64 {
+    let n = a.len().min(b.len()).min(c.len()).min(d.len());
+    let (a, b, c, d) = (&a[..n], &b[..n], &c[..n], &d[..n]);
+    let square = |a: f64, b: f64, c: f64, d: f64| {
+        let e = ((d - c) - (c - b)) - ((c - b) - (b - a));
+        e * e
+    };
+    let mut sums = [0.0; LANES];
+    let mut chunks =
+        (a.chunks_exact(LANES), b.chunks_exact(LANES), c.chunks_exact(LANES), d.chunks_exact(LANES));
+    for (((a, b), c), d) in (&mut chunks.0).zip(&mut chunks.1).zip(&mut chunks.2).zip(&mut chunks.3) {
+        for k in 0..LANES {
+            sums[k] += square(a[k], b[k], c[k], d[k]);
+        }
+    }
+    let rest = chunks.0.remainder().iter().zip(chunks.1.remainder());
+    let rest = rest.zip(chunks.2.remainder()).zip(chunks.3.remainder());
+    sums.iter().sum::<f64>() + rest.map(|(((a, b), c), d)| square(*a, *b, *c, *d)).sum::<f64>()
+}
+
+/// Σ of squared differences of order `order` (2 or 3) at `lag` whose last point is at `from_end` or later,
+/// and their number.
+pub(crate) fn ending_from(x: &[f64], lag: usize, order: usize, from_end: usize) -> (f64, u64) {
+    let start = from_end.saturating_sub(order * lag);
+    let Some(count) = x.len().checked_sub(start + order * lag) else { return (0.0, 0) };
+    let at = |k: usize| &x[start + k * lag..start + k * lag + count];
+    let sum = if order == 2 { second(at(0), at(1), at(2)) } else { third(at(0), at(1), at(2), at(3)) };
+    (sum, count as u64)
+}
+
+/// Sums of all squared differences of order 2 or 3 in one stretch of phase, one for each ascending factor.
+///
+/// Starting points go outside and factors inside, so that memory is read about once for all small factors; for octaves
+/// the point 2m of one factor is the point m of the next.
+pub(crate) fn all_overlapping(x: &[f64], factors: &[u64], order: usize) -> Vec<f64> {
+    let tasks: Vec<usize> = (0..x.len()).step_by(TASK).collect();
+    let partial: Vec<Vec<f64>> = tasks
+        .par_iter()
+        .map(|&task| {
+            let mut sums = vec![0.0; factors.len()];
+            for from in (task..(task + TASK).min(x.len())).step_by(CHUNK) {
+                for (sum, &m) in sums.iter_mut().zip(factors) {
+                    let lag = m as usize;
+                    let Some(end) = x.len().checked_sub(order * lag) else { break };
+                    let to = (from + CHUNK).min(end);
+                    if to <= from {
+                        break;
+                    }
+                    let at = |k: usize| &x[from + k * lag..to + k * lag];
+                    *sum += if order == 2 {
+                        second(at(0), at(1), at(2))
+                    } else {
+                        third(at(0), at(1), at(2), at(3))
+                    };
+                }
+            }
+            sums
+        })
+        .collect();
+    (0..factors.len()).map(|k| total(partial.iter().map(|p| p[k]))).collect()
+}
+
+/// Sums of squared window sums of second differences in one stretch of phase: the modified Allan variance, one for
+/// each factor. A running window: what enters and leaves it are the same numbers, so that it does not drift.
+pub(crate) fn all_modified(x: &[f64], factors: &[u64]) -> Vec<f64> {
+    factors
+        .par_iter()
+        .map(|&m| {
+            let m = m as usize;
+            let Some(windows) = (x.len() + 1).checked_sub(3 * m) else { return 0.0 };
+            let task = TASK.max(4 * m);
+            let sums: Vec<f64> = (0..windows)
+                .into_par_iter()
+                .step_by(task)
+                .map(|from| sliding(x, m, from, (from + task).min(windows)))
+                .collect();
+            total(sums.into_iter())
+        })
+        .collect()
+}
+
+fn sliding(x: &[f64], m: usize, from: usize, to: usize) -> f64 {
+    let difference = |i: usize| (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i]);
+    let mut window: f64 = (from..from + m).map(difference).sum();
+    let mut sum = Compensated::default();
+    sum.add(window * window);
+    let mut j = from + 1;
+    while j < to {
+        let end = (j + CHUNK).min(to);
+        let mut partial = 0.0;
+        for k in j..end {
+            window += difference(k + m - 1) - difference(k - 1);
+            partial += window * window;
+        }
+        sum.add(partial);
+        j = end;
+    }
+    sum.value()
+}
+
+/// Sum of squared second differences of the phase continued by odd reflection beyond both ends, over all inner points
+/// (total Allan variance, SP 1065 section 5.2.11). `inside` is the sum over the terms that need no continuation.
+pub(crate) fn with_reflection(x: &[f64], m: usize, inside: f64) -> f64 {
+    let points = x.len();
+    let (Some(&first), Some(&last)) = (x.first(), x.last()) else { return 0.0 };
+    if 2 * m >= points {
+        return f64::NAN;
+    }
+    let mut edges = Compensated::default();
+    for i in 1..m {
+        let left = 2.0 * first - x[m - i];
+        let d = (x[i + m] - x[i]) - (x[i] - left);
+        edges.add(d * d);
+        let j = points - 1 - i;
+        let right = 2.0 * last - x[points - 1 - (m - i)];
+        let d = (right - x[j]) - (x[j] - x[j - m]);
+        edges.add(d * d);
+    }
+    inside + edges.value()
+}
+
+fn total(parts: impl Iterator<Item = f64>) -> f64 {
+    let mut sum = Compensated::default();
+    parts.for_each(|p| sum.add(p));
+    sum.value()
+}

@@ -1,0 +1,197 @@
+//! The Allan family in bounded memory, for records too long to keep.
+//!
+//! Terms at averaging factor m are summed at steps of at most m/64. The terms left out overlap their neighbours by
+//! more than 98 %, so for white, flicker and random-walk rate less than 1 % of the degrees of freedom is lost. Factors
+//! that share a step share a lane: a short queue of phases (and of sums of phases, for the modified deviation) on the
+//! grid of that step.
+
+use super::data::DeviationPoint;
+use super::difference_sums::ending_from;
+use super::family::Estimator;
+use super::phase::Compensated;
+use super::tau_grid::widest_stride;
+use std::collections::BTreeMap;
+
+/// Factors with one step between terms, and the phases that they still need.
+#[derive(Debug, Clone)]
+struct Lane {
+    stride: usize,
+    /// Averaging factors in samples, ascending, and in steps.
+    factors: Vec<(u64, usize)>,
+    phases: Queue,
+    /// Sums of phase over the steps.
+    sums: Queue,
+    /// Sum over the step that is not complete.
+    open_sum: f64,
+    /// Phases of the stretch seen so far.
+    seen: u64,
+    /// Sum of squared terms and number of terms.
+    totals: BTreeMap<(Estimator, u64), (Compensated, u64)>,
+}
+
+/// The newest values, with what is old dropped now and then rather than each time.
+#[derive(Debug, Clone, Default)]
+struct Queue {
+    values: Vec<f64>,
+    fresh: usize,
+}
+
+impl Queue {
+    fn trim(&mut self, keep: usize) {
+        let surplus = self.values.len().saturating_sub(keep);
+        if surplus > keep.max(1024) {
+            self.values.drain(..surplus);
+        }
+        self.fresh = self.values.len();
+    }
+
+    fn clear(&mut self) {
+        self.values.clear();
+        self.fresh = 0;
+    }
+}
+
+/// Sums of squared terms for any length of record.
+#[derive(Debug, Clone)]
+pub(crate) struct StridedSums {
+    estimators: Vec<Estimator>,
+    lanes: Vec<Lane>,
+    prefix: Vec<f64>,
+}
+
+impl StridedSums {
+    /// Sums for these averaging factors. Up to `dense_below` every term is summed, which white angle noise needs.
+    pub(crate) fn new(estimators: &[Estimator], factors: &[u64], dense_below: u64) -> Self {
+        let mut by_stride: BTreeMap<usize, Vec<(u64, usize)>> = BTreeMap::new();
+        for &m in factors {
+            let stride = if m < dense_below { 1 } else { widest_stride(m) };
+            by_stride.entry(stride as usize).or_default().push((m, (m / stride) as usize));
+        }
+        let lanes = by_stride
+            .into_iter()
+            .map(|(stride, factors)| Lane {
+                stride,
+                factors,
+                phases: Queue::default(),
+                sums: Queue::default(),
+                open_sum: 0.0,
+                seen: 0,
+                totals: BTreeMap::new(),
+            })
+            .collect();
+        let estimators = estimators.iter().copied().filter(|e| *e != Estimator::Total).collect();
+        StridedSums { estimators, lanes, prefix: vec![] }
+    }
+
+    /// Takes the next phases of the current stretch.
+    pub(crate) fn push(&mut self, phases: &[f64]) {
+        let modified = self.estimators.contains(&Estimator::Modified);
+        let span = if self.estimators.iter().any(|e| e.span() == 3) { 3 } else { 2 };
+        for lane in &mut self.lanes {
+            lane.take(phases, modified);
+            let widest = lane.factors.last().map_or(0, |f| f.1);
+            for estimator in &self.estimators {
+                if *estimator == Estimator::Modified {
+                    lane.modified(&mut self.prefix);
+                } else {
+                    lane.differences(*estimator);
+                }
+            }
+            lane.phases.trim(span * widest);
+            lane.sums.trim(3 * widest);
+        }
+    }
+
+    /// Ends the stretch: no term reaches across.
+    pub(crate) fn end_stretch(&mut self) {
+        for lane in &mut self.lanes {
+            lane.phases.clear();
+            lane.sums.clear();
+            lane.open_sum = 0.0;
+            lane.seen = 0;
+        }
+    }
+
+    /// The points of one estimator, ascending.
+    pub(crate) fn points(&self, estimator: Estimator) -> Vec<DeviationPoint> {
+        let mut points: Vec<DeviationPoint> = self
+            .lanes
+            .iter()
+            .flat_map(|lane| lane.totals.iter().map(|entry| (lane.stride as u64, entry)))
+            .filter(|(_, ((e, _), _))| *e == estimator)
+            .filter_map(|(stride, ((_, m), (sum, terms)))| {
+                let deviation = estimator.deviation(sum.value(), *terms, *m)?;
+                Some(DeviationPoint { m: *m, terms: *terms, stride, deviation })
+            })
+            .collect();
+        points.sort_by_key(|p| p.m);
+        points
+    }
+}
+
+impl Lane {
+    fn take(&mut self, phases: &[f64], modified: bool) {
+        let stride = self.stride;
+        let first = (self.seen.next_multiple_of(stride as u64) - self.seen) as usize;
+        if stride == 1 {
+            self.phases.values.extend_from_slice(phases);
+            if modified {
+                self.sums.values.extend_from_slice(phases);
+            }
+        } else {
+            if let Some(from) = phases.get(first..) {
+                self.phases.values.extend(from.iter().step_by(stride));
+            }
+            if modified {
+                self.take_sums(phases, first);
+            }
+        }
+        self.seen += phases.len() as u64;
+    }
+
+    fn take_sums(&mut self, phases: &[f64], first: usize) {
+        let (head, body) = phases.split_at(first.min(phases.len()));
+        self.open_sum += head.iter().sum::<f64>();
+        if first > phases.len() {
+            return;
+        }
+        if first > 0 {
+            self.sums.values.push(self.open_sum);
+            self.open_sum = 0.0;
+        }
+        let mut steps = body.chunks_exact(self.stride);
+        self.sums.values.extend((&mut steps).map(|s| s.iter().sum::<f64>()));
+        self.open_sum += steps.remainder().iter().sum::<f64>();
+    }
+
+    fn differences(&mut self, estimator: Estimator) {
+        let order = estimator.span() as usize;
+        for &(m, lag) in &self.factors {
+            let (sum, terms) = ending_from(&self.phases.values, lag, order, self.phases.fresh);
+            if terms > 0 {
+                let total = self.totals.entry((estimator, m)).or_default();
+                total.0.add(sum);
+                total.1 += terms;
+            }
+        }
+    }
+
+    fn modified(&mut self, prefix: &mut Vec<f64>) {
+        let (Some(&origin), values) = (self.sums.values.first(), &self.sums.values) else { return };
+        prefix.clear();
+        prefix.push(0.0);
+        let mut running = 0.0;
+        prefix.extend(values.iter().map(|v| {
+            running += v - origin;
+            running
+        }));
+        for &(m, lag) in &self.factors {
+            let (sum, terms) = ending_from(prefix, lag, 3, self.sums.fresh + 1);
+            if terms > 0 {
+                let total = self.totals.entry((Estimator::Modified, m)).or_default();
+                total.0.add(sum);
+                total.1 += terms;
+            }
+        }
+    }
+}
