@@ -13,6 +13,7 @@
 pub mod estimate;
 pub mod figure;
 pub mod noise;
+pub mod numeric;
 pub mod record;
 pub mod recording;
 pub mod text;
