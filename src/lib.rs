@@ -10,10 +10,12 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod condition;
 pub mod estimate;
 pub mod figure;
 pub mod measurand;
 pub mod noise;
+pub mod numeric;
 pub mod output;
 pub mod procedure;
 pub mod record;

@@ -33,7 +33,13 @@ impl Condition for WarmUp {
                 observed.push(("residual_deg_h", fact.residual_deg_h));
                 observed.push(("time_constant_s", fact.time_constant_s));
             }
-            records.push(record("warm_up", status, &observed, format!("{} min left out", warm_up_s / 60.0), note));
+            records.push(record(
+                "warm_up",
+                status,
+                &observed,
+                format!("{} min left out", warm_up_s / 60.0),
+                note,
+            ));
         }
         records
     }

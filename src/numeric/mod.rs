@@ -1,0 +1,4 @@
+//! Numerical tools that know no gyro.
+
+pub mod cosine;
+pub mod special;
