@@ -1,3 +1,64 @@
-//! Measurands: what a test determines.
+//! Measured quantities: one file each kind. Adding one is one file and one line in [`MEASURANDS`].
+//!
+//! A measurand is a pure function of what one pass over the recording left behind ([`GyroEvidence`]).
 
+mod allan_minimum;
+pub mod earth_rate;
+pub mod evidence;
 pub mod ids;
+mod noise_terms;
+mod russian;
+mod spectral_line;
+mod static_bias;
+
+use crate::estimate::Estimate;
+pub use evidence::{Earth, GyroEvidence};
+
+/// Choices a procedure makes for a measurand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Whether the Earth rate is taken out of the static bias.
+    pub remove_earth_rate: bool,
+}
+
+/// One kind of measured quantity.
+pub trait Measurand: Sync {
+    /// Ids it gives, as in [`ids::MEASURANDS`].
+    fn ids(&self) -> &'static [&'static str];
+
+    /// The quantity of one id on one channel; `None` when the channel has nothing to say about it.
+    fn evaluate(&self, id: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate>;
+}
+
+/// Every measurand of a gyro at rest.
+pub static MEASURANDS: &[&dyn Measurand] = &[
+    &static_bias::StaticBias,
+    &earth_rate::EarthRateComponent,
+    &noise_terms::NoiseTerms,
+    &allan_minimum::AllanMinimum,
+    &russian::Russian,
+    &spectral_line::SpectralLine,
+];
+
+/// Evaluates a measurand by id.
+pub fn evaluate(id: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate> {
+    MEASURANDS.iter().find(|m| m.ids().contains(&id)).and_then(|m| m.evaluate(id, gyro, options))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_available_id_has_exactly_one_measurand() {
+        for m in ids::MEASURANDS {
+            let givers = MEASURANDS.iter().filter(|g| g.ids().contains(&m.id)).count();
+            assert_eq!(givers, usize::from(m.available), "{}", m.id);
+        }
+        for giver in MEASURANDS {
+            for id in giver.ids() {
+                assert!(ids::find(id).is_some(), "{id} is in no table");
+            }
+        }
+    }
+}

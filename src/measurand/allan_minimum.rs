@@ -1,0 +1,63 @@
+//! The smallest Allan deviation, raw and over 0.664: two of the three figures that are called bias instability.
+//!
+//! The minimum is an extreme of a noisy curve. A record of angle random walk alone has one too, wherever it ends;
+//! so it is reported with its τ and its degrees of freedom and is no evidence of a floor by itself.
+
+use super::{GyroEvidence, Measurand, Options};
+use crate::estimate::{Estimate, Spread};
+use crate::noise::intervals::BoundedPoint;
+use crate::text::Note;
+
+pub(super) struct AllanMinimum;
+
+/// √(2 ln 2/π): the Allan deviation of flicker noise is this times B.
+const FLICKER_FLOOR: f64 = 0.664_282_470_3;
+
+/// Largest averaging time read, as a share of the record (result contract).
+const LARGEST_SHARE: f64 = 0.2;
+
+impl Measurand for AllanMinimum {
+    fn ids(&self) -> &'static [&'static str] {
+        &["bias_instability_minimum", "bias_instability_minimum_scaled"]
+    }
+
+    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
+        let scaled = id == "bias_instability_minimum_scaled";
+        let (id, divisor) = if scaled {
+            ("bias_instability_minimum_scaled", FLICKER_FLOOR)
+        } else {
+            ("bias_instability_minimum", 1.0)
+        };
+        let readable = readable(gyro);
+        let Some(lowest) = readable
+            .iter()
+            .filter(|p| p.point.deviation > 0.0)
+            .min_by(|a, b| a.point.deviation.total_cmp(&b.point.deviation))
+        else {
+            let none = Estimate::not_identifiable(id, &gyro.channel, None, "deg/h", "overlapping_allan");
+            return Some(none.note(Note::new("note.minimum_none")));
+        };
+        let tau_s = lowest.point.m as f64 * gyro.tau0_s;
+        let mut estimate = Estimate::measured(
+            id,
+            &gyro.channel,
+            lowest.point.deviation / divisor,
+            "deg/h",
+            Spread::ChiSquare { dof: lowest.edf },
+            "overlapping_allan",
+        )
+        .note(Note::new("note.minimum_at").with("tau_s", tau_s).with("edf", lowest.edf));
+        if readable.last().is_some_and(|last| last.point.m == lowest.point.m) {
+            estimate = estimate.note(Note::new("note.minimum_at_end"));
+        } else if gyro.identification.bias_instability.value.is_none() {
+            estimate = estimate.note(Note::new("note.minimum_no_evidence"));
+        }
+        Some(estimate)
+    }
+}
+
+/// Octaves up to a fifth of the record.
+fn readable(gyro: &GyroEvidence) -> Vec<&BoundedPoint> {
+    let samples = gyro.digest.samples as f64;
+    gyro.octaves.iter().filter(|p| p.point.m as f64 <= samples * LARGEST_SHARE).collect()
+}

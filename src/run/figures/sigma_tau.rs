@@ -1,0 +1,114 @@
+//! σ(τ) with its band, the fitted terms, reading points, the limit and the Russian value.
+
+use super::{axis, line};
+use crate::estimate::Limit;
+use crate::figure::{Figure, Layer, Panel, Scale, Style};
+use crate::measurand::GyroEvidence;
+use crate::noise::data::NoiseType;
+use crate::noise::model::{TERMS, unit_allan_variance};
+use crate::text::significant;
+
+/// Points of a model curve.
+const CURVE_POINTS: usize = 96;
+
+/// Share of the record up to which a point is reliable, and up to which it is shown.
+const RELIABLE: f64 = 0.2;
+const SHOWN: f64 = 1.0 / 3.0;
+
+/// Draws σ(τ) of a channel. `drift_limit` is the limit on the Russian 100-s value, in deg/h.
+pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Option<&Limit>) -> Figure {
+    let longest_s = gyro.longest_stretch_s;
+    let shown: Vec<_> = gyro
+        .sigma_tau
+        .iter()
+        .filter(|p| p.point.deviation > 0.0 && p.point.m as f64 * gyro.tau0_s <= longest_s * SHOWN)
+        .map(|p| (p.point.m as f64 * gyro.tau0_s, p.point.deviation, p.interval95))
+        .collect();
+    let band = shown.iter().filter_map(|(t, _, i)| i.map(|i| (*t, i.low, i.high))).collect();
+    let reliable: Vec<(f64, f64)> =
+        shown.iter().filter(|p| p.0 <= longest_s * RELIABLE).map(|p| (p.0, p.1)).collect();
+    let mut tail: Vec<(f64, f64)> =
+        shown.iter().filter(|p| p.0 > longest_s * RELIABLE).map(|p| (p.0, p.1)).collect();
+    let tail_points = tail.clone();
+    if let (Some(last), false) = (reliable.last(), tail.is_empty()) {
+        tail.insert(0, *last);
+    }
+    let mut layers =
+        vec![Layer::Band { points: band, style: Style::Data, legend: "figure.legend.band95".into() }];
+    if let (Some(first), Some(last)) = (shown.first(), shown.last()) {
+        layers.extend(model_curves(gyro, first.0, last.0.max(first.0 * 2.0)));
+    }
+    layers.push(line(reliable.clone(), Style::Data, "figure.legend.allan"));
+    layers.push(Layer::Points { points: reliable, style: Style::Data, legend: "figure.legend.allan".into() });
+    layers.push(line(tail, Style::Muted, "figure.legend.unreliable"));
+    layers.push(Layer::Points {
+        points: tail_points,
+        style: Style::Muted,
+        legend: "figure.legend.unreliable".into(),
+    });
+    let limits = [(drift_limit, "figure.legend.limit_drift"), (floor_limit, "figure.legend.limit_floor")];
+    for (limit, legend) in limits {
+        if let Some(max) = limit.and_then(|l| l.max) {
+            layers.push(Layer::Horizontal { at: max, style: Style::Limit, legend: legend.into() });
+        }
+    }
+    if let Some(drift) = gyro.drift_100s() {
+        layers.push(Layer::Points {
+            points: vec![(100.0, drift)],
+            style: Style::Reference,
+            legend: "figure.legend.russian".into(),
+        });
+        layers
+            .push(Layer::Label { at: (100.0, drift), text: format!("σ₁₀₀ = {} °/h", significant(drift, 3)) });
+    }
+    if let Some(n) = gyro.identification.angle_random_walk.value {
+        let within = shown.first().is_some_and(|p| p.0 <= 3600.0) && shown.last().is_some_and(|p| p.0 >= 3600.0);
+        if within {
+            layers.push(Layer::Label { at: (3600.0, n), text: format!("N = {} °/√h", significant(n, 3)) });
+        }
+    }
+    Figure {
+        id: gyro.figure_id("sigma_tau"),
+        title: "figure.title.sigma_tau",
+        channel: gyro.figure_channel(),
+        panels: vec![Panel {
+            x: axis("axis.averaging_time", "s", Scale::Log),
+            y: axis("axis.allan_deviation", "deg/h", Scale::Log),
+            layers,
+        }],
+    }
+}
+
+fn model_curves(gyro: &GyroEvidence, from: f64, to: f64) -> Vec<Layer> {
+    let model = &gyro.identification.supported;
+    let grid: Vec<f64> =
+        (0..CURVE_POINTS).map(|i| from * (to / from).powf(i as f64 / (CURVE_POINTS - 1) as f64)).collect();
+    let mut layers = Vec::new();
+    let total: Vec<(f64, f64)> = grid.iter().map(|t| (*t, model.allan_variance(*t).sqrt())).collect();
+    // A term is drawn only where it would be seen, or the axis would stretch down to nothing.
+    let least = total.iter().map(|p| p.1).fold(f64::INFINITY, f64::min) / 8.0;
+    for (i, term) in TERMS.into_iter().enumerate() {
+        let coefficient = model.coefficient(term);
+        if coefficient == 0.0 {
+            continue;
+        }
+        let points: Vec<(f64, f64)> = grid
+            .iter()
+            .map(|t| (*t, coefficient.abs() * unit_allan_variance(term, *t).sqrt()))
+            .map(|(t, s)| (t, if s >= least { s } else { f64::NAN }))
+            .collect();
+        layers.push(line(points, Style::Term(i as u8), legend(term)));
+    }
+    layers.push(line(total, Style::Model, "figure.legend.model"));
+    layers
+}
+
+fn legend(term: NoiseType) -> &'static str {
+    match term {
+        NoiseType::Quantization => "figure.legend.quantization",
+        NoiseType::AngleRandomWalk => "figure.legend.angle_random_walk",
+        NoiseType::Flicker => "figure.legend.bias_instability",
+        NoiseType::RateRandomWalk => "figure.legend.rate_random_walk",
+        NoiseType::RateRamp => "figure.legend.rate_ramp",
+    }
+}
