@@ -15,5 +15,6 @@ pub mod figure;
 pub mod noise;
 pub mod record;
 pub mod recording;
+pub mod report;
 pub mod text;
 pub mod units;
