@@ -165,7 +165,9 @@ pub fn percent(probability: f64, lang: Lang) -> String {
         format!("> {}", typographic("99.99", lang))
     } else {
         let decimals = if !(1.0..=99.0).contains(&p) { 2 } else { usize::from(!(10.0..=90.0).contains(&p)) };
-        typographic(&format!("{p:.decimals$}"), lang)
+        // A stated risk of 5 % is a whole number and reads as one.
+        let whole = (p - p.round()).abs() < 1e-9;
+        typographic(&format!("{p:.0$}", if whole { 0 } else { decimals }), lang)
     };
     format!("{text}\u{202f}%")
 }
@@ -187,17 +189,29 @@ pub fn count(value: u64, lang: Lang) -> String {
     out
 }
 
-/// A span of time in the unit that suits it: `10.00 h`, `12.5 min`, `8.0 s`.
+/// A span of time in the units that suit it: `9 h 29 min 59 s`, `30 min`, `12.005 s`, `1.3 µs`.
 pub fn duration(seconds: f64, lang: Lang) -> String {
     if !seconds.is_finite() {
         return NOTHING.to_owned();
     }
     let size = seconds.abs();
-    let (factor, unit) = if size >= 7200.0 {
-        (3600.0, "h")
-    } else if size >= 180.0 {
-        (60.0, "min")
-    } else if size >= 1.0 || size == 0.0 {
+    if (120.0..1e12).contains(&size) {
+        let tenths = (size * 10.0).round() as u64;
+        let parts = [(tenths / 36_000, "h"), (tenths / 600 % 60, "min")];
+        let mut out: Vec<String> = parts
+            .iter()
+            .filter(|(n, _)| *n > 0)
+            .map(|(n, unit)| format!("{}\u{202f}{}", count(*n, lang), super::unit::pretty(unit, lang)))
+            .collect();
+        let rest = tenths % 600;
+        if rest > 0 {
+            let rest = limit_digits(rest as f64 / 10.0, 3, lang);
+            out.push(format!("{rest}\u{202f}{}", super::unit::pretty("s", lang)));
+        }
+        let sign = if seconds < 0.0 { "−" } else { "" };
+        return format!("{sign}{}", out.join(" "));
+    }
+    let (factor, unit) = if size >= 1.0 || size == 0.0 {
         (1.0, "s")
     } else if size >= 1e-3 {
         (1e-3, "ms")
@@ -289,6 +303,8 @@ mod tests {
         assert_eq!(count(36_000_000, EN), "36\u{202f}000\u{202f}000");
         assert_eq!(count(3600, EN), "3600");
         assert_eq!(duration(36_000.0, EN), "10\u{202f}h");
+        assert_eq!(duration(34_199.0, EN), "9\u{202f}h 29\u{202f}min 59\u{202f}s");
+        assert_eq!(duration(-1800.5, EN), "−30\u{202f}min 0.5\u{202f}s");
         assert_eq!(duration(0.01, EN), "10\u{202f}ms");
         assert_eq!(date_time("2026-11-21T04:23:29Z"), "2026-11-21 04:23:29 UTC");
         assert_eq!(date_time("2026-11-21T04:23:29+03:00"), "2026-11-21 01:23:29 UTC");

@@ -149,7 +149,7 @@ fn range(scale: Scale, fixed: Option<(f64, f64)>, data: Option<(f64, f64)>) -> (
             let half = 0.5 * b - 0.5 * a;
             let least = middle.abs() * 1e-12;
             let half = match half {
-                h if h > least && h > 1e-300 => h * 1.05,
+                h if h > least && h > 1e-300 => h * 1.08,
                 _ if middle == 0.0 => 1.0,
                 _ => middle.abs() * 0.05,
             };
@@ -204,7 +204,7 @@ impl Labels {
         // Marks that agree in their first five digits are written as differences from a round value.
         let offset = if size / step > 1e5 {
             let round = 10f64.powi((10.0 * step).log10().ceil() as i32);
-            (low / round).floor() * round
+            ((0.5 * low + 0.5 * high) / round).round() * round
         } else {
             0.0
         };

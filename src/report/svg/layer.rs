@@ -261,7 +261,7 @@ pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, say: impl Fn(&st
         .enumerate()
         {
             let place = [
-                (x + dx).clamp(plot.left + 2.0, (plot.left + plot.width - w - 2.0).max(plot.left + 2.0)),
+                (x + dx).clamp(plot.left + 2.0, (plot.left + plot.width - w - 4.0).max(plot.left + 2.0)),
                 (y + dy).clamp(plot.top + 2.0, (plot.top + plot.height - h - 2.0).max(plot.top + 2.0)),
                 w,
                 h,

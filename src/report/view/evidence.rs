@@ -3,7 +3,7 @@
 
 use super::{Field, Words};
 use crate::record::{ConditionRecord, ConditionStatus, FaultRecord, Integrity, NoiseModelRecord, RunRecord};
-use crate::report::number::{NOTHING, count, digits, duration, limit, limit_digits, percent};
+use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use serde::Serialize;
 
 /// Printed evidence. Each table is empty when the record has nothing for it.
@@ -218,7 +218,11 @@ impl Evidence {
                 .iter()
                 .map(|l| Line {
                     channel: l.channel.clone(),
-                    frequency: digits(l.frequency_hz, 5, lang),
+                    frequency: {
+                        let half = 0.5 * l.resolution_hz;
+                        let range = (l.frequency_hz - half, l.frequency_hz + half);
+                        Rounding::of(l.frequency_hz, Some(range)).show(l.frequency_hz, lang)
+                    },
                     resolution: digits(l.resolution_hz, 2, lang),
                     period: if l.frequency_hz > 0.0 {
                         duration(1.0 / l.frequency_hz, lang)
@@ -304,9 +308,11 @@ fn probability(p: f64, words: Words) -> String {
 }
 
 fn condition(c: &ConditionRecord, words: Words) -> Condition {
-    let observed: Vec<String> = c
-        .observed
-        .iter()
+    let mut observed: Vec<(&String, &serde_json::Value)> = c.observed.iter().collect();
+    let rank = |name: &str| ["value", "min", "max", "mean", "std"].iter().position(|k| *k == name).unwrap_or(5);
+    observed.sort_by_key(|(name, _)| rank(name));
+    let observed: Vec<String> = observed
+        .into_iter()
         .map(|(name, value)| {
             let shown = match value {
                 serde_json::Value::Number(n) => match n.as_u64() {
@@ -318,7 +324,8 @@ fn condition(c: &ConditionRecord, words: Words) -> Condition {
                 serde_json::Value::Null => NOTHING.to_owned(),
                 other => other.to_string(),
             };
-            format!("{}\u{a0}{shown}", words.name("observed", name))
+            // What stands alone needs no name.
+            if name == "value" { shown } else { format!("{}\u{a0}{shown}", words.name("observed", name)) }
         })
         .collect();
     Condition {
@@ -353,8 +360,8 @@ fn fault_counts(i: &Integrity, words: Words) -> (Vec<Field>, bool) {
 fn facts(i: &Integrity, words: Words) -> Vec<Field> {
     let lang = words.lang;
     [
-        i.timestamp_jitter_s.map(|v| ("report.jitter", words.quantity(&digits(v, 3, lang), "s"))),
-        i.quantization_step_deg_h.map(|v| ("report.step", words.quantity(&digits(v, 4, lang), "deg/h"))),
+        i.timestamp_jitter_s.map(|v| ("report.jitter", duration(v, lang))),
+        i.quantization_step_deg_h.map(|v| ("report.step", words.quantity(&limit_digits(v, 4, lang), "deg/h"))),
         i.outlier_threshold.map(|v| {
             let v = limit_digits(v, 3, lang);
             ("report.outlier_threshold", words.with("report.robust_deviations", &[("value", &v)]))
@@ -390,7 +397,7 @@ fn model(m: &NoiseModelRecord, words: Words) -> Model {
     ]
     .map(|(symbol, value, unit)| Field {
         label: symbol.to_owned(),
-        value: words.quantity(&digits(value, 4, lang), unit),
+        value: words.quantity(&limit_digits(value, 4, lang), unit),
     });
     let terms: Vec<String> = m.terms.iter().map(|t| words.name("measurand", t)).collect();
     Model {

@@ -154,7 +154,7 @@ fn accepted(l: &LimitRecord, words: Words) -> String {
     between(
         l.acceptance_min.map(|v| acceptance(v, false, words.lang)),
         l.acceptance_max.map(|v| acceptance(v, true, words.lang)),
-        false,
+        l.acceptance_min.zip(l.acceptance_max).is_some_and(|(a, b)| b > 0.0 && a == -b),
         words,
     )
 }
