@@ -20,5 +20,6 @@ pub mod output;
 pub mod procedure;
 pub mod record;
 pub mod recording;
+pub mod report;
 pub mod text;
 pub mod units;

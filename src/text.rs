@@ -135,7 +135,7 @@ impl Serialize for Note {
 }
 
 /// Replaces every `{name}` in a pattern.
-fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> String {
+pub(crate) fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> String {
     let mut out = String::with_capacity(pattern.len() + 16);
     let mut rest = pattern;
     while let Some(open) = rest.find('{') {

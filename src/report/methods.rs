@@ -1,0 +1,166 @@
+//! The methods appendix: every formula a report rests on, with its source. Words are in the locale tables under
+//! `methods.<id>`; formulas are the same in every language.
+
+use crate::record::RunRecord;
+
+/// One entry of the appendix.
+#[derive(Debug, Clone, Copy)]
+pub struct Method {
+    /// Id: `methods.<id>.title` and `methods.<id>.text` are its words.
+    pub id: &'static str,
+    /// Formulas, one a line.
+    pub formulas: &'static [&'static str],
+    /// Where they come from.
+    pub source: &'static str,
+    applies: fn(&RunRecord) -> bool,
+}
+
+fn measures(record: &RunRecord, ids: &[&str]) -> bool {
+    record.measurands.iter().any(|m| ids.contains(&m.id.as_str()))
+}
+
+fn noise(record: &RunRecord) -> bool {
+    !record.noise_models.is_empty()
+        || record.figures.iter().any(|f| f.id.starts_with("sigma_tau"))
+        || measures(
+            record,
+            &["angle_random_walk", "bias_instability", "bias_instability_minimum", "rate_random_walk"],
+        )
+}
+
+fn russian(record: &RunRecord) -> bool {
+    record.measurands.iter().any(|m| m.id.starts_with("russian_"))
+}
+
+fn limited(record: &RunRecord) -> bool {
+    record.measurands.iter().any(|m| m.limit.is_some())
+}
+
+fn fitted_by(record: &RunRecord, name: &str) -> bool {
+    record.noise_models.iter().any(|m| m.method == name) || record.measurands.iter().any(|m| m.method == name)
+}
+
+/// All entries, in the order of the report.
+pub const METHODS: &[Method] = &[
+    Method {
+        id: "allan",
+        formulas: &["σ²(τ) = Σᵢ (θᵢ₊₂ₘ − 2θᵢ₊ₘ + θᵢ)² / [2τ²·(M − 2m + 1)],  τ = m·τ₀,  i = 0 … M − 2m"],
+        source: "IEEE Std 952, Annex C; NIST SP 1065",
+        applies: noise,
+    },
+    Method {
+        id: "edf",
+        formulas: &["σ̂·√(ν/χ²₀.₉₇₅,ᵥ) … σ̂·√(ν/χ²₀.₀₂₅,ᵥ)"],
+        source: "Greenhall and Riley 2003; NIST SP 1065",
+        applies: noise,
+    },
+    Method {
+        id: "noise_model",
+        formulas: &[
+            "S(f) = N² + B²/(2πf) + K²/(2πf)² + (4Q²/τ₀)·sin²(πfτ₀)",
+            "σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)·B² + K²τ/3 + R²τ²/2",
+        ],
+        source: "IEEE Std 952, Annex C",
+        applies: noise,
+    },
+    Method {
+        id: "whittle",
+        formulas: &["−ln L = Σₖ [ln S(fₖ) + Iₖ/S(fₖ)]"],
+        source: "Whittle 1953",
+        applies: |r| fitted_by(r, "whittle"),
+    },
+    Method {
+        id: "bias_instability",
+        formulas: &["σ_BI = √(2 ln 2/π)·B = 0.664·B"],
+        source: "IEEE Std 952, Annex C",
+        applies: |r| r.measurands.iter().any(|m| m.id.starts_with("bias_instability")),
+    },
+    Method {
+        id: "not_identifiable",
+        formulas: &[],
+        source: "JCGM 106:2012",
+        applies: |r| r.measurands.iter().any(|m| !m.identifiable),
+    },
+    Method {
+        id: "russian_sigma",
+        formulas: &["s = √[ Σⱼ (ȳⱼ − ȳ)² / (n − 1) ],  n = ⌊T/τ⌋,  τ = 100 s (10 s)"],
+        source: "",
+        applies: russian,
+    },
+    Method {
+        id: "russian_arw",
+        formulas: &["N₁₀ = σ₁₀·√10 / 60"],
+        source: "",
+        applies: |r| measures(r, &["russian_arw_10s"]),
+    },
+    Method {
+        id: "russian_prediction",
+        formulas: &["E[s²] = 2Q²(n + 1)/(nτ²) + N²/τ + (B²/π)·n·ln n/(n − 1) + K²τn/6 + R²τ²n(n + 1)/12"],
+        source: "Barnes 1969 (bias function B₁)",
+        applies: |r| measures(r, &["russian_drift_100s_predicted"]),
+    },
+    Method {
+        id: "bias",
+        formulas: &["D = ȳ − Ω_IA", "u²(D) = N²/T + (B²/π)·[ln(1/(2πf_L·T)) + 3/2 − γ] + K²T/3 + u²(Ω_IA)"],
+        source: "IEEE Std 952, 12.11; JCGM 100:2008",
+        applies: |r| measures(r, &["static_bias"]),
+    },
+    Method {
+        id: "earth_rate",
+        formulas: &["Ω_IA = Ω_E·(cos φ·cos E·cos A + sin φ·sin E),  Ω_E = 7.292115×10⁻⁵ rad/s = 15.0411 °/h"],
+        source: "",
+        applies: |r| measures(r, &["static_bias", "earth_rate_component"]),
+    },
+    Method {
+        id: "spectrum",
+        formulas: &["G(f) = 2·S(f), f > 0;  N = √S / 60 = √(G/2) / 60"],
+        source: "IEEE Std 952, Annex C; Welch 1967",
+        applies: |r| r.figures.iter().any(|f| f.id.starts_with("spectrum")) || !r.lines.is_empty(),
+    },
+    Method {
+        id: "lines",
+        formulas: &["P = 1 − (1 − p₁)ᵐ"],
+        source: "",
+        applies: |r| {
+            !r.lines.is_empty()
+                || r.figures.iter().any(|f| f.id.starts_with("spectrum"))
+                || measures(r, &["line_frequency", "line_amplitude"])
+        },
+    },
+    Method {
+        id: "guard_band",
+        formulas: &["A = TL − z₁₋ᵣ·u", "A = TL·√(χ²ᵣ,ᵥ/ν)"],
+        source: "JCGM 106:2012; ISO 14253-1:2017; ILAC-G8:09/2019",
+        applies: limited,
+    },
+    Method {
+        id: "specific_risk",
+        formulas: &["P(TL < η | y) = 1 − Φ((TL − y)/u)"],
+        source: "JCGM 106:2012",
+        applies: limited,
+    },
+    Method { id: "power", formulas: &[], source: "", applies: |r| !r.power.is_empty() },
+    Method { id: "verdict", formulas: &[], source: "", applies: |_| true },
+    Method { id: "rounding", formulas: &[], source: "JCGM 100:2008, 7.2.6", applies: |_| true },
+];
+
+/// The entries that a record calls for.
+pub fn applicable(record: &RunRecord) -> impl Iterator<Item = &'static Method> {
+    METHODS.iter().filter(|m| (m.applies)(record))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::{Lang, lookup};
+
+    #[test]
+    fn every_method_has_its_words() {
+        for method in METHODS {
+            for part in ["title", "text"] {
+                let key = format!("methods.{}.{part}", method.id);
+                assert!(lookup(Lang::En, &key).is_some(), "{key}");
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Reports: HTML and Markdown as views of the run record, figures as SVG.
+//!
+//! The way through: [`view`] turns the record into words and printed numbers, [`render`] puts them through the
+//! templates, [`svg`] draws the figures. Nothing is measured or decided here, and no recording is needed.
+
+pub mod methods;
+pub mod number;
+pub mod render;
+pub mod svg;
+pub mod unit;
+pub mod view;
+
+pub use render::{Renderer, ReportError, render_html, render_markdown};
+
+use crate::figure::Figure;
+use crate::text::Lang;
+use std::path::Path;
+
+/// Writes every figure as `<id>.svg` into a folder, which must exist.
+///
+/// # Errors
+/// The file that could not be written, with the reason.
+pub fn write_figures(folder: &Path, figures: &[Figure], lang: Lang) -> Result<(), ReportError> {
+    for figure in figures {
+        let path = folder.join(file_name(&figure.id));
+        std::fs::write(&path, svg::render(figure, lang))
+            .map_err(|source| ReportError::Io { path: path.display().to_string(), source })?;
+    }
+    Ok(())
+}
+
+/// Name of the file of a figure: its id with `.svg`. What could lead out of the folder, or is forbidden in names on
+/// one of the common systems, is replaced.
+pub fn file_name(id: &str) -> String {
+    let stem: String = id
+        .chars()
+        .map(|c| if c.is_alphanumeric() || matches!(c, '_' | '-' | '.' | '@') { c } else { '-' })
+        .collect();
+    format!("{}.svg", stem.trim_start_matches('.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_stay_in_their_folder() {
+        assert_eq!(file_name("sigma_tau"), "sigma_tau.svg");
+        assert_eq!(file_name("../../etc/x"), "-..-etc-x.svg");
+        assert_eq!(file_name("a<b:c"), "a-b-c.svg");
+    }
+}

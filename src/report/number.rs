@@ -1,0 +1,313 @@
+//! Numbers as a report shows them: rounded by their uncertainty, with a true minus sign and powers of ten, in the
+//! decimal mark of the language. Values are rounded for the eye only; decisions were made on the unrounded ones.
+
+use crate::text::{Lang, lookup, significant};
+
+/// Shown where there is nothing to show.
+pub const NOTHING: &str = "–";
+
+/// An ASCII number (`-1.5e-9`) in print: true minus, decimal mark of the language, `×10ⁿ`.
+pub fn typographic(ascii: &str, lang: Lang) -> String {
+    let (mantissa, exponent) = match ascii.split_once(['e', 'E']) {
+        Some((m, e)) => (m, Some(e)),
+        None => (ascii, None),
+    };
+    let mark = lookup(lang, "number.decimal").unwrap_or(".");
+    let mut out = String::with_capacity(ascii.len() + 8);
+    for c in mantissa.chars() {
+        match c {
+            '-' => out.push('−'),
+            '.' => out.push_str(mark),
+            c => out.push(c),
+        }
+    }
+    if let Some(exponent) = exponent {
+        out.push_str("×10");
+        out.push_str(&superscript(exponent));
+    }
+    out
+}
+
+/// A whole number in superscript figures.
+pub fn superscript(ascii: &str) -> String {
+    const FIGURES: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    ascii
+        .chars()
+        .filter_map(|c| match c {
+            '-' => Some('⁻'),
+            c => c.to_digit(10).and_then(|d| FIGURES.get(d as usize).copied()),
+        })
+        .collect()
+}
+
+/// A number with a count of significant digits.
+pub fn digits(value: f64, count: usize, lang: Lang) -> String {
+    typographic(&significant(value, count), lang)
+}
+
+/// A limit: every digit it was stated with (twelve significant ones, which hides the dust of unit conversion only).
+pub fn limit(value: f64, lang: Lang) -> String {
+    if !value.is_finite() {
+        return NOTHING.to_owned();
+    }
+    let text = significant(value, 12);
+    let (mantissa, exponent) = match text.split_once('e') {
+        Some((m, e)) => (m, Some(e)),
+        None => (text.as_str(), None),
+    };
+    let short =
+        if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
+    match exponent {
+        Some(e) => typographic(&format!("{short}e{e}"), lang),
+        None => typographic(short, lang),
+    }
+}
+
+/// A bound rounded away from the better side to three digits: upwards for an upper bound, downwards for a lower one.
+pub fn bound(value: f64, upwards: bool, lang: Lang) -> String {
+    directed(value, 3, upwards, lang)
+}
+
+/// An acceptance limit: five digits, rounded towards the inside so that what is printed is never too generous.
+pub fn acceptance(value: f64, is_maximum: bool, lang: Lang) -> String {
+    directed(value, 5, !is_maximum, lang)
+}
+
+fn directed(value: f64, count: i32, upwards: bool, lang: Lang) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return digits(value, 1, lang);
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    let scale = 10f64.powi(count - 1 - exponent);
+    let scaled = value * scale;
+    if !scaled.is_finite() || scale == 0.0 {
+        return digits(value, count as usize, lang);
+    }
+    // A value that stands on its digits already, but for the last bit, keeps them.
+    let nearest = scaled.round();
+    let whole = if (scaled - nearest).abs() < 1e-9 * nearest.abs().max(1.0) {
+        nearest
+    } else if upwards {
+        scaled.ceil()
+    } else {
+        scaled.floor()
+    };
+    limit(whole / scale, lang)
+}
+
+/// How the numbers of one row are rounded: all to the same place, set by the uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rounding {
+    /// Decimals of the mantissa.
+    decimals: usize,
+    /// Place that is rounded to, as a power of ten.
+    place: i32,
+    /// Power of ten taken out, 0 for plain numbers.
+    exponent: i32,
+}
+
+impl Rounding {
+    /// Rounds to two significant digits of the half-width of the interval.
+    ///
+    /// Without a usable interval the value keeps four significant digits.
+    pub fn of(value: f64, interval: Option<(f64, f64)>) -> Rounding {
+        let half = interval.map(|(low, high)| 0.5 * (high - low)).filter(|h| h.is_finite() && *h > 0.0);
+        let size = value.abs().max(interval.map_or(0.0, |(l, h)| l.abs().max(h.abs())));
+        let place = match half {
+            // Rounding may carry (0.0996 to 0.10), so the exponent is read from the rounded text.
+            Some(h) => decimal_exponent(h, 1) - 1,
+            None => decimal_exponent(value, 3) - 3,
+        };
+        let top = decimal_exponent(size, 3);
+        let exponent = if place < -7 || top >= 7 { top } else { 0 };
+        Rounding { decimals: (exponent - place).clamp(0, 15) as usize, place, exponent }
+    }
+
+    /// A number in this rounding.
+    pub fn show(&self, value: f64, lang: Lang) -> String {
+        if !value.is_finite() {
+            return NOTHING.to_owned();
+        }
+        // Places above the units have no decimals to round by.
+        let value = if self.place > 0 {
+            let unit = 10f64.powi(self.place);
+            (value / unit).round() * unit
+        } else {
+            value
+        };
+        let mantissa = format!("{:.*}", self.decimals, value / 10f64.powi(self.exponent));
+        let zero = mantissa.chars().all(|c| matches!(c, '-' | '0' | '.'));
+        let mantissa = if zero { mantissa.trim_start_matches('-') } else { &mantissa };
+        if self.exponent == 0 || zero {
+            typographic(mantissa, lang)
+        } else {
+            typographic(&format!("{mantissa}e{}", self.exponent), lang)
+        }
+    }
+}
+
+fn decimal_exponent(value: f64, decimals: usize) -> i32 {
+    if value == 0.0 || !value.is_finite() {
+        return 0;
+    }
+    format!("{value:.decimals$e}").split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0)
+}
+
+/// A probability in percent; what is near 0 or 1 shows as a bound, for no risk is exactly nil.
+pub fn percent(probability: f64, lang: Lang) -> String {
+    if !probability.is_finite() {
+        return NOTHING.to_owned();
+    }
+    let p = 100.0 * probability.clamp(0.0, 1.0);
+    let text = if p < 0.01 {
+        format!("< {}", typographic("0.01", lang))
+    } else if p > 99.99 {
+        format!("> {}", typographic("99.99", lang))
+    } else {
+        let decimals = if !(1.0..=99.0).contains(&p) { 2 } else { usize::from(!(10.0..=90.0).contains(&p)) };
+        // A stated risk of 5 % is a whole number and reads as one.
+        let whole = (p - p.round()).abs() < 1e-9;
+        typographic(&format!("{p:.0$}", if whole { 0 } else { decimals }), lang)
+    };
+    format!("{text}\u{202f}%")
+}
+
+/// A count in groups of three figures.
+pub fn count(value: u64, lang: Lang) -> String {
+    let plain = value.to_string();
+    if plain.len() < 5 {
+        return plain;
+    }
+    let group = lookup(lang, "number.group").unwrap_or("\u{202f}");
+    let mut out = String::new();
+    for (i, c) in plain.chars().enumerate() {
+        if i > 0 && (plain.len() - i) % 3 == 0 {
+            out.push_str(group);
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// A span of time in the units that suit it: `9 h 29 min 59 s`, `30 min`, `12.005 s`, `1.3 µs`.
+pub fn duration(seconds: f64, lang: Lang) -> String {
+    if !seconds.is_finite() {
+        return NOTHING.to_owned();
+    }
+    let size = seconds.abs();
+    if (120.0..1e12).contains(&size) {
+        let tenths = (size * 10.0).round() as u64;
+        let parts = [(tenths / 36_000, "h"), (tenths / 600 % 60, "min")];
+        let mut out: Vec<String> = parts
+            .iter()
+            .filter(|(n, _)| *n > 0)
+            .map(|(n, unit)| format!("{}\u{202f}{}", count(*n, lang), super::unit::pretty(unit, lang)))
+            .collect();
+        let rest = tenths % 600;
+        if rest > 0 {
+            let rest = limit_digits(rest as f64 / 10.0, 3, lang);
+            out.push(format!("{rest}\u{202f}{}", super::unit::pretty("s", lang)));
+        }
+        let sign = if seconds < 0.0 { "−" } else { "" };
+        return format!("{sign}{}", out.join(" "));
+    }
+    let (factor, unit) = if size >= 1.0 || size == 0.0 {
+        (1.0, "s")
+    } else if size >= 1e-3 {
+        (1e-3, "ms")
+    } else {
+        (1e-6, "us")
+    };
+    format!("{}\u{202f}{}", limit_digits(seconds / factor, 5, lang), super::unit::pretty(unit, lang))
+}
+
+/// Up to so many significant digits, with trailing zeros left out.
+pub fn limit_digits(value: f64, count: usize, lang: Lang) -> String {
+    let text = significant(value, count);
+    if text.contains('.') && !text.contains('e') {
+        typographic(text.trim_end_matches('0').trim_end_matches('.'), lang)
+    } else {
+        typographic(&text, lang)
+    }
+}
+
+/// An RFC 3339 stamp as `2026-11-21 04:23:29 UTC`; any other text as it is.
+pub fn date_time(stamp: &str) -> String {
+    match chrono::DateTime::parse_from_rfc3339(stamp) {
+        Ok(t) => t.to_utc().format("%Y-%m-%d %H:%M:%S UTC").to_string(),
+        Err(_) => stamp.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EN: Lang = Lang::En;
+
+    #[test]
+    fn values_are_rounded_by_their_uncertainty() {
+        let r = Rounding::of(0.002_314_9, Some((0.002_291_2, 0.002_338_7)));
+        assert_eq!(r.show(0.002_314_9, EN), "0.002315");
+        assert_eq!(r.show(0.002_291_2, EN), "0.002291");
+        let r = Rounding::of(123_456.0, Some((120_000.0, 127_000.0)));
+        assert_eq!(r.show(123_456.0, EN), "123500");
+        let r = Rounding::of(-0.04, Some((-0.14, 0.06)));
+        assert_eq!(r.show(-0.004, EN), "0.00");
+        assert_eq!(r.show(-0.14, EN), "−0.14");
+    }
+
+    #[test]
+    fn small_values_share_one_power_of_ten() {
+        let r = Rounding::of(2.31e-8, Some((2.1e-8, 2.5e-8)));
+        assert_eq!(r.show(2.31e-8, EN), "2.31×10⁻⁸");
+        assert_eq!(r.show(2.1e-9, EN), "0.21×10⁻⁸");
+    }
+
+    #[test]
+    fn a_carry_in_the_uncertainty_moves_the_place() {
+        // The half-width 0.0996 is 0.10 in two digits, so the value has two decimals.
+        assert_eq!(Rounding::of(1.0, Some((0.9004, 1.0996))).show(1.0, EN), "1.00");
+    }
+
+    #[test]
+    fn limits_keep_every_digit() {
+        assert_eq!(limit(0.003, EN), "0.003");
+        assert_eq!(limit(0.1 + 0.2, EN), "0.3");
+        assert_eq!(limit(12.345_678_9, EN), "12.3456789");
+        assert_eq!(limit(1.5e-9, EN), "1.5×10⁻⁹");
+        assert_eq!(limit(100.0, EN), "100");
+        assert_eq!(limit(f64::INFINITY, EN), "–");
+    }
+
+    #[test]
+    fn bounds_are_rounded_to_the_safe_side() {
+        assert_eq!(bound(0.001_231, true, EN), "0.00124");
+        assert_eq!(bound(0.001_23, true, EN), "0.00123");
+        assert_eq!(acceptance(0.002_983_49, true, EN), "0.0029834");
+        assert_eq!(acceptance(0.002_983_41, false, EN), "0.0029835");
+        assert_eq!(acceptance(-0.002_983_41, true, EN), "−0.0029835");
+    }
+
+    #[test]
+    fn risks_near_nil_show_as_bounds() {
+        assert_eq!(percent(0.0, EN), "< 0.01\u{202f}%");
+        assert_eq!(percent(1.0, EN), "> 99.99\u{202f}%");
+        assert_eq!(percent(0.0231, EN), "2.3\u{202f}%");
+        assert_eq!(percent(0.5, EN), "50\u{202f}%");
+        assert_eq!(percent(0.00031, EN), "0.03\u{202f}%");
+    }
+
+    #[test]
+    fn counts_times_and_dates() {
+        assert_eq!(count(36_000_000, EN), "36\u{202f}000\u{202f}000");
+        assert_eq!(count(3600, EN), "3600");
+        assert_eq!(duration(36_000.0, EN), "10\u{202f}h");
+        assert_eq!(duration(34_199.0, EN), "9\u{202f}h 29\u{202f}min 59\u{202f}s");
+        assert_eq!(duration(-1800.5, EN), "−30\u{202f}min 0.5\u{202f}s");
+        assert_eq!(duration(0.01, EN), "10\u{202f}ms");
+        assert_eq!(date_time("2026-11-21T04:23:29Z"), "2026-11-21 04:23:29 UTC");
+        assert_eq!(date_time("2026-11-21T04:23:29+03:00"), "2026-11-21 01:23:29 UTC");
+        assert_eq!(date_time("unknown"), "unknown");
+    }
+}

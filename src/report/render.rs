@@ -1,0 +1,292 @@
+//! Templates: the built-in ones, each of which a file of the same name in a folder of the user's replaces.
+
+use super::number;
+use super::view::{View, Words};
+use crate::figure::Figure;
+use crate::record::RunRecord;
+use crate::text::{Lang, lookup, table};
+use minijinja::value::{Kwargs, Serde, Value};
+use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The built-in templates by name.
+pub const TEMPLATES: &[(&str, &str)] = &[
+    ("report.html", include_str!("../../templates/report.html")),
+    ("style.css", include_str!("../../templates/style.css")),
+    ("head.html", include_str!("../../templates/head.html")),
+    ("measurands.html", include_str!("../../templates/measurands.html")),
+    ("evidence.html", include_str!("../../templates/evidence.html")),
+    ("methods.html", include_str!("../../templates/methods.html")),
+    ("signoff.html", include_str!("../../templates/signoff.html")),
+    ("report.md", include_str!("../../templates/report.md")),
+];
+
+/// Largest template file that is read.
+const LARGEST: u64 = 4 << 20;
+
+/// Why a report could not be rendered.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// A template is wrong.
+    #[error("template `{name}`{}: {reason}", line.map(|l| format!(", line {l}")).unwrap_or_default())]
+    Template {
+        /// Name of the template.
+        name: String,
+        /// Line, counted from 1.
+        line: Option<usize>,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A folder of templates replaces nothing.
+    #[error("no file in `{path}` replaces a built-in template; their names are {names}")]
+    NothingReplaced {
+        /// The folder.
+        path: String,
+        /// Names that would be used.
+        names: String,
+    },
+    /// A file is larger than any template.
+    #[error("`{path}` has {bytes} bytes; a template has at most {LARGEST}")]
+    TooLarge {
+        /// The file.
+        path: String,
+        /// Its size.
+        bytes: u64,
+    },
+    /// A file could not be read or written.
+    #[error("`{path}`: {source}")]
+    Io {
+        /// The file.
+        path: String,
+        /// The reason.
+        source: std::io::Error,
+    },
+}
+
+/// A set of templates.
+#[derive(Debug, Clone, Default)]
+pub struct Renderer {
+    overrides: BTreeMap<String, String>,
+}
+
+impl Renderer {
+    /// The built-in templates.
+    pub fn new() -> Renderer {
+        Renderer::default()
+    }
+
+    /// The built-in templates, with those replaced that stand in a folder under the same name. Other `.html`, `.md`
+    /// and `.css` files of the folder can be included by them.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a template that is wrong, or a folder that replaces nothing.
+    pub fn with_overrides(folder: &Path) -> Result<Renderer, ReportError> {
+        let failed = |path: &Path| {
+            let path = path.display().to_string();
+            move |source| ReportError::Io { path, source }
+        };
+        let mut renderer = Renderer::default();
+        for entry in std::fs::read_dir(folder).map_err(failed(folder))? {
+            let entry = entry.map_err(failed(folder))?;
+            let path = entry.path();
+            let Some(name) = path.file_name().and_then(|n| n.to_str()).map(str::to_owned) else { continue };
+            let known = [".html", ".md", ".css"].iter().any(|suffix| name.ends_with(suffix));
+            let about = std::fs::metadata(&path).map_err(failed(&path))?;
+            if !known || !about.is_file() {
+                continue;
+            }
+            if about.len() > LARGEST {
+                return Err(ReportError::TooLarge { path: path.display().to_string(), bytes: about.len() });
+            }
+            let text = std::fs::read_to_string(&path).map_err(failed(&path))?;
+            renderer.overrides.insert(name, text);
+        }
+        if !TEMPLATES.iter().any(|(name, _)| renderer.overrides.contains_key(*name)) {
+            let names: Vec<&str> = TEMPLATES.iter().map(|t| t.0).collect();
+            return Err(ReportError::NothingReplaced {
+                path: folder.display().to_string(),
+                names: names.join(", "),
+            });
+        }
+        renderer.environment(Lang::default())?;
+        Ok(renderer)
+    }
+
+    fn environment(&self, lang: Lang) -> Result<Environment<'_>, ReportError> {
+        let mut env = Environment::new();
+        env.set_undefined_behavior(UndefinedBehavior::SemiStrict);
+        env.set_auto_escape_callback(|name| match name.rsplit('.').next() {
+            Some("html") => AutoEscape::Html,
+            Some("md") => AutoEscape::Custom("md".into()),
+            _ => AutoEscape::None,
+        });
+        env.set_formatter(|out, state, value| {
+            // An undefined name goes the ordinary way, which reports it.
+            if value.is_undefined() {
+                return minijinja::escape_formatter(out, state, value);
+            }
+            let text = if value.is_none() { String::new() } else { value.to_string() };
+            let escaped = match state.auto_escape() {
+                _ if value.is_safe() => text,
+                AutoEscape::Html => super::svg::escape(&text),
+                AutoEscape::Custom(kind) if kind == "md" => escape_markdown(&text),
+                _ => text,
+            };
+            out.write_str(&escaped).map_err(minijinja::Error::from)
+        });
+        let words = Words { lang };
+        env.add_function("t", move |key: String, args: Kwargs| -> Result<String, minijinja::Error> {
+            let mut given: Vec<(String, String)> = vec![];
+            for name in args.args() {
+                given.push((name.to_owned(), args.get::<Value>(name)?.to_string()));
+            }
+            args.assert_all_used()?;
+            let given: Vec<(&str, &str)> = given.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
+            Ok(words.with(&key, &given))
+        });
+        env.add_filter("css_string", |text: String| css_string(&text));
+        env.add_filter("unit", move |text: String| words.unit(&text));
+        env.add_filter("digits", move |v: f64, n: usize| number::digits(v, n.clamp(1, 15), lang));
+        env.add_filter("limit", move |v: f64| number::limit(v, lang));
+        env.add_filter("percent", move |v: f64| number::percent(v, lang));
+        env.add_filter("count", move |v: u64| number::count(v, lang));
+        env.add_filter("duration", move |v: f64| number::duration(v, lang));
+        env.add_filter("date", |v: String| number::date_time(&v));
+        env.add_filter("say", move |note: Value| say(&note, words));
+        for (name, source) in TEMPLATES {
+            if !self.overrides.contains_key(*name) {
+                env.add_template(name, source).map_err(|e| wrong(&e, name))?;
+            }
+        }
+        for (name, source) in &self.overrides {
+            env.add_template(name, source).map_err(|e| wrong(&e, name))?;
+        }
+        Ok(env)
+    }
+
+    fn render(
+        &self,
+        name: &str,
+        record: &RunRecord,
+        figures: &[Figure],
+        lang: Lang,
+    ) -> Result<String, ReportError> {
+        let env = self.environment(lang)?;
+        let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
+        let view = View::new(record, figures, lang);
+        let context = minijinja::context! {
+            v => Value::from(Serde(&view)),
+            run => Value::from(Serde(record)),
+            locale => Value::from(Serde(table(lang))),
+        };
+        template.render(context).map_err(|e| wrong(&e, name))
+    }
+}
+
+/// Renders the HTML report: one file that needs no other.
+///
+/// # Errors
+/// [`ReportError::Template`] when a template is wrong.
+pub fn render_html(
+    record: &RunRecord,
+    figures: &[Figure],
+    lang: Lang,
+    renderer: &Renderer,
+) -> Result<String, ReportError> {
+    renderer.render("report.html", record, figures, lang)
+}
+
+/// Renders the Markdown report, with links to `figures/*.svg`.
+///
+/// # Errors
+/// [`ReportError::Template`] when a template is wrong.
+pub fn render_markdown(
+    record: &RunRecord,
+    figures: &[Figure],
+    lang: Lang,
+    renderer: &Renderer,
+) -> Result<String, ReportError> {
+    renderer.render("report.md", record, figures, lang)
+}
+
+fn wrong(error: &minijinja::Error, name: &str) -> ReportError {
+    let mut reason = error.kind().to_string();
+    if let Some(detail) = error.detail() {
+        reason = format!("{reason}: {detail}");
+    }
+    ReportError::Template { name: error.name().unwrap_or(name).to_owned(), line: error.line(), reason }
+}
+
+/// A note of the serialised record in words.
+fn say(note: &Value, words: Words) -> String {
+    let part = |name: &str| note.get_attr(name).ok().filter(|v| !v.is_undefined());
+    let id = part("id").map(|v| v.to_string()).unwrap_or_default();
+    let Some(pattern) = lookup(words.lang, &id) else {
+        return part("text").map_or(id, |v| v.to_string());
+    };
+    let args = part("args");
+    crate::text::fill(pattern, |name| {
+        let value = args.as_ref()?.get_attr(name).ok().filter(|v| !v.is_undefined())?;
+        Some(match (value.is_integer(), f64::try_from(value.clone())) {
+            (true, _) => u64::try_from(value.clone())
+                .map_or_else(|_| value.to_string(), |n| number::count(n, words.lang)),
+            (false, Ok(v)) => number::limit_digits(v, 4, words.lang),
+            (false, Err(_)) => value.to_string(),
+        })
+    })
+}
+
+/// Text in which Markdown sees no markup and a table cell does not end.
+fn escape_markdown(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\\' | '`' | '*' | '[' | ']' | '|' | '~' => {
+                out.push('\\');
+                out.push(c);
+            }
+            '_' => out.push_str("\\_"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            '\n' | '\r' => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// A quoted string of CSS in which nothing can end the string or the style sheet.
+fn css_string(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        if c.is_alphanumeric() || matches!(c, ' ' | '.' | ',' | '-' | ':' | '·') {
+            out.push(c);
+        } else {
+            out.push_str(&format!("\\{:x} ", u32::from(c)));
+        }
+    }
+    out.push('"');
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markdown_cells_stay_whole() {
+        assert_eq!(escape_markdown("a|b*c<d>\ne_f"), "a\\|b\\*c&lt;d&gt; e\\_f");
+    }
+
+    #[test]
+    fn css_strings_cannot_be_left() {
+        assert_eq!(css_string("SN \"1\"</style>"), "\"SN \\22 1\\22 \\3c \\2f style\\3e \"");
+    }
+
+    #[test]
+    fn the_built_in_templates_are_right() {
+        Renderer::new().environment(Lang::En).unwrap();
+    }
+}

@@ -1,0 +1,231 @@
+//! Figures as SVG: self-contained, deterministic, with title and description for those who do not see them, colours
+//! and dashes for the colour-blind and for print without colour.
+
+mod axis;
+mod layer;
+mod legend;
+mod style;
+mod write;
+
+use crate::figure::{Axis, Figure, Panel, Scale};
+use crate::text::{Lang, lookup};
+use axis::{Direction, Ruled};
+use layer::Plot;
+use legend::Legend;
+use std::fmt::Write;
+pub(crate) use write::escape;
+use write::{Anchor, FONT, px, text, width};
+
+/// Width of the view box, px. The height follows from the content.
+const WIDTH: f64 = 760.0;
+const RIGHT: f64 = 18.0;
+const TITLE: f64 = 26.0;
+const BELOW: f64 = 44.0;
+const BETWEEN: f64 = 14.0;
+
+/// Draws a figure.
+///
+/// Data that cannot be drawn (nothing, one point, a constant, NaN, values without a logarithm) gives axes without it.
+pub fn render(figure: &Figure, lang: Lang) -> String {
+    let say = |key: &str| lookup(lang, key).unwrap_or(key).to_owned();
+    let id: String =
+        figure.id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
+    let fallback = Axis { label: "", unit: String::new(), scale: Scale::Linear, range: None };
+    let abscissa = figure.panels.first().map_or(&fallback, |p| &p.x);
+    let panels: Vec<&Panel> = figure.panels.iter().collect();
+    let height_of_plot = match panels.len() {
+        0 | 1 => 330.0,
+        2 => 190.0,
+        _ => 150.0,
+    };
+
+    let ordinates: Vec<Ruled> = panels
+        .iter()
+        .map(|p| {
+            let data = layer::extent(&[p], p.y.scale, true);
+            Ruled::new(&p.y, data, Direction::Up, height_of_plot, lang)
+        })
+        .collect();
+    let widest = ordinates
+        .iter()
+        .flat_map(|r| &r.ticks)
+        .filter_map(|t| t.label.as_ref())
+        .map(|l| width(l, FONT))
+        .fold(20.0, f64::max);
+    let left = (widest + 32.0).min(160.0);
+    let across = WIDTH - left - RIGHT;
+    let x =
+        Ruled::new(abscissa, layer::extent(&panels, abscissa.scale, false), Direction::Across, across, lang);
+    let legends: Vec<Legend> = panels.iter().map(|p| Legend::new(p, across, say)).collect();
+
+    let mut body = String::new();
+    let mut title = say(figure.title);
+    if !figure.channel.is_empty() {
+        title = format!("{title} · {}", figure.channel);
+    }
+    let shown_title = write::cut(&title, 14.0, WIDTH - 10.0);
+    text(&mut body, (0.0, 15.0), Anchor::Start, 14.0, " font-weight=\"600\"", &shown_title);
+
+    let mut top = TITLE;
+    let mut description = vec![];
+    for (i, ((panel, y), legend)) in panels.iter().zip(&ordinates).zip(&legends).enumerate() {
+        legend.draw(&mut body, left, top);
+        top += legend.height() + 4.0;
+        let plot = Plot { left, top, width: across, height: height_of_plot, x: &x, y };
+        let last = i + 1 == panels.len();
+        axes(&mut body, &plot, last);
+        let clip = format!("{id}-{i}");
+        let _ = writeln!(
+            body,
+            "<clipPath id=\"{clip}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>",
+            px(left),
+            px(top),
+            px(across),
+            px(height_of_plot)
+        );
+        let _ = writeln!(body, "<g clip-path=\"url(#{clip})\">");
+        for layer in &panel.layers {
+            plot.draw(&mut body, layer);
+        }
+        body.push_str("</g>\n");
+        frame(&mut body, &plot);
+        layer::labels(&mut body, &plot, panel, say);
+        description.push(format!("{} / {}: {}", y.title, x.title, legend.words().join("; ")));
+        top += height_of_plot + if last { BELOW } else { BETWEEN };
+    }
+
+    let mut out = String::with_capacity(body.len() + 700);
+    let _ = writeln!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" \
+         aria-labelledby=\"{id}-title {id}-desc\" font-family=\"system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', \
+         Arial, sans-serif\" fill=\"#111\">",
+        px(WIDTH),
+        px(top)
+    );
+    let _ = writeln!(out, "<title id=\"{id}-title\">{}</title>", escape(&title));
+    let _ = writeln!(out, "<desc id=\"{id}-desc\">{}</desc>", escape(&description.join(". ")));
+    let _ = writeln!(out, "<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>", px(WIDTH), px(top));
+    out.push_str(&body);
+    out.push_str("</svg>\n");
+    out
+}
+
+/// Grid, marks and words of the axes; the words of the abscissa on the lowest panel only.
+fn axes(out: &mut String, plot: &Plot<'_>, last: bool) {
+    let (left, top) = (plot.left, plot.top);
+    let (right, bottom) = (left + plot.width, top + plot.height);
+    let (mut major, mut minor, mut words) = (String::new(), String::new(), String::new());
+    for tick in &plot.x.ticks {
+        let Some(x) = plot.x.place(tick.at).map(|p| left + p * plot.width) else { continue };
+        let line = if tick.label.is_some() { &mut major } else { &mut minor };
+        let _ = write!(line, "M{} {}V{}", px(x), px(top), px(bottom));
+        if let (Some(label), true) = (&tick.label, last) {
+            // The word of a mark at the very edge stays on the paper.
+            let half = 0.5 * width(label, FONT);
+            let x = x.clamp(half, WIDTH - half);
+            text(&mut words, (x, bottom + 16.0), Anchor::Middle, FONT, "", label);
+        }
+    }
+    for tick in &plot.y.ticks {
+        let Some(y) = plot.y.place(tick.at).map(|p| top + (1.0 - p) * plot.height) else { continue };
+        let line = if tick.label.is_some() { &mut major } else { &mut minor };
+        let _ = write!(line, "M{} {}H{}", px(left), px(y), px(right));
+        if let Some(label) = &tick.label {
+            text(&mut words, (left - 6.0, y + 4.0), Anchor::End, FONT, "", label);
+        }
+    }
+    for (d, colour) in [(minor, "#f0f0f0"), (major, "#dcdcdc")] {
+        if !d.is_empty() {
+            let _ = writeln!(out, "<path d=\"{d}\" stroke=\"{colour}\" stroke-width=\"0.8\" fill=\"none\"/>");
+        }
+    }
+    out.push_str(&words);
+    if last {
+        let words = write::cut(&plot.x.title, FONT, plot.width);
+        text(out, (0.5 * (left + right), bottom + 35.0), Anchor::Middle, FONT, "", &words);
+    }
+    let words = write::cut(&plot.y.title, FONT, plot.height + 16.0);
+    let (x, y) = (13.0, 0.5 * (top + bottom));
+    let turn = format!(" transform=\"rotate(-90 {} {})\"", px(x), px(y));
+    text(out, (x, y), Anchor::Middle, FONT, &turn, &words);
+}
+
+fn frame(out: &mut String, plot: &Plot<'_>) {
+    let _ = writeln!(
+        out,
+        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>",
+        px(plot.left),
+        px(plot.top),
+        px(plot.width),
+        px(plot.height)
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Layer, Style};
+
+    fn figure(scale: Scale, points: Vec<(f64, f64)>) -> Figure {
+        let axis = Axis { label: "axis.a & b", unit: "deg/h".into(), scale, range: None };
+        let layers = vec![
+            Layer::Line { points: points.clone(), style: Style::Data, legend: "<one>".into() },
+            Layer::Points { points: points.clone(), style: Style::Data, legend: "<one>".into() },
+            Layer::Band {
+                points: points.iter().map(|p| (p.0, p.1 * 0.9, p.1 * 1.1)).collect(),
+                style: Style::Muted,
+                legend: "band".into(),
+            },
+            Layer::Bars { bars: vec![(0.0, 1.0, f64::NAN)], style: Style::Muted, legend: String::new() },
+            Layer::Horizontal { at: f64::INFINITY, style: Style::Limit, legend: String::new() },
+            Layer::Span { from: f64::NAN, to: 1.0, style: Style::Muted, legend: String::new() },
+            Layer::Label { at: (1.0, 1.0), text: "word".into() },
+        ];
+        Figure {
+            id: "a\"b".into(),
+            title: "t",
+            channel: "x".into(),
+            panels: vec![Panel { x: axis.clone(), y: axis, layers }],
+        }
+    }
+
+    #[test]
+    fn degenerate_data_draws_axes_and_no_nonsense() {
+        let nan = f64::NAN;
+        for scale in [Scale::Linear, Scale::Log] {
+            for points in [
+                vec![],
+                vec![(1.0, 1.0)],
+                vec![(nan, nan), (1.0, nan)],
+                vec![(1.0, 5.0), (2.0, 5.0), (3.0, 5.0)],
+                vec![(0.0, 0.0), (-1.0, -1.0)],
+                vec![(1e300, 1e308), (-1e300, -1e308)],
+                vec![(1.0, f64::INFINITY), (2.0, 1.0)],
+            ] {
+                let svg = render(&figure(scale, points.clone()), Lang::En);
+                assert!(!svg.contains("NaN") && !svg.contains("inf"), "{scale:?} {points:?}\n{svg}");
+                assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+                assert!(svg.contains("id=\"a-b-title\"") && !svg.contains("<one>"));
+            }
+        }
+        let empty = Figure { id: "e".into(), title: "t", channel: String::new(), panels: vec![] };
+        assert!(render(&empty, Lang::En).contains("</svg>"));
+    }
+
+    #[test]
+    fn a_gap_breaks_the_line() {
+        let svg = render(
+            &figure(Scale::Linear, vec![(0.0, 1.0), (1.0, 2.0), (2.0, f64::NAN), (3.0, 1.0), (4.0, 2.0)]),
+            Lang::En,
+        );
+        let line = svg.lines().find(|l| l.contains("stroke-linejoin=\"round\"/>") && l.contains("#0072b2"));
+        assert_eq!(line.unwrap().matches('M').count(), 2, "{line:?}");
+    }
+
+    #[test]
+    fn the_same_figure_gives_the_same_bytes() {
+        let f = figure(Scale::Log, vec![(1.0, 2.0), (10.0, 3.0)]);
+        assert_eq!(render(&f, Lang::En), render(&f, Lang::En));
+    }
+}

@@ -1,0 +1,167 @@
+//! Measured quantities with their limits.
+
+use super::{Words, verdict_word};
+use crate::estimate::Rule;
+use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
+use crate::report::number::{Rounding, acceptance, bound, limit, percent};
+use serde::Serialize;
+
+/// One row, printed. Empty strings where there is nothing to show.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// Id of the measurand.
+    pub id: String,
+    /// Channel.
+    pub channel: String,
+    /// Name of the quantity.
+    pub name: String,
+    /// How it was obtained, in words.
+    pub method: String,
+    /// Unit.
+    pub unit: String,
+    /// Value, or the bound where the record cannot show it.
+    pub value: String,
+    /// 95 % interval.
+    pub interval: String,
+    /// Whether the record can show the quantity.
+    pub identifiable: bool,
+    /// Limit.
+    pub limit: String,
+    /// Acceptance limit.
+    pub acceptance: String,
+    /// Decision rule.
+    pub rule: String,
+    /// Distance to the nearest limit.
+    pub margin: String,
+    /// Specific risk.
+    pub risk: String,
+    /// Published or data-sheet value.
+    pub reference: String,
+    /// Id of the verdict.
+    pub verdict: &'static str,
+    /// The verdict in words.
+    pub verdict_word: String,
+    /// Numbers of the footnotes.
+    pub footnotes: Vec<usize>,
+}
+
+/// The rows with and without a limit, in the order of the record; footnotes are collected, equal ones once.
+pub fn rows(record: &RunRecord, words: Words, footnotes: &mut Vec<String>) -> (Vec<Row>, Vec<Row>) {
+    let (mut judged, mut further) = (vec![], vec![]);
+    // Footnotes are numbered in reading order: all rows with limits come first.
+    let with_limit = record.measurands.iter().filter(|m| m.limit.is_some());
+    let without = record.measurands.iter().filter(|m| m.limit.is_none());
+    for m in with_limit.chain(without) {
+        let row = row(m, words, footnotes);
+        if m.limit.is_some() { judged.push(row) } else { further.push(row) }
+    }
+    (judged, further)
+}
+
+/// Rounding of a row: by the interval, and fine enough for the acceptance limit not to be hidden.
+pub fn rounding(m: &MeasurandRecord) -> Rounding {
+    Rounding::of(m.value.unwrap_or(0.0), m.interval.map(|i| (i.low, i.high)))
+}
+
+/// The value as printed: rounded by its uncertainty, or `≤ x (95 %)`, or that nothing can be said.
+pub fn value(m: &MeasurandRecord, words: Words) -> String {
+    if let Some(value) = m.value {
+        return rounding(m).show(value, words.lang);
+    }
+    match m.upper_limit {
+        Some(u) => words.with(
+            "report.at_most",
+            &[
+                ("value", &bound(u.value, true, words.lang)),
+                ("coverage", &super::super::number::limit_digits(100.0 * u.coverage, 3, words.lang)),
+            ],
+        ),
+        None => words.t("report.not_identifiable"),
+    }
+}
+
+/// The interval as printed.
+pub fn interval(m: &MeasurandRecord, words: Words) -> String {
+    match (m.interval, m.value) {
+        (Some(i), Some(_)) => {
+            let rounding = rounding(m);
+            words.with(
+                "report.interval",
+                &[("low", &rounding.show(i.low, words.lang)), ("high", &rounding.show(i.high, words.lang))],
+            )
+        }
+        _ => String::new(),
+    }
+}
+
+fn row(m: &MeasurandRecord, words: Words, footnotes: &mut Vec<String>) -> Row {
+    let lang = words.lang;
+    let mut numbers = vec![];
+    for note in &m.notes {
+        let sentence = words.say(note);
+        let at = footnotes.iter().position(|f| *f == sentence).unwrap_or_else(|| {
+            footnotes.push(sentence);
+            footnotes.len() - 1
+        });
+        if !numbers.contains(&(at + 1)) {
+            numbers.push(at + 1);
+        }
+    }
+    numbers.sort_unstable();
+    Row {
+        id: m.id.clone(),
+        channel: m.channel.clone(),
+        name: words.name("measurand", &m.id),
+        method: words.name("how", &m.method),
+        unit: words.unit(&m.unit),
+        value: value(m, words),
+        interval: interval(m, words),
+        identifiable: m.identifiable,
+        limit: m.limit.as_ref().map_or_else(String::new, |l| limits(l, &m.unit, words)),
+        acceptance: m.limit.as_ref().map_or_else(String::new, |l| accepted(l, words)),
+        rule: m.limit.as_ref().map_or_else(String::new, |l| rule(l, words)),
+        margin: m.margin.map_or_else(String::new, |margin| match m.value {
+            Some(_) => rounding(m).show(margin, lang),
+            None => bound(margin, false, lang),
+        }),
+        risk: m.specific_risk.map_or_else(String::new, |p| percent(p, lang)),
+        reference: m.reference.as_ref().map_or_else(String::new, |r| limit(r.value, lang)),
+        verdict: m.verdict.id(),
+        verdict_word: verdict_word(m.verdict, words),
+        footnotes: numbers,
+    }
+}
+
+/// A range with open ends: `≤ b`, `≥ a`, `± b`, `a … b`.
+fn between(min: Option<String>, max: Option<String>, symmetric: bool, words: Words) -> String {
+    match (min, max) {
+        (Some(_), Some(b)) if symmetric => format!("±\u{202f}{b}"),
+        (Some(a), Some(b)) => words.with("report.interval", &[("low", &a), ("high", &b)]),
+        (Some(a), None) => format!("≥\u{202f}{a}"),
+        (None, Some(b)) => format!("≤\u{202f}{b}"),
+        (None, None) => String::new(),
+    }
+}
+
+fn limits(l: &LimitRecord, row_unit: &str, words: Words) -> String {
+    let symmetric = l.min.zip(l.max).is_some_and(|(a, b)| b > 0.0 && a == -b);
+    let text =
+        between(l.min.map(|v| limit(v, words.lang)), l.max.map(|v| limit(v, words.lang)), symmetric, words);
+    if l.unit == row_unit { text } else { words.quantity(&text, &l.unit) }
+}
+
+fn accepted(l: &LimitRecord, words: Words) -> String {
+    between(
+        l.acceptance_min.map(|v| acceptance(v, false, words.lang)),
+        l.acceptance_max.map(|v| acceptance(v, true, words.lang)),
+        l.acceptance_min.zip(l.acceptance_max).is_some_and(|(a, b)| b > 0.0 && a == -b),
+        words,
+    )
+}
+
+fn rule(l: &LimitRecord, words: Words) -> String {
+    match l.rule {
+        Rule::Simple => words.t("rule.simple"),
+        Rule::GuardBand => words.with("rule.guard_band", &[("risk", &percent(l.risk, words.lang))]),
+    }
+}
