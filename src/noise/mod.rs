@@ -3,7 +3,9 @@
 pub mod allan;
 pub mod data;
 mod difference_sums;
+pub mod edf;
 pub mod family;
+pub mod intervals;
 mod phase;
 pub mod stretches;
 mod strided;
