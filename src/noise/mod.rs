@@ -3,8 +3,10 @@
 pub mod allan;
 pub mod data;
 mod difference_sums;
+pub mod edf;
 pub mod family;
 pub mod model;
+pub mod intervals;
 mod phase;
 pub mod simulate;
 pub mod stretches;
