@@ -1,0 +1,286 @@
+//! Which noise terms a record shows, and how large they are.
+
+use super::data::NoiseType;
+use super::evidence::Evidence;
+use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
+use super::misfit::Misfit;
+use super::model::{NoiseModel, TERMS, unit_allan_variance};
+use super::profile::Profile;
+use crate::estimate::{Estimate, UpperLimit, normal_quantile};
+use crate::text::Note;
+
+/// A method that identifies noise terms from spectral evidence.
+pub trait Identify {
+    /// Identifies the terms of one channel.
+    fn identify(&self, channel: &str, evidence: &Evidence) -> Identification;
+}
+
+/// Maximum Whittle likelihood with a structure test calibrated by simulation.
+///
+/// A term is claimed only when twice the log-likelihood is larger by its threshold than that of the best model
+/// without it, all other terms refitted. The ramp is a nuisance when rate random walk is tested, because a record in
+/// which only the lowest mode stands out cannot tell the two apart. Thresholds are set so that fewer than 7 % of
+/// records claim anything absent (validated in the identification study).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Whittle {
+    /// Threshold of 2 Δ ln L for each of [`TERMS`].
+    pub thresholds: [f64; 5],
+}
+
+impl Default for Whittle {
+    fn default() -> Self {
+        Whittle { thresholds: [4.0, 4.5, 4.0, 6.0, 8.0] }
+    }
+}
+
+/// What was found about the noise of one channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identification {
+    /// Channel.
+    pub channel: String,
+    /// Name of the method.
+    pub method: &'static str,
+    /// The claimed terms, refitted together; others 0.
+    pub model: NoiseModel,
+    /// The model that describes the record best, terms included that are needed but not certain. For predictions,
+    /// for the uncertainty of other quantities, for drawing.
+    pub supported: NoiseModel,
+    /// The maximum with every term allowed.
+    pub full: NoiseModel,
+    /// Terms claimed, in the order of [`TERMS`].
+    pub claimed: Vec<NoiseType>,
+    /// True when low-frequency noise is present that could be flicker, random walk or a ramp, so that no single one
+    /// of them is claimed.
+    pub ambiguous: bool,
+    /// 2 Δ ln L of each of [`TERMS`] against the best model without it.
+    pub likelihood_ratios: [f64; 5],
+    /// N with its interval, or its upper limit.
+    pub angle_random_walk: Estimate,
+    /// B of the 1/f law with its interval, or its upper limit. The Allan floor is 0.664 B.
+    pub bias_instability: Estimate,
+    /// K with its interval, or its upper limit.
+    pub rate_random_walk: Estimate,
+    /// R with its interval, or the upper limit of its size.
+    pub rate_ramp: Estimate,
+    /// Q with its interval, or its upper limit.
+    pub quantization: Estimate,
+    /// Covariance of the coefficients of `supported`, order of [`TERMS`]; zeros for absent terms.
+    pub covariance: [[f64; 5]; 5],
+    /// How well `supported` fits.
+    pub misfit: Misfit,
+}
+
+/// Id, unit in the order of [`TERMS`].
+const IDS: [(&str, &str); 5] = [
+    ("angle_random_walk", "deg/sqrt(h)"),
+    ("bias_instability", "deg/h"),
+    ("rate_random_walk", "deg/h/sqrt(h)"),
+    ("quantization", "arcsec"),
+    ("rate_ramp", "deg/h/h"),
+];
+const WHITE: usize = 0;
+const FLICKER: usize = 1;
+const WALK: usize = 2;
+const QUANTIZATION: usize = 3;
+const METHOD: &str = "whittle";
+/// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
+const PRICE: f64 = 2.71;
+/// Coverage of upper limits, and the rise of the deviance that makes it.
+const LIMIT: (f64, f64) = (0.95, 2.706);
+
+impl Identification {
+    /// σ(τ) of the supported model with its 95 % band: (low, value, high), deg/h.
+    pub fn sigma_band(&self, tau_s: f64) -> (f64, f64, f64) {
+        let variance = self.supported.allan_variance(tau_s);
+        let gradient = TERMS.map(|t| 2.0 * self.supported.coefficient(t) * unit_allan_variance(t, tau_s));
+        let mut square = 0.0;
+        for (row, gi) in self.covariance.iter().zip(gradient) {
+            square += gi * row.iter().zip(gradient).map(|(c, gj)| c * gj).sum::<f64>();
+        }
+        // The band is symmetric in the logarithm, as the variance is positive.
+        let half = 0.5 * normal_quantile(0.975) * square.max(0.0).sqrt() / variance;
+        let sigma = variance.sqrt();
+        (sigma * (-half).exp(), sigma, sigma * half.exp())
+    }
+
+    /// The estimates in the order of the contract: N, B, K, R, Q.
+    pub fn estimates(&self) -> [&Estimate; 5] {
+        [
+            &self.angle_random_walk,
+            &self.bias_instability,
+            &self.rate_random_walk,
+            &self.rate_ramp,
+            &self.quantization,
+        ]
+    }
+
+    /// True when the term is claimed.
+    pub fn claims(&self, term: NoiseType) -> bool {
+        self.claimed.contains(&term)
+    }
+
+    fn empty(channel: &str) -> Identification {
+        let none = |i: usize| Estimate::not_identifiable(IDS[i].0, channel, None, IDS[i].1, METHOD);
+        Identification {
+            channel: channel.to_owned(),
+            method: METHOD,
+            model: NoiseModel::default(),
+            supported: NoiseModel::default(),
+            full: NoiseModel::default(),
+            claimed: vec![],
+            ambiguous: false,
+            likelihood_ratios: [0.0; 5],
+            angle_random_walk: none(0),
+            bias_instability: none(1),
+            rate_random_walk: none(2),
+            quantization: none(3),
+            rate_ramp: none(4),
+            covariance: [[0.0; 5]; 5],
+            misfit: Misfit::none(),
+        }
+    }
+}
+
+impl Identify for Whittle {
+    fn identify(&self, channel: &str, evidence: &Evidence) -> Identification {
+        let mut out = Identification::empty(channel);
+        let Some(likelihood) = Likelihood::new(evidence) else { return out };
+        let Some(search) = Search::run(&likelihood, self.thresholds[RAMP]) else { return out };
+        out.likelihood_ratios = search.ratios;
+        let mut claimed: Structure = [false; 5];
+        for (flag, (ratio, threshold)) in claimed.iter_mut().zip(search.ratios.iter().zip(self.thresholds)) {
+            *flag = *ratio > threshold;
+        }
+        let supported = search.supported(&claimed);
+        let needed = (0..5).any(|i| supported[i] && !claimed[i]);
+        out.claimed = TERMS.into_iter().zip(claimed).filter(|(_, c)| *c).map(|(t, _)| t).collect();
+        out.ambiguous = needed;
+        out.full = search.full.model();
+        let fit = |structure: &Structure| likelihood.maximise(structure, None, None);
+        out.model = fit(&claimed).map_or_else(NoiseModel::default, |p| p.model());
+        let Some(best) = fit(&supported) else { return out };
+        out.supported = best.model();
+        out.covariance = likelihood.covariance_bound(&out.supported, &supported);
+        out.misfit =
+            Misfit::of(evidence, &likelihood.whitened(&best), supported.iter().filter(|s| **s).count());
+        let mut estimates: [Option<Estimate>; 5] = [const { None }; 5];
+        for (term, slot) in estimates.iter_mut().enumerate() {
+            *slot = Some(estimate(&likelihood, channel, term, &claimed, &supported, needed));
+        }
+        let [n, b, k, q, r] = estimates;
+        for (target, estimate) in [
+            (&mut out.angle_random_walk, n),
+            (&mut out.bias_instability, b),
+            (&mut out.rate_random_walk, k),
+            (&mut out.quantization, q),
+            (&mut out.rate_ramp, r),
+        ] {
+            if let Some(estimate) = estimate {
+                *target = estimate;
+            }
+        }
+        out
+    }
+}
+
+fn estimate(
+    likelihood: &Likelihood,
+    channel: &str,
+    term: usize,
+    claimed: &Structure,
+    supported: &Structure,
+    ambiguous: bool,
+) -> Estimate {
+    let (id, unit) = IDS[term];
+    let mut structure = *supported;
+    if term == WHITE || term == QUANTIZATION {
+        // Low-frequency noise that is too weak to be named still adds to the level of the white part.
+        (structure[FLICKER], structure[WALK]) = (true, true);
+    }
+    if claimed[term]
+        && let Some(profile) = Profile::new(likelihood, &structure, term)
+    {
+        return Estimate::measured(id, channel, profile.value(), unit, profile.spread(), METHOD);
+    }
+    // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
+    let rivals: &[usize] = match term {
+        FLICKER => &[WALK],
+        WALK => &[FLICKER],
+        _ => &[],
+    };
+    let mut nuisance = [true; 5];
+    nuisance[RAMP] = claimed[RAMP];
+    let limit = std::iter::once(nuisance)
+        .chain(rivals.iter().filter(|r| !claimed[**r]).map(|r| toggled(&nuisance, *r, false)))
+        .filter_map(|structure| Profile::new(likelihood, &structure, term)?.upper_limit(LIMIT.1))
+        .max_by(f64::total_cmp);
+    let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT.0 });
+    let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD);
+    if ambiguous && term != 0 && supported[term] {
+        return estimate.note(Note::new("note.low_frequency_ambiguous"));
+    }
+    estimate
+}
+
+/// All structures fitted.
+struct Search {
+    /// Maximum of each set of spectral terms, by bit mask; second index: ramp fitted.
+    points: Vec<[Option<Point>; 2]>,
+    full: Point,
+    ratios: [f64; 5],
+}
+
+const ALL: usize = (1 << SPECTRAL) - 1;
+
+impl Search {
+    fn run(likelihood: &Likelihood, ramp_threshold: f64) -> Option<Search> {
+        let mut points: Vec<[Option<Point>; 2]> = vec![[None, None]; ALL + 1];
+        for set in 1..=ALL {
+            for (ramp, with_ramp) in [false, true].into_iter().enumerate() {
+                let structure = structure_of(set, with_ramp);
+                let mut best = likelihood.maximise(&structure, None, None);
+                // Never worse than any part of it: a second start from the best part.
+                let part = (0..SPECTRAL)
+                    .filter(|i| set >> i & 1 == 1)
+                    .filter_map(|i| points[set ^ (1 << i)][ramp])
+                    .min_by(|a, b| a.deviance.total_cmp(&b.deviance));
+                if let Some(part) = part
+                    && best.is_none_or(|b| part.deviance < b.deviance)
+                {
+                    best = likelihood
+                        .maximise(&structure, None, Some(&part))
+                        .filter(|p| p.deviance <= part.deviance);
+                    best = best.or(Some(part));
+                }
+                points[set][ramp] = best;
+            }
+        }
+        let full = points[ALL][0]?;
+        let deviance = |set: usize, ramp: usize| points[set][ramp].map_or(f64::INFINITY, |p| p.deviance);
+        let ratio =
+            |term: usize, ramp: usize| (deviance(ALL ^ (1 << term), ramp) - deviance(ALL, ramp)).max(0.0);
+        // The ramp: plain likelihood on both sides, at the restricted estimate.
+        let restricted = points[ALL][1]?;
+        let plain = likelihood.maximise(&[true; 5], Some((RAMP, restricted.ramp)), Some(&restricted))?;
+        let ramp_ratio = (full.deviance - plain.deviance).max(0.0);
+        let with_ramp = usize::from(ramp_ratio > ramp_threshold);
+        let ratios = [ratio(0, 0), ratio(1, with_ramp), ratio(2, 1), ratio(3, 0), ramp_ratio];
+        Some(Search { points, full: if with_ramp == 1 { restricted } else { full }, ratios })
+    }
+
+    /// The best description: claimed terms, and as few others as pay their price.
+    fn supported(&self, claimed: &Structure) -> Structure {
+        let ramp = usize::from(claimed[RAMP]);
+        let must = (0..SPECTRAL).filter(|i| claimed[*i]).fold(0usize, |set, i| set | 1 << i);
+        let cost = |set: usize| {
+            self.points[set][ramp].map_or(f64::INFINITY, |p| p.deviance + PRICE * f64::from(set.count_ones()))
+        };
+        let best = (1..=ALL).filter(|set| set & must == must).min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+        structure_of(best.unwrap_or(ALL), claimed[RAMP])
+    }
+}
+
+fn structure_of(set: usize, ramp: bool) -> Structure {
+    let spectral = (0..SPECTRAL).fold([false; 5], |s, i| toggled(&s, i, set >> i & 1 == 1));
+    toggled(&spectral, RAMP, ramp)
+}

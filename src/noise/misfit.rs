@@ -1,0 +1,92 @@
+//! How well a model fits: whitened band powers against their χ² law.
+
+use super::evidence::Evidence;
+use crate::estimate::{chi_square_quantile, normal_probability};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Degrees of freedom that a test band holds at least.
+const BAND_DOF: f64 = 12.0;
+/// Test bands per octave at most.
+const PER_OCTAVE: f64 = 6.0;
+
+/// Result of the goodness-of-fit test.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    /// Mean square of the normal scores of the test bands, corrected for fitted coefficients: 1 when the model fits.
+    pub per_dof: f64,
+    /// Probability of a larger one if the model is right.
+    pub probability: f64,
+    /// The band that stands out most, Hz.
+    pub worst_band_hz: Option<[f64; 2]>,
+    /// Power over model in that band.
+    pub worst_excess: f64,
+    /// Probability that any band stands out as much, number of bands counted, if the model is right.
+    pub worst_probability: f64,
+}
+
+impl Misfit {
+    /// Nothing to test.
+    pub fn none() -> Misfit {
+        Misfit {
+            per_dof: 0.0,
+            probability: 1.0,
+            worst_band_hz: None,
+            worst_excess: 1.0,
+            worst_probability: 1.0,
+        }
+    }
+
+    /// Tests `whitened` = (power / density, degrees of freedom) of the bands of an evidence.
+    pub fn of(evidence: &Evidence, whitened: &[(f64, f64)], fitted: usize) -> Misfit {
+        struct Test {
+            low: f64,
+            high: f64,
+            dof: f64,
+            sum: f64,
+        }
+        let mut tests: Vec<Test> = vec![];
+        let width = 2f64.powf(1.0 / PER_OCTAVE);
+        for (band, (ratio, dof)) in evidence.bands.iter().zip(whitened) {
+            match tests.last_mut() {
+                Some(t) if t.dof < BAND_DOF || band.high_hz < t.low * width => {
+                    t.high = t.high.max(band.high_hz);
+                    t.dof += dof;
+                    t.sum += dof * ratio;
+                }
+                _ => tests.push(Test { low: band.low_hz, high: band.high_hz, dof: *dof, sum: dof * ratio }),
+            }
+        }
+        if tests.len() <= fitted {
+            return Misfit::none();
+        }
+        let scores: Vec<f64> = tests.iter().map(|t| normal_score(t.sum, t.dof)).collect();
+        let square: f64 = scores.iter().map(|z| z * z).sum();
+        let free = (tests.len() - fitted) as f64;
+        let mut worst = 0;
+        for (i, z) in scores.iter().enumerate() {
+            if z.abs() > scores[worst].abs() {
+                worst = i;
+            }
+        }
+        let single = 2.0 * normal_probability(-scores[worst].abs());
+        let survives = ChiSquared::new(free).map_or(f64::NAN, |d| d.sf(square));
+        Misfit {
+            per_dof: square / free,
+            probability: survives,
+            worst_band_hz: Some([tests[worst].low, tests[worst].high]),
+            worst_excess: tests[worst].sum / tests[worst].dof,
+            worst_probability: -(tests.len() as f64 * (-single).ln_1p()).exp_m1(),
+        }
+    }
+
+    /// Power over model that this test would call significant at 5 % in one band of `dof` degrees of freedom.
+    pub fn detectable_excess(dof: f64, bands: usize) -> f64 {
+        chi_square_quantile(1.0 - 0.025 / bands.max(1) as f64, dof) / dof
+    }
+}
+
+/// Normal score of a χ² sum by the cube root (Wilson and Hilferty 1931).
+fn normal_score(sum: f64, dof: f64) -> f64 {
+    let spread = 2.0 / (9.0 * dof);
+    ((sum / dof).cbrt() - (1.0 - spread)) / spread.sqrt()
+}

@@ -1,0 +1,141 @@
+//! Profile likelihood of one coefficient: the confidence curve of a claimed term, the upper limit of one that is not.
+//!
+//! The signed root z of twice the drop in log-likelihood is read as a normal score, other coefficients refitted at
+//! every value (Wilks; for an amplitude on its boundary at 0, Self and Liang, JASA 82, 1987).
+
+use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure};
+use crate::estimate::Spread;
+
+/// Outermost normal score of a curve.
+const REACH: f64 = 4.0;
+
+/// The profile of one coefficient within a structure.
+pub struct Profile<'a> {
+    likelihood: &'a Likelihood,
+    structure: Structure,
+    term: usize,
+    best: Point,
+    top: f64,
+    sigma: f64,
+}
+
+impl<'a> Profile<'a> {
+    /// Finds the maximum; `None` when the structure cannot be fitted.
+    pub fn new(likelihood: &'a Likelihood, structure: &Structure, term: usize) -> Option<Profile<'a>> {
+        let mut structure = *structure;
+        *structure.get_mut(term)? = true;
+        let best = likelihood.maximise(&structure, None, None)?;
+        let mut profile = Profile { likelihood, structure, term, best, top: best.deviance, sigma: 0.0 };
+        if term == RAMP {
+            // At a fixed ramp the likelihood is the plain one: its own maximum is the reference.
+            profile.top = profile.deviance(best.ramp)?;
+        }
+        profile.sigma = profile.first_sigma();
+        Some(profile)
+    }
+
+    /// The coefficient at the maximum.
+    pub fn value(&self) -> f64 {
+        self.best.coefficient(self.term)
+    }
+
+    fn first_sigma(&self) -> f64 {
+        let model = self.best.model();
+        let bound = self.likelihood.covariance_bound(&model, &self.structure);
+        let sigma = bound[self.term][self.term].max(0.0).sqrt();
+        if self.term < SPECTRAL {
+            // Near zero the information of the coefficient vanishes; that of its square does not.
+            let variance = self.likelihood.variance_sigma(&self.best, self.term);
+            let near_zero = variance.sqrt();
+            if sigma <= 0.0 || sigma > near_zero { near_zero } else { sigma }
+        } else {
+            sigma
+        }
+    }
+
+    fn deviance(&self, coefficient: f64) -> Option<f64> {
+        let fixed = Some((self.term, coefficient));
+        let point = self.likelihood.maximise(&self.structure, fixed, Some(&self.best))?;
+        Some(point.deviance)
+    }
+
+    /// Rise of the deviance at a coefficient over its minimum.
+    fn rise(&self, coefficient: f64) -> f64 {
+        self.deviance(coefficient).map_or(f64::INFINITY, |d| (d - self.top).max(0.0))
+    }
+
+    fn lowest(&self) -> f64 {
+        if self.term == RAMP { f64::NEG_INFINITY } else { 0.0 }
+    }
+
+    /// Pairs (normal score, coefficient), ascending, from −4 or the boundary to 4.
+    pub fn spread(&self) -> Spread {
+        if !(self.sigma > 0.0 && self.sigma.is_finite()) {
+            return Spread::Unknown;
+        }
+        let mut points = vec![(0.0, self.value())];
+        for direction in [-1.0, 1.0] {
+            let (mut at, mut z, mut step) = (self.value(), 0.0, 0.4 * self.sigma);
+            for _ in 0..60 {
+                let next = (at + direction * step).max(self.lowest());
+                if next == at {
+                    break;
+                }
+                let score = direction * self.rise(next).sqrt();
+                if !score.is_finite() {
+                    break;
+                }
+                let gained = (score - z).abs();
+                (at, z) = (next, score);
+                points.push((z, at));
+                if z.abs() >= REACH {
+                    break;
+                }
+                step *= (0.4 / gained.max(1e-3)).clamp(0.4, 2.5);
+            }
+        }
+        points.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let mut highest = f64::NEG_INFINITY;
+        for p in &mut points {
+            highest = highest.max(p.0);
+            p.0 = highest;
+        }
+        Spread::Curve(points)
+    }
+
+    /// The largest size of the coefficient whose deviance is not more than `rise` above the minimum: 2.71 makes a
+    /// one-sided 95 % limit.
+    pub fn upper_limit(&self, rise: f64) -> Option<f64> {
+        let side = |direction: f64| {
+            let start = self.value();
+            let (mut low, mut step) = (start, self.sigma);
+            let mut high = start + direction * step;
+            for _ in 0..60 {
+                if self.rise(high) >= rise {
+                    break;
+                }
+                low = high;
+                step *= 2.0;
+                high += direction * step;
+            }
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                if self.rise(middle) < rise {
+                    low = middle
+                } else {
+                    high = middle
+                }
+                if (high - low).abs() < 1e-4 * high.abs() {
+                    break;
+                }
+            }
+            high
+        };
+        if !(self.sigma > 0.0 && self.sigma.is_finite()) {
+            return None;
+        }
+        let up = side(1.0).abs();
+        let limit = if self.term == RAMP { up.max(side(-1.0).abs()) } else { up };
+        limit.is_finite().then_some(limit)
+    }
+}
