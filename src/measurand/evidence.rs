@@ -4,7 +4,7 @@ use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::digest::RateDigest;
 use crate::noise::identify::Identification;
 use crate::noise::intervals::BoundedPoint;
-use crate::noise::lines::Line;
+use crate::noise::lines::SpectralLine;
 use crate::noise::windows::WindowStatistics;
 
 /// Earth rate along an input axis.
@@ -36,7 +36,7 @@ pub struct GyroEvidence {
     /// The noise model.
     pub identification: Identification,
     /// Spectral lines.
-    pub lines: Vec<Line>,
+    pub lines: Vec<SpectralLine>,
     /// Earth rate along the axis, where the site is known.
     pub earth: Option<Earth>,
 }

@@ -1,0 +1,70 @@
+//! Autocorrelation at short lags (full rate) and at long lags (block means).
+
+use super::{axis, line};
+use crate::figure::{Figure, Layer, Panel, Scale, Style};
+use crate::measurand::GyroEvidence;
+use crate::noise::autocorrelation::{Autocorrelation, of_series, of_spectrum};
+
+/// Lags shown at the full rate.
+const SHORT_LAGS: usize = 60;
+/// Lags shown of the block means.
+const LONG_LAGS: usize = 200;
+/// Block means that the long lags are computed from at least.
+const LEAST_BLOCKS: usize = 64;
+
+/// Draws the autocorrelation; `None` when the record is too short or constant.
+pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
+    let blocks = gyro.blocks();
+    let full_rate = if blocks.block_len == 1 {
+        of_series(&blocks.mean, SHORT_LAGS.min(blocks.mean.len() / 4))
+    } else {
+        of_spectrum(gyro.spectrum(), SHORT_LAGS)
+    };
+    let mut panels = Vec::new();
+    if let Some(acf) = full_rate.filter(|a| a.coefficients.len() > 4) {
+        panels.push(panel(&acf, gyro.tau0_s, true));
+    }
+    // The long panel spans about a quarter of the record in at most LONG_LAGS steps.
+    let merge = (blocks.mean.len() / (4 * LONG_LAGS)).max(1);
+    if merge * blocks.block_len as usize > 1 && blocks.mean.len() / merge >= LEAST_BLOCKS {
+        let coarse: Vec<f64> = blocks.mean.chunks(merge).map(mean_of_present).collect();
+        if let Some(acf) = of_series(&coarse, LONG_LAGS.min(coarse.len() / 4)) {
+            panels.push(panel(&acf, gyro.tau0_s * blocks.block_len as f64 * merge as f64, false));
+        }
+    }
+    (!panels.is_empty()).then(|| Figure {
+        id: gyro.figure_id("autocorrelation"),
+        title: "figure.title.autocorrelation",
+        channel: gyro.figure_channel(),
+        panels,
+    })
+}
+
+fn mean_of_present(values: &[f64]) -> f64 {
+    let (sum, n) =
+        values.iter().filter(|v| v.is_finite()).fold((0.0, 0u32), |(sum, n), v| (sum + v, n + 1));
+    if n == 0 { f64::NAN } else { sum / f64::from(n) }
+}
+
+fn panel(acf: &Autocorrelation, step_s: f64, marked: bool) -> Panel {
+    let points: Vec<(f64, f64)> =
+        acf.coefficients.iter().enumerate().skip(1).map(|(k, r)| (k as f64 * step_s, *r)).collect();
+    let last = points.last().map_or(step_s, |p| p.0);
+    let band = acf.white_band;
+    let mut layers = vec![
+        Layer::Band {
+            points: vec![(0.0, -band, band), (last, -band, band)],
+            style: Style::Muted,
+            legend: "figure.legend.white_band".into(),
+        },
+        line(points.clone(), Style::Data, "figure.legend.data"),
+    ];
+    if marked {
+        layers.push(Layer::Points { points, style: Style::Data, legend: "figure.legend.data".into() });
+    }
+    Panel {
+        x: axis("axis.lag", "s", Scale::Linear),
+        y: axis("axis.autocorrelation", "", Scale::Linear),
+        layers,
+    }
+}

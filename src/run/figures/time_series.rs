@@ -1,0 +1,84 @@
+//! Rate and temperatures over the whole recording, with what was left out.
+
+use super::{axis, line};
+use crate::figure::{Figure, Layer, Panel, Scale, Style};
+use crate::noise::envelope::Envelope;
+use crate::record::Window;
+
+/// A channel to be drawn under the rate.
+pub struct Below<'a> {
+    /// Envelope of the channel.
+    pub envelope: &'a Envelope,
+    /// Key of the label of its axis.
+    pub label: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Key of its legend.
+    pub legend: &'static str,
+    /// Band that it must keep: lowest and highest value.
+    pub limits: Option<(f64, f64)>,
+}
+
+/// Draws a rate channel over time, in h from the start of the recording.
+pub fn figure(
+    id: String,
+    channel: String,
+    rate: &Envelope,
+    below: &[Below<'_>],
+    window: &Window,
+    tau0_s: f64,
+) -> Figure {
+    let mut panels = vec![Panel {
+        x: axis("axis.time", "s", Scale::Linear),
+        y: axis("axis.rate", "deg/h", Scale::Linear),
+        layers: layers(rate, window, tau0_s, Style::Data, "figure.legend.rate"),
+    }];
+    for other in below {
+        let mut layers = layers(other.envelope, window, tau0_s, Style::SecondData, other.legend);
+        if let Some((low, high)) = other.limits {
+            for at in [low, high] {
+                layers.push(Layer::Horizontal {
+                    at,
+                    style: Style::Limit,
+                    legend: "figure.legend.limit".into(),
+                });
+            }
+        }
+        panels.push(Panel {
+            x: axis("axis.time", "s", Scale::Linear),
+            y: axis(other.label, other.unit, Scale::Linear),
+            layers,
+        });
+    }
+    Figure { id, title: "figure.title.time_series", channel, panels }
+}
+
+fn layers(
+    envelope: &Envelope,
+    window: &Window,
+    tau0_s: f64,
+    style: Style,
+    legend: &'static str,
+) -> Vec<Layer> {
+    let mut layers: Vec<Layer> = window
+        .excluded
+        .iter()
+        .filter(|span| span.reason != "gap")
+        .map(|span| Layer::Span {
+            from: span.from_s,
+            to: span.to_s,
+            style: Style::Muted,
+            legend: "figure.legend.left_out".into(),
+        })
+        .collect();
+    let middle = |i: usize| {
+        (envelope.first_index as f64 + (i as f64 + 0.5) * envelope.bin_len as f64 - 0.5) * tau0_s
+    };
+    let range = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.min, b.max)).collect();
+    let mean = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.mean)).collect();
+    if envelope.bin_len > 1 {
+        layers.push(Layer::Band { points: range, style, legend: "figure.legend.range".into() });
+    }
+    layers.push(line(mean, style, legend));
+    layers
+}

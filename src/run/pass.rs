@@ -1,0 +1,165 @@
+//! The sinks of a static test: everything is collected while the recording goes by once.
+
+use crate::condition::temperature_track::{TemperatureFacts, TemperatureTrack};
+use crate::noise::allan::{AllanAccumulator, AllanPlan, DeviationSet};
+use crate::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
+use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
+use crate::noise::family::Estimator;
+use crate::noise::tau_grid::TauGrid;
+use crate::procedure::Procedure;
+use crate::recording::{Channel, Role, Sink, Slab};
+use std::collections::BTreeMap;
+
+/// Key of a quantity that must be held: kind of condition and its position.
+pub type HeldKey = (String, usize);
+
+/// What is collected inside the evaluated window.
+pub struct Inside {
+    gyros: Vec<Gyro>,
+    held: Vec<(HeldKey, usize, TemperatureTrack)>,
+    start_s: f64,
+}
+
+struct Gyro {
+    slot: usize,
+    digest: RateAccumulator,
+    /// Octaves beside another grid: the minimum of σ(τ) is read on octaves whatever was asked for.
+    octaves: Option<AllanAccumulator>,
+}
+
+/// What the window left behind.
+pub struct Collected {
+    /// Per gyro channel: position among the channels, digest, octaves where the grid is another.
+    pub gyros: Vec<(usize, RateDigest, Option<DeviationSet>)>,
+    /// Quantities that must be held.
+    pub held: BTreeMap<HeldKey, TemperatureFacts>,
+}
+
+impl Inside {
+    /// Prepares for the channels of a procedure.
+    pub fn new(
+        procedure: &Procedure,
+        channels: &[Channel],
+        grid: &TauGrid,
+        estimators: &[Estimator],
+        exact: bool,
+        tau0_s: f64,
+        start_s: f64,
+    ) -> Inside {
+        let gyros = channels
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| c.role.is_gyro())
+            .map(|(slot, _)| {
+                let plan = DigestPlan {
+                    taus: grid.clone(),
+                    exact,
+                    estimators: estimators.to_vec(),
+                    ..DigestPlan::new(tau0_s)
+                };
+                let octaves = (*grid != TauGrid::Octave).then(|| {
+                    AllanAccumulator::new(AllanPlan {
+                        tau0_s,
+                        grid: TauGrid::Octave,
+                        exact: false,
+                        estimators: vec![Estimator::Allan],
+                    })
+                });
+                Gyro { slot, digest: RateAccumulator::new(plan), octaves }
+            })
+            .collect();
+        let slot_of = |id: &str| channels.iter().position(|c| c.id == id);
+        let mut held = Vec::new();
+        for (i, c) in procedure.conditions.temperatures.iter().enumerate() {
+            if let Some(slot) = slot_of(&c.channel) {
+                let band = (c.nominal_deg_c - c.tolerance_deg_c, c.nominal_deg_c + c.tolerance_deg_c);
+                let track = TemperatureTrack::new(c.smoothing_s, tau0_s, Some(band));
+                held.push((("temperature".to_owned(), i), slot, track));
+            }
+        }
+        for (i, c) in procedure.conditions.supplies.iter().enumerate() {
+            if let Some(slot) = slot_of(&c.channel) {
+                let band = (c.nominal_v - c.tolerance_v, c.nominal_v + c.tolerance_v);
+                held.push((("supply".to_owned(), i), slot, TemperatureTrack::new(0.0, tau0_s, Some(band))));
+            }
+        }
+        Inside { gyros, held, start_s }
+    }
+
+    /// What was collected.
+    pub fn finish(self) -> Collected {
+        let gyros =
+            self.gyros.into_iter().map(|g| (g.slot, g.digest.finish(), g.octaves.map(|o| o.finish()))).collect();
+        let held = self.held.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?))).collect();
+        Collected { gyros, held }
+    }
+}
+
+impl Sink for Inside {
+    fn push(&mut self, slab: &Slab<'_>) {
+        for gyro in &mut self.gyros {
+            let Some(values) = slab.values.get(gyro.slot) else { continue };
+            gyro.digest.push(values, slab.first_index, slab.continues);
+            if let Some(octaves) = &mut gyro.octaves {
+                push_finite(octaves, values, slab.first_index, slab.continues);
+            }
+        }
+        for (_, slot, track) in &mut self.held {
+            if let Some(values) = slab.values.get(*slot) {
+                track.push(values, slab.time_s - self.start_s, slab.continues);
+            }
+        }
+    }
+}
+
+/// Passes the finite runs of a slab on: a value that is no number splits the record.
+fn push_finite(allan: &mut AllanAccumulator, values: &[f64], first_index: u64, continues: bool) {
+    let mut connected = continues;
+    let mut start = 0;
+    while start < values.len() {
+        if !values[start].is_finite() {
+            connected = false;
+            start += 1;
+            continue;
+        }
+        let end = values[start..].iter().position(|v| !v.is_finite()).map_or(values.len(), |n| start + n);
+        allan.push(&values[start..end], first_index + start as u64, connected);
+        connected = true;
+        start = end;
+    }
+}
+
+/// The whole recording for the plot over time, what is left out of the evaluation included.
+pub struct Overview {
+    channels: Vec<(usize, EnvelopeAccumulator)>,
+}
+
+impl Overview {
+    /// Prepares for the channels that are drawn.
+    pub fn new(channels: &[Channel]) -> Overview {
+        let drawn = |r: Role| r.is_gyro() || matches!(r, Role::Temperature | Role::Supply);
+        Overview {
+            channels: channels
+                .iter()
+                .enumerate()
+                .filter(|(_, c)| drawn(c.role))
+                .map(|(slot, _)| (slot, EnvelopeAccumulator::new()))
+                .collect(),
+        }
+    }
+
+    /// The envelopes by position of the channel.
+    pub fn finish(&self) -> BTreeMap<usize, Envelope> {
+        self.channels.iter().map(|(slot, e)| (*slot, e.finish())).collect()
+    }
+}
+
+impl Sink for Overview {
+    fn push(&mut self, slab: &Slab<'_>) {
+        for (slot, envelope) in &mut self.channels {
+            if let Some(values) = slab.values.get(*slot) {
+                envelope.push(values, slab.first_index);
+            }
+        }
+    }
+}

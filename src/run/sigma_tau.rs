@@ -1,0 +1,51 @@
+//! `sigma_tau.csv`: every point of the Allan family with its interval.
+
+use crate::measurand::GyroEvidence;
+use crate::noise::family::Estimator;
+use crate::noise::intervals::bounded;
+use std::fmt::Write;
+
+/// The table of a channel, as the result contract fixes it.
+pub fn csv(gyro: &GyroEvidence) -> String {
+    let mut out =
+        String::from("estimator,tau_s,m,n,stride,deviation_deg_h,low_deg_h,high_deg_h,edf,noise_type\n");
+    for curve in &gyro.digest.deviations.curves {
+        for point in &curve.points {
+            let tau_s = point.m as f64 * gyro.tau0_s;
+            let noise = gyro.identification.supported.dominant(tau_s);
+            let b = bounded(curve.estimator, point, &curve.stretches, noise);
+            let (low, high) = b.interval95.map_or((None, None), |i| (Some(i.low), Some(i.high)));
+            let number = |v: Option<f64>| v.map(|v| format!("{v:e}")).unwrap_or_default();
+            let _ = writeln!(
+                out,
+                "{},{},{},{},{},{:e},{},{},{},{}",
+                curve.estimator.id(),
+                tau_s,
+                point.m,
+                point.terms,
+                point.stride,
+                point.deviation,
+                number(low),
+                number(high),
+                if b.edf > 0.0 { format!("{:.4}", b.edf) } else { String::new() },
+                noise.id(),
+            );
+        }
+    }
+    out
+}
+
+/// The points of the overlapping Allan deviation with their intervals.
+pub fn allan_points(
+    set: &crate::noise::allan::DeviationSet,
+    model: &crate::noise::model::NoiseModel,
+    tau0_s: f64,
+) -> Vec<crate::noise::intervals::BoundedPoint> {
+    set.curve(Estimator::Allan).map_or_else(Vec::new, |curve| {
+        curve
+            .points
+            .iter()
+            .map(|p| bounded(Estimator::Allan, p, &curve.stretches, model.dominant(p.m as f64 * tau0_s)))
+            .collect()
+    })
+}
