@@ -12,6 +12,7 @@
 
 pub mod estimate;
 pub mod figure;
+pub mod ingest;
 pub mod noise;
 pub mod record;
 pub mod recording;
