@@ -14,6 +14,7 @@ pub mod condition;
 pub mod estimate;
 pub mod figure;
 pub mod measurand;
+pub mod ingest;
 pub mod noise;
 pub mod numeric;
 pub mod output;

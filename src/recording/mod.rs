@@ -3,6 +3,12 @@
 //! A recording is never held as a whole: readers deliver blocks, the time base turns them into [`Slab`]s without a gap
 //! inside, and every consumer is a [`Sink`] that takes slabs.
 
+pub mod faults;
+pub mod guess;
+pub mod integrity;
+pub mod timebase;
+pub mod window;
+
 use crate::units::Unit;
 use schemars::JsonSchema;
 use serde::Serialize;

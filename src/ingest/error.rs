@@ -1,0 +1,149 @@
+//! Why a recording could not be read: one diagnostic that says where, what was found and what to do.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// What went wrong, for programs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IngestErrorKind {
+    /// The file cannot be opened or read.
+    Io,
+    /// The file is of a kind that is not read here.
+    UnknownFormat,
+    /// The file has no rows.
+    Empty,
+    /// The compressed data are damaged or end early.
+    Damaged,
+    /// The compressed data unpack to far more than a recording could.
+    Bomb,
+    /// The file changed while it was read.
+    Changed,
+    /// A column that was asked for is not there, or its name is not unique.
+    Column,
+    /// Most fields of a wanted column are no numbers, or most rows have the wrong number of fields.
+    NotNumeric,
+    /// The time stamps cannot serve as a time base, or there is none.
+    TimeBase,
+    /// A channel's unit does not fit its role.
+    Unit,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Details {
+    kind: IngestErrorKind,
+    path: PathBuf,
+    line: Option<u64>,
+    column: Option<u64>,
+    text: Option<String>,
+    message: String,
+    hint: Option<String>,
+}
+
+/// A recording that could not be read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IngestError(Box<Details>);
+
+/// Longest piece of a file that is quoted in a diagnostic, characters.
+const QUOTED: usize = 40;
+
+impl IngestError {
+    /// An error of a file as a whole. The message is a fragment that says what is wrong.
+    pub fn new(kind: IngestErrorKind, path: &Path, message: impl Into<String>) -> IngestError {
+        IngestError(Box::new(Details {
+            kind,
+            path: path.to_owned(),
+            line: None,
+            column: None,
+            text: None,
+            message: message.into(),
+            hint: None,
+        }))
+    }
+
+    /// Adds the place: line and column in the unpacked text, both counted from 1.
+    #[must_use]
+    pub fn at(mut self, line: u64, column: Option<u64>) -> IngestError {
+        self.0.line = Some(line);
+        self.0.column = column;
+        self
+    }
+
+    /// Adds the text found there.
+    #[must_use]
+    pub fn found(mut self, text: &str) -> IngestError {
+        self.0.text = Some(shorten(text));
+        self
+    }
+
+    /// Adds what to do.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> IngestError {
+        self.0.hint = Some(hint.into());
+        self
+    }
+
+    /// What went wrong, for programs.
+    pub fn kind(&self) -> IngestErrorKind {
+        self.0.kind
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.0.path
+    }
+
+    /// Line, counted from 1.
+    pub fn line(&self) -> Option<u64> {
+        self.0.line
+    }
+
+    /// Column of the line in characters, counted from 1.
+    pub fn column(&self) -> Option<u64> {
+        self.0.column
+    }
+
+    /// The offending text.
+    pub fn text(&self) -> Option<&str> {
+        self.0.text.as_deref()
+    }
+
+    /// What is wrong, without place and hint.
+    pub fn message(&self) -> &str {
+        &self.0.message
+    }
+
+    /// What to do.
+    pub fn advice(&self) -> Option<&str> {
+        self.0.hint.as_deref()
+    }
+}
+
+impl fmt::Display for IngestError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let d = &self.0;
+        write!(f, "{}", d.path.display())?;
+        if let Some(line) = d.line {
+            write!(f, ":{line}")?;
+            if let Some(column) = d.column {
+                write!(f, ":{column}")?;
+            }
+        }
+        write!(f, ": {}", d.message)?;
+        if let Some(text) = &d.text {
+            write!(f, " (found `{text}`)")?;
+        }
+        if let Some(hint) = &d.hint {
+            write!(f, "; {hint}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for IngestError {}
+
+/// Cuts a text that is quoted, and makes control characters visible.
+pub(crate) fn shorten(text: &str) -> String {
+    let clean: String =
+        text.chars().take(QUOTED).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if text.chars().nth(QUOTED).is_some() { clean + "…" } else { clean }
+}

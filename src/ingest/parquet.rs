@@ -1,0 +1,250 @@
+//! Apache Parquet: columns of numbers, read in batches of rows; the file is hashed beside.
+
+use super::compressed::{Packing, digest, io_error};
+use super::error::{IngestError, IngestErrorKind};
+use super::memory::non_finite;
+use super::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
+use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
+use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use ::parquet::data_type::DataType;
+use ::parquet::errors::ParquetError;
+use ::parquet::file::reader::{FileReader, SerializedFileReader};
+use ::parquet::schema::types::ColumnDescriptor;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+/// Rows in a block.
+const ROWS: usize = 1 << 15;
+
+/// Apache Parquet.
+pub(super) struct Parquet;
+
+impl Format for Parquet {
+    fn id(&self) -> &'static str {
+        "parquet"
+    }
+
+    fn recognises(&self, file: &Candidate) -> bool {
+        file.head.starts_with(b"PAR1")
+    }
+
+    fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
+        if file.packing != Packing::Plain {
+            return Err(IngestError::new(
+                IngestErrorKind::UnknownFormat,
+                &file.path,
+                format!("this is a Parquet file packed with {}", file.packing.id()),
+            )
+            .hint("unpack it; Parquet is packed inside"));
+        }
+        let reader = reader(&file.path)?;
+        let metadata = reader.metadata().file_metadata();
+        let rows = u64::try_from(metadata.num_rows()).unwrap_or(0);
+        if rows == 0 {
+            return Err(IngestError::new(IngestErrorKind::Empty, &file.path, "the file has no rows")
+                .hint("check that the recording was written"));
+        }
+        let columns = metadata.schema_descr().columns().iter().map(|c| describe(c)).collect();
+        Ok(Opened {
+            columns,
+            rows_estimate: Some(rows),
+            notes: vec![format!("{} row groups", reader.num_row_groups())],
+            table: Box::new(ParquetFile { path: file.path.clone() }),
+        })
+    }
+}
+
+/// Name, type and unit of a column; numeric when it holds one plain number for each row.
+fn describe(column: &ColumnDescriptor) -> Column {
+    let logical = column.logical_type_ref();
+    let plain = matches!(
+        logical,
+        None | Some(LogicalType::Integer(_) | LogicalType::Timestamp(_) | LogicalType::Time(_))
+    );
+    let number = matches!(
+        column.physical_type(),
+        Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64 | Type::BOOLEAN
+    );
+    let decimal = matches!(column.converted_type(), ConvertedType::DECIMAL);
+    let single = column.max_rep_level() == 0 && column.path().parts().len() == 1;
+    let unit = |u: &TimeUnit| match u {
+        TimeUnit::MILLIS => "ms",
+        TimeUnit::MICROS => "us",
+        TimeUnit::NANOS => "ns",
+    };
+    Column {
+        name: column.path().string(),
+        numeric: plain && number && single && !decimal,
+        storage: match logical {
+            Some(l) => format!("{} ({l:?})", column.physical_type()),
+            None => column.physical_type().to_string(),
+        },
+        unit: match logical {
+            Some(LogicalType::Timestamp(t)) => Some(unit(&t.unit).to_owned()),
+            Some(LogicalType::Time(t)) => Some(unit(&t.unit).to_owned()),
+            _ => None,
+        },
+    }
+}
+
+fn reader(path: &Path) -> Result<SerializedFileReader<File>, IngestError> {
+    let file = File::open(path).map_err(|e| io_error(path, &e))?;
+    SerializedFileReader::new(file).map_err(|e| damaged(path, &e))
+}
+
+fn damaged(path: &Path, error: &ParquetError) -> IngestError {
+    let text = error.to_string();
+    let hint = if text.contains("feature") || text.contains("codec") {
+        "write it with the codec zstd or snappy"
+    } else {
+        "the file is damaged or cut off: copy it again"
+    };
+    IngestError::new(IngestErrorKind::Damaged, path, format!("the Parquet file cannot be decoded: {text}"))
+        .hint(hint)
+}
+
+struct ParquetFile {
+    path: PathBuf,
+}
+
+impl Table for ParquetFile {
+    fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError> {
+        let (block_out, block_in) = sync_channel::<Block>(3);
+        let (block_back, block_free) = sync_channel::<Block>(8);
+        std::thread::scope(|scope| {
+            let hash = scope.spawn(|| digest(&self.path));
+            let decoder = scope.spawn(move || self.decode(wanted, &block_out, &block_free));
+            let mut stopped = false;
+            for mut block in block_in {
+                if on_block(&mut block).is_break() {
+                    stopped = true;
+                    break;
+                }
+                // A full return channel only means that the memory is not used again.
+                let _ = block_back.try_send(block);
+            }
+            let lost = |_| IngestError::new(IngestErrorKind::Io, &self.path, "the reading thread stopped");
+            let digested = hash.join().map_err(lost)?;
+            let rows = decoder.join().map_err(lost)??;
+            if stopped {
+                return Ok(None);
+            }
+            let digested = digested?;
+            Ok(Some(FileFacts { sha256: digested.sha256, bytes: digested.bytes, rows }))
+        })
+    }
+}
+
+impl ParquetFile {
+    /// Decodes every row group; returns the number of rows.
+    fn decode(
+        &self,
+        wanted: &[usize],
+        out: &SyncSender<Block>,
+        free: &Receiver<Block>,
+    ) -> Result<u64, IngestError> {
+        let fail = |e: ParquetError| damaged(&self.path, &e);
+        let reader = reader(&self.path)?;
+        let size = std::fs::metadata(&self.path).map_err(|e| io_error(&self.path, &e))?.len();
+        let total = u64::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0).max(1);
+        let mut done = 0u64;
+        for group in 0..reader.num_row_groups() {
+            let group = reader.get_row_group(group).map_err(fail)?;
+            let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+            let mut columns = wanted
+                .iter()
+                .map(|&w| group.get_column_reader(w).map(Decoder::new).map_err(fail))
+                .collect::<Result<Vec<_>, _>>()?;
+            let mut left = rows;
+            while left > 0 {
+                let n = left.min(ROWS);
+                let mut block = free.try_recv().unwrap_or_default();
+                block.reset(wanted.len());
+                block.first_row = done + 1;
+                for (slot, column) in columns.iter_mut().enumerate() {
+                    column.batch(n, slot, &mut block).map_err(fail)?;
+                }
+                left -= n;
+                done += n as u64;
+                block.bytes_done = (size as f64 * (done as f64 / total as f64)) as u64;
+                if out.send(block).is_err() {
+                    return Ok(done);
+                }
+            }
+        }
+        Ok(done)
+    }
+}
+
+/// Decodes one column of a row group.
+struct Decoder {
+    reader: ColumnReader,
+    levels: Vec<i16>,
+}
+
+impl Decoder {
+    fn new(reader: ColumnReader) -> Decoder {
+        Decoder { reader, levels: Vec::new() }
+    }
+
+    fn batch(&mut self, rows: usize, slot: usize, block: &mut Block) -> Result<(), ParquetError> {
+        let levels = &mut self.levels;
+        match &mut self.reader {
+            ColumnReader::DoubleColumnReader(r) => values(r, rows, levels, slot, block, |v| v),
+            ColumnReader::FloatColumnReader(r) => values(r, rows, levels, slot, block, f64::from),
+            ColumnReader::Int32ColumnReader(r) => values(r, rows, levels, slot, block, f64::from),
+            ColumnReader::Int64ColumnReader(r) => values(r, rows, levels, slot, block, |v| v as f64),
+            ColumnReader::BoolColumnReader(r) => {
+                values(r, rows, levels, slot, block, |v| f64::from(u8::from(v)))
+            }
+            _ => Err(ParquetError::General("the column holds no numbers".to_owned())),
+        }
+    }
+}
+
+/// Reads `rows` values of a column into the block; a null is NaN and counted as non-finite.
+fn values<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    rows: usize,
+    levels: &mut Vec<i16>,
+    slot: usize,
+    block: &mut Block,
+    number: impl Fn(T::T) -> f64,
+) -> Result<(), ParquetError>
+where
+    T::T: Copy,
+{
+    let mut read: Vec<T::T> = Vec::with_capacity(rows);
+    levels.clear();
+    let (records, ..) = reader.read_records(rows, Some(levels), None, &mut read)?;
+    if records != rows {
+        return Err(ParquetError::General(format!("{rows} values expected, {records} found")));
+    }
+    let mut column = block.columns.get_mut(slot).map(std::mem::take).unwrap_or_default();
+    if read.len() == rows {
+        column.extend(read.iter().map(|&v| number(v)));
+    } else {
+        let top = levels.iter().copied().max().unwrap_or(0).max(1);
+        let mut next = read.iter();
+        column.extend(
+            levels
+                .iter()
+                .map(|&l| if l == top { next.next().map_or(f64::NAN, |&v| number(v)) } else { f64::NAN }),
+        );
+        column.resize(rows, f64::NAN);
+    }
+    if column.iter().any(|v| !v.is_finite()) {
+        for (i, v) in column.iter_mut().enumerate().filter(|(_, v)| !v.is_finite()) {
+            let (row, text) = (block.first_row + i as u64, *v);
+            let null = levels.get(i).is_some_and(|&l| l == 0) && read.len() < rows;
+            let describe = || non_finite(slot, row, if null { "null".to_owned() } else { text.to_string() });
+            block.fault(describe, slot, FieldFaultKind::NonFinite);
+            *v = f64::NAN;
+        }
+    }
+    if let Some(place) = block.columns.get_mut(slot) {
+        *place = column;
+    }
+    Ok(())
+}

@@ -1,0 +1,143 @@
+//! Equal values for longer than chance allows.
+//!
+//! A sensor with coarse steps repeats values by chance. With p the probability that a value repeats the one before, a
+//! run of r repeats begins at a given sample with probability p^r; a run is stuck when n·p^r < 0.001, and never below
+//! five equal values. p is the share of runs that go on, measured on the runs themselves: a stuck stretch is one run
+//! however long it is, so it does not hide itself. Where the values repeat more readily in some places than in others,
+//! the largest share over the first run lengths is taken.
+
+use super::Place;
+
+/// Fewest equal values that can be called stuck.
+const FEWEST: u64 = 5;
+/// Runs allowed by chance in a record.
+const BY_CHANCE: f64 = 1e-3;
+/// Probability of a repeat beyond which the test cannot tell anything: a held or a very coarse output.
+const LARGEST_SHARE: f64 = 0.9;
+/// Run lengths that are counted one by one.
+const LENGTHS: usize = 4096;
+/// Longest runs whose place is kept.
+const KEPT: usize = 100;
+
+#[derive(Debug, Clone)]
+pub(super) struct Runs {
+    value: f64,
+    length: u64,
+    start: Place,
+    samples: u64,
+    counts: Vec<u64>,
+    /// Samples in runs longer than are counted one by one.
+    beyond: u64,
+    longest: Vec<(Place, u64)>,
+}
+
+impl Default for Runs {
+    fn default() -> Runs {
+        Runs {
+            value: f64::NAN,
+            length: 0,
+            start: Place { row: 0, time_s: f64::NAN },
+            samples: 0,
+            counts: vec![0; LENGTHS],
+            beyond: 0,
+            longest: Vec::new(),
+        }
+    }
+}
+
+/// Stuck stretches.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Stuck {
+    pub(super) count: u64,
+    pub(super) listed: Vec<(Place, u64)>,
+    pub(super) longest_by_chance: u64,
+}
+
+impl Runs {
+    pub(super) fn take(&mut self, values: &[f64], place: Place) {
+        self.samples += values.len() as u64;
+        let Some((&first, &last)) = values.first().zip(values.last()) else { return };
+        let repeats = values.iter().zip(values.get(1..).unwrap_or_default()).filter(|(a, b)| a == b).count();
+        if repeats == 0 {
+            if first != self.value {
+                self.close();
+                self.value = first;
+                self.start = place;
+            }
+            self.length += 1;
+            if values.len() > 1 {
+                self.close();
+                if let Some(singles) = self.counts.get_mut(1) {
+                    *singles += values.len() as u64 - 2;
+                }
+                let ahead = values.len() as u64 - 1;
+                self.value = last;
+                self.length = 1;
+                self.start = Place { row: place.row + ahead, ..place };
+            }
+            return;
+        }
+        for (i, &v) in values.iter().enumerate() {
+            if v != self.value {
+                self.close();
+                self.value = v;
+                self.start = Place { row: place.row + i as u64, ..place };
+            }
+            self.length += 1;
+        }
+    }
+
+    fn close(&mut self) {
+        let length = std::mem::take(&mut self.length);
+        match usize::try_from(length).ok().and_then(|l| self.counts.get_mut(l)) {
+            Some(count) => *count += 1,
+            None => self.beyond += length,
+        }
+        if length < FEWEST {
+            return;
+        }
+        if self.longest.len() < KEPT {
+            self.longest.push((self.start, length));
+            return;
+        }
+        if let Some(shortest) = self.longest.iter_mut().min_by_key(|(_, l)| *l).filter(|(_, l)| *l < length) {
+            *shortest = (self.start, length);
+        }
+    }
+
+    pub(super) fn finish(&mut self) -> Stuck {
+        self.close();
+        let limit = self.limit();
+        let from = usize::try_from(limit).unwrap_or(usize::MAX);
+        let counted: u64 =
+            self.counts.iter().enumerate().skip(from).map(|(length, count)| length as u64 * count).sum();
+        let beyond = if from < LENGTHS { self.beyond } else { 0 };
+        let mut listed = std::mem::take(&mut self.longest);
+        listed.retain(|(_, l)| *l >= limit && limit < u64::MAX);
+        listed.sort_by_key(|(p, _)| p.row);
+        Stuck { count: counted + beyond, listed, longest_by_chance: limit.saturating_sub(1) }
+    }
+
+    /// Shortest run that chance does not explain; `u64::MAX` when none can be told.
+    fn limit(&self) -> u64 {
+        let runs: u64 = self.counts.iter().skip(1).sum::<u64>() + u64::from(self.beyond > 0);
+        if runs <= 1 {
+            return FEWEST;
+        }
+        let at_least =
+            |length: usize| self.counts.iter().skip(length).sum::<u64>() + u64::from(self.beyond > 0);
+        let enough = 30.max(runs / 100);
+        let mut share = (at_least(2) as f64 + 0.5) / (runs as f64 + 1.0);
+        for length in 2..=4 {
+            let (of, on) = (at_least(length), at_least(length + 1));
+            if on >= enough {
+                share = share.max(on as f64 / of.max(1) as f64);
+            }
+        }
+        if share > LARGEST_SHARE {
+            return u64::MAX;
+        }
+        let repeats = (BY_CHANCE / self.samples.max(1) as f64).ln() / share.ln();
+        FEWEST.max(1 + repeats.ceil() as u64)
+    }
+}

@@ -1,0 +1,123 @@
+use super::*;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+fn rounded(interval: f64, step: f64, start: f64, n: usize) -> Vec<f64> {
+    (0..n).map(|i| ((start + i as f64 * interval) / step).round() * step).collect()
+}
+
+fn gaps(stamps: &[f64]) -> usize {
+    let mut tracker = Tracker::new(Clock::probe(stamps).unwrap());
+    (0..stamps.len())
+        .filter(|&i| matches!(tracker.step(stamps[i], stamps.get(i + 1).copied()), Step::Gap { .. }))
+        .count()
+}
+
+#[test]
+fn rounded_stamps_give_the_interval_and_no_gap() {
+    for (interval, step) in [
+        (0.001, 1e-3),
+        (0.0015, 1e-3),
+        (0.0012, 1e-3),
+        (1.0 / 64.0, 1e-3),
+        (1.0 / 102.4, 1e-6),
+        (10.06, 1.0),
+        (0.01, 1e-2),
+    ] {
+        for start in [0.0, 1.7e9] {
+            let t = rounded(interval, step, start, 5000);
+            let clock = Clock::probe(&t).unwrap();
+            assert!((clock.interval_s / interval - 1.0).abs() < 0.01, "{interval} {step} {start} {clock:?}");
+            assert_eq!(gaps(&t), 0, "{interval} {step} {start}");
+        }
+    }
+}
+
+#[test]
+fn gaps_of_one_sample_are_found_and_measured() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
+    let (mut t, mut now, mut missing) = (Vec::new(), 0.0f64, 0);
+    for _ in 0..20_000 {
+        t.push(now.round());
+        let lost = rng.random_bool(0.0125);
+        missing += u64::from(lost);
+        now += if lost { 20.12 } else { 10.06 };
+    }
+    let mut tracker = Tracker::new(Clock::probe(&t).unwrap());
+    let found: u64 = t
+        .iter()
+        .map(|&s| match tracker.step(s, None) {
+            Step::Gap { missing, .. } => missing,
+            _ => 0,
+        })
+        .sum();
+    assert_eq!(found, missing);
+    assert!((tracker.mean_interval_s() - 10.06).abs() < 1e-3);
+}
+
+#[test]
+fn a_drifting_clock_makes_no_gap() {
+    let t: Vec<f64> = (0..200_000).map(|i| f64::from(i) * 0.01 * (1.0 + 1e-6 * f64::from(i))).collect();
+    assert_eq!(gaps(&t), 0);
+}
+
+#[test]
+fn jitter_is_that_of_the_stamps() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
+    let t: Vec<f64> = (0..100_000)
+        .map(|i| f64::from(i) * 0.015_625 + 33e-6 * (rng.random::<f64>() - 0.5) * 12f64.sqrt())
+        .collect();
+    let mut tracker = Tracker::new(Clock::probe(&t).unwrap());
+    assert_eq!(tracker.step(t[0], None), Step::Next);
+    assert!(tracker.take_unbroken(&t[1..]));
+    assert!((tracker.jitter_s().unwrap() / 33e-6 - 1.0).abs() < 0.01);
+    assert!((tracker.mean_interval_s() / 0.015_625 - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn block_and_single_steps_agree() {
+    let t = rounded(0.0157, 1e-4, 5.0, 1000);
+    let clock = Clock::probe(&t).unwrap();
+    let (mut a, mut b) = (Tracker::new(clock), Tracker::new(clock));
+    a.step(t[0], None);
+    assert!(a.take_unbroken(&t[1..]));
+    t.iter().for_each(|&s| assert_eq!(b.step(s, None), Step::Next));
+    assert!((a.mean_interval_s() - b.mean_interval_s()).abs() < 1e-15);
+    assert!((a.jitter_s().unwrap() - b.jitter_s().unwrap()).abs() < 1e-12);
+}
+
+#[test]
+fn duplicate_backward_and_stray_stamps_are_told_apart() {
+    let clock = Clock::declared(1.0).unwrap();
+    let mut tracker = Tracker::new(clock);
+    let t = [0.0, 1.0, 1.0, 2.0, 1.5, 3.0, 500.0, 4.0, f64::NAN, 6.0];
+    let steps: Vec<Step> = (0..t.len()).map(|i| tracker.step(t[i], t.get(i + 1).copied())).collect();
+    assert_eq!(steps[2], Step::Duplicate);
+    assert_eq!(steps[4], Step::Backward { back_s: 0.5 });
+    assert_eq!(steps[5], Step::Next);
+    assert_eq!(steps[6], Step::Stray { ahead_s: 497.0 });
+    assert_eq!(steps[7], Step::Next);
+    assert_eq!(steps[8], Step::Unusable);
+    assert_eq!(steps[9], Step::Gap { missing: 1, step_s: 2.0, clock_set: false });
+}
+
+#[test]
+fn a_clock_that_was_set_back_starts_afresh() {
+    let mut tracker = Tracker::new(Clock::declared(1.0).unwrap());
+    (0..5000).for_each(|i| assert_eq!(tracker.step(f64::from(i), None), Step::Next));
+    let steps: Vec<Step> = (0..2000).map(|i| tracker.step(f64::from(i), None)).collect();
+    assert!(steps[..1000].iter().all(|s| matches!(s, Step::Backward { .. })));
+    assert_eq!(steps[1000], Step::SetBack { back_s: 3999.0 });
+    assert!(steps[1001..].iter().all(|s| *s == Step::Next));
+    assert_eq!(tracker.latest_s(), Some(4999.0 + 2.0 + 999.0));
+}
+
+#[test]
+fn stamps_that_cannot_serve_are_refused() {
+    assert_eq!(Clock::probe(&[1.0]), Err(ClockError::TooFew));
+    assert_eq!(Clock::probe(&[f64::NAN; 9]), Err(ClockError::TooFew));
+    assert_eq!(Clock::probe(&[3.0, 3.0, 3.0]), Err(ClockError::NotGrowing));
+    assert!(matches!(Clock::probe(&rounded(1e-3, 1.0, 0.0, 5000)), Err(ClockError::Coarse { .. })));
+    assert!(matches!(Clock::declared(-5.0), Err(ClockError::Rate { .. })));
+    assert!(matches!(Clock::declared(f64::NAN), Err(ClockError::Rate { .. })));
+}
