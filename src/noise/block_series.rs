@@ -1,0 +1,138 @@
+//! The record as at most 2^18 block means on its uniform grid: what slow noise is identified on.
+
+use super::data::BlockSeries;
+
+/// Blocks that remain at most.
+pub const MOST_BLOCKS: usize = 1 << 18;
+
+/// Streaming block means. Blocks are aligned to the grid index; where more than [`MOST_BLOCKS`] would remain,
+/// neighbours are merged.
+#[derive(Debug, Clone)]
+pub struct BlockSeriesAccumulator {
+    /// log2 of the samples in a block.
+    shift: u32,
+    /// Number of the first block, in blocks from grid index 0.
+    first_block: u64,
+    /// Sum of deviations from the reference, and count.
+    blocks: Vec<(f64, u64)>,
+    most: usize,
+    reference: f64,
+}
+
+impl Default for BlockSeriesAccumulator {
+    fn default() -> Self {
+        Self::with_most_blocks(MOST_BLOCKS)
+    }
+}
+
+impl BlockSeriesAccumulator {
+    /// An empty accumulator that keeps at most `most` blocks (at least 2).
+    pub fn with_most_blocks(most: usize) -> Self {
+        BlockSeriesAccumulator { shift: 0, first_block: 0, blocks: vec![], most: most.max(2), reference: 0.0 }
+    }
+
+    /// Takes finite contiguous samples from grid index `first_index` on; indices never go back.
+    pub fn push(&mut self, samples: &[f64], first_index: u64) {
+        let Some(first) = samples.first() else { return };
+        if self.blocks.is_empty() {
+            self.reference = *first;
+            self.first_block = first_index >> self.shift;
+        }
+        let first_index = first_index.max(self.first_block << self.shift);
+        let last = first_index.saturating_add(samples.len() as u64 - 1);
+        while (last >> self.shift) - self.first_block >= self.most as u64 {
+            self.merge();
+        }
+        let needed = ((last >> self.shift) - self.first_block) as usize + 1;
+        if self.blocks.len() < needed {
+            self.blocks.resize(needed, (0.0, 0));
+        }
+        let mut rest = samples;
+        let mut at = first_index;
+        while !rest.is_empty() {
+            let block = at >> self.shift;
+            let room = ((block + 1) << self.shift) - at;
+            let (now, later) = rest.split_at((room as usize).min(rest.len()));
+            if let Some(slot) = self.blocks.get_mut((block - self.first_block) as usize) {
+                slot.0 += now.iter().map(|y| y - self.reference).sum::<f64>();
+                slot.1 += now.len() as u64;
+            }
+            at += now.len() as u64;
+            rest = later;
+        }
+    }
+
+    /// The block means so far.
+    pub fn finish(&self) -> BlockSeries {
+        BlockSeries {
+            block_len: 1 << self.shift,
+            first_index: self.first_block << self.shift,
+            mean: self
+                .blocks
+                .iter()
+                .map(|(sum, n)| if *n == 0 { f64::NAN } else { self.reference + sum / *n as f64 })
+                .collect(),
+            count: self.blocks.iter().map(|b| u32::try_from(b.1).unwrap_or(u32::MAX)).collect(),
+        }
+    }
+
+    fn merge(&mut self) {
+        let odd = self.first_block & 1;
+        let merged = (self.blocks.len() + odd as usize).div_ceil(2);
+        let mut out = vec![(0.0, 0); merged];
+        for (k, (sum, n)) in self.blocks.iter().enumerate() {
+            if let Some(slot) = out.get_mut((k + odd as usize) / 2) {
+                slot.0 += sum;
+                slot.1 += n;
+            }
+        }
+        self.blocks = out;
+        self.first_block >>= 1;
+        self.shift += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_aligned_and_gaps_are_empty() {
+        let mut acc = BlockSeriesAccumulator::with_most_blocks(4);
+        acc.push(&[1.0, 2.0, 3.0], 5);
+        acc.push(&[7.0], 11);
+        acc.push(&[9.0, 11.0], 14);
+        // Grid 4..16 in blocks of 4: (1 2 3), (7), (9 11).
+        let series = acc.finish();
+        assert_eq!((series.block_len, series.first_index), (4, 4));
+        assert_eq!(series.mean, vec![2.0, 7.0, 10.0]);
+        assert_eq!(series.count, vec![3, 1, 2]);
+    }
+
+    #[test]
+    fn a_gap_leaves_a_block_without_a_mean() {
+        let mut acc = BlockSeriesAccumulator::default();
+        acc.push(&[1.0], 3);
+        acc.push(&[2.0], 5);
+        let series = acc.finish();
+        assert!(series.mean[1].is_nan() && series.count == vec![1, 0, 1]);
+        acc.push(&[5.0], 1 << 61);
+        let far = acc.finish();
+        assert!(far.mean.len() <= MOST_BLOCKS);
+        assert_eq!(far.count.iter().map(|c| u64::from(*c)).sum::<u64>(), 3);
+    }
+
+    #[test]
+    fn means_of_a_long_record_are_those_of_its_blocks() {
+        let mut acc = BlockSeriesAccumulator::default();
+        let y: Vec<f64> = (0..1_000_000u32).map(|i| 1e6 + f64::from(i % 1000)).collect();
+        for (k, block) in y.chunks(12_345).enumerate() {
+            acc.push(block, 12_345 * k as u64);
+        }
+        let series = acc.finish();
+        assert_eq!(series.block_len, 4);
+        for (block, mean) in y.chunks(4).zip(&series.mean) {
+            assert!((block.iter().sum::<f64>() / 4.0 - mean).abs() < 1e-8);
+        }
+    }
+}

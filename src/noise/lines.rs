@@ -1,0 +1,240 @@
+//! Spectral lines: peaks above the local noise floor, by a test with a stated family-wise false-alarm rate.
+//!
+//! The floor is a running robust power law: a median of ln S over neighbouring bins after the local slope in ln f is
+//! taken off, so that flicker and random walk raise no alarm. Without a line a bin of the averaged periodogram is
+//! Gamma distributed with the equivalent number of averages, and its ratio to the floor follows an F distribution, the
+//! floor being an average of limited number itself. The rate is shared among all bins searched (Šidák).
+
+use super::data::WelchSpectrum;
+use crate::estimate::normal_probability;
+use statrs::function::beta::beta_reg;
+
+/// False-alarm rate of a whole search unless stated otherwise.
+pub const FALSE_ALARM_RATE: f64 = 0.01;
+/// Bins below this are not searched: slow noise and the removed mean rule there.
+pub const FIRST_BIN: usize = 4;
+/// Half width, in bins, of what a pure line fills under a Hann window.
+const LOBE: usize = 2;
+/// Variance of a median against a mean (π/2) times the correlation of neighbouring bins under a Hann window
+/// (1 + 2·(4/9 + 1/36)).
+const FLOOR_INFLATION: f64 = 1.5708 * 1.9444;
+
+/// A line in a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpectralLine {
+    /// Frequency, interpolated between bins, Hz.
+    pub frequency_hz: f64,
+    /// Resolution of the spectrum: distance of its bins, Hz.
+    pub resolution_hz: f64,
+    /// Amplitude of the sinusoid that holds the same power over the floor, deg/h.
+    pub amplitude_deg_h: f64,
+    /// Power at the peak over the floor.
+    pub excess: f64,
+    /// Probability that noise alone shows such a peak anywhere in the spectrum.
+    pub false_alarm_probability: f64,
+    /// Place in the list of a stronger line of which this one is a harmonic.
+    pub harmonic_of: Option<usize>,
+    /// Multiple of that line's frequency; 1 where there is none.
+    pub harmonic_order: u32,
+}
+
+/// The result of a search.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LineSearch {
+    /// Lines in order of frequency.
+    pub lines: Vec<SpectralLine>,
+    /// Floor in the unit of the spectrum's density, one value a bin.
+    pub floor: Vec<f64>,
+    /// Bins searched: the family that the false-alarm rate is shared among.
+    pub searched: usize,
+}
+
+/// Searches a spectrum of samples at interval `tau0_s` for lines, with probability `false_alarm_rate` of one line or
+/// more where there is none.
+pub fn find_lines(spectrum: &WelchSpectrum, tau0_s: f64, false_alarm_rate: f64) -> LineSearch {
+    let density = &spectrum.density;
+    // The last bin has half the degrees of freedom of the others.
+    let end = density.len().saturating_sub(1);
+    if end <= 2 * FIRST_BIN || !(spectrum.effective_averages > 0.0) {
+        return LineSearch::default();
+    }
+    let floor = floor_of(density, spectrum.effective_averages);
+    let searched = end - FIRST_BIN;
+    let probability = |k: usize| corrected(tail(density, &floor, k, spectrum.effective_averages), searched);
+    let mut lines = vec![];
+    let mut k = FIRST_BIN;
+    while k < end {
+        if probability(k) > false_alarm_rate {
+            k += 1;
+            continue;
+        }
+        let from = k;
+        let mut to = k;
+        while let Some(next) =
+            (to + 1..(to + 2 + LOBE).min(end)).find(|j| probability(*j) <= false_alarm_rate)
+        {
+            to = next;
+        }
+        let peak = (from..=to).max_by(|a, b| (density[*a]).total_cmp(&density[*b])).unwrap_or(from);
+        lines.push(line(spectrum, &floor, tau0_s, (from, peak, to), probability(peak)));
+        k = to + 1 + LOBE;
+    }
+    group_harmonics(&mut lines);
+    LineSearch { lines, floor, searched }
+}
+
+fn line(
+    spectrum: &WelchSpectrum,
+    floor: &[f64],
+    tau0_s: f64,
+    (from, peak, to): (usize, usize, usize),
+    false_alarm_probability: f64,
+) -> SpectralLine {
+    let density = &spectrum.density;
+    let resolution_hz = 1.0 / (spectrum.segment_len as f64 * tau0_s);
+    let excess = |k: usize| density.get(k).zip(floor.get(k)).map_or(0.0, |(p, f)| p - f);
+    // Hann window: amplitudes at neighbouring bins of a line at offset δ stand as (1 + δ)/(2 − δ).
+    let (below, above) = (excess(peak.saturating_sub(1)), excess(peak + 1));
+    let (side, neighbour) = if above >= below { (1.0, above) } else { (-1.0, below) };
+    let ratio = (neighbour.max(0.0) / excess(peak).max(f64::MIN_POSITIVE)).sqrt();
+    let offset = side * ((2.0 * ratio - 1.0) / (ratio + 1.0)).clamp(0.0, 0.5);
+    let power: f64 = (from.min(peak.saturating_sub(LOBE))..=to.max(peak + LOBE)).map(excess).sum();
+    SpectralLine {
+        frequency_hz: (peak as f64 + offset) * resolution_hz,
+        resolution_hz,
+        amplitude_deg_h: 2.0 * (power.max(0.0) / spectrum.segment_len as f64).sqrt(),
+        excess: density[peak] / floor[peak],
+        false_alarm_probability,
+        harmonic_of: None,
+        harmonic_order: 1,
+    }
+}
+
+/// Marks lines at multiples of a stronger one. Frequencies are good to a fraction of a bin, and the error of the
+/// fundamental is multiplied with the order.
+fn group_harmonics(lines: &mut [SpectralLine]) {
+    for i in 0..lines.len() {
+        let this = lines[i];
+        let stronger = lines.iter().enumerate().filter(|(j, base)| {
+            *j != i
+                && base.amplitude_deg_h > this.amplitude_deg_h
+                && base.frequency_hz >= 8.0 * base.resolution_hz
+                && harmonic_order(base, &this) >= 2
+        });
+        let found = stronger
+            .max_by(|a, b| a.1.amplitude_deg_h.total_cmp(&b.1.amplitude_deg_h))
+            .map(|(j, base)| (j, harmonic_order(base, &this)));
+        if let Some((j, order)) = found {
+            lines[i].harmonic_of = Some(j);
+            lines[i].harmonic_order = order;
+        }
+    }
+}
+
+fn harmonic_order(base: &SpectralLine, line: &SpectralLine) -> u32 {
+    let order = (line.frequency_hz / base.frequency_hz).round();
+    let distance = (line.frequency_hz - order * base.frequency_hz).abs();
+    let tolerance = line.resolution_hz * (0.25 + 0.15 * order).min(1.0);
+    if order >= 2.0 && distance <= tolerance { order as u32 } else { 1 }
+}
+
+fn half_width(k: usize) -> usize {
+    (k / 2).clamp(6, 128)
+}
+
+/// Bins that the floor at bin `k` rests on.
+fn neighbours(k: usize, bins: usize) -> (usize, usize) {
+    let h = half_width(k);
+    (k.saturating_sub(h).max(1), (k + h).min(bins.saturating_sub(2)))
+}
+
+fn floor_of(density: &[f64], averages: f64) -> Vec<f64> {
+    let logs: Vec<f64> = density.iter().map(|p| p.max(f64::MIN_POSITIVE).ln()).collect();
+    let bins = density.len();
+    // The median of a Gamma variate lies below its mean.
+    let to_mean = -3.0 * (1.0 - 1.0 / (9.0 * averages)).max(0.1).ln();
+    let mut nodes: Vec<(f64, f64)> = vec![];
+    let (mut k, mut scratch) = (1, vec![]);
+    while k + 1 < bins {
+        nodes.push(((k as f64).ln(), log_floor(&logs, k, &mut scratch) + to_mean));
+        k += if k < 64 { 1 } else { half_width(k) / 8 };
+    }
+    let mut floor = Vec::with_capacity(bins);
+    let mut node = 0;
+    for k in 0..bins {
+        let x = (k.max(1) as f64).ln();
+        while node + 2 < nodes.len() && nodes[node + 1].0 <= x {
+            node += 1;
+        }
+        let value = match (nodes.get(node), nodes.get(node + 1)) {
+            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)).clamp(0.0, 1.0),
+            (Some(a), None) => a.1,
+            _ => f64::NAN,
+        };
+        floor.push(value.exp());
+    }
+    floor
+}
+
+/// Median of ln S about bin `k`, the bins of a line at `k` left out, along the local slope in ln f.
+fn log_floor(logs: &[f64], k: usize, scratch: &mut Vec<(f64, f64)>) -> f64 {
+    let (from, to) = neighbours(k, logs.len());
+    let centre = (k as f64).ln();
+    scratch.clear();
+    let outside = (from..=to).filter(|j| j.abs_diff(k) > LOBE);
+    scratch.extend(outside.map(|j| ((j as f64).ln() - centre, logs[j])));
+    let middle = scratch.len() / 2;
+    if middle == 0 {
+        return logs[k];
+    }
+    let mut medians = [(0.0, 0.0); 2];
+    for (half, out) in [0..middle, middle..scratch.len()].into_iter().zip(&mut medians) {
+        let mut values: Vec<f64> = scratch[half.clone()].iter().map(|p| p.1).collect();
+        let x = scratch[half].iter().map(|p| p.0).sum::<f64>() / values.len() as f64;
+        *out = (x, median(&mut values));
+    }
+    let slope = (medians[1].1 - medians[0].1) / (medians[1].0 - medians[0].0);
+    let slope = if slope.is_finite() { slope } else { 0.0 };
+    let mut levels: Vec<f64> = scratch.iter().map(|p| p.1 - slope * p.0).collect();
+    median(&mut levels)
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() { f64::NAN } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+/// Probability of a ratio to the floor at least as large as that of bin `k`, noise alone.
+fn tail(density: &[f64], floor: &[f64], k: usize, averages: f64) -> f64 {
+    let ratio = density[k] / floor[k];
+    if !(ratio > 1.0) {
+        return 1.0;
+    }
+    let (from, to) = neighbours(k, density.len());
+    let used = (to + 1).saturating_sub(from + 2 * LOBE + 1).max(2) as f64;
+    // Below bin 64 the slope is estimated from few bins and takes its share.
+    let share = if k < 64 { 0.5 } else { 1.0 };
+    upper_f(ratio, 2.0 * averages, 2.0 * averages * share * used / FLOOR_INFLATION)
+}
+
+/// Upper tail of the F distribution. Beyond 200 degrees of freedom, where the incomplete beta function converges
+/// slowly, Paulson's cube-root normal approximation (Biometrics 1942), good to a few percent of the tail there.
+fn upper_f(ratio: f64, numerator: f64, denominator: f64) -> f64 {
+    let denominator = denominator.max(1.0);
+    if numerator <= 200.0 && denominator <= 2000.0 {
+        let x = denominator / (denominator + numerator * ratio);
+        return beta_reg(0.5 * denominator, 0.5 * numerator, x.clamp(0.0, 1.0));
+    }
+    let (a, b) = (2.0 / (9.0 * numerator), 2.0 / (9.0 * denominator));
+    let root = ratio.cbrt();
+    let z = ((1.0 - b) * root - (1.0 - a)) / (a + root * root * b).sqrt();
+    normal_probability(-z)
+}
+
+fn corrected(probability: f64, family: usize) -> f64 {
+    -(family as f64 * (-probability).ln_1p()).exp_m1()
+}
+
+#[cfg(test)]
+#[path = "lines_tests.rs"]
+mod tests;

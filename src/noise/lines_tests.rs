@@ -1,0 +1,133 @@
+use super::super::welch::WelchAccumulator;
+use super::*;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+
+#[derive(Clone, Copy, Debug)]
+enum Mix {
+    White,
+    Flicker,
+    Walk,
+}
+
+/// White noise of σ = 1, alone or with slow noise that rules the lower part of the spectrum.
+fn noise(count: usize, mix: Mix, seed: u64) -> Vec<f64> {
+    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut draw = || -> f64 { StandardNormal.sample(&mut rng) };
+    // Flicker as a sum of first-order processes, one an octave.
+    let mut states = [0.0f64; 16];
+    let mut walk = 0.0;
+    (0..count)
+        .map(|_| {
+            let slow = match mix {
+                Mix::White => 0.0,
+                Mix::Flicker => {
+                    for (k, s) in states.iter_mut().enumerate() {
+                        let p = (-(0.5f64.powi(k as i32))).exp();
+                        *s = p * *s + (1.0 - p * p).sqrt() * draw();
+                    }
+                    states.iter().sum::<f64>()
+                }
+                Mix::Walk => {
+                    walk += 0.05 * draw();
+                    walk
+                }
+            };
+            slow + draw()
+        })
+        .collect()
+}
+
+fn search(samples: &[f64], segment: usize) -> LineSearch {
+    let mut welch = WelchAccumulator::with_segment(segment);
+    welch.push(samples, false);
+    find_lines(&welch.finish().spectrum, 0.01, FALSE_ALARM_RATE)
+}
+
+fn false_alarms(records: u64, count: usize, segment: usize, mix: Mix) -> u64 {
+    (0..records)
+        .map(|seed| u64::from(!search(&noise(count, mix, 1000 + seed), segment).lines.is_empty()))
+        .sum()
+}
+
+#[test]
+fn noise_alone_raises_few_alarms() {
+    for (mix, count, segment) in [
+        (Mix::White, 1 << 14, 1024),
+        (Mix::Flicker, 1 << 14, 1024),
+        (Mix::Walk, 1 << 14, 1024),
+        (Mix::White, 1 << 15, 256),
+    ] {
+        let alarms = false_alarms(250, count, segment, mix);
+        // 250 searches at 1 %: more than 8 has a probability of 0.1 %.
+        assert!(alarms <= 8, "{mix:?} {segment}: {alarms} of 250");
+    }
+}
+
+#[test]
+#[ignore = "long study"]
+fn noise_alone_raises_alarms_at_no_more_than_the_stated_rate() {
+    for mix in [Mix::White, Mix::Flicker, Mix::Walk] {
+        for (count, segment) in [(1 << 14, 1024), (1 << 14, 64), (1 << 16, 4096), (1 << 17, 512)] {
+            let alarms = false_alarms(2000, count, segment, mix);
+            eprintln!("{mix:?} {count} {segment}: {alarms} of 2000");
+            assert!(alarms <= 35, "{mix:?} {count} {segment}: {alarms}");
+        }
+    }
+}
+
+#[test]
+fn a_line_is_found_with_its_frequency_and_amplitude() {
+    for mix in [Mix::White, Mix::Flicker, Mix::Walk] {
+        for (seed, amplitude) in (0..20).zip([0.2, 0.3].into_iter().cycle()) {
+            let mut y = noise(1 << 16, mix, seed);
+            let frequency = 20.03 + 0.017 * seed as f64;
+            y.iter_mut().enumerate().for_each(|(i, v)| {
+                *v += amplitude * (std::f64::consts::TAU * frequency * 0.01 * i as f64 + 0.3).sin();
+            });
+            let found = search(&y, 4096);
+            let near = |l: &&SpectralLine| (l.frequency_hz - frequency).abs() < 0.3 * l.resolution_hz;
+            let line = found.lines.iter().find(near);
+            let line = line.unwrap_or_else(|| panic!("{mix:?} {seed}: {:?}", found.lines));
+            assert!((line.amplitude_deg_h / amplitude - 1.0).abs() < 0.25, "{mix:?} {line:?}");
+            assert!(line.false_alarm_probability < 0.01 && line.excess > 2.0);
+        }
+    }
+}
+
+#[test]
+fn a_strong_line_is_exact_and_its_harmonics_are_named() {
+    let mut y = noise(1 << 16, Mix::White, 77);
+    let turn = std::f64::consts::TAU * 0.01 * 4.17;
+    y.iter_mut().enumerate().for_each(|(i, v)| {
+        let t = turn * i as f64;
+        *v += 5.0 * t.sin() + 2.0 * (2.0 * t).sin() + (3.0 * t + 1.0).sin();
+    });
+    let found = search(&y, 4096);
+    assert_eq!(found.lines.len(), 3, "{:?}", found.lines);
+    assert!((found.lines[0].frequency_hz - 4.17).abs() < 0.02 * found.lines[0].resolution_hz);
+    assert!((found.lines[0].amplitude_deg_h / 5.0 - 1.0).abs() < 0.01);
+    assert_eq!((found.lines[1].harmonic_of, found.lines[1].harmonic_order), (Some(0), 2));
+    assert_eq!((found.lines[2].harmonic_of, found.lines[2].harmonic_order), (Some(0), 3));
+}
+
+#[test]
+fn tails_of_the_f_distribution() {
+    // scipy.stats.f.sf
+    for (ratio, numerator, denominator, expected) in [
+        (3.0, 62.0, 1000.0, 8.458_989_530e-13),
+        (1.5, 400.0, 20_000.0, 5.592_305_116e-10),
+        (8.0, 4.0, 200.0, 5.299_810_870e-6),
+    ] {
+        let got = upper_f(ratio, numerator, denominator);
+        assert!((got / expected - 1.0f64).abs() < 0.1, "{got:e} {expected:e}");
+    }
+}
+
+#[test]
+fn odd_spectra_are_no_trouble() {
+    assert_eq!(find_lines(&WelchSpectrum::default(), 1.0, 0.01), LineSearch::default());
+    let flat =
+        WelchSpectrum { segment_len: 64, segments: 3, effective_averages: 2.9, density: vec![0.0; 33] };
+    assert!(find_lines(&flat, 1.0, 0.01).lines.is_empty());
+}

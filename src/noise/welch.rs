@@ -1,0 +1,276 @@
+//! Averaged periodogram of a record that arrives in blocks (Welch 1967): Hann window, half overlap, mean removed.
+
+use super::data::WelchSpectrum;
+use realfft::num_complex::Complex;
+use realfft::{RealFftPlanner, RealToComplex};
+use std::sync::Arc;
+
+/// Longest segment, samples.
+pub const LONGEST_SEGMENT: usize = 1 << 16;
+/// Shortest segment, samples.
+pub const SHORTEST_SEGMENT: usize = 1 << 6;
+/// Segments that fit into a record at least, end to end, where the record allows.
+const SEGMENTS: usize = 16;
+
+/// What the averaged periodogram used and what it could not use.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct WelchResult {
+    /// The spectrum; `segments` is 0 and `density` empty when no stretch was long enough.
+    pub spectrum: WelchSpectrum,
+    /// Samples in stretches shorter than a segment, or behind the last whole half segment of a stretch.
+    pub unused_samples: u64,
+}
+
+/// Streaming averaged periodogram.
+///
+/// The segment length is the largest power of two that fits 16 times into the record, at most 65536 and at least 64,
+/// and not so long that gaps leave less than half of the samples in stretches of a segment or more. It is chosen after
+/// 2^20 samples or at the end, whichever is first; until then samples are kept.
+#[derive(Clone)]
+pub struct WelchAccumulator {
+    kept: Vec<f64>,
+    starts: Vec<usize>,
+    engine: Option<Engine>,
+}
+
+#[derive(Clone)]
+struct Engine {
+    window: Vec<f64>,
+    power_of_window: f64,
+    plan: Arc<dyn RealToComplex<f64>>,
+    scratch: Vec<Complex<f64>>,
+    input: Vec<f64>,
+    output: Vec<Complex<f64>>,
+    /// Samples of the current stretch that a later segment needs.
+    tail: Vec<f64>,
+    in_stretch: u64,
+    power: Vec<f64>,
+    segments: u64,
+    neighbours: u64,
+    unused: u64,
+}
+
+impl Default for WelchAccumulator {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl std::fmt::Debug for WelchAccumulator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("WelchAccumulator")
+            .field("kept", &self.kept.len())
+            .field("segments", &self.engine.as_ref().map(|e| e.segments))
+            .finish()
+    }
+}
+
+impl WelchAccumulator {
+    /// An empty accumulator that chooses the segment length itself.
+    pub fn new() -> Self {
+        WelchAccumulator { kept: vec![], starts: vec![], engine: None }
+    }
+
+    /// An accumulator with a given segment length: rounded up to a power of two from 64 to 65536.
+    pub fn with_segment(samples: usize) -> Self {
+        let length = samples.clamp(SHORTEST_SEGMENT, LONGEST_SEGMENT).next_power_of_two();
+        WelchAccumulator { engine: Some(Engine::new(length)), ..Self::new() }
+    }
+
+    /// Takes finite contiguous samples; `continues = false` starts a new stretch.
+    pub fn push(&mut self, samples: &[f64], continues: bool) {
+        if samples.is_empty() {
+            return;
+        }
+        if let Some(engine) = &mut self.engine {
+            engine.push(samples, continues);
+            return;
+        }
+        if !continues || self.starts.is_empty() {
+            self.starts.push(self.kept.len());
+        }
+        self.kept.extend_from_slice(samples);
+        if self.kept.len() >= SEGMENTS * LONGEST_SEGMENT {
+            self.choose();
+        }
+    }
+
+    /// The spectrum of everything pushed so far.
+    pub fn finish(mut self) -> WelchResult {
+        if self.engine.is_none() {
+            self.choose();
+        }
+        self.engine.map(Engine::finish).unwrap_or_default()
+    }
+
+    fn choose(&mut self) {
+        let ends = self.starts.iter().skip(1).copied().chain([self.kept.len()]);
+        let stretches: Vec<(usize, usize)> = self.starts.iter().copied().zip(ends).collect();
+        let total = self.kept.len();
+        let usable = |length: usize| {
+            stretches.iter().map(|(from, to)| to - from).filter(|n| *n >= length).sum::<usize>() * 2 >= total
+        };
+        let mut length = LONGEST_SEGMENT;
+        while length > SHORTEST_SEGMENT && (length * SEGMENTS > total || !usable(length)) {
+            length /= 2;
+        }
+        let mut engine = Engine::new(length);
+        for (from, to) in stretches {
+            engine.push(self.kept.get(from..to).unwrap_or_default(), false);
+        }
+        self.kept = vec![];
+        self.starts = vec![];
+        self.engine = Some(engine);
+    }
+}
+
+/// The periodic Hann window.
+pub(crate) fn hann(length: usize) -> Vec<f64> {
+    (0..length).map(|i| (std::f64::consts::PI * i as f64 / length as f64).sin().powi(2)).collect()
+}
+
+impl Engine {
+    fn new(length: usize) -> Self {
+        let window = hann(length);
+        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+        Engine {
+            power_of_window: window.iter().map(|w| w * w).sum(),
+            window,
+            scratch: plan.make_scratch_vec(),
+            input: plan.make_input_vec(),
+            output: plan.make_output_vec(),
+            plan,
+            tail: Vec::with_capacity(length),
+            in_stretch: 0,
+            power: vec![0.0; length / 2 + 1],
+            segments: 0,
+            neighbours: 0,
+            unused: 0,
+        }
+    }
+
+    fn push(&mut self, samples: &[f64], continues: bool) {
+        if !continues {
+            self.end_stretch();
+        }
+        let length = self.window.len();
+        let mut rest = samples;
+        while !rest.is_empty() {
+            let (now, later) = rest.split_at((length - self.tail.len()).min(rest.len()));
+            self.tail.extend_from_slice(now);
+            rest = later;
+            if self.tail.len() == length {
+                self.transform();
+                self.tail.drain(..length / 2);
+            }
+        }
+    }
+
+    fn end_stretch(&mut self) {
+        // Behind a whole segment half of the tail was used already.
+        let used = if self.in_stretch > 0 { self.window.len() / 2 } else { 0 };
+        self.unused += self.tail.len().saturating_sub(used) as u64;
+        self.tail.clear();
+        self.in_stretch = 0;
+    }
+
+    fn transform(&mut self) {
+        let mean = self.tail.iter().sum::<f64>() / self.tail.len() as f64;
+        for ((x, y), w) in self.input.iter_mut().zip(&self.tail).zip(&self.window) {
+            *x = (y - mean) * w;
+        }
+        // Lengths come from the plan itself, so that this cannot fail.
+        if self.plan.process_with_scratch(&mut self.input, &mut self.output, &mut self.scratch).is_ok() {
+            for (p, z) in self.power.iter_mut().zip(&self.output) {
+                *p += z.norm_sqr();
+            }
+            self.segments += 1;
+            self.neighbours += u64::from(self.in_stretch > 0);
+            self.in_stretch += 1;
+        }
+    }
+
+    fn finish(mut self) -> WelchResult {
+        self.end_stretch();
+        if self.segments == 0 {
+            return WelchResult { unused_samples: self.unused, ..WelchResult::default() };
+        }
+        let count = self.segments as f64;
+        let half = self.window.len() / 2;
+        let overlap: f64 = self.window.iter().zip(self.window.iter().skip(half)).map(|(a, b)| a * b).sum();
+        let correlation = (overlap / self.power_of_window).powi(2);
+        let scale = 1.0 / (count * self.power_of_window);
+        self.power.iter_mut().for_each(|p| *p *= scale);
+        WelchResult {
+            spectrum: WelchSpectrum {
+                segment_len: self.window.len(),
+                segments: self.segments,
+                effective_averages: count * count / (count + 2.0 * self.neighbours as f64 * correlation),
+                density: self.power,
+            },
+            unused_samples: self.unused,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    fn white(count: usize, seed: u64) -> Vec<f64> {
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+        (0..count).map(|_| StandardNormal.sample(&mut rng)).collect()
+    }
+
+    #[test]
+    fn white_noise_has_its_two_sided_level_and_scatter() {
+        let sigma = 3.0;
+        let y: Vec<f64> = white(1 << 20, 1).iter().map(|v| sigma * v + 1e6).collect();
+        let mut welch = WelchAccumulator::with_segment(1024);
+        y.chunks(1000).enumerate().for_each(|(k, b)| welch.push(b, k > 0));
+        let result = welch.finish();
+        let s = &result.spectrum;
+        assert_eq!((s.segments, result.unused_samples), (2047, 0));
+        let bins = &s.density[4..s.density.len() - 1];
+        let mean = bins.iter().sum::<f64>() / bins.len() as f64;
+        assert!((mean / 9.0 - 1.0).abs() < 4e-3, "{mean}");
+        // Relative variance of a bin is one over the number of averages.
+        let variance = bins.iter().map(|p| (p / mean - 1.0).powi(2)).sum::<f64>() / (bins.len() - 1) as f64;
+        let averages = 1.0 / variance;
+        assert!((averages / s.effective_averages - 1.0).abs() < 0.2, "{averages} {}", s.effective_averages);
+        let expected = 2047.0f64.powi(2) / (2047.0 + 2.0 * 2046.0 / 36.0);
+        assert!((s.effective_averages / expected - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn power_is_kept() {
+        // Parseval: a sinusoid of amplitude A on a bin has the variance A²/2.
+        let length = 256;
+        let y: Vec<f64> =
+            (0..length).map(|i| 2.0 * (std::f64::consts::TAU * 20.0 * f64::from(i) / 256.0).cos()).collect();
+        let mut welch = WelchAccumulator::with_segment(256);
+        welch.push(&y, false);
+        let s = welch.finish().spectrum;
+        let inner: f64 = s.density[1..128].iter().sum();
+        let variance = (s.density[0] + 2.0 * inner + s.density[128]) / 256.0;
+        assert!((variance - 2.0).abs() < 1e-12, "{variance}");
+    }
+
+    #[test]
+    fn segments_follow_length_and_gaps() {
+        let length = |n: usize, every: usize| {
+            let mut welch = WelchAccumulator::new();
+            white(n, 2).chunks(every).for_each(|b| welch.push(b, false));
+            let r = welch.finish();
+            (r.spectrum.segment_len, r.spectrum.segments, r.unused_samples)
+        };
+        assert_eq!(length(100_000, 100_000).0, 4096);
+        assert_eq!(length(1 << 20, 1 << 20), (65536, 31, 0));
+        assert_eq!(length(100_000, 1000).0, 512);
+        assert_eq!(length(100, 1000), (64, 2, 4));
+        assert_eq!(length(100, 50), (0, 0, 100));
+        assert_eq!(WelchAccumulator::new().finish(), WelchResult::default());
+    }
+}

@@ -1,0 +1,278 @@
+//! Means over consecutive windows and their standard deviation: the Russian σ of 100-s and 10-s averages.
+//!
+//! No normative text fixes the details; here: non-overlapping windows from the start of each unbroken stretch, the
+//! remainder dropped, mean removed only, n − 1 in the denominator.
+
+use super::data::NoiseType;
+
+/// Window means kept one by one; beyond, only their moments.
+pub const KEPT_MEANS: usize = 1_000_000;
+
+/// What the windows gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WindowStatistics {
+    /// Window length asked for, s.
+    pub window_s: f64,
+    /// Samples in a window.
+    pub samples: u64,
+    /// Windows that are complete.
+    pub n: u64,
+    /// Mean of the window means, deg/h; NaN without any.
+    pub mean: f64,
+    /// Standard deviation of the window means with n − 1, deg/h; NaN below two windows.
+    pub standard_deviation: f64,
+    /// The means in order, deg/h, `None` when there were more than [`KEPT_MEANS`].
+    pub means: Option<Vec<f64>>,
+    /// Number of means in each unbroken stretch that has any, in order; the last entries are missing when the means are.
+    pub per_stretch: Vec<u64>,
+}
+
+/// Streaming window means of one length.
+#[derive(Debug, Clone)]
+pub struct WindowMeans {
+    window_s: f64,
+    samples: u64,
+    filled: u64,
+    reference: f64,
+    sum: f64,
+    n: u64,
+    mean: f64,
+    squares: f64,
+    means: Vec<f64>,
+    per_stretch: Vec<u64>,
+    in_stretch: u64,
+}
+
+impl WindowMeans {
+    /// Windows of `window_s` seconds, rounded to whole samples of `tau0_s` seconds (at least one).
+    pub fn new(window_s: f64, tau0_s: f64) -> Self {
+        let samples = (window_s / tau0_s).round().max(1.0) as u64;
+        WindowMeans {
+            window_s,
+            samples,
+            filled: 0,
+            reference: 0.0,
+            sum: 0.0,
+            n: 0,
+            mean: 0.0,
+            squares: 0.0,
+            means: vec![],
+            per_stretch: vec![],
+            in_stretch: 0,
+        }
+    }
+
+    /// Takes finite contiguous samples; `continues` as everywhere: false starts a new stretch and a new window.
+    pub fn push(&mut self, samples: &[f64], continues: bool) {
+        if !continues {
+            self.end_stretch();
+        }
+        let mut rest = samples;
+        while let Some(first) = rest.first() {
+            if self.filled == 0 {
+                self.reference = *first;
+                self.sum = 0.0;
+            }
+            let room = self.samples - self.filled;
+            let (now, later) = rest.split_at(usize::try_from(room).unwrap_or(usize::MAX).min(rest.len()));
+            // Blocks keep the rounding of a long plain sum away.
+            for block in now.chunks(1024) {
+                self.sum += block.iter().map(|y| y - self.reference).sum::<f64>();
+            }
+            self.filled += now.len() as u64;
+            if self.filled == self.samples {
+                self.add(self.reference + self.sum / self.samples as f64);
+                self.filled = 0;
+            }
+            rest = later;
+        }
+    }
+
+    /// The statistics of all complete windows so far.
+    pub fn finish(mut self) -> WindowStatistics {
+        self.end_stretch();
+        let kept = self.n as usize <= KEPT_MEANS;
+        WindowStatistics {
+            window_s: self.window_s,
+            samples: self.samples,
+            n: self.n,
+            mean: if self.n > 0 { self.mean } else { f64::NAN },
+            standard_deviation: if self.n > 1 {
+                (self.squares / (self.n - 1) as f64).sqrt()
+            } else {
+                f64::NAN
+            },
+            means: kept.then_some(self.means),
+            per_stretch: self.per_stretch,
+        }
+    }
+
+    fn end_stretch(&mut self) {
+        if self.in_stretch > 0 && self.per_stretch.len() < KEPT_MEANS {
+            self.per_stretch.push(self.in_stretch);
+        }
+        self.in_stretch = 0;
+        self.filled = 0;
+    }
+
+    fn add(&mut self, value: f64) {
+        self.n += 1;
+        self.in_stretch += 1;
+        let step = value - self.mean;
+        self.mean += step / self.n as f64;
+        self.squares += step * (value - self.mean);
+        if self.means.len() < KEPT_MEANS {
+            self.means.push(value);
+        }
+    }
+}
+
+/// Variance of the mean over a time t, or what plays its part where there is none (flicker, random walk), for unit
+/// coefficients: N = 1, B = 1, K = 1 with t in h, Q = 1 with t in s. Terms add with the squares of their coefficients.
+///
+/// V is such that n windows of length τ have E\[s²\] = n/(n−1)·\[V(τ) − V(nτ)\].
+pub fn variance_of_average(noise: NoiseType, t: f64) -> f64 {
+    match noise {
+        NoiseType::Quantization => 2.0 / (t * t),
+        NoiseType::AngleRandomWalk => 1.0 / t,
+        NoiseType::Flicker => -t.ln() / std::f64::consts::PI,
+        NoiseType::RateRandomWalk => -t / 6.0,
+        NoiseType::RateRamp => -t * t / 12.0,
+    }
+}
+
+/// Expected square of the standard deviation of `n` adjacent window means: n/(n−1)·\[V(τ) − V(nτ)\].
+pub fn expected_window_variance(n: u64, window: f64, variance_of_average: impl Fn(f64) -> f64) -> f64 {
+    let count = n as f64;
+    count / (count - 1.0) * (variance_of_average(window) - variance_of_average(count * window))
+}
+
+/// Equivalent degrees of freedom of the variance of `n` adjacent window means: 2E\[s²\]²/Var\[s²\] for Gaussian noise
+/// with the given [`variance_of_average`] (the unit of t is the caller's; a deterministic ramp has no part in it).
+///
+/// From traces of the centred covariance matrix, which is Toeplitz: time and memory linear in n. `None` below two
+/// windows, or when V is no variance.
+pub fn edf_of_window_std(n: u64, window: f64, variance_of_average: impl Fn(f64) -> f64) -> Option<f64> {
+    if n < 2 {
+        return None;
+    }
+    let size = n as usize;
+    let count = n as f64;
+    // Variance of the angle turned in k windows; its second difference is twice the covariance of window means.
+    let angle =
+        |k: usize| if k == 0 { 0.0 } else { (k as f64).powi(2) * variance_of_average(k as f64 * window) };
+    let mut covariance = Vec::with_capacity(size);
+    let (mut before, mut here) = (angle(1), 0.0);
+    for k in 0..size {
+        let after = angle(k + 1);
+        covariance.push(0.5 * (after - 2.0 * here + before));
+        (before, here) = (here, after);
+    }
+    let mut running = 0.0;
+    let sums: Vec<f64> = covariance
+        .iter()
+        .map(|c| {
+            running += c;
+            running
+        })
+        .collect();
+    let c0 = *covariance.first()?;
+    let rows = sums.iter().zip(sums.iter().rev()).map(|(a, b)| a + b - c0);
+    let (mut total, mut squares) = (0.0, 0.0);
+    rows.for_each(|r| {
+        total += r;
+        squares += r * r;
+    });
+    let off_diagonal: f64 =
+        covariance.iter().enumerate().skip(1).map(|(k, c)| (size - k) as f64 * c * c).sum();
+    let trace = count * c0 - total / count;
+    let trace_of_square =
+        count * c0 * c0 + 2.0 * off_diagonal - 2.0 * squares / count + (total / count).powi(2);
+    let edf = trace * trace / trace_of_square;
+    (edf.is_finite() && trace > 0.0 && trace_of_square > 0.0).then(|| edf.clamp(1.0, count - 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use NoiseType::{AngleRandomWalk, Flicker, Quantization, RateRandomWalk};
+
+    fn edf(n: u64, noise: NoiseType) -> f64 {
+        edf_of_window_std(n, 1.0, |t| variance_of_average(noise, t)).unwrap()
+    }
+
+    #[test]
+    fn degrees_of_freedom_of_pure_noise() {
+        for (n, expected) in [(36, 11.4), (100, 18.3), (360, 29.5), (864, 38.8)] {
+            assert!((edf(n, Flicker) - expected).abs() < 0.051, "{n} {}", edf(n, Flicker));
+        }
+        for n in [2, 36, 360, 100_000] {
+            assert!((edf(n, AngleRandomWalk) / (n - 1) as f64 - 1.0).abs() < 1e-6);
+        }
+        assert!((edf(360, RateRandomWalk) - 2.5).abs() < 0.05, "{}", edf(360, RateRandomWalk));
+        let (small, large) = (edf(1000, RateRandomWalk), edf(1_000_000, RateRandomWalk));
+        assert!((small / large - 1.0).abs() < 2e-2, "{small} {large}");
+        assert!(edf(1_000_000, Flicker) > edf(1000, Flicker));
+        assert!(edf_of_window_std(1, 1.0, |t| 1.0 / t).is_none());
+        assert!(edf_of_window_std(10, 1.0, |_| f64::NAN).is_none());
+    }
+
+    #[test]
+    fn expectations_follow_the_bias_functions() {
+        // Ratios to the Allan variance at the same time: Barnes' B1.
+        let ratio = |n: u64, noise| {
+            let v = |t| variance_of_average(noise, t);
+            expected_window_variance(n, 1.0, v) / (2.0 * (v(1.0) - v(2.0)))
+        };
+        assert!((ratio(100, Flicker) - 3.355_483).abs() < 1e-6);
+        assert!((ratio(100, RateRandomWalk) - 50.0).abs() < 1e-9);
+        assert!((ratio(36, AngleRandomWalk) - 1.0).abs() < 1e-12);
+        assert!((ratio(9, Quantization) - 20.0 / 27.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_traces_are_those_of_the_matrix() {
+        let (n, v) = (23usize, |t: f64| 1.0 / t - 0.7 * t.ln() - 0.05 * t);
+        let angle = |k: usize| if k == 0 { 0.0 } else { (k * k) as f64 * v(k as f64) };
+        let c = |i: usize, j: usize| {
+            let k = i.abs_diff(j);
+            0.5 * (angle(k + 1) - 2.0 * angle(k) + angle(k.abs_diff(1)))
+        };
+        let full = nalgebra::DMatrix::from_fn(n, n, c);
+        let centre = nalgebra::DMatrix::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - 1.0 / n as f64);
+        let hc = centre * full;
+        let expected = hc.trace().powi(2) / (&hc * &hc).trace();
+        let got = edf_of_window_std(n as u64, 1.0, v).unwrap();
+        assert!((got / expected - 1.0).abs() < 1e-10, "{got} {expected}");
+    }
+
+    #[test]
+    fn ten_means_of_the_thousand_point_suite() {
+        let mut k = 1_234_567_890u64;
+        let y: Vec<f64> = (0..1000)
+            .map(|_| {
+                let v = k as f64 / 2_147_483_647.0;
+                k = 16807 * k % 2_147_483_647;
+                v
+            })
+            .collect();
+        let mut windows = WindowMeans::new(100.0, 1.0);
+        y.chunks(77).enumerate().for_each(|(i, block)| windows.push(block, i > 0));
+        let s = windows.finish();
+        assert_eq!((s.n, s.samples), (10, 100));
+        assert!((s.standard_deviation - 0.032_066_564).abs() < 6e-10);
+        assert!((s.means.unwrap()[8] - 0.548_936_78).abs() < 6e-9);
+    }
+
+    #[test]
+    fn windows_start_anew_after_a_gap() {
+        let mut windows = WindowMeans::new(3.0, 1.0);
+        windows.push(&[1.0, 1.0, 1.0, 50.0, 50.0], false);
+        windows.push(&[2.0, 2.0], false);
+        windows.push(&[2.0, 70.0], true);
+        let s = windows.finish();
+        assert_eq!((s.n, s.means, s.per_stretch), (2, Some(vec![1.0, 2.0]), vec![1, 1]));
+        assert!((s.standard_deviation - 0.5f64.sqrt()).abs() < 1e-15);
+        assert!(WindowMeans::new(3.0, 1.0).finish().standard_deviation.is_nan());
+    }
+}
