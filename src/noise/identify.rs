@@ -29,7 +29,7 @@ pub struct Whittle {
 
 impl Default for Whittle {
     fn default() -> Self {
-        Whittle { thresholds: [4.0, 4.5, 4.0, 6.0, 8.0] }
+        Whittle { thresholds: [4.0, 4.0, 4.0, 6.0, 8.0] }
     }
 }
 
@@ -85,8 +85,11 @@ const QUANTIZATION: usize = 3;
 const METHOD: &str = "whittle";
 /// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
 const PRICE: f64 = 2.71;
-/// Coverage of upper limits, and the rise of the deviance that makes it.
-const LIMIT: (f64, f64) = (0.95, 2.706);
+/// Coverage of upper limits. The rise of the deviance that makes it is [`LIMIT_RISE`]: a limit is only given when the term was not
+/// claimed, that is when chance made it look small; 3.84 in place of 2.71 keeps the coverage in spite of that.
+const LIMIT_COVERAGE: f64 = 0.95;
+/// See [`LIMIT_COVERAGE`].
+pub(super) const LIMIT_RISE: f64 = 3.84;
 
 impl Identification {
     /// σ(τ) of the supported model with its 95 % band: (low, value, high), deg/h.
@@ -212,9 +215,9 @@ fn estimate(
     nuisance[RAMP] = claimed[RAMP];
     let limit = std::iter::once(nuisance)
         .chain(rivals.iter().filter(|r| !claimed[**r]).map(|r| toggled(&nuisance, *r, false)))
-        .filter_map(|structure| Profile::new(likelihood, &structure, term)?.upper_limit(LIMIT.1))
+        .filter_map(|structure| Profile::new(likelihood, &structure, term)?.upper_limit(LIMIT_RISE))
         .max_by(f64::total_cmp);
-    let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT.0 });
+    let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT_COVERAGE });
     let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD);
     if ambiguous && term != 0 && supported[term] {
         return estimate.note(Note::new("note.low_frequency_ambiguous"));
@@ -275,7 +278,11 @@ impl Search {
         let cost = |set: usize| {
             self.points[set][ramp].map_or(f64::INFINITY, |p| p.deviance + PRICE * f64::from(set.count_ones()))
         };
-        let best = (1..=ALL).filter(|set| set & must == must).min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+        // Quantisation is nearly white at the highest frequencies: on suspicion alone it would spoil N.
+        let suspected = ALL ^ if claimed[QUANTIZATION] { 0 } else { 1 << QUANTIZATION };
+        let best = (1..=ALL)
+            .filter(|set| set & must == must && set & suspected == *set)
+            .min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
         structure_of(best.unwrap_or(ALL), claimed[RAMP])
     }
 }

@@ -1,0 +1,285 @@
+//! What a test can decide before any data exist: the power of a limit for a record of given length.
+//!
+//! The evidence a record is expected to give stands in for the record (Cowan et al., Eur. Phys. J. C 71, 2011,
+//! "Asimov data set"): the profile likelihood on it gives the mean of the normal score that real records scatter
+//! about with variance 1.
+
+use super::data::NoiseType;
+use super::evidence::Evidence;
+use super::fit::{Likelihood, RAMP, SPECTRAL, Structure, position, toggled};
+use super::identify::{LIMIT_RISE, Whittle};
+use super::model::{NoiseModel, TERMS};
+use super::profile::Profile;
+use crate::estimate::{chi_square_quantile, normal_probability, normal_quantile};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Probability that both decisions must reach before a record counts as long enough.
+pub const POWER_WANTED: f64 = 0.8;
+/// Longest record considered, h.
+const LONGEST_H: f64 = 1000.0;
+
+/// What a test with an upper limit can decide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Power {
+    /// Probability that a unit 1.5 times over the limit is failed.
+    pub fail_probability_at_1_5: f64,
+    /// Probability that a unit at half the limit is passed.
+    pub pass_probability_at_half: f64,
+    /// Upper limit that the record is expected to give for a unit without the term, unit of the term. `None` where
+    /// no such limit exists.
+    pub expected_upper_limit_at_zero: Option<f64>,
+    /// Shortest record, h, with which both probabilities reach [`POWER_WANTED`]; `None` when 1000 h do not suffice.
+    pub needed_duration_h: Option<f64>,
+}
+
+impl Power {
+    /// True when both decisions are likely enough.
+    pub fn is_enough(&self) -> bool {
+        self.fail_probability_at_1_5 >= POWER_WANTED && self.pass_probability_at_half >= POWER_WANTED
+    }
+}
+
+/// Power of an upper `limit` on the coefficient of `term`, for a unit whose other terms are those of `background`.
+///
+/// `samples` samples of `tau0_s` s; `risk` is that of the guard band. `None` when the limit is not positive or the
+/// record too short to be analysed.
+pub fn decision_power(
+    term: NoiseType,
+    limit: f64,
+    background: &NoiseModel,
+    samples: u64,
+    tau0_s: f64,
+    risk: f64,
+) -> Option<Power> {
+    if limit.is_nan() || limit <= 0.0 || samples < 64 || tau0_s.is_nan() || tau0_s <= 0.0 {
+        return None;
+    }
+    let at = |samples: u64| {
+        let fail = fail_probability(term, limit, background, samples, tau0_s, risk)?;
+        let pass = pass_probability(term, limit, background, samples, tau0_s, risk)?;
+        Some((fail, pass))
+    };
+    let (fail, pass) = at(samples)?;
+    let enough = |hours: f64| {
+        at((hours * 3600.0 / tau0_s) as u64).is_some_and(|(f, p)| f >= POWER_WANTED && p >= POWER_WANTED)
+    };
+    Some(Power {
+        fail_probability_at_1_5: fail,
+        pass_probability_at_half: pass,
+        expected_upper_limit_at_zero: expected_upper_limit(term, background, samples, tau0_s),
+        needed_duration_h: shortest(samples as f64 * tau0_s / 3600.0, enough),
+    })
+}
+
+/// Power of an upper limit on a standard deviation whose square is χ² with `edf(hours)` degrees of freedom.
+pub fn deviation_power(edf: impl Fn(f64) -> f64, hours: f64, risk: f64) -> Power {
+    let at = |hours: f64| {
+        let dof = edf(hours).max(1e-3);
+        let Ok(law) = ChiSquared::new(dof) else { return (0.0, 0.0) };
+        // Over by 1.5: the lower bound s²·dof/χ²(1−risk) must exceed L². At half: the upper bound must not.
+        let fail = law.sf(chi_square_quantile(1.0 - risk, dof) / 2.25);
+        let pass = law.cdf(chi_square_quantile(risk, dof) * 4.0);
+        (fail, pass)
+    };
+    let (fail, pass) = at(hours);
+    let enough = |h: f64| {
+        let (f, p) = at(h);
+        f >= POWER_WANTED && p >= POWER_WANTED
+    };
+    Power {
+        fail_probability_at_1_5: fail,
+        pass_probability_at_half: pass,
+        expected_upper_limit_at_zero: None,
+        needed_duration_h: shortest(hours, enough),
+    }
+}
+
+/// Power of a limit on the size of a bias whose standard uncertainty is `uncertainty(hours)`, same unit as the limit.
+pub fn bias_power(limit: f64, uncertainty: impl Fn(f64) -> f64, hours: f64, risk: f64) -> Power {
+    let guard = normal_quantile(1.0 - risk);
+    let at = |hours: f64| {
+        let u = uncertainty(hours).max(1e-300);
+        let fail = normal_probability(0.5 * limit / u - guard);
+        let pass = (fail - normal_probability(guard - 1.5 * limit / u)).max(0.0);
+        (fail, pass)
+    };
+    let (fail, pass) = at(hours);
+    let enough = |h: f64| {
+        let (f, p) = at(h);
+        f >= POWER_WANTED && p >= POWER_WANTED
+    };
+    Power {
+        fail_probability_at_1_5: fail,
+        pass_probability_at_half: pass,
+        expected_upper_limit_at_zero: Some(normal_quantile(0.975) * uncertainty(hours)),
+        needed_duration_h: shortest(hours, enough),
+    }
+}
+
+/// Shortest duration, h, that is enough: halving and doubling from a start, then bisection to 5 %.
+fn shortest(start_h: f64, enough: impl Fn(f64) -> bool) -> Option<f64> {
+    let (mut low, mut high) = (0.0, start_h.clamp(1e-3, LONGEST_H));
+    if enough(high) {
+        for _ in 0..12 {
+            if !enough(0.5 * high) {
+                low = 0.5 * high;
+                break;
+            }
+            high *= 0.5;
+        }
+    } else {
+        loop {
+            if high >= LONGEST_H {
+                return None;
+            }
+            low = high;
+            high = (2.0 * high).min(LONGEST_H);
+            if enough(high) {
+                break;
+            }
+        }
+    }
+    while high - low > 0.05 * high {
+        let middle = 0.5 * (low + high);
+        if enough(middle) { high = middle } else { low = middle }
+    }
+    Some(high)
+}
+
+/// Probability Φ(mean score − needed score).
+fn reach(rise: f64, needed: f64) -> f64 {
+    normal_probability(rise.max(0.0).sqrt() - needed)
+}
+
+struct Case {
+    likelihood: Likelihood,
+    /// The terms the unit has.
+    structure: Structure,
+    term: usize,
+}
+
+impl Case {
+    fn new(term: NoiseType, value: f64, background: &NoiseModel, samples: u64, tau0_s: f64) -> Option<Case> {
+        let model = background.with(term, value);
+        let likelihood = Likelihood::new(&Evidence::expected(&model, samples, tau0_s))?;
+        let structure = TERMS.map(|t| model.coefficient(t) != 0.0);
+        Some(Case { likelihood, structure, term: position(term) })
+    }
+
+    fn deviance(&self, structure: &Structure, fixed: Option<(usize, f64)>) -> Option<f64> {
+        Some(self.likelihood.maximise(structure, fixed, None)?.deviance)
+    }
+
+    /// Rise of the deviance at `value` over its minimum.
+    fn rise(&self, structure: &Structure, value: f64) -> Option<f64> {
+        let held = self.deviance(structure, Some((self.term, value)))?;
+        if self.term == RAMP {
+            // At a held ramp the likelihood is the plain one, also at the maximum.
+            let best = self.likelihood.maximise(structure, None, None)?;
+            return Some(held - self.deviance(structure, Some((RAMP, best.ramp)))?);
+        }
+        Some(held - self.deviance(structure, None)?)
+    }
+
+    /// Probability that the term is claimed.
+    fn claim_probability(&self) -> Option<f64> {
+        let threshold = Whittle::default().thresholds.get(self.term)?.sqrt();
+        let mut all = [true; 5];
+        // As in the structure test: the ramp is a nuisance for rate random walk, and where the unit has one.
+        all[RAMP] = self.structure[RAMP] || self.term == position(NoiseType::RateRandomWalk);
+        let gain = if self.term == RAMP {
+            let best = self.likelihood.maximise(&[true; 5], None, None)?;
+            self.deviance(&toggled(&all, RAMP, false), None)?
+                - self.deviance(&[true; 5], Some((RAMP, best.ramp)))?
+        } else {
+            self.deviance(&toggled(&all, self.term, false), None)? - self.deviance(&all, None)?
+        };
+        Some(reach(gain, threshold))
+    }
+}
+
+fn fail_probability(
+    term: NoiseType,
+    limit: f64,
+    background: &NoiseModel,
+    samples: u64,
+    tau0_s: f64,
+    risk: f64,
+) -> Option<f64> {
+    let case = Case::new(term, 1.5 * limit, background, samples, tau0_s)?;
+    let beyond = reach(case.rise(&case.structure, limit)?, normal_quantile(1.0 - risk));
+    // Only a claimed term can be failed; claim and size come from the same fluctuation.
+    Some(beyond.min(case.claim_probability()?))
+}
+
+fn pass_probability(
+    term: NoiseType,
+    limit: f64,
+    background: &NoiseModel,
+    samples: u64,
+    tau0_s: f64,
+    risk: f64,
+) -> Option<f64> {
+    let case = Case::new(term, 0.5 * limit, background, samples, tau0_s)?;
+    let claimed = case.claim_probability()?;
+    let below = reach(case.rise(&case.structure, limit)?, normal_quantile(1.0 - risk));
+    let mut nuisance = [true; 5];
+    nuisance[RAMP] = case.structure[RAMP];
+    nuisance[case.term] = true;
+    let limited = reach(case.rise(&nuisance, limit)?, LIMIT_RISE.sqrt());
+    Some(claimed * below + (1.0 - claimed) * limited)
+}
+
+/// The upper limit on a term that a record of a unit without it is expected to give.
+pub fn expected_upper_limit(
+    term: NoiseType,
+    background: &NoiseModel,
+    samples: u64,
+    tau0_s: f64,
+) -> Option<f64> {
+    let case = Case::new(term, 0.0, background, samples, tau0_s)?;
+    let mut structure: Structure = [true; 5];
+    structure[RAMP] = case.structure[RAMP];
+    // Other terms that the unit lacks sit at zero in the expected evidence and may as well be left out.
+    for i in 0..SPECTRAL {
+        structure[i] = case.structure[i] || i == case.term;
+    }
+    Profile::new(&case.likelihood, &structure, case.term)?.upper_limit(LIMIT_RISE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angle_random_walk_is_decided_by_ten_hours() {
+        let background = NoiseModel { n: 0.0023, ..Default::default() };
+        let power =
+            decision_power(NoiseType::AngleRandomWalk, 0.003, &background, 36_000, 1.0, 0.05).unwrap();
+        assert!(power.fail_probability_at_1_5 > 0.999 && power.pass_probability_at_half > 0.999);
+        assert!(power.needed_duration_h.unwrap() < 1.0);
+    }
+
+    #[test]
+    fn ten_hours_cannot_decide_a_small_flicker_limit() {
+        let background = NoiseModel { n: 0.0023, ..Default::default() };
+        let power = decision_power(NoiseType::Flicker, 0.001, &background, 36_000, 1.0, 0.05).unwrap();
+        assert!(!power.is_enough());
+        assert!(power.fail_probability_at_1_5 < 0.2, "{power:?}");
+        assert!(power.needed_duration_h.is_none_or(|h| h > 100.0), "{power:?}");
+        assert!(power.expected_upper_limit_at_zero.unwrap() > 0.001);
+    }
+
+    #[test]
+    fn deviation_and_bias_powers_follow_their_laws() {
+        // A unit far over a limit measured well is failed, and the powers grow with the length.
+        let edf = |h: f64| 36.0 * h - 1.0;
+        let (short, long) = (deviation_power(edf, 0.5, 0.05), deviation_power(edf, 10.0, 0.05));
+        assert!(short.fail_probability_at_1_5 < long.fail_probability_at_1_5);
+        assert!(long.is_enough() && long.needed_duration_h.unwrap() < 10.0);
+        let bias = bias_power(0.01, |h| 0.004 / h.sqrt(), 1.0, 0.05);
+        assert!((bias.fail_probability_at_1_5 - normal_probability(1.25 - 1.644854)).abs() < 1e-6);
+        let needed = bias.needed_duration_h.unwrap();
+        assert!((needed / (0.004 * (1.644854 + 0.841621) / 0.005_f64).powi(2) - 1.0).abs() < 0.06);
+    }
+}
