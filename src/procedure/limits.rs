@@ -2,7 +2,8 @@
 
 use super::diagnostics::{Problem, SourceText, Span};
 use super::model::{Loaded, Procedure};
-use super::reader::{Entry, Reader, Section};
+use super::reader::Reader;
+use super::section::{Entry, Section};
 use crate::estimate::{Limit, Rule};
 use crate::measurand::ids::MeasurandId;
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};

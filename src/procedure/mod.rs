@@ -13,9 +13,12 @@ pub mod power;
 pub mod quantity;
 mod reader;
 pub mod schema;
+mod section;
 pub mod spec;
 pub mod tables;
+mod tables_conditions;
 pub mod tables_limits;
+mod tables_site;
 mod validate;
 mod values;
 

@@ -2,7 +2,7 @@
 
 use super::diagnostics::{Problem, SourceText, Span};
 use super::limits::LimitSet;
-pub use super::reader::{Allowance, Taus};
+pub use super::section::{Allowance, Taus};
 use crate::measurand::ids::MeasurandId;
 use crate::record::{ClauseRecord, WaiverRecord};
 use crate::recording::Channel;

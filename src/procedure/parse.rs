@@ -6,7 +6,8 @@ use super::model::{
     Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, FaultBudget, Instrument, MeasurandSpec,
     Orientation, Procedure, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition, UnitSpec, Waiver,
 };
-use super::reader::{self, Entry, Reader, Section};
+use super::reader::{self, Reader};
+use super::section::{Entry, Section};
 use super::spec::TableSpec;
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;

@@ -2,12 +2,11 @@
 //! at once, each with its place.
 
 use super::diagnostics::{Problem, Problems, SourceText, Span, nearest};
+use super::section::{Entry, Section};
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::values;
 use crate::measurand::ids::{self, MeasurandId};
-use crate::recording::{ColumnRef, Role};
-use crate::units::Unit;
-use chrono::NaiveDate;
+use crate::recording::Role;
 use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
 
@@ -18,140 +17,7 @@ const LARGEST_FILE: usize = 1 << 20;
 const ENOUGH: usize = 200;
 
 /// Longest chain of dotted keys and nested brackets in one line that is handed to the TOML parser.
-const DEEPEST: usize = 64;
-
-/// A checked value.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Entry {
-    Text(String),
-    Flag(bool),
-    Number(f64),
-    Date(NaiveDate),
-    Word(&'static str),
-    Words(Vec<&'static str>),
-    Unit(Unit),
-    Column(ColumnRef),
-    Taus(Taus),
-    Allowance(Allowance),
-    Measurand(&'static MeasurandId),
-    Quantities(Vec<(&'static MeasurandId, f64, Span)>),
-    Table(Section),
-    Tables(Vec<Section>),
-}
-
-/// Averaging times asked for.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Taus {
-    /// Powers of two times the sample interval.
-    #[default]
-    Octave,
-    /// 1, 2, 5 per decade.
-    Decade,
-    /// Every multiple of the sample interval.
-    All,
-    /// Exactly these, s.
-    List(Vec<f64>),
-}
-
-/// How many faults are tolerated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Allowance {
-    /// At most this many.
-    Count(u64),
-    /// At most this share of the samples, 0 to 1.
-    Share(f64),
-}
-
-impl Allowance {
-    /// True when `count` faults among `samples` are tolerated.
-    pub fn allows(self, count: u64, samples: u64) -> bool {
-        match self {
-            Allowance::Count(most) => count <= most,
-            Allowance::Share(share) => count as f64 <= share * samples as f64,
-        }
-    }
-}
-
-/// A table that was read: the values that are sound.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Section {
-    /// Where the table begins.
-    pub span: Span,
-    entries: BTreeMap<&'static str, (Entry, Span)>,
-}
-
-impl Section {
-    pub fn entry(&self, key: &str) -> Option<&Entry> {
-        self.entries.get(key).map(|(entry, _)| entry)
-    }
-
-    /// Where a value stands; the table itself where there is none.
-    pub fn span_of(&self, key: &str) -> Span {
-        self.entries.get(key).map_or_else(|| self.span.clone(), |(_, span)| span.clone())
-    }
-
-    pub fn text(&self, key: &str) -> Option<String> {
-        match self.entry(key) {
-            Some(Entry::Text(text)) => Some(text.clone()),
-            _ => None,
-        }
-    }
-
-    pub fn flag(&self, key: &str) -> bool {
-        matches!(self.entry(key), Some(Entry::Flag(true)))
-    }
-
-    pub fn number(&self, key: &str) -> Option<f64> {
-        match self.entry(key) {
-            Some(Entry::Number(number)) => Some(*number),
-            _ => None,
-        }
-    }
-
-    pub fn word(&self, key: &str) -> Option<&'static str> {
-        match self.entry(key) {
-            Some(Entry::Word(word)) => Some(word),
-            _ => None,
-        }
-    }
-
-    pub fn date(&self, key: &str) -> Option<NaiveDate> {
-        match self.entry(key) {
-            Some(Entry::Date(date)) => Some(*date),
-            _ => None,
-        }
-    }
-
-    pub fn measurand(&self, key: &str) -> Option<&'static MeasurandId> {
-        match self.entry(key) {
-            Some(Entry::Measurand(id)) => Some(id),
-            _ => None,
-        }
-    }
-
-    pub fn allowance(&self, key: &str) -> Option<Allowance> {
-        match self.entry(key) {
-            Some(Entry::Allowance(allowance)) => Some(*allowance),
-            _ => None,
-        }
-    }
-
-    pub fn table(&self, key: &str) -> Option<&Section> {
-        match self.entry(key) {
-            Some(Entry::Table(section)) => Some(section),
-            _ => None,
-        }
-    }
-
-    /// The tables of a list; one table alone counts as a list of one.
-    pub fn tables(&self, key: &str) -> &[Section] {
-        match self.entry(key) {
-            Some(Entry::Tables(sections)) => sections,
-            Some(Entry::Table(section)) => std::slice::from_ref(section),
-            _ => &[],
-        }
-    }
-}
+const DEEPEST: usize = 500;
 
 /// Reads a file by its description.
 ///
@@ -171,16 +37,31 @@ pub(super) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Sec
         reader.problems.sort();
         return (None, reader.problems);
     }
+    if let Some(problem) = other_format(source, root, table.get_ref()) {
+        return (None, problem.into());
+    }
     let section = reader.table(root, table.get_ref(), &(0..0));
     reader.problems.sort();
     (Some(section), reader.problems)
 }
 
+/// A file of another kind or version: one problem says it, in place of one for every key in it.
+fn other_format(source: &SourceText, root: &TableSpec, table: &DeTable<'_>) -> Option<Problem> {
+    let wanted = root.keys.iter().find_map(|k| match k.kind {
+        Kind::Format(text) => Some(text),
+        _ => None,
+    })?;
+    let value = table.get("format")?;
+    let given = value.get_ref().as_str().filter(|given| *given != wanted)?;
+    let message = format!("`{}` is not a format that is read here", shorten(given));
+    let help = format!("this kind of file begins with format = \"{wanted}\"");
+    Some(source.error(&value.span(), message).help(help))
+}
+
 /// Refuses a text that is no procedure by its size or nesting, before the parser sees it.
 fn unreadable(source: &SourceText) -> Option<Problem> {
     if source.text.len() > LARGEST_FILE {
-        let message =
-            format!("the file has {} bytes; a procedure has at most {LARGEST_FILE}", source.text.len());
+        let message = format!("the file is larger than {LARGEST_FILE} bytes; a procedure is a few kilobytes");
         return Some(Problem::of_file(&source.name, message, None));
     }
     let mut start = 0;
@@ -248,9 +129,10 @@ impl Reader<'_> {
     fn table(&mut self, spec: &'static TableSpec, table: &DeTable<'_>, span: &Span) -> Section {
         let mut section = Section { span: span.clone(), entries: BTreeMap::new() };
         let mut dependent = vec![];
+        let mut meant = vec![];
         for (key, value) in table.iter() {
             let Some(described) = spec.key(key.get_ref()) else {
-                self.unknown_key(spec, key.get_ref(), &key.span());
+                meant.extend(self.unknown_key(spec, key.get_ref(), &key.span()));
                 continue;
             };
             if let Kind::QuantityBy(by) = described.kind {
@@ -265,7 +147,7 @@ impl Reader<'_> {
                 .entries
                 .insert(described.name, (entry, span_of_value(described, value.span(), key.span())));
         }
-        self.missing_keys(spec, &mut section);
+        self.missing_keys(spec, &mut section, &meant);
         for (described, by, value) in dependent {
             let entry = dependent_unit(&section, by)
                 .and_then(|unit| values::quantity_by(self, described, &unit, value.get_ref(), &value.span()));
@@ -275,17 +157,19 @@ impl Reader<'_> {
         section
     }
 
-    fn missing_keys(&mut self, spec: &'static TableSpec, section: &mut Section) {
+    /// Reports required keys that are not there and fills in defaults. A key that was misspelt is not missing too.
+    fn missing_keys(&mut self, spec: &'static TableSpec, section: &mut Section, meant: &[&str]) {
         for key in spec.keys {
             if section.entries.contains_key(key.name) {
                 continue;
             }
             match key.need {
                 Need::Optional => {}
+                Need::Required if meant.contains(&key.name) => {}
                 Need::Required => {
-                    let message = format!("{} is missing{}", written(key), in_table(spec));
+                    let message = format!("{} is missing{}", written(key), self.in_table(spec));
                     let example = if key.example.is_empty() {
-                        format!("{}: {}", written(key), key.doc)
+                        format!("add {}: {}", written(key), key.doc)
                     } else {
                         format!("add for example: {} = {}", key.name, key.example)
                     };
@@ -301,22 +185,40 @@ impl Reader<'_> {
         }
     }
 
-    fn unknown_key(&mut self, spec: &'static TableSpec, key: &str, span: &Span) {
-        let known: Vec<&str> = spec.keys.iter().map(|k| k.name).collect();
-        let elsewhere = || {
-            self.root.walk().into_iter().find(|t| t.name != spec.name && t.key(key).is_some()).map(|t| {
-                if t.name.is_empty() {
-                    format!("`{key}` stands at the beginning of the file, before the first table")
-                } else {
-                    format!("`{key}` belongs in [{}]", t.name)
-                }
-            })
-        };
-        let help = match nearest(key, known.iter().copied()) {
+    /// Reports an unknown key; gives the key that was meant, when one is near.
+    fn unknown_key(&mut self, spec: &'static TableSpec, key: &str, span: &Span) -> Option<&'static str> {
+        let known: Vec<&'static str> = spec.keys.iter().map(|k| k.name).collect();
+        let near = nearest(key, known.iter().copied());
+        let help = match near {
             Some(near) => format!("did you mean `{near}`?"),
-            None => elsewhere().unwrap_or_else(|| format!("known here: {}", known.join(", "))),
+            None => self.elsewhere(spec, key).unwrap_or_else(|| format!("known here: {}", known.join(", "))),
         };
-        self.error(span, format!("unknown key `{}`{}", shorten(key), in_table(spec)), Some(help));
+        self.error(span, format!("unknown key `{}`{}", shorten(key), self.in_table(spec)), Some(help));
+        near
+    }
+
+    /// Says where a key belongs that is known in another table.
+    fn elsewhere(&self, spec: &TableSpec, key: &str) -> Option<String> {
+        let home = self.root.walk().into_iter().find(|t| t.name != spec.name && t.key(key).is_some())?;
+        Some(if home.name.is_empty() {
+            format!("`{key}` stands at the beginning of the file, before the first table")
+        } else {
+            format!("`{key}` belongs in {}", self.header(home))
+        })
+    }
+
+    /// A table as its header is written.
+    fn header(&self, spec: &TableSpec) -> String {
+        let listed = |k: &KeySpec| matches!(k.kind, Kind::Tables(t) if t.name == spec.name);
+        if self.root.walk().iter().any(|t| t.keys.iter().any(listed)) {
+            format!("[[{}]]", spec.name)
+        } else {
+            format!("[{}]", spec.name)
+        }
+    }
+
+    fn in_table(&self, spec: &TableSpec) -> String {
+        if spec.name.is_empty() { String::new() } else { format!(" in {}", self.header(spec)) }
     }
 
     fn value(
@@ -445,10 +347,6 @@ fn span_of_value(key: &KeySpec, value: Span, name: Span) -> Span {
 fn first_line(source: &SourceText, span: &Span) -> Span {
     let text = source.text.get(span.clone()).unwrap_or("");
     span.start..span.start + text.find('\n').unwrap_or(text.len())
-}
-
-fn in_table(spec: &TableSpec) -> String {
-    if spec.name.is_empty() { String::new() } else { format!(" in [{}]", spec.name) }
 }
 
 fn written(key: &KeySpec) -> String {

@@ -1,7 +1,9 @@
 //! The tables of a procedure file.
 
-use super::spec::{Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default};
+use super::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
+use super::tables_conditions::{CONDITIONS, EXCLUDE};
 use super::tables_limits::{LIMIT, REFERENCE};
+use super::tables_site::{INSTRUMENT, SITE};
 
 /// Roles a channel may have, with their meaning.
 pub const ROLES: &[Word] = &[
@@ -26,9 +28,6 @@ pub const FIGURES: &[Word] = &[
     ("histogram", "distribution of the samples against the normal one"),
 ];
 
-const HALF_TURN: Range = Range::between(-360.0, 360.0);
-const RIGHT_ANGLE: Range = Range::between(-90.0, 90.0);
-const SMALL_ANGLE: Range = Range::between(0.0, 90.0);
 const SHARE: Range = Range::between(0.0, 1.0);
 
 /// The procedure file as a whole.
@@ -200,244 +199,6 @@ static CHANNEL: TableSpec = TableSpec {
     ],
 };
 
-static CONDITIONS: TableSpec = TableSpec {
-    name: "conditions",
-    doc: "Conditions under which the test is valid. One that is not shown to be met makes the verdict indeterminate: a \
-          test that was not done right neither passes nor fails a unit.",
-    keys: &[
-        optional(
-            "minimum_duration",
-            quantity("s", Range::POSITIVE),
-            "\"10 h\"",
-            "Least usable time after warm-up, exclusions and gaps.",
-        ),
-        with_default(
-            "warm_up",
-            quantity("s", Range::NOT_NEGATIVE),
-            "\"0 s\"",
-            "\"30 min\"",
-            "Time at the beginning that is left out, fixed before the data are looked at.",
-        ),
-        optional(
-            "temperature",
-            Kind::TableOrTables(&TEMPERATURE),
-            "",
-            "Temperature to be held, one table for each sensor judged.",
-        ),
-        optional("supply", Kind::TableOrTables(&SUPPLY), "", "Supply voltage to be held."),
-        optional("faults", Kind::Table(&FAULTS), "", "How many faults of each kind a recording may have."),
-    ],
-};
-
-static TEMPERATURE: TableSpec = TableSpec {
-    name: "conditions.temperature",
-    doc: "A temperature that must hold over the whole evaluated window. It is shown to hold when every smoothed value \
-          lies inside the tolerance less `coverage_factor` times the sensor's uncertainty.",
-    keys: &[
-        required("channel", Kind::Id, "\"temp\"", "Channel with the role `temperature`."),
-        required(
-            "nominal",
-            quantity("degC", Range::between(-273.15, 1000.0)),
-            "\"20 degC\"",
-            "Nominal temperature.",
-        ),
-        required(
-            "tolerance",
-            difference("degC", Range::POSITIVE),
-            "\"0.4 degC\"",
-            "Largest difference from it.",
-        ),
-        required(
-            "sensor_uncertainty",
-            difference("degC", Range::NOT_NEGATIVE),
-            "\"0.05 degC\"",
-            "Standard uncertainty (k = 1) of the sensor, calibration and drift included.",
-        ),
-        with_default(
-            "coverage_factor",
-            Kind::Number(Range::between(0.0, 4.0)),
-            "2.0",
-            "2.0",
-            "Multiple of the sensor's uncertainty by which the tolerance is narrowed.",
-        ),
-        with_default(
-            "smoothing",
-            quantity("s", Range::NOT_NEGATIVE),
-            "\"60 s\"",
-            "\"60 s\"",
-            "Length of the moving mean over which the temperature is judged, so that the sensor's noise is not taken for the chamber.",
-        ),
-    ],
-};
-
-static SUPPLY: TableSpec = TableSpec {
-    name: "conditions.supply",
-    doc: "A supply voltage that must hold over the whole evaluated window.",
-    keys: &[
-        required("channel", Kind::Id, "\"supply\"", "Channel with the role `supply`."),
-        required("nominal", quantity("V", Range::ANY), "\"5 V\"", "Nominal voltage."),
-        required("tolerance", difference("V", Range::POSITIVE), "\"0.25 V\"", "Largest difference from it."),
-        with_default(
-            "sensor_uncertainty",
-            difference("V", Range::NOT_NEGATIVE),
-            "\"0 V\"",
-            "\"0.01 V\"",
-            "Standard uncertainty (k = 1) of the reading.",
-        ),
-        with_default(
-            "coverage_factor",
-            Kind::Number(Range::between(0.0, 4.0)),
-            "2.0",
-            "2.0",
-            "Multiple of that uncertainty by which the tolerance is narrowed.",
-        ),
-    ],
-};
-
-static FAULTS: TableSpec = TableSpec {
-    name: "conditions.faults",
-    doc: "How many faults of each kind a recording may have: a count, or a share of the samples. A kind that is left \
-          out is counted and reported, and not judged.",
-    keys: &[
-        optional("gaps", Kind::Allowance, "10", "Places where samples are missing."),
-        optional("missing_samples", Kind::Allowance, "\"0.1 %\"", "Samples missing in them."),
-        optional("longest_gap", quantity("s", Range::NOT_NEGATIVE), "\"10 s\"", "Length of the longest gap."),
-        optional("duplicate_timestamps", Kind::Allowance, "0", "Rows whose stamp equals the one before."),
-        optional("backward_timestamps", Kind::Allowance, "0", "Rows whose stamp is earlier than one before."),
-        optional("non_finite", Kind::Allowance, "\"0.01 %\"", "Fields that are empty, NaN or infinite."),
-        optional("unparsable", Kind::Allowance, "0", "Fields that are no number."),
-        optional("outliers", Kind::Allowance, "\"0.1 %\"", "Samples far outside the noise about them."),
-        optional("saturated", Kind::Allowance, "0", "Samples at a rail."),
-        optional(
-            "stuck",
-            Kind::Allowance,
-            "0",
-            "Samples that repeat the one before for longer than chance allows.",
-        ),
-        optional(
-            "timestamp_jitter",
-            quantity("s", Range::POSITIVE),
-            "\"1 ms\"",
-            "Largest rms deviation of the stamps from a uniform clock.",
-        ),
-    ],
-};
-
-static EXCLUDE: TableSpec = TableSpec {
-    name: "exclude",
-    doc: "A span left out of the evaluation for a reason known before the data were looked at.",
-    keys: &[
-        required(
-            "from",
-            quantity("s", Range::NOT_NEGATIVE),
-            "\"2 h\"",
-            "Start, from the beginning of the recording.",
-        ),
-        required(
-            "to",
-            quantity("s", Range::POSITIVE),
-            "\"2.5 h\"",
-            "End, from the beginning of the recording.",
-        ),
-        required("reason", Kind::Text, "\"door of the chamber opened\"", "Why."),
-    ],
-};
-
-static SITE: TableSpec = TableSpec {
-    name: "site",
-    doc: "Where the unit stands and where its input axis points: the Earth rate along the axis follows from it. \
-          Uncertainties are standard uncertainties (k = 1).",
-    keys: &[
-        required("latitude", quantity("deg", RIGHT_ANGLE), "\"55.98 deg\"", "Latitude, positive north."),
-        with_default(
-            "latitude_uncertainty",
-            quantity("deg", SMALL_ANGLE),
-            "\"0 deg\"",
-            "\"1 arcsec\"",
-            "Its uncertainty.",
-        ),
-        optional(
-            "heading",
-            quantity("deg", HALF_TURN),
-            "\"90 deg\"",
-            "Heading of the input axis from true north, positive to the east. Needed unless the axis is vertical.",
-        ),
-        with_default(
-            "heading_uncertainty",
-            quantity("deg", Range::between(0.0, 360.0)),
-            "\"0 deg\"",
-            "\"1 arcmin\"",
-            "Its uncertainty.",
-        ),
-        required(
-            "elevation",
-            quantity("deg", RIGHT_ANGLE),
-            "\"90 deg\"",
-            "Elevation of the input axis above the horizon; 90 deg is up.",
-        ),
-        with_default(
-            "elevation_uncertainty",
-            quantity("deg", SMALL_ANGLE),
-            "\"0 deg\"",
-            "\"30 arcsec\"",
-            "Its uncertainty: the tilt of the axis.",
-        ),
-        optional(
-            "axis",
-            Kind::Tables(&AXIS),
-            "",
-            "Orientation of single channels that differ from the above.",
-        ),
-    ],
-};
-
-static AXIS: TableSpec = TableSpec {
-    name: "site.axis",
-    doc: "Orientation of the input axis of one channel.",
-    keys: &[
-        required("channel", Kind::Id, "\"x\"", "Channel with the role `rate` or `angle_increment`."),
-        optional(
-            "heading",
-            quantity("deg", HALF_TURN),
-            "\"0 deg\"",
-            "Heading from true north, positive to the east. Needed unless the axis is vertical.",
-        ),
-        with_default(
-            "heading_uncertainty",
-            quantity("deg", Range::between(0.0, 360.0)),
-            "\"0 deg\"",
-            "\"1 arcmin\"",
-            "Its uncertainty.",
-        ),
-        required("elevation", quantity("deg", RIGHT_ANGLE), "\"0 deg\"", "Elevation above the horizon."),
-        with_default(
-            "elevation_uncertainty",
-            quantity("deg", SMALL_ANGLE),
-            "\"0 deg\"",
-            "\"30 arcsec\"",
-            "Its uncertainty.",
-        ),
-    ],
-};
-
-static INSTRUMENT: TableSpec = TableSpec {
-    name: "instrument",
-    doc: "An instrument and the validity of its calibration. A calibration that has run out on the day of the test is \
-          an invalid condition.",
-    keys: &[
-        required("name", Kind::Text, "\"chamber thermometer\"", "What it is."),
-        optional("serial", Kind::Text, "\"T-0412\"", "Serial number."),
-        optional("calibration_due", Kind::Date, "2030-12-31", "Last day on which the calibration is valid."),
-        with_default(
-            "required",
-            Kind::Flag,
-            "true",
-            "true",
-            "Whether an instrument without a valid calibration makes the test invalid; otherwise it is a remark.",
-        ),
-    ],
-};
-
 static ANALYSIS: TableSpec = TableSpec {
     name: "analysis",
     doc: "Options of the analysis.",
@@ -549,8 +310,8 @@ static WAIVER: TableSpec = TableSpec {
         required("serial", Kind::Text, "\"0042\"", "Serial number of the unit: a waiver is for one unit."),
         required("row", Kind::Text, "\"bias_instability\"", "Measurand or condition concerned."),
         required("by", Kind::Text, "\"J. Smith, quality\"", "Who decided."),
-        required("reason", Kind::Text, "\"used at constant temperature only\"", "Why."),
-        required("date", Kind::Date, "2026-03-01", "When."),
+        required("reason", Kind::Text, "\"used at constant temperature only\"", "Why, as it shall stand in the report."),
+        required("date", Kind::Date, "2026-03-01", "Day of the decision."),
     ],
 };
 

@@ -31,7 +31,7 @@ static LIMITS: TableSpec = TableSpec {
     doc: "Identity of the limits. It stands in the header of every report.",
     keys: &[
         required("id", Kind::Id, "\"oius-501\"", "Id of the limits."),
-        required("title", Kind::Text, "\"OIUS-501\"", "Title."),
+        required("title", Kind::Text, "\"OIUS-501\"", "Title of the file."),
         required(
             "revision",
             Kind::Text,

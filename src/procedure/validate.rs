@@ -2,7 +2,8 @@
 
 use super::diagnostics::{Problem, SourceText, nearest};
 use super::model::{ChannelSpec, EarthRate, MeasurandSpec, Procedure, Taus};
-use super::reader::{Reader, Section, shorten};
+use super::reader::{Reader, shorten};
+use super::section::Section;
 use crate::recording::{ColumnRef, Role};
 
 /// Reports every contradiction.
@@ -38,7 +39,7 @@ pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceTex
             found.push(source.warning(&channel.span, message));
         }
     }
-    if procedure.conditions.minimum_duration_s.is_none() {
+    if root.table("conditions").is_none_or(|c| c.entry("minimum_duration").is_none()) {
         let message = "no `minimum_duration`: a record of any length is a valid test";
         let at = root.table("conditions").map_or(0..0, |c| c.span.clone());
         found.push(source.warning(&at, message).help("add minimum_duration = \"10 h\" to [conditions]"));

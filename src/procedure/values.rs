@@ -2,7 +2,8 @@
 
 use super::diagnostics::{Span, nearest};
 use super::quantity::{self, QuantityError};
-use super::reader::{Allowance, Entry, Reader, Taus, shorten};
+use super::reader::{Reader, shorten};
+use super::section::{Allowance, Entry, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
 use super::tables::ALLOWANCE_SHARE;
 use crate::recording::ColumnRef;
@@ -25,15 +26,7 @@ pub(super) fn scalar(
 ) -> Option<Entry> {
     match key.kind {
         Kind::Text => text(reader, key, value, span).map(Entry::Text),
-        Kind::Format(wanted) => {
-            let given = text(reader, key, value, span)?;
-            if given == wanted {
-                return Some(Entry::Text(given));
-            }
-            let message = format!("`{}` is not a format that is read here", shorten(&given));
-            reader.error(span, message, Some(format!("this kind of file begins with format = \"{wanted}\"")));
-            None
-        }
+        Kind::Format(_) => text(reader, key, value, span).map(Entry::Text),
         Kind::Id => id(reader, key, value, span).map(Entry::Text),
         Kind::Flag => match value {
             DeValue::Boolean(flag) => Some(Entry::Flag(*flag)),

@@ -1,0 +1,141 @@
+//! Checked values of a table, by key.
+
+use super::diagnostics::Span;
+use crate::measurand::ids::MeasurandId;
+use crate::recording::ColumnRef;
+use crate::units::Unit;
+use chrono::NaiveDate;
+use std::collections::BTreeMap;
+
+/// A checked value.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Entry {
+    Text(String),
+    Flag(bool),
+    Number(f64),
+    Date(NaiveDate),
+    Word(&'static str),
+    Words(Vec<&'static str>),
+    Unit(Unit),
+    Column(ColumnRef),
+    Taus(Taus),
+    Allowance(Allowance),
+    Measurand(&'static MeasurandId),
+    Quantities(Vec<(&'static MeasurandId, f64, Span)>),
+    Table(Section),
+    Tables(Vec<Section>),
+}
+
+/// Averaging times asked for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Taus {
+    /// Powers of two times the sample interval.
+    #[default]
+    Octave,
+    /// 1, 2, 5 per decade.
+    Decade,
+    /// Every multiple of the sample interval.
+    All,
+    /// Exactly these, s.
+    List(Vec<f64>),
+}
+
+/// How many faults are tolerated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Allowance {
+    /// At most this many.
+    Count(u64),
+    /// At most this share of the samples, 0 to 1.
+    Share(f64),
+}
+
+impl Allowance {
+    /// True when `count` faults among `samples` are tolerated.
+    pub fn allows(self, count: u64, samples: u64) -> bool {
+        match self {
+            Allowance::Count(most) => count <= most,
+            Allowance::Share(share) => count as f64 <= share * samples as f64,
+        }
+    }
+}
+
+/// A table that was read: the values that are sound.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Section {
+    /// Where the table begins.
+    pub span: Span,
+    pub entries: BTreeMap<&'static str, (Entry, Span)>,
+}
+
+impl Section {
+    pub fn entry(&self, key: &str) -> Option<&Entry> {
+        self.entries.get(key).map(|(entry, _)| entry)
+    }
+
+    /// Where a value stands; the table itself where there is none.
+    pub fn span_of(&self, key: &str) -> Span {
+        self.entries.get(key).map_or_else(|| self.span.clone(), |(_, span)| span.clone())
+    }
+
+    pub fn text(&self, key: &str) -> Option<String> {
+        match self.entry(key) {
+            Some(Entry::Text(text)) => Some(text.clone()),
+            _ => None,
+        }
+    }
+
+    pub fn flag(&self, key: &str) -> bool {
+        matches!(self.entry(key), Some(Entry::Flag(true)))
+    }
+
+    pub fn number(&self, key: &str) -> Option<f64> {
+        match self.entry(key) {
+            Some(Entry::Number(number)) => Some(*number),
+            _ => None,
+        }
+    }
+
+    pub fn word(&self, key: &str) -> Option<&'static str> {
+        match self.entry(key) {
+            Some(Entry::Word(word)) => Some(word),
+            _ => None,
+        }
+    }
+
+    pub fn date(&self, key: &str) -> Option<NaiveDate> {
+        match self.entry(key) {
+            Some(Entry::Date(date)) => Some(*date),
+            _ => None,
+        }
+    }
+
+    pub fn measurand(&self, key: &str) -> Option<&'static MeasurandId> {
+        match self.entry(key) {
+            Some(Entry::Measurand(id)) => Some(id),
+            _ => None,
+        }
+    }
+
+    pub fn allowance(&self, key: &str) -> Option<Allowance> {
+        match self.entry(key) {
+            Some(Entry::Allowance(allowance)) => Some(*allowance),
+            _ => None,
+        }
+    }
+
+    pub fn table(&self, key: &str) -> Option<&Section> {
+        match self.entry(key) {
+            Some(Entry::Table(section)) => Some(section),
+            _ => None,
+        }
+    }
+
+    /// The tables of a list; one table alone counts as a list of one.
+    pub fn tables(&self, key: &str) -> &[Section] {
+        match self.entry(key) {
+            Some(Entry::Tables(sections)) => sections,
+            Some(Entry::Table(section)) => std::slice::from_ref(section),
+            _ => &[],
+        }
+    }
+}
