@@ -10,11 +10,12 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod cli;
 pub mod condition;
 pub mod estimate;
 pub mod figure;
-pub mod measurand;
 pub mod ingest;
+pub mod measurand;
 pub mod noise;
 pub mod numeric;
 pub mod output;
@@ -22,5 +23,7 @@ pub mod procedure;
 pub mod record;
 pub mod recording;
 pub mod report;
+pub mod run;
+pub mod selftest;
 pub mod text;
 pub mod units;

@@ -1,2 +1,5 @@
-//! x
-fn main() {}
+//! The `sagnac` binary: parse, run, exit code.
+
+fn main() -> std::process::ExitCode {
+    sagnac::cli::main()
+}

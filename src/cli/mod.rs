@@ -53,7 +53,9 @@ enum Verb {
     #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]
     Inspect(InspectArgs),
     /// Analyse the noise of a recording without a procedure
-    #[command(after_help = "Example:\n  sagnac analyze unit-0042.csv --rate gyro_x --unit deg/s --out analysis-0042")]
+    #[command(
+        after_help = "Example:\n  sagnac analyze unit-0042.csv --rate gyro_x --unit deg/s --out analysis-0042"
+    )]
     Analyze(AnalyzeArgs),
     /// Print the JSON Schema of a file format, for completion in editors
     #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]

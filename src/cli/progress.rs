@@ -14,7 +14,9 @@ impl Progress {
     /// Begins, hidden.
     pub fn new() -> Progress {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        if let Ok(style) = ProgressStyle::with_template("{msg:18} {bar:32} {percent:>3} % {bytes_per_sec} {eta}") {
+        if let Ok(style) =
+            ProgressStyle::with_template("{msg:18} {bar:32} {percent:>3} % {bytes_per_sec} {eta}")
+        {
             bar.set_style(style);
         }
         Progress { bar, began: Instant::now(), shown: false }

@@ -9,7 +9,7 @@ pub mod ids;
 mod noise_terms;
 mod russian;
 mod spectral_line;
-mod static_bias;
+pub mod static_bias;
 
 use crate::estimate::Estimate;
 pub use evidence::{Earth, GyroEvidence};

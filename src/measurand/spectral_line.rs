@@ -30,10 +30,19 @@ impl Measurand for SpectralLine {
         };
         let averages = gyro.spectrum().effective_averages;
         let value = if frequency { line.frequency_hz } else { line.amplitude_deg_h };
-        let standard_uncertainty =
-            if frequency { frequency_uncertainty_hz(line, averages) } else { amplitude_uncertainty(line, averages) };
-        let estimate =
-            Estimate::measured(id, &gyro.channel, value, unit, Spread::Normal { standard_uncertainty }, "welch");
+        let standard_uncertainty = if frequency {
+            frequency_uncertainty_hz(line, averages)
+        } else {
+            amplitude_uncertainty(line, averages)
+        };
+        let estimate = Estimate::measured(
+            id,
+            &gyro.channel,
+            value,
+            unit,
+            Spread::Normal { standard_uncertainty },
+            "welch",
+        );
         Some(estimate.note(Note::new("note.line").with("resolution_hz", line.resolution_hz)))
     }
 }

@@ -310,7 +310,12 @@ static WAIVER: TableSpec = TableSpec {
         required("serial", Kind::Text, "\"0042\"", "Serial number of the unit: a waiver is for one unit."),
         required("row", Kind::Text, "\"bias_instability\"", "Measurand or condition concerned."),
         required("by", Kind::Text, "\"J. Smith, quality\"", "Who decided."),
-        required("reason", Kind::Text, "\"used at constant temperature only\"", "Why, as it shall stand in the report."),
+        required(
+            "reason",
+            Kind::Text,
+            "\"used at constant temperature only\"",
+            "Why, as it shall stand in the report.",
+        ),
         required("date", Kind::Date, "2026-03-01", "Day of the decision."),
     ],
 };

@@ -88,8 +88,11 @@ impl Inside {
 
     /// What was collected.
     pub fn finish(self) -> Collected {
-        let gyros =
-            self.gyros.into_iter().map(|g| (g.slot, g.digest.finish(), g.octaves.map(|o| o.finish()))).collect();
+        let gyros = self
+            .gyros
+            .into_iter()
+            .map(|g| (g.slot, g.digest.finish(), g.octaves.map(|o| o.finish())))
+            .collect();
         let held = self.held.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?))).collect();
         Collected { gyros, held }
     }

@@ -38,8 +38,7 @@ pub fn fact(gyro: &GyroEvidence, bias_uncertainty_deg_h: f64) -> Option<WarmUpFa
     let y = DVector::from_vec(means);
     let mut best: Option<WarmUpFact> = None;
     for trial in 0..TRIALS {
-        let time_constant_s =
-            step_s * 2.0 * (MEANS as f64 / 6.0).powf(trial as f64 / (TRIALS - 1) as f64);
+        let time_constant_s = step_s * 2.0 * (MEANS as f64 / 6.0).powf(trial as f64 / (TRIALS - 1) as f64);
         let decay = |i: usize| (-(i as f64 + 0.5) * step_s / time_constant_s).exp();
         let design = DMatrix::from_fn(MEANS, 2, |i, j| if j == 0 { 1.0 } else { decay(i) });
         let weighted = factor.solve(&design);

@@ -41,8 +41,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
 }
 
 fn mean_of_present(values: &[f64]) -> f64 {
-    let (sum, n) =
-        values.iter().filter(|v| v.is_finite()).fold((0.0, 0u32), |(sum, n), v| (sum + v, n + 1));
+    let (sum, n) = values.iter().filter(|v| v.is_finite()).fold((0.0, 0u32), |(sum, n), v| (sum + v, n + 1));
     if n == 0 { f64::NAN } else { sum / f64::from(n) }
 }
 

@@ -26,10 +26,8 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         })
         .collect();
     let peak = 1.0 / (sigma * (2.0 * std::f64::consts::PI).sqrt());
-    let normal = (-90..=90)
-        .map(|i| f64::from(i) / 20.0)
-        .map(|z| (z * sigma, peak * (-0.5 * z * z).exp()))
-        .collect();
+    let normal =
+        (-90..=90).map(|i| f64::from(i) / 20.0).map(|z| (z * sigma, peak * (-0.5 * z * z).exp())).collect();
     Some(Figure {
         id: gyro.figure_id("histogram"),
         title: "figure.title.histogram",

@@ -59,10 +59,13 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
             legend: "figure.legend.russian".into(),
         });
         layers
-            .push(Layer::Label { at: (100.0, drift), text: format!("σ₁₀₀ = {} °/h", significant(drift, 3)) });
+            .push(Layer::Label {
+                at: (100.0, drift), text: format!("σ₁₀₀ = {} °/h", significant(drift, 3))
+            });
     }
     if let Some(n) = gyro.identification.angle_random_walk.value {
-        let within = shown.first().is_some_and(|p| p.0 <= 3600.0) && shown.last().is_some_and(|p| p.0 >= 3600.0);
+        let within =
+            shown.first().is_some_and(|p| p.0 <= 3600.0) && shown.last().is_some_and(|p| p.0 >= 3600.0);
         if within {
             layers.push(Layer::Label { at: (3600.0, n), text: format!("N = {} °/√h", significant(n, 3)) });
         }

@@ -71,9 +71,8 @@ fn layers(
             legend: "figure.legend.left_out".into(),
         })
         .collect();
-    let middle = |i: usize| {
-        (envelope.first_index as f64 + (i as f64 + 0.5) * envelope.bin_len as f64 - 0.5) * tau0_s
-    };
+    let middle =
+        |i: usize| (envelope.first_index as f64 + (i as f64 + 0.5) * envelope.bin_len as f64 - 0.5) * tau0_s;
     let range = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.min, b.max)).collect();
     let mean = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.mean)).collect();
     if envelope.bin_len > 1 {

@@ -1,0 +1,35 @@
+//! `sagnac check`: procedures and limits without data.
+
+use super::{CheckArgs, exit, place};
+use crate::procedure::check::{Checked, check, check_report_with};
+use crate::procedure::power::{questions, warnings};
+use crate::procedure::{LimitsFile, Loaded, effective};
+use crate::run::power::warning;
+use std::path::Path;
+
+pub fn main(args: &CheckArgs) -> u8 {
+    let paths: Vec<&Path> = args.files.iter().map(|p| p.as_path()).collect();
+    // Limits files among the arguments are also set against every procedure among them.
+    let limits: Vec<Loaded<LimitsFile>> = paths
+        .iter()
+        .filter_map(|p| match check(p) {
+            Ok(Checked::Limits(l)) => Some(*l),
+            _ => None,
+        })
+        .collect();
+    let report = check_report_with(&paths, None, |procedure, _| {
+        let sets: Vec<Option<&Loaded<LimitsFile>>> =
+            if limits.is_empty() { vec![None] } else { limits.iter().map(Some).collect() };
+        sets.into_iter()
+            .flat_map(|file| {
+                let effective = effective(procedure, file);
+                let asked = questions(&procedure.value, &effective);
+                let mut found = effective.warnings.clone();
+                found.extend(warnings(&asked, procedure, file, warning));
+                found
+            })
+            .collect()
+    });
+    place::print(&report.text);
+    if report.failed > 0 { exit::ERROR } else { exit::PASS }
+}

@@ -1,0 +1,154 @@
+//! `sagnac run`: a procedure on a recording.
+
+use super::progress::Progress;
+use super::{GridArgs, RunArgs, exit, place};
+use crate::estimate::Verdict;
+use crate::noise::tau_grid::TauGrid;
+use crate::output::StagedFolder;
+use crate::procedure::{Loaded, Procedure, effective, load, load_limits};
+use crate::record::{ProcedureRecord, RunRecord, UnitUnderTest};
+use crate::report::{Renderer, render_html, render_markdown, svg};
+use crate::run::{Outcome, Request, execute, failed};
+use crate::text::{Lang, lookup};
+use chrono::Utc;
+use std::path::{Path, PathBuf};
+
+pub fn main(args: &RunArgs) -> u8 {
+    match attempt(args) {
+        Ok(code) => code,
+        Err(message) => {
+            place::complain(&message);
+            exit::ERROR
+        }
+    }
+}
+
+fn attempt(args: &RunArgs) -> Result<u8, String> {
+    let grid = grid(&args.grid)?;
+    // Both files are read before either complains, so that all problems are seen at once.
+    let procedure = load(&args.procedure);
+    let limits = args.limits.as_deref().map(load_limits).transpose();
+    let (procedure, limits) = match (procedure, limits) {
+        (Ok(p), Ok(l)) => (p, l),
+        (p, l) => {
+            let complaints: Vec<String> =
+                [p.err(), l.err()].into_iter().flatten().map(|e| e.to_string()).collect();
+            return Err(complaints.join("\n"));
+        }
+    };
+    let renderer = renderer(args.templates.as_deref())?;
+    let effective = effective(&procedure, limits.as_ref());
+    for warning in procedure.warnings.iter().chain(&effective.warnings) {
+        place::complain(&format!("{warning}\n"));
+    }
+    let now = Utc::now();
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| place::default_folder(&procedure.value.id, args.serial.as_deref(), now));
+    let folder = StagedFolder::begin(&out).map_err(|e| format!("error: {e}\n"))?;
+    let source = crate::ingest::open(&args.recording).map_err(|e| format!("error: {e}\n"))?;
+    let family = limits.as_ref().and_then(|l| l.value.family.clone());
+    let request = Request {
+        kind: "run",
+        procedure: &procedure.value,
+        procedure_record: Some(record_of(&procedure, limits.as_ref().map(Loaded::record))),
+        limits: &effective,
+        source: &source,
+        use_stamps: true,
+        unit: UnitUnderTest {
+            serial: args.serial.clone(),
+            family: procedure.value.unit_under_test.family.clone().or(family),
+            part: procedure.value.unit_under_test.part.clone(),
+            revision: procedure.value.unit_under_test.revision.clone(),
+            lot: None,
+        },
+        operator: args.operator.clone(),
+        station: args.station.clone(),
+        now,
+        taus: grid,
+        exact: args.grid.exact,
+    };
+    finish(&request, folder, &renderer)
+}
+
+/// Runs a request, writes its folder and says what came out; also used by `analyze`.
+pub fn finish(request: &Request<'_>, folder: StagedFolder, renderer: &Renderer) -> Result<u8, String> {
+    let mut progress = Progress::new();
+    let outcome = execute(request, &mut |done, total| progress.update("reading", done, total));
+    progress.finish();
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            let record = failed(request, &error);
+            let outcome = Outcome { record, figures: vec![], tables: vec![] };
+            let place = publish(&outcome, folder, renderer)?;
+            return Err(format!("error: {error}\nThe report says so: {}\n", place.display()));
+        }
+    };
+    let place = publish(&outcome, folder, renderer)?;
+    place::print(&summary(&outcome.record, &place));
+    Ok(match outcome.record.verdict {
+        Verdict::None | Verdict::Pass => exit::PASS,
+        Verdict::Fail => exit::FAIL,
+        Verdict::Indeterminate => exit::INDETERMINATE,
+        Verdict::Error => exit::ERROR,
+    })
+}
+
+fn publish(outcome: &Outcome, folder: StagedFolder, renderer: &Renderer) -> Result<PathBuf, String> {
+    let say = |e: &dyn std::fmt::Display| format!("error: {e}\n");
+    let json = serde_json::to_vec_pretty(&outcome.record).map_err(|e| say(&e))?;
+    let html = render_html(&outcome.record, &outcome.figures, Lang::En, renderer).map_err(|e| say(&e))?;
+    let markdown =
+        render_markdown(&outcome.record, &outcome.figures, Lang::En, renderer).map_err(|e| say(&e))?;
+    let write = |name: &str, bytes: &[u8]| folder.write(name, bytes).map_err(|e| say(&e));
+    write("result.json", &json)?;
+    write("report.html", html.as_bytes())?;
+    write("report.md", markdown.as_bytes())?;
+    for (name, table) in &outcome.tables {
+        write(name, table.as_bytes())?;
+    }
+    for figure in &outcome.figures {
+        write(&format!("figures/{}.svg", figure.id), svg::render(figure, Lang::En).as_bytes())?;
+    }
+    folder.publish().map_err(|e| say(&e))
+}
+
+/// The outcome in a few lines for the terminal.
+fn summary(record: &RunRecord, place: &Path) -> String {
+    let word = |key: String| lookup(Lang::En, &key).map_or(key.clone(), str::to_owned);
+    let mut out = format!("{}\n", word(format!("verdict.{}", record.verdict.id())).to_uppercase());
+    for note in &record.summary {
+        out.push_str(&format!("  {}\n", note.say(Lang::En)));
+    }
+    out.push_str(&format!("{}\n", place.join("report.html").display()));
+    out
+}
+
+fn record_of(loaded: &Loaded<Procedure>, limits: Option<crate::record::LimitsFile>) -> ProcedureRecord {
+    let p = &loaded.value;
+    ProcedureRecord {
+        id: p.id.clone(),
+        title: p.report.title.clone().unwrap_or_else(|| p.title.clone()),
+        revision: p.revision.clone(),
+        standard: p.standard.clone(),
+        clause: p.clause.clone(),
+        author: p.author.clone(),
+        path: loaded.path.clone(),
+        sha256: loaded.sha256.clone(),
+        limits,
+    }
+}
+
+/// The averaging times asked for on the command line.
+pub fn grid(args: &GridArgs) -> Result<Option<TauGrid>, String> {
+    args.taus.as_deref().map(str::parse).transpose().map_err(|e| format!("error: --taus: {e}\n"))
+}
+
+/// The renderer with the user's templates, if any.
+pub fn renderer(templates: Option<&Path>) -> Result<Renderer, String> {
+    templates
+        .map_or_else(|| Ok(Renderer::new()), Renderer::with_overrides)
+        .map_err(|e| format!("error: {e}\n"))
+}

@@ -1,0 +1,272 @@
+//! From a recording to the outcome.
+
+use super::pass::{Collected, HeldKey, Inside, Overview};
+use super::{Outcome, Request, RunError, figures, power, settle, sigma_tau, verdict, warm_up};
+use crate::condition::temperature_track::TemperatureFacts;
+use crate::condition::{Facts, WarmUpFact, judge_all};
+use crate::figure::Figure;
+use crate::ingest::{Source, StreamReport, TimeBaseSpec, prepare};
+use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
+use crate::noise::envelope::Envelope;
+use crate::noise::evidence::{Evidence, Mask};
+use crate::noise::family::Estimator;
+use crate::noise::identify::{Identify, Whittle};
+use crate::noise::lines::find_lines;
+use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
+use crate::noise::tau_grid::TauGrid;
+use crate::procedure::Procedure;
+use crate::procedure::model::{EarthRate, Taus};
+use crate::record::Window;
+use crate::recording::Channel;
+use crate::recording::window::{WindowSpec, Windowed};
+use std::collections::BTreeMap;
+
+/// Everything that was found, before verdicts.
+pub(super) struct Found {
+    pub channels: Vec<Channel>,
+    pub report: StreamReport,
+    pub tau0_s: f64,
+    pub window: Window,
+    pub gyros: Vec<GyroEvidence>,
+    pub held: BTreeMap<HeldKey, TemperatureFacts>,
+    pub envelopes: BTreeMap<usize, Envelope>,
+    pub grid: TauGrid,
+    pub exact: bool,
+}
+
+pub(super) fn execute(
+    request: &Request<'_>,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Outcome, RunError> {
+    let found = collect(request, progress)?;
+    let procedure = request.procedure;
+    let warm_up: Vec<WarmUpFact> = found
+        .gyros
+        .iter()
+        .filter_map(|g| warm_up::fact(g, static_bias::uncertainty(g, true).standard()))
+        .collect();
+    let longest_gap_s = found
+        .window
+        .excluded
+        .iter()
+        .filter(|s| s.reason == "gap")
+        .map(|s| s.to_s - s.from_s)
+        .fold(0.0, f64::max);
+    let conditions = judge_all(&Facts {
+        procedure,
+        integrity: &found.report.integrity,
+        rows: found.report.rows,
+        sample_interval_s: found.tau0_s,
+        has_stamps: request.use_stamps
+            && found.channels.iter().any(|c| c.role == crate::recording::Role::Time),
+        usable_s: found.window.usable_s,
+        longest_gap_s,
+        held: &found.held,
+        warm_up: if request.kind == "run" { &warm_up } else { &[] },
+        today: request.now.date_naive(),
+    });
+    let rows = measure(request, &found);
+    let drawn = draw(request, &found);
+    let tables = found
+        .gyros
+        .iter()
+        .map(|g| {
+            let name =
+                if g.several { format!("sigma_tau_{}.csv", g.channel) } else { "sigma_tau.csv".into() };
+            (name, sigma_tau::csv(g))
+        })
+        .collect();
+    let powers = power::records(request.limits, &found.gyros);
+    let record = settle::record(request, &found, conditions, rows, powers, &drawn);
+    Ok(Outcome { record, figures: drawn, tables })
+}
+
+fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<Found, RunError> {
+    let procedure = request.procedure;
+    let channels = channels(procedure, request.source);
+    if !channels.iter().any(|c| c.role.is_gyro()) {
+        return Err(RunError::Nothing(format!(
+            "{}: no column with a gyro output was found; name it with --rate or in the procedure",
+            request.source.path().display()
+        )));
+    }
+    let spec =
+        TimeBaseSpec { declared_sample_rate_hz: procedure.sample_rate_hz, use_stamps: request.use_stamps };
+    let plan = prepare(request.source, &channels, spec)?;
+    let nominal_s = plan.clock().interval_s;
+    let grid = request.taus.clone().unwrap_or_else(|| match &procedure.analysis.taus {
+        Taus::Octave => TauGrid::Octave,
+        Taus::Decade => TauGrid::Decade,
+        Taus::All => TauGrid::All,
+        Taus::List(taus) => TauGrid::List(taus.clone()),
+    });
+    grid.check(tidy(nominal_s))?;
+    let exact = request.exact || procedure.analysis.exact;
+    let estimators = Estimator::ALL;
+    let mut overview = Overview::new(&channels);
+    let inside = Inside::new(procedure, &channels, &grid, estimators, exact, tidy(nominal_s), plan.start_s());
+    let window = WindowSpec {
+        from_s: procedure.conditions.warm_up_s,
+        to_s: None,
+        exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
+    };
+    let mut windowed = Windowed::new(inside, window, plan.start_s(), nominal_s);
+    let report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
+    let (inside, window) = windowed.finish();
+    let Collected { gyros, held } = inside.finish();
+    let tau0_s = tidy(report.tau0_measured_s);
+    let several = gyros.len() > 1;
+    let gyros: Vec<GyroEvidence> = gyros
+        .into_iter()
+        .filter_map(|(slot, digest, octaves)| {
+            let channel = channels.get(slot)?.id.clone();
+            Some(evidence(procedure, channel, several, tau0_s, digest, octaves))
+        })
+        .collect();
+    if gyros.iter().all(|g| g.digest.samples < 2) {
+        return Err(RunError::Nothing(format!(
+            "{}: no usable sample is left after the warm-up of {} s and the exclusions",
+            request.source.path().display(),
+            procedure.conditions.warm_up_s
+        )));
+    }
+    let envelopes = overview.finish();
+    Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact })
+}
+
+/// A measured interval without the rounding of its last digits: 0.001 and not 0.00100000000003.
+fn tidy(interval_s: f64) -> f64 {
+    format!("{interval_s:.9e}").parse().unwrap_or(interval_s)
+}
+
+/// The channels to read: those of the procedure, without optional ones that the file lacks.
+fn channels(procedure: &Procedure, source: &Source) -> Vec<Channel> {
+    procedure
+        .channels
+        .iter()
+        .filter(|c| c.required || source.resolve(&c.channel.column).is_ok())
+        .map(|c| c.channel.clone())
+        .collect()
+}
+
+fn evidence(
+    procedure: &Procedure,
+    channel: String,
+    several: bool,
+    tau0_s: f64,
+    digest: crate::noise::digest::RateDigest,
+    octaves: Option<crate::noise::allan::DeviationSet>,
+) -> GyroEvidence {
+    let lines = find_lines(&digest.welch.spectrum, tau0_s, procedure.analysis.line_false_alarm).lines;
+    // A line fills the main lobe of the window: two bins to each side.
+    let masks: Vec<Mask> = lines
+        .iter()
+        .map(|l| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz })
+        .collect();
+    let spectral = Evidence::new(&digest.blocks, Some(&digest.welch.spectrum), tau0_s, &masks);
+    let identification = Whittle::default().identify(&channel, &spectral);
+    let model = &identification.supported;
+    let sigma_tau = sigma_tau::allan_points(&digest.deviations, model, tau0_s);
+    let octaves =
+        octaves.map_or_else(|| sigma_tau.clone(), |set| sigma_tau::allan_points(&set, model, tau0_s));
+    let longest_stretch_s = digest.deviations.stretches.longest() as f64 * tau0_s;
+    let earth = procedure.site.as_ref().map(|site| {
+        let o = site.orientation_of(&channel);
+        let uncertain = |value, uncertainty| Uncertain { value, uncertainty };
+        let rate = earth_rate(&Orientation {
+            latitude_deg: uncertain(site.latitude_deg, site.latitude_uncertainty_deg),
+            heading_deg: uncertain(o.heading_deg, o.heading_uncertainty_deg),
+            elevation_deg: uncertain(o.elevation_deg, o.elevation_uncertainty_deg),
+        });
+        Earth { rate_deg_h: rate.value, uncertainty_deg_h: rate.uncertainty }
+    });
+    GyroEvidence {
+        channel,
+        several,
+        tau0_s,
+        longest_stretch_s,
+        digest,
+        sigma_tau,
+        octaves,
+        identification,
+        lines,
+        earth,
+    }
+}
+
+fn measure(request: &Request<'_>, found: &Found) -> Vec<crate::record::MeasurandRecord> {
+    let mut rows = Vec::new();
+    for spec in &request.procedure.measurands {
+        for gyro in &found.gyros {
+            if spec.channel.as_ref().is_some_and(|c| *c != gyro.channel) {
+                continue;
+            }
+            let options = Options { remove_earth_rate: spec.earth_rate == EarthRate::Remove };
+            if let Some(estimate) = crate::measurand::evaluate(spec.id.id, gyro, &options) {
+                rows.push(verdict::row(&estimate, request.limits, request.procedure));
+            }
+        }
+    }
+    rows
+}
+
+fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
+    let wanted =
+        |id: &str| request.procedure.report.figures.as_ref().is_none_or(|list| list.iter().any(|f| *f == id));
+    let mut drawn = Vec::new();
+    let time_series_wanted = wanted("rate") || wanted("temperature");
+    for gyro in &found.gyros {
+        let slot = found.channels.iter().position(|c| c.id == gyro.channel);
+        if let Some(envelope) = slot.and_then(|s| found.envelopes.get(&s)).filter(|_| time_series_wanted) {
+            let below = if wanted("temperature") { below(request.procedure, found) } else { vec![] };
+            drawn.push(figures::time_series::figure(
+                gyro.figure_id("time_series"),
+                gyro.figure_channel(),
+                envelope,
+                &below,
+                &found.window,
+                found.tau0_s,
+            ));
+        }
+        if wanted("sigma_tau") {
+            let limit = |id: &str| request.limits.limit(id, &gyro.channel).map(|l| &l.limit);
+            drawn.push(figures::sigma_tau::figure(
+                gyro,
+                limit("russian_drift_100s"),
+                limit("bias_instability_minimum"),
+            ));
+        }
+        let optional = [
+            ("spectrum", figures::spectrum::figure as fn(&GyroEvidence) -> Option<Figure>),
+            ("autocorrelation", figures::autocorrelation::figure),
+            ("histogram", figures::histogram::figure),
+        ];
+        drawn.extend(optional.into_iter().filter(|(id, _)| wanted(id)).filter_map(|(_, f)| f(gyro)));
+    }
+    drawn
+}
+
+/// The other channels drawn under the rate, with the bands that they must keep.
+fn below<'a>(procedure: &Procedure, found: &'a Found) -> Vec<figures::time_series::Below<'a>> {
+    use crate::recording::Role;
+    let mut list = Vec::new();
+    for (slot, channel) in found.channels.iter().enumerate() {
+        let Some(envelope) = found.envelopes.get(&slot) else { continue };
+        let (label, unit, legend, limits) = match channel.role {
+            Role::Temperature => {
+                let condition = procedure.conditions.temperatures.iter().find(|c| c.channel == channel.id);
+                let limits = condition
+                    .map(|c| (c.nominal_deg_c - c.tolerance_deg_c, c.nominal_deg_c + c.tolerance_deg_c));
+                ("axis.temperature", "degC", "figure.legend.temperature", limits)
+            }
+            Role::Supply => {
+                let condition = procedure.conditions.supplies.iter().find(|c| c.channel == channel.id);
+                let limits = condition.map(|c| (c.nominal_v - c.tolerance_v, c.nominal_v + c.tolerance_v));
+                ("axis.supply", "V", "figure.legend.supply", limits)
+            }
+            _ => continue,
+        };
+        list.push(figures::time_series::Below { envelope, label, unit, legend, limits });
+    }
+    list
+}

@@ -1,0 +1,95 @@
+//! A procedure applied to a recording: one pass, then conditions, measurands, verdicts, figures.
+//!
+//! Clock, host and people are passed in; the outcome is a pure function of the inputs.
+
+pub mod analysis;
+mod evaluate;
+pub mod figures;
+pub mod inspect;
+mod pass;
+pub mod power;
+mod settle;
+mod sigma_tau;
+mod verdict;
+mod warm_up;
+
+use crate::figure::Figure;
+use crate::ingest::{IngestError, Source};
+use crate::noise::tau_grid::{TauGrid, TauGridError};
+use crate::procedure::{EffectiveLimits, Procedure};
+use crate::record::{ProcedureRecord, RunRecord, Session, UnitUnderTest};
+use chrono::{DateTime, Utc};
+
+/// What is to be run.
+pub struct Request<'a> {
+    /// `run` or `analyze`.
+    pub kind: &'static str,
+    /// The procedure.
+    pub procedure: &'a Procedure,
+    /// Its identity; `None` for an analysis without a procedure.
+    pub procedure_record: Option<ProcedureRecord>,
+    /// Limits, references and typical values that hold.
+    pub limits: &'a EffectiveLimits,
+    /// The recording.
+    pub source: &'a Source,
+    /// False: go by the declared sample rate and leave the stamps.
+    pub use_stamps: bool,
+    /// The unit.
+    pub unit: UnitUnderTest,
+    /// Who and where; when is `now`.
+    pub operator: Option<String>,
+    /// Station.
+    pub station: Option<String>,
+    /// When the evaluation runs.
+    pub now: DateTime<Utc>,
+    /// Averaging times; `None`: those of the procedure.
+    pub taus: Option<TauGrid>,
+    /// Sum every term at any length.
+    pub exact: bool,
+}
+
+/// What a run gives.
+pub struct Outcome {
+    /// The result.
+    pub record: RunRecord,
+    /// Figures in the order of the report.
+    pub figures: Vec<Figure>,
+    /// Tables: file name and contents.
+    pub tables: Vec<(String, String)>,
+}
+
+/// Why a recording could not be evaluated.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The recording could not be read.
+    #[error("{0}")]
+    Ingest(#[from] IngestError),
+    /// The averaging times do not suit the sample interval.
+    #[error("{0}")]
+    TauGrid(#[from] TauGridError),
+    /// There is nothing to evaluate.
+    #[error("{0}")]
+    Nothing(String),
+}
+
+/// Runs a procedure on a recording. `progress` is told bytes read and bytes in all.
+///
+/// # Errors
+/// [`RunError`] when there is nothing to evaluate. Everything else, a missing serial number included, is a verdict.
+pub fn execute(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<Outcome, RunError> {
+    evaluate::execute(request, progress)
+}
+
+/// The record of a run whose recording could not be evaluated: the verdict is `error`, and the reason stands in it, so
+/// that no earlier report survives a failed run.
+pub fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
+    settle::failed(request, error)
+}
+
+fn session(request: &Request<'_>) -> Session {
+    Session {
+        operator: request.operator.clone(),
+        station: request.station.clone(),
+        evaluated_at: request.now.to_rfc3339_opts(chrono::SecondsFormat::Secs, true),
+    }
+}

@@ -1,0 +1,212 @@
+//! Puts everything that was found into the run record.
+
+use super::evaluate::Found;
+use super::{Request, RunError, session, verdict};
+use crate::estimate::Verdict;
+use crate::figure::Figure;
+use crate::ingest::IngestError;
+use crate::measurand::GyroEvidence;
+use crate::record::{
+    ColumnRecord, ConditionRecord, ConditionStatus, FigureRecord, InstrumentRecord, Integrity, LineRecord,
+    MeasurandRecord, NoiseModelRecord, OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile,
+    RunRecord, Window,
+};
+use crate::text::Note;
+
+pub(super) fn record(
+    request: &Request<'_>,
+    found: &Found,
+    conditions: Vec<ConditionRecord>,
+    rows: Vec<MeasurandRecord>,
+    power: Vec<PowerRecord>,
+    figures: &[Figure],
+) -> RunRecord {
+    let errors = errors(request);
+    let (verdict, summary) = verdict::whole(&rows, &conditions, &errors);
+    RunRecord {
+        verdict,
+        summary,
+        recording: vec![recording(request, found)],
+        conditions,
+        integrity: found.report.integrity.clone(),
+        window: found.window.clone(),
+        measurands: rows,
+        lines: found.gyros.iter().flat_map(lines).collect(),
+        noise_models: found.gyros.iter().map(noise_model).collect(),
+        power,
+        options: options(request, found),
+        figures: figures
+            .iter()
+            .map(|f| FigureRecord { id: f.id.clone(), file: format!("figures/{}.svg", f.id) })
+            .collect(),
+        errors,
+        ..blank(request)
+    }
+}
+
+pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
+    let mut errors = errors(request);
+    errors.push(match error {
+        RunError::Ingest(e) => ingest_note(e),
+        other => Note::new("error.not_evaluated").with("reason", other.to_string()),
+    });
+    RunRecord {
+        verdict: Verdict::Error,
+        summary: errors.clone(),
+        recording: vec![RecordingFile {
+            path: request.source.path().display().to_string(),
+            sha256: crate::ingest::compressed::digest(request.source.path())
+                .map(|d| d.sha256)
+                .unwrap_or_default(),
+            bytes: request.source.bytes(),
+            samples: 0,
+            sample_interval_s: 0.0,
+            start: None,
+            duration_s: 0.0,
+            columns: vec![],
+        }],
+        errors,
+        ..blank(request)
+    }
+}
+
+fn ingest_note(e: &IngestError) -> Note {
+    Note::new("error.not_evaluated").with("reason", e.to_string())
+}
+
+fn errors(request: &Request<'_>) -> Vec<Note> {
+    let serial = request.unit.serial.as_deref().map(str::trim).filter(|s| !s.is_empty());
+    if request.procedure.unit_under_test.serial_required && request.kind == "run" && serial.is_none() {
+        return vec![Note::new("error.serial_missing")];
+    }
+    vec![]
+}
+
+/// The record with what is known before the recording is read.
+fn blank(request: &Request<'_>) -> RunRecord {
+    let procedure = request.procedure;
+    let today = request.now.date_naive();
+    let serial = request.unit.serial.as_deref();
+    RunRecord {
+        format: RESULT_FORMAT,
+        program: Program { name: "sagnac", version: env!("CARGO_PKG_VERSION").to_owned() },
+        kind: request.kind,
+        procedure: request.procedure_record.clone(),
+        unit_under_test: request.unit.clone(),
+        session: session(request),
+        recording: vec![],
+        verdict: Verdict::None,
+        summary: vec![],
+        conditions: vec![],
+        integrity: Integrity::default(),
+        window: Window::default(),
+        measurands: vec![],
+        lines: vec![],
+        noise_models: vec![],
+        power: vec![],
+        instruments: procedure
+            .instruments
+            .iter()
+            .map(|i| InstrumentRecord {
+                name: i.name.clone(),
+                serial: i.serial.clone(),
+                calibration_due: i.calibration_due.map(|d| d.to_string()),
+                status: match i.calibration_due {
+                    Some(due) if due >= today => ConditionStatus::Ok,
+                    _ if i.required => ConditionStatus::Invalid,
+                    _ => ConditionStatus::Remark,
+                },
+            })
+            .collect(),
+        waivers: procedure
+            .waivers
+            .iter()
+            .filter(|w| Some(w.serial.as_str()) == serial)
+            .map(|w| w.record.clone())
+            .collect(),
+        clauses: procedure.clauses.clone(),
+        options: vec![],
+        figures: vec![],
+        errors: vec![],
+    }
+}
+
+fn recording(request: &Request<'_>, found: &Found) -> RecordingFile {
+    let report = &found.report;
+    RecordingFile {
+        path: request.source.path().display().to_string(),
+        sha256: report.facts.sha256.clone(),
+        bytes: report.facts.bytes,
+        samples: report.rows,
+        sample_interval_s: found.tau0_s,
+        start: report.start.clone(),
+        duration_s: report.duration_s,
+        columns: report
+            .channels
+            .iter()
+            .map(|c| ColumnRecord {
+                name: c.column.clone(),
+                channel: c.id.clone(),
+                role: c.role.id().to_owned(),
+                unit: c.unit.clone(),
+            })
+            .collect(),
+    }
+}
+
+fn lines(gyro: &GyroEvidence) -> Vec<LineRecord> {
+    gyro.lines
+        .iter()
+        .map(|l| LineRecord {
+            channel: gyro.channel.clone(),
+            frequency_hz: l.frequency_hz,
+            resolution_hz: l.resolution_hz,
+            amplitude_deg_h: l.amplitude_deg_h,
+            excess: l.excess,
+            false_alarm_probability: l.false_alarm_probability,
+        })
+        .collect()
+}
+
+fn noise_model(gyro: &GyroEvidence) -> NoiseModelRecord {
+    let id = &gyro.identification;
+    let model = &id.supported;
+    NoiseModelRecord {
+        channel: gyro.channel.clone(),
+        method: id.method.to_owned(),
+        terms: id.claimed.iter().map(|t| t.id().to_owned()).collect(),
+        angle_random_walk: model.n,
+        bias_instability: model.b,
+        rate_random_walk: model.k,
+        rate_ramp: model.r,
+        quantization: model.q,
+        misfit: id.misfit.per_dof,
+        misfit_probability: id.misfit.probability,
+        misfit_band_hz: id.misfit.worst_band_hz.filter(|_| id.misfit.worst_probability < 0.01),
+    }
+}
+
+fn options(request: &Request<'_>, found: &Found) -> Vec<OptionRecord> {
+    let procedure = request.procedure;
+    let option = |name: &str, value: String| OptionRecord { name: name.to_owned(), value };
+    vec![
+        option("analysis.taus", describe_grid(&found.grid)),
+        option("analysis.exact", found.exact.to_string()),
+        option("analysis.line_false_alarm", procedure.analysis.line_false_alarm.to_string()),
+        option("conditions.warm_up", format!("{} s", procedure.conditions.warm_up_s)),
+        option("recording.use_stamps", request.use_stamps.to_string()),
+    ]
+}
+
+fn describe_grid(grid: &crate::noise::tau_grid::TauGrid) -> String {
+    use crate::noise::tau_grid::TauGrid;
+    match grid {
+        TauGrid::Octave => "octave".into(),
+        TauGrid::Decade => "decade".into(),
+        TauGrid::All => "all".into(),
+        TauGrid::List(taus) => {
+            let taus: Vec<String> = taus.iter().map(|t| format!("{t} s")).collect();
+            taus.join(", ")
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Rows with their limits, and the verdict of the whole.
+
+use crate::estimate::{Estimate, Verdict, judge};
+use crate::procedure::{EffectiveLimits, Procedure};
+use crate::record::{ConditionRecord, ConditionStatus, LimitRecord, MeasurandRecord};
+use crate::text::Note;
+
+/// Judges one estimate.
+pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure) -> MeasurandRecord {
+    let limit = limits.limit(estimate.id, &estimate.channel).map(|l| &l.limit);
+    let judgement = limit.map(|l| judge(estimate, l));
+    let reference = limits
+        .reference(estimate.id, &estimate.channel)
+        .filter(|_| procedure.report.show_reference)
+        .map(|r| r.record.clone());
+    MeasurandRecord {
+        id: estimate.id.to_owned(),
+        channel: estimate.channel.clone(),
+        value: estimate.value,
+        unit: estimate.unit.to_owned(),
+        interval: estimate.interval95(),
+        identifiable: estimate.value.is_some(),
+        upper_limit: estimate.upper_limit,
+        method: estimate.method.to_owned(),
+        limit: limit.zip(judgement.as_ref()).map(|(l, j)| LimitRecord::new(l, estimate.unit, j)),
+        reference,
+        verdict: judgement.as_ref().map_or(Verdict::None, |j| j.verdict),
+        margin: judgement.as_ref().and_then(|j| j.margin),
+        specific_risk: judgement.as_ref().and_then(|j| j.specific_risk),
+        notes: estimate.notes.clone(),
+    }
+}
+
+/// The verdict of the whole and the reasons for it.
+///
+/// Worst wins; an invalid condition makes the whole indeterminate, whatever the rows say, for a test that was not done
+/// right neither passes nor fails a unit; an error stays an error.
+pub fn whole(
+    rows: &[MeasurandRecord],
+    conditions: &[ConditionRecord],
+    errors: &[Note],
+) -> (Verdict, Vec<Note>) {
+    if !errors.is_empty() {
+        return (Verdict::Error, errors.to_vec());
+    }
+    let invalid: Vec<&ConditionRecord> =
+        conditions.iter().filter(|c| c.status == ConditionStatus::Invalid).collect();
+    let judged = rows.iter().filter(|r| r.verdict != Verdict::None).count();
+    let of = |v: Verdict| rows.iter().filter(move |r| r.verdict == v);
+    let mut reasons: Vec<Note> = invalid
+        .iter()
+        .map(|c| {
+            let why = c.message.as_ref().map(|m| m.say(crate::text::Lang::En)).unwrap_or_default();
+            Note::new("summary.condition_invalid").with("condition", c.id.clone()).with("why", why)
+        })
+        .collect();
+    for (verdict, key) in
+        [(Verdict::Fail, "summary.row_failed"), (Verdict::Indeterminate, "summary.row_indeterminate")]
+    {
+        for r in of(verdict) {
+            let key = if verdict == Verdict::Indeterminate && r.value.is_none() {
+                "summary.row_not_shown"
+            } else {
+                key
+            };
+            reasons.push(Note::new(key).with("measurand", r.id.clone()).with("channel", r.channel.clone()));
+        }
+    }
+    let worst = rows.iter().map(|r| r.verdict).max().unwrap_or(Verdict::None);
+    let verdict = if invalid.is_empty() { worst } else { Verdict::Indeterminate };
+    match verdict {
+        Verdict::Pass => reasons.push(Note::new("summary.all_passed").with("n", judged)),
+        Verdict::None => reasons.push(Note::new("summary.no_limits")),
+        _ => {}
+    }
+    (verdict, reasons)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(verdict: Verdict) -> MeasurandRecord {
+        MeasurandRecord {
+            id: "static_bias".into(),
+            channel: "rate".into(),
+            value: Some(1.0),
+            unit: "deg/h".into(),
+            interval: None,
+            identifiable: true,
+            upper_limit: None,
+            method: "mean".into(),
+            limit: None,
+            reference: None,
+            verdict,
+            margin: None,
+            specific_risk: None,
+            notes: vec![],
+        }
+    }
+
+    fn condition(status: ConditionStatus) -> ConditionRecord {
+        ConditionRecord {
+            id: "temperature".into(),
+            status,
+            observed: Default::default(),
+            required: String::new(),
+            note: String::new(),
+            message: None,
+        }
+    }
+
+    #[test]
+    fn worst_wins_and_an_invalid_condition_neither_passes_nor_fails() {
+        let ok = [condition(ConditionStatus::Ok), condition(ConditionStatus::Remark)];
+        let bad = [condition(ConditionStatus::Invalid)];
+        let rows = |v: &[Verdict]| v.iter().map(|v| row(*v)).collect::<Vec<_>>();
+        use Verdict::{Error, Fail, Indeterminate, None, Pass};
+        assert_eq!(whole(&rows(&[Pass, None]), &ok, &[]).0, Pass);
+        assert_eq!(whole(&rows(&[Pass, Indeterminate]), &ok, &[]).0, Indeterminate);
+        assert_eq!(whole(&rows(&[Pass, Indeterminate, Fail]), &ok, &[]).0, Fail);
+        assert_eq!(whole(&rows(&[None]), &ok, &[]).0, None);
+        assert_eq!(whole(&rows(&[Pass]), &bad, &[]).0, Indeterminate);
+        assert_eq!(whole(&rows(&[Fail]), &bad, &[]).0, Indeterminate);
+        assert_eq!(whole(&rows(&[Pass]), &ok, &[Note::new("error.serial_missing")]).0, Error);
+    }
+}

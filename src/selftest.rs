@@ -1,0 +1,212 @@
+//! Published oracles re-run on this machine: what a QA auditor files with the report.
+
+use crate::estimate::{Spread, chi_square_quantile, normal_quantile};
+use crate::noise::allan::{AllanAccumulator, AllanPlan};
+use crate::noise::data::NoiseType;
+use crate::noise::family::Estimator;
+use crate::noise::model::{NoiseModel, unit_allan_variance};
+use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
+use crate::noise::tau_grid::TauGrid;
+use crate::noise::windows::edf_of_window_std;
+use crate::units::Unit;
+
+/// One oracle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// What is computed.
+    pub name: String,
+    /// Where the number was published.
+    pub source: &'static str,
+    /// Published value.
+    pub published: f64,
+    /// Value computed here.
+    pub computed: f64,
+    /// Largest relative difference allowed: half a unit in the last digit published, or as stated there.
+    pub tolerance: f64,
+}
+
+impl Check {
+    /// Relative difference.
+    pub fn difference(&self) -> f64 {
+        (self.computed / self.published - 1.0).abs()
+    }
+
+    /// True when the difference is within the tolerance.
+    pub fn passed(&self) -> bool {
+        self.difference() <= self.tolerance
+    }
+}
+
+/// All oracles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SelfTest {
+    /// One by one.
+    pub checks: Vec<Check>,
+}
+
+impl SelfTest {
+    /// True when all passed.
+    pub fn passed(&self) -> bool {
+        self.checks.iter().all(Check::passed)
+    }
+
+    /// A table for the QA file.
+    pub fn text(&self) -> String {
+        let mut out = format!(
+            "sagnac {} self-test on {} {}\n\n{:<52} {:>16} {:>20} {:>9} {:>9}  source\n",
+            env!("CARGO_PKG_VERSION"),
+            std::env::consts::OS,
+            std::env::consts::ARCH,
+            "quantity",
+            "published",
+            "computed",
+            "rel.diff",
+            "allowed"
+        );
+        for c in &self.checks {
+            out.push_str(&format!(
+                "{:<52} {:>16} {:>20.12} {:>9.1e} {:>9.1e}  {}{}\n",
+                c.name,
+                c.published,
+                c.computed,
+                c.difference(),
+                c.tolerance,
+                c.source,
+                if c.passed() { "" } else { "  DIFFERS" }
+            ));
+        }
+        let failed = self.checks.iter().filter(|c| !c.passed()).count();
+        out.push_str(&format!("\n{} checks, {failed} differ\n", self.checks.len()));
+        out
+    }
+}
+
+/// The nine values of NIST SP 1065 table 30.
+const NINE: [f64; 9] = [892.0, 809.0, 823.0, 798.0, 671.0, 644.0, 883.0, 903.0, 677.0];
+
+/// The 1000-point suite of NIST SP 1065 section 12.4.
+fn thousand() -> Vec<f64> {
+    let mut n: u64 = 1_234_567_890;
+    (0..1000)
+        .map(|_| {
+            let value = n as f64 / 2_147_483_647.0;
+            n = 16_807 * n % 2_147_483_647;
+            value
+        })
+        .collect()
+}
+
+fn deviation(values: &[f64], m: u64, estimator: Estimator) -> f64 {
+    let mut accumulator = AllanAccumulator::new(AllanPlan {
+        tau0_s: 1.0,
+        grid: TauGrid::List(vec![m as f64]),
+        exact: true,
+        estimators: vec![estimator],
+    });
+    accumulator.push(values, 0, false);
+    let set = accumulator.finish();
+    set.curve(estimator).and_then(|c| c.points.first()).map_or(f64::NAN, |p| p.deviation)
+}
+
+/// Runs every oracle.
+pub fn run() -> SelfTest {
+    const SP1065: &str = "NIST SP 1065";
+    let mut checks = Vec::new();
+    let mut add = |name: String, source, published: f64, computed: f64, tolerance: f64| {
+        checks.push(Check { name, source, published, computed, tolerance });
+    };
+    let thousand = thousand();
+    let family = [
+        (
+            Estimator::Allan,
+            "overlapping Allan deviation",
+            [91.22945, 85.95287],
+            [2.922319e-1, 9.159953e-2, 3.241343e-2],
+        ),
+        (
+            Estimator::Modified,
+            "modified Allan deviation",
+            [91.22945, 74.78849],
+            [2.922319e-1, 6.172376e-2, 2.170921e-2],
+        ),
+        (
+            Estimator::Hadamard,
+            "overlapping Hadamard deviation",
+            [70.80607, 85.61487],
+            [2.943883e-1, 9.581083e-2, 3.237638e-2],
+        ),
+        (Estimator::Total, "total deviation", [91.22945, 93.90379], [2.922319e-1, 9.134743e-2, 3.406530e-2]),
+    ];
+    for (estimator, name, nine, suite) in family {
+        for (m, value) in [1, 2].into_iter().zip(nine) {
+            add(format!("{name}, 9 points, m = {m}"), SP1065, value, deviation(&NINE, m, estimator), 1e-7);
+        }
+        for (m, value) in [1, 10, 100].into_iter().zip(suite) {
+            add(
+                format!("{name}, 1000 points, m = {m}"),
+                SP1065,
+                value,
+                deviation(&thousand, m, estimator),
+                3e-7,
+            );
+        }
+    }
+    let white = NoiseModel { n: 1.0, ..NoiseModel::default() };
+    for (n, published) in [(36, 11.4), (100, 18.3), (360, 29.5), (864, 38.8)] {
+        let flicker = NoiseModel { b: 1.0, ..NoiseModel::default() };
+        let edf = edf_of_window_std(n, 100.0, |t| flicker.mean_variance(t)).unwrap_or(f64::NAN);
+        add(format!("degrees of freedom of {n} means, flicker"), "quadratic form", published, edf, 5e-3);
+    }
+    add(
+        "σ of 100-s means over N, white noise".into(),
+        "closed form",
+        6.0,
+        white.mean_variance(100.0).sqrt(),
+        1e-12,
+    );
+    add(
+        "flicker floor over B".into(),
+        "IEEE Std 952 annex C",
+        0.6642824703,
+        unit_allan_variance(NoiseType::Flicker, 1.0).sqrt(),
+        1e-10,
+    );
+    add(
+        "χ² quantile, p = 0.975, 10 degrees".into(),
+        "NIST/SEMATECH handbook",
+        20.483,
+        chi_square_quantile(0.975, 10.0),
+        3e-5,
+    );
+    add("normal quantile, p = 0.95".into(), "ISO 14253-1", 1.645, normal_quantile(0.95), 1e-4);
+    let guard = Spread::Normal { standard_uncertainty: 1.0 }.bound(0.0, 0.95).unwrap_or(f64::NAN);
+    add("guard band of 5 % risk over u".into(), "ISO 14253-1", 1.645, guard, 1e-4);
+    let exact = |value| Uncertain { value, uncertainty: 0.0 };
+    let vertical =
+        Orientation { latitude_deg: exact(56.0), heading_deg: exact(0.0), elevation_deg: exact(90.0) };
+    let north = Orientation { elevation_deg: exact(0.0), ..vertical };
+    add(
+        "Earth rate, vertical axis at 56°, deg/h".into(),
+        "geometry",
+        12.47,
+        earth_rate(&vertical).value,
+        5e-4,
+    );
+    add("Earth rate, north axis at 56°, deg/h".into(), "geometry", 8.41, earth_rate(&north).value, 6e-4);
+    let factor = |a: &str, b: &str| {
+        Unit::parse(a).and_then(|a| Unit::parse(b).and_then(|b| a.factor_to(&b))).unwrap_or(f64::NAN)
+    };
+    add("rad/s in deg/h".into(), "definition", 206_264.806_247_096_36, factor("rad/s", "deg/h"), 1e-14);
+    add("arcsec/s in deg/h".into(), "definition", 1.0, factor("arcsec/s", "deg/h"), 1e-15);
+    SelfTest { checks }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn every_oracle_is_met() {
+        let result = super::run();
+        assert!(result.checks.len() > 30);
+        assert!(result.passed(), "{}", result.text());
+    }
+}
