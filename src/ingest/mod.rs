@@ -404,3 +404,6 @@ impl Source {
         Ok(facts)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -468,3 +468,7 @@ pub fn stream_path(
 ) -> Result<StreamReport, IngestError> {
     stream(&super::open(path)?, channels, spec, sinks, progress)
 }
+
+#[cfg(test)]
+#[path = "stream_tests.rs"]
+mod tests;
