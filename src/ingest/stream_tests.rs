@@ -1,5 +1,6 @@
 use super::*;
 use crate::recording::ColumnRef;
+use crate::units::Unit;
 
 fn channel(id: &str, role: Role, unit: &str, scale: f64) -> Channel {
     Channel {
@@ -11,9 +12,11 @@ fn channel(id: &str, role: Role, unit: &str, scale: f64) -> Channel {
     }
 }
 
-/// Everything a sink gets: (first index, first row, time, continues, values).
+/// A slab as a sink gets it: first index, first row, time, continues, values.
+type Kept = (u64, u64, f64, bool, Vec<Vec<f64>>);
+
 #[derive(Default)]
-struct Keep(Vec<(u64, u64, f64, bool, Vec<Vec<f64>>)>);
+struct Keep(Vec<Kept>);
 
 impl Sink for Keep {
     fn push(&mut self, s: &Slab<'_>) {
