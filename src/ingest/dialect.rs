@@ -176,7 +176,7 @@ fn refuse_spaces(
         let words: Vec<&[u8]> = l.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).collect();
         !l.contains(&b',') && words.len() > 1 && words.iter().all(|w| is_number(w))
     };
-    if !data.is_empty() && data.iter().all(|l| spaced(&l)) {
+    if !data.is_empty() && data.iter().all(spaced) {
         let (line, text) = lines.get(1).or(lines.first()).map_or((1, &b""[..]), |l| (l.1, l.2));
         return Err(IngestError::new(
             IngestErrorKind::UnknownFormat,

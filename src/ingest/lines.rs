@@ -135,8 +135,7 @@ impl LineParser {
     /// Passes a field without quotes.
     #[inline(always)]
     fn skip(&self, text: &[u8], start: usize) -> Option<(usize, End)> {
-        let mut at = start;
-        for &c in text.get(start..)? {
+        for (at, &c) in (start..).zip(text.get(start..)?) {
             if c == self.delimiter {
                 return Some((at + 1, End::Field));
             }
@@ -146,7 +145,6 @@ impl LineParser {
             if c == b'"' {
                 return None;
             }
-            at += 1;
         }
         None
     }

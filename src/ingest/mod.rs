@@ -12,12 +12,14 @@ mod lines;
 mod memory;
 mod number;
 mod parquet;
+mod plan;
 mod reduce;
 mod stream;
 
 pub use compressed::Packing;
 pub use error::{IngestError, IngestErrorKind};
-pub use stream::{ChannelFacts, Plan, StreamReport, TimeBaseSpec, prepare, stream, stream_path};
+pub use plan::{Plan, TimeBaseSpec, prepare};
+pub use stream::{ChannelFacts, StreamReport, stream, stream_path};
 
 use crate::recording::ColumnRef;
 use compressed::{ByteStream, io_error};
@@ -404,3 +406,6 @@ impl Source {
         Ok(facts)
     }
 }
+
+#[cfg(test)]
+mod tests;

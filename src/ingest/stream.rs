@@ -1,32 +1,14 @@
 //! A recording as a stream: columns become channels in inside units, stamps become a time base, slabs go to sinks.
 
+use super::plan::{Plan, TimeBaseSpec, prepare};
 use super::{Block, FieldFaultKind, FileFacts, IngestError, IngestErrorKind, Source};
 use crate::record::Integrity;
 use crate::recording::faults::FaultLog;
 use crate::recording::integrity::{ValueChecks, ValueFacts};
-use crate::recording::timebase::{Clock, ClockError, Step, Tracker};
+use crate::recording::timebase::{Step, Tracker};
 use crate::recording::{Channel, Role, Sink, Slab};
-use crate::units::Unit;
 use std::ops::ControlFlow;
 use std::path::Path;
-
-/// Rows from which the clock is found.
-const PROBED: usize = 65_536;
-
-/// Where the time base comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TimeBaseSpec {
-    /// The declared sample rate, Hz; needed where there are no stamps.
-    pub declared_sample_rate_hz: Option<f64>,
-    /// Use the time channel, where there is one. Without it every row is one interval after the one before.
-    pub use_stamps: bool,
-}
-
-impl Default for TimeBaseSpec {
-    fn default() -> TimeBaseSpec {
-        TimeBaseSpec { declared_sample_rate_hz: None, use_stamps: true }
-    }
-}
 
 /// A channel after the whole recording was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,98 +56,7 @@ pub struct StreamReport {
     pub channels: Vec<ChannelFacts>,
 }
 
-/// A recording that is ready to be read: columns found, units checked, clock known.
-pub struct Plan<'a> {
-    source: &'a Source,
-    channels: &'a [Channel],
-    wanted: Vec<usize>,
-    /// Factor and offset from the number in the file to the unit inside.
-    maps: Vec<(f64, f64)>,
-    /// Which channel gives the stamps.
-    time: Option<usize>,
-    clock: Clock,
-    start_s: f64,
-}
-
-/// Finds the columns of the channels, checks their units and finds the clock from the first rows.
-///
-/// # Errors
-/// A column that is not there, a unit that does not fit the role, no time base, or what [`Source::read`] says.
-pub fn prepare<'a>(
-    source: &'a Source,
-    channels: &'a [Channel],
-    spec: TimeBaseSpec,
-) -> Result<Plan<'a>, IngestError> {
-    let wanted = channels.iter().map(|c| source.resolve(&c.column)).collect::<Result<Vec<_>, _>>()?;
-    let maps = channels.iter().map(|c| map(source.path(), c)).collect::<Result<Vec<_>, _>>()?;
-    let no_clock = |e: ClockError, hint: &str| {
-        IngestError::new(IngestErrorKind::TimeBase, source.path(), e.to_string()).hint(hint)
-    };
-    let time = channels.iter().position(|c| c.role == Role::Time).filter(|_| spec.use_stamps);
-    let (clock, start_s) = match time.and_then(|i| wanted.get(i).zip(maps.get(i))) {
-        Some((&column, map)) => {
-            let mut stamps = Vec::new();
-            source.read(&[column], &mut |block| {
-                let room = PROBED.saturating_sub(stamps.len());
-                stamps.extend(block.columns.iter().flatten().take(room).map(|v| v * map.0 + map.1));
-                if stamps.len() < PROBED { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-            })?;
-            let clock = Clock::probe(&stamps).map_err(|e| {
-                no_clock(
-                    e,
-                    "check the time column and its unit, or declare the sample rate and leave the stamps",
-                )
-            })?;
-            (clock, stamps.iter().copied().find(|t| t.is_finite()).unwrap_or(0.0))
-        }
-        None => {
-            let rate = spec.declared_sample_rate_hz.ok_or_else(|| {
-                IngestError::new(
-                    IngestErrorKind::TimeBase,
-                    source.path(),
-                    "there is no time column to tell the sample interval",
-                )
-                .hint("declare the sample rate, or name the time column")
-            })?;
-            (Clock::declared(rate).map_err(|e| no_clock(e, "declare the sample rate in Hz"))?, 0.0)
-        }
-    };
-    let mut maps = maps;
-    for (channel, map) in channels.iter().zip(&mut maps) {
-        if channel.role == Role::AngleIncrement {
-            // 1 arcsec in 1 s is 1 deg/h.
-            *map = (map.0 / clock.interval_s, map.1 / clock.interval_s);
-        }
-    }
-    Ok(Plan { source, channels, wanted, maps, time, clock, start_s })
-}
-
-/// Factor and offset from the number in the file to the unit inside.
-fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
-    let error = |message: String| IngestError::new(IngestErrorKind::Unit, path, message);
-    if !channel.scale.is_finite() || channel.scale == 0.0 {
-        return Err(error(format!("channel `{}` has the scale {}", channel.id, channel.scale))
-            .hint("give a scale that is finite and not zero"));
-    }
-    let Some(inside) = channel.role.internal_unit() else { return Ok((channel.scale, 0.0)) };
-    let affine = Unit::parse(inside).and_then(|inside| channel.unit.affine_to(&inside));
-    affine.map(|(factor, offset)| (factor * channel.scale, offset)).map_err(|e| {
-        error(format!("channel `{}` ({}): {e}", channel.id, channel.role.id()))
-            .hint("give the unit after the scale; the scale of counts is the size of one count")
-    })
-}
-
 impl Plan<'_> {
-    /// The nominal clock.
-    pub fn clock(&self) -> Clock {
-        self.clock
-    }
-
-    /// First usable stamp, s; 0 without stamps.
-    pub fn start_s(&self) -> f64 {
-        self.start_s
-    }
-
     /// Reads the recording to its end. Every sink gets every slab; `progress` is told bytes read and bytes in all.
     ///
     /// # Errors
@@ -201,11 +92,6 @@ impl Plan<'_> {
             .hint("check the time column"));
         };
         Ok(state.report(facts))
-    }
-
-    fn column_name(&self, slot: usize) -> &str {
-        let index = self.wanted.get(slot).copied().unwrap_or(0);
-        self.source.columns().get(index).map_or("", |c| c.name.as_str())
     }
 }
 
@@ -426,21 +312,6 @@ impl State<'_> {
     }
 }
 
-impl Plan<'_> {
-    /// The start as a date, where the name of the time column or the file format says that stamps count from 1970.
-    fn absolute_start(&self, first_s: f64) -> Option<String> {
-        let slot = self.time?;
-        let column = self.source.columns().get(*self.wanted.get(slot)?)?;
-        let name = column.name.to_lowercase();
-        let said = ["unix", "epoch", "utc", "posix"].iter().any(|w| name.contains(w));
-        if !(said || column.storage.contains("Timestamp")) || !(0.0..1e11).contains(&first_s) {
-            return None;
-        }
-        let date = chrono::DateTime::from_timestamp(first_s.floor() as i64, (first_s.fract() * 1e9) as u32)?;
-        Some(date.to_rfc3339_opts(chrono::SecondsFormat::Millis, true))
-    }
-}
-
 /// [`prepare`] and [`Plan::stream`] in one.
 ///
 /// # Errors
@@ -468,3 +339,7 @@ pub fn stream_path(
 ) -> Result<StreamReport, IngestError> {
     stream(&super::open(path)?, channels, spec, sinks, progress)
 }
+
+#[cfg(test)]
+#[path = "stream_tests.rs"]
+mod tests;

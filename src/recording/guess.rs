@@ -150,7 +150,9 @@ fn words(name: &str) -> Vec<String> {
     let mut word = String::new();
     let mut before = ' ';
     for c in name.chars() {
-        let hump = before.is_lowercase() && c.is_uppercase() && !(before == 'g' && c == 'C');
+        // `degC`, `degF` and prefixed units such as `hPa` are one word.
+        let degree = word.ends_with("deg") && matches!(c, 'C' | 'F' | 'K');
+        let hump = before.is_lowercase() && c.is_uppercase() && word.chars().count() > 1 && !degree;
         if (!c.is_alphanumeric() && c != '/' && c != '°' && c != '%') || hump {
             words.extend((!word.is_empty()).then(|| std::mem::take(&mut word)));
         }

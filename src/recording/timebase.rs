@@ -96,18 +96,33 @@ impl Clock {
         let middle = long.len() / 2;
         let (_, median, _) = long.select_nth_unstable_by(middle, f64::total_cmp);
         let median = *median;
-        let (sum, count) = steps()
-            .filter(|&d| d > 0.0 && (d - median).abs() <= 0.5 * median)
-            .fold((0.0, 0u64), |(s, n), d| (s + d, n + 1));
-        // Rounded stamps whose step is near the interval spread further than that; the median over many rows holds then.
+        // Rounded stamps whose step is near the interval: single intervals spread too far to tell gaps from rounding,
+        // so the mean is taken over the long ones.
         let resolution_s = resolution(&t, median);
-        let coarse = resolution_s > 0.3 * median;
-        let interval_s = if count == 0 || coarse { median } else { sum / count as f64 };
+        let reach = 1.5 * resolution_s / lag as f64;
+        let interval_s = if resolution_s > 0.3 * median {
+            mean(long.iter().copied().filter(|d| (d - median).abs() <= reach))
+        } else {
+            mean(steps().filter(|&d| d > 0.0 && (d - median).abs() <= 0.5 * median))
+        };
+        let interval_s = tidy(interval_s.unwrap_or(median));
         let ratio = interval_s / resolution_s;
         let rounded = resolution_s > 0.0 && (ratio - ratio.round()).abs() > 1e-3;
         let slack = if rounded { 1.01 * resolution_s } else { 0.0 };
         Ok(Clock { interval_s, resolution_s, gap_limit_s: (1.5 * interval_s).max(interval_s + slack) })
     }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0u64), |(s, n), v| (s + v, n + 1));
+    (count > 0).then(|| sum / count as f64)
+}
+
+/// Takes an interval for the round one, or for that of the round rate, that it equals within 1e-9: the rest is rounding.
+fn tidy(interval_s: f64) -> f64 {
+    let six = |v: f64| format!("{v:.5e}").parse::<f64>().unwrap_or(v);
+    let near = |v: &f64| (v / interval_s - 1.0).abs() < 1e-9;
+    [six(interval_s), 1.0 / six(1.0 / interval_s)].into_iter().find(near).unwrap_or(interval_s)
 }
 
 /// The largest power of ten of which all stamps are multiples, 0 when there is none near the interval.

@@ -159,6 +159,12 @@ impl<S: Sink> Sink for Windowed<S> {
     }
 }
 
+impl<S: Sink + ?Sized> Sink for &mut S {
+    fn push(&mut self, slab: &Slab<'_>) {
+        (**self).push(slab);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

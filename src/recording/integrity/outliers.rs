@@ -3,7 +3,8 @@
 //! In blocks of 1024 samples: median and median absolute deviation, then the standard deviation of what lies within
 //! four of those (nearly as precise as that of clean data, which a threshold far out in the tail needs). A sample is a
 //! candidate when it is at least five deviations both from the median of its block and from the median of the 33
-//! samples about it: a step or a slow motion carries its surroundings along, an outlier does not. The threshold is set
+//! samples about it, and stands out from their scatter: a step or a motion carries its surroundings along, an outlier
+//! does not. The threshold is set
 //! at the end from the number of samples n: 5, or more where n·2·(1−Φ(k)) would exceed 0.02, so that a Gaussian record
 //! of any length shows a false outlier in about one case in fifty. Method: Hampel (1974), F. R. Hampel, JASA 69.
 
@@ -18,6 +19,8 @@ const MARGIN: usize = 16;
 const FEWEST: usize = 64;
 /// Lowest threshold, robust standard deviations.
 const LOWEST: f64 = 5.0;
+/// The same against the scatter of the 33 samples about it, which is known less well.
+const LOCAL: f64 = 3.5;
 /// False outliers allowed in a Gaussian record.
 const FALSE_ALARMS: f64 = 0.02;
 /// Candidates whose place is kept, below and above `CLEAR`.
@@ -146,8 +149,12 @@ impl Outliers {
             }
             let window = (i.saturating_sub(MARGIN), (i + MARGIN + 1).min(self.buffer.len()));
             let local = median(&mut self.scratch, self.buffer.get(window.0..window.1).unwrap_or_default());
-            let z = z.min((v - local).abs() / scale);
-            if z >= LOWEST {
+            let distance = (v - local).abs();
+            self.scratch.iter_mut().for_each(|x| *x = (*x - local).abs());
+            let half = self.scratch.len() / 2;
+            let local_scale = 1.4826 * *self.scratch.select_nth_unstable_by(half, f64::total_cmp).1;
+            let z = z.min(distance / scale);
+            if z >= LOWEST && distance >= LOCAL * local_scale {
                 self.candidate(i, z);
             }
         }
