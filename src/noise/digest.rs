@@ -130,7 +130,7 @@ impl RateAccumulator {
             let mut offset = 0;
             for run in slice.split(|y| !y.is_finite()) {
                 if !run.is_empty() {
-                    self.run(run, at + offset as u64, continues);
+                    self.run(run, at.saturating_add(offset as u64), continues);
                     continues = true;
                 }
                 offset += run.len();
@@ -140,7 +140,7 @@ impl RateAccumulator {
                     continues = false;
                 }
             }
-            at += slice.len() as u64;
+            at = at.saturating_add(slice.len() as u64);
         }
         // Behind an unusable last sample nothing continues.
         self.next_index = continues.then_some(at);
@@ -237,7 +237,8 @@ mod tests {
         let mut acc = RateAccumulator::new(DigestPlan::new(1.0));
         acc.push(&y, 0, false);
         acc.push(&y, 150, true);
-        assert_eq!(acc.finish().deviations.stretches.count(), 2);
+        acc.push(&y, u64::MAX, true);
+        assert_eq!(acc.finish().deviations.stretches.count(), 3);
     }
 
     #[test]
@@ -246,6 +247,7 @@ mod tests {
         assert!(empty.mean.is_nan() && empty.samples == 0 && empty.blocks.mean.is_empty());
         let mut acc = RateAccumulator::new(DigestPlan::new(1.0));
         acc.push(&[f64::NAN, f64::INFINITY], 0, false);
+        acc.push(&[], u64::MAX, true);
         let none = acc.finish();
         assert_eq!((none.samples, none.unusable, none.deviations.stretches.count()), (0, 2, 0));
     }
