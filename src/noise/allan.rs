@@ -109,7 +109,7 @@ impl AllanAccumulator {
         }
         self.builder.push(samples, &mut |x| store.extend(x));
         self.current += samples.len() as u64;
-        self.next_index = first_index + samples.len() as u64;
+        self.next_index = first_index.saturating_add(samples.len() as u64);
         if !self.plan.exact
             && self.stretches.samples() + self.current > KEPT_SAMPLES
             && matches!(self.store, Store::Kept { .. })

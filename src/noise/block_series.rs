@@ -19,6 +19,9 @@ pub struct BlockSeriesAccumulator {
     reference: f64,
 }
 
+/// Indices beyond are taken for this one, so that they can be added to.
+const LAST_INDEX: u64 = 1 << 62;
+
 impl Default for BlockSeriesAccumulator {
     fn default() -> Self {
         Self::with_most_blocks(MOST_BLOCKS)
@@ -34,6 +37,7 @@ impl BlockSeriesAccumulator {
     /// Takes finite contiguous samples from grid index `first_index` on; indices never go back.
     pub fn push(&mut self, samples: &[f64], first_index: u64) {
         let Some(first) = samples.first() else { return };
+        let first_index = first_index.min(LAST_INDEX);
         if self.blocks.is_empty() {
             self.reference = *first;
             self.first_block = first_index >> self.shift;

@@ -3,6 +3,9 @@
 /// Spans that remain at most.
 pub const MOST_SPANS: usize = 2048;
 
+/// Indices beyond are taken for this one, so that they can be added to.
+const LAST_INDEX: u64 = 1 << 62;
+
 /// One span of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnvelopeBin {
@@ -88,6 +91,7 @@ impl EnvelopeAccumulator {
         if samples.is_empty() {
             return;
         }
+        let first_index = first_index.min(LAST_INDEX);
         if self.bins.is_empty() {
             self.first_bin = first_index >> self.shift;
         }

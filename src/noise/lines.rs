@@ -11,7 +11,8 @@ use statrs::function::beta::beta_reg;
 
 /// False-alarm rate of a whole search unless stated otherwise.
 pub const FALSE_ALARM_RATE: f64 = 0.01;
-/// Bins below this are not searched: slow noise and the removed mean rule there.
+/// Bins below this are not searched: slow noise and the removed mean rule there. As many are left out below the
+/// Nyquist frequency, where the floor has neighbours on one side only.
 pub const FIRST_BIN: usize = 4;
 /// Half width, in bins, of what a pure line fills under a Hann window.
 const LOBE: usize = 2;
@@ -53,8 +54,7 @@ pub struct LineSearch {
 /// more where there is none.
 pub fn find_lines(spectrum: &WelchSpectrum, tau0_s: f64, false_alarm_rate: f64) -> LineSearch {
     let density = &spectrum.density;
-    // The last bin has half the degrees of freedom of the others.
-    let end = density.len().saturating_sub(1);
+    let end = density.len().saturating_sub(FIRST_BIN);
     if end <= 2 * FIRST_BIN || !(spectrum.effective_averages > 0.0) {
         return LineSearch::default();
     }
@@ -98,7 +98,9 @@ fn line(
     let (side, neighbour) = if above >= below { (1.0, above) } else { (-1.0, below) };
     let ratio = (neighbour.max(0.0) / excess(peak).max(f64::MIN_POSITIVE)).sqrt();
     let offset = side * ((2.0 * ratio - 1.0) / (ratio + 1.0)).clamp(0.0, 0.5);
-    let power: f64 = (from.min(peak.saturating_sub(LOBE))..=to.max(peak + LOBE)).map(excess).sum();
+    let lobe: f64 = (from.min(peak.saturating_sub(LOBE))..=to.max(peak + LOBE)).map(excess).sum();
+    // A pure line on a bin fills 1.5 times its peak, any other more.
+    let power = lobe.max(1.5 * excess(peak));
     SpectralLine {
         frequency_hz: (peak as f64 + offset) * resolution_hz,
         resolution_hz,
@@ -110,8 +112,8 @@ fn line(
     }
 }
 
-/// Marks lines at multiples of a stronger one. Frequencies are good to a fraction of a bin, and the error of the
-/// fundamental is multiplied with the order.
+/// Marks lines at multiples of a stronger one. Frequencies of strong lines are good to a few hundredths of
+/// a bin; the error of the fundamental is multiplied with the order.
 fn group_harmonics(lines: &mut [SpectralLine]) {
     for i in 0..lines.len() {
         let this = lines[i];
@@ -134,7 +136,7 @@ fn group_harmonics(lines: &mut [SpectralLine]) {
 fn harmonic_order(base: &SpectralLine, line: &SpectralLine) -> u32 {
     let order = (line.frequency_hz / base.frequency_hz).round();
     let distance = (line.frequency_hz - order * base.frequency_hz).abs();
-    let tolerance = line.resolution_hz * (0.25 + 0.15 * order).min(1.0);
+    let tolerance = line.resolution_hz * (0.25 + 0.02 * order).min(0.6);
     if order >= 2.0 && distance <= tolerance { order as u32 } else { 1 }
 }
 
@@ -212,8 +214,10 @@ fn tail(density: &[f64], floor: &[f64], k: usize, averages: f64) -> f64 {
     }
     let (from, to) = neighbours(k, density.len());
     let used = (to + 1).saturating_sub(from + 2 * LOBE + 1).max(2) as f64;
-    // Below bin 64 the slope is estimated from few bins and takes its share.
-    let share = if k < 64 { 0.5 } else { 1.0 };
+    // A bin off the middle of its neighbours rests on the slope as well, and below bin 64 that is from few bins.
+    let reach = 0.5 * (to as f64 - from as f64).max(1.0);
+    let off_middle = (k as f64 - 0.5 * (from + to) as f64) / reach;
+    let share = if k < 64 { 0.5 } else { 1.0 } / (1.0 + 4.0 * off_middle * off_middle);
     upper_f(ratio, 2.0 * averages, 2.0 * averages * share * used / FLOOR_INFLATION)
 }
 

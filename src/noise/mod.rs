@@ -5,6 +5,7 @@ pub mod autocorrelation;
 pub mod block_series;
 pub mod data;
 mod difference_sums;
+pub mod digest;
 pub mod edf;
 pub mod envelope;
 pub mod family;

@@ -57,6 +57,34 @@ pub(crate) struct StridedSums {
     estimators: Vec<Estimator>,
     lanes: Vec<Lane>,
     prefix: Vec<f64>,
+    running: RunningSum,
+}
+
+/// Sums over any part of a block of phases, taken about the first phase so that they keep their digits.
+#[derive(Debug, Clone, Default)]
+struct RunningSum {
+    reference: f64,
+    upto: Vec<f64>,
+}
+
+impl RunningSum {
+    fn set(&mut self, phases: &[f64]) {
+        self.reference = phases.first().copied().unwrap_or(0.0);
+        self.upto.clear();
+        self.upto.push(0.0);
+        let mut running = 0.0;
+        self.upto.extend(phases.iter().map(|x| {
+            running += x - self.reference;
+            running
+        }));
+    }
+
+    fn between(&self, from: usize, to: usize) -> f64 {
+        match (self.upto.get(from), self.upto.get(to)) {
+            (Some(a), Some(b)) => (b - a) + (to - from) as f64 * self.reference,
+            _ => 0.0,
+        }
+    }
 }
 
 impl StridedSums {
@@ -80,15 +108,18 @@ impl StridedSums {
             })
             .collect();
         let estimators = estimators.iter().copied().filter(|e| *e != Estimator::Total).collect();
-        StridedSums { estimators, lanes, prefix: vec![] }
+        StridedSums { estimators, lanes, prefix: vec![], running: RunningSum::default() }
     }
 
     /// Takes the next phases of the current stretch.
     pub(crate) fn push(&mut self, phases: &[f64]) {
         let modified = self.estimators.contains(&Estimator::Modified);
         let span = if self.estimators.iter().any(|e| e.span() == 3) { 3 } else { 2 };
+        if modified {
+            self.running.set(phases);
+        }
         for lane in &mut self.lanes {
-            lane.take(phases, modified);
+            lane.take(phases, modified.then_some(&self.running));
             let widest = lane.factors.last().map_or(0, |f| f.1);
             for estimator in &self.estimators {
                 if *estimator == Estimator::Modified {
@@ -130,38 +161,38 @@ impl StridedSums {
 }
 
 impl Lane {
-    fn take(&mut self, phases: &[f64], modified: bool) {
+    fn take(&mut self, phases: &[f64], running: Option<&RunningSum>) {
         let stride = self.stride;
         let first = (self.seen.next_multiple_of(stride as u64) - self.seen) as usize;
         if stride == 1 {
             self.phases.values.extend_from_slice(phases);
-            if modified {
+            if running.is_some() {
                 self.sums.values.extend_from_slice(phases);
             }
         } else {
             if let Some(from) = phases.get(first..) {
                 self.phases.values.extend(from.iter().step_by(stride));
             }
-            if modified {
-                self.take_sums(phases, first);
+            if let Some(running) = running {
+                self.take_sums(running, first, phases.len());
             }
         }
         self.seen += phases.len() as u64;
     }
 
-    fn take_sums(&mut self, phases: &[f64], first: usize) {
-        let (head, body) = phases.split_at(first.min(phases.len()));
-        self.open_sum += head.iter().sum::<f64>();
-        if first > phases.len() {
+    fn take_sums(&mut self, running: &RunningSum, first: usize, len: usize) {
+        self.open_sum += running.between(0, first.min(len));
+        if first > len {
             return;
         }
         if first > 0 {
             self.sums.values.push(self.open_sum);
             self.open_sum = 0.0;
         }
-        let mut steps = body.chunks_exact(self.stride);
-        self.sums.values.extend((&mut steps).map(|s| s.iter().sum::<f64>()));
-        self.open_sum += steps.remainder().iter().sum::<f64>();
+        let steps = (len - first) / self.stride;
+        let edges = (0..steps).map(|k| first + k * self.stride);
+        self.sums.values.extend(edges.map(|from| running.between(from, from + self.stride)));
+        self.open_sum += running.between(first + steps * self.stride, len);
     }
 
     fn differences(&mut self, estimator: Estimator) {
@@ -177,6 +208,9 @@ impl Lane {
     }
 
     fn modified(&mut self, prefix: &mut Vec<f64>) {
+        if self.sums.fresh == self.sums.values.len() {
+            return;
+        }
         let (Some(&origin), values) = (self.sums.values.first(), &self.sums.values) else { return };
         prefix.clear();
         prefix.push(0.0);

@@ -1,0 +1,254 @@
+//! One pass over a rate channel: every statistic that its noise is judged by.
+
+use super::allan::{AllanAccumulator, AllanPlan, DeviationSet};
+use super::block_series::BlockSeriesAccumulator;
+use super::data::BlockSeries;
+use super::envelope::{Envelope, EnvelopeAccumulator};
+use super::family::Estimator;
+use super::histogram::{Histogram, HistogramAccumulator};
+use super::phase::Compensated;
+use super::tau_grid::TauGrid;
+use super::welch::{WelchAccumulator, WelchResult};
+use super::windows::{WindowMeans, WindowStatistics};
+
+/// Samples that go through all accumulators while they are in cache.
+const SLICE: usize = 8192;
+
+/// What a digest of a rate channel is to hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DigestPlan {
+    /// Sample interval, s.
+    pub tau0_s: f64,
+    /// Averaging times of the σ(τ) curves.
+    pub taus: TauGrid,
+    /// Sums every term of σ(τ) at any length, at 8 bytes a sample.
+    pub exact: bool,
+    /// Deviations wanted.
+    pub estimators: Vec<Estimator>,
+    /// Lengths of the windows whose means are taken, s (100 and 10 for the Russian values).
+    pub window_lengths_s: Vec<f64>,
+}
+
+impl DigestPlan {
+    /// Octaves of the overlapping Allan deviation, windows of 100 s and 10 s.
+    pub fn new(tau0_s: f64) -> Self {
+        DigestPlan {
+            tau0_s,
+            taus: TauGrid::Octave,
+            exact: false,
+            estimators: vec![Estimator::Allan],
+            window_lengths_s: vec![100.0, 10.0],
+        }
+    }
+}
+
+/// Everything one pass leaves behind. Rates in deg/h.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RateDigest {
+    /// Sample interval, s.
+    pub tau0_s: f64,
+    /// Finite samples.
+    pub samples: u64,
+    /// Samples that were not finite: each splits the record.
+    pub unusable: u64,
+    /// Mean of the finite samples, deg/h; NaN without any.
+    pub mean: f64,
+    /// Least finite sample, deg/h.
+    pub min: f64,
+    /// Greatest finite sample, deg/h.
+    pub max: f64,
+    /// The Allan family with the unbroken stretches of the record.
+    pub deviations: DeviationSet,
+    /// Averaged periodogram.
+    pub welch: WelchResult,
+    /// Block means on the grid.
+    pub blocks: BlockSeries,
+    /// Window means, one entry for each length of the plan, in its order.
+    pub windows: Vec<WindowStatistics>,
+    /// Amplitude distribution about the means of short blocks.
+    pub histogram: Histogram,
+    /// The rate over time for a plot.
+    pub envelope: Envelope,
+}
+
+/// Streaming digest of one rate channel.
+#[derive(Debug, Clone)]
+pub struct RateAccumulator {
+    tau0_s: f64,
+    allan: AllanAccumulator,
+    welch: WelchAccumulator,
+    blocks: BlockSeriesAccumulator,
+    windows: Vec<WindowMeans>,
+    histogram: HistogramAccumulator,
+    envelope: EnvelopeAccumulator,
+    samples: u64,
+    unusable: u64,
+    reference: f64,
+    sum: Compensated,
+    min: f64,
+    max: f64,
+    next_index: Option<u64>,
+}
+
+impl RateAccumulator {
+    /// An empty digest.
+    pub fn new(plan: DigestPlan) -> Self {
+        let windows = plan.window_lengths_s.iter().map(|w| WindowMeans::new(*w, plan.tau0_s)).collect();
+        RateAccumulator {
+            tau0_s: plan.tau0_s,
+            allan: AllanAccumulator::new(AllanPlan {
+                tau0_s: plan.tau0_s,
+                grid: plan.taus,
+                exact: plan.exact,
+                estimators: plan.estimators,
+            }),
+            welch: WelchAccumulator::new(),
+            blocks: BlockSeriesAccumulator::default(),
+            windows,
+            histogram: HistogramAccumulator::new(),
+            envelope: EnvelopeAccumulator::new(),
+            samples: 0,
+            unusable: 0,
+            reference: 0.0,
+            sum: Compensated::default(),
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+            next_index: None,
+        }
+    }
+
+    /// Takes contiguous samples, deg/h, the first at grid index `first_index`. Samples that are not finite cannot be
+    /// used: they are counted, and split the record there. `continues = false` splits it before the first sample.
+    pub fn push(&mut self, samples: &[f64], first_index: u64, continues: bool) {
+        if samples.is_empty() {
+            self.next_index = self.next_index.filter(|_| continues);
+            return;
+        }
+        let mut at = first_index;
+        let mut continues = continues && self.next_index == Some(first_index);
+        for slice in samples.chunks(SLICE) {
+            let mut offset = 0;
+            for run in slice.split(|y| !y.is_finite()) {
+                if !run.is_empty() {
+                    self.run(run, at.saturating_add(offset as u64), continues);
+                    continues = true;
+                }
+                offset += run.len();
+                if offset < slice.len() {
+                    self.unusable += 1;
+                    offset += 1;
+                    continues = false;
+                }
+            }
+            at = at.saturating_add(slice.len() as u64);
+        }
+        // Behind an unusable last sample nothing continues.
+        self.next_index = continues.then_some(at);
+    }
+
+    /// Everything about the samples pushed so far.
+    pub fn finish(self) -> RateDigest {
+        RateDigest {
+            tau0_s: self.tau0_s,
+            samples: self.samples,
+            unusable: self.unusable,
+            mean: if self.samples > 0 {
+                self.reference + self.sum.value() / self.samples as f64
+            } else {
+                f64::NAN
+            },
+            min: self.min,
+            max: self.max,
+            deviations: self.allan.finish(),
+            welch: self.welch.finish(),
+            blocks: self.blocks.finish(),
+            windows: self.windows.into_iter().map(WindowMeans::finish).collect(),
+            histogram: self.histogram.finish(),
+            envelope: self.envelope.finish(),
+        }
+    }
+
+    fn run(&mut self, run: &[f64], first_index: u64, continues: bool) {
+        if self.samples == 0 {
+            self.reference = run.first().copied().unwrap_or(0.0);
+        }
+        let mut sum = 0.0;
+        for y in run {
+            sum += y - self.reference;
+            self.min = if *y < self.min { *y } else { self.min };
+            self.max = if *y > self.max { *y } else { self.max };
+        }
+        self.sum.add(sum);
+        self.samples += run.len() as u64;
+        self.allan.push(run, first_index, continues);
+        self.welch.push(run, continues);
+        self.blocks.push(run, first_index);
+        self.windows.iter_mut().for_each(|w| w.push(run, continues));
+        self.histogram.push(run, continues);
+        self.envelope.push(run, first_index);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(count: u32) -> Vec<f64> {
+        (0..count).map(|i| 10.0 + f64::from(i.wrapping_mul(2_654_435_761) >> 8) / 16_777_216.0).collect()
+    }
+
+    #[test]
+    fn unusable_samples_split_the_record_wherever_blocks_end() {
+        let mut y = record(30_000);
+        for i in [0, 1, 99, 8191, 8192, 16_383, 20_000, 29_999] {
+            y[i] = f64::NAN;
+        }
+        let digest = |size: usize| {
+            let mut acc = RateAccumulator::new(DigestPlan::new(0.1));
+            for (k, block) in y.chunks(size).enumerate() {
+                acc.push(block, (size * k) as u64, k > 0);
+            }
+            acc.finish()
+        };
+        let whole = digest(30_000);
+        assert_eq!((whole.samples, whole.unusable), (29_992, 8));
+        assert_eq!(whole.deviations.stretches.count(), 5);
+        assert_eq!(whole.deviations.stretches.longest(), 9998);
+        // Stretches of 97, 8091, 8190, 3616 and 9998 samples hold so many windows of 1000.
+        assert_eq!(whole.windows[0].n, 8 + 8 + 3 + 9);
+        for size in [1, 100, 8192, 12_345] {
+            let other = digest(size);
+            assert_eq!(other.deviations, whole.deviations, "{size}");
+            assert_eq!(other.histogram, whole.histogram, "{size}");
+            assert_eq!(other.welch, whole.welch, "{size}");
+            assert_eq!(other.windows[1].n, whole.windows[1].n);
+            assert!(
+                (other.windows[0].standard_deviation / whole.windows[0].standard_deviation - 1.0).abs()
+                    < 1e-9
+            );
+            assert!((other.mean - whole.mean).abs() < 1e-12);
+            assert_eq!(other.blocks.count, whole.blocks.count);
+        }
+    }
+
+    #[test]
+    fn a_jump_of_the_index_splits_even_when_the_caller_says_it_continues() {
+        let y = record(100);
+        let mut acc = RateAccumulator::new(DigestPlan::new(1.0));
+        acc.push(&y, 0, false);
+        acc.push(&y, 150, true);
+        acc.push(&y, u64::MAX, true);
+        assert_eq!(acc.finish().deviations.stretches.count(), 3);
+    }
+
+    #[test]
+    fn an_empty_or_unusable_record_gives_an_empty_digest() {
+        let empty = RateAccumulator::new(DigestPlan::new(1.0)).finish();
+        assert!(empty.mean.is_nan() && empty.samples == 0 && empty.blocks.mean.is_empty());
+        let mut acc = RateAccumulator::new(DigestPlan::new(1.0));
+        acc.push(&[f64::NAN, f64::INFINITY], 0, false);
+        acc.push(&[], u64::MAX, true);
+        let none = acc.finish();
+        assert_eq!((none.samples, none.unusable, none.deviations.stretches.count()), (0, 2, 0));
+    }
+}
