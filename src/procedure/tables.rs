@@ -308,9 +308,14 @@ static WAIVER: TableSpec = TableSpec {
     doc: "A decision to accept one unit in spite of a row. It is a record beside the verdict and never changes it.",
     keys: &[
         required("serial", Kind::Text, "\"0042\"", "Serial number of the unit: a waiver is for one unit."),
-        required("row", Kind::Text, "\"bias_instability\"", "Measurand or condition concerned."),
+        required("row", Kind::Text, "\"angle_random_walk\"", "Measurand or condition concerned."),
         required("by", Kind::Text, "\"J. Smith, quality\"", "Who decided."),
-        required("reason", Kind::Text, "\"used at constant temperature only\"", "Why, as it shall stand in the report."),
+        required(
+            "reason",
+            Kind::Text,
+            "\"used at constant temperature only\"",
+            "Why, as it shall stand in the report.",
+        ),
         required("date", Kind::Date, "2026-03-01", "Day of the decision."),
     ],
 };

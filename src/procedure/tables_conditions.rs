@@ -141,6 +141,11 @@ pub(super) static EXCLUDE: TableSpec = TableSpec {
             "\"2.5 h\"",
             "End, from the beginning of the recording.",
         ),
-        required("reason", Kind::Text, "\"door of the chamber opened\"", "Why, as it shall stand in the report."),
+        required(
+            "reason",
+            Kind::Text,
+            "\"door of the chamber opened\"",
+            "Why, as it shall stand in the report.",
+        ),
     ],
 };
