@@ -125,6 +125,15 @@ fn a_factor_makes_limits_of_published_values() {
     assert_eq!(warned.len(), 5, "a limit at the typical value is worth a warning");
 }
 
+#[test]
+fn a_factor_on_what_can_be_negative_bounds_its_magnitude() {
+    let text = "format = \"limits/1\"\n[limits]\nid = \"l\"\ntitle = \"L\"\nrevision = \"A\"\n\
+                [[reference]]\nmeasurand = \"static_bias\"\nvalue = \"-0.2 deg/h\"\nsource = \"s\"\n\
+                [[limit]]\nmeasurand = \"static_bias\"\nfactor = 2\n";
+    let limits = parse_limits("l", text.as_bytes()).unwrap().value;
+    assert_eq!((limits.set.limits[0].limit.min, limits.set.limits[0].limit.max), (Some(-0.4), Some(0.4)));
+}
+
 const PROCEDURE: &str = r#"
 format = "procedure/1"
 [procedure]
@@ -341,6 +350,21 @@ fn the_guide_is_the_key_tables() {
             assert_eq!(stands.trim(), made.trim(), "{file} is not up to date; {hint}");
         }
     }
+}
+
+#[test]
+fn the_files_shown_in_the_guide_are_sound() {
+    let page = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide").join(name);
+        let text = std::fs::read_to_string(path).unwrap();
+        let (_, rest) = text.split_once("```toml\n").expect("a block");
+        rest.split_once("```").expect("its end").0.to_owned()
+    };
+    let procedure =
+        parse_procedure("procedure.md", page("procedure.md").as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(procedure.warnings.is_empty());
+    let limits = parse_limits("limits.md", page("limits.md").as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(limits.value.set.limits.len(), 4);
 }
 
 #[test]

@@ -69,35 +69,38 @@ pub fn check_report_with(
             }
             Err(problems) => {
                 report.failed += 1;
-                let count = problems.list.len();
-                let word = if count == 1 { "problem" } else { "problems" };
-                report.text.push_str(&format!("{problems}\n{}: {count} {word}\n", path.display()));
+                let summary = count(problems.list.len(), "problem");
+                report.text.push_str(&format!("{problems}\n{}: {summary}\n", path.display()));
             }
         }
     }
     report
 }
 
+fn count(n: usize, what: &str) -> String {
+    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+}
+
 fn procedure_sentence(p: &Loaded<Procedure>) -> String {
     let p = &p.value;
     format!(
-        "procedure `{}` revision {}: {} channels, {} measurands, {} limits; sound",
+        "procedure `{}` revision {}: {}, {}, {}; sound",
         p.id,
         p.revision,
-        p.channels.len(),
-        p.measurands.len(),
-        p.limits.limits.len()
+        count(p.channels.len(), "channel"),
+        count(p.measurands.len(), "measurand"),
+        count(p.limits.limits.len(), "limit")
     )
 }
 
 fn limits_sentence(l: &Loaded<LimitsFile>) -> String {
     let l = &l.value;
     format!(
-        "limits `{}` revision {}: {} limits, {} reference values; sound",
+        "limits `{}` revision {}: {}, {}; sound",
         l.id,
         l.revision,
-        l.set.limits.len(),
-        l.set.references.len()
+        count(l.set.limits.len(), "limit"),
+        count(l.set.references.len(), "reference value")
     )
 }
 

@@ -119,7 +119,7 @@ impl Problems {
 
     /// Puts the problems in the order of the text and drops repeated ones.
     pub(crate) fn sort(&mut self) {
-        self.list.sort_by(|a, b| (a.span.start, a.span.end).cmp(&(b.span.start, b.span.end)));
+        self.list.sort_by_key(|p| (p.span.start, p.span.end));
         self.list.dedup();
     }
 }
@@ -274,8 +274,8 @@ mod tests {
     #[test]
     fn places_outside_the_text_do_no_harm() {
         let source = SourceText::new("a", "é".to_owned());
-        for span in [0..0, 1..1, 1..9, 7..9, 5..2] {
-            let p = source.error(&Span { start: span.start, end: span.end }, "m");
+        for (start, end) in [(0, 0), (1, 1), (1, 9), (7, 9), (5, 2)] {
+            let p = source.error(&Span { start, end }, "m");
             assert_eq!(p.line, 1);
             assert!(!p.to_string().is_empty());
         }

@@ -184,6 +184,9 @@ pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut
         let (Some(measurand), Some(value)) = (section.measurand("measurand"), section.number("value")) else {
             continue;
         };
+        if value < 0.0 && !measurand.signed {
+            reader.error(&section.span_of("value"), format!("`{}` is never negative", measurand.id), None);
+        }
         set.references.push(Reference {
             measurand,
             channel: section.text("channel"),
@@ -212,25 +215,26 @@ pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut
     set
 }
 
-/// Makes an upper limit of every first reference value that has no limit of its own.
+/// The limit that a factor makes of a typical value: an upper one, or one on the magnitude of what can be negative.
+/// `None` when no unit could meet it or no number could hold it.
+fn by_factor(measurand: &MeasurandId, factor: f64, typical: f64) -> Option<(Option<f64>, Option<f64>)> {
+    let bound = factor * typical.abs();
+    let usable = bound.is_finite() && bound > 0.0;
+    usable.then_some((measurand.signed.then_some(-bound), Some(bound)))
+}
+
+/// Makes a limit of every first reference value that has no limit of its own.
 fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
     for reference in &set.references {
         let taken = |l: &LimitSpec| {
             l.measurand == reference.measurand && (l.channel.is_none() || l.channel == reference.channel)
         };
-        if set.limits.iter().any(taken) {
-            continue;
-        }
+        let made = by_factor(reference.measurand, factor, reference.record.value);
+        let Some((min, max)) = made.filter(|_| !set.limits.iter().any(taken)) else { continue };
         set.limits.push(LimitSpec {
             measurand: reference.measurand,
             channel: reference.channel.clone(),
-            limit: Limit {
-                min: None,
-                max: Some(factor * reference.record.value),
-                rule: Rule::GuardBand,
-                risk: 0.05,
-                source: source.to_owned(),
-            },
+            limit: Limit { min, max, rule: Rule::GuardBand, risk: 0.05, source: source.to_owned() },
             span: reference.span.clone(),
         });
     }
@@ -281,7 +285,18 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
         let matching =
             |r: &&Reference| r.measurand == measurand && (r.channel == channel || r.channel.is_none());
         match references.iter().find(matching) {
-            Some(reference) => max = Some(factor * reference.record.value),
+            Some(reference) => match by_factor(measurand, factor, reference.record.value) {
+                Some(made) => (min, max) = made,
+                None => {
+                    let message = format!("`factor` times {} gives no limit", reference.record.value);
+                    reader.error(
+                        &section.span_of("factor"),
+                        message,
+                        Some("state the limit with `max`".into()),
+                    );
+                    return None;
+                }
+            },
             None => {
                 let message = format!("`factor` needs a reference value of `{}` in this file", measurand.id);
                 let help = "add a [[reference]], or state the limit with `max`";

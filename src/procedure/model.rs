@@ -1,10 +1,10 @@
 //! A procedure after reading: plain values in inside units (deg/h, s, degC, Hz).
 
 use super::diagnostics::{Problem, SourceText, Span};
-use super::limits::LimitSet;
+use super::limits::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use crate::measurand::ids::MeasurandId;
-use crate::record::{ClauseRecord, WaiverRecord};
+use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
 use chrono::NaiveDate;
 use std::sync::Arc;
@@ -131,6 +131,13 @@ pub struct TemperatureCondition {
     pub smoothing_s: f64,
 }
 
+impl TemperatureCondition {
+    /// Largest difference from nominal at which the tolerance is shown to hold, degC: tolerance − k·u.
+    pub fn provable_deg_c(&self) -> f64 {
+        self.tolerance_deg_c - self.coverage_factor * self.sensor_uncertainty_deg_c
+    }
+}
+
 /// A supply voltage that must hold, judged as a temperature is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupplyCondition {
@@ -144,6 +151,13 @@ pub struct SupplyCondition {
     pub sensor_uncertainty_v: f64,
     /// Multiple of it by which the tolerance is narrowed.
     pub coverage_factor: f64,
+}
+
+impl SupplyCondition {
+    /// Largest difference from nominal at which the tolerance is shown to hold, V: tolerance − k·u.
+    pub fn provable_v(&self) -> f64 {
+        self.tolerance_v - self.coverage_factor * self.sensor_uncertainty_v
+    }
 }
 
 /// Faults that are tolerated; `None` is counted and reported, and not judged.
@@ -222,6 +236,26 @@ pub struct Instrument {
     pub required: bool,
 }
 
+impl Instrument {
+    /// The record of the instrument with its state on the day of the test.
+    ///
+    /// A calibration that has run out makes the test invalid where the instrument is required, and is a remark
+    /// otherwise; so is one that states no date. The last day of validity counts as valid.
+    pub fn record_on(&self, day: NaiveDate) -> InstrumentRecord {
+        let status = match self.calibration_due {
+            Some(due) if day <= due => ConditionStatus::Ok,
+            Some(_) if self.required => ConditionStatus::Invalid,
+            _ => ConditionStatus::Remark,
+        };
+        InstrumentRecord {
+            name: self.name.clone(),
+            serial: self.serial.clone(),
+            calibration_due: self.calibration_due.map(|d| d.to_string()),
+            status,
+        }
+    }
+}
+
 /// Options of the analysis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
@@ -276,6 +310,23 @@ pub struct Waiver {
     pub record: WaiverRecord,
 }
 
+impl Loaded<Procedure> {
+    /// The identity of the procedure as it stands in results.
+    pub fn record(&self, limits: Option<&Loaded<LimitsFile>>) -> ProcedureRecord {
+        ProcedureRecord {
+            id: self.value.id.clone(),
+            title: self.value.title.clone(),
+            revision: self.value.revision.clone(),
+            standard: self.value.standard.clone(),
+            clause: self.value.clause.clone(),
+            author: self.value.author.clone(),
+            path: self.path.clone(),
+            sha256: self.sha256.clone(),
+            limits: limits.map(|file| file.record()),
+        }
+    }
+}
+
 impl Procedure {
     /// The channels that deliver a gyro output, in the order of the file.
     pub fn gyro_channels(&self) -> impl Iterator<Item = &ChannelSpec> {
@@ -306,5 +357,30 @@ impl Procedure {
     /// The waivers that are for a unit.
     pub fn waivers_for(&self, serial: Option<&str>) -> Vec<WaiverRecord> {
         self.waivers.iter().filter(|w| Some(w.serial.as_str()) == serial).map(|w| w.record.clone()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_calibration_holds_through_its_last_day() {
+        let day = |d| NaiveDate::from_ymd_opt(2027, 3, d).unwrap();
+        let mut instrument =
+            Instrument { name: "t".into(), serial: None, calibration_due: Some(day(1)), required: true };
+        assert_eq!(instrument.record_on(day(1)).status, ConditionStatus::Ok);
+        assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Invalid);
+        instrument.required = false;
+        assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Remark);
+        instrument.calibration_due = None;
+        assert_eq!(instrument.record_on(day(1)).status, ConditionStatus::Remark);
+    }
+
+    #[test]
+    fn a_share_counts_samples_and_a_count_does_not() {
+        assert!(Allowance::Share(0.001).allows(36, 36_000) && !Allowance::Share(0.001).allows(37, 36_000));
+        assert!(Allowance::Count(0).allows(0, 5) && !Allowance::Count(0).allows(1, 36_000_000));
+        assert_eq!(Allowance::Share(0.001).to_string(), "0.1 %");
     }
 }

@@ -10,7 +10,7 @@ pub struct QuantityError {
     pub span: Range<usize>,
     /// What is wrong.
     pub message: String,
-    /// What to do.
+    /// What to do, where that follows from the text alone.
     pub help: Option<String>,
 }
 
@@ -31,7 +31,7 @@ pub fn split(text: &str) -> Result<(f64, &str), QuantityError> {
         } else {
             format!("`{}` does not begin with a number", body.trim())
         };
-        return Err(QuantityError { span: whole(), message, help: Some("write it like \"20 degC\"".into()) });
+        return Err(QuantityError { span: whole(), message, help: None });
     }
     if rest.starts_with(',') && rest[1..].starts_with(|c: char| c.is_ascii_digit()) {
         return Err(QuantityError {
@@ -87,7 +87,6 @@ fn number_length(text: &str) -> usize {
 /// A missing or unknown unit, a wrong dimension, a number that is not finite; with the part of the text concerned.
 pub fn parse(text: &str, unit: &str, difference: bool, bare: bool) -> Result<f64, QuantityError> {
     let (value, unit_text) = split(text)?;
-    let shown = if unit == "1" { "%" } else { unit };
     let trimmed = text.trim();
     let whole = {
         let start = text.len() - text.trim_start().len();
@@ -97,24 +96,18 @@ pub fn parse(text: &str, unit: &str, difference: bool, bare: bool) -> Result<f64
         if bare && unit == "1" {
             return Ok(value);
         }
-        return Err(QuantityError {
-            span: whole,
-            message: format!("`{trimmed}` has no unit"),
-            help: Some(format!("write it with its unit, for example \"{trimmed} {shown}\"")),
-        });
+        return Err(QuantityError { span: whole, message: format!("`{trimmed}` has no unit"), help: None });
     }
     let unit_start = whole.end - unit_text.len();
-    let wrong_unit =
-        |message: String, help: Option<String>| QuantityError { span: unit_start..whole.end, message, help };
-    let given = Unit::parse(unit_text)
-        .map_err(|e| wrong_unit(e.to_string(), Some(format!("a unit such as {shown} is needed here"))))?;
-    let target = Unit::parse(unit).map_err(|e| wrong_unit(e.to_string(), None))?;
+    let wrong_unit = |message: String| QuantityError { span: unit_start..whole.end, message, help: None };
+    let given = Unit::parse(unit_text).map_err(|e| wrong_unit(e.to_string()))?;
+    let target = Unit::parse(unit).map_err(|e| wrong_unit(e.to_string()))?;
     let converted = if difference {
         given.factor_to(&target).map(|factor| value * factor)
     } else {
         given.convert(value, &target)
     };
-    let converted = converted.map_err(|e| wrong_unit(e.to_string(), None))?;
+    let converted = converted.map_err(|e| wrong_unit(e.to_string()))?;
     if converted.is_finite() {
         Ok(converted)
     } else {
@@ -155,7 +148,7 @@ mod tests {
         assert!(e.message.contains("`bananas`"), "{}", e.message);
         let e = parse("3 deg/sqrt(h)", "deg/h", false, false).unwrap_err();
         assert_eq!((e.span, e.message.contains("an angle random walk")), (2..13, true));
-        assert!(parse("20", "degC", false, false).unwrap_err().help.unwrap().contains("20 degC"));
+        assert!(parse("20", "degC", false, false).unwrap_err().message.contains("no unit"));
         assert!(parse("0,4 degC", "degC", false, false).unwrap_err().help.unwrap().contains("0.4 degC"));
     }
 }

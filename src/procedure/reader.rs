@@ -31,7 +31,7 @@ pub(super) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Sec
     if !errors.is_empty() {
         for error in errors.iter().take(ENOUGH) {
             let span = error.span().unwrap_or(0..0);
-            let problem = source.error(&span, format!("this is not TOML: {}", error.message()));
+            let problem = source.error(&span, format!("this is not TOML: {}", plain(error.message())));
             reader.problems.list.push(with_syntax_help(problem));
         }
         reader.problems.sort();
@@ -90,10 +90,17 @@ fn nests(line: &str) -> bool {
     count > DEEPEST
 }
 
+/// The parser's message without the part that speaks of its grammar.
+fn plain(message: &str) -> &str {
+    message.strip_suffix(", expected literal string").unwrap_or(message)
+}
+
 /// Adds what to do to the syntax errors that people make most.
 fn with_syntax_help(problem: Problem) -> Problem {
     let help = if problem.message.contains("duplicate key") {
         "a key or table may stand only once; lists of tables are written [[name]]"
+    } else if problem.message.contains("date") || problem.message.contains("time") {
+        "dates are written without quotes: calibration_due = 2030-12-31"
     } else if problem.token.starts_with(|c: char| c.is_ascii_alphanumeric())
         || problem.message.contains("string")
     {

@@ -59,6 +59,16 @@ impl Allowance {
     }
 }
 
+impl std::fmt::Display for Allowance {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Allowance::Count(count) => write!(f, "{count}"),
+            // Ten digits hide the rounding of a per cent and no share that anyone writes.
+            Allowance::Share(share) => write!(f, "{} %", (share * 1e12).round() / 1e10),
+        }
+    }
+}
+
 /// A table that was read: the values that are sound.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Section {

@@ -76,15 +76,21 @@ impl Range {
             && if self.open { value > self.low } else { value >= self.low }
     }
 
-    /// The range in words, with a unit behind each number.
+    /// The range in words, with a unit behind each number. Of a pure number (unit `1`) it speaks in per cent.
     pub fn describe(&self, unit: &str) -> String {
-        let unit = if unit.is_empty() || unit == "1" { String::new() } else { format!(" {unit}") };
+        let percent = unit == "1";
+        let shown = |value: f64| match unit {
+            "" => value.to_string(),
+            "1" => format!("{} %", value * 100.0),
+            unit => format!("{value} {unit}"),
+        };
         let low = if self.open { "above" } else { "at least" };
         match (self.low > f64::MIN, self.high < f64::MAX) {
+            (false, false) if percent => "any finite share".to_owned(),
             (false, false) => "any finite number".to_owned(),
-            (true, false) => format!("{low} {}{unit}", self.low),
-            (false, true) => format!("at most {}{unit}", self.high),
-            (true, true) => format!("{low} {}{unit} and at most {}{unit}", self.low, self.high),
+            (true, false) => format!("{low} {}", shown(self.low)),
+            (false, true) => format!("at most {}", shown(self.high)),
+            (true, true) => format!("{low} {} and at most {}", shown(self.low), shown(self.high)),
         }
     }
 }
@@ -259,5 +265,6 @@ mod tests {
         assert!(!Range::ANY.holds(f64::NAN) && !Range::ANY.holds(f64::INFINITY));
         assert_eq!(Range::above_up_to(0.0, 0.5).describe(""), "above 0 and at most 0.5");
         assert_eq!(Range::POSITIVE.describe("s"), "above 0 s");
+        assert_eq!(Range::between(0.0, 1.0).describe("1"), "at least 0 % and at most 100 %");
     }
 }

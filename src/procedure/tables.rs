@@ -308,7 +308,7 @@ static WAIVER: TableSpec = TableSpec {
     doc: "A decision to accept one unit in spite of a row. It is a record beside the verdict and never changes it.",
     keys: &[
         required("serial", Kind::Text, "\"0042\"", "Serial number of the unit: a waiver is for one unit."),
-        required("row", Kind::Text, "\"bias_instability\"", "Measurand or condition concerned."),
+        required("row", Kind::Text, "\"angle_random_walk\"", "Measurand or condition concerned."),
         required("by", Kind::Text, "\"J. Smith, quality\"", "Who decided."),
         required(
             "reason",

@@ -96,7 +96,7 @@ pub(super) static INSTRUMENT: TableSpec = TableSpec {
             Kind::Flag,
             "true",
             "true",
-            "Whether an instrument without a valid calibration makes the test invalid; otherwise it is a remark.",
+            "Whether a calibration that has run out makes the test invalid; otherwise it is a remark.",
         ),
     ],
 };

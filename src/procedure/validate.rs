@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, SourceText, nearest};
 use super::model::{ChannelSpec, EarthRate, MeasurandSpec, Procedure, Taus};
 use super::reader::{Reader, shorten};
 use super::section::Section;
+use crate::measurand::ids;
 use crate::recording::{ColumnRef, Role};
 
 /// Reports every contradiction.
@@ -14,6 +15,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     site(procedure, root, reader);
     measurands(procedure, root, reader);
     limits(procedure, reader);
+    waivers(procedure, root, reader);
     averaging_times(procedure, root, reader);
 }
 
@@ -273,6 +275,35 @@ fn limits(procedure: &Procedure, reader: &mut Reader<'_>) {
                 format!("add a [[measurand]] with id = \"{}\", or remove the limit", limit.measurand.id);
             reader.error(&limit.span, message, Some(help));
         }
+    }
+    for reference in &procedure.limits.references {
+        if let Some(channel) = reference.channel.as_deref().filter(|c| procedure.channel(c).is_none()) {
+            let message =
+                format!("this reference is for channel `{}`, which is not declared", shorten(channel));
+            reader.error(&reference.span, message, None);
+        }
+    }
+}
+
+/// A waiver for a row that is not in the report would never be seen.
+fn waivers(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    for section in root.tables("waiver") {
+        let Some(row) = section.text("row") else { continue };
+        if procedure.measures(&row, None) {
+            continue;
+        }
+        let measured = procedure.measurands.iter().map(|m| m.id.id);
+        let help = match (nearest(&row, measured), ids::find(&row)) {
+            (Some(near), _) => format!("did you mean `{near}`?"),
+            (None, Some(_)) => "this procedure does not measure it".to_owned(),
+            // Anything else may be the id of a condition.
+            (None, None) => continue,
+        };
+        reader.error(
+            &section.span_of("row"),
+            format!("no row `{}` in the report", shorten(&row)),
+            Some(help),
+        );
     }
 }
 

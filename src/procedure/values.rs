@@ -275,29 +275,34 @@ fn quantity_text(
     value: &DeValue<'_>,
     span: &Span,
 ) -> Option<f64> {
-    let shown = if unit == "1" { "%" } else { unit };
+    let bare = matches!(key.kind, Kind::QuantityBy(_) | Kind::QuantityMap);
     match value {
-        DeValue::String(text) => match quantity::parse(text, unit, difference, false) {
+        DeValue::String(text) => match quantity::parse(text, unit, difference, bare) {
             Ok(number) => Some(number),
             Err(QuantityError { span: part, message, help }) => {
                 let inner = inside_quotes(reader, text, span);
                 let at =
                     if inner == *span { inner } else { inner.start + part.start..inner.start + part.end };
-                reader.error(&at, message, help);
+                reader.error(&at, message, Some(help.unwrap_or_else(|| quantity_help(key, unit))));
                 None
             }
         },
         DeValue::Integer(_) | DeValue::Float(_) => {
-            let given = reader.source.text.get(span.clone()).unwrap_or("").to_owned();
-            let message = format!("`{}` has no unit", key.name);
-            reader.error(
-                span,
-                message,
-                Some(format!("write it as a text with its unit: \"{given} {shown}\"")),
-            );
+            reader.error(span, format!("`{}` has no unit", key.name), Some(quantity_help(key, unit)));
             None
         }
         _ => reader.wrong(key, value, span),
+    }
+}
+
+/// How a quantity is written. The example of a key stands in only where its unit is the one needed: a guessed unit
+/// would turn hours into seconds.
+fn quantity_help(key: &KeySpec, unit: &str) -> String {
+    match key.kind {
+        Kind::QuantityBy(_) | Kind::QuantityMap => {
+            format!("write a text with number and unit; here a unit like {unit} is needed")
+        }
+        _ => format!("write a text with number and unit, for example: {} = {}", key.name, key.example),
     }
 }
 
