@@ -259,7 +259,7 @@ impl Evidence {
                     serial: i.serial.clone().unwrap_or_else(|| NOTHING.to_owned()),
                     due: i.calibration_due.clone().unwrap_or_else(|| NOTHING.to_owned()),
                     status: status(i.status),
-                    status_word: words.name("status", status(i.status)),
+                    status_word: words.name("calibration", status(i.status)),
                 })
                 .collect(),
             waivers: record
@@ -309,7 +309,8 @@ fn probability(p: f64, words: Words) -> String {
 
 fn condition(c: &ConditionRecord, words: Words) -> Condition {
     let mut observed: Vec<(&String, &serde_json::Value)> = c.observed.iter().collect();
-    let rank = |name: &str| ["value", "min", "max", "mean", "std"].iter().position(|k| *k == name).unwrap_or(5);
+    let rank =
+        |name: &str| ["value", "min", "max", "mean", "std"].iter().position(|k| *k == name).unwrap_or(5);
     observed.sort_by_key(|(name, _)| rank(name));
     let observed: Vec<String> = observed
         .into_iter()
@@ -361,7 +362,8 @@ fn facts(i: &Integrity, words: Words) -> Vec<Field> {
     let lang = words.lang;
     [
         i.timestamp_jitter_s.map(|v| ("report.jitter", duration(v, lang))),
-        i.quantization_step_deg_h.map(|v| ("report.step", words.quantity(&limit_digits(v, 4, lang), "deg/h"))),
+        i.quantization_step_deg_h
+            .map(|v| ("report.step", words.quantity(&limit_digits(v, 4, lang), "deg/h"))),
         i.outlier_threshold.map(|v| {
             let v = limit_digits(v, 3, lang);
             ("report.outlier_threshold", words.with("report.robust_deviations", &[("value", &v)]))

@@ -45,6 +45,8 @@ pub struct View {
     pub several_channels: bool,
     /// True when a row has a reference value.
     pub has_references: bool,
+    /// The decision rule, when all rows with a limit have the same one; empty otherwise.
+    pub shared_rule: String,
     /// Where the reference values come from.
     pub references: Vec<String>,
     /// Rows with a limit.
@@ -183,6 +185,10 @@ impl View {
             files: files(record, words),
             several_channels: channels.len() > 1,
             has_references: judged.iter().chain(&further).any(|r| !r.reference.is_empty()),
+            shared_rule: match judged.first() {
+                Some(first) if judged.iter().all(|r| r.rule == first.rule) => first.rule.clone(),
+                _ => String::new(),
+            },
             references: record
                 .measurands
                 .iter()
