@@ -178,6 +178,25 @@ fn a_record_of_nothing_still_makes_a_report() {
 }
 
 #[test]
+fn odd_numbers_and_many_faults_read_well() {
+    let mut record = fixture::pass();
+    for (row, value) in record.measurands.iter_mut().zip([f64::NAN, f64::INFINITY, 5e-324, f64::MAX]) {
+        row.value = Some(value);
+        row.margin = Some(-value);
+        row.specific_risk = Some(value);
+    }
+    record.window.to_s = f64::NAN;
+    record.lines[0].frequency_hz = 0.0;
+    let one = record.integrity.faults[0].clone();
+    record.integrity.faults = vec![one; 100];
+    for text in [html(&record), markdown(&record)] {
+        assert!(!text.contains("NaN") && !text.contains(">inf") && !text.contains(" inf "));
+        assert!(text.contains("20 of 100 listed faults are shown"));
+        assert_eq!(text.matches("8.1 robust standard deviations from the median").count(), 20);
+    }
+}
+
+#[test]
 fn the_markdown_report_is_as_it_was() {
     insta::assert_snapshot!("three_channels_markdown", markdown(&fixture::three_channels()));
 }

@@ -108,7 +108,7 @@ pub struct MethodView {
     /// Explanation.
     pub text: String,
     /// Formulas.
-    pub formulas: &'static [&'static str],
+    pub formulas: Vec<String>,
     /// Source.
     pub source: &'static str,
 }
@@ -146,6 +146,22 @@ impl Words {
                 Arg::Text(t) => t.clone(),
             })
         })
+    }
+
+    /// A formula with the decimal mark of the language.
+    pub fn formula(self, text: &str) -> String {
+        let mark = lookup(self.lang, "number.decimal").unwrap_or(".");
+        let chars: Vec<char> = text.chars().collect();
+        let mut out = String::with_capacity(text.len());
+        for (i, c) in chars.iter().enumerate() {
+            let figure = |at: Option<usize>| at.and_then(|i| chars.get(i)).is_some_and(char::is_ascii_digit);
+            if *c == '.' && figure(i.checked_sub(1)) && figure(Some(i + 1)) {
+                out.push_str(mark);
+            } else {
+                out.push(*c);
+            }
+        }
+        out
     }
 
     pub fn unit(self, text: &str) -> String {
@@ -207,7 +223,7 @@ impl View {
                 .map(|m| MethodView {
                     title: words.t(&format!("methods.{}.title", m.id)),
                     text: words.t(&format!("methods.{}.text", m.id)),
-                    formulas: m.formulas,
+                    formulas: m.formulas.iter().map(|f| words.formula(f)).collect(),
                     source: m.source,
                 })
                 .collect(),
