@@ -8,7 +8,7 @@ use crate::record::RunRecord;
 pub struct Method {
     /// Id: `methods.<id>.title` and `methods.<id>.text` are its words.
     pub id: &'static str,
-    /// Formulas, one a line.
+    /// Formulas, one a line, with a point as the decimal mark and no units.
     pub formulas: &'static [&'static str],
     /// Where they come from.
     pub source: &'static str,
@@ -50,7 +50,7 @@ pub const METHODS: &[Method] = &[
     },
     Method {
         id: "edf",
-        formulas: &["σ̂·√(ν/χ²₀.₉₇₅,ᵥ) … σ̂·√(ν/χ²₀.₀₂₅,ᵥ)"],
+        formulas: &["σ̂·√(ν / χ²(0.975; ν)) … σ̂·√(ν / χ²(0.025; ν))"],
         source: "Greenhall and Riley 2003; NIST SP 1065",
         applies: noise,
     },
@@ -83,7 +83,7 @@ pub const METHODS: &[Method] = &[
     },
     Method {
         id: "russian_sigma",
-        formulas: &["s = √[ Σⱼ (ȳⱼ − ȳ)² / (n − 1) ],  n = ⌊T/τ⌋,  τ = 100 s (10 s)"],
+        formulas: &["s = √[ Σⱼ (ȳⱼ − ȳ)² / (n − 1) ],  n = ⌊T/τ⌋"],
         source: "",
         applies: russian,
     },
@@ -107,7 +107,7 @@ pub const METHODS: &[Method] = &[
     },
     Method {
         id: "earth_rate",
-        formulas: &["Ω_IA = Ω_E·(cos φ·cos E·cos A + sin φ·sin E),  Ω_E = 7.292115×10⁻⁵ rad/s = 15.0411 °/h"],
+        formulas: &["Ω_IA = Ω_E·(cos φ·cos E·cos A + sin φ·sin E)"],
         source: "",
         applies: |r| measures(r, &["static_bias", "earth_rate_component"]),
     },
@@ -129,7 +129,7 @@ pub const METHODS: &[Method] = &[
     },
     Method {
         id: "guard_band",
-        formulas: &["A = TL − z₁₋ᵣ·u", "A = TL·√(χ²ᵣ,ᵥ/ν)"],
+        formulas: &["A = TL − z(1 − r)·u", "A = TL·√(χ²(r; ν) / ν)"],
         source: "JCGM 106:2012; ISO 14253-1:2017; ILAC-G8:09/2019",
         applies: limited,
     },

@@ -131,11 +131,16 @@ impl Rounding {
         // Places above the units have no decimals to round by.
         let value = if self.place > 0 {
             let unit = 10f64.powi(self.place);
-            (value / unit).round() * unit
+            let rounded = (value / unit).round() * unit;
+            if rounded.is_finite() { rounded } else { value }
         } else {
             value
         };
-        let mantissa = format!("{:.*}", self.decimals, value / 10f64.powi(self.exponent));
+        let scaled = value / 10f64.powi(self.exponent);
+        if !scaled.is_finite() {
+            return digits(value, 4, lang);
+        }
+        let mantissa = format!("{:.*}", self.decimals, scaled);
         let zero = mantissa.chars().all(|c| matches!(c, '-' | '0' | '.'));
         let mantissa = if zero { mantissa.trim_start_matches('-') } else { &mantissa };
         if self.exponent == 0 || zero {
@@ -268,6 +273,24 @@ mod tests {
     fn a_carry_in_the_uncertainty_moves_the_place() {
         // The half-width 0.0996 is 0.10 in two digits, so the value has two decimals.
         assert_eq!(Rounding::of(1.0, Some((0.9004, 1.0996))).show(1.0, EN), "1.00");
+    }
+
+    #[test]
+    fn no_number_is_too_odd_to_print() {
+        let odd =
+            [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, 5e-324, -5e-324, f64::MAX, f64::MIN];
+        for v in odd {
+            for w in odd {
+                let r = Rounding::of(v, Some((w, v)));
+                for text in [r.show(v, EN), r.show(w, EN), bound(v, true, EN), acceptance(v, false, EN)] {
+                    let fine = |c: char| c.is_ascii_digit() || ".−–×⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c);
+                    assert!(!text.is_empty() && text.chars().all(fine), "{v} {w}: {text}");
+                }
+            }
+            for text in [percent(v, EN), duration(v, EN), digits(v, 4, EN), limit(v, EN)] {
+                assert!(!text.contains("inf") && !text.contains("NaN"), "{v}: {text}");
+            }
+        }
     }
 
     #[test]

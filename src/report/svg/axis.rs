@@ -50,7 +50,9 @@ impl Ruled {
         length: f64,
         lang: Lang,
     ) -> Ruled {
-        let (low, high) = range(axis.scale, axis.range, data);
+        // A series over time fills its frame; what is measured keeps some distance from it.
+        let room = if direction == Direction::Across { 0.01 } else { 0.08 };
+        let (low, high) = range(axis.scale, axis.range, data, room);
         let words = lookup(lang, axis.label).unwrap_or(axis.label);
         let timed = axis.scale == Scale::Linear && direction == Direction::Across && axis.unit == "s";
         let mut ruled = Ruled { scale: axis.scale, low, high, ticks: vec![], title: String::new() };
@@ -129,7 +131,7 @@ impl Ruled {
 }
 
 /// The range of an axis: the fixed one where it makes sense, else the extent of the data with some room.
-fn range(scale: Scale, fixed: Option<(f64, f64)>, data: Option<(f64, f64)>) -> (f64, f64) {
+fn range(scale: Scale, fixed: Option<(f64, f64)>, data: Option<(f64, f64)>, room: f64) -> (f64, f64) {
     let sane = |(a, b): (f64, f64)| {
         a.is_finite()
             && b.is_finite()
@@ -143,13 +145,12 @@ fn range(scale: Scale, fixed: Option<(f64, f64)>, data: Option<(f64, f64)>) -> (
     match scale {
         Scale::Linear => {
             let (a, b) = data.unwrap_or((0.0, 1.0));
-            let (a, b) = (a.clamp(-HUGE, HUGE) * 0.9, b.clamp(-HUGE, HUGE) * 0.9);
-            let (a, b) = (a / 0.9, b / 0.9);
+            let (a, b) = (a.clamp(-HUGE, HUGE), b.clamp(-HUGE, HUGE));
             let middle = 0.5 * a + 0.5 * b;
             let half = 0.5 * b - 0.5 * a;
             let least = middle.abs() * 1e-12;
             let half = match half {
-                h if h > least && h > 1e-300 => h * 1.08,
+                h if h > least && h > 1e-300 => h * (1.0 + room),
                 _ if middle == 0.0 => 1.0,
                 _ => middle.abs() * 0.05,
             };

@@ -6,6 +6,9 @@ use crate::record::{ConditionRecord, ConditionStatus, FaultRecord, Integrity, No
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use serde::Serialize;
 
+/// Faults of one kind that a report lists; more would bury the rest of it.
+const SHOWN_OF_A_KIND: usize = 20;
+
 /// Printed evidence. Each table is empty when the record has nothing for it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Evidence {
@@ -17,8 +20,10 @@ pub struct Evidence {
     pub faultless: bool,
     /// Jitter, quantisation step, threshold.
     pub integrity_facts: Vec<Field>,
-    /// Faults one by one.
+    /// Faults one by one, the first of each kind.
     pub faults: Vec<Fault>,
+    /// How many of the listed faults are shown; empty when all are.
+    pub faults_shown: String,
     /// Evaluated span.
     pub window: Vec<Field>,
     /// Spans left out.
@@ -188,13 +193,23 @@ impl Evidence {
     /// Prints the evidence of a record.
     pub(crate) fn new(record: &RunRecord, words: Words) -> Evidence {
         let lang = words.lang;
+        let shown = first_of_each_kind(&record.integrity.faults);
         let (fault_counts, faultless) = fault_counts(&record.integrity, words);
         Evidence {
             conditions: record.conditions.iter().map(|c| condition(c, words)).collect(),
             fault_counts,
             faultless,
             integrity_facts: facts(&record.integrity, words),
-            faults: record.integrity.faults.iter().map(|f| fault(f, words)).collect(),
+            faults_shown: if shown.len() < record.integrity.faults.len() {
+                let listed = count(record.integrity.faults.len() as u64, lang);
+                words.with(
+                    "report.faults_shown",
+                    &[("shown", &count(shown.len() as u64, lang)), ("listed", &listed)],
+                )
+            } else {
+                String::new()
+            },
+            faults: shown.into_iter().map(|f| fault(f, words)).collect(),
             window: [
                 ("report.window_from", record.window.from_s),
                 ("report.window_to", record.window.to_s),
@@ -259,7 +274,7 @@ impl Evidence {
                     serial: i.serial.clone().unwrap_or_else(|| NOTHING.to_owned()),
                     due: i.calibration_due.clone().unwrap_or_else(|| NOTHING.to_owned()),
                     status: status(i.status),
-                    status_word: words.name("status", status(i.status)),
+                    status_word: words.name("calibration", status(i.status)),
                 })
                 .collect(),
             waivers: record
@@ -373,6 +388,19 @@ fn facts(i: &Integrity, words: Words) -> Vec<Field> {
     .flatten()
     .map(|(key, value)| Field { label: words.t(key), value })
     .collect()
+}
+
+/// The faults that a report lists, in the order of the record.
+fn first_of_each_kind(faults: &[FaultRecord]) -> Vec<&FaultRecord> {
+    let mut seen: std::collections::BTreeMap<&str, usize> = std::collections::BTreeMap::new();
+    faults
+        .iter()
+        .filter(|f| {
+            let n = seen.entry(&f.kind).or_default();
+            *n += 1;
+            *n <= SHOWN_OF_A_KIND
+        })
+        .collect()
 }
 
 fn fault(f: &FaultRecord, words: Words) -> Fault {

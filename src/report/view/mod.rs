@@ -45,6 +45,8 @@ pub struct View {
     pub several_channels: bool,
     /// True when a row has a reference value.
     pub has_references: bool,
+    /// The decision rule, when all rows with a limit have the same one; empty otherwise.
+    pub shared_rule: String,
     /// Where the reference values come from.
     pub references: Vec<String>,
     /// Rows with a limit.
@@ -106,7 +108,7 @@ pub struct MethodView {
     /// Explanation.
     pub text: String,
     /// Formulas.
-    pub formulas: &'static [&'static str],
+    pub formulas: Vec<String>,
     /// Source.
     pub source: &'static str,
 }
@@ -146,6 +148,22 @@ impl Words {
         })
     }
 
+    /// A formula with the decimal mark of the language.
+    pub fn formula(self, text: &str) -> String {
+        let mark = lookup(self.lang, "number.decimal").unwrap_or(".");
+        let chars: Vec<char> = text.chars().collect();
+        let mut out = String::with_capacity(text.len());
+        for (i, c) in chars.iter().enumerate() {
+            let figure = |at: Option<usize>| at.and_then(|i| chars.get(i)).is_some_and(char::is_ascii_digit);
+            if *c == '.' && figure(i.checked_sub(1)) && figure(Some(i + 1)) {
+                out.push_str(mark);
+            } else {
+                out.push(*c);
+            }
+        }
+        out
+    }
+
     pub fn unit(self, text: &str) -> String {
         unit::pretty(text, self.lang)
     }
@@ -183,6 +201,10 @@ impl View {
             files: files(record, words),
             several_channels: channels.len() > 1,
             has_references: judged.iter().chain(&further).any(|r| !r.reference.is_empty()),
+            shared_rule: match judged.first() {
+                Some(first) if judged.iter().all(|r| r.rule == first.rule) => first.rule.clone(),
+                _ => String::new(),
+            },
             references: record
                 .measurands
                 .iter()
@@ -201,7 +223,7 @@ impl View {
                 .map(|m| MethodView {
                     title: words.t(&format!("methods.{}.title", m.id)),
                     text: words.t(&format!("methods.{}.text", m.id)),
-                    formulas: m.formulas,
+                    formulas: m.formulas.iter().map(|f| words.formula(f)).collect(),
                     source: m.source,
                 })
                 .collect(),

@@ -1,0 +1,208 @@
+//! Every word of a report stands in the locale tables: none is missing, none idle.
+
+mod report_fixture;
+
+use report_fixture as fixture;
+use sagnac::report::render::TEMPLATES;
+use sagnac::report::{Renderer, render_html, render_markdown};
+use sagnac::text::{Lang, table};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Measurand ids of the result contract; each has a name.
+const MEASURANDS: &[&str] = &[
+    "static_bias",
+    "angle_random_walk",
+    "bias_instability",
+    "bias_instability_minimum",
+    "bias_instability_minimum_scaled",
+    "rate_random_walk",
+    "rate_ramp",
+    "quantization",
+    "markov_sigma",
+    "markov_correlation_time",
+    "quasi_periodic_amplitude",
+    "quasi_periodic_frequency",
+    "quasi_periodic_coherence_time",
+    "russian_drift_100s",
+    "russian_drift_100s_3sigma",
+    "russian_sigma_10s",
+    "russian_arw_10s",
+    "russian_drift_100s_predicted",
+    "ratio_russian_to_allan_bias",
+    "ratio_russian_to_allan_arw",
+    "bias_temperature_sensitivity",
+    "bias_temperature_sensitivity_max",
+    "bias_temperature_rate_sensitivity",
+    "thermal_lag",
+    "thermal_hysteresis",
+    "bias_over_temperature_peak_to_peak",
+    "bias_over_temperature_rms",
+    "bias_residual_rms",
+    "ramp_rate",
+    "warm_up_time",
+    "scale_factor",
+    "scale_factor_error",
+    "scale_factor_nonlinearity",
+    "scale_factor_nonlinearity_of_rate",
+    "scale_factor_asymmetry",
+    "scale_factor_repeatability",
+    "scale_factor_hysteresis",
+    "scale_factor_temperature_sensitivity",
+    "misalignment_x",
+    "misalignment_y",
+    "dead_zone",
+    "threshold",
+    "table_harmonic_1",
+    "table_harmonic_2",
+    "cross_axis",
+    "resolution",
+    "magnetic_sensitivity",
+    "supply_sensitivity",
+    "vibration_sensitivity",
+    "angle_random_walk_at_temperature",
+    "bias_repeatability",
+    "earth_rate_component",
+    "line_frequency",
+    "line_amplitude",
+];
+
+/// Ids that a record may hold where its documentation lists them.
+const LISTED: &[(&str, &[&str])] = &[
+    (
+        "fault",
+        &[
+            "gap",
+            "duplicate_timestamp",
+            "backward_timestamp",
+            "non_finite",
+            "unparsable",
+            "outlier",
+            "saturated",
+            "stuck",
+        ],
+    ),
+    ("excluded", &["warm_up", "declared", "gap"]),
+    ("clause", &["here", "elsewhere", "not_applicable"]),
+    ("status", &["ok", "remark", "invalid"]),
+    ("calibration", &["ok", "remark", "invalid"]),
+    ("verdict", &["none", "pass", "indeterminate", "fail", "error"]),
+];
+
+/// Tables whose ids come from other parts of the program: a key is in use when its id stands in a source file.
+const OPEN: &[&str] = &["how", "condition", "observed", "role", "unit", "integrity", "convention"];
+
+fn sources(folder: &Path, out: &mut Vec<String>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, out);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            out.push(std::fs::read_to_string(&path).unwrap());
+        }
+    }
+}
+
+/// Every text between a pair of quotation marks on one line.
+fn quoted(text: &str, mark: char) -> impl Iterator<Item = &str> {
+    text.lines().flat_map(move |line| line.split(mark).skip(1).step_by(2))
+}
+
+fn is_key(text: &str, tables: &BTreeSet<String>) -> bool {
+    let file = [".html", ".md", ".css", ".toml", ".json", ".csv", ".svg"].iter().any(|e| text.ends_with(e));
+    let plain = text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '.');
+    let first = text.split('.').next().unwrap_or_default();
+    plain && !file && text.contains('.') && !text.ends_with('.') && tables.contains(first)
+}
+
+/// All keys that templates and sources name in full, and all short texts of the sources.
+fn used() -> (BTreeSet<String>, BTreeSet<String>) {
+    let tables: BTreeSet<String> =
+        table(Lang::En).keys().filter_map(|k| k.split('.').next()).map(str::to_owned).collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut code = vec![];
+    sources(&root.join("src"), &mut code);
+    let mut fixtures = vec![];
+    sources(&root.join("tests/report_fixture"), &mut fixtures);
+    let mut keys = BTreeSet::new();
+    for text in &code {
+        keys.extend(quoted(text, '"').filter(|k| is_key(k, &tables)).map(str::to_owned));
+    }
+    for (_, text) in TEMPLATES {
+        for mark in ['"', '\''] {
+            keys.extend(quoted(text, mark).filter(|k| is_key(k, &tables)).map(str::to_owned));
+        }
+    }
+    let words = code
+        .iter()
+        .chain(&fixtures)
+        .flat_map(|t| quoted(t, '"'))
+        .flat_map(|t| t.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')))
+        .map(str::to_owned)
+        .collect();
+    (keys, words)
+}
+
+#[test]
+fn no_key_is_missing() {
+    let (keys, _) = used();
+    assert!(keys.len() > 100, "the search for keys found only {}", keys.len());
+    let known = table(Lang::En);
+    let missing: Vec<&String> = keys.iter().filter(|k| !known.contains_key(*k)).collect();
+    assert!(missing.is_empty(), "not in the table: {missing:?}");
+    for id in MEASURANDS {
+        assert!(known.contains_key(&format!("measurand.{id}")), "measurand.{id}");
+    }
+    for (prefix, ids) in LISTED {
+        for id in *ids {
+            assert!(known.contains_key(&format!("{prefix}.{id}")), "{prefix}.{id}");
+        }
+    }
+}
+
+#[test]
+fn no_key_is_idle() {
+    let (keys, words) = used();
+    let idle: Vec<&String> = table(Lang::En)
+        .keys()
+        .filter(|key| {
+            let Some((prefix, id)) = key.split_once('.') else { return true };
+            let listed = LISTED.iter().any(|(p, ids)| *p == prefix && ids.contains(&id));
+            let measurand = prefix == "measurand" && MEASURANDS.contains(&id);
+            let open = OPEN.contains(&prefix) && words.contains(id);
+            // Built from the ids of the methods and of the figures.
+            let built = (prefix == "methods"
+                && sagnac::report::methods::METHODS
+                    .iter()
+                    .any(|m| id == format!("{}.title", m.id) || id == format!("{}.text", m.id)))
+                || (key.starts_with("figure.") && words.contains(key.as_str()))
+                || key.strip_prefix("figure.legend.").is_some_and(|term| words.contains(term))
+                || (key.starts_with("axis.") && words.contains(key.as_str()))
+                || key
+                    .strip_prefix("figure.caption.")
+                    .is_some_and(|f| words.contains(&format!("figure.title.{f}")));
+            !(keys.contains(*key) || listed || measurand || open || built)
+        })
+        .collect();
+    assert!(idle.is_empty(), "in the table, but nothing uses them: {idle:?}");
+}
+
+#[test]
+fn no_report_shows_a_key() {
+    let tables: BTreeSet<String> =
+        table(Lang::En).keys().filter_map(|k| k.split('.').next()).map(str::to_owned).collect();
+    for record in [fixture::pass(), fixture::three_channels(), fixture::error(), fixture::analysis()] {
+        let figures = fixture::figures::all();
+        for text in [
+            render_html(&record, &figures, Lang::En, &Renderer::new()).unwrap(),
+            render_markdown(&record, &figures, Lang::En, &Renderer::new()).unwrap(),
+        ] {
+            let shown: Vec<&str> = text
+                .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '.'))
+                .map(|w| w.trim_end_matches('.'))
+                .filter(|w| is_key(w, &tables))
+                .collect();
+            assert!(shown.is_empty(), "{shown:?}");
+        }
+    }
+}
