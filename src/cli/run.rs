@@ -5,8 +5,8 @@ use super::{GridArgs, RunArgs, exit, place};
 use crate::estimate::Verdict;
 use crate::noise::tau_grid::TauGrid;
 use crate::output::StagedFolder;
-use crate::procedure::{Loaded, Procedure, effective, load, load_limits};
-use crate::record::{ProcedureRecord, RunRecord, UnitUnderTest};
+use crate::procedure::{effective, load, load_limits};
+use crate::record::{RunRecord, UnitUnderTest};
 use crate::report::{Renderer, render_html, render_markdown, svg};
 use crate::run::{Outcome, Request, execute, failed};
 use crate::text::{Lang, lookup};
@@ -52,7 +52,7 @@ fn attempt(args: &RunArgs) -> Result<u8, String> {
     let request = Request {
         kind: "run",
         procedure: &procedure.value,
-        procedure_record: Some(record_of(&procedure, limits.as_ref().map(Loaded::record))),
+        procedure_record: Some(procedure.record(limits.as_ref())),
         limits: &effective,
         source: &source,
         use_stamps: true,
@@ -124,21 +124,6 @@ fn summary(record: &RunRecord, place: &Path) -> String {
     }
     out.push_str(&format!("{}\n", place.join("report.html").display()));
     out
-}
-
-fn record_of(loaded: &Loaded<Procedure>, limits: Option<crate::record::LimitsFile>) -> ProcedureRecord {
-    let p = &loaded.value;
-    ProcedureRecord {
-        id: p.id.clone(),
-        title: p.report.title.clone().unwrap_or_else(|| p.title.clone()),
-        revision: p.revision.clone(),
-        standard: p.standard.clone(),
-        clause: p.clause.clone(),
-        author: p.author.clone(),
-        path: loaded.path.clone(),
-        sha256: loaded.sha256.clone(),
-        limits,
-    }
 }
 
 /// The averaging times asked for on the command line.
