@@ -44,7 +44,7 @@ pub(super) fn judge(held: &Held<'_>, facts: &Facts<'_>) -> ConditionRecord {
         .with("guard", guard)
         .with("smoothing_s", track.smoothing_s)
         .with("share", 100.0 * track.share_outside)
-        .with("unit", held.unit);
+        .with("unit", if held.unit == "degC" { "°C" } else { held.unit });
     let mut observed = vec![
         ("min", track.smooth_min.value),
         ("max", track.smooth_max.value),
