@@ -160,9 +160,15 @@ impl State<'_> {
                 self.connected = false;
                 self.log.push("gap", None, at, row, missing, || {
                     if clock_set {
-                        format!("the clock jumps ahead by {step_s} s: taken for a gap of unknown length")
+                        format!(
+                            "the clock jumps ahead by {} s: taken for a gap of unknown length",
+                            nano(step_s)
+                        )
                     } else {
-                        format!("{step_s:.9} s between stamps, {missing} samples missing before this row")
+                        format!(
+                            "{} s between stamps, {missing} samples missing before this row",
+                            nano(step_s)
+                        )
                     }
                 });
                 return true;
@@ -178,7 +184,10 @@ impl State<'_> {
                 });
                 // One entry of its own, or it would be added to the rows set aside before it.
                 self.log.push("backward_timestamp", Some("clock"), at, row, 1, || {
-                    format!("the clock was set back by {back_s} s; time goes on from here as a new stretch")
+                    format!(
+                        "the clock was set back by {} s; time goes on from here as a new stretch",
+                        nano(back_s)
+                    )
                 });
                 return true;
             }
@@ -191,13 +200,14 @@ impl State<'_> {
             Step::Backward { back_s } => {
                 integrity.backward_timestamps += 1;
                 self.log.push("backward_timestamp", None, at, row, 1, || {
-                    format!("the stamp is {back_s} s earlier than one before; the row is set aside")
+                    format!("the stamp is {} s earlier than one before; the row is set aside", nano(back_s))
                 });
             }
             Step::Stray { ahead_s } => {
                 integrity.backward_timestamps += 1;
                 self.log.push("backward_timestamp", None, at, row, 1, || {
-                    format!("the stamp leaps ahead by {ahead_s} s and the next one is back in line; the row is set aside")
+                    format!("the stamp leaps ahead by {} s and the next one is back in line; the row is set aside",
+                        nano(ahead_s))
                 });
             }
         }
@@ -310,6 +320,12 @@ impl State<'_> {
             channels,
         }
     }
+}
+
+/// Rounds a time that is shown to nanoseconds.
+fn nano(time_s: f64) -> f64 {
+    let rounded = (time_s * 1e9).round() / 1e9;
+    if rounded.is_finite() { rounded } else { time_s }
 }
 
 /// [`prepare`] and [`Plan::stream`] in one.

@@ -183,3 +183,44 @@ fn a_recording_with_no_usable_stamp_is_refused() {
         assert_eq!(e.kind(), IngestErrorKind::TimeBase, "{e}");
     }
 }
+
+proptest::proptest! {
+    #[test]
+    fn every_row_is_used_or_accounted_for(
+        steps in proptest::collection::vec((0u8..40, -3i32..9), 2..400), block_rows in 1usize..50
+    ) {
+        let mut now = 0.0;
+        let t: Vec<f64> = steps
+            .iter()
+            .map(|&(rare, jump)| {
+                now += if rare == 0 { f64::from(jump) } else { 1.0 };
+                if rare == 1 { f64::NAN } else { now }
+            })
+            .collect();
+        let n = t.len() as u64;
+        let channels = [channel("t", Role::Time, "s", 1.0), channel("r", Role::Rate, "deg/h", 1.0)];
+        let rows = (1..=n).map(|i| i as f64).collect();
+        let Ok((keep, report)) = run(vec![("t", t), ("r", rows)], &channels, TimeBaseSpec::default(), block_rows)
+        else {
+            return Ok(());
+        };
+        let i = &report.integrity;
+        proptest::prop_assert_eq!(
+            report.rows_used + i.duplicate_timestamps + i.backward_timestamps + i.non_finite,
+            n
+        );
+        let mut end: Option<(u64, f64)> = None;
+        let mut gaps = 0;
+        for (index, row, time, continues, values) in &keep.0 {
+            proptest::prop_assert_eq!(values[1][0], *row as f64);
+            proptest::prop_assert_eq!(*continues, end.is_some_and(|e| e.0 == *index));
+            if let Some((expected, last)) = end {
+                proptest::prop_assert!(*index >= expected && *time > last);
+                gaps += index - expected;
+            }
+            proptest::prop_assert!(values[0].windows(2).all(|w| w[1] > w[0]));
+            end = Some((index + values[0].len() as u64, values[0][values[0].len() - 1]));
+        }
+        proptest::prop_assert_eq!(gaps, i.missing_samples);
+    }
+}

@@ -9,6 +9,9 @@ pub const SET_BACK_AFTER: u64 = 1000;
 /// Share of equal consecutive stamps beyond which the stamps are too coarse to serve.
 const COARSE_SHARE: f64 = 0.05;
 
+/// Share of stamps earlier than the one before beyond which the column is no clock.
+const FALLING_SHARE: f64 = 0.1;
+
 /// Stamps that are compared at a distance to find the interval when they are rounded.
 const LAG: usize = 16;
 
@@ -25,6 +28,12 @@ pub enum ClockError {
     /// The stamps do not grow.
     #[error("the time stamps do not grow")]
     NotGrowing,
+    /// Many stamps are earlier than the one before.
+    #[error("{:.0} % of the time stamps are earlier than the one before: this is no clock", share * 100.0)]
+    Falling {
+        /// Share of stamps earlier than the one before.
+        share: f64,
+    },
     /// Many consecutive stamps are equal.
     #[error("{:.0} % of the time stamps equal the one before: they are coarser than the sample interval", share * 100.0)]
     Coarse {
@@ -79,7 +88,12 @@ impl Clock {
         if growing == 0 {
             return Err(ClockError::NotGrowing);
         }
-        let share = equal as f64 / (t.len() - 1) as f64;
+        let share = |count: usize| count as f64 / (t.len() - 1) as f64;
+        let falling = share(t.len() - 1 - equal - growing);
+        if falling > FALLING_SHARE {
+            return Err(ClockError::Falling { share: falling });
+        }
+        let share = share(equal);
         if share > COARSE_SHARE && equal > 2 {
             return Err(ClockError::Coarse { share });
         }

@@ -118,6 +118,8 @@ fn stamps_that_cannot_serve_are_refused() {
     assert_eq!(Clock::probe(&[f64::NAN; 9]), Err(ClockError::TooFew));
     assert_eq!(Clock::probe(&[3.0, 3.0, 3.0]), Err(ClockError::NotGrowing));
     assert!(matches!(Clock::probe(&rounded(1e-3, 1.0, 0.0, 5000)), Err(ClockError::Coarse { .. })));
+    let noise: Vec<f64> = (0..1000).map(|i| f64::from(i * i % 101)).collect();
+    assert!(matches!(Clock::probe(&noise), Err(ClockError::Falling { .. })));
     assert!(matches!(Clock::declared(-5.0), Err(ClockError::Rate { .. })));
     assert!(matches!(Clock::declared(f64::NAN), Err(ClockError::Rate { .. })));
 }

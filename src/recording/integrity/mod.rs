@@ -285,13 +285,21 @@ impl ValueChecks {
                     faults.saturated += rail.count;
                     log.push("saturated", id, at(rail.first), rail.first.row, rail.count, || {
                         format!(
-                            "the {} value {} occurs {} times, the next one {} times (row of the first)",
+                            "the {} value, {} deg/h, occurs {} times, the next one {} times (row of the first)",
                             rail.side, rail.value, rail.count, rail.next
                         )
                     });
                 }
                 let stuck = g.runs.finish();
                 faults.stuck += stuck.count;
+                if let Some(mean) = stuck.held {
+                    log.push("stuck", id, at(channel.first), channel.first.row, facts.count, || {
+                        format!(
+                            "remark: each value is repeated {mean:.1} times on average: the output is held or very \
+                             coarse, and stuck values cannot be told"
+                        )
+                    });
+                }
                 for (place, length) in stuck.listed {
                     log.push("stuck", id, at(place), place.row, length, || {
                         format!(

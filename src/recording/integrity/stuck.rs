@@ -51,6 +51,8 @@ pub(super) struct Stuck {
     pub(super) count: u64,
     pub(super) listed: Vec<(Place, u64)>,
     pub(super) longest_by_chance: u64,
+    /// Mean length of a run, where the values repeat so readily that stuck ones cannot be told.
+    pub(super) held: Option<f64>,
 }
 
 impl Runs {
@@ -115,12 +117,18 @@ impl Runs {
         let mut listed = std::mem::take(&mut self.longest);
         listed.retain(|(_, l)| *l >= limit && limit < u64::MAX);
         listed.sort_by_key(|(p, _)| p.row);
-        Stuck { count: counted + beyond, listed, longest_by_chance: limit.saturating_sub(1) }
+        let runs = self.runs();
+        let held = (limit == u64::MAX && runs > 0).then(|| self.samples as f64 / runs as f64);
+        Stuck { count: counted + beyond, listed, longest_by_chance: limit.saturating_sub(1), held }
+    }
+
+    fn runs(&self) -> u64 {
+        self.counts.iter().skip(1).sum::<u64>() + u64::from(self.beyond > 0)
     }
 
     /// Shortest run that chance does not explain; `u64::MAX` when none can be told.
     fn limit(&self) -> u64 {
-        let runs: u64 = self.counts.iter().skip(1).sum::<u64>() + u64::from(self.beyond > 0);
+        let runs = self.runs();
         if runs <= 1 {
             return FEWEST;
         }
