@@ -23,7 +23,7 @@ const FLOOR_ERROR: [f64; 2] = [0.05, 0.02];
 const LOBE: usize = 2;
 /// Variance of a median against a mean (π/2) times the correlation of neighbouring bins under a Hann window
 /// (1 + 2·(4/9 + 1/36)).
-const FLOOR_INFLATION: f64 = 1.5708 * 1.9444;
+const FLOOR_INFLATION: f64 = std::f64::consts::FRAC_PI_2 * 1.9444;
 
 /// A line in a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,7 +60,7 @@ pub struct LineSearch {
 pub fn find_lines(spectrum: &WelchSpectrum, tau0_s: f64, false_alarm_rate: f64) -> LineSearch {
     let density = &spectrum.density;
     let end = density.len().saturating_sub(FIRST_BIN);
-    if end <= 2 * FIRST_BIN || !(spectrum.effective_averages > 0.0) {
+    if end <= 2 * FIRST_BIN || spectrum.effective_averages.is_nan() || spectrum.effective_averages <= 0.0 {
         return LineSearch::default();
     }
     let floor = floor_of(density, spectrum.effective_averages);
@@ -228,7 +228,7 @@ fn median(values: &mut [f64]) -> f64 {
 /// Probability of a ratio to the floor at least as large as that of bin `k`, noise alone.
 fn tail(density: &[f64], floor: &Floor, k: usize, averages: f64) -> f64 {
     let ratio = density[k] / floor.level[k];
-    if !(ratio > 1.0) {
+    if ratio <= 1.0 || ratio.is_nan() {
         return 1.0;
     }
     let error = FLOOR_ERROR[usize::from(k >= 64)];
