@@ -48,7 +48,7 @@ pub fn of_series(series: &[f64], max_lag: usize) -> Option<Autocorrelation> {
         lagged_products(series.iter().map(|v| f64::from(u8::from(v.is_finite()))), length, max_lag)?
     };
     let c0 = products.first()? / present as f64;
-    if !(c0 > 0.0) {
+    if c0 <= 0.0 || c0.is_nan() {
         return None;
     }
     let coefficients = products
@@ -99,7 +99,7 @@ pub fn of_spectrum(spectrum: &WelchSpectrum, max_lag: usize) -> Option<Autocorre
     let overlap = |k: usize| window.iter().zip(window.iter().skip(k)).map(|(a, b)| a * b).sum::<f64>();
     let whole = overlap(0);
     let c0 = *time.first()?;
-    if !(c0 > 0.0) {
+    if c0 <= 0.0 || c0.is_nan() {
         return None;
     }
     let coefficients =

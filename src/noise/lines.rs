@@ -14,11 +14,16 @@ pub const FALSE_ALARM_RATE: f64 = 0.01;
 /// Bins below this are not searched: slow noise and the removed mean rule there. As many are left out below the
 /// Nyquist frequency, where the floor has neighbours on one side only.
 pub const FIRST_BIN: usize = 4;
+/// Bins below this are no part of the floor: the removed mean and the window bend slow noise there.
+const FIRST_FLOOR_BIN: usize = 2;
+/// Relative error of the floor beyond statistics, since no spectrum is a power law to the last digit: below bin 64,
+/// where the neighbours span most of an octave, and above.
+const FLOOR_ERROR: [f64; 2] = [0.05, 0.02];
 /// Half width, in bins, of what a pure line fills under a Hann window.
 const LOBE: usize = 2;
 /// Variance of a median against a mean (π/2) times the correlation of neighbouring bins under a Hann window
 /// (1 + 2·(4/9 + 1/36)).
-const FLOOR_INFLATION: f64 = 1.5708 * 1.9444;
+const FLOOR_INFLATION: f64 = std::f64::consts::FRAC_PI_2 * 1.9444;
 
 /// A line in a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +60,7 @@ pub struct LineSearch {
 pub fn find_lines(spectrum: &WelchSpectrum, tau0_s: f64, false_alarm_rate: f64) -> LineSearch {
     let density = &spectrum.density;
     let end = density.len().saturating_sub(FIRST_BIN);
-    if end <= 2 * FIRST_BIN || !(spectrum.effective_averages > 0.0) {
+    if end <= 2 * FIRST_BIN || spectrum.effective_averages.is_nan() || spectrum.effective_averages <= 0.0 {
         return LineSearch::default();
     }
     let floor = floor_of(density, spectrum.effective_averages);
@@ -76,11 +81,11 @@ pub fn find_lines(spectrum: &WelchSpectrum, tau0_s: f64, false_alarm_rate: f64) 
             to = next;
         }
         let peak = (from..=to).max_by(|a, b| (density[*a]).total_cmp(&density[*b])).unwrap_or(from);
-        lines.push(line(spectrum, &floor, tau0_s, (from, peak, to), probability(peak)));
+        lines.push(line(spectrum, &floor.level, tau0_s, (from, peak, to), probability(peak)));
         k = to + 1 + LOBE;
     }
     group_harmonics(&mut lines);
-    LineSearch { lines, floor, searched }
+    LineSearch { lines, floor: floor.level, searched }
 }
 
 fn line(
@@ -147,47 +152,59 @@ fn half_width(k: usize) -> usize {
 /// Bins that the floor at bin `k` rests on.
 fn neighbours(k: usize, bins: usize) -> (usize, usize) {
     let h = half_width(k);
-    (k.saturating_sub(h).max(1), (k + h).min(bins.saturating_sub(2)))
+    (k.saturating_sub(h).max(FIRST_FLOOR_BIN), (k + h).min(bins.saturating_sub(2)))
 }
 
-fn floor_of(density: &[f64], averages: f64) -> Vec<f64> {
+/// The floor and, in units of the variance of one bin, how well its logarithm is known.
+struct Floor {
+    level: Vec<f64>,
+    spread: Vec<f64>,
+}
+
+fn floor_of(density: &[f64], averages: f64) -> Floor {
     let logs: Vec<f64> = density.iter().map(|p| p.max(f64::MIN_POSITIVE).ln()).collect();
     let bins = density.len();
     // The median of a Gamma variate lies below its mean.
     let to_mean = -3.0 * (1.0 - 1.0 / (9.0 * averages)).max(0.1).ln();
-    let mut nodes: Vec<(f64, f64)> = vec![];
+    let mut nodes: Vec<(f64, f64, f64)> = vec![];
     let (mut k, mut scratch) = (1, vec![]);
     while k + 1 < bins {
-        nodes.push(((k as f64).ln(), log_floor(&logs, k, &mut scratch) + to_mean));
+        let (level, spread) = log_floor(&logs, k, &mut scratch);
+        nodes.push(((k as f64).ln(), level + to_mean, spread));
         k += if k < 64 { 1 } else { half_width(k) / 8 };
     }
-    let mut floor = Vec::with_capacity(bins);
+    let mut floor = Floor { level: Vec::with_capacity(bins), spread: Vec::with_capacity(bins) };
     let mut node = 0;
     for k in 0..bins {
         let x = (k.max(1) as f64).ln();
         while node + 2 < nodes.len() && nodes[node + 1].0 <= x {
             node += 1;
         }
-        let value = match (nodes.get(node), nodes.get(node + 1)) {
-            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)).clamp(0.0, 1.0),
-            (Some(a), None) => a.1,
-            _ => f64::NAN,
+        let (level, spread) = match (nodes.get(node), nodes.get(node + 1)) {
+            (Some(a), Some(b)) => {
+                let t = ((x - a.0) / (b.0 - a.0)).clamp(0.0, 1.0);
+                (a.1 + (b.1 - a.1) * t, a.2.max(b.2))
+            }
+            (Some(a), None) => (a.1, a.2),
+            _ => (f64::NAN, f64::NAN),
         };
-        floor.push(value.exp());
+        floor.level.push(level.exp());
+        floor.spread.push(spread);
     }
     floor
 }
 
-/// Median of ln S about bin `k`, the bins of a line at `k` left out, along the local slope in ln f.
-fn log_floor(logs: &[f64], k: usize, scratch: &mut Vec<(f64, f64)>) -> f64 {
+/// Median of ln S about bin `k`, the bins of a line at `k` left out, along the local slope in ln f; and its variance
+/// in units of that of one bin, were the medians means of independent bins.
+fn log_floor(logs: &[f64], k: usize, scratch: &mut Vec<(f64, f64)>) -> (f64, f64) {
     let (from, to) = neighbours(k, logs.len());
     let centre = (k as f64).ln();
     scratch.clear();
     let outside = (from..=to).filter(|j| j.abs_diff(k) > LOBE);
     scratch.extend(outside.map(|j| ((j as f64).ln() - centre, logs[j])));
-    let middle = scratch.len() / 2;
+    let (count, middle) = (scratch.len() as f64, scratch.len() / 2);
     if middle == 0 {
-        return logs[k];
+        return (logs[k], 1.0);
     }
     let mut medians = [(0.0, 0.0); 2];
     for (half, out) in [0..middle, middle..scratch.len()].into_iter().zip(&mut medians) {
@@ -195,10 +212,12 @@ fn log_floor(logs: &[f64], k: usize, scratch: &mut Vec<(f64, f64)>) -> f64 {
         let x = scratch[half].iter().map(|p| p.0).sum::<f64>() / values.len() as f64;
         *out = (x, median(&mut values));
     }
-    let slope = (medians[1].1 - medians[0].1) / (medians[1].0 - medians[0].0);
+    let arm = medians[1].0 - medians[0].0;
+    let slope = (medians[1].1 - medians[0].1) / arm;
     let slope = if slope.is_finite() { slope } else { 0.0 };
     let mut levels: Vec<f64> = scratch.iter().map(|p| p.1 - slope * p.0).collect();
-    median(&mut levels)
+    let off_middle = scratch.iter().map(|p| p.0).sum::<f64>() / count / arm;
+    (median(&mut levels), (1.0 + 4.0 * off_middle * off_middle) / count)
 }
 
 fn median(values: &mut [f64]) -> f64 {
@@ -207,18 +226,14 @@ fn median(values: &mut [f64]) -> f64 {
 }
 
 /// Probability of a ratio to the floor at least as large as that of bin `k`, noise alone.
-fn tail(density: &[f64], floor: &[f64], k: usize, averages: f64) -> f64 {
-    let ratio = density[k] / floor[k];
-    if !(ratio > 1.0) {
+fn tail(density: &[f64], floor: &Floor, k: usize, averages: f64) -> f64 {
+    let ratio = density[k] / floor.level[k];
+    if ratio <= 1.0 || ratio.is_nan() {
         return 1.0;
     }
-    let (from, to) = neighbours(k, density.len());
-    let used = (to + 1).saturating_sub(from + 2 * LOBE + 1).max(2) as f64;
-    // A bin off the middle of its neighbours rests on the slope as well, and below bin 64 that is from few bins.
-    let reach = 0.5 * (to as f64 - from as f64).max(1.0);
-    let off_middle = (k as f64 - 0.5 * (from + to) as f64) / reach;
-    let share = if k < 64 { 0.5 } else { 1.0 } / (1.0 + 4.0 * off_middle * off_middle);
-    upper_f(ratio, 2.0 * averages, 2.0 * averages * share * used / FLOOR_INFLATION)
+    let error = FLOOR_ERROR[usize::from(k >= 64)];
+    let variance = FLOOR_INFLATION * floor.spread[k] / averages + error * error;
+    upper_f(ratio, 2.0 * averages, 2.0 / variance)
 }
 
 /// Upper tail of the F distribution. Beyond 200 degrees of freedom, where the incomplete beta function converges
