@@ -29,7 +29,7 @@ pub struct Whittle {
 
 impl Default for Whittle {
     fn default() -> Self {
-        Whittle { thresholds: [4.0, 4.0, 4.0, 6.0, 8.0] }
+        Whittle { thresholds: [4.0, 4.5, 4.0, 6.0, 8.5] }
     }
 }
 
