@@ -119,13 +119,15 @@ fn mixes() -> Vec<(&'static str, NoiseModel)> {
 #[ignore = "long study: every mix at two lengths"]
 fn long_study() {
     let records = std::env::var("RECORDS").ok().and_then(|r| r.parse().ok()).unwrap_or(400);
+    let mut worst: f64 = 0.0;
     for (hours, tau0_s) in [(10.0, 1.0), (100.0, 10.0)] {
         for (i, (name, model)) in mixes().into_iter().enumerate() {
             let tally = study(&model, hours, tau0_s, records, i as u64 + 1);
             tally.print(name, hours);
-            assert!(share(tally.false_claims, tally.records) <= 0.09, "{name}: false claims");
+            worst = worst.max(share(tally.false_claims, tally.records));
         }
     }
+    assert!(worst <= 0.09, "false claims in {worst} of the records of a mix");
 }
 
 #[test]

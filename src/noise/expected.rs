@@ -6,7 +6,7 @@
 
 use super::data::NoiseType;
 use super::evidence::Evidence;
-use super::fit::{Likelihood, RAMP, SPECTRAL, Structure, position, toggled};
+use super::fit::{Likelihood, RAMP, Structure, position, toggled};
 use super::identify::{LIMIT_RISE, Whittle};
 use super::model::{NoiseModel, TERMS};
 use super::profile::Profile;
@@ -146,13 +146,23 @@ fn shortest(start_h: f64, enough: impl Fn(f64) -> bool) -> Option<f64> {
     Some(high)
 }
 
-/// Probability Φ(mean score − needed score).
-fn reach(rise: f64, needed: f64) -> f64 {
-    normal_probability(rise.max(0.0).sqrt() - needed)
+/// A normal score as it scatters over records: mean and standard deviation.
+#[derive(Debug, Clone, Copy)]
+struct Score {
+    mean: f64,
+    sd: f64,
+}
+
+impl Score {
+    /// The standard normal value beyond which a record's score exceeds `needed`.
+    fn needs(self, needed: f64) -> f64 {
+        (needed - self.mean) / self.sd
+    }
 }
 
 struct Case {
     likelihood: Likelihood,
+    model: NoiseModel,
     /// The terms the unit has.
     structure: Structure,
     term: usize,
@@ -163,39 +173,103 @@ impl Case {
         let model = background.with(term, value);
         let likelihood = Likelihood::new(&Evidence::expected(&model, samples, tau0_s))?;
         let structure = TERMS.map(|t| model.coefficient(t) != 0.0);
-        Some(Case { likelihood, structure, term: position(term) })
+        Some(Case { likelihood, model, structure, term: position(term) })
     }
 
     fn deviance(&self, structure: &Structure, fixed: Option<(usize, f64)>) -> Option<f64> {
         Some(self.likelihood.maximise(structure, fixed, None)?.deviance)
     }
 
-    /// Rise of the deviance at `value` over its minimum.
-    fn rise(&self, structure: &Structure, value: f64) -> Option<f64> {
+    /// Root of the rise of the deviance at `value` over its minimum.
+    fn score(&self, structure: &Structure, value: f64) -> Option<f64> {
         let held = self.deviance(structure, Some((self.term, value)))?;
-        if self.term == RAMP {
+        let top = if self.term == RAMP {
             // At a held ramp the likelihood is the plain one, also at the maximum.
             let best = self.likelihood.maximise(structure, None, None)?;
-            return Some(held - self.deviance(structure, Some((RAMP, best.ramp)))?);
-        }
-        Some(held - self.deviance(structure, None)?)
+            self.deviance(structure, Some((RAMP, best.ramp)))?
+        } else {
+            self.deviance(structure, None)?
+        };
+        Some((held - top).max(0.0).sqrt())
     }
 
-    /// Probability that the term is claimed.
-    fn claim_probability(&self) -> Option<f64> {
-        let threshold = Whittle::default().thresholds.get(self.term)?.sqrt();
+    /// Terms left free when the term is tested: the ramp is one for rate random walk, and where the unit has one.
+    fn claim_structure(&self) -> Structure {
         let mut all = [true; 5];
-        // As in the structure test: the ramp is a nuisance for rate random walk, and where the unit has one.
-        all[RAMP] = self.structure[RAMP] || self.term == position(NoiseType::RateRandomWalk);
-        let gain = if self.term == RAMP {
-            let best = self.likelihood.maximise(&[true; 5], None, None)?;
-            self.deviance(&toggled(&all, RAMP, false), None)?
-                - self.deviance(&[true; 5], Some((RAMP, best.ramp)))?
-        } else {
-            self.deviance(&toggled(&all, self.term, false), None)? - self.deviance(&all, None)?
-        };
-        Some(reach(gain, threshold))
+        all[RAMP] =
+            self.structure[RAMP] || self.term == RAMP || self.term == position(NoiseType::RateRandomWalk);
+        all
     }
+
+    /// Root of the likelihood ratio by which the term is claimed.
+    fn claim_score(&self) -> Option<f64> {
+        let all = self.claim_structure();
+        if self.term == RAMP {
+            return self.score(&all, 0.0);
+        }
+        let without = self.deviance(&toggled(&all, self.term, false), None)?;
+        Some((without - self.deviance(&all, None)?).max(0.0).sqrt())
+    }
+
+    /// Relative standard deviation of the estimated coefficient within a structure.
+    fn relative_sigma(&self, structure: &Structure) -> f64 {
+        let bound =
+            self.likelihood.variance_bound(&self.model, structure)[self.term][self.term].max(0.0).sqrt();
+        let value = self.model.coefficient(TERMS[self.term]).abs();
+        if self.term == RAMP { bound / value } else { bound / (2.0 * value * value) }
+    }
+}
+
+/// A unit at some size of the term, and the same a little larger: how scores move with the size tells how they
+/// scatter.
+struct Pair {
+    here: Case,
+    above: Case,
+}
+
+/// Relative step from one to the other.
+const STEP: f64 = 0.03;
+
+impl Pair {
+    fn new(term: NoiseType, value: f64, background: &NoiseModel, samples: u64, tau0_s: f64) -> Option<Pair> {
+        let case = |v| Case::new(term, v, background, samples, tau0_s);
+        Some(Pair { here: case(value)?, above: case(value * (1.0 + STEP))? })
+    }
+
+    fn scatter(&self, of: impl Fn(&Case) -> Option<f64>) -> Option<Score> {
+        let (mean, above) = (of(&self.here)?, of(&self.above)?);
+        let slope = (above - mean) / STEP;
+        let sigma = self.here.relative_sigma(&self.here.structure);
+        // The square of the coefficient is estimated like a χ², whose median lies below its mean.
+        let shift = if self.here.term == RAMP { 0.0 } else { 2.0 / 3.0 * sigma * sigma };
+        Some(Score { mean: mean - shift * slope, sd: (slope.abs() * sigma).clamp(0.3, 3.0) })
+    }
+
+    /// Correlation of the fluctuation that claims the term with the one that sizes it: the claim leaves more terms
+    /// free and so sees less. Terms at their boundary are free half of the time.
+    fn correlation(&self) -> f64 {
+        let sized = self.here.relative_sigma(&self.here.structure).powi(2);
+        let claimed = self.here.relative_sigma(&self.here.claim_structure()).powi(2);
+        (sized / (0.5 * (sized + claimed))).sqrt().clamp(0.0, 0.999)
+    }
+
+    /// The value above which the claiming fluctuation must lie.
+    fn claim_needs(&self) -> Option<f64> {
+        let threshold = Whittle::default().thresholds.get(self.here.term)?.sqrt();
+        Some(self.scatter(Case::claim_score)?.needs(threshold))
+    }
+}
+
+/// ∫ φ(u) f(u) du over the standard normal.
+fn normal_mean(f: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: i32 = 800;
+    let width = 16.0 / f64::from(STEPS);
+    (0..STEPS)
+        .map(|i| {
+            let u = -8.0 + (f64::from(i) + 0.5) * width;
+            (-0.5 * u * u).exp() / (2.0 * std::f64::consts::PI).sqrt() * f(u) * width
+        })
+        .sum()
 }
 
 fn fail_probability(
@@ -206,10 +280,12 @@ fn fail_probability(
     tau0_s: f64,
     risk: f64,
 ) -> Option<f64> {
-    let case = Case::new(term, 1.5 * limit, background, samples, tau0_s)?;
-    let beyond = reach(case.rise(&case.structure, limit)?, normal_quantile(1.0 - risk));
-    // Only a claimed term can be failed; claim and size come from the same fluctuation.
-    Some(beyond.min(case.claim_probability()?))
+    let pair = Pair::new(term, 1.5 * limit, background, samples, tau0_s)?;
+    let beyond = pair.scatter(|c| c.score(&c.structure, limit))?.needs(normal_quantile(1.0 - risk));
+    let (claim, rho) = (pair.claim_needs()?, pair.correlation());
+    let rest = (1.0 - rho * rho).sqrt();
+    // Only a claimed term can be failed.
+    Some(normal_mean(|u| if u > claim { normal_probability((rho * u - beyond) / rest) } else { 0.0 }))
 }
 
 fn pass_probability(
@@ -220,14 +296,22 @@ fn pass_probability(
     tau0_s: f64,
     risk: f64,
 ) -> Option<f64> {
-    let case = Case::new(term, 0.5 * limit, background, samples, tau0_s)?;
-    let claimed = case.claim_probability()?;
-    let below = reach(case.rise(&case.structure, limit)?, normal_quantile(1.0 - risk));
-    let mut nuisance = [true; 5];
-    nuisance[RAMP] = case.structure[RAMP];
-    nuisance[case.term] = true;
-    let limited = reach(case.rise(&nuisance, limit)?, LIMIT_RISE.sqrt());
-    Some(claimed * below + (1.0 - claimed) * limited)
+    let pair = Pair::new(term, 0.5 * limit, background, samples, tau0_s)?;
+    // Scores of the limit seen from below: a larger fluctuation brings the unit closer to it.
+    let below = -pair.scatter(|c| c.score(&c.structure, limit))?.needs(normal_quantile(1.0 - risk));
+    let limited = -pair
+        .scatter(|c| {
+            let mut nuisance = [true; 5];
+            nuisance[RAMP] = c.structure[RAMP] || c.term == RAMP;
+            c.score(&nuisance, limit)
+        })?
+        .needs(LIMIT_RISE.sqrt());
+    let (claim, rho) = (pair.claim_needs()?, pair.correlation());
+    let rest = (1.0 - rho * rho).sqrt();
+    Some(normal_mean(|u| {
+        let bound = if u > claim { below } else { limited };
+        normal_probability((bound - rho * u) / rest)
+    }))
 }
 
 /// The upper limit on a term that a record of a unit without it is expected to give.
@@ -238,12 +322,8 @@ pub fn expected_upper_limit(
     tau0_s: f64,
 ) -> Option<f64> {
     let case = Case::new(term, 0.0, background, samples, tau0_s)?;
-    let mut structure: Structure = [true; 5];
-    structure[RAMP] = case.structure[RAMP];
     // Other terms that the unit lacks sit at zero in the expected evidence and may as well be left out.
-    for i in 0..SPECTRAL {
-        structure[i] = case.structure[i] || i == case.term;
-    }
+    let structure = toggled(&case.structure, case.term, true);
     Profile::new(&case.likelihood, &structure, case.term)?.upper_limit(LIMIT_RISE)
 }
 

@@ -213,16 +213,11 @@ impl Likelihood {
             let weight = row.dof / (s * s);
             let held: f64 = (0..SPECTRAL).filter(|i| !free[*i]).map(|i| row.basis[i] * v[i]).sum();
             let rest = row.power_without(r) + ramp_variance * row.ramp - held;
-            for i in 0..SPECTRAL {
-                b[i] += weight * row.basis[i] * rest;
-                for j in 0..=i {
-                    h[i][j] += weight * row.basis[i] * row.basis[j];
+            for ((h, b), gi) in h.iter_mut().zip(&mut b).zip(row.basis) {
+                *b += weight * gi * rest;
+                for (h, gj) in h.iter_mut().zip(row.basis) {
+                    *h += weight * gi * gj;
                 }
-            }
-        }
-        for i in 0..SPECTRAL {
-            for j in 0..i {
-                h[j][i] = h[i][j];
             }
         }
         let best = nonnegative(&h, &b, free);
@@ -235,24 +230,17 @@ impl Likelihood {
         out
     }
 
-    /// Fisher information of the coefficients (not squared) of [`TERMS`] at a model: the inverse of its active part
-    /// is the Cramér-Rao bound of their covariance.
-    pub fn information(&self, model: &NoiseModel) -> [[f64; 5]; 5] {
-        let coefficients = TERMS.map(|t| model.coefficient(t));
-        let mut v = [0.0; SPECTRAL];
-        for (v, c) in v.iter_mut().zip(coefficients) {
-            *v = c * c;
-        }
+    /// Fisher information of the variances N², B², K², Q² and of the ramp.
+    fn information(&self, variance: &[f64; SPECTRAL]) -> [[f64; 5]; 5] {
         let mut out = [[0.0; 5]; 5];
         for row in &self.rows {
-            let s = row.density(&v);
+            let s = row.density(variance);
             if s <= 0.0 {
                 continue;
             }
-            for i in 0..SPECTRAL {
-                for j in 0..SPECTRAL {
-                    out[i][j] += 0.5 * row.dof * row.basis[i] * row.basis[j] / (s * s)
-                        * (4.0 * coefficients[i] * coefficients[j]);
+            for (out, gi) in out.iter_mut().zip(row.basis) {
+                for (out, gj) in out.iter_mut().zip(row.basis) {
+                    *out += 0.5 * row.dof * gi * gj / (s * s);
                 }
             }
             out[RAMP][RAMP] += row.dof * row.ramp / s;
@@ -260,19 +248,45 @@ impl Likelihood {
         out
     }
 
-    /// Covariance bound of the coefficients marked in `structure`, zero elsewhere.
-    pub fn covariance_bound(&self, model: &NoiseModel, structure: &Structure) -> [[f64; 5]; 5] {
-        let information = self.information(model);
+    /// Cramér-Rao bound of the covariance of N², B², K², Q² and R within a structure; zero elsewhere. Unlike that of
+    /// the coefficients it exists where a term is zero.
+    pub fn variance_bound(&self, model: &NoiseModel, structure: &Structure) -> [[f64; 5]; 5] {
+        let mut variance = [0.0; SPECTRAL];
+        for (v, term) in variance.iter_mut().zip(TERMS) {
+            *v = model.coefficient(term).powi(2);
+        }
+        let information = self.information(&variance);
         let active: Vec<usize> = (0..5).filter(|&i| structure[i] && information[i][i] > 0.0).collect();
-        let mut out = [[0.0; 5]; 5];
         let scale: Vec<f64> = active.iter().map(|&i| information[i][i].sqrt()).collect();
         let matrix = nalgebra::DMatrix::from_fn(active.len(), active.len(), |i, j| {
             information[active[i]][active[j]] / (scale[i] * scale[j])
         });
+        let mut out = [[0.0; 5]; 5];
         if let Some(inverse) = matrix.try_inverse() {
             for (a, &i) in active.iter().enumerate() {
                 for (b, &j) in active.iter().enumerate() {
                     out[i][j] = inverse[(a, b)] / (scale[a] * scale[b]);
+                }
+            }
+        }
+        out
+    }
+
+    /// Cramér-Rao bound of the covariance of the coefficients of [`TERMS`] within a structure; zero for terms that
+    /// are not in it or have the value zero.
+    pub fn covariance_bound(&self, model: &NoiseModel, structure: &Structure) -> [[f64; 5]; 5] {
+        let coefficients = TERMS.map(|t| model.coefficient(t));
+        let mut present = *structure;
+        for (flag, c) in present.iter_mut().zip(coefficients).take(SPECTRAL) {
+            *flag &= c != 0.0;
+        }
+        let mut out = self.variance_bound(model, &present);
+        for (i, row) in out.iter_mut().enumerate() {
+            for (j, value) in row.iter_mut().enumerate() {
+                for k in [i, j] {
+                    if k < SPECTRAL && coefficients[k] != 0.0 {
+                        *value /= 2.0 * coefficients[k].abs();
+                    }
                 }
             }
         }

@@ -29,7 +29,7 @@ pub struct Whittle {
 
 impl Default for Whittle {
     fn default() -> Self {
-        Whittle { thresholds: [4.0, 4.0, 4.0, 6.0, 8.0] }
+        Whittle { thresholds: [4.0, 4.5, 4.0, 6.0, 8.5] }
     }
 }
 
@@ -86,15 +86,18 @@ const METHOD: &str = "whittle";
 /// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
 const PRICE: f64 = 2.71;
 /// Coverage of upper limits. The rise of the deviance that makes it is [`LIMIT_RISE`]: a limit is only given when the term was not
-/// claimed, that is when chance made it look small; 3.84 in place of 2.71 keeps the coverage in spite of that.
+/// claimed, that is when chance made it look small; 5 in place of 2.71 keeps the coverage in spite of that.
 const LIMIT_COVERAGE: f64 = 0.95;
 /// See [`LIMIT_COVERAGE`].
-pub(super) const LIMIT_RISE: f64 = 3.84;
+pub(super) const LIMIT_RISE: f64 = 5.0;
 
 impl Identification {
-    /// σ(τ) of the supported model with its 95 % band: (low, value, high), deg/h.
+    /// σ(τ) of the supported model with its 95 % band: (low, value, high), deg/h; zeros for an empty model.
     pub fn sigma_band(&self, tau_s: f64) -> (f64, f64, f64) {
         let variance = self.supported.allan_variance(tau_s);
+        if variance <= 0.0 {
+            return (0.0, 0.0, 0.0);
+        }
         let gradient = TERMS.map(|t| 2.0 * self.supported.coefficient(t) * unit_allan_variance(t, tau_s));
         let mut square = 0.0;
         for (row, gi) in self.covariance.iter().zip(gradient) {

@@ -1,7 +1,7 @@
 //! How well a model fits: whitened band powers against their χ² law.
 
 use super::evidence::Evidence;
-use crate::estimate::{chi_square_quantile, normal_probability};
+use crate::estimate::normal_probability;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Degrees of freedom that a test band holds at least.
@@ -78,15 +78,38 @@ impl Misfit {
             worst_probability: -(tests.len() as f64 * (-single).ln_1p()).exp_m1(),
         }
     }
-
-    /// Power over model that this test would call significant at 5 % in one band of `dof` degrees of freedom.
-    pub fn detectable_excess(dof: f64, bands: usize) -> f64 {
-        chi_square_quantile(1.0 - 0.025 / bands.max(1) as f64, dof) / dof
-    }
 }
 
 /// Normal score of a χ² sum by the cube root (Wilson and Hilferty 1931).
 fn normal_score(sum: f64, dof: f64) -> f64 {
     let spread = 2.0 / (9.0 * dof);
     ((sum / dof).cbrt() - (1.0 - spread)) / spread.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::model::NoiseModel;
+
+    #[test]
+    fn a_raised_band_is_found_and_a_fitting_model_is_left_alone() {
+        let evidence = Evidence::expected(&NoiseModel { n: 0.002, ..Default::default() }, 36_000, 1.0);
+        let mut whitened: Vec<(f64, f64)> = evidence.bands.iter().map(|b| (1.0, b.dof)).collect();
+        let clean = Misfit::of(&evidence, &whitened, 1);
+        assert!(clean.probability > 0.99 && clean.worst_probability > 0.5, "{clean:?}");
+        let raised = evidence.bands.iter().position(|b| b.low_hz > 0.1).unwrap();
+        whitened[raised].0 = 1.5;
+        let found = Misfit::of(&evidence, &whitened, 1);
+        let [low, high] = found.worst_band_hz.unwrap();
+        assert!(low <= evidence.bands[raised].low_hz && evidence.bands[raised].high_hz <= high);
+        assert!(found.worst_probability < 1e-3 && found.worst_excess > 1.1, "{found:?}");
+    }
+
+    #[test]
+    fn normal_scores_follow_the_quantiles_of_chi_square() {
+        // 95 % points of χ²: 21.026 at 12, 124.342 at 100 degrees of freedom.
+        for (sum, dof) in [(21.026, 12.0), (124.342, 100.0)] {
+            assert!((normal_score(sum, dof) - 1.6449).abs() < 0.01);
+        }
+    }
 }

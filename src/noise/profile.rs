@@ -103,7 +103,7 @@ impl<'a> Profile<'a> {
         Spread::Curve(points)
     }
 
-    /// The largest size of the coefficient whose deviance is not more than `rise` above the minimum: 2.71 makes a
+    /// The largest size of the coefficient whose deviance is not more than `rise` above the minimum; 2.71 alone would make a
     /// one-sided 95 % limit.
     pub fn upper_limit(&self, rise: f64) -> Option<f64> {
         let side = |direction: f64| {

@@ -120,7 +120,7 @@ impl Evidence {
         let series = Series::new(blocks, tau0_s);
         let mut builder = Builder::new(tau0_s, masks);
         let Some(series) = series.trimmed() else { return builder.finish(0.0, 0.0) };
-        let (span_s, usable_s) = (series.len() as f64 * series.tau_s, series.samples() as f64 * tau0_s);
+        let (span_s, usable_s) = (series.len() as f64 * series.tau_s, series.samples() * tau0_s);
         let block_nyquist = 0.5 / series.tau_s;
         let mut top = block_nyquist;
         if blocks.block_len > 1
