@@ -62,7 +62,11 @@ fn tables(spec: &'static TableSpec, list: bool) -> Vec<(&'static TableSpec, bool
 }
 
 fn value(key: &KeySpec) -> String {
-    let what = key.kind.describe();
+    let what = match key.kind {
+        Kind::Choice(_) => "one of the words beside".to_owned(),
+        Kind::Choices(_) => "a list of the words beside".to_owned(),
+        kind => kind.describe(),
+    };
     if key.example.is_empty() || matches!(key.kind, Kind::Format(_) | Kind::Flag) {
         what
     } else {
