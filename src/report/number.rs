@@ -186,7 +186,7 @@ pub fn count(value: u64, lang: Lang) -> String {
     let group = lookup(lang, "number.group").unwrap_or("\u{202f}");
     let mut out = String::new();
     for (i, c) in plain.chars().enumerate() {
-        if i > 0 && (plain.len() - i) % 3 == 0 {
+        if i > 0 && (plain.len() - i).is_multiple_of(3) {
             out.push_str(group);
         }
         out.push(c);

@@ -299,7 +299,8 @@ fn overlap(a: &[f64; 4], b: &[f64; 4]) -> bool {
 /// decade of room, and more only when there is nothing else to show.
 pub fn extent(panels: &[&Panel], scale: Scale, ordinate: bool) -> Option<(f64, f64)> {
     let fits = |v: &f64| v.is_finite() && (scale == Scale::Linear || *v > 0.0);
-    let (mut main, mut side): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
+    let mut main: Option<(f64, f64)> = None;
+    let mut side: Option<(f64, f64)> = None;
     let grow = |range: &mut Option<(f64, f64)>, v: f64| {
         if fits(&v) {
             *range = Some(range.map_or((v, v), |(a, b)| (a.min(v), b.max(v))));

@@ -2,6 +2,7 @@
 
 use super::{Words, rows};
 use crate::record::{MeasurandRecord, RunRecord};
+use crate::report::number::{bound, limit_digits};
 use serde::Serialize;
 
 /// The comparison for one channel.
@@ -78,11 +79,21 @@ pub fn comparisons(record: &RunRecord, words: Words) -> Vec<Comparison> {
 }
 
 fn side(m: &MeasurandRecord, words: Words) -> Side {
+    let unit = words.unit(&m.unit);
+    let (value, unit) = match (m.value, m.upper_limit) {
+        // The unit belongs to the number, the coverage to the statement.
+        (None, Some(u)) => {
+            let coverage = limit_digits(100.0 * u.coverage, 3, words.lang);
+            let unit = words.with("report.unit_coverage", &[("unit", &unit), ("coverage", &coverage)]);
+            (format!("≤\u{202f}{}", bound(u.value, true, words.lang)), unit)
+        }
+        _ => (rows::value(m, words), unit),
+    };
     Side {
         name: words.name("measurand", &m.id),
         convention: words.t(&format!("convention.{}", m.id)),
-        value: rows::value(m, words),
+        value,
         interval: rows::interval(m, words),
-        unit: words.unit(&m.unit),
+        unit,
     }
 }

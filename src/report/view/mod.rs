@@ -7,6 +7,10 @@ mod comparison;
 mod evidence;
 mod rows;
 
+pub use comparison::{Comparison, Pair, Side};
+pub use evidence::{Clause, Condition, Evidence, Excluded, Fault, Instrument, Line, Model, Power, Waiver};
+pub use rows::Row;
+
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::record::RunRecord;

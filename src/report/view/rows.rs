@@ -3,7 +3,7 @@
 use super::{Words, verdict_word};
 use crate::estimate::Rule;
 use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
-use crate::report::number::{Rounding, acceptance, bound, limit, percent};
+use crate::report::number::{Rounding, acceptance, bound, limit, limit_digits, percent};
 use serde::Serialize;
 
 /// One row, printed. Empty strings where there is nothing to show.
@@ -58,7 +58,7 @@ pub fn rows(record: &RunRecord, words: Words, footnotes: &mut Vec<String>) -> (V
     (judged, further)
 }
 
-/// Rounding of a row: by the interval, and fine enough for the acceptance limit not to be hidden.
+/// Rounding of a row: by its interval.
 pub fn rounding(m: &MeasurandRecord) -> Rounding {
     Rounding::of(m.value.unwrap_or(0.0), m.interval.map(|i| (i.low, i.high)))
 }
@@ -73,7 +73,7 @@ pub fn value(m: &MeasurandRecord, words: Words) -> String {
             "report.at_most",
             &[
                 ("value", &bound(u.value, true, words.lang)),
-                ("coverage", &super::super::number::limit_digits(100.0 * u.coverage, 3, words.lang)),
+                ("coverage", &limit_digits(100.0 * u.coverage, 3, words.lang)),
             ],
         ),
         None => words.t("report.not_identifiable"),
