@@ -120,6 +120,17 @@ impl Identification {
         ]
     }
 
+    /// The same, to be changed.
+    pub fn estimates_mut(&mut self) -> [&mut Estimate; 5] {
+        [
+            &mut self.angle_random_walk,
+            &mut self.bias_instability,
+            &mut self.rate_random_walk,
+            &mut self.rate_ramp,
+            &mut self.quantization,
+        ]
+    }
+
     /// True when the term is claimed.
     pub fn claims(&self, term: NoiseType) -> bool {
         self.claimed.contains(&term)

@@ -12,6 +12,7 @@ pub mod evidence;
 pub mod expected;
 pub mod family;
 pub mod fit;
+pub mod fit_range;
 pub mod histogram;
 pub mod identify;
 pub mod intervals;

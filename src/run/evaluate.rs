@@ -10,7 +10,8 @@ use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
 use crate::noise::envelope::Envelope;
 use crate::noise::evidence::{Evidence, Mask};
 use crate::noise::family::Estimator;
-use crate::noise::identify::{Identify, Whittle};
+use crate::noise::fit_range::identify_in_range;
+use crate::noise::identify::Whittle;
 use crate::noise::lines::find_lines;
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
@@ -164,7 +165,8 @@ fn evidence(
         .map(|l| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz })
         .collect();
     let spectral = Evidence::new(&digest.blocks, Some(&digest.welch.spectrum), tau0_s, &masks);
-    let identification = Whittle::default().identify(&channel, &spectral);
+    let ranged = identify_in_range(&Whittle::default(), &channel, &spectral, 0.5 / tau0_s);
+    let identification = ranged.identification;
     let model = &identification.supported;
     let sigma_tau = sigma_tau::allan_points(&digest.deviations, model, tau0_s);
     let octaves =

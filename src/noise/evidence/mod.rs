@@ -208,6 +208,13 @@ impl Evidence {
             .collect()
     }
 
+    /// The part of the evidence at and below a frequency.
+    pub fn up_to(&self, highest_hz: f64) -> Evidence {
+        let mut part = self.clone();
+        part.bands.retain(|b| b.high_hz <= highest_hz);
+        part
+    }
+
     /// Degrees of freedom of all bands together.
     pub fn dof(&self) -> f64 {
         self.bands.iter().map(|b| b.dof).sum()

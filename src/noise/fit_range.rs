@@ -1,0 +1,165 @@
+//! Up to which frequency a noise model describes a record.
+//!
+//! Real outputs are filtered, and noise near the Nyquist frequency can have a shape that none of N, B, K and Q has.
+//! Fitted over all frequencies, such a record gives a wrong N with a tiny interval. So the model is fitted up to the
+//! highest frequency, by octaves, at which it passes its own misfit test; what lies above is left out and said so.
+//! Where no range passes, the intervals are widened by the root of the misfit (Birge ratio), and that is said too.
+
+use super::evidence::Evidence;
+use super::identify::{Identification, Identify};
+use crate::estimate::{Estimate, Spread};
+use crate::text::Note;
+
+/// Probability of a larger misfit below which a range does not pass.
+const LEAST_PROBABILITY: f64 = 1e-3;
+/// Departure of the worst band that does no harm, whatever its significance: 2 % in power is 1 % in N.
+const HARMLESS: f64 = 0.02;
+/// Octaves that may be given up.
+const OCTAVES: u32 = 8;
+/// Degrees of freedom that a range must keep.
+const LEAST_DOF: f64 = 200.0;
+
+/// An identification and the range it rests on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RangedIdentification {
+    /// What was identified.
+    pub identification: Identification,
+    /// Highest frequency used, Hz; `None`: all.
+    pub highest_hz: Option<f64>,
+    /// Factor by which intervals were widened; 1 where the model fits.
+    pub widened: f64,
+}
+
+/// Identifies over the widest range of frequencies in which the model holds.
+pub fn identify_in_range(
+    method: &dyn Identify,
+    channel: &str,
+    evidence: &Evidence,
+    nyquist_hz: f64,
+) -> RangedIdentification {
+    let mut best: Option<RangedIdentification> = None;
+    for octave in 0..=OCTAVES {
+        let highest_hz = nyquist_hz / f64::from(1u32 << octave);
+        let restricted = (octave > 0).then(|| evidence.up_to(highest_hz));
+        let used = restricted.as_ref().unwrap_or(evidence);
+        if octave > 0 && used.dof() < LEAST_DOF {
+            break;
+        }
+        let identification = method.identify(channel, used);
+        let fits = identification.misfit.probability >= LEAST_PROBABILITY
+            || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS;
+        let candidate = RangedIdentification {
+            identification,
+            highest_hz: (octave > 0).then_some(highest_hz),
+            widened: 1.0,
+        };
+        if fits {
+            return annotated(candidate);
+        }
+        let misfit = |r: &RangedIdentification| r.identification.misfit.per_dof;
+        if best.as_ref().is_none_or(|b| misfit(&candidate) < misfit(b)) {
+            best = Some(candidate);
+        }
+    }
+    let mut best = best.unwrap_or_else(|| RangedIdentification {
+        identification: method.identify(channel, evidence),
+        highest_hz: None,
+        widened: 1.0,
+    });
+    best.widened = best.identification.misfit.per_dof.sqrt().max(1.0);
+    annotated(best)
+}
+
+/// Puts the notes on the estimates, and the widening on their spreads.
+fn annotated(mut ranged: RangedIdentification) -> RangedIdentification {
+    let misfit = ranged.identification.misfit.clone();
+    let (highest_hz, widened) = (ranged.highest_hz, ranged.widened);
+    for estimate in ranged.identification.estimates_mut() {
+        if let Some(highest_hz) = highest_hz {
+            estimate.notes.push(Note::new("note.fit_restricted").with("highest_hz", highest_hz));
+        }
+        if widened > 1.0 {
+            widen(estimate, widened);
+            let [low_hz, high_hz] = misfit.worst_band_hz.unwrap_or([f64::NAN; 2]);
+            let note = Note::new("note.model_misfit")
+                .with("misfit", misfit.per_dof)
+                .with("low_hz", low_hz)
+                .with("high_hz", high_hz)
+                .with("factor", widened);
+            estimate.notes.push(note);
+        }
+    }
+    ranged
+}
+
+fn widen(estimate: &mut Estimate, factor: f64) {
+    let Some(value) = estimate.value else {
+        // An upper limit moves away from zero, the smallest value it could stand for.
+        if let Some(limit) = &mut estimate.upper_limit {
+            limit.value *= factor;
+        }
+        return;
+    };
+    match &mut estimate.spread {
+        Spread::Normal { standard_uncertainty } | Spread::StudentT { standard_uncertainty, .. } => {
+            *standard_uncertainty *= factor;
+        }
+        Spread::Curve(points) => {
+            for (_, v) in points {
+                // The quantities are sizes: a widened lower end stops at zero.
+                *v = if value > 0.0 {
+                    (value + (*v - value) * factor).max(0.0)
+                } else {
+                    value + (*v - value) * factor
+                };
+            }
+        }
+        Spread::ChiSquare { .. } | Spread::Unknown => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::data::BlockSeries;
+    use super::super::identify::Whittle;
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// White noise of N deg/√h at 1 Hz through a two-sample mean: the spectrum falls to zero at the Nyquist frequency.
+    fn smoothed(n: f64, samples: usize) -> Evidence {
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(20_261_121);
+        let white: Vec<f64> = (0..=samples)
+            .map(|_| 60.0 * n * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng))
+            .collect();
+        let mean: Vec<f64> = white.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
+        let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean };
+        Evidence::new(&blocks, None, 1.0, &[])
+    }
+
+    #[test]
+    fn a_filtered_output_still_gives_its_angle_random_walk() {
+        let evidence = smoothed(0.002, 36_000);
+        let all = Whittle::default().identify("rate", &evidence);
+        let naive = all.angle_random_walk.value.unwrap_or(0.0);
+        assert!((naive / 0.002 - 1.0).abs() > 0.1, "fitted over all frequencies N is wrong: {naive}");
+        let ranged = identify_in_range(&Whittle::default(), "rate", &evidence, 0.5);
+        let estimate = &ranged.identification.angle_random_walk;
+        let n = estimate.value.unwrap();
+        assert!((n / 0.002 - 1.0).abs() < 0.03, "{n} up to {:?}", ranged.highest_hz);
+        assert!(ranged.highest_hz.is_some_and(|f| f < 0.3));
+        assert!(estimate.notes.iter().any(|note| note.id == "note.fit_restricted"));
+    }
+
+    #[test]
+    fn a_model_that_fits_uses_every_frequency() {
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(7);
+        let mean: Vec<f64> = (0..36_000)
+            .map(|_| 0.12 * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng))
+            .collect();
+        let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean };
+        let evidence = Evidence::new(&blocks, None, 1.0, &[]);
+        let ranged = identify_in_range(&Whittle::default(), "rate", &evidence, 0.5);
+        assert_eq!((ranged.highest_hz, ranged.widened), (None, 1.0));
+    }
+}
