@@ -182,7 +182,8 @@ pub fn digest(path: &Path) -> Result<Digested, IngestError> {
     stream.finish()
 }
 
-fn unchanged(path: &Path, at_open: u64, read: u64, now: u64) -> Result<(), IngestError> {
+/// Compares the sizes of a file when it was opened, as read, and now.
+pub(super) fn unchanged(path: &Path, at_open: u64, read: u64, now: u64) -> Result<(), IngestError> {
     if at_open == read && read == now {
         return Ok(());
     }

@@ -399,6 +399,9 @@ impl Source {
         if let Some(fault) = refusal.or_else(|| guard.judge_short()) {
             return Err(reduce::not_numeric(&self.path, &fault, &unique, self.columns()));
         }
+        if let Some(facts) = &facts {
+            compressed::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;
+        }
         if facts.as_ref().is_some_and(|f| f.rows == 0) {
             return Err(IngestError::new(IngestErrorKind::Empty, &self.path, "the file has no rows")
                 .hint("check that the recording was written"));

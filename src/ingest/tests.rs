@@ -224,6 +224,24 @@ fn reading_can_be_stopped() {
 }
 
 #[test]
+fn a_file_that_changes_is_refused() {
+    let (content, _) = long_table();
+    for growing in [true, false] {
+        let mut f = file(content.as_bytes());
+        let source = open(f.path()).unwrap();
+        if growing {
+            f.write_all(b"120.000,1,w,2\n").unwrap();
+        } else {
+            f.as_file().set_len(content.len() as u64 / 2).unwrap();
+        }
+        let e = source.read(&[0], &mut |_| ControlFlow::Continue(())).unwrap_err();
+        assert_eq!(e.kind(), IngestErrorKind::Changed, "{e}");
+    }
+    let sizes = |open, read, now| compressed::unchanged(Path::new("x"), open, read, now).is_ok();
+    assert!(sizes(5, 5, 5) && !sizes(5, 6, 6) && !sizes(5, 5, 6) && !sizes(5, 4, 5));
+}
+
+#[test]
 fn parquet_numbers_nulls_and_words() {
     use ::parquet::data_type::{ByteArrayType, DoubleType, FloatType, Int32Type, Int64Type};
     use ::parquet::file::writer::SerializedFileWriter;
