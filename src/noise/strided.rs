@@ -114,28 +114,22 @@ impl StridedSums {
     /// Takes the next phases of the current stretch.
     pub(crate) fn push(&mut self, phases: &[f64]) {
         let modified = self.estimators.contains(&Estimator::Modified);
-        let span = if self.estimators.iter().any(|e| e.span() == 3) { 3 } else { 2 };
         if modified {
             self.running.set(phases);
         }
         for lane in &mut self.lanes {
             lane.take(phases, modified.then_some(&self.running));
-            let widest = lane.factors.last().map_or(0, |f| f.1);
-            for estimator in &self.estimators {
-                if *estimator == Estimator::Modified {
-                    lane.modified(&mut self.prefix);
-                } else {
-                    lane.differences(*estimator);
-                }
+            // As much anew as is kept: a long queue is then gone through a few times in all, not once a block.
+            if lane.phases.values.len() - lane.phases.fresh >= lane.reach().max(256) {
+                lane.settle(&self.estimators, &mut self.prefix);
             }
-            lane.phases.trim(span * widest);
-            lane.sums.trim(3 * widest);
         }
     }
 
     /// Ends the stretch: no term reaches across.
     pub(crate) fn end_stretch(&mut self) {
         for lane in &mut self.lanes {
+            lane.settle(&self.estimators, &mut self.prefix);
             lane.phases.clear();
             lane.sums.clear();
             lane.open_sum = 0.0;
@@ -143,7 +137,7 @@ impl StridedSums {
         }
     }
 
-    /// The points of one estimator, ascending.
+    /// The points of one estimator over the stretches that have ended, ascending.
     pub(crate) fn points(&self, estimator: Estimator) -> Vec<DeviationPoint> {
         let mut points: Vec<DeviationPoint> = self
             .lanes
@@ -161,6 +155,25 @@ impl StridedSums {
 }
 
 impl Lane {
+    /// Steps that the longest term spans.
+    fn reach(&self) -> usize {
+        3 * self.factors.last().map_or(0, |f| f.1)
+    }
+
+    /// Adds up the terms that end in what came since the last time.
+    fn settle(&mut self, estimators: &[Estimator], prefix: &mut Vec<f64>) {
+        for estimator in estimators {
+            if *estimator == Estimator::Modified {
+                self.modified(prefix);
+            } else {
+                self.differences(*estimator);
+            }
+        }
+        let reach = self.reach();
+        self.phases.trim(reach);
+        self.sums.trim(reach);
+    }
+
     fn take(&mut self, phases: &[f64], running: Option<&RunningSum>) {
         let stride = self.stride;
         let first = (self.seen.next_multiple_of(stride as u64) - self.seen) as usize;
