@@ -1,6 +1,6 @@
 //! Monte Carlo of the identification against simulated truth: coverage, false claims, efficiency.
 
-use sagnac::noise::data::BlockSeries;
+use sagnac::noise::data::{BlockSeries, WelchSpectrum};
 use sagnac::noise::evidence::Evidence;
 use sagnac::noise::fit::{Likelihood, Structure};
 use sagnac::noise::identify::{Identify, Whittle};
@@ -158,4 +158,34 @@ fn random_walk_is_not_taken_for_flicker() {
     assert_eq!(tally.claimed[2], 50);
     assert!(tally.covered[2] >= 43, "{:?}", tally.covered);
     assert!(tally.false_claims <= 6, "{} of 50", tally.false_claims);
+}
+
+/// `cargo test --release --test identification -- --ignored --nocapture speed`
+#[test]
+#[ignore = "timing"]
+fn speed() {
+    let model = NoiseModel { n: 0.002, b: 0.01, k: 0.005, ..Default::default() };
+    let (block_len, count, tau0_s, segment_len) = (128u64, 1usize << 18, 0.001, 16_384usize);
+    let tau_s = tau0_s * block_len as f64;
+    let start = std::time::Instant::now();
+    let mean = Simulator::new(&model, &Setup::for_record(1, tau_s, count as u64)).take(count);
+    println!("simulation {:.1} ns a sample", start.elapsed().as_secs_f64() * 1e9 / count as f64);
+    let blocks = BlockSeries { block_len, first_index: 0, count: vec![block_len as u32; count], mean };
+    let density = (0..=segment_len / 2)
+        .map(|k| model.density((k.max(1) as f64) / (segment_len as f64 * tau0_s), tau0_s) / tau0_s)
+        .collect();
+    let segments = 2 * count as u64 * block_len / segment_len as u64 - 1;
+    let effective_averages = 0.947 * segments as f64;
+    let welch = WelchSpectrum { segment_len, segments, effective_averages, density };
+    let start = std::time::Instant::now();
+    let evidence = Evidence::new(&blocks, Some(&welch), tau0_s, &[]);
+    let built = start.elapsed();
+    let found = Whittle::default().identify("rate", &evidence);
+    println!(
+        "evidence {built:?}, identification {:?}, {} bands",
+        start.elapsed() - built,
+        evidence.bands.len()
+    );
+    assert!(start.elapsed().as_secs_f64() < 2.0);
+    assert!((found.model.n / model.n - 1.0).abs() < 0.01);
 }

@@ -5,7 +5,7 @@ use super::evidence::Evidence;
 use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
 use super::misfit::Misfit;
 use super::model::{NoiseModel, TERMS, unit_allan_variance};
-use super::profile::Profile;
+use super::profile::{Profile, wider};
 use crate::estimate::{Estimate, UpperLimit, normal_quantile};
 use crate::text::Note;
 
@@ -82,13 +82,15 @@ const WHITE: usize = 0;
 const FLICKER: usize = 1;
 const WALK: usize = 2;
 const QUANTIZATION: usize = 3;
+/// 2 Δ ln L from which quantisation that is not claimed widens the interval of N.
+const SUSPICION: f64 = 1.0;
 const METHOD: &str = "whittle";
 /// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
 const PRICE: f64 = 2.71;
-/// Coverage of upper limits. The rise of the deviance that makes it is [`LIMIT_RISE`]: a limit is only given when the term was not
-/// claimed, that is when chance made it look small; 5 in place of 2.71 keeps the coverage in spite of that.
+/// Coverage of upper limits.
 const LIMIT_COVERAGE: f64 = 0.95;
-/// See [`LIMIT_COVERAGE`].
+/// Rise of the deviance that makes an upper limit. A limit is only given when the term was not claimed, that is when
+/// chance made it look small; 5 in place of 2.71 keeps the coverage in spite of that.
 pub(super) const LIMIT_RISE: f64 = 5.0;
 
 impl Identification {
@@ -182,7 +184,15 @@ impl Identify for Whittle {
             Misfit::of(evidence, &likelihood.whitened(&best), supported.iter().filter(|s| **s).count());
         let mut estimates: [Option<Estimate>; 5] = [const { None }; 5];
         for (term, slot) in estimates.iter_mut().enumerate() {
-            *slot = Some(estimate(&likelihood, channel, term, &claimed, &supported, needed));
+            *slot = Some(estimate(
+                &likelihood,
+                channel,
+                term,
+                &claimed,
+                &supported,
+                needed,
+                search.ratios[QUANTIZATION],
+            ));
         }
         let [n, b, k, q, r] = estimates;
         for (target, estimate) in [
@@ -207,6 +217,7 @@ fn estimate(
     claimed: &Structure,
     supported: &Structure,
     ambiguous: bool,
+    quantization_ratio: f64,
 ) -> Estimate {
     let (id, unit) = IDS[term];
     let mut structure = *supported;
@@ -217,7 +228,15 @@ fn estimate(
     if claimed[term]
         && let Some(profile) = Profile::new(likelihood, &structure, term)
     {
-        return Estimate::measured(id, channel, profile.value(), unit, profile.spread(), METHOD);
+        let mut spread = profile.spread();
+        if term == WHITE
+            && !claimed[QUANTIZATION]
+            && quantization_ratio > SUSPICION
+            && let Some(other) = Profile::new(likelihood, &toggled(&structure, QUANTIZATION, true), term)
+        {
+            spread = wider(profile.value(), &spread, &other.spread());
+        }
+        return Estimate::measured(id, channel, profile.value(), unit, spread, METHOD);
     }
     // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
     let rivals: &[usize] = match term {

@@ -98,7 +98,7 @@ mod tests {
         let clean = Misfit::of(&evidence, &whitened, 1);
         assert!(clean.probability > 0.99 && clean.worst_probability > 0.5, "{clean:?}");
         let raised = evidence.bands.iter().position(|b| b.low_hz > 0.1).unwrap();
-        whitened[raised].0 = 1.5;
+        whitened[raised].0 = 2.0;
         let found = Misfit::of(&evidence, &whitened, 1);
         let [low, high] = found.worst_band_hz.unwrap();
         assert!(low <= evidence.bands[raised].low_hz && evidence.bands[raised].high_hz <= high);

@@ -4,7 +4,7 @@
 //! every value (Wilks; for an amplitude on its boundary at 0, Self and Liang, JASA 82, 1987).
 
 use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure};
-use crate::estimate::Spread;
+use crate::estimate::{Spread, normal_probability};
 
 /// Outermost normal score of a curve.
 const REACH: f64 = 4.0;
@@ -103,8 +103,7 @@ impl<'a> Profile<'a> {
         Spread::Curve(points)
     }
 
-    /// The largest size of the coefficient whose deviance is not more than `rise` above the minimum; 2.71 alone would make a
-    /// one-sided 95 % limit.
+    /// The largest size of the coefficient whose deviance is not more than `rise` above the minimum.
     pub fn upper_limit(&self, rise: f64) -> Option<f64> {
         let side = |direction: f64| {
             let start = self.value();
@@ -138,4 +137,19 @@ impl<'a> Profile<'a> {
         let limit = if self.term == RAMP { up.max(side(-1.0).abs()) } else { up };
         limit.is_finite().then_some(limit)
     }
+}
+
+/// The wider of two curves on each side, for a coefficient whose structure is in doubt: at every normal score the
+/// value farther from `value`.
+pub fn wider(value: f64, a: &Spread, b: &Spread) -> Spread {
+    let bound = |z: f64| {
+        let at = |spread: &Spread| spread.bound(value, normal_probability(z)).unwrap_or(value);
+        if z < 0.0 { at(a).min(at(b)).min(value) } else { at(a).max(at(b)).max(value) }
+    };
+    let mut points: Vec<(f64, f64)> =
+        (-16..=16).map(|i| 0.25 * f64::from(i)).map(|z| (z, bound(z))).collect();
+    if let Some(middle) = points.get_mut(16) {
+        middle.1 = value;
+    }
+    Spread::Curve(points)
 }
