@@ -62,6 +62,21 @@ pub enum Arg {
     Count(u64),
     /// A text, shown as it is.
     Text(String),
+    /// A key of the locale tables, shown as what stands there; as its last part where nothing does.
+    Key(String),
+}
+
+impl Arg {
+    /// The words of a key: what the table says, or else the last part of the key.
+    pub fn words(key: &str, lang: Lang) -> String {
+        lookup(lang, key)
+            .map_or_else(|| key.rsplit('.').next().unwrap_or(key).replace('_', " "), str::to_owned)
+    }
+
+    /// An id under a prefix of the locale tables, such as `measurand` and `static_bias`.
+    pub fn key(prefix: &str, id: &str) -> Arg {
+        Arg::Key(format!("{prefix}.{id}"))
+    }
 }
 
 impl From<f64> for Arg {
@@ -116,9 +131,10 @@ impl Note {
     pub fn say(&self, lang: Lang) -> String {
         fill(lookup(lang, self.id).unwrap_or(self.id), |name| {
             self.args.get(name).map(|arg| match arg {
-                Arg::Number(v) => significant(*v, 4),
+                Arg::Number(v) => trimmed(significant(*v, 4)),
                 Arg::Count(v) => v.to_string(),
                 Arg::Text(t) => t.clone(),
+                Arg::Key(k) => Arg::words(k, lang),
             })
         })
     }
@@ -150,6 +166,15 @@ pub(crate) fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> Str
     }
     out.push_str(rest);
     out
+}
+
+/// Without zeros behind the decimal mark that say nothing.
+fn trimmed(text: String) -> String {
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 /// A number with the given count of significant digits, plain where that reads well and with an exponent elsewhere.

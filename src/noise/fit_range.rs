@@ -10,8 +10,9 @@ use super::identify::{Identification, Identify};
 use crate::estimate::{Estimate, Spread};
 use crate::text::Note;
 
-/// Probability of a larger misfit below which a range does not pass.
-const LEAST_PROBABILITY: f64 = 1e-3;
+/// Probability of a larger misfit below which a range does not pass. Giving up an octave that was sound costs little
+/// (a factor of √2 in the uncertainty of N), keeping one that is not costs the truth of N.
+const LEAST_PROBABILITY: f64 = 0.02;
 /// Departure of the worst band that does no harm, whatever its significance: 2 % in power is 1 % in N.
 const HARMLESS: f64 = 0.02;
 /// Octaves that may be given up.
@@ -146,7 +147,7 @@ mod tests {
         let ranged = identify_in_range(&Whittle::default(), "rate", &evidence, 0.5);
         let estimate = &ranged.identification.angle_random_walk;
         let n = estimate.value.unwrap();
-        assert!((n / 0.002 - 1.0).abs() < 0.03, "{n} up to {:?}", ranged.highest_hz);
+        assert!((n / 0.002 - 1.0).abs() < 0.05, "{n} up to {:?}", ranged.highest_hz);
         assert!(ranged.highest_hz.is_some_and(|f| f < 0.3));
         assert!(estimate.notes.iter().any(|note| note.id == "note.fit_restricted"));
     }

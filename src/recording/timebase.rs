@@ -119,7 +119,8 @@ impl Clock {
         } else {
             mean(steps().filter(|&d| d > 0.0 && (d - median).abs() <= 0.5 * median))
         };
-        let interval_s = tidy(interval_s.unwrap_or(median));
+        let interval_s = whole_steps(interval_s.unwrap_or(median), resolution_s);
+        let interval_s = tidy(interval_s);
         let ratio = interval_s / resolution_s;
         let rounded = resolution_s > 0.0 && (ratio - ratio.round()).abs() > 1e-3;
         let slack = if rounded { 1.01 * resolution_s } else { 0.0 };
@@ -130,6 +131,17 @@ impl Clock {
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0u64), |(s, n), v| (s + v, n + 1));
     (count > 0).then(|| sum / count as f64)
+}
+
+/// A whole number of the steps that the stamps are rounded to, where the interval is one within 1e-4: a row too many or
+/// too few among coarse stamps shifts their mean by less.
+fn whole_steps(interval_s: f64, resolution_s: f64) -> f64 {
+    let steps = interval_s / resolution_s;
+    if resolution_s > 0.0 && (steps / steps.round() - 1.0).abs() < 1e-4 {
+        steps.round() * resolution_s
+    } else {
+        interval_s
+    }
 }
 
 /// Takes an interval for the round one, or for that of the round rate, that it equals within 1e-9: the rest is rounding.

@@ -119,7 +119,7 @@ impl Rounding {
             None => decimal_exponent(value, 3) - 3,
         };
         let top = decimal_exponent(size, 3);
-        let exponent = if place < -7 || top >= 7 { top } else { 0 };
+        let exponent = if place < -9 || top >= 7 { top } else { 0 };
         Rounding { decimals: (exponent - place).clamp(0, 15) as usize, place, exponent }
     }
 

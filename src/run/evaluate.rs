@@ -17,7 +17,7 @@ use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::{EarthRate, Taus};
-use crate::record::Window;
+use crate::record::{FaultRecord, Integrity, Window};
 use crate::recording::Channel;
 use crate::recording::window::{WindowSpec, Windowed};
 use std::collections::BTreeMap;
@@ -104,7 +104,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     grid.check(tidy(nominal_s))?;
     let exact = request.exact || procedure.analysis.exact;
     let estimators = Estimator::ALL;
-    let mut overview = Overview::new(&channels);
+    let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
     let inside = Inside::new(procedure, &channels, &grid, estimators, exact, tidy(nominal_s), plan.start_s());
     let window = WindowSpec {
         from_s: procedure.conditions.warm_up_s,
@@ -112,7 +112,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
         exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
     };
     let mut windowed = Windowed::new(inside, window, plan.start_s(), nominal_s);
-    let report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
+    let mut report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
     let (inside, window) = windowed.finish();
     let Collected { gyros, held } = inside.finish();
     let tau0_s = tidy(report.tau0_measured_s);
@@ -131,8 +131,30 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
             procedure.conditions.warm_up_s
         )));
     }
+    declare_rails(&mut report.integrity, overview.saturated());
+    tidy_integrity(&mut report.integrity, tau0_s, &gyros);
     let envelopes = overview.finish();
     Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact })
+}
+
+/// Saturation at declared rails takes the place of what was guessed for the same channel.
+fn declare_rails(integrity: &mut Integrity, declared: Vec<FaultRecord>) {
+    for fault in declared {
+        let same = |f: &FaultRecord| f.kind == fault.kind && f.channel == fault.channel;
+        let guessed: u64 = integrity.faults.iter().filter(|f| same(f)).map(|f| f.count).sum();
+        integrity.faults.retain(|f| !same(f));
+        integrity.saturated = integrity.saturated.saturating_sub(guessed) + fault.count;
+        integrity.faults.push(fault);
+    }
+}
+
+/// Leaves out what is rounding of the file and not a property of the recording.
+fn tidy_integrity(integrity: &mut Integrity, tau0_s: f64, gyros: &[GyroEvidence]) {
+    integrity.timestamp_jitter_s =
+        integrity.timestamp_jitter_s.map(|j| if j < 1e-7 * tau0_s { 0.0 } else { j });
+    let least = gyros.iter().map(|g| g.digest.histogram.standard_deviation).fold(f64::INFINITY, f64::min);
+    // A lattice far finer than the noise is the number of decimals in the file.
+    integrity.quantization_step_deg_h = integrity.quantization_step_deg_h.filter(|q| *q > 0.01 * least);
 }
 
 /// A measured interval without the rounding of its last digits: 0.001 and not 0.00100000000003.

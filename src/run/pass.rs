@@ -7,6 +7,7 @@ use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
 use crate::noise::family::Estimator;
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
+use crate::record::FaultRecord;
 use crate::recording::{Channel, Role, Sink, Slab};
 use std::collections::BTreeMap;
 
@@ -132,14 +133,26 @@ fn push_finite(allan: &mut AllanAccumulator, values: &[f64], first_index: u64, c
     }
 }
 
-/// The whole recording for the plot over time, what is left out of the evaluation included.
+/// The whole recording for the plot over time, what is left out of the evaluation included; and the samples at the
+/// rails that the procedure declares.
 pub struct Overview {
     channels: Vec<(usize, EnvelopeAccumulator)>,
+    rails: Vec<Rails>,
+}
+
+/// Declared rails of a channel and the samples at them.
+struct Rails {
+    slot: usize,
+    channel: String,
+    low: f64,
+    high: f64,
+    count: u64,
+    first: Option<(u64, f64)>,
 }
 
 impl Overview {
     /// Prepares for the channels that are drawn.
-    pub fn new(channels: &[Channel]) -> Overview {
+    pub fn new(procedure: &Procedure, channels: &[Channel], tau0_s: f64) -> Overview {
         let drawn = |r: Role| r.is_gyro() || matches!(r, Role::Temperature | Role::Supply);
         Overview {
             channels: channels
@@ -148,7 +161,40 @@ impl Overview {
                 .filter(|(_, c)| drawn(c.role))
                 .map(|(slot, _)| (slot, EnvelopeAccumulator::new()))
                 .collect(),
+            rails: channels
+                .iter()
+                .enumerate()
+                .filter_map(|(slot, c)| {
+                    let spec = procedure.channel(&c.id)?;
+                    if spec.rail_low.is_none() && spec.rail_high.is_none() {
+                        return None;
+                    }
+                    // Rails of increments are stated as angles; inside, increments are rates.
+                    let factor = if c.role == Role::AngleIncrement { 1.0 / tau0_s } else { 1.0 };
+                    let low = spec.rail_low.map_or(f64::NEG_INFINITY, |v| v * factor);
+                    let high = spec.rail_high.map_or(f64::INFINITY, |v| v * factor);
+                    Some(Rails { slot, channel: c.id.clone(), low, high, count: 0, first: None })
+                })
+                .collect(),
         }
+    }
+
+    /// Samples at declared rails: one fault a channel.
+    pub fn saturated(&self) -> Vec<FaultRecord> {
+        self.rails
+            .iter()
+            .filter_map(|r| {
+                let (row, time_s) = r.first?;
+                Some(FaultRecord {
+                    kind: "saturated".into(),
+                    channel: Some(r.channel.clone()),
+                    time_s: Some(time_s),
+                    row,
+                    count: r.count,
+                    note: format!("{} samples at or beyond the declared rails", r.count),
+                })
+            })
+            .collect()
     }
 
     /// The envelopes by position of the channel.
@@ -162,6 +208,15 @@ impl Sink for Overview {
         for (slot, envelope) in &mut self.channels {
             if let Some(values) = slab.values.get(*slot) {
                 envelope.push(values, slab.first_index);
+            }
+        }
+        for r in &mut self.rails {
+            let Some(values) = slab.values.get(r.slot) else { continue };
+            for (i, v) in values.iter().enumerate() {
+                if *v <= r.low || *v >= r.high {
+                    r.count += 1;
+                    r.first.get_or_insert((slab.first_row + i as u64, slab.time_s));
+                }
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::estimate::{Estimate, Verdict, judge};
 use crate::procedure::{EffectiveLimits, Procedure};
 use crate::record::{ConditionRecord, ConditionStatus, LimitRecord, MeasurandRecord};
-use crate::text::Note;
+use crate::text::{Arg, Note};
 
 /// Judges one estimate.
 pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure) -> MeasurandRecord {
@@ -51,7 +51,9 @@ pub fn whole(
         .iter()
         .map(|c| {
             let why = c.message.as_ref().map(|m| m.say(crate::text::Lang::En)).unwrap_or_default();
-            Note::new("summary.condition_invalid").with("condition", c.id.clone()).with("why", why)
+            Note::new("summary.condition_invalid")
+                .with("condition", Arg::key("condition", c.id.split('.').next().unwrap_or(&c.id)))
+                .with("why", why)
         })
         .collect();
     for (verdict, key) in
@@ -63,7 +65,11 @@ pub fn whole(
             } else {
                 key
             };
-            reasons.push(Note::new(key).with("measurand", r.id.clone()).with("channel", r.channel.clone()));
+            reasons.push(
+                Note::new(key)
+                    .with("measurand", Arg::key("measurand", &r.id))
+                    .with("channel", r.channel.clone()),
+            );
         }
     }
     let worst = rows.iter().map(|r| r.verdict).max().unwrap_or(Verdict::None);

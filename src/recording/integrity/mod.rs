@@ -59,6 +59,13 @@ struct Place {
     time_s: f64,
 }
 
+impl Place {
+    /// The place some samples further on in the same stretch.
+    fn after(self, samples: u64, interval_s: f64) -> Place {
+        Place { row: self.row + samples, time_s: self.time_s + samples as f64 * interval_s }
+    }
+}
+
 /// Samples with a finite value, in order, and where they stand: rows and times are kept for stretches.
 #[derive(Debug, Clone, Default)]
 struct Places {
@@ -87,7 +94,7 @@ impl Places {
         match self.stretches.get(after.saturating_sub(1)) {
             Some((start, place)) => {
                 let ahead = position.saturating_sub(*start);
-                Place { row: place.row + ahead, time_s: place.time_s + ahead as f64 * self.interval_s }
+                place.after(ahead, self.interval_s)
             }
             None => Place { row: 0, time_s: f64::NAN },
         }
@@ -121,8 +128,7 @@ impl ChannelChecks {
     fn take(&mut self, values: &[f64], place: Place, interval_s: f64) {
         let mut done = 0;
         for part in values.chunks(CHUNK) {
-            let place = Place { row: place.row + done, time_s: place.time_s + done as f64 * interval_s };
-            self.chunk(part, place, interval_s);
+            self.chunk(part, place.after(done, interval_s), interval_s);
             done += part.len() as u64;
         }
     }
@@ -133,7 +139,7 @@ impl ChannelChecks {
         }
         let s = summary(values, self.origin);
         if s.sum.is_finite() && (self.count > 0 || values.is_empty()) {
-            self.finite(values, &s, place);
+            self.finite(values, &s, place, interval_s);
             return;
         }
         // A part of it has no value, or the origin is not known yet.
@@ -150,19 +156,18 @@ impl ChannelChecks {
                 if self.count == 0 {
                     self.origin = first;
                 }
-                let here =
-                    Place { row: place.row + start as u64, time_s: place.time_s + start as f64 * interval_s };
-                self.finite(run, &summary(run, self.origin), here);
+                let here = place.after(start as u64, interval_s);
+                self.finite(run, &summary(run, self.origin), here, interval_s);
             }
             start += length;
         }
     }
 
-    fn finite(&mut self, values: &[f64], s: &Summary, place: Place) {
+    fn finite(&mut self, values: &[f64], s: &Summary, place: Place, interval_s: f64) {
         if let Some(g) = &mut self.gyro {
             g.outliers.take(values, place);
-            g.runs.take(values, place);
-            g.rails.take(values, s.min, s.max, place);
+            g.runs.take(values, place, interval_s);
+            g.rails.take(values, s.min, s.max, place, interval_s);
             g.lattice.take(values);
         }
         self.count += values.len() as u64;

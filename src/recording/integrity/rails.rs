@@ -71,14 +71,14 @@ impl Default for Rails {
 }
 
 impl Rails {
-    pub(super) fn take(&mut self, values: &[f64], min: f64, max: f64, place: Place) {
+    pub(super) fn take(&mut self, values: &[f64], min: f64, max: f64, place: Place, interval_s: f64) {
         let edges = [(&mut self.upper, max), (&mut self.lower, -min)];
         for (edge, extreme) in edges {
             if extreme < edge.next {
                 continue;
             }
             for (i, &v) in values.iter().enumerate() {
-                edge.take(v * edge.sign, || Place { row: place.row + i as u64, ..place });
+                edge.take(v * edge.sign, || place.after(i as u64, interval_s));
             }
         }
     }

@@ -56,7 +56,7 @@ pub(super) struct Stuck {
 }
 
 impl Runs {
-    pub(super) fn take(&mut self, values: &[f64], place: Place) {
+    pub(super) fn take(&mut self, values: &[f64], place: Place, interval_s: f64) {
         self.samples += values.len() as u64;
         let Some((&first, &last)) = values.first().zip(values.last()) else { return };
         let repeats = values.iter().zip(values.get(1..).unwrap_or_default()).filter(|(a, b)| a == b).count();
@@ -75,7 +75,7 @@ impl Runs {
                 let ahead = values.len() as u64 - 1;
                 self.value = last;
                 self.length = 1;
-                self.start = Place { row: place.row + ahead, ..place };
+                self.start = place.after(ahead, interval_s);
             }
             return;
         }
@@ -83,7 +83,7 @@ impl Runs {
             if v != self.value {
                 self.close();
                 self.value = v;
-                self.start = Place { row: place.row + i as u64, ..place };
+                self.start = place.after(i as u64, interval_s);
             }
             self.length += 1;
         }
@@ -147,5 +147,22 @@ impl Runs {
         }
         let repeats = (BY_CHANCE / self.samples.max(1) as f64).ln() / share.ln();
         FEWEST.max(1 + repeats.ceil() as u64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stuck_stretch_stands_where_it_begins_in_row_and_time() {
+        let mut runs = Runs::default();
+        let mut values: Vec<f64> =
+            (0..1000).map(|i| f64::from(i * 37 % 101) + 0.5 * f64::from(i % 7)).collect();
+        values[700..740].fill(-1.0);
+        runs.take(&values, Place { row: 11, time_s: 100.0 }, 0.5);
+        let stuck = runs.finish();
+        assert_eq!(stuck.count, 40);
+        assert_eq!(stuck.listed, [(Place { row: 711, time_s: 450.0 }, 40)]);
     }
 }

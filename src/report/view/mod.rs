@@ -148,6 +148,7 @@ impl Words {
                 Arg::Number(v) => super::number::limit_digits(*v, 4, self.lang),
                 Arg::Count(v) => count(*v, self.lang),
                 Arg::Text(t) => t.clone(),
+                Arg::Key(k) => Arg::words(k, self.lang),
             })
         })
     }

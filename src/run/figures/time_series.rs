@@ -74,10 +74,25 @@ fn layers(
     let middle =
         |i: usize| (envelope.first_index as f64 + (i as f64 + 0.5) * envelope.bin_len as f64 - 0.5) * tau0_s;
     let range = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.min, b.max)).collect();
-    let mean = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.mean)).collect();
-    if envelope.bin_len > 1 {
+    let mean: Vec<(f64, f64)> = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.mean)).collect();
+    // A range far wider than the means would hide them: white noise at a high rate says nothing here.
+    if envelope.bin_len > 1 && median_range(envelope) < 3.0 * spread(&mean) {
         layers.push(Layer::Band { points: range, style, legend: "figure.legend.range".into() });
     }
     layers.push(line(mean, style, legend));
     layers
+}
+
+/// Median height of the range of a span.
+fn median_range(envelope: &Envelope) -> f64 {
+    let mut heights: Vec<f64> = envelope.bins.iter().filter(|b| b.count > 0).map(|b| b.max - b.min).collect();
+    let middle = heights.len() / 2;
+    if heights.is_empty() { 0.0 } else { *heights.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+/// Range of the means.
+fn spread(means: &[(f64, f64)]) -> f64 {
+    let finite = means.iter().map(|m| m.1).filter(|v| v.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    (high - low).max(0.0)
 }
