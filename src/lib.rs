@@ -6,7 +6,8 @@
 //! Data flows one way, and modules depend downwards only:
 //!
 //! ```text
-//! numeric, units, text <- estimate, figure <- recording <- {ingest, noise} <- measurand <- procedure <- run <- report <- cli
+//! numeric, units, text <- estimate, figure, output <- record, recording <- ingest, noise
+//!     <- measurand <- procedure <- condition <- run <- report <- cli
 //! ```
 #![forbid(unsafe_code)]
 

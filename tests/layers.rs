@@ -11,7 +11,8 @@ const FLOORS: &[&[&str]] = &[
     &["ingest", "noise"],
     &["measurand"],
     &["procedure"],
-    &["run"],
+    &["condition"],
+    &["run", "selftest"],
     &["report"],
     &["cli"],
 ];
