@@ -82,7 +82,11 @@ fn look(source: &Source, index: usize) -> Result<Content, IngestError> {
             let first = block.faults.iter().find(|f| f.kind == FieldFaultKind::Unparsable);
             sample = first.map(|f| f.text.clone());
         }
-        if rows >= LOOKED_AT && numbers + texts > 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if rows >= LOOKED_AT && numbers + texts > 0 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     })?;
     Ok(match (numbers, texts) {
         (0, 0) => Content::Nothing,

@@ -104,7 +104,8 @@ pub(super) fn gather(
     let mut pass = Pass::new(&channels, &plan, time.is_known());
     let report = plan.stream(&mut [&mut pass], progress)?;
     let tau0_s = tidy(report.tau0_measured_s);
-    let temperatures = pass.temperatures(&channels);
+    let smoothed = time.is_known() && report.duration_s >= 10.0 * SMOOTHING_S;
+    let temperatures = pass.temperatures(&channels, smoothed);
     let warming = temperatures.iter().map(Temperature::range).fold(0.0, f64::max);
     let driven = pass.driven(&channels, !time.is_known());
     let followers = pass.followers(&channels);
@@ -154,9 +155,7 @@ fn time_base(
 fn spec(time: &TimeBase) -> TimeBaseSpec {
     match time {
         TimeBase::Stamps(_) => TimeBaseSpec::default(),
-        TimeBase::Declared(hz, _) => {
-            TimeBaseSpec { declared_sample_rate_hz: Some(*hz), use_stamps: false }
-        }
+        TimeBase::Declared(hz, _) => TimeBaseSpec { declared_sample_rate_hz: Some(*hz), use_stamps: false },
         // One row a second, so that positions can be told; no time is shown.
         TimeBase::Rows(_) => TimeBaseSpec { declared_sample_rate_hz: Some(1.0), use_stamps: false },
     }
@@ -227,17 +226,25 @@ impl Pass {
                 angle: track.angle,
             })
         };
-        self.gyros.into_iter().filter_map(with).collect()
+        let mut gyros: Vec<Gyro> = self.gyros.into_iter().filter_map(with).collect();
+        // The axes of a unit turn together: one that hardly shows it is not at rest either.
+        if gyros.iter().any(|g| g.motion.is_motion()) {
+            gyros.iter_mut().filter(|g| g.motion.is_rest()).for_each(|g| g.motion = Motion::Carried);
+        }
+        gyros
     }
 
-    fn temperatures(&self, channels: &[Channel]) -> Vec<Temperature> {
+    /// Extremes are smoothed where the record is long enough for it.
+    fn temperatures(&self, channels: &[Channel], smoothed: bool) -> Vec<Temperature> {
         let found = self.temperatures.iter().filter_map(|(slot, track, envelope)| {
             let facts: TemperatureFacts = track.clone().finish()?;
             let means: Vec<f64> = envelope.finish().bins.iter().map(|b| b.mean).collect();
+            let (min_deg_c, max_deg_c) =
+                if smoothed { (facts.smooth_min.value, facts.smooth_max.value) } else { facts.raw };
             Some(Temperature {
                 name: channels.get(*slot)?.id.clone(),
-                min_deg_c: facts.smooth_min.value,
-                max_deg_c: facts.smooth_max.value,
+                min_deg_c,
+                max_deg_c,
                 steepest_deg_c_h: facts.steepest_deg_c_per_h,
                 runs: runs(&means),
             })

@@ -23,7 +23,14 @@ const MAINS_HZ: [f64; 4] = [50.0, 60.0, 100.0, 120.0];
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Motion {
     /// Nothing speaks against rest.
-    Rest,
+    Rest {
+        /// Standard deviation of the means, deg/h.
+        scatter_deg_h: f64,
+        /// How many times that is what the noise of the samples explains, were it white; 0 where that is not known.
+        beyond_noise: f64,
+    },
+    /// It hardly changed, but another axis of the unit was turned.
+    Carried,
     /// It changed slowly by far more than the noise: a slow turn, or the bias with temperature.
     Slow {
         /// Standard deviation of the means, deg/h.
@@ -38,6 +45,18 @@ pub(super) enum Motion {
     },
     /// Too few samples to tell.
     Unknown,
+}
+
+impl Motion {
+    /// True where nothing speaks against rest.
+    pub fn is_rest(&self) -> bool {
+        matches!(self, Motion::Rest { .. })
+    }
+
+    /// True where the unit was turned, about this axis or another.
+    pub fn is_motion(&self) -> bool {
+        matches!(self, Motion::Moved { .. } | Motion::Carried)
+    }
 }
 
 /// Judges the motion by means over 1 s (or an eighth of a shorter record). `sample_noise`: standard deviation of a
@@ -63,7 +82,8 @@ pub(super) fn motion(
     let moved = deviation > MOVED_DEG_H.max(BEYOND_NOISE * noise)
         || farthest > TURNED_DEG_H.max(2.0 * BEYOND_NOISE * noise);
     if !moved {
-        Motion::Rest
+        let beyond_noise = if noise > 0.0 { deviation / noise } else { 0.0 };
+        Motion::Rest { scatter_deg_h: deviation, beyond_noise }
     } else if steps < SLOW * deviation && warming_deg_c >= WARMING_DEG_C {
         Motion::Slow { scatter_deg_h: deviation }
     } else {
@@ -118,13 +138,9 @@ pub(super) fn clock_remark(line: &SpectralLine, tau0_s: f64) -> Option<ClockRema
     let nearest = MAINS_HZ.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)))?;
     if off(nearest) <= 0.06 {
         let clear = off(nearest) > 0.005 && (line_hz - nearest).abs() > line.resolution_hz;
-        return clear.then_some(ClockRemark::Off {
-            line_hz,
-            mains_hz: nearest,
-            factor: line_hz / nearest,
-        });
+        return clear.then_some(ClockRemark::Off { line_hz, mains_hz: nearest, factor: line_hz / nearest });
     }
-    if line_hz + 5.0 * line.resolution_hz >= nyquist_hz {
+    if line_hz >= 0.97 * nyquist_hz {
         return Some(ClockRemark::AtNyquist { line_hz });
     }
     // Mains keeps its frequency to 0.2 %; where so wide a search would cover much of the spectrum, a hit says nothing.

@@ -41,11 +41,8 @@ pub(super) fn plain(value: f64, digits: usize) -> String {
         Some((m, e)) => (m, format!("e{e}")),
         None => (text.as_str(), String::new()),
     };
-    let mantissa = if mantissa.contains('.') {
-        mantissa.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        mantissa
-    };
+    let mantissa =
+        if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
     format!("{mantissa}{exponent}")
 }
 

@@ -11,7 +11,7 @@ use crate::text::Note;
 use crate::units::Unit;
 
 /// Faults listed one by one.
-const LISTED: usize = 5;
+const LISTED: usize = 3;
 
 /// Everything that was found, in words.
 pub(super) fn text(source: &Source, seen: &Seen) -> String {
@@ -85,15 +85,34 @@ fn row(column: &Listed, facts: Option<&ChannelFacts>, tau0_s: f64) -> Vec<String
         (unit, true) => unit.to_owned(),
         (unit, false) => format!("{unit}?"),
     };
-    let shown = |value: f64| {
-        if value.is_finite() { plain(as_recorded(value, facts, &guess.unit, tau0_s), 6) } else { "-".into() }
-    };
+    let recorded = |value: f64| as_recorded(value, facts, &guess.unit, tau0_s);
+    let digits = digits(recorded(facts.values.min), recorded(facts.values.max));
+    let shown = |value: f64| if value.is_finite() { figure(recorded(value), digits) } else { "-".into() };
     let none = match facts.values.non_finite {
         0 => "-".to_owned(),
         n => count(n),
     };
     let v = &facts.values;
-    vec![name, facts.role.id().replace('_', " "), unit, shown(v.min), shown(v.max), shown(v.mean), none]
+    // What rounding leaves of a mean that is zero.
+    let mean = if v.mean.abs() < 1e-12 * v.min.abs().max(v.max.abs()) { 0.0 } else { v.mean };
+    vec![name, facts.role.id().replace('_', " "), unit, shown(v.min), shown(v.max), shown(mean), none]
+}
+
+/// Significant digits in which values between two extremes can be told apart.
+fn digits(min: f64, max: f64) -> usize {
+    let ratio = min.abs().max(max.abs()) / (max - min);
+    if ratio.is_finite() && ratio > 1.0 { (4 + ratio.log10().ceil() as usize).clamp(6, 12) } else { 6 }
+}
+
+/// A value for the table: plain between 1e-4 and 1e9.
+fn figure(value: f64, digits: usize) -> String {
+    let exponent = value.abs().log10().floor();
+    if value == 0.0 || !(-4.0..9.0).contains(&exponent) {
+        return plain(value, digits);
+    }
+    let decimals = (digits as f64 - 1.0 - exponent).max(0.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// A value of a channel in the unit of the file.
@@ -235,9 +254,9 @@ fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
     for fault in all.take(LISTED) {
         let place = match fault.time_s.filter(|_| timed) {
             Some(t) => Note::new("inspect.fault_at_time")
-                .with("row", count(fault.row))
+                .with("row", fault.row)
                 .with("time", format!("{:.6}", t).trim_end_matches('0').trim_end_matches('.')),
-            None => Note::new("inspect.fault_at").with("row", count(fault.row)),
+            None => Note::new("inspect.fault_at").with("row", fault.row),
         };
         let channel = fault.channel.as_deref().filter(|c| !fault.note.contains(c));
         let channel = channel.map_or_else(String::new, |c| format!("`{c}`: "));

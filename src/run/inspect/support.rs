@@ -4,7 +4,7 @@ use super::gather::{Driven, Gyro, Seen, Temperature};
 use super::judge::{ClockRemark, Motion, clock_remark, earth};
 use super::layout::{Page, say, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
-use super::show_gyro::strongest;
+use super::show_gyro::{described, strongest};
 use crate::noise::data::NoiseType;
 use crate::noise::expected::expected_upper_limit;
 use crate::recording::Role;
@@ -58,14 +58,14 @@ fn table_moves(seen: &Seen) -> Option<&Driven> {
 }
 
 fn static_test(seen: &Seen) -> Note {
+    if let Some(table) = table_moves(seen) {
+        return Note::new("inspect.static_table").with("name", table.name.as_str());
+    }
     if !seen.time.is_known() {
         return Note::new("inspect.static_no_time");
     }
     if seen.gyros.is_empty() {
         return Note::new("inspect.static_counts");
-    }
-    if let Some(table) = table_moves(seen) {
-        return Note::new("inspect.static_table").with("name", table.name.as_str());
     }
     let of = |wanted: fn(&Motion) -> bool| {
         names(seen.gyros.iter().filter(|g| wanted(&g.motion)).map(|g| g.name.as_str()))
@@ -89,7 +89,7 @@ fn static_test(seen: &Seen) -> Note {
 /// Channels that stood still, with enough samples for their noise.
 fn resting(seen: &Seen) -> impl Iterator<Item = &Gyro> {
     let still = table_moves(seen).is_none();
-    seen.gyros.iter().filter(move |g| still && g.motion == Motion::Rest && g.digest.samples >= 64)
+    seen.gyros.iter().filter(move |g| still && g.motion.is_rest() && g.digest.samples >= 64)
 }
 
 fn averaging(page: &mut Page, seen: &Seen) {
@@ -112,14 +112,20 @@ fn averaging(page: &mut Page, seen: &Seen) {
 fn flicker(page: &mut Page, seen: &Seen) {
     let mut label = word("inspect.flicker");
     for gyro in resting(seen) {
+        if !described(gyro) {
+            let note = say(&Note::new("inspect.flicker_undescribed"));
+            page.row(&label, &format!("`{}`: {note}", gyro.name));
+            label.clear();
+            continue;
+        }
         let found = &gyro.identification.bias_instability;
         let background = gyro.identification.supported.with(NoiseType::Flicker, 0.0);
         let smallest =
             expected_upper_limit(NoiseType::Flicker, &background, gyro.digest.samples, seen.tau0_s);
         let note = match (smallest, found.value) {
-            (Some(smallest), Some(b)) => Note::new("inspect.flicker_found")
-                .with("b", plain(b, 3))
-                .with("smallest", plain(smallest, 2)),
+            (Some(smallest), Some(b)) => {
+                Note::new("inspect.flicker_found").with("b", plain(b, 3)).with("smallest", plain(smallest, 2))
+            }
             (Some(smallest), None) => {
                 Note::new("inspect.flicker_smallest").with("smallest", plain(smallest, 2))
             }
@@ -147,7 +153,7 @@ fn temperature(seen: &Seen) -> Note {
         about("inspect.temperature_narrow")
     } else if !seen.time.is_known() {
         about("inspect.temperature_untimed")
-    } else if table_moves(seen).is_some() || seen.gyros.iter().any(|g| matches!(g.motion, Motion::Moved { .. })) {
+    } else if table_moves(seen).is_some() || seen.gyros.iter().any(|g| g.motion.is_motion()) {
         about("inspect.temperature_moving")
     } else if up > 0 && down > 0 {
         about("inspect.temperature_both")
@@ -199,11 +205,12 @@ fn known_angle(page: &mut Page, seen: &Seen) {
 
 /// The strongest remark on the clock, with every channel that bears it out.
 fn clock(page: &mut Page, seen: &Seen) {
+    // Frequency, excess and channel of each line that says something.
     let mut remarks: Vec<(ClockRemark, f64, f64, String)> = Vec::new();
     for gyro in &seen.gyros {
         for line in strongest(gyro).into_iter().take(STRONGEST) {
             if let Some(remark) = clock_remark(line, seen.tau0_s) {
-                remarks.push((remark, line.frequency_hz, line.amplitude_deg_h, gyro.name.clone()));
+                remarks.push((remark, line.frequency_hz, line.excess, gyro.name.clone()));
             }
         }
     }
@@ -243,7 +250,7 @@ fn clock_note(remark: &ClockRemark, tau0_s: f64) -> Note {
 }
 
 fn earth_rate(page: &mut Page, seen: &Seen) {
-    if seen.gyros.iter().any(|g| g.motion != Motion::Rest) {
+    if !seen.gyros.iter().all(|g| g.motion.is_rest()) {
         return;
     }
     let means: Vec<f64> = seen.gyros.iter().map(|g| g.digest.mean).collect();

@@ -167,7 +167,9 @@ impl Follow {
 /// Runs up and runs down of a slow quantity, where a turn counts when it goes back by a quarter of the range.
 pub(super) fn runs(means: &[f64]) -> (u32, u32) {
     let finite = || means.iter().copied().filter(|m| m.is_finite());
-    let (Some(min), Some(max)) = (finite().reduce(f64::min), finite().reduce(f64::max)) else { return (0, 0) };
+    let (Some(min), Some(max)) = (finite().reduce(f64::min), finite().reduce(f64::max)) else {
+        return (0, 0);
+    };
     let turn = 0.25 * (max - min);
     let (mut low, mut high, mut direction) = (f64::INFINITY, f64::NEG_INFINITY, 0);
     let (mut up, mut down) = (0, 0);
