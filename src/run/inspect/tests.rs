@@ -29,6 +29,11 @@ fn stamps(tau0_s: f64, samples: usize) -> Vec<f64> {
     (0..samples).map(|i| i as f64 * tau0_s).collect()
 }
 
+/// The N that is stated.
+fn angle_random_walk(text: &str) -> f64 {
+    text.split("N = ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap()
+}
+
 #[track_caller]
 fn says(text: &str, wanted: &[&str]) {
     for w in wanted {
@@ -53,13 +58,14 @@ fn a_long_rest_supports_the_static_test() {
             "static test Yes: at rest, 10.5 h",
             "up to 3780 s (1.05 h) as a floor (T/10), up to 7560 s (2.1 h) in a fit",
             "1 Hz, one sample every 1 s",
-            "N = 0.01",
             "`rate_deg_h`: No 1/f noise was identified.",
             "temperature test No: there is no temperature column.",
             "scale factor No: there is no column with a table rate",
         ],
     );
-    keeps_quiet(&text, &["clock", "known angle", "Earth rate"]);
+    keeps_quiet(&text, &["sample clock is off", "known angle", "Earth rate"]);
+    let n = angle_random_walk(&text);
+    assert!((n / 0.01 - 1.0).abs() < 0.02, "{n}");
 }
 
 #[test]
@@ -274,16 +280,18 @@ fn what_cannot_be_used_is_said_and_does_no_harm() {
         &text,
         &[
             "`temp_degC`: no row has a value.",
-            "rows are counted (2000). Give --sample-rate HZ",
+            "rows are counted (2 000). Give --sample-rate HZ",
             "static test No: the sample interval is not known.",
             "`reset` never changes.",
         ],
     );
     keeps_quiet(&text, &["N ="]);
     let text = told(vec![("rate_deg_h", noise(0.1, 11, 0.1, n))], Some(10.0));
-    says(&text, &["The sample rate that was given, 10 Hz", "N = 0.1", "200 s is less than the 10 h"]);
+    says(&text, &["The sample rate that was given, 10 Hz", "200 s is less than the 10 h"]);
+    let n = angle_random_walk(&text);
+    assert!((n / 0.1 - 1.0).abs() < 0.1, "{n}");
     let coarse: Vec<f64> = (0..2000).map(|i| f64::from(i / 10)).collect();
-    let text = told(vec![("time_s", coarse), ("rate_deg_h", noise(0.1, 11, 0.1, n))], None);
+    let text = told(vec![("time_s", coarse), ("rate_deg_h", noise(0.1, 11, 0.1, 2000))], None);
     says(
         &text,
         &["The time column cannot serve: `time_s`: 90 % of the time stamps equal", "rows are counted"],
