@@ -1,7 +1,7 @@
 //! `sagnac inspect`: what a recording holds and which tests it can support, in plain text.
 //!
-//! Columns are told apart first ([`columns`]), the recording is read once ([`gather`]), every judgement is made from
-//! what was gathered ([`judge`], [`support`]), and the words are laid out last ([`show`]).
+//! Columns are told apart first (`columns`), the recording is read once (`gather`), every judgement is made from
+//! what was gathered (`judge`, `support`), and the words are laid out last (`show`).
 
 mod columns;
 mod gather;

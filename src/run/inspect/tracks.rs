@@ -89,7 +89,7 @@ impl Levels {
     pub fn push(&mut self, values: &[f64]) {
         self.stride = self.stride.max(1);
         for &v in values.iter().filter(|v| v.is_finite()) {
-            if self.seen % self.stride == 0 {
+            if self.seen.is_multiple_of(self.stride) {
                 self.kept.push((v, self.before.map_or(0.0, |b| (v - b).abs())));
             }
             self.seen += 1;
