@@ -49,7 +49,7 @@ impl Format for Parquet {
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
-            notes: vec![format!("{} row groups", reader.num_row_groups())],
+            notes: vec![format!("row groups: {}", reader.num_row_groups())],
             table: Box::new(ParquetFile { path: file.path.clone() }),
         })
     }

@@ -8,7 +8,7 @@ use crate::numeric::special::cosine_integral;
 use std::f64::consts::PI;
 
 /// Rotation rate of the Earth, deg/h (7.292115e-5 rad/s).
-pub const EARTH_RATE_DEG_H: f64 = 7.292_115e-5 * 180.0 / PI * 3600.0;
+pub use crate::units::EARTH_RATE_DEG_H;
 
 /// Contributions to the squared standard uncertainty of a mean rate, (deg/h)².
 #[derive(Debug, Clone, PartialEq)]

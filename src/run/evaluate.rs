@@ -7,12 +7,13 @@ use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::figure::Figure;
 use crate::ingest::{Source, StreamReport, TimeBaseSpec, prepare};
 use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
+use crate::noise::digest::RateDigest;
 use crate::noise::envelope::Envelope;
 use crate::noise::evidence::{Evidence, Mask};
 use crate::noise::family::Estimator;
 use crate::noise::fit_range::identify_in_range;
-use crate::noise::identify::Whittle;
-use crate::noise::lines::find_lines;
+use crate::noise::identify::{Identification, Whittle};
+use crate::noise::lines::{SpectralLine, find_lines};
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
@@ -158,7 +159,7 @@ fn tidy_integrity(integrity: &mut Integrity, tau0_s: f64, gyros: &[GyroEvidence]
 }
 
 /// A measured interval without the rounding of its last digits: 0.001 and not 0.00100000000003.
-fn tidy(interval_s: f64) -> f64 {
+pub(super) fn tidy(interval_s: f64) -> f64 {
     format!("{interval_s:.9e}").parse().unwrap_or(interval_s)
 }
 
@@ -172,23 +173,32 @@ fn channels(procedure: &Procedure, source: &Source) -> Vec<Channel> {
         .collect()
 }
 
-fn evidence(
-    procedure: &Procedure,
-    channel: String,
-    several: bool,
+/// Lines of a channel, and its noise with the lines left out.
+pub(super) fn spectral(
+    channel: &str,
+    digest: &RateDigest,
     tau0_s: f64,
-    digest: crate::noise::digest::RateDigest,
-    octaves: Option<crate::noise::allan::DeviationSet>,
-) -> GyroEvidence {
-    let lines = find_lines(&digest.welch.spectrum, tau0_s, procedure.analysis.line_false_alarm).lines;
+    line_false_alarm: f64,
+) -> (Vec<SpectralLine>, Identification) {
+    let lines = find_lines(&digest.welch.spectrum, tau0_s, line_false_alarm).lines;
     // A line fills the main lobe of the window: two bins to each side.
     let masks: Vec<Mask> = lines
         .iter()
         .map(|l| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz })
         .collect();
-    let spectral = Evidence::new(&digest.blocks, Some(&digest.welch.spectrum), tau0_s, &masks);
-    let ranged = identify_in_range(&Whittle::default(), &channel, &spectral, 0.5 / tau0_s);
-    let identification = ranged.identification;
+    let evidence = Evidence::new(&digest.blocks, Some(&digest.welch.spectrum), tau0_s, &masks);
+    (lines, identify_in_range(&Whittle::default(), channel, &evidence, 0.5 / tau0_s).identification)
+}
+
+fn evidence(
+    procedure: &Procedure,
+    channel: String,
+    several: bool,
+    tau0_s: f64,
+    digest: RateDigest,
+    octaves: Option<crate::noise::allan::DeviationSet>,
+) -> GyroEvidence {
+    let (lines, identification) = spectral(&channel, &digest, tau0_s, procedure.analysis.line_false_alarm);
     let model = &identification.supported;
     let sigma_tau = sigma_tau::allan_points(&digest.deviations, model, tau0_s);
     let octaves =
