@@ -3,12 +3,13 @@
 use super::progress::Progress;
 use super::{GridArgs, RunArgs, exit, place};
 use crate::estimate::Verdict;
+use crate::ingest::Source;
 use crate::noise::tau_grid::TauGrid;
 use crate::output::StagedFolder;
 use crate::procedure::{effective, load, load_limits};
 use crate::record::{RunRecord, UnitUnderTest};
 use crate::report::{Renderer, render_html, render_markdown, svg};
-use crate::run::{Outcome, Request, execute, failed};
+use crate::run::{Outcome, Request, RunError, execute, failed};
 use crate::text::{Lang, lookup};
 use chrono::Utc;
 use std::path::{Path, PathBuf};
@@ -47,7 +48,11 @@ fn attempt(args: &RunArgs) -> Result<u8, String> {
         .clone()
         .unwrap_or_else(|| place::default_folder(&procedure.value.id, args.serial.as_deref(), now));
     let folder = StagedFolder::begin(&out).map_err(|e| format!("error: {e}\n"))?;
-    let source = crate::ingest::open(&args.recording).map_err(|e| format!("error: {e}\n"))?;
+    // A recording that cannot even be opened still gets its report: the verdict is an error, and says why.
+    let (source, refused) = match crate::ingest::open(&args.recording) {
+        Ok(source) => (source, None),
+        Err(error) => (Source::unopened(&args.recording), Some(error)),
+    };
     let family = limits.as_ref().and_then(|l| l.value.family.clone());
     let request = Request {
         kind: "run",
@@ -69,7 +74,10 @@ fn attempt(args: &RunArgs) -> Result<u8, String> {
         taus: grid,
         exact: args.grid.exact,
     };
-    finish(&request, folder, &renderer)
+    match refused {
+        None => finish(&request, folder, &renderer),
+        Some(error) => Err(report_failure(&request, &error.into(), folder, &renderer)?),
+    }
 }
 
 /// Runs a request, writes its folder and says what came out; also used by `analyze`.
@@ -79,12 +87,7 @@ pub fn finish(request: &Request<'_>, folder: StagedFolder, renderer: &Renderer) 
     progress.finish();
     let outcome = match outcome {
         Ok(outcome) => outcome,
-        Err(error) => {
-            let record = failed(request, &error);
-            let outcome = Outcome { record, figures: vec![], tables: vec![] };
-            let place = publish(&outcome, folder, renderer)?;
-            return Err(format!("error: {error}\nThe report says so: {}\n", place.display()));
-        }
+        Err(error) => return Err(report_failure(request, &error, folder, renderer)?),
     };
     let place = publish(&outcome, folder, renderer)?;
     place::print(&summary(&outcome.record, &place));
@@ -94,6 +97,18 @@ pub fn finish(request: &Request<'_>, folder: StagedFolder, renderer: &Renderer) 
         Verdict::Indeterminate => exit::INDETERMINATE,
         Verdict::Error => exit::ERROR,
     })
+}
+
+/// Writes the report of a run that could not be carried out, and gives the message for the terminal.
+fn report_failure(
+    request: &Request<'_>,
+    error: &RunError,
+    folder: StagedFolder,
+    renderer: &Renderer,
+) -> Result<String, String> {
+    let outcome = Outcome { record: failed(request, error), figures: vec![], tables: vec![] };
+    let place = publish(&outcome, folder, renderer)?;
+    Ok(format!("error: {error}\nThe report says so: {}\n", place.display()))
 }
 
 fn publish(outcome: &Outcome, folder: StagedFolder, renderer: &Renderer) -> Result<PathBuf, String> {

@@ -33,6 +33,12 @@ pub(super) fn open(
     })
 }
 
+/// Nothing at all: what stands in for a file that could not be opened.
+pub(super) fn nothing() -> Opened {
+    let table = Box::new(Memory { columns: Vec::new(), block_rows: 1 });
+    Opened { columns: Vec::new(), rows_estimate: Some(0), notes: Vec::new(), table }
+}
+
 impl Table for Memory {
     fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError> {
         let rows = self.columns.first().map_or(0, Vec::len);

@@ -278,6 +278,12 @@ impl Source {
         Ok(Source { path: PathBuf::from(name), format: "memory", packing: Packing::Plain, bytes: 0, opened })
     }
 
+    /// A recording without columns under the path of one that could not be opened, so that its report can name it.
+    pub fn unopened(path: &Path) -> Source {
+        let opened = memory::nothing();
+        Source { path: path.to_owned(), format: "unknown", packing: Packing::Plain, bytes: 0, opened }
+    }
+
     /// The file.
     pub fn path(&self) -> &Path {
         &self.path

@@ -3,8 +3,6 @@
 //! No normative text fixes the details; here: non-overlapping windows from the start of each unbroken stretch, the
 //! remainder dropped, mean removed only, n − 1 in the denominator.
 
-use super::data::NoiseType;
-
 /// Window means kept one by one; beyond, only their moments.
 pub const KEPT_MEANS: usize = 1_000_000;
 
@@ -127,28 +125,8 @@ impl WindowMeans {
     }
 }
 
-/// Variance of the mean over a time t, or what plays its part where there is none (flicker, random walk), for unit
-/// coefficients: N = 1, B = 1, K = 1 with t in h, Q = 1 with t in s. Terms add with the squares of their coefficients.
-///
-/// V is such that n windows of length τ have E\[s²\] = n/(n−1)·\[V(τ) − V(nτ)\].
-pub fn variance_of_average(noise: NoiseType, t: f64) -> f64 {
-    match noise {
-        NoiseType::Quantization => 2.0 / (t * t),
-        NoiseType::AngleRandomWalk => 1.0 / t,
-        NoiseType::Flicker => -t.ln() / std::f64::consts::PI,
-        NoiseType::RateRandomWalk => -t / 6.0,
-        NoiseType::RateRamp => -t * t / 12.0,
-    }
-}
-
-/// Expected square of the standard deviation of `n` adjacent window means: n/(n−1)·\[V(τ) − V(nτ)\].
-pub fn expected_window_variance(n: u64, window: f64, variance_of_average: impl Fn(f64) -> f64) -> f64 {
-    let count = n as f64;
-    count / (count - 1.0) * (variance_of_average(window) - variance_of_average(count * window))
-}
-
 /// Equivalent degrees of freedom of the variance of `n` adjacent window means: 2E\[s²\]²/Var\[s²\] for Gaussian noise
-/// with the given [`variance_of_average`] (the unit of t is the caller's; a deterministic ramp has no part in it).
+/// with the given variance of a mean over t, as [`super::model::NoiseModel::mean_variance`] (the unit of t is the caller's; a deterministic ramp has no part in it).
 ///
 /// From traces of the centred covariance matrix, which is Toeplitz: time and memory linear in n. `None` below two
 /// windows, or when V is no variance.
@@ -194,11 +172,12 @@ pub fn edf_of_window_std(n: u64, window: f64, variance_of_average: impl Fn(f64) 
 
 #[cfg(test)]
 mod tests {
+    use super::super::data::NoiseType::{self, AngleRandomWalk, Flicker, RateRandomWalk};
+    use super::super::model::unit_mean_variance;
     use super::*;
-    use NoiseType::{AngleRandomWalk, Flicker, Quantization, RateRandomWalk};
 
     fn edf(n: u64, noise: NoiseType) -> f64 {
-        edf_of_window_std(n, 1.0, |t| variance_of_average(noise, t)).unwrap()
+        edf_of_window_std(n, 1.0, |t| unit_mean_variance(noise, t)).unwrap()
     }
 
     #[test]
@@ -215,19 +194,6 @@ mod tests {
         assert!(edf(1_000_000, Flicker) > edf(1000, Flicker));
         assert!(edf_of_window_std(1, 1.0, |t| 1.0 / t).is_none());
         assert!(edf_of_window_std(10, 1.0, |_| f64::NAN).is_none());
-    }
-
-    #[test]
-    fn expectations_follow_the_bias_functions() {
-        // Ratios to the Allan variance at the same time: Barnes' B1.
-        let ratio = |n: u64, noise| {
-            let v = |t| variance_of_average(noise, t);
-            expected_window_variance(n, 1.0, v) / (2.0 * (v(1.0) - v(2.0)))
-        };
-        assert!((ratio(100, Flicker) - 3.355_483).abs() < 1e-6);
-        assert!((ratio(100, RateRandomWalk) - 50.0).abs() < 1e-9);
-        assert!((ratio(36, AngleRandomWalk) - 1.0).abs() < 1e-12);
-        assert!((ratio(9, Quantization) - 20.0 / 27.0).abs() < 1e-12);
     }
 
     #[test]

@@ -58,7 +58,7 @@ pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
             sha256: crate::ingest::compressed::digest(request.source.path())
                 .map(|d| d.sha256)
                 .unwrap_or_default(),
-            bytes: request.source.bytes(),
+            bytes: std::fs::metadata(request.source.path()).map_or(0, |m| m.len()),
             samples: 0,
             sample_interval_s: 0.0,
             start: None,
