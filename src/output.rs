@@ -4,8 +4,9 @@
 //! run that is killed, or a disk that fills up, leaves the earlier result or none, never half of a new one.
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 /// Why an output folder could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -21,14 +22,31 @@ pub enum OutputError {
         source: std::io::Error,
     },
     /// Something that is no earlier result stands in the way.
-    #[error("{} exists and is no result folder of this program; choose another --out or remove it", .0.display())]
-    InTheWay(PathBuf),
+    #[error("{} {why}; choose another --out or remove it", path.display())]
+    InTheWay {
+        /// Where.
+        path: PathBuf,
+        /// What is the matter with it.
+        why: String,
+    },
+    /// The target is `..`, the root or the like.
+    #[error("{} is not the name of a folder to be made; give --out such a name", .0.display())]
+    NoName(PathBuf),
+    /// A file that no result folder holds.
+    #[error("`{0}` is no file of a result folder")]
+    Unforeseen(String),
 }
 
 fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> OutputError + use<> {
     let path = path.to_owned();
     move |source| OutputError::Io { action, path, source }
 }
+
+/// What killed runs leave is removed after this time: no run lasts as long.
+const ABANDONED_AFTER: Duration = Duration::from_secs(24 * 3600);
+
+/// Attempts to put a folder in place while other runs put theirs there.
+const ATTEMPTS: usize = 100;
 
 /// A folder in the making. Dropped without [`StagedFolder::publish`], it leaves nothing behind.
 #[derive(Debug)]
@@ -39,35 +57,40 @@ pub struct StagedFolder {
 
 impl StagedFolder {
     /// Begins a folder that will appear at `target`. An earlier result there is replaced on publication; anything
-    /// else there is refused now, before any work is done.
+    /// else there is refused now, before any work is done. What killed runs left beside `target` more than a day ago
+    /// is removed.
     ///
     /// # Errors
     /// [`OutputError`] when the place cannot be written or is taken.
     pub fn begin(target: &Path) -> Result<StagedFolder, OutputError> {
-        if target.symlink_metadata().is_ok() && !replaceable(target) {
-            return Err(OutputError::InTheWay(target.to_owned()));
-        }
-        let parent = match target.parent() {
-            Some(p) if !p.as_os_str().is_empty() => p.to_owned(),
-            _ => PathBuf::from("."),
+        let Some(name) = target.file_name() else {
+            return Err(OutputError::NoName(target.to_owned()));
         };
-        fs::create_dir_all(&parent).map_err(io("create the folder", &parent))?;
-        let name = target.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        let prefix = format!(".{name}.partial-");
+        if target.symlink_metadata().is_ok() {
+            replaceable(target)?;
+        }
+        let parent = parent(target);
+        fs::create_dir_all(parent).map_err(io("create the folder", parent))?;
+        let prefix = format!(".{}.partial-", name.to_string_lossy());
+        remove_abandoned(parent, &prefix);
         let mut builder = tempfile::Builder::new();
         builder.prefix(&prefix);
         // A result is read by colleagues: the usual rights under the user's umask, not those of a private scratch.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let staging = builder.tempdir_in(&parent).map_err(io("write into", &parent))?;
+        let staging = builder.tempdir_in(parent).map_err(io("write into", parent))?;
         Ok(StagedFolder { target: target.to_owned(), staging })
     }
 
     /// Writes one file into the folder; `name` may hold sub-folders.
     ///
     /// # Errors
-    /// [`OutputError::Io`] when it cannot be written.
+    /// [`OutputError::Io`] when it cannot be written, [`OutputError::Unforeseen`] for a name that a later run would
+    /// not know as its own.
     pub fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
+        if !is_own(name.split('/').next().unwrap_or_default()) {
+            return Err(OutputError::Unforeseen(name.to_owned()));
+        }
         let path = self.staging.path().join(name);
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(io("create the folder", parent))?;
@@ -80,8 +103,12 @@ impl StagedFolder {
     /// Puts the folder in its place in one step and gives its path back.
     ///
     /// # Errors
-    /// [`OutputError::Io`] when the place cannot be written.
+    /// [`OutputError::Io`] when the place cannot be written, [`OutputError::InTheWay`] when it was taken meanwhile.
     pub fn publish(self) -> Result<PathBuf, OutputError> {
+        let figures = self.staging.path().join("figures");
+        if figures.is_dir() {
+            sync_folder(&figures)?;
+        }
         sync_folder(self.staging.path())?;
         let staged = self.staging.keep();
         let outcome = put_in_place(&staged, &self.target);
@@ -90,53 +117,122 @@ impl StagedFolder {
             let _ = fs::remove_dir_all(&staged);
         }
         outcome?;
-        if let Some(parent) = self.target.parent().filter(|p| !p.as_os_str().is_empty()) {
-            sync_folder(parent)?;
-        }
+        sync_folder(parent(&self.target))?;
         Ok(self.target)
     }
 }
 
-/// An empty folder, or one that holds an earlier result.
-fn replaceable(target: &Path) -> bool {
-    match fs::read_dir(target) {
-        Ok(mut entries) => entries.next().is_none() || target.join("result.json").is_file(),
-        Err(_) => false,
+/// The folder that holds a path.
+fn parent(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Names that stand in a result folder.
+fn is_own(name: &str) -> bool {
+    matches!(name, "result.json" | "report.html" | "report.md" | "figures")
+        || (name.starts_with("sigma_tau") && name.ends_with(".csv"))
+}
+
+/// The first entry of a folder that no result folder holds.
+fn foreign(folder: &Path) -> std::io::Result<Option<String>> {
+    for entry in fs::read_dir(folder)? {
+        let name = entry?.file_name().to_string_lossy().into_owned();
+        if !is_own(&name) {
+            return Ok(Some(name));
+        }
+    }
+    Ok(None)
+}
+
+/// Refuses whatever is neither an empty folder nor an earlier result and nothing else.
+fn replaceable(target: &Path) -> Result<(), OutputError> {
+    let in_the_way = |why: String| Err(OutputError::InTheWay { path: target.to_owned(), why });
+    let kind = target.symlink_metadata().map_err(io("look at", target))?.file_type();
+    if !kind.is_dir() {
+        let what = if kind.is_symlink() { "a link" } else { "a file" };
+        return in_the_way(format!("exists and is {what}, not a result folder"));
+    }
+    if fs::read_dir(target).map_err(io("look into", target))?.next().is_none() {
+        return Ok(());
+    }
+    if !is_result(&target.join("result.json")) {
+        return in_the_way("exists and is no result folder of this program".to_owned());
+    }
+    match foreign(target).map_err(io("look into", target))? {
+        Some(name) => in_the_way(format!("holds `{name}`, which this program did not write")),
+        None => Ok(()),
+    }
+}
+
+/// True when a file begins as a `result.json` does.
+fn is_result(path: &Path) -> bool {
+    let mut head = String::new();
+    let read = File::open(path).and_then(|f| f.take(64).read_to_string(&mut head));
+    read.is_ok() && head.split_whitespace().collect::<String>().starts_with("{\"format\":\"result/")
+}
+
+/// Removes what killed runs left beside a target long ago. Best effort: it is clutter and harms nobody.
+fn remove_abandoned(parent: &Path, prefix: &str) {
+    let old = |path: &Path| {
+        let modified = path.symlink_metadata().and_then(|m| m.modified()).ok();
+        modified
+            .and_then(|m| SystemTime::now().duration_since(m).ok())
+            .is_some_and(|age| age > ABANDONED_AFTER)
+    };
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let ours = name
+            .strip_prefix(prefix)
+            .is_some_and(|rest| rest.len() == 6 && rest.chars().all(|c| c.is_ascii_alphanumeric()));
+        let path = entry.path();
+        let folder = entry.file_type().is_ok_and(|t| t.is_dir());
+        if ours && folder && old(&path) && matches!(foreign(&path), Ok(None)) {
+            let _ = fs::remove_dir_all(&path);
+        }
     }
 }
 
 fn sync_folder(path: &Path) -> Result<(), OutputError> {
-    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
     File::open(path).and_then(|f| f.sync_all()).map_err(io("sync", path))
 }
 
 #[cfg(target_os = "linux")]
 fn put_in_place(staged: &Path, target: &Path) -> Result<(), OutputError> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
-    if target.symlink_metadata().is_err() {
-        return fs::rename(staged, target).map_err(io("put in place", target));
-    }
-    // An exchange is one step: at no moment is there neither the old folder nor the new one.
-    match renameat_with(CWD, staged, CWD, target, RenameFlags::EXCHANGE) {
-        Ok(()) => {
-            fs::remove_dir_all(staged).map_err(io("remove the replaced folder", staged))?;
-            Ok(())
+    use rustix::io::Errno;
+    let rename = |flags| renameat_with(CWD, staged, CWD, target, flags);
+    for _ in 0..ATTEMPTS {
+        match rename(RenameFlags::NOREPLACE) {
+            Ok(()) => return Ok(()),
+            Err(Errno::EXIST) => {}
+            Err(_) => break,
         }
-        Err(_) => replace_in_two_steps(staged, target),
+        replaceable(target)?;
+        // An exchange is one step: at no moment is there neither the old folder nor the new one.
+        match rename(RenameFlags::EXCHANGE) {
+            Ok(()) => return fs::remove_dir_all(staged).map_err(io("remove the replaced folder", staged)),
+            // Another run has just taken the old folder away.
+            Err(Errno::NOENT) => {}
+            Err(_) => break,
+        }
     }
+    replace_in_two_steps(staged, target)
 }
 
 #[cfg(not(target_os = "linux"))]
 fn put_in_place(staged: &Path, target: &Path) -> Result<(), OutputError> {
-    if target.symlink_metadata().is_err() {
-        return fs::rename(staged, target).map_err(io("put in place", target));
-    }
     replace_in_two_steps(staged, target)
 }
 
 /// For file systems without an exchange: the old folder steps aside first.
 fn replace_in_two_steps(staged: &Path, target: &Path) -> Result<(), OutputError> {
-    let aside = staged.with_extension("replaced");
+    if target.symlink_metadata().is_err() {
+        return fs::rename(staged, target).map_err(io("put in place", target));
+    }
+    replaceable(target)?;
+    let mut aside = staged.as_os_str().to_owned();
+    aside.push(".replaced");
+    let aside = PathBuf::from(aside);
     fs::rename(target, &aside).map_err(io("set aside", target))?;
     if let Err(e) = fs::rename(staged, target) {
         let _ = fs::rename(&aside, target);
@@ -149,33 +245,116 @@ fn replace_in_two_steps(staged: &Path, target: &Path) -> Result<(), OutputError>
 mod tests {
     use super::*;
 
+    const FIRST: &str = "{\n  \"format\": \"result/1\",\n  \"round\": 1\n}";
+    const SECOND: &str = "{\"format\":\"result/1\",\"round\":2}";
+
+    fn staged(target: &Path, result: &str) -> StagedFolder {
+        let staged = StagedFolder::begin(target).unwrap();
+        staged.write("result.json", result.as_bytes()).unwrap();
+        staged.write("figures/a.svg", b"<svg/>").unwrap();
+        staged
+    }
+
+    fn entries(folder: &Path) -> Vec<String> {
+        let names = fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> =
+            names.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
     #[test]
     fn a_folder_appears_whole_and_replaces_an_earlier_result() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("result");
-        for round in ["first", "second"] {
-            let staged = StagedFolder::begin(&target).unwrap();
-            staged.write("result.json", round.as_bytes()).unwrap();
-            staged.write("figures/a.svg", b"<svg/>").unwrap();
-            staged.publish().unwrap();
+        for round in [FIRST, SECOND] {
+            staged(&target, round).publish().unwrap();
             assert_eq!(fs::read_to_string(target.join("result.json")).unwrap(), round);
         }
-        let left: Vec<_> = fs::read_dir(dir.path()).unwrap().collect();
-        assert_eq!(left.len(), 1, "nothing but the result stays: {left:?}");
+        assert_eq!(entries(dir.path()), ["result"], "nothing but the result stays");
+        fs::create_dir(dir.path().join("empty")).unwrap();
+        staged(&dir.path().join("empty"), FIRST).publish().unwrap();
+        assert_eq!(entries(&dir.path().join("empty")), ["figures", "result.json"]);
+    }
+
+    #[test]
+    fn without_an_exchange_the_old_folder_steps_aside() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("result");
+        for round in [FIRST, SECOND] {
+            let path = staged(&target, round).staging.keep();
+            replace_in_two_steps(&path, &target).unwrap();
+            assert_eq!(fs::read_to_string(target.join("result.json")).unwrap(), round);
+            assert_eq!(entries(dir.path()), ["result"]);
+        }
     }
 
     #[test]
     fn abandoned_work_leaves_nothing_and_foreign_folders_are_safe() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("result");
-        let staged = StagedFolder::begin(&target).unwrap();
-        staged.write("result.json", b"half").unwrap();
-        drop(staged);
-        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+        drop(staged(&target, FIRST));
+        assert!(entries(dir.path()).is_empty());
 
         fs::create_dir(&target).unwrap();
+        let refused = || matches!(StagedFolder::begin(&target), Err(OutputError::InTheWay { .. }));
         fs::write(target.join("thesis.txt"), "do not touch").unwrap();
-        assert!(matches!(StagedFolder::begin(&target), Err(OutputError::InTheWay(_))));
-        assert!(target.join("thesis.txt").is_file());
+        assert!(refused());
+        fs::write(target.join("result.json"), "{\"format\": \"another program\"}").unwrap();
+        assert!(refused());
+        fs::write(target.join("result.json"), FIRST).unwrap();
+        assert!(refused(), "a result with something of the user's in it");
+        fs::remove_file(target.join("thesis.txt")).unwrap();
+        assert!(!refused());
+    }
+
+    #[test]
+    fn what_comes_while_the_work_goes_on_is_safe() {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("result");
+        let (one, two, three) = (staged(&target, FIRST), staged(&target, SECOND), staged(&target, FIRST));
+        one.publish().unwrap();
+        two.publish().unwrap();
+        assert_eq!(fs::read_to_string(target.join("result.json")).unwrap(), SECOND);
+        fs::write(target.join("scan.pdf"), "signed").unwrap();
+        let refused = three.publish().unwrap_err().to_string();
+        assert!(refused.contains("holds `scan.pdf`"), "{refused}");
+        assert_eq!(fs::read_to_string(target.join("scan.pdf")).unwrap(), "signed");
+        assert_eq!(entries(dir.path()), ["result"]);
+    }
+
+    #[test]
+    fn only_what_is_old_and_ours_is_cleared_away() {
+        let dir = tempfile::tempdir().unwrap();
+        let age = |name: &str, hours: u64, file: &str| {
+            let folder = dir.path().join(name);
+            fs::create_dir(&folder).unwrap();
+            fs::write(folder.join(file), "half").unwrap();
+            let then = SystemTime::now() - Duration::from_secs(hours * 3600);
+            File::open(&folder).unwrap().set_modified(then).unwrap();
+        };
+        age(".r.partial-oldOLD", 25, "report.md");
+        age(".r.partial-newNEW", 23, "report.md");
+        age(".r.partial-notOWN", 25, "thesis.txt");
+        age(".r.partial-longer-name", 25, "report.md");
+        age(".other.partial-oldOLD", 25, "report.md");
+        let begun = StagedFolder::begin(&dir.path().join("r")).unwrap();
+        let own = begun.staging.path().file_name().unwrap().to_string_lossy().into_owned();
+        let left: Vec<String> = entries(dir.path()).into_iter().filter(|n| *n != own).collect();
+        assert_eq!(
+            left,
+            [".other.partial-oldOLD", ".r.partial-longer-name", ".r.partial-newNEW", ".r.partial-notOWN"]
+        );
+    }
+
+    #[test]
+    fn names_that_are_no_folder_to_be_made_are_refused() {
+        for odd in ["..", "/", "", "a/.."] {
+            let refused = StagedFolder::begin(Path::new(odd));
+            assert!(matches!(refused, Err(OutputError::NoName(_))), "{odd}");
+        }
+        let dir = tempfile::tempdir().unwrap();
+        let begun = StagedFolder::begin(&dir.path().join("r")).unwrap();
+        assert!(matches!(begun.write("notes.txt", b""), Err(OutputError::Unforeseen(_))));
     }
 }

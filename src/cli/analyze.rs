@@ -24,6 +24,9 @@ pub fn main(args: &AnalyzeArgs) -> u8 {
 
 fn attempt(args: &AnalyzeArgs) -> Result<u8, String> {
     let taus = run::grid(&args.grid)?;
+    if !(args.warm_up >= 0.0 && args.warm_up.is_finite()) {
+        return Err(format!("error: --warm-up: {} is no time; give seconds, 0 or more\n", args.warm_up));
+    }
     let renderer = run::renderer(args.templates.as_deref())?;
     let now = Utc::now();
     let stem = args.recording.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -99,12 +102,20 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
                 ));
             }
         };
+        if wanted_twice(&channels, source, index) {
+            return Err(format!(
+                "error: {}: column `{}` is asked for twice; name each once\n",
+                args.recording.display(),
+                found.name
+            ));
+        }
         let role = if Unit::parse("deg").is_ok_and(|angle| angle.same_dimension(&unit)) {
             Role::AngleIncrement
         } else {
             Role::Rate
         };
-        channels.push(Channel { id: id(&name, &found.name), column, role, unit, scale: 1.0 });
+        let id = unused(id(&name, &found.name), &channels);
+        channels.push(Channel { id, column, role, unit, scale: 1.0 });
     }
     if !channels.iter().any(|c| c.role.is_gyro()) {
         let names: Vec<&str> = source.columns().iter().map(|c| c.name.as_str()).collect();
@@ -142,6 +153,20 @@ fn time(source: &Source, name: &str) -> Result<Channel, String> {
 /// A number is a position, anything else a name.
 fn reference(name: &str) -> ColumnRef {
     name.parse().map_or_else(|_| ColumnRef::Name(name.to_owned()), ColumnRef::Position)
+}
+
+/// True when a channel already reads a column.
+fn wanted_twice(channels: &[Channel], source: &Source, index: usize) -> bool {
+    channels.iter().any(|c| source.resolve(&c.column).is_ok_and(|i| i == index))
+}
+
+/// An id that no channel has: two columns may differ only in signs that file names cannot hold.
+fn unused(id: String, channels: &[Channel]) -> String {
+    let taken = |id: &str| channels.iter().any(|c| c.id == id);
+    if !taken(&id) {
+        return id;
+    }
+    (2..).map(|n| format!("{id}_{n}")).find(|candidate| !taken(candidate)).unwrap_or(id)
 }
 
 /// A channel id that is safe in file names.

@@ -13,6 +13,9 @@ use toml::de::{DeTable, DeValue};
 /// Largest file that is read, bytes. A procedure is a few kilobytes.
 const LARGEST_FILE: usize = 1 << 20;
 
+/// At most this many syntax errors are shown: a file that is no TOML at all has one in every line.
+const SYNTAX_ERRORS: usize = 5;
+
 /// Errors after which the reader stops looking for more.
 const ENOUGH: usize = 200;
 
@@ -29,7 +32,7 @@ pub(super) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Sec
     }
     let (table, errors) = DeTable::parse_recoverable(&source.text);
     if !errors.is_empty() {
-        for error in errors.iter().take(ENOUGH) {
+        for error in errors.iter().take(SYNTAX_ERRORS) {
             let span = error.span().unwrap_or(0..0);
             let problem = source.error(&span, format!("this is not TOML: {}", plain(error.message())));
             reader.problems.list.push(with_syntax_help(problem));

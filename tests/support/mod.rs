@@ -1,0 +1,142 @@
+//! Runs the program as a user does and reads what it leaves.
+#![allow(dead_code, reason = "each test file uses its own part")]
+
+pub mod schema;
+pub mod synthetic;
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// No run of a test may take longer.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// What a run of the program said.
+#[derive(Debug)]
+pub struct Said {
+    /// Exit code; -1 when it was killed.
+    pub code: i32,
+    /// Standard output.
+    pub out: String,
+    /// Standard error.
+    pub err: String,
+}
+
+/// Path of the program.
+pub fn program() -> &'static str {
+    env!("CARGO_BIN_EXE_sagnac")
+}
+
+/// Runs the program in a folder.
+pub fn sagnac(folder: &Path, args: &[&str]) -> Said {
+    sagnac_with(folder, args, &[])
+}
+
+/// Runs the program in a folder with variables of the environment.
+pub fn sagnac_with(folder: &Path, args: &[&str], environment: &[(&str, &str)]) -> Said {
+    let output = assert_cmd::Command::new(program())
+        .current_dir(folder)
+        .args(args)
+        .envs(environment.iter().copied())
+        .timeout(PATIENCE)
+        .output()
+        .unwrap();
+    let said = Said {
+        code: output.status.code().unwrap_or(-1),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
+    };
+    assert!(!said.err.contains("panicked"), "{args:?}: {}", said.err);
+    assert!((0..=3).contains(&said.code), "{args:?}: {said:?}");
+    said
+}
+
+/// The root of the repository.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A file of the repository, as text for the command line.
+pub fn shipped(path: &str) -> String {
+    root().join(path).to_string_lossy().into_owned()
+}
+
+/// The static procedure.
+pub fn procedure() -> String {
+    shipped("procedures/static-bias.toml")
+}
+
+/// The limits of the samples.
+pub fn limits() -> String {
+    shipped("procedures/limits/sample-unit.toml")
+}
+
+/// A sample by its short name.
+pub fn sample(name: &str) -> String {
+    shipped(&format!("samples/unit-{name}.csv"))
+}
+
+/// The static procedure with some of its text replaced; every replacement must find its text.
+pub fn altered(folder: &Path, name: &str, source: &str, changes: &[(&str, &str)]) -> String {
+    let mut text = std::fs::read_to_string(source).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{source} holds no `{from}`");
+        text = text.replace(from, to);
+    }
+    let path = folder.join(name);
+    std::fs::write(&path, text).unwrap();
+    path.to_string_lossy().into_owned()
+}
+
+/// `result.json` of a result folder.
+pub fn result(folder: &Path) -> Value {
+    let bytes = std::fs::read(folder.join("result.json")).unwrap();
+    serde_json::from_slice(&bytes).unwrap()
+}
+
+/// The row of a measurand.
+pub fn measurand<'a>(result: &'a Value, id: &str) -> &'a Value {
+    let rows = result["measurands"].as_array().unwrap();
+    rows.iter().find(|m| m["id"] == id).unwrap_or_else(|| panic!("no {id}"))
+}
+
+/// Every file below a folder, by its path in it, sorted.
+pub fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(next) = open.pop() {
+        for entry in std::fs::read_dir(&next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let bytes = std::fs::read(&path).unwrap();
+                found.push((path.strip_prefix(folder).unwrap().to_owned(), bytes));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Names in a folder, sorted.
+pub fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// No value that is no number reaches a result: neither as a JSON token nor as text in a report.
+pub fn assert_no_nan(folder: &Path) {
+    for (path, bytes) in files(folder) {
+        let text = String::from_utf8(bytes).unwrap();
+        let words = text.split(|c: char| !c.is_ascii_alphabetic());
+        for word in words {
+            let bad = ["NaN", "nan", "inf", "Infinity", "infinity", "undefined"].contains(&word);
+            assert!(!bad, "`{word}` in {}", path.display());
+        }
+    }
+}
