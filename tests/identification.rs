@@ -114,15 +114,16 @@ fn mixes() -> Vec<(&'static str, NoiseModel)> {
     ]
 }
 
-/// `cargo test --release --test identification -- --ignored --nocapture`
+/// `SEED=1000 RECORDS=400 cargo test --release --test identification long_study -- --ignored --nocapture`
 #[test]
 #[ignore = "long study: every mix at two lengths"]
 fn long_study() {
     let records = std::env::var("RECORDS").ok().and_then(|r| r.parse().ok()).unwrap_or(400);
+    let seed: u64 = std::env::var("SEED").ok().and_then(|r| r.parse().ok()).unwrap_or(0);
     let mut worst: f64 = 0.0;
     for (hours, tau0_s) in [(10.0, 1.0), (100.0, 10.0)] {
         for (i, (name, model)) in mixes().into_iter().enumerate() {
-            let tally = study(&model, hours, tau0_s, records, i as u64 + 1);
+            let tally = study(&model, hours, tau0_s, records, seed + i as u64 + 1);
             tally.print(name, hours);
             worst = worst.max(share(tally.false_claims, tally.records));
         }
