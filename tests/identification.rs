@@ -78,9 +78,10 @@ impl Tally {
             if self.bound[i] > 0.0 && self.bound[i] < 1e3 {
                 let rms = (self.square_error[i] / self.claimed[i].max(1) as f64).sqrt();
                 print!(
-                    " {label}: found {:.2} cov {:.3} rms/crb {:.2} (crb {:.3})",
+                    " {label}: found {:.2} cov {:.3} all {:.3} rms/crb {:.2} (crb {:.3})",
                     share(self.claimed[i], self.records),
                     share(self.covered[i], self.claimed[i]),
+                    share(self.covered[i] + self.limits_hold[i], self.records),
                     rms / self.bound[i],
                     self.bound[i]
                 );
