@@ -236,18 +236,21 @@ fn estimate(
         {
             spread = wider(profile.value(), &spread, &other.spread());
         }
+        // Flicker and random walk share the lowest frequencies: a rival too weak to be claimed may hold a part of
+        // what this term was given.
+        if let Some(rival) = rival_of(term)
+            && !structure[rival]
+            && let Some(other) = Profile::new(likelihood, &toggled(&structure, rival, true), term)
+        {
+            spread = wider(profile.value(), &spread, &other.spread());
+        }
         return Estimate::measured(id, channel, profile.value(), unit, spread, METHOD);
     }
     // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
-    let rivals: &[usize] = match term {
-        FLICKER => &[WALK],
-        WALK => &[FLICKER],
-        _ => &[],
-    };
     let mut nuisance = [true; 5];
     nuisance[RAMP] = claimed[RAMP];
     let limit = std::iter::once(nuisance)
-        .chain(rivals.iter().filter(|r| !claimed[**r]).map(|r| toggled(&nuisance, *r, false)))
+        .chain(rival_of(term).filter(|r| !claimed[*r]).map(|r| toggled(&nuisance, r, false)))
         .filter_map(|structure| Profile::new(likelihood, &structure, term)?.upper_limit(LIMIT_RISE))
         .max_by(f64::total_cmp);
     let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT_COVERAGE });
@@ -256,6 +259,15 @@ fn estimate(
         return estimate.note(Note::new("note.low_frequency_ambiguous"));
     }
     estimate
+}
+
+/// The term that can stand for this one at the lowest frequencies.
+fn rival_of(term: usize) -> Option<usize> {
+    match term {
+        FLICKER => Some(WALK),
+        WALK => Some(FLICKER),
+        _ => None,
+    }
 }
 
 /// All structures fitted.
@@ -300,7 +312,9 @@ impl Search {
         let plain = likelihood.maximise(&[true; 5], Some((RAMP, restricted.ramp)), Some(&restricted))?;
         let ramp_ratio = (full.deviance - plain.deviance).max(0.0);
         let with_ramp = usize::from(ramp_ratio > ramp_threshold);
-        let ratios = [ratio(0, 0), ratio(1, with_ramp), ratio(2, 1), ratio(3, 0), ramp_ratio];
+        // Random walk must show with a ramp allowed for, and also in the description that the record is given.
+        let walk = ratio(2, 1).min(ratio(2, with_ramp));
+        let ratios = [ratio(0, 0), ratio(1, with_ramp), walk, ratio(3, 0), ramp_ratio];
         Some(Search { points, full: if with_ramp == 1 { restricted } else { full }, ratios })
     }
 
