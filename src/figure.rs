@@ -1,5 +1,7 @@
 //! Plots as data: axes, layers, bands. What is drawn is decided here; how it is drawn, in `report::svg`.
 
+use crate::text::Note;
+
 /// How an axis maps values to paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
@@ -121,7 +123,7 @@ pub struct Panel {
     pub layers: Vec<Layer>,
 }
 
-/// A figure: one or more panels, one above the other, sharing the abscissa.
+/// A figure: one or more panels, one above the other. Neighbours with the same abscissa share its range and words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// Id, for example `sigma_tau`; also the stem of its file. A channel is appended when there are several.
@@ -132,4 +134,6 @@ pub struct Figure {
     pub channel: String,
     /// Panels from top to bottom.
     pub panels: Vec<Panel>,
+    /// Numbers that belong under the figure, said behind its caption.
+    pub remarks: Vec<Note>,
 }

@@ -205,8 +205,11 @@ pub struct ConditionRecord {
     pub status: ConditionStatus,
     /// What was observed, by name, in the unit of `required`.
     pub observed: serde_json::Map<String, serde_json::Value>,
-    /// What was required, as text with unit.
+    /// What was required, as text with unit, English.
     pub required: String,
+    /// The same by name.
+    #[schemars(with = "Option<NoteSchema>")]
+    pub requirement: Option<Note>,
     /// The sentence that explains the state, English.
     pub note: String,
     /// The same sentence by name.

@@ -58,12 +58,16 @@ pub fn lookup(lang: Lang, key: &str) -> Option<&'static str> {
 pub enum Arg {
     /// A number; shown with up to four significant digits.
     Number(f64),
+    /// A number as it was stated, such as a requirement; shown with every digit.
+    Stated(f64),
     /// A count; shown in full.
     Count(u64),
     /// A text, shown as it is.
     Text(String),
     /// A key of the locale tables, shown as what stands there; as its last part where nothing does.
     Key(String),
+    /// A sentence within the sentence.
+    Note(Box<Note>),
 }
 
 impl Arg {
@@ -92,6 +96,11 @@ impl From<u64> for Arg {
 impl From<usize> for Arg {
     fn from(v: usize) -> Self {
         Arg::Count(v as u64)
+    }
+}
+impl From<Note> for Arg {
+    fn from(v: Note) -> Self {
+        Arg::Note(Box::new(v))
     }
 }
 impl From<&str> for Arg {
@@ -132,9 +141,11 @@ impl Note {
         fill(lookup(lang, self.id).unwrap_or(self.id), |name| {
             self.args.get(name).map(|arg| match arg {
                 Arg::Number(v) => trimmed(significant(*v, 4)),
+                Arg::Stated(v) => trimmed(significant(*v, 12)),
                 Arg::Count(v) => v.to_string(),
                 Arg::Text(t) => t.clone(),
                 Arg::Key(k) => Arg::words(k, lang),
+                Arg::Note(n) => n.say(lang),
             })
         })
     }

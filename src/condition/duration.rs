@@ -2,7 +2,7 @@
 
 use super::{Condition, Facts, record};
 use crate::record::{ConditionRecord, ConditionStatus};
-use crate::text::Note;
+use crate::text::{Arg, Note};
 
 pub(super) struct Duration;
 
@@ -21,6 +21,7 @@ impl Condition for Duration {
             .with("required_h", required_s / 3600.0)
             .with("warm_up_min", facts.procedure.conditions.warm_up_s / 60.0);
         let observed = [("usable_h", facts.usable_s / 3600.0)];
-        vec![record("duration", status, &observed, format!("at least {} h", required_s / 3600.0), note)]
+        let required = Note::new("note.required.duration").with("hours", Arg::Stated(required_s / 3600.0));
+        vec![record("duration", status, &observed, Some(required), note)]
     }
 }

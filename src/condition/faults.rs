@@ -3,7 +3,7 @@
 use super::{Condition, Facts, record};
 use crate::procedure::model::Allowance;
 use crate::record::{ConditionRecord, ConditionStatus};
-use crate::text::Note;
+use crate::text::{Arg, Note};
 
 pub(super) struct Faults;
 
@@ -32,7 +32,7 @@ impl Condition for Faults {
                         id,
                         ConditionStatus::Remark,
                         &[("count", count as f64), ("share", share)],
-                        "",
+                        None,
                         note,
                     ));
                 }
@@ -46,11 +46,13 @@ impl Condition for Faults {
                 (ConditionStatus::Ok, "note.condition.fault_none")
             };
             let required = match allowance {
-                Allowance::Count(most) => format!("at most {most}"),
-                Allowance::Share(most) => format!("at most {} %", most * 100.0),
+                Allowance::Count(most) => Note::new("note.required.at_most_count").with("count", most),
+                Allowance::Share(most) => {
+                    Note::new("note.required.at_most_share").with("percent", Arg::Stated(most * 100.0))
+                }
             };
             let observed = [("count", count as f64), ("share", share)];
-            records.push(record(id, status, &observed, required, note(key, id, count, share)));
+            records.push(record(id, status, &observed, Some(required), note(key, id, count, share)));
         }
         if let Some(most_s) = budget.longest_gap_s {
             let (status, key) = if facts.longest_gap_s <= most_s {
@@ -60,7 +62,8 @@ impl Condition for Faults {
             };
             let note = Note::new(key).with("seconds", facts.longest_gap_s);
             let observed = [("seconds", facts.longest_gap_s)];
-            records.push(record("longest_gap", status, &observed, format!("at most {most_s} s"), note));
+            let required = Note::new("note.required.at_most_seconds").with("seconds", Arg::Stated(most_s));
+            records.push(record("longest_gap", status, &observed, Some(required), note));
         }
         if let (Some(most_s), Some(jitter_s)) = (budget.timestamp_jitter_s, found.timestamp_jitter_s) {
             let (status, key) = if jitter_s <= most_s {
@@ -69,13 +72,13 @@ impl Condition for Faults {
                 (ConditionStatus::Invalid, "note.condition.jitter_over")
             };
             let note = Note::new(key).with("seconds", jitter_s);
-            let required = format!("at most {most_s} s rms");
-            records.push(record("timestamp_jitter", status, &[("seconds", jitter_s)], required, note));
+            let required = Note::new("note.required.at_most_rms").with("seconds", Arg::Stated(most_s));
+            records.push(record("timestamp_jitter", status, &[("seconds", jitter_s)], Some(required), note));
         }
         records
     }
 }
 
 fn note(key: &'static str, id: &str, count: u64, share: f64) -> Note {
-    Note::new(key).with("kind", id.replace('_', " ")).with("count", count).with("percent", share * 100.0)
+    Note::new(key).with("kind", Arg::key("condition", id)).with("count", count).with("percent", share * 100.0)
 }

@@ -3,7 +3,7 @@
 use super::temperature_track::TemperatureFacts;
 use super::{Facts, record};
 use crate::record::{ConditionRecord, ConditionStatus};
-use crate::text::Note;
+use crate::text::{Arg, Note};
 
 /// What must be held.
 pub(super) struct Held<'a> {
@@ -21,11 +21,15 @@ pub(super) struct Held<'a> {
 /// Shown when every smoothed value lies inside the tolerance less k·u; broken when one lies outside the tolerance
 /// plus k·u; between, it is not shown, and that is not enough.
 pub(super) fn judge(held: &Held<'_>, facts: &Facts<'_>) -> ConditionRecord {
-    let required = format!("{} ± {} {}", held.nominal, held.tolerance, held.unit);
+    let unit = if held.unit == "degC" { "°C" } else { held.unit };
+    let required = Note::new("note.required.held")
+        .with("nominal", Arg::Stated(held.nominal))
+        .with("tolerance", Arg::Stated(held.tolerance))
+        .with("unit", unit);
     let id = if held.position == 0 { held.id.to_owned() } else { format!("{}.{}", held.id, held.channel) };
     let Some(track) = facts.held.get(&(held.id.to_owned(), held.position)) else {
         let note = Note::new("note.condition.no_data").with("channel", held.channel);
-        return record(id, ConditionStatus::Invalid, &[], required, note);
+        return record(id, ConditionStatus::Invalid, &[], Some(required), note);
     };
     let worst = worst(track, held.nominal);
     let guard = held.coverage_factor * held.standard_uncertainty;
@@ -44,7 +48,7 @@ pub(super) fn judge(held: &Held<'_>, facts: &Facts<'_>) -> ConditionRecord {
         .with("guard", guard)
         .with("smoothing_s", track.smoothing_s)
         .with("share", 100.0 * track.share_outside)
-        .with("unit", if held.unit == "degC" { "°C" } else { held.unit });
+        .with("unit", unit);
     let mut observed = vec![
         ("min", track.smooth_min.value),
         ("max", track.smooth_max.value),
@@ -62,7 +66,7 @@ pub(super) fn judge(held: &Held<'_>, facts: &Facts<'_>) -> ConditionRecord {
     if track.unusable > 0 {
         observed.push(("unusable", track.unusable as f64));
     }
-    record(id, status, &observed, required, note)
+    record(id, status, &observed, Some(required), note)
 }
 
 fn worst(track: &TemperatureFacts, nominal: f64) -> super::temperature_track::Extreme {

@@ -31,8 +31,8 @@ impl Condition for Instruments {
                 };
                 let due = instrument.calibration_due.map(|d| d.to_string()).unwrap_or_default();
                 let note = Note::new(key).with("instrument", instrument.name.clone()).with("due", due);
-                let required = format!("valid on {}", facts.today);
-                record("calibration", status, &[], required, note)
+                let required = Note::new("note.required.calibration").with("date", facts.today.to_string());
+                record("calibration", status, &[], Some(required), note)
             })
             .collect()
     }

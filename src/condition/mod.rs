@@ -89,7 +89,7 @@ fn record(
     id: impl Into<String>,
     status: ConditionStatus,
     observed: &[(&str, f64)],
-    required: impl Into<String>,
+    requirement: Option<Note>,
     note: Note,
 ) -> ConditionRecord {
     let observed: Map<String, Value> =
@@ -98,7 +98,8 @@ fn record(
         id: id.into(),
         status,
         observed,
-        required: required.into(),
+        required: requirement.as_ref().map_or_else(String::new, |r| r.say(Lang::En)),
+        requirement,
         note: note.say(Lang::En),
         message: Some(note),
     }

@@ -2,7 +2,7 @@
 
 use super::{Condition, Facts, record};
 use crate::record::{ConditionRecord, ConditionStatus};
-use crate::text::Note;
+use crate::text::{Arg, Note};
 
 pub(super) struct SampleRate;
 
@@ -10,10 +10,12 @@ impl Condition for SampleRate {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
         let Some(declared_hz) = facts.procedure.sample_rate_hz else { return vec![] };
         let tolerance = facts.procedure.sample_rate_tolerance;
-        let required = format!("{declared_hz} Hz ± {} %", tolerance * 100.0);
+        let required = Note::new("note.required.sample_rate")
+            .with("hz", Arg::Stated(declared_hz))
+            .with("percent", Arg::Stated(tolerance * 100.0));
         if !facts.has_stamps {
             let note = Note::new("note.condition.rate_unmeasured").with("declared_hz", declared_hz);
-            return vec![record("sample_rate", ConditionStatus::Remark, &[], required, note)];
+            return vec![record("sample_rate", ConditionStatus::Remark, &[], Some(required), note)];
         }
         let measured_hz = 1.0 / facts.sample_interval_s;
         let difference = measured_hz / declared_hz - 1.0;
@@ -27,6 +29,6 @@ impl Condition for SampleRate {
             .with("declared_hz", declared_hz)
             .with("percent", difference * 100.0);
         let observed = [("measured_hz", measured_hz), ("difference", difference)];
-        vec![record("sample_rate", status, &observed, required, note)]
+        vec![record("sample_rate", status, &observed, Some(required), note)]
     }
 }

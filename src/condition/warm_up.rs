@@ -2,7 +2,7 @@
 
 use super::{Condition, Facts, record};
 use crate::record::{ConditionRecord, ConditionStatus};
-use crate::text::Note;
+use crate::text::{Arg, Note};
 
 pub(super) struct WarmUp;
 
@@ -33,13 +33,8 @@ impl Condition for WarmUp {
                 observed.push(("residual_deg_h", fact.residual_deg_h));
                 observed.push(("time_constant_s", fact.time_constant_s));
             }
-            records.push(record(
-                "warm_up",
-                status,
-                &observed,
-                format!("{} min left out", warm_up_s / 60.0),
-                note,
-            ));
+            let required = Note::new("note.required.warm_up").with("minutes", Arg::Stated(warm_up_s / 60.0));
+            records.push(record("warm_up", status, &observed, Some(required), note));
         }
         records
     }

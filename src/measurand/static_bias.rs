@@ -43,8 +43,12 @@ impl Measurand for StaticBias {
             Some(e) => estimate.note(Note::new("note.earth_rate_removed").with("rate", e.rate_deg_h)),
             None => estimate.note(Note::new("note.earth_rate_kept")),
         };
-        Some(estimate.note(
-            Note::new("note.bias_uncertainty").with("u", standard_uncertainty).with("lowest_hz", u.lowest_hz),
-        ))
+        Some(
+            estimate.note(
+                Note::new("note.bias_uncertainty")
+                    .with("u", standard_uncertainty)
+                    .with("longest_h", 1.0 / (3600.0 * u.lowest_hz)),
+            ),
+        )
     }
 }

@@ -101,7 +101,10 @@ pub const METHODS: &[Method] = &[
     },
     Method {
         id: "bias",
-        formulas: &["D = ȳ − Ω_IA", "u²(D) = N²/T + (B²/π)·[ln(1/(2πf_L·T)) + 3/2 − γ] + K²T/3 + u²(Ω_IA)"],
+        formulas: &[
+            "D = ȳ − Ω_IA",
+            "u²(D) = N²/T + (B²/π)·[(1 − cos b)/b² + (sin b)/b − Ci(b)] + K²T/3 + 2Q²/T² + u²(Ω_IA),  b = 2πf_L·T",
+        ],
         source: "IEEE Std 952, 12.11; JCGM 100:2008",
         applies: |r| measures(r, &["static_bias"]),
     },

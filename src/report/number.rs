@@ -68,9 +68,9 @@ pub fn bound(value: f64, upwards: bool, lang: Lang) -> String {
     directed(value, 3, upwards, lang)
 }
 
-/// An acceptance limit: five digits, rounded towards the inside so that what is printed is never too generous.
+/// An acceptance limit: four digits, rounded towards the inside so that what is printed is never too generous.
 pub fn acceptance(value: f64, is_maximum: bool, lang: Lang) -> String {
-    directed(value, 5, !is_maximum, lang)
+    directed(value, 4, !is_maximum, lang)
 }
 
 fn directed(value: f64, count: i32, upwards: bool, lang: Lang) -> String {
@@ -307,9 +307,9 @@ mod tests {
     fn bounds_are_rounded_to_the_safe_side() {
         assert_eq!(bound(0.001_231, true, EN), "0.00124");
         assert_eq!(bound(0.001_23, true, EN), "0.00123");
-        assert_eq!(acceptance(0.002_983_49, true, EN), "0.0029834");
-        assert_eq!(acceptance(0.002_983_41, false, EN), "0.0029835");
-        assert_eq!(acceptance(-0.002_983_41, true, EN), "−0.0029835");
+        assert_eq!(acceptance(0.002_983_49, true, EN), "0.002983");
+        assert_eq!(acceptance(0.002_983_41, false, EN), "0.002984");
+        assert_eq!(acceptance(-0.002_983_41, true, EN), "−0.002984");
     }
 
     #[test]

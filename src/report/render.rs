@@ -232,7 +232,11 @@ fn say(note: &Value, words: Words) -> String {
             (true, _) => u64::try_from(value.clone())
                 .map_or_else(|_| value.to_string(), |n| number::count(n, words.lang)),
             (false, Ok(v)) => number::limit_digits(v, 4, words.lang),
-            (false, Err(_)) => value.to_string(),
+            (false, Err(_)) if value.get_attr("id").is_ok_and(|id| !id.is_undefined()) => say(&value, words),
+            (false, Err(_)) => {
+                let text = value.to_string();
+                lookup(words.lang, &text).map_or(text, str::to_owned)
+            }
         })
     })
 }

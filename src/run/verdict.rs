@@ -47,23 +47,26 @@ pub fn whole(
         conditions.iter().filter(|c| c.status == ConditionStatus::Invalid).collect();
     let judged = rows.iter().filter(|r| r.verdict != Verdict::None).count();
     let of = |v: Verdict| rows.iter().filter(move |r| r.verdict == v);
-    let mut reasons: Vec<Note> = invalid
-        .iter()
-        .map(|c| {
-            let why = c.message.as_ref().map(|m| m.say(crate::text::Lang::En)).unwrap_or_default();
-            Note::new("summary.condition_invalid")
-                .with("condition", Arg::key("condition", c.id.split('.').next().unwrap_or(&c.id)))
-                .with("why", why)
-        })
-        .collect();
-    for (verdict, key) in
-        [(Verdict::Fail, "summary.row_failed"), (Verdict::Indeterminate, "summary.row_indeterminate")]
-    {
+    let mut reasons: Vec<Note> = Vec::new();
+    if !invalid.is_empty() {
+        reasons.push(Note::new("summary.conditions_invalid").with("n", invalid.len()));
+    }
+    reasons.extend(invalid.iter().map(|c| {
+        let why = c.message.clone().map_or_else(|| Arg::Text(c.note.clone()), Arg::from);
+        Note::new("summary.condition_invalid")
+            .with("condition", Arg::key("condition", c.id.split('.').next().unwrap_or(&c.id)))
+            .with("why", why)
+    }));
+    let several = rows.iter().any(|r| Some(&r.channel) != rows.first().map(|f| &f.channel));
+    for verdict in [Verdict::Fail, Verdict::Indeterminate] {
         for r in of(verdict) {
-            let key = if verdict == Verdict::Indeterminate && r.value.is_none() {
-                "summary.row_not_shown"
-            } else {
-                key
+            let key = match (verdict, r.value.is_none(), several) {
+                (Verdict::Fail, _, false) => "summary.row_failed",
+                (Verdict::Fail, _, true) => "summary.row_failed_of",
+                (_, true, false) => "summary.row_not_shown",
+                (_, true, true) => "summary.row_not_shown_of",
+                (_, false, false) => "summary.row_indeterminate",
+                (_, false, true) => "summary.row_indeterminate_of",
             };
             reasons.push(
                 Note::new(key)
@@ -111,6 +114,7 @@ mod tests {
             status,
             observed: Default::default(),
             required: String::new(),
+            requirement: None,
             note: String::new(),
             message: None,
         }

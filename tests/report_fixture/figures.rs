@@ -68,6 +68,7 @@ pub fn time_series() -> Figure {
             Panel { x: x.clone(), y: axis("axis.rate", "deg/h", Scale::Linear), layers: upper },
             Panel { x, y: axis("axis.temperature", "degC", Scale::Linear), layers: lower },
         ],
+        remarks: vec![],
     }
 }
 
@@ -121,6 +122,7 @@ pub fn sigma_tau() -> Figure {
             y: axis("axis.allan_deviation", "deg/h", Scale::Log),
             layers,
         }],
+        remarks: vec![],
     }
 }
 
@@ -156,6 +158,7 @@ pub fn spectrum() -> Figure {
                 Layer::Label { at: (341.0 / 4096.0, floor * 38.0), text: "0.0833 Hz".into() },
             ],
         }],
+        remarks: vec![],
     }
 }
 
@@ -180,6 +183,7 @@ pub fn autocorrelation() -> Figure {
                 Layer::Points { points, style: Style::Data, legend: "figure.legend.data".into() },
             ],
         }],
+        remarks: vec![],
     }
 }
 
@@ -212,11 +216,12 @@ pub fn histogram() -> Figure {
         channel: String::new(),
         panels: vec![Panel {
             x: axis("axis.rate", "deg/h", Scale::Linear),
-            y: axis("axis.probability_density", "", Scale::Linear),
+            y: axis("axis.share", "", Scale::Linear),
             layers: vec![
                 Layer::Bars { bars, style: Style::Data, legend: "figure.legend.data".into() },
                 line(normal, Style::Model, "figure.legend.normal"),
             ],
         }],
+        remarks: vec![],
     }
 }

@@ -133,6 +133,7 @@ fn condition(
         status,
         observed: observed.iter().map(|(k, v)| ((*k).to_owned(), serde_json::json!(v))).collect(),
         required: required.into(),
+        requirement: None,
         note: text.into(),
         message: None,
     }

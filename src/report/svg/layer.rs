@@ -273,6 +273,10 @@ pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, say: impl Fn(&st
                 (least, best) = (cost, place);
             }
         }
+        // Words over words can be read by nobody; the table has the number.
+        if least >= 1000.0 {
+            continue;
+        }
         taken.push(best);
         text(
             out,

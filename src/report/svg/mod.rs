@@ -7,7 +7,7 @@ mod legend;
 mod style;
 mod write;
 
-use crate::figure::{Axis, Figure, Panel, Scale};
+use crate::figure::{Figure, Panel};
 use crate::text::{Lang, lookup};
 use axis::{Direction, Ruled};
 use layer::Plot;
@@ -30,8 +30,6 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     let say = |key: &str| lookup(lang, key).unwrap_or(key).to_owned();
     let id: String =
         figure.id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
-    let fallback = Axis { label: "", unit: String::new(), scale: Scale::Linear, range: None };
-    let abscissa = figure.panels.first().map_or(&fallback, |p| &p.x);
     let panels: Vec<&Panel> = figure.panels.iter().collect();
     let height_of_plot = match panels.len() {
         0 | 1 => 330.0,
@@ -54,8 +52,13 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
         .fold(20.0, f64::max);
     let left = (widest + 32.0).min(160.0);
     let across = WIDTH - left - RIGHT;
-    let x =
-        Ruled::new(abscissa, layer::extent(&panels, abscissa.scale, false), Direction::Across, across, lang);
+    let abscissas: Vec<Ruled> = panels
+        .iter()
+        .map(|p| {
+            let same: Vec<&Panel> = panels.iter().copied().filter(|q| q.x == p.x).collect();
+            Ruled::new(&p.x, layer::extent(&same, p.x.scale, false), Direction::Across, across, lang)
+        })
+        .collect();
     let legends: Vec<Legend> = panels.iter().map(|p| Legend::new(p, across, say)).collect();
 
     let mut body = String::new();
@@ -68,11 +71,13 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
 
     let mut top = TITLE;
     let mut description = vec![];
-    for (i, ((panel, y), legend)) in panels.iter().zip(&ordinates).zip(&legends).enumerate() {
+    for (i, (((panel, y), x), legend)) in
+        panels.iter().zip(&ordinates).zip(&abscissas).zip(&legends).enumerate()
+    {
         legend.draw(&mut body, left, top);
         top += legend.height() + 4.0;
-        let plot = Plot { left, top, width: across, height: height_of_plot, x: &x, y };
-        let last = i + 1 == panels.len();
+        let plot = Plot { left, top, width: across, height: height_of_plot, x, y };
+        let last = panels.get(i + 1).is_none_or(|next| next.x != panel.x);
         axes(&mut body, &plot, last);
         let clip = format!("{id}-{i}");
         let _ = writeln!(
@@ -111,7 +116,7 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     out
 }
 
-/// Grid, marks and words of the axes; the words of the abscissa on the lowest panel only.
+/// Grid, marks and words of the axes; the words of the abscissa on the last panel that shares it.
 fn axes(out: &mut String, plot: &Plot<'_>, last: bool) {
     let (left, top) = (plot.left, plot.top);
     let (right, bottom) = (left + plot.width, top + plot.height);
@@ -165,7 +170,7 @@ fn frame(out: &mut String, plot: &Plot<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Layer, Style};
+    use crate::figure::{Axis, Layer, Scale, Style};
 
     fn figure(scale: Scale, points: Vec<(f64, f64)>) -> Figure {
         let axis = Axis { label: "axis.a & b", unit: "deg/h".into(), scale, range: None };
@@ -187,6 +192,7 @@ mod tests {
             title: "t",
             channel: "x".into(),
             panels: vec![Panel { x: axis.clone(), y: axis, layers }],
+            remarks: vec![],
         }
     }
 
@@ -209,7 +215,8 @@ mod tests {
                 assert!(svg.contains("id=\"a-b-title\"") && !svg.contains("<one>"));
             }
         }
-        let empty = Figure { id: "e".into(), title: "t", channel: String::new(), panels: vec![] };
+        let empty =
+            Figure { id: "e".into(), title: "t", channel: String::new(), panels: vec![], remarks: vec![] };
         assert!(render(&empty, Lang::En).contains("</svg>"));
     }
 

@@ -1,35 +1,35 @@
 //! What the verdict rests on beside the measured values: conditions, integrity, window, lines, models, power,
 //! instruments, waivers, clauses.
 
+use super::conditions::{self, Condition};
+use super::faults::Faults;
 use super::{Field, Words};
-use crate::record::{ConditionRecord, ConditionStatus, FaultRecord, Integrity, NoiseModelRecord, RunRecord};
+use crate::record::{ConditionStatus, LineRecord, MeasurandRecord, NoiseModelRecord, RunRecord};
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use serde::Serialize;
 
-/// Faults of one kind that a report lists; more would bury the rest of it.
-const SHOWN_OF_A_KIND: usize = 20;
+/// Lines that a report lists; a comb of harmonics would bury the rest of it.
+const SHOWN_LINES: usize = 16;
+
+/// Notes that belong to the noise model of a channel and not to one row.
+pub(super) const MODEL_NOTES: &[&str] = &["note.fit_restricted", "note.model_misfit"];
 
 /// Printed evidence. Each table is empty when the record has nothing for it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Evidence {
-    /// Conditions.
+    /// Conditions, without those on faults and instruments, which have tables of their own.
     pub conditions: Vec<Condition>,
-    /// Counts of faults by kind.
-    pub fault_counts: Vec<Field>,
-    /// True when no fault was found.
-    pub faultless: bool,
-    /// Jitter, quantisation step, threshold.
-    pub integrity_facts: Vec<Field>,
-    /// Faults one by one, the first of each kind.
-    pub faults: Vec<Fault>,
-    /// How many of the listed faults are shown; empty when all are.
-    pub faults_shown: String,
+    /// Faults of the recording and their budget.
+    #[serde(flatten)]
+    pub faults: Faults,
     /// Evaluated span.
     pub window: Vec<Field>,
     /// Spans left out.
     pub excluded: Vec<Excluded>,
     /// Spectral lines.
     pub lines: Vec<Line>,
+    /// How many of the lines are shown; empty when all are.
+    pub lines_shown: String,
     /// Noise models.
     pub models: Vec<Model>,
     /// What this test can decide.
@@ -40,40 +40,6 @@ pub struct Evidence {
     pub waivers: Vec<Waiver>,
     /// Clauses.
     pub clauses: Vec<Clause>,
-}
-
-/// A condition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Condition {
-    /// Name.
-    pub name: String,
-    /// Id of the state.
-    pub status: &'static str,
-    /// State in words.
-    pub status_word: String,
-    /// What was required.
-    pub required: String,
-    /// What was observed.
-    pub observed: String,
-    /// Explanation.
-    pub note: String,
-}
-
-/// A fault.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Fault {
-    /// Kind, in words.
-    pub kind: String,
-    /// Channel.
-    pub channel: String,
-    /// Row.
-    pub row: String,
-    /// Time.
-    pub time: String,
-    /// Samples concerned.
-    pub count: String,
-    /// What was seen.
-    pub note: String,
 }
 
 /// A span left out.
@@ -125,6 +91,17 @@ pub struct Model {
     pub probability: String,
     /// Where it misfits most; empty when it fits.
     pub band: String,
+    /// What limits the use of the model: the range of the fit, a misfit.
+    pub remarks: Vec<ModelRemark>,
+}
+
+/// A remark on a noise model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelRemark {
+    /// The remark, in words.
+    pub text: String,
+    /// True when the model does not describe the record.
+    pub misfit: bool,
 }
 
 /// Power of a limit.
@@ -193,23 +170,10 @@ impl Evidence {
     /// Prints the evidence of a record.
     pub(crate) fn new(record: &RunRecord, words: Words) -> Evidence {
         let lang = words.lang;
-        let shown = first_of_each_kind(&record.integrity.faults);
-        let (fault_counts, faultless) = fault_counts(&record.integrity, words);
+        let (lines, lines_shown) = strongest(&record.lines, words);
         Evidence {
-            conditions: record.conditions.iter().map(|c| condition(c, words)).collect(),
-            fault_counts,
-            faultless,
-            integrity_facts: facts(&record.integrity, words),
-            faults_shown: if shown.len() < record.integrity.faults.len() {
-                let listed = count(record.integrity.faults.len() as u64, lang);
-                words.with(
-                    "report.faults_shown",
-                    &[("shown", &count(shown.len() as u64, lang)), ("listed", &listed)],
-                )
-            } else {
-                String::new()
-            },
-            faults: shown.into_iter().map(|f| fault(f, words)).collect(),
+            conditions: conditions::conditions(record, words),
+            faults: Faults::new(record, words),
             window: [
                 ("report.window_from", record.window.from_s),
                 ("report.window_to", record.window.to_s),
@@ -228,28 +192,9 @@ impl Evidence {
                     reason: words.name("excluded", &e.reason),
                 })
                 .collect(),
-            lines: record
-                .lines
-                .iter()
-                .map(|l| Line {
-                    channel: l.channel.clone(),
-                    frequency: {
-                        let half = 0.5 * l.resolution_hz;
-                        let range = (l.frequency_hz - half, l.frequency_hz + half);
-                        Rounding::of(l.frequency_hz, Some(range)).show(l.frequency_hz, lang)
-                    },
-                    resolution: digits(l.resolution_hz, 2, lang),
-                    period: if l.frequency_hz > 0.0 {
-                        duration(1.0 / l.frequency_hz, lang)
-                    } else {
-                        NOTHING.to_owned()
-                    },
-                    amplitude: digits(l.amplitude_deg_h, 3, lang),
-                    excess: digits(l.excess, 3, lang),
-                    false_alarm: probability(l.false_alarm_probability, words),
-                })
-                .collect(),
-            models: record.noise_models.iter().map(|m| model(m, words)).collect(),
+            lines: lines.into_iter().map(|l| line(l, words)).collect(),
+            lines_shown,
+            models: record.noise_models.iter().map(|m| model(m, &record.measurands, words)).collect(),
             power: record
                 .power
                 .iter()
@@ -302,7 +247,7 @@ impl Evidence {
     }
 }
 
-fn status(status: ConditionStatus) -> &'static str {
+pub(super) fn status(status: ConditionStatus) -> &'static str {
     match status {
         ConditionStatus::Ok => "ok",
         ConditionStatus::Remark => "remark",
@@ -319,104 +264,43 @@ fn row_name(id: &str, words: Words) -> String {
 }
 
 fn probability(p: f64, words: Words) -> String {
-    if p > 0.0 && p < 1e-3 { digits(p, 2, words.lang) } else { limit_digits(p, 3, words.lang) }
-}
-
-fn condition(c: &ConditionRecord, words: Words) -> Condition {
-    let mut observed: Vec<(&String, &serde_json::Value)> = c.observed.iter().collect();
-    let rank =
-        |name: &str| ["value", "min", "max", "mean", "std"].iter().position(|k| *k == name).unwrap_or(5);
-    observed.sort_by_key(|(name, _)| rank(name));
-    let observed: Vec<String> = observed
-        .into_iter()
-        .map(|(name, value)| {
-            let shown = match value {
-                serde_json::Value::Number(n) => match n.as_u64() {
-                    Some(whole) => count(whole, words.lang),
-                    None => n.as_f64().map_or_else(|| n.to_string(), |v| limit_digits(v, 5, words.lang)),
-                },
-                serde_json::Value::String(s) => s.clone(),
-                serde_json::Value::Bool(b) => words.t(if *b { "report.yes" } else { "report.no" }),
-                serde_json::Value::Null => NOTHING.to_owned(),
-                other => other.to_string(),
-            };
-            // What stands alone needs no name.
-            if name == "value" { shown } else { format!("{}\u{a0}{shown}", words.name("observed", name)) }
-        })
-        .collect();
-    Condition {
-        name: words.name("condition", &c.id),
-        status: status(c.status),
-        status_word: words.name("status", status(c.status)),
-        required: c.required.clone(),
-        observed: observed.join(", "),
-        note: c.message.as_ref().map_or_else(|| c.note.clone(), |m| words.say(m)),
+    if p < 1e-6 {
+        return format!("<\u{202f}{}", digits(1e-6, 1, words.lang));
     }
+    if p < 1e-3 { digits(p, 2, words.lang) } else { limit_digits(p, 3, words.lang) }
 }
 
-fn fault_counts(i: &Integrity, words: Words) -> (Vec<Field>, bool) {
-    let counts = [
-        ("gaps", i.gaps),
-        ("missing_samples", i.missing_samples),
-        ("duplicate_timestamps", i.duplicate_timestamps),
-        ("backward_timestamps", i.backward_timestamps),
-        ("non_finite", i.non_finite),
-        ("unparsable", i.unparsable),
-        ("outliers", i.outliers),
-        ("saturated", i.saturated),
-        ("stuck", i.stuck),
-    ];
-    let fields = counts
-        .iter()
-        .map(|(id, n)| Field { label: words.name("integrity", id), value: count(*n, words.lang) })
-        .collect();
-    (fields, counts.iter().all(|c| c.1 == 0))
+/// The strongest lines, by frequency, and how many they are of all.
+fn strongest(lines: &[LineRecord], words: Words) -> (Vec<&LineRecord>, String) {
+    let mut shown: Vec<&LineRecord> = lines.iter().collect();
+    shown.sort_by(|a, b| b.amplitude_deg_h.total_cmp(&a.amplitude_deg_h));
+    shown.truncate(SHOWN_LINES);
+    shown.sort_by(|a, b| a.channel.cmp(&b.channel).then(a.frequency_hz.total_cmp(&b.frequency_hz)));
+    let hint = if shown.len() < lines.len() {
+        let (n, all) = (count(shown.len() as u64, words.lang), count(lines.len() as u64, words.lang));
+        words.with("report.lines_shown", &[("shown", &n), ("all", &all)])
+    } else {
+        String::new()
+    };
+    (shown, hint)
 }
 
-fn facts(i: &Integrity, words: Words) -> Vec<Field> {
+fn line(l: &LineRecord, words: Words) -> Line {
     let lang = words.lang;
-    [
-        i.timestamp_jitter_s.map(|v| ("report.jitter", duration(v, lang))),
-        i.quantization_step_deg_h
-            .map(|v| ("report.step", words.quantity(&limit_digits(v, 4, lang), "deg/h"))),
-        i.outlier_threshold.map(|v| {
-            let v = limit_digits(v, 3, lang);
-            ("report.outlier_threshold", words.with("report.robust_deviations", &[("value", &v)]))
-        }),
-    ]
-    .into_iter()
-    .flatten()
-    .map(|(key, value)| Field { label: words.t(key), value })
-    .collect()
-}
-
-/// The faults that a report lists, in the order of the record.
-fn first_of_each_kind(faults: &[FaultRecord]) -> Vec<&FaultRecord> {
-    let mut seen: std::collections::BTreeMap<&str, usize> = std::collections::BTreeMap::new();
-    faults
-        .iter()
-        .filter(|f| {
-            let n = seen.entry(&f.kind).or_default();
-            *n += 1;
-            *n <= SHOWN_OF_A_KIND
-        })
-        .collect()
-}
-
-fn fault(f: &FaultRecord, words: Words) -> Fault {
-    Fault {
-        kind: words.name("fault", &f.kind),
-        channel: f.channel.clone().unwrap_or_default(),
-        row: count(f.row, words.lang),
-        time: f
-            .time_s
-            .map_or_else(|| NOTHING.to_owned(), |t| words.quantity(&limit_digits(t, 9, words.lang), "s")),
-        count: count(f.count, words.lang),
-        note: f.note.clone(),
+    let half = 0.5 * l.resolution_hz;
+    let range = (l.frequency_hz - half, l.frequency_hz + half);
+    Line {
+        channel: l.channel.clone(),
+        frequency: Rounding::of(l.frequency_hz, Some(range)).show(l.frequency_hz, lang),
+        resolution: digits(l.resolution_hz, 2, lang),
+        period: if l.frequency_hz > 0.0 { duration(1.0 / l.frequency_hz, lang) } else { NOTHING.to_owned() },
+        amplitude: digits(l.amplitude_deg_h, 3, lang),
+        excess: digits(l.excess, 3, lang),
+        false_alarm: probability(l.false_alarm_probability, words),
     }
 }
 
-fn model(m: &NoiseModelRecord, words: Words) -> Model {
+fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model {
     let lang = words.lang;
     let coefficients = [
         ("N", m.angle_random_walk, "deg/sqrt(h)"),
@@ -427,9 +311,23 @@ fn model(m: &NoiseModelRecord, words: Words) -> Model {
     ]
     .map(|(symbol, value, unit)| Field {
         label: symbol.to_owned(),
-        value: words.quantity(&limit_digits(value, 4, lang), unit),
+        value: if value == 0.0 {
+            NOTHING.to_owned()
+        } else {
+            words.quantity(&limit_digits(value, 4, lang), unit)
+        },
     });
-    let terms: Vec<String> = m.terms.iter().map(|t| words.name("measurand", t)).collect();
+    let terms: Vec<String> = m.terms.iter().map(|t| words.name("term", t)).collect();
+    let mut remarks: Vec<ModelRemark> = vec![];
+    let of_model = rows.iter().filter(|r| r.channel == m.channel).flat_map(|r| &r.notes);
+    for note in of_model.filter(|n| MODEL_NOTES.contains(&n.id)) {
+        let remark = ModelRemark { text: words.say(note), misfit: note.id == "note.model_misfit" };
+        if !remarks.contains(&remark) {
+            remarks.push(remark);
+        }
+    }
+    // The remark on the misfit names the band.
+    let misfit_said = remarks.iter().any(|r| r.misfit);
     Model {
         channel: m.channel.clone(),
         method: words.name("how", &m.method),
@@ -437,10 +335,11 @@ fn model(m: &NoiseModelRecord, words: Words) -> Model {
         coefficients: coefficients.into(),
         misfit: digits(m.misfit, 3, lang),
         probability: probability(m.misfit_probability, words),
-        band: m.misfit_band_hz.map_or_else(String::new, |[low, high]| {
+        band: m.misfit_band_hz.filter(|_| !misfit_said).map_or_else(String::new, |[low, high]| {
             let range = words
                 .with("report.interval", &[("low", &digits(low, 3, lang)), ("high", &digits(high, 3, lang))]);
             words.quantity(&range, "Hz")
         }),
+        remarks,
     }
 }

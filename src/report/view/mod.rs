@@ -4,11 +4,17 @@
 //! computes. The record itself is handed to the templates as well, for those that users write.
 
 mod comparison;
+mod conditions;
 mod evidence;
+mod faults;
+mod matrix;
 mod rows;
 
 pub use comparison::{Comparison, Pair, Side};
-pub use evidence::{Clause, Condition, Evidence, Excluded, Fault, Instrument, Line, Model, Power, Waiver};
+pub use conditions::Condition;
+pub use evidence::{Clause, Evidence, Excluded, Instrument, Line, Model, ModelRemark, Power, Waiver};
+pub use faults::{Fault, FaultKind, Faults};
+pub use matrix::{Matrix, MatrixRow};
 pub use rows::Row;
 
 use crate::estimate::Verdict;
@@ -57,6 +63,8 @@ pub struct View {
     pub judged: Vec<rows::Row>,
     /// Rows without a limit.
     pub further: Vec<rows::Row>,
+    /// The same with a column for each channel, when there are several but few.
+    pub by_channel: Option<Matrix>,
     /// What the rows refer to by number.
     pub footnotes: Vec<String>,
     /// Russian and Allan values side by side, per channel.
@@ -146,9 +154,11 @@ impl Words {
         fill(lookup(self.lang, note.id).unwrap_or(note.id), |name| {
             note.args.get(name).map(|arg| match arg {
                 Arg::Number(v) => super::number::limit_digits(*v, 4, self.lang),
+                Arg::Stated(v) => super::number::limit(*v, self.lang),
                 Arg::Count(v) => count(*v, self.lang),
                 Arg::Text(t) => t.clone(),
                 Arg::Key(k) => Arg::words(k, self.lang),
+                Arg::Note(n) => self.say(n),
             })
         })
     }
@@ -219,6 +229,7 @@ impl View {
                 .into_iter()
                 .collect(),
             comparison: comparison::comparisons(record, words),
+            by_channel: Matrix::new(&further),
             judged,
             further,
             footnotes,
@@ -235,7 +246,14 @@ impl View {
             options: record
                 .options
                 .iter()
-                .map(|o| Field { label: o.name.clone(), value: o.value.clone() })
+                .map(|o| Field {
+                    label: words.name("option", &o.name),
+                    value: match o.value.as_str() {
+                        "true" => words.t("report.yes"),
+                        "false" => words.t("report.no"),
+                        value => value.to_owned(),
+                    },
+                })
                 .collect(),
             footer: footer(record, words),
         }
@@ -347,17 +365,21 @@ fn drawn(record: &RunRecord, figures: &[Figure], words: Words) -> Vec<FigureView
                 } else {
                     format!("{title} · {}", figure.channel)
                 },
-                caption: figure
-                    .title
-                    .strip_prefix("figure.title.")
-                    .and_then(|id| lookup(words.lang, &format!("figure.caption.{id}")))
-                    .unwrap_or_default()
-                    .to_owned(),
+                caption: caption(figure, words),
                 svg: svg::render(figure, words.lang),
                 href: encode(&file),
             }
         })
         .collect()
+}
+
+/// What is to be seen, in a sentence, and the numbers that belong to it.
+fn caption(figure: &Figure, words: Words) -> String {
+    let id = figure.title.strip_prefix("figure.title.").unwrap_or_default();
+    let mut sentences: Vec<String> =
+        lookup(words.lang, &format!("figure.caption.{id}")).map(str::to_owned).into_iter().collect();
+    sentences.extend(figure.remarks.iter().map(|r| words.say(r)));
+    sentences.join(" ")
 }
 
 /// A relative path as a URL.

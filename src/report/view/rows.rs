@@ -1,9 +1,10 @@
 //! Measured quantities with their limits.
 
+use super::evidence::MODEL_NOTES;
 use super::{Words, verdict_word};
 use crate::estimate::Rule;
 use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
-use crate::report::number::{Rounding, acceptance, bound, limit, limit_digits, percent};
+use crate::report::number::{Rounding, acceptance, bound, digits, limit, limit_digits, percent};
 use serde::Serialize;
 
 /// One row, printed. Empty strings where there is nothing to show.
@@ -98,7 +99,12 @@ fn row(m: &MeasurandRecord, words: Words, footnotes: &mut Vec<String>) -> Row {
     let lang = words.lang;
     let mut numbers = vec![];
     for note in &m.notes {
-        let sentence = words.say(note);
+        // The model of a channel is remarked on once, where it is tabled.
+        let sentence = match note.id {
+            "note.model_misfit" => words.t("report.misfit_footnote"),
+            id if MODEL_NOTES.contains(&id) => continue,
+            _ => words.say(note),
+        };
         let at = footnotes.iter().position(|f| *f == sentence).unwrap_or_else(|| {
             footnotes.push(sentence);
             footnotes.len() - 1
@@ -121,7 +127,7 @@ fn row(m: &MeasurandRecord, words: Words, footnotes: &mut Vec<String>) -> Row {
         acceptance: m.limit.as_ref().map_or_else(String::new, |l| accepted(l, words)),
         rule: m.limit.as_ref().map_or_else(String::new, |l| rule(l, words)),
         margin: m.margin.map_or_else(String::new, |margin| match m.value {
-            Some(_) => rounding(m).show(margin, lang),
+            Some(_) => digits(margin, 3, lang),
             None => bound(margin, false, lang),
         }),
         risk: m.specific_risk.map_or_else(String::new, |p| percent(p, lang)),

@@ -4,6 +4,7 @@ use super::{axis, line};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
 use crate::noise::autocorrelation::{Autocorrelation, of_series, of_spectrum};
+use crate::text::Note;
 
 /// Lags shown at the full rate.
 const SHORT_LAGS: usize = 60;
@@ -20,16 +21,18 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     } else {
         of_spectrum(gyro.spectrum(), SHORT_LAGS)
     };
-    let mut panels = Vec::new();
+    let (mut panels, mut remarks) = (Vec::new(), Vec::new());
     if let Some(acf) = full_rate.filter(|a| a.coefficients.len() > 4) {
-        panels.push(panel(&acf, gyro.tau0_s, true));
+        panels.push(panel(&acf, gyro.tau0_s, "axis.lag", true));
     }
     // The long panel spans about a quarter of the record in at most LONG_LAGS steps.
     let merge = (blocks.mean.len() / (4 * LONG_LAGS)).max(1);
     if merge * blocks.block_len as usize > 1 && blocks.mean.len() / merge >= LEAST_BLOCKS {
         let coarse: Vec<f64> = blocks.mean.chunks(merge).map(mean_of_present).collect();
         if let Some(acf) = of_series(&coarse, LONG_LAGS.min(coarse.len() / 4)) {
-            panels.push(panel(&acf, gyro.tau0_s * blocks.block_len as f64 * merge as f64, false));
+            let block_s = gyro.tau0_s * blocks.block_len as f64 * merge as f64;
+            panels.push(panel(&acf, block_s, "axis.lag_of_means", false));
+            remarks.push(Note::new("figure.remark.autocorrelation_blocks").with("seconds", block_s));
         }
     }
     (!panels.is_empty()).then(|| Figure {
@@ -37,6 +40,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         title: "figure.title.autocorrelation",
         channel: gyro.figure_channel(),
         panels,
+        remarks,
     })
 }
 
@@ -45,7 +49,7 @@ fn mean_of_present(values: &[f64]) -> f64 {
     if n == 0 { f64::NAN } else { sum / f64::from(n) }
 }
 
-fn panel(acf: &Autocorrelation, step_s: f64, marked: bool) -> Panel {
+fn panel(acf: &Autocorrelation, step_s: f64, lag: &'static str, marked: bool) -> Panel {
     let points: Vec<(f64, f64)> =
         acf.coefficients.iter().enumerate().skip(1).map(|(k, r)| (k as f64 * step_s, *r)).collect();
     let last = points.last().map_or(step_s, |p| p.0);
@@ -61,9 +65,5 @@ fn panel(acf: &Autocorrelation, step_s: f64, marked: bool) -> Panel {
     if marked {
         layers.push(Layer::Points { points, style: Style::Data, legend: "figure.legend.data".into() });
     }
-    Panel {
-        x: axis("axis.lag", "s", Scale::Linear),
-        y: axis("axis.autocorrelation", "", Scale::Linear),
-        layers,
-    }
+    Panel { x: axis(lag, "s", Scale::Linear), y: axis("axis.autocorrelation", "", Scale::Linear), layers }
 }

@@ -3,6 +3,7 @@
 use super::{axis, line};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
+use crate::text::Note;
 
 /// Draws the histogram; `None` when the channel never changes.
 pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
@@ -13,7 +14,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     }
     let first = h.counts.iter().position(|c| *c > 0)?;
     let last = h.counts.iter().rposition(|c| *c > 0)?;
-    let total = h.samples as f64 * h.bin_width;
+    let share = 100.0 / h.samples as f64;
     let bars: Vec<(f64, f64, f64)> = h
         .counts
         .iter()
@@ -22,10 +23,10 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         .take(last + 1 - first)
         .map(|(i, c)| {
             let from = h.from + i as f64 * h.bin_width;
-            (from, from + h.bin_width, *c as f64 / total)
+            (from, from + h.bin_width, *c as f64 * share)
         })
         .collect();
-    let peak = 1.0 / (sigma * (2.0 * std::f64::consts::PI).sqrt());
+    let peak = 100.0 * h.bin_width / (sigma * (2.0 * std::f64::consts::PI).sqrt());
     let normal =
         (-90..=90).map(|i| f64::from(i) / 20.0).map(|z| (z * sigma, peak * (-0.5 * z * z).exp())).collect();
     Some(Figure {
@@ -34,11 +35,18 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         channel: gyro.figure_channel(),
         panels: vec![Panel {
             x: axis("axis.deviation", "deg/h", Scale::Linear),
-            y: axis("axis.probability_density", "h/deg", Scale::Linear),
+            y: axis("axis.share", "%", Scale::Linear),
             layers: vec![
                 Layer::Bars { bars, style: Style::Data, legend: "figure.legend.data".into() },
                 line(normal, Style::Model, "figure.legend.normal"),
             ],
         }],
+        remarks: vec![
+            Note::new("figure.remark.moments")
+                .with("sigma", sigma)
+                .with("skewness", h.skewness)
+                .with("kurtosis", h.excess_kurtosis)
+                .with("n", h.samples),
+        ],
     })
 }

@@ -6,7 +6,7 @@ use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
 use crate::noise::data::NoiseType;
 use crate::noise::model::{TERMS, unit_allan_variance};
-use crate::text::significant;
+use crate::text::{Note, significant};
 
 /// Points of a model curve.
 const CURVE_POINTS: usize = 96;
@@ -24,17 +24,32 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
         .filter(|p| p.point.deviation > 0.0 && p.point.m as f64 * gyro.tau0_s <= longest_s * SHOWN)
         .map(|p| (p.point.m as f64 * gyro.tau0_s, p.point.deviation, p.interval95))
         .collect();
-    let band = shown.iter().filter_map(|(t, _, i)| i.map(|i| (*t, i.low, i.high))).collect();
+    let band = |from: f64, to: f64| -> Vec<(f64, f64, f64)> {
+        let inside = shown.iter().filter(|p| p.0 >= from && p.0 <= to);
+        inside.filter_map(|(t, _, i)| i.map(|i| (*t, i.low, i.high))).collect()
+    };
+    let last_reliable_s =
+        shown.iter().map(|p| p.0).filter(|t| *t <= longest_s * RELIABLE).fold(0.0, f64::max);
     let reliable: Vec<(f64, f64)> =
         shown.iter().filter(|p| p.0 <= longest_s * RELIABLE).map(|p| (p.0, p.1)).collect();
     let mut tail: Vec<(f64, f64)> =
         shown.iter().filter(|p| p.0 > longest_s * RELIABLE).map(|p| (p.0, p.1)).collect();
-    let tail_points = tail.clone();
+    let (tail_points, reliable_copy) = (tail.clone(), reliable.clone());
     if let (Some(last), false) = (reliable.last(), tail.is_empty()) {
         tail.insert(0, *last);
     }
-    let mut layers =
-        vec![Layer::Band { points: band, style: Style::Data, legend: "figure.legend.band95".into() }];
+    let mut layers = vec![Layer::Band {
+        points: band(0.0, last_reliable_s),
+        style: Style::Data,
+        legend: "figure.legend.band95".into(),
+    }];
+    if !tail_points.is_empty() {
+        layers.push(Layer::Band {
+            points: band(last_reliable_s, f64::INFINITY),
+            style: Style::Muted,
+            legend: String::new(),
+        });
+    }
     if let (Some(first), Some(last)) = (shown.first(), shown.last()) {
         layers.extend(model_curves(gyro, first.0, last.0.max(first.0 * 2.0)));
     }
@@ -63,10 +78,16 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
                 at: (100.0, drift), text: format!("σ₁₀₀ = {} °/h", significant(drift, 3))
             });
     }
+    let lowest = reliable_copy.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a });
+    if let Some(at) = lowest {
+        layers.push(Layer::Label { at, text: format!("{} °/h", significant(at.1, 3)) });
+    }
     if let Some(n) = gyro.identification.angle_random_walk.value {
         let within =
             shown.first().is_some_and(|p| p.0 <= 3600.0) && shown.last().is_some_and(|p| p.0 >= 3600.0);
         if within {
+            let points = vec![(3600.0, n)];
+            layers.push(Layer::Points { points, style: Style::Term(1), legend: String::new() });
             layers.push(Layer::Label { at: (3600.0, n), text: format!("N = {} °/√h", significant(n, 3)) });
         }
     }
@@ -79,6 +100,7 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
             y: axis("axis.allan_deviation", "deg/h", Scale::Log),
             layers,
         }],
+        remarks: vec![Note::new("figure.remark.record").with("hours", longest_s / 3600.0)],
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{axis, line};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
-use crate::text::significant;
+use crate::text::{Note, significant};
 
 /// Most points drawn: beyond, neighbouring bins are joined, evenly on the logarithmic axis.
 const POINTS: usize = 700;
@@ -63,6 +63,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
             y: axis("axis.density", "(deg/h)^2/Hz", Scale::Log),
             layers,
         }],
+        remarks: vec![Note::new("figure.remark.resolution").with("hz", step_hz)],
     })
 }
 

@@ -4,6 +4,7 @@ use super::{axis, line};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::noise::envelope::Envelope;
 use crate::record::Window;
+use crate::text::Note;
 
 /// A channel to be drawn under the rate.
 pub struct Below<'a> {
@@ -50,7 +51,12 @@ pub fn figure(
             layers,
         });
     }
-    Figure { id, title: "figure.title.time_series", channel, panels }
+    let mut remarks = vec![];
+    if rate.bin_len > 1 {
+        let seconds = rate.bin_len as f64 * tau0_s;
+        remarks.push(Note::new("figure.remark.averaged").with("seconds", seconds));
+    }
+    Figure { id, title: "figure.title.time_series", channel, panels, remarks }
 }
 
 fn layers(
@@ -73,8 +79,22 @@ fn layers(
         .collect();
     let middle =
         |i: usize| (envelope.first_index as f64 + (i as f64 + 0.5) * envelope.bin_len as f64 - 0.5) * tau0_s;
-    let range = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.min, b.max)).collect();
-    let mean: Vec<(f64, f64)> = envelope.bins.iter().enumerate().map(|(i, b)| (middle(i), b.mean)).collect();
+    let mut bins = envelope.bins.clone();
+    // The mean of the few samples of a last span that is not full would stand out of the others.
+    if let [.., last, rest] = bins.as_mut_slice()
+        && 2 * rest.count < envelope.bin_len
+        && last.count > 0
+    {
+        if rest.count > 0 {
+            let (n, m) = (last.count as f64, rest.count as f64);
+            last.mean = (n * last.mean + m * rest.mean) / (n + m);
+            last.min = last.min.min(rest.min);
+            last.max = last.max.max(rest.max);
+        }
+        bins.pop();
+    }
+    let range = bins.iter().enumerate().map(|(i, b)| (middle(i), b.min, b.max)).collect();
+    let mean: Vec<(f64, f64)> = bins.iter().enumerate().map(|(i, b)| (middle(i), b.mean)).collect();
     // A range far wider than the means would hide them: white noise at a high rate says nothing here.
     if envelope.bin_len > 1 && median_range(envelope) < 3.0 * spread(&mean) {
         layers.push(Layer::Band { points: range, style, legend: "figure.legend.range".into() });
