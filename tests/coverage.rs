@@ -33,6 +33,7 @@ fn at_most(what: &str, hits: usize, of: usize, most: f64) {
 }
 
 fn assert_honest(tally: &Tally, coverage: f64, false_pass: f64) {
+    at_most(&format!("{} false lines", tally.name), tally.false_lines, tally.rows[0].records, 0.015);
     for row in &tally.rows {
         let what = format!("{} {} h {}", tally.name, tally.hours, row.id);
         at_least(&what, row.holds(), row.records, coverage);
@@ -44,15 +45,15 @@ fn assert_honest(tally: &Tally, coverage: f64, false_pass: f64) {
 #[test]
 fn intervals_hold_and_units_at_their_limit_rarely_pass() {
     for (i, mix) in mixes().into_iter().enumerate() {
-        let tally = study(&mix, 10.0, 10.0, 120, 7_100_000 + 10_000 * i as u64);
-        assert_honest(&tally, 0.90, 0.07);
+        let tally = study(&mix, 10.0, 10.0, 60, 7_100_000 + 10_000 * i as u64);
+        assert_honest(&tally, 0.92, 0.08);
     }
 }
 
 #[test]
 fn intervals_hold_over_a_hundred_hours() {
-    let tally = study(&mixes()[1], 100.0, 10.0, 60, 7_200_000);
-    assert_honest(&tally, 0.90, 0.07);
+    let tally = study(&mixes()[1], 100.0, 10.0, 40, 7_200_000);
+    assert_honest(&tally, 0.92, 0.08);
 }
 
 #[test]
@@ -76,7 +77,7 @@ fn long_study_of_intervals_and_verdicts() {
             let seed = 7_500_000 + 100_000 * i as u64 + 1_000_000 * hours as u64;
             let tally = study(&mix, hours, 10.0, records, seed);
             tally.print();
-            assert_honest(&tally, 0.90, 0.07);
+            assert_honest(&tally, 0.92, 0.08);
         }
     }
 }

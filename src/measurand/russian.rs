@@ -52,11 +52,20 @@ impl Measurand for Russian {
     }
 }
 
-/// Degrees of freedom of the variance of the means under the noise of this record: correlated noise leaves few.
+/// Share of its upper limit that random walk is taken to have where the record does not show it (by simulation: so
+/// that units with a walk just too weak to be claimed are not passed too often).
+const UNSEEN_WALK: f64 = 0.6;
+
+/// Degrees of freedom of the variance of the means under the noise of this record: correlated noise leaves few, and
+/// it need not be certain to be there.
 fn degrees_of_freedom(gyro: &GyroEvidence, windows: &WindowStatistics) -> f64 {
-    let mut model = gyro.identification.supported;
+    let found = &gyro.identification;
+    let mut model = found.full;
     // A ramp is no noise: it shifts the value and does not scatter it.
     model.r = 0.0;
+    if let Some(limit) = found.rate_random_walk.upper_limit {
+        model.k = model.k.max(UNSEEN_WALK * limit.value);
+    }
     let white = windows.n.saturating_sub(1) as f64;
     edf_of_window_std(windows.n, windows.window_s, |t| model.mean_variance(t)).unwrap_or(white).max(1.0)
 }

@@ -1,8 +1,9 @@
 //! The strongest spectral line.
 //!
-//! Its power estimate over ν averages is noncentral χ²: u(A)/A = ½√((1 + 2e)/(ν e²)) with e the power over the floor
-//! less one. Its frequency has the Cramér-Rao variance of a sinusoid in white noise for each segment, over the number
-//! of averages, with a factor for the window and the interpolation between bins.
+//! Its power stands over white noise of the level of the local floor. To first order its variance over half-overlapping
+//! Hann segments is that of an efficient estimate, with the square of the noise added for weak lines. Its frequency has
+//! the Cramér-Rao variance of a sinusoid in white noise for each segment, over the number of averages, with a factor
+//! for the interpolation between bins. Validated by simulation from 5 to 1000 times the floor.
 
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread};
@@ -12,8 +13,11 @@ use std::f64::consts::PI;
 
 pub(super) struct SpectralLine;
 
-/// Standard deviation of the interpolated frequency over that of an efficient estimate (validated by simulation).
-const INTERPOLATION_LOSS: f64 = 1.6;
+/// Variance of the interpolated frequency over that of an efficient estimate: for a strong line, and what is added for
+/// one unit of peak over floor.
+const INTERPOLATION_LOSS: (f64, f64) = (1.1, 7.0);
+/// Noise power squared in the five bins of a Hann lobe, with their correlations, in units of one bin.
+const LOBE_NOISE: f64 = 9.0;
 
 impl Measurand for SpectralLine {
     fn ids(&self) -> &'static [&'static str] {
@@ -49,12 +53,18 @@ impl Measurand for SpectralLine {
 
 fn amplitude_uncertainty(line: &Line, averages: f64) -> f64 {
     let e = (line.excess - 1.0).max(1e-6);
-    0.5 * line.amplitude_deg_h * ((1.0 + 2.0 * e) / (averages * e * e)).sqrt()
+    // The whole lobe holds 1.5 times the power of the peak when the line lies on a bin, more when it lies between two.
+    let bins = line.frequency_hz / line.resolution_hz;
+    let offset = (bins - bins.round()).abs().min(0.5);
+    let sinc = if offset > 1e-9 { (PI * offset).sin() / (PI * offset) } else { 1.0 };
+    let lobe = 1.5 * e / (sinc / (1.0 - offset * offset)).powi(2);
+    0.5 * line.amplitude_deg_h * ((4.0 * lobe + LOBE_NOISE) / averages).sqrt() / lobe
 }
 
 fn frequency_uncertainty_hz(line: &Line, averages: f64) -> f64 {
     // The peak of a Hann periodogram of L samples stands at A²L/(6S) over a two-sided floor S (per sample), and the
     // signal-to-noise ratio of a sample is A²/(2S); var f = 12/((2π)² snr L³) in cycles a sample.
     let e = (line.excess - 1.0).max(1e-6);
-    INTERPOLATION_LOSS * line.resolution_hz * (12.0 / ((2.0 * PI).powi(2) * 3.0 * e * averages)).sqrt()
+    let loss = INTERPOLATION_LOSS.0 + INTERPOLATION_LOSS.1 / e;
+    line.resolution_hz * (loss * 12.0 / ((2.0 * PI).powi(2) * 3.0 * e * averages)).sqrt()
 }

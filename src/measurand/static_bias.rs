@@ -5,6 +5,8 @@
 
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread};
+use crate::noise::data::NoiseType;
+use crate::noise::model::TERMS;
 use crate::noise::static_bias::BiasUncertainty;
 use crate::text::Note;
 
@@ -19,6 +21,35 @@ pub fn uncertainty(gyro: &GyroEvidence, earth_removed: bool) -> BiasUncertainty 
         .into_iter()
         .collect();
     BiasUncertainty::of_mean(&gyro.identification.full, gyro.usable_s(), None, &earth)
+}
+
+/// Least degrees of freedom of the uncertainty. Slow noise rules it, and a record shows little of that: below what it
+/// can show, a random walk may still move the mean (set by simulation).
+const LEAST_DOF: f64 = 5.0;
+
+/// Degrees of freedom of the uncertainty (GUM G.4, with the variance of the squared uncertainty in place of the sum):
+/// what is known of the random walk where it is claimed, else [`LEAST_DOF`].
+fn degrees_of_freedom(gyro: &GyroEvidence, u: &BiasUncertainty) -> f64 {
+    let found = &gyro.identification;
+    if !found.claims(NoiseType::RateRandomWalk) {
+        return LEAST_DOF;
+    }
+    let mut variance = 0.0;
+    for (i, term) in TERMS.iter().enumerate() {
+        let part = match term {
+            NoiseType::AngleRandomWalk => u.angle_random_walk,
+            NoiseType::Flicker => u.flicker,
+            NoiseType::RateRandomWalk => u.rate_random_walk,
+            NoiseType::Quantization => u.quantization,
+            NoiseType::RateRamp => 0.0,
+        };
+        let coefficient = found.supported.coefficient(*term);
+        let spread = found.covariance.get(i).and_then(|row| row.get(i)).copied().unwrap_or(0.0);
+        if coefficient > 0.0 {
+            variance += (2.0 * part / coefficient).powi(2) * spread;
+        }
+    }
+    if variance > 0.0 { (2.0 * u.variance().powi(2) / variance).max(LEAST_DOF) } else { LEAST_DOF }
 }
 
 impl Measurand for StaticBias {
@@ -36,7 +67,7 @@ impl Measurand for StaticBias {
             &gyro.channel,
             value,
             "deg/h",
-            Spread::Normal { standard_uncertainty },
+            Spread::StudentT { standard_uncertainty, dof: degrees_of_freedom(gyro, &u) },
             "mean",
         );
         estimate = match removed {

@@ -53,10 +53,13 @@ pub struct Tally {
     pub name: &'static str,
     pub hours: f64,
     pub rows: Vec<Row>,
+    /// Records in which a line was found though there is none.
+    pub false_lines: usize,
 }
 
 impl Tally {
     pub fn print(&self) {
+        println!("{:>6} {:>4} h records with a false line: {}", self.name, self.hours, self.false_lines);
         for r in &self.rows {
             let share = |n: usize| n as f64 / r.records as f64;
             let width = |q: f64| {
@@ -171,6 +174,7 @@ pub fn study(mix: &Mix, hours: f64, tau0_s: f64, records: u64, seed: u64) -> Tal
         failed: 0,
         widths: vec![],
     };
+    let mut false_lines = 0;
     let mut rows: Vec<Row> = ids.iter().map(blank).collect();
     for run_number in 0..records {
         let seed = seed + run_number;
@@ -181,13 +185,14 @@ pub fn study(mix: &Mix, hours: f64, tau0_s: f64, records: u64, seed: u64) -> Tal
         let truths = [7.31 + slow, sigma(100.0), sigma(10.0), mix.model.n, mix.model.b];
         let pairs: Vec<(&'static str, f64)> = ids.iter().copied().zip(truths).collect();
         let record = run(rate, tau0_s, &limits(&pairs));
+        false_lines += usize::from(!record.lines.is_empty());
         for (row, (id, truth)) in rows.iter_mut().zip(pairs) {
             let found = record.measurands.iter().find(|m| m.id == id).expect("a row");
             tally(row, found, truth, if id == "static_bias" { known } else { truth });
         }
     }
     rows.iter_mut().for_each(|r| r.widths.sort_by(f64::total_cmp));
-    Tally { name: mix.name, hours, rows }
+    Tally { name: mix.name, hours, rows, false_lines }
 }
 
 fn tally(row: &mut Row, found: &MeasurandRecord, truth: f64, known: f64) {
