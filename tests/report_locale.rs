@@ -35,6 +35,9 @@ const LISTED: &[(&str, &[&str])] = &[
 /// Tables whose ids come from other parts of the program: a key is in use when its id stands in a source file.
 const OPEN: &[&str] = &["how", "condition", "observed", "option", "role", "term", "unit", "convention"];
 
+/// Dotted names in the sources that only look like keys: tables of procedures.
+const NO_KEYS: &[&str] = &["measurand.options"];
+
 fn sources(folder: &Path, out: &mut Vec<String>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -91,7 +94,8 @@ fn no_key_is_missing() {
     let (keys, _) = used();
     assert!(keys.len() > 100, "the search for keys found only {}", keys.len());
     let known = table(Lang::En);
-    let missing: Vec<&String> = keys.iter().filter(|k| !known.contains_key(*k)).collect();
+    let missing: Vec<&String> =
+        keys.iter().filter(|k| !known.contains_key(*k) && !NO_KEYS.contains(&k.as_str())).collect();
     assert!(missing.is_empty(), "not in the table: {missing:?}");
     for (prefix, ids) in LISTED {
         for id in *ids {
