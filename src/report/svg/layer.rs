@@ -237,6 +237,14 @@ pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, say: impl Fn(&st
         })
         .filter_map(|p| plot.at(*p))
         .collect();
+    let levels: Vec<f64> = panel
+        .layers
+        .iter()
+        .filter_map(|layer| match layer {
+            Layer::Horizontal { at, .. } => plot.at_y(*at),
+            _ => None,
+        })
+        .collect();
     let mut taken: Vec<[f64; 4]> = vec![];
     for layer in &panel.layers {
         let Layer::Label { at, text: words } = layer else { continue };
@@ -268,7 +276,9 @@ pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, say: impl Fn(&st
             ];
             let covered = drawn.iter().filter(|p| contains(&place, **p)).count() as f64;
             let crossed = taken.iter().filter(|other| overlap(&place, other)).count() as f64;
-            let cost = covered + 1000.0 * crossed + 0.1 * i as f64;
+            let struck =
+                levels.iter().filter(|y| **y >= place[1] - 2.0 && **y <= place[1] + h + 2.0).count() as f64;
+            let cost = covered + 8.0 * struck + 1000.0 * crossed + 0.1 * i as f64;
             if cost < least {
                 (least, best) = (cost, place);
             }

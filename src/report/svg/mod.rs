@@ -96,7 +96,9 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
         frame(&mut body, &plot);
         layer::labels(&mut body, &plot, panel, say);
         description.push(format!("{} / {}: {}", y.title, x.title, legend.words().join("; ")));
-        top += height_of_plot + if last { BELOW } else { BETWEEN };
+        // Another panel below words of an abscissa keeps its distance from them.
+        let apart = if i + 1 < panels.len() { BETWEEN } else { 0.0 };
+        top += height_of_plot + if last { BELOW + apart } else { BETWEEN };
     }
 
     let mut out = String::with_capacity(body.len() + 700);

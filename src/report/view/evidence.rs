@@ -265,7 +265,7 @@ fn row_name(id: &str, words: Words) -> String {
 
 fn probability(p: f64, words: Words) -> String {
     if p < 1e-6 {
-        return format!("<\u{202f}{}", digits(1e-6, 1, words.lang));
+        return format!("<\u{202f}{}", limit(1e-6, words.lang));
     }
     if p < 1e-3 { digits(p, 2, words.lang) } else { limit_digits(p, 3, words.lang) }
 }

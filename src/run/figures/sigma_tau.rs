@@ -34,7 +34,7 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
         shown.iter().filter(|p| p.0 <= longest_s * RELIABLE).map(|p| (p.0, p.1)).collect();
     let mut tail: Vec<(f64, f64)> =
         shown.iter().filter(|p| p.0 > longest_s * RELIABLE).map(|p| (p.0, p.1)).collect();
-    let (tail_points, reliable_copy) = (tail.clone(), reliable.clone());
+    let (tail_points, readable) = (tail.clone(), reliable.clone());
     if let (Some(last), false) = (reliable.last(), tail.is_empty()) {
         tail.insert(0, *last);
     }
@@ -78,16 +78,17 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
                 at: (100.0, drift), text: format!("σ₁₀₀ = {} °/h", significant(drift, 3))
             });
     }
-    let lowest = reliable_copy.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a });
+    let lowest = readable.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a });
     if let Some(at) = lowest {
-        layers.push(Layer::Label { at, text: format!("{} °/h", significant(at.1, 3)) });
+        layers.push(Layer::Label { at, text: format!("min σ = {} °/h", significant(at.1, 3)) });
     }
     if let Some(n) = gyro.identification.angle_random_walk.value {
         let within =
             shown.first().is_some_and(|p| p.0 <= 3600.0) && shown.last().is_some_and(|p| p.0 >= 3600.0);
         if within {
             let points = vec![(3600.0, n)];
-            layers.push(Layer::Points { points, style: Style::Term(1), legend: String::new() });
+            let style = TERMS.iter().position(|t| *t == NoiseType::AngleRandomWalk).unwrap_or(0);
+            layers.push(Layer::Points { points, style: Style::Term(style as u8), legend: String::new() });
             layers.push(Layer::Label { at: (3600.0, n), text: format!("N = {} °/√h", significant(n, 3)) });
         }
     }

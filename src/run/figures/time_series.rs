@@ -96,7 +96,7 @@ fn layers(
     let range = bins.iter().enumerate().map(|(i, b)| (middle(i), b.min, b.max)).collect();
     let mean: Vec<(f64, f64)> = bins.iter().enumerate().map(|(i, b)| (middle(i), b.mean)).collect();
     // A range far wider than the means would hide them: white noise at a high rate says nothing here.
-    if envelope.bin_len > 1 && median_range(envelope) < 3.0 * spread(&mean) {
+    if envelope.bin_len > 1 && median_range(envelope) < spread(&mean) {
         layers.push(Layer::Band { points: range, style, legend: "figure.legend.range".into() });
     }
     layers.push(line(mean, style, legend));

@@ -1,0 +1,169 @@
+//! Every id that a run can write into a result has words, asked of what writes them: the conditions, the measurands and
+//! real runs over the samples.
+
+use sagnac::condition::temperature_track::{Extreme, TemperatureFacts};
+use sagnac::condition::{CONDITIONS, Facts, WarmUpFact, judge_all};
+use sagnac::measurand::ids::{MEASURANDS, Test};
+use sagnac::noise::model::TERMS;
+use sagnac::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
+use sagnac::procedure::{effective, load, load_limits};
+use sagnac::record::{Integrity, RunRecord, UnitUnderTest};
+use sagnac::run::{Request, execute};
+use sagnac::text::{Lang, lookup};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+fn root(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+fn missing(keys: impl IntoIterator<Item = String>) -> BTreeSet<String> {
+    keys.into_iter().filter(|k| lookup(Lang::En, k).is_none()).collect()
+}
+
+/// A sample tested by the static procedure, with every measurand that this version gives.
+fn run(sample: &str) -> RunRecord {
+    let mut procedure = load(&root("procedures/static-bias.toml")).unwrap();
+    let limits = load_limits(&root("procedures/limits/sample-unit.toml")).unwrap();
+    procedure.value.measurands = MEASURANDS
+        .iter()
+        .filter(|m| m.available && m.test == Test::Static)
+        .map(|id| MeasurandSpec { id, channel: None, earth_rate: EarthRate::Remove, span: 0..0 })
+        .collect();
+    let effective = effective(&procedure, Some(&limits));
+    let source = sagnac::ingest::open(&root(sample)).unwrap();
+    let request = Request {
+        kind: "run",
+        procedure: &procedure.value,
+        procedure_record: Some(procedure.record(Some(&limits))),
+        limits: &effective,
+        source: &source,
+        use_stamps: true,
+        unit: UnitUnderTest { serial: Some("SN-1".into()), ..UnitUnderTest::default() },
+        operator: None,
+        station: None,
+        now: chrono::DateTime::from_timestamp(1_795_000_000, 0).unwrap(),
+        taus: None,
+        exact: false,
+    };
+    execute(&request, &mut |_, _| {}).unwrap().record
+}
+
+#[test]
+fn every_id_of_a_run_has_words() {
+    let mut measured = BTreeSet::new();
+    for sample in ["samples/unit-pass.csv", "samples/unit-faults.csv"] {
+        let r = run(sample);
+        let mut keys = BTreeSet::new();
+        for m in &r.measurands {
+            measured.insert(m.id.clone());
+            keys.extend([format!("measurand.{}", m.id), format!("how.{}", m.method)]);
+            keys.extend(m.notes.iter().map(|n| n.id.to_owned()));
+        }
+        keys.extend(r.noise_models.iter().map(|m| format!("how.{}", m.method)));
+        keys.extend(r.options.iter().map(|o| format!("option.{}", o.name)));
+        keys.extend(r.integrity.faults.iter().map(|f| format!("fault.{}", f.kind)));
+        keys.extend(r.window.excluded.iter().map(|e| format!("excluded.{}", e.reason)));
+        keys.extend(r.clauses.iter().map(|c| format!("clause.{}", c.status)));
+        keys.extend(r.recording.iter().flat_map(|f| &f.columns).map(|c| format!("role.{}", c.role)));
+        keys.extend(r.summary.iter().chain(&r.errors).map(|n| n.id.to_owned()));
+        keys.extend(r.power.iter().map(|p| p.message.id.to_owned()));
+        assert!(keys.len() > 30, "{sample} shows {} ids only", keys.len());
+        assert!(missing(keys.clone()).is_empty(), "{sample}: {:?}", missing(keys));
+    }
+    let given = MEASURANDS.iter().filter(|m| m.available && m.test == Test::Static);
+    let unseen: Vec<&str> = given.map(|m| m.id).filter(|id| !measured.contains(*id)).collect();
+    assert!(unseen.is_empty(), "no run gave {unseen:?}, so the names of their methods were not seen");
+}
+
+#[test]
+fn every_measurand_and_term_has_a_name() {
+    assert!(MEASURANDS.len() > 40 && TERMS.len() == 5);
+    assert_eq!(missing(MEASURANDS.iter().map(|m| format!("measurand.{}", m.id))), BTreeSet::new());
+    assert_eq!(missing(TERMS.iter().map(|t| format!("term.{}", t.id()))), BTreeSet::new());
+}
+
+#[test]
+fn every_condition_has_words_for_what_it_requires_and_observes() {
+    let mut procedure = load(&root("procedures/static-bias.toml")).unwrap().value;
+    let strict = Some(Allowance::Count(0));
+    procedure.conditions.faults = FaultBudget {
+        gaps: strict,
+        missing_samples: Some(Allowance::Share(1e-6)),
+        longest_gap_s: Some(1.0),
+        duplicate_timestamps: strict,
+        backward_timestamps: strict,
+        non_finite: strict,
+        unparsable: strict,
+        outliers: strict,
+        saturated: strict,
+        stuck: strict,
+        timestamp_jitter_s: Some(1e-3),
+    };
+    procedure.sample_rate_hz = Some(1.0);
+    procedure.conditions.supplies = vec![SupplyCondition {
+        channel: "supply".into(),
+        nominal_v: 5.0,
+        tolerance_v: 0.1,
+        sensor_uncertainty_v: 0.01,
+        coverage_factor: 2.0,
+    }];
+    let integrity = Integrity {
+        gaps: 1,
+        missing_samples: 1,
+        duplicate_timestamps: 1,
+        backward_timestamps: 1,
+        non_finite: 1,
+        unparsable: 1,
+        outliers: 1,
+        saturated: 1,
+        stuck: 1,
+        timestamp_jitter_s: Some(1.0),
+        ..Integrity::default()
+    };
+    let far = Extreme { value: 99.0, time_s: 1.0 };
+    let track = TemperatureFacts {
+        usable: 10,
+        unusable: 1,
+        mean: 50.0,
+        raw: (0.0, 99.0),
+        smooth_min: Extreme { value: 0.0, time_s: 0.0 },
+        smooth_max: far,
+        share_outside: 0.5,
+        steepest_deg_c_per_h: Some(1.0),
+        smoothing_s: 60.0,
+    };
+    let held: BTreeMap<(String, usize), TemperatureFacts> =
+        ["temperature", "supply"].map(|id| ((id.to_owned(), 0), track.clone())).into();
+    let warm_up = [WarmUpFact {
+        channel: "rate".into(),
+        residual_deg_h: 10.0,
+        time_constant_s: 600.0,
+        significance: 50.0,
+        bias_uncertainty_deg_h: 0.001,
+    }];
+    let records = judge_all(&Facts {
+        procedure: &procedure,
+        integrity: &integrity,
+        rows: 1000,
+        sample_interval_s: 1.1,
+        has_stamps: true,
+        usable_s: 1.0,
+        longest_gap_s: 100.0,
+        held: &held,
+        warm_up: &warm_up,
+        today: chrono::NaiveDate::from_ymd_opt(2100, 1, 1).unwrap(),
+    });
+    let kinds: BTreeSet<&str> = records.iter().filter_map(|c| c.id.split('.').next()).collect();
+    // One kind a condition, ten more of faults.
+    assert_eq!(kinds.len(), CONDITIONS.len() - 1 + 11, "{kinds:?}");
+    let mut keys: BTreeSet<String> = kinds.iter().map(|k| format!("condition.{k}")).collect();
+    for c in &records {
+        keys.extend(c.observed.keys().map(|name| format!("observed.{name}")));
+        keys.extend([&c.message, &c.requirement].into_iter().flatten().map(|n| n.id.to_owned()));
+        let requirement = c.requirement.as_ref().map(|r| r.say(Lang::En)).unwrap_or_default();
+        assert!(!requirement.is_empty() && !requirement.contains('{'), "{}: {requirement}", c.id);
+        assert_eq!(requirement, c.required);
+    }
+    assert!(missing(keys.clone()).is_empty(), "{:?}", missing(keys));
+}
