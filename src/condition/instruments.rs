@@ -1,21 +1,10 @@
 //! Calibration of the instruments on the day of the test.
 
 use super::{Condition, Facts, record};
-use crate::procedure::model::Instrument;
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::text::Note;
-use chrono::NaiveDate;
 
 pub(super) struct Instruments;
-
-/// State of an instrument on a day: its calibration holds to the end of the due day.
-pub fn status(instrument: &Instrument, today: NaiveDate) -> ConditionStatus {
-    match instrument.calibration_due {
-        Some(due) if due >= today => ConditionStatus::Ok,
-        _ if instrument.required => ConditionStatus::Invalid,
-        _ => ConditionStatus::Remark,
-    }
-}
 
 impl Condition for Instruments {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
@@ -23,7 +12,7 @@ impl Condition for Instruments {
         instruments
             .iter()
             .map(|instrument| {
-                let status = status(instrument, facts.today);
+                let status = instrument.record_on(facts.today).status;
                 let key = match (status, instrument.calibration_due) {
                     (ConditionStatus::Ok, _) => "note.condition.calibration_valid",
                     (_, Some(_)) => "note.condition.calibration_overdue",

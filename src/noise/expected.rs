@@ -7,7 +7,7 @@
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, position, toggled};
-use super::identify::{LIMIT_RISE, Whittle};
+use super::identify::{LIMIT_RISE, Whittle, rival_of};
 use super::model::{NoiseModel, TERMS};
 use super::profile::Profile;
 use crate::estimate::{chi_square_quantile, normal_probability, normal_quantile};
@@ -193,6 +193,19 @@ impl Case {
         Some((held - top).max(0.0).sqrt())
     }
 
+    /// Root of the rise of the deviance at `value` when the term is sized: a rival too weak to be claimed widens the
+    /// interval, in about half of the records, for it sits at its boundary in the others.
+    fn sized_score(&self, value: f64) -> Option<f64> {
+        let alone = self.score(&self.structure, value)?;
+        match rival_of(self.term) {
+            Some(rival) if !self.structure[rival] => {
+                let shared = self.score(&toggled(&self.structure, rival, true), value)?;
+                Some(0.5 * (alone + shared.min(alone)))
+            }
+            _ => Some(alone),
+        }
+    }
+
     /// Terms left free when the term is tested: the ramp is one for rate random walk, and where the unit has one.
     fn claim_structure(&self) -> Structure {
         let mut all = [true; 5];
@@ -281,7 +294,7 @@ fn fail_probability(
     risk: f64,
 ) -> Option<f64> {
     let pair = Pair::new(term, 1.5 * limit, background, samples, tau0_s)?;
-    let beyond = pair.scatter(|c| c.score(&c.structure, limit))?.needs(normal_quantile(1.0 - risk));
+    let beyond = pair.scatter(|c| c.sized_score(limit))?.needs(normal_quantile(1.0 - risk));
     let (claim, rho) = (pair.claim_needs()?, pair.correlation());
     let rest = (1.0 - rho * rho).sqrt();
     // Only a claimed term can be failed.
@@ -298,7 +311,7 @@ fn pass_probability(
 ) -> Option<f64> {
     let pair = Pair::new(term, 0.5 * limit, background, samples, tau0_s)?;
     // Scores of the limit seen from below: a larger fluctuation brings the unit closer to it.
-    let below = -pair.scatter(|c| c.score(&c.structure, limit))?.needs(normal_quantile(1.0 - risk));
+    let below = -pair.scatter(|c| c.sized_score(limit))?.needs(normal_quantile(1.0 - risk));
     let limited = -pair
         .scatter(|c| {
             let mut nuisance = [true; 5];

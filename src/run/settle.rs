@@ -104,20 +104,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         lines: vec![],
         noise_models: vec![],
         power: vec![],
-        instruments: procedure
-            .instruments
-            .iter()
-            .map(|i| InstrumentRecord {
-                name: i.name.clone(),
-                serial: i.serial.clone(),
-                calibration_due: i.calibration_due.map(|d| d.to_string()),
-                status: match i.calibration_due {
-                    Some(due) if due >= today => ConditionStatus::Ok,
-                    _ if i.required => ConditionStatus::Invalid,
-                    _ => ConditionStatus::Remark,
-                },
-            })
-            .collect(),
+        instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure
             .waivers
             .iter()
