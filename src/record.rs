@@ -228,7 +228,7 @@ pub struct Integrity {
     pub duplicate_timestamps: u64,
     /// Rows whose stamp is earlier than one before.
     pub backward_timestamps: u64,
-    /// Fields that hold NaN or infinity, or are empty.
+    /// Fields that hold NaN, infinity or a number beyond 1e60, or are empty.
     pub non_finite: u64,
     /// Fields that are no number.
     pub unparsable: u64,

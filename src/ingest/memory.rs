@@ -1,6 +1,7 @@
 //! A recording in memory, delivered in blocks as a file would be.
 
 use super::error::{IngestError, IngestErrorKind};
+use super::number::usable;
 use super::{Block, Column, FieldFault, FieldFaultKind, FileFacts, OnBlock, Opened, Table};
 use std::path::Path;
 
@@ -53,12 +54,12 @@ impl Table for Memory {
                 if let Some(column) = block.columns.get_mut(slot) {
                     column.extend_from_slice(values);
                 }
-                for (i, v) in values.iter().enumerate().filter(|(_, v)| !v.is_finite()) {
+                for (i, v) in values.iter().enumerate().filter(|(_, v)| !usable(**v)) {
                     let row = (start + i) as u64 + 1;
                     block.fault(|| non_finite(slot, row, v.to_string()), slot, FieldFaultKind::NonFinite);
                 }
                 if let Some(column) = block.columns.get_mut(slot) {
-                    column.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = f64::NAN);
+                    column.iter_mut().filter(|v| !usable(**v)).for_each(|v| *v = f64::NAN);
                 }
             }
             if on_block(&mut block).is_break() {

@@ -42,7 +42,7 @@ pub struct Column {
 /// Why a field is no finite number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldFaultKind {
-    /// Empty, null, NaN or infinite.
+    /// Empty, null, NaN, infinite, or beyond 1e60 in magnitude.
     NonFinite,
     /// No number, or the row has the wrong number of fields.
     Unparsable,

@@ -3,6 +3,7 @@
 use super::compressed::{Packing, digest, io_error};
 use super::error::{IngestError, IngestErrorKind};
 use super::memory::non_finite;
+use super::number::usable;
 use super::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -234,8 +235,8 @@ where
         );
         column.resize(rows, f64::NAN);
     }
-    if column.iter().any(|v| !v.is_finite()) {
-        for (i, v) in column.iter_mut().enumerate().filter(|(_, v)| !v.is_finite()) {
+    if column.iter().any(|v| !usable(*v)) {
+        for (i, v) in column.iter_mut().enumerate().filter(|(_, v)| !usable(**v)) {
             let (row, text) = (block.first_row + i as u64, *v);
             let null = levels.get(i).is_some_and(|&l| l == 0) && read.len() < rows;
             let describe = || non_finite(slot, row, if null { "null".to_owned() } else { text.to_string() });

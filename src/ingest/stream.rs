@@ -257,6 +257,9 @@ impl State<'_> {
                 None => Some((fault.row - 1) as f64 * self.plan.clock.interval_s),
             };
             let (kind, word) = match fault.kind {
+                FieldFaultKind::NonFinite if fault.text.trim().parse().is_ok_and(f64::is_finite) => {
+                    ("non_finite", "too large a number")
+                }
                 FieldFaultKind::NonFinite => ("non_finite", "no finite number"),
                 FieldFaultKind::Unparsable => ("unparsable", "no number"),
             };
