@@ -193,19 +193,6 @@ impl Case {
         Some((held - top).max(0.0).sqrt())
     }
 
-    /// Root of the rise of the deviance at `value` when the term is sized: a rival too weak to be claimed widens the
-    /// interval, in about half of the records, for it sits at its boundary in the others.
-    fn sized_score(&self, value: f64) -> Option<f64> {
-        let alone = self.score(&self.structure, value)?;
-        match rival_of(self.term) {
-            Some(rival) if !self.structure[rival] => {
-                let shared = self.score(&toggled(&self.structure, rival, true), value)?;
-                Some(0.5 * (alone + shared.min(alone)))
-            }
-            _ => Some(alone),
-        }
-    }
-
     /// Terms left free when the term is tested: the ramp is one for rate random walk, and where the unit has one.
     fn claim_structure(&self) -> Structure {
         let mut all = [true; 5];
@@ -222,6 +209,15 @@ impl Case {
         }
         let without = self.deviance(&toggled(&all, self.term, false), None)?;
         Some((without - self.deviance(&all, None)?).max(0.0).sqrt())
+    }
+
+    /// Standard deviation of the term without its rival over that with the rival free; `None` without a rival that the
+    /// unit lacks.
+    fn rival_ratio(&self) -> Option<f64> {
+        let rival = rival_of(self.term).filter(|r| !self.structure[*r])?;
+        let free = self.relative_sigma(&toggled(&self.structure, rival, true));
+        let ratio = self.relative_sigma(&self.structure) / free;
+        (ratio.is_finite() && ratio > 0.0).then_some(ratio.min(1.0))
     }
 
     /// Relative standard deviation of the estimated coefficient within a structure.
@@ -294,11 +290,20 @@ fn fail_probability(
     risk: f64,
 ) -> Option<f64> {
     let pair = Pair::new(term, 1.5 * limit, background, samples, tau0_s)?;
-    let beyond = pair.scatter(|c| c.sized_score(limit))?.needs(normal_quantile(1.0 - risk));
+    let guard = normal_quantile(1.0 - risk);
+    let score = pair.scatter(|c| c.score(&c.structure, limit))?;
     let (claim, rho) = (pair.claim_needs()?, pair.correlation());
     let rest = (1.0 - rho * rho).sqrt();
     // Only a claimed term can be failed.
-    Some(normal_mean(|u| if u > claim { normal_probability((rho * u - beyond) / rest) } else { 0.0 }))
+    let failed = |beyond: f64| {
+        normal_mean(|u| if u > claim { normal_probability((rho * u - beyond) / rest) } else { 0.0 })
+    };
+    let alone = failed(score.needs(guard));
+    let Some(r) = pair.here.rival_ratio() else { return Some(alone) };
+    // In half of the records a rival too weak to be claimed is above zero by chance, takes a part of the term and
+    // widens its interval: the estimate then lies lower by a half-normal share of what the rival adds to its scatter.
+    let taken = (2.0 / std::f64::consts::PI).sqrt() * (1.0 - r * r).sqrt();
+    Some(0.5 * (alone + failed(score.needs((guard + taken) / r))))
 }
 
 fn pass_probability(
@@ -311,7 +316,7 @@ fn pass_probability(
 ) -> Option<f64> {
     let pair = Pair::new(term, 0.5 * limit, background, samples, tau0_s)?;
     // Scores of the limit seen from below: a larger fluctuation brings the unit closer to it.
-    let below = -pair.scatter(|c| c.sized_score(limit))?.needs(normal_quantile(1.0 - risk));
+    let below = -pair.scatter(|c| c.score(&c.structure, limit))?.needs(normal_quantile(1.0 - risk));
     let limited = -pair
         .scatter(|c| {
             let mut nuisance = [true; 5];
