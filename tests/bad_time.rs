@@ -29,8 +29,7 @@ fn read(name: &str, text: &str) -> Value {
     std::fs::write(dir.path().join(name), text).unwrap();
     let (analysed, run) = both(dir.path(), name);
     assert_eq!((analysed.code, run.code), (0, 3), "{name}: {analysed:?} {run:?}");
-    let result = result(&dir.path().join("a"));
-    result
+    result(&dir.path().join("a"))
 }
 
 fn has_fault(result: &Value, kind: &str, row: u64, count: u64) -> bool {

@@ -153,7 +153,7 @@ pub fn names(folder: &Path) -> Vec<String> {
 pub fn assert_no_nan(folder: &Path) {
     for (path, bytes) in files(folder) {
         let mut text = String::from_utf8(bytes).unwrap();
-        for quoted in ["NaN", "nan", "inf"] {
+        for quoted in ["NaN", "nan", "inf", "-Infinity"] {
             text = text.replace(&format!("`{quoted}`"), "").replace(&format!("\\`{quoted}\\`"), "");
         }
         let words = text.split(|c: char| !c.is_ascii_alphabetic());
