@@ -54,7 +54,7 @@ impl Measurand for Russian {
 
 /// Share of its upper limit that random walk is taken to have where the record does not show it (by simulation: so
 /// that units with a walk just too weak to be claimed are not passed too often).
-const UNSEEN_WALK: f64 = 0.4;
+const UNSEEN_WALK: f64 = 0.6;
 
 /// Degrees of freedom of the variance of the means under the noise of this record: correlated noise leaves few, and
 /// it need not be certain to be there.
