@@ -193,6 +193,13 @@ impl Case {
         Some((held - top).max(0.0).sqrt())
     }
 
+    /// The score with the rival free as well.
+    fn score_with_rival(&self, value: f64) -> Option<f64> {
+        let alone = self.score(&self.structure, value)?;
+        let Some(rival) = rival_of(self.term) else { return Some(alone) };
+        Some(self.score(&toggled(&self.structure, rival, true), value)?.min(alone))
+    }
+
     /// Terms left free when the term is tested: the ramp is one for rate random walk, and where the unit has one.
     fn claim_structure(&self) -> Structure {
         let mut all = [true; 5];
@@ -298,12 +305,13 @@ fn fail_probability(
     let failed = |beyond: f64| {
         normal_mean(|u| if u > claim { normal_probability((rho * u - beyond) / rest) } else { 0.0 })
     };
-    let alone = failed(score.needs(guard));
-    let Some(r) = pair.here.rival_ratio() else { return Some(alone) };
-    // In half of the records a rival too weak to be claimed is above zero by chance, takes a part of the term and
-    // widens its interval: the estimate then lies lower by a half-normal share of what the rival adds to its scatter.
+    let Some(r) = pair.here.rival_ratio() else { return Some(failed(score.needs(guard))) };
+    // A rival too weak to be claimed widens the interval. Where chance puts it at zero, it comes in as the term is
+    // lowered; where chance puts it above, it takes a part of the term: the estimate then lies lower by a half-normal
+    // share of what the rival adds to its scatter.
+    let shared = pair.scatter(|c| c.score_with_rival(limit))?;
     let taken = (2.0 / std::f64::consts::PI).sqrt() * (1.0 - r * r).sqrt();
-    Some(0.5 * (alone + failed(score.needs((guard + taken) / r))))
+    Some(0.5 * (failed(shared.needs(guard)) + failed(score.needs((guard + taken) / r))))
 }
 
 fn pass_probability(
@@ -347,6 +355,17 @@ pub fn expected_upper_limit(
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn a_record_too_short_for_a_limit_passes_nothing() {
+        let background = NoiseModel { n: 0.002, b: 0.003, ..Default::default() };
+        for hours in [0.5, 1.0, 2.0, 10.0] {
+            let samples = (hours * 3600.0) as u64;
+            let p = decision_power(NoiseType::RateRandomWalk, 0.004, &background, samples, 1.0, 0.05).unwrap();
+            let limit = p.expected_upper_limit_at_zero.unwrap();
+            assert!(limit > 0.004 && p.pass_probability_at_half < 0.3, "{hours} h: {p:?}");
+        }
+    }
+
     use super::*;
 
     #[test]
