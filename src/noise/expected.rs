@@ -255,7 +255,8 @@ impl Pair {
     fn scatter(&self, of: impl Fn(&Case) -> Option<f64>) -> Option<Score> {
         let (mean, above) = (of(&self.here)?, of(&self.above)?);
         let slope = (above - mean) / STEP;
-        let sigma = self.here.relative_sigma(&self.here.structure);
+        // Beyond its own size a term is not seen at all, and the laws below, made for small scatter, would run away.
+        let sigma = self.here.relative_sigma(&self.here.structure).min(1.0);
         // The square of the coefficient is estimated like a χ², whose median lies below its mean.
         let shift = if self.here.term == RAMP { 0.0 } else { 2.0 / 3.0 * sigma * sigma };
         Some(Score { mean: mean - shift * slope, sd: (slope.abs() * sigma).clamp(0.3, 3.0) })
@@ -360,7 +361,8 @@ mod tests {
         let background = NoiseModel { n: 0.002, b: 0.003, ..Default::default() };
         for hours in [0.5, 1.0, 2.0, 10.0] {
             let samples = (hours * 3600.0) as u64;
-            let p = decision_power(NoiseType::RateRandomWalk, 0.004, &background, samples, 1.0, 0.05).unwrap();
+            let p =
+                decision_power(NoiseType::RateRandomWalk, 0.004, &background, samples, 1.0, 0.05).unwrap();
             let limit = p.expected_upper_limit_at_zero.unwrap();
             assert!(limit > 0.004 && p.pass_probability_at_half < 0.3, "{hours} h: {p:?}");
         }

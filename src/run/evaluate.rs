@@ -126,11 +126,17 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
         })
         .collect();
     if gyros.iter().all(|g| g.digest.samples < 2) {
-        return Err(RunError::Nothing(format!(
-            "{}: no usable sample is left after the warm-up of {} s and the exclusions",
-            request.source.path().display(),
-            procedure.conditions.warm_up_s
-        )));
+        let path = request.source.path().display();
+        return Err(RunError::Nothing(if window.usable_s > 0.0 || procedure.conditions.warm_up_s == 0.0 {
+            format!(
+                "{path}: the gyro channels hold fewer than two usable numbers; check the column and its unit"
+            )
+        } else {
+            format!(
+                "{path}: nothing is left after the warm-up of {} s and the exclusions; the recording lasts {:.6} s",
+                procedure.conditions.warm_up_s, report.duration_s
+            )
+        }));
     }
     declare_rails(&mut report.integrity, overview.saturated());
     tidy_integrity(&mut report.integrity, tau0_s, &gyros);

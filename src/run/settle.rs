@@ -7,9 +7,8 @@ use crate::figure::Figure;
 use crate::ingest::IngestError;
 use crate::measurand::GyroEvidence;
 use crate::record::{
-    ColumnRecord, ConditionRecord, ConditionStatus, FigureRecord, InstrumentRecord, Integrity, LineRecord,
-    MeasurandRecord, NoiseModelRecord, OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile,
-    RunRecord, Window,
+    ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord, NoiseModelRecord,
+    OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
 };
 use crate::text::Note;
 
