@@ -73,7 +73,7 @@ pub fn identify_in_range(
 
 /// Puts the notes on the estimates, and the widening on their spreads.
 fn annotated(mut ranged: RangedIdentification) -> RangedIdentification {
-    let misfit = ranged.identification.misfit.clone();
+    let misfit = ranged.identification.misfit;
     let (highest_hz, widened) = (ranged.highest_hz, ranged.widened);
     for estimate in ranged.identification.estimates_mut() {
         if let Some(highest_hz) = highest_hz {

@@ -235,8 +235,7 @@ fn measure(request: &Request<'_>, found: &Found) -> Vec<crate::record::Measurand
 }
 
 fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
-    let wanted =
-        |id: &str| request.procedure.report.figures.as_ref().is_none_or(|list| list.iter().any(|f| *f == id));
+    let wanted = |id: &str| request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id));
     let mut drawn = Vec::new();
     let time_series_wanted = wanted("rate") || wanted("temperature");
     for gyro in &found.gyros {
