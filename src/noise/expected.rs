@@ -7,7 +7,7 @@
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, position, toggled};
-use super::identify::{LIMIT_RISE, Whittle};
+use super::identify::{LIMIT_RISE, Whittle, rival_of};
 use super::model::{NoiseModel, TERMS};
 use super::profile::Profile;
 use crate::estimate::{chi_square_quantile, normal_probability, normal_quantile};
@@ -201,6 +201,11 @@ impl Case {
         all
     }
 
+    /// Terms left free when a claimed term is bounded from below: a rival too weak to be claimed is one of them.
+    fn bounding_structure(&self) -> Structure {
+        rival_of(self.term).map_or(self.structure, |rival| toggled(&self.structure, rival, true))
+    }
+
     /// Root of the likelihood ratio by which the term is claimed.
     fn claim_score(&self) -> Option<f64> {
         let all = self.claim_structure();
@@ -281,7 +286,8 @@ fn fail_probability(
     risk: f64,
 ) -> Option<f64> {
     let pair = Pair::new(term, 1.5 * limit, background, samples, tau0_s)?;
-    let beyond = pair.scatter(|c| c.score(&c.structure, limit))?.needs(normal_quantile(1.0 - risk));
+    let beyond =
+        pair.scatter(|c| c.score(&c.bounding_structure(), limit))?.needs(normal_quantile(1.0 - risk));
     let (claim, rho) = (pair.claim_needs()?, pair.correlation());
     let rest = (1.0 - rho * rho).sqrt();
     // Only a claimed term can be failed.

@@ -262,7 +262,7 @@ fn estimate(
 }
 
 /// The term that can stand for this one at the lowest frequencies.
-fn rival_of(term: usize) -> Option<usize> {
+pub(super) fn rival_of(term: usize) -> Option<usize> {
     match term {
         FLICKER => Some(WALK),
         WALK => Some(FLICKER),
