@@ -208,11 +208,6 @@ impl Case {
         all
     }
 
-    /// Terms left free when a claimed term is bounded from below: a rival too weak to be claimed is one of them.
-    fn bounding_structure(&self) -> Structure {
-        rival_of(self.term).map_or(self.structure, |rival| toggled(&self.structure, rival, true))
-    }
-
     /// Root of the likelihood ratio by which the term is claimed.
     fn claim_score(&self) -> Option<f64> {
         let all = self.claim_structure();
