@@ -173,7 +173,7 @@ fn one_extreme_number_does_not_spoil_the_record() {
 fn records_of_extreme_numbers_are_refused_or_evaluated_without_overflow() {
     let scaled = |scale: f64| changed(|r, _| Some(format!("{},{:e},20.0", r - 1, scale * white(1, r))));
     for scale in [1e307, 1e300, 1e160] {
-        refused("vast.csv", scaled(scale).as_bytes(), &["no usable sample is left"]);
+        refused("vast.csv", scaled(scale).as_bytes(), &["fewer than two usable numbers"]);
     }
     for scale in [1e50, 1e-160, 1e-310, 5e-324] {
         let dir = tempdir().unwrap();

@@ -130,7 +130,7 @@ fn wrong_usages_of_analyze_are_refused_in_one_message() {
         (&["--time", "none", "--sample-rate", "NaN"], &["sample rate NaN", "positive"]),
         (&["--warm-up", "NaN"], &["--warm-up", "NaN"]),
         (&["--warm-up=-5"], &["--warm-up", "-5"]),
-        (&["--warm-up", "1e9"], &["no usable sample is left"]),
+        (&["--warm-up", "1e9"], &["nothing is left after the warm-up of"]),
     ];
     for (options, fragments) in cases {
         refused(dir.path(), &[options, &["--out", "o"][..]].concat(), fragments);

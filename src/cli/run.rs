@@ -48,9 +48,11 @@ fn attempt(args: &RunArgs) -> Result<u8, String> {
         .clone()
         .unwrap_or_else(|| place::default_folder(&procedure.value.id, args.serial.as_deref(), now));
     let folder = StagedFolder::begin(&out).map_err(|e| format!("error: {e}\n"))?;
-    // A recording that cannot even be opened still gets its report: the verdict is an error, and says why.
+    // A recording that is there and cannot be opened still gets its report: the verdict is an error, and says why. A
+    // name that is no file is a slip of the pen, which must not cost an earlier result.
     let (source, refused) = match crate::ingest::open(&args.recording) {
         Ok(source) => (source, None),
+        Err(error) if !args.recording.exists() => return Err(format!("error: {error}\n")),
         Err(error) => (Source::unopened(&args.recording), Some(error)),
     };
     let family = limits.as_ref().and_then(|l| l.value.family.clone());

@@ -125,12 +125,12 @@ pub fn warning(question: &PowerQuestion) -> Option<(String, Option<String>)> {
     let max = limit.limit.max?;
     let hours = question.duration_s / 3600.0;
     let message = format!(
-        "{hours} h{} cannot decide {} <= {max} {} for N = {} deg/sqrt(h): a unit 1.5 times over the limit is failed \
+        "{hours} h cannot decide {} <= {max} {} for N = {} deg/sqrt(h){}: a unit 1.5 times over the limit is failed \
          with probability {:.2}, one at half of it passed with {:.2}; otherwise expect indeterminate",
-        if question.sample_rate_hz.is_none() { " at one output a second" } else { "" },
         limit.measurand.id,
         limit.measurand.unit,
         background.n,
+        if question.sample_rate_hz.is_none() { ", one output a second assumed" } else { "" },
         power.fail_probability_at_1_5,
         power.pass_probability_at_half,
     );
