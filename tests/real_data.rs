@@ -15,6 +15,7 @@ use sagnac::recording::{Channel, ColumnRef, Role};
 use sagnac::run::{Outcome, Request, analysis, execute};
 use sagnac::units::Unit;
 use std::collections::BTreeMap;
+use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -27,7 +28,7 @@ fn set(name: &str) -> Option<PathBuf> {
             Some(path)
         }
         None => {
-            eprintln!("SKIPPED: {name}: SAGNAC_REAL_DATA is not set");
+            let _ = writeln!(std::io::stderr(), "SKIPPED: {name}: SAGNAC_REAL_DATA is not set");
             None
         }
     }

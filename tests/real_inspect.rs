@@ -1,10 +1,12 @@
 //! `sagnac inspect` on real recordings, where the folder named by SAGNAC_REAL_DATA holds them.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 fn told(file: &str) -> Option<String> {
     let Some(folder) = std::env::var_os("SAGNAC_REAL_DATA") else {
-        eprintln!("skipped: SAGNAC_REAL_DATA is not set, so {file} is not looked at");
+        let _ =
+            writeln!(std::io::stderr(), "skipped: SAGNAC_REAL_DATA is not set, so {file} is not looked at");
         return None;
     };
     let path: PathBuf = Path::new(&folder).join(file);

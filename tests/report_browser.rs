@@ -5,6 +5,7 @@ mod report_fixture;
 use report_fixture as fixture;
 use sagnac::report::{Renderer, render_html};
 use sagnac::text::Lang;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -65,7 +66,7 @@ fn a_report_opens_quietly_in_a_browser() {
             "no browser found; looked for {}",
             BROWSERS.join(", ")
         );
-        eprintln!("SKIPPED: no browser found; looked for {}", BROWSERS.join(", "));
+        let _ = writeln!(std::io::stderr(), "SKIPPED: no browser found; looked for {}", BROWSERS.join(", "));
         return;
     };
     for (record, word) in [(fixture::three_channels(), "fail"), (fixture::error(), "error")] {
@@ -91,7 +92,7 @@ fn a_report_opens_quietly_in_a_browser() {
 #[test]
 fn the_watch_for_complaints_and_requests_is_awake() {
     let Some(browser) = browser() else {
-        eprintln!("SKIPPED: no browser found; looked for {}", BROWSERS.join(", "));
+        let _ = writeln!(std::io::stderr(), "SKIPPED: no browser found; looked for {}", BROWSERS.join(", "));
         return;
     };
     let folder = tempfile::tempdir().unwrap();
