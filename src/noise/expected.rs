@@ -81,17 +81,7 @@ pub fn deviation_power(edf: impl Fn(f64) -> f64, hours: f64, risk: f64) -> Power
         let pass = law.cdf(chi_square_quantile(risk, dof) * 4.0);
         (fail, pass)
     };
-    let (fail, pass) = at(hours);
-    let enough = |h: f64| {
-        let (f, p) = at(h);
-        f >= POWER_WANTED && p >= POWER_WANTED
-    };
-    Power {
-        fail_probability_at_1_5: fail,
-        pass_probability_at_half: pass,
-        expected_upper_limit_at_zero: None,
-        needed_duration_h: shortest(hours, enough),
-    }
+    over_hours(at, hours, None)
 }
 
 /// Power of a limit on the size of a bias whose standard uncertainty is `uncertainty(hours)`, same unit as the limit.
@@ -103,6 +93,15 @@ pub fn bias_power(limit: f64, uncertainty: impl Fn(f64) -> f64, hours: f64, risk
         let pass = (fail - normal_probability(guard - 1.5 * limit / u)).max(0.0);
         (fail, pass)
     };
+    over_hours(at, hours, Some(normal_quantile(0.975) * uncertainty(hours)))
+}
+
+/// Power where both probabilities, (failed, passed), are a function of the hours recorded.
+fn over_hours(
+    at: impl Fn(f64) -> (f64, f64),
+    hours: f64,
+    expected_upper_limit_at_zero: Option<f64>,
+) -> Power {
     let (fail, pass) = at(hours);
     let enough = |h: f64| {
         let (f, p) = at(h);
@@ -111,7 +110,7 @@ pub fn bias_power(limit: f64, uncertainty: impl Fn(f64) -> f64, hours: f64, risk
     Power {
         fail_probability_at_1_5: fail,
         pass_probability_at_half: pass,
-        expected_upper_limit_at_zero: Some(normal_quantile(0.975) * uncertainty(hours)),
+        expected_upper_limit_at_zero,
         needed_duration_h: shortest(hours, enough),
     }
 }

@@ -104,12 +104,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         noise_models: vec![],
         power: vec![],
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
-        waivers: procedure
-            .waivers
-            .iter()
-            .filter(|w| Some(w.serial.as_str()) == serial)
-            .map(|w| w.record.clone())
-            .collect(),
+        waivers: procedure.waivers_for(serial),
         clauses: procedure.clauses.clone(),
         options: vec![],
         figures: vec![],
