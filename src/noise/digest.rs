@@ -59,6 +59,9 @@ pub struct RateDigest {
     pub max: f64,
     /// The Allan family with the unbroken stretches of the record.
     pub deviations: DeviationSet,
+    /// The overlapping Allan deviation at octaves, where `deviations` is on another grid: the minimum is read on octaves
+    /// whatever was asked for.
+    pub octaves: Option<DeviationSet>,
     /// Averaged periodogram.
     pub welch: WelchResult,
     /// Block means on the grid.
@@ -76,6 +79,7 @@ pub struct RateDigest {
 pub struct RateAccumulator {
     tau0_s: f64,
     allan: AllanAccumulator,
+    octaves: Option<AllanAccumulator>,
     welch: WelchAccumulator,
     blocks: BlockSeriesAccumulator,
     windows: Vec<WindowMeans>,
@@ -94,8 +98,17 @@ impl RateAccumulator {
     /// An empty digest.
     pub fn new(plan: DigestPlan) -> Self {
         let windows = plan.window_lengths_s.iter().map(|w| WindowMeans::new(*w, plan.tau0_s)).collect();
+        let octaves = (plan.taus != TauGrid::Octave).then(|| {
+            AllanAccumulator::new(AllanPlan {
+                tau0_s: plan.tau0_s,
+                grid: TauGrid::Octave,
+                exact: false,
+                estimators: vec![Estimator::Allan],
+            })
+        });
         RateAccumulator {
             tau0_s: plan.tau0_s,
+            octaves,
             allan: AllanAccumulator::new(AllanPlan {
                 tau0_s: plan.tau0_s,
                 grid: plan.taus,
@@ -160,6 +173,7 @@ impl RateAccumulator {
             min: self.min,
             max: self.max,
             deviations: self.allan.finish(),
+            octaves: self.octaves.map(AllanAccumulator::finish),
             welch: self.welch.finish(),
             blocks: self.blocks.finish(),
             windows: self.windows.into_iter().map(WindowMeans::finish).collect(),
@@ -181,6 +195,9 @@ impl RateAccumulator {
         self.sum.add(sum);
         self.samples += run.len() as u64;
         self.allan.push(run, first_index, continues);
+        if let Some(octaves) = &mut self.octaves {
+            octaves.push(run, first_index, continues);
+        }
         self.welch.push(run, continues);
         self.blocks.push(run, first_index);
         self.windows.iter_mut().for_each(|w| w.push(run, continues));
@@ -195,6 +212,22 @@ mod tests {
 
     fn record(count: u32) -> Vec<f64> {
         (0..count).map(|i| 10.0 + f64::from(i.wrapping_mul(2_654_435_761) >> 8) / 16_777_216.0).collect()
+    }
+
+    #[test]
+    fn octaves_beside_another_grid_are_split_at_the_same_samples() {
+        let mut samples = record(4000);
+        // The last sample of a block: the next block must not be joined to what lies before it.
+        samples[1999] = f64::NAN;
+        let digest = |taus| {
+            let mut a = RateAccumulator::new(DigestPlan { taus, ..DigestPlan::new(1.0) });
+            a.push(&samples[..2000], 0, false);
+            a.push(&samples[2000..], 2000, true);
+            a.finish()
+        };
+        let octave = digest(TauGrid::Octave);
+        assert_eq!(octave.octaves, None);
+        assert_eq!(digest(TauGrid::List(vec![3.0])).octaves, Some(octave.deviations));
     }
 
     #[test]

@@ -120,9 +120,9 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     let several = gyros.len() > 1;
     let gyros: Vec<GyroEvidence> = gyros
         .into_iter()
-        .filter_map(|(slot, digest, octaves)| {
+        .filter_map(|(slot, digest)| {
             let channel = channels.get(slot)?.id.clone();
-            Some(evidence(procedure, channel, several, tau0_s, digest, octaves))
+            Some(evidence(procedure, channel, several, tau0_s, digest))
         })
         .collect();
     if gyros.iter().all(|g| g.digest.samples < 2) {
@@ -202,13 +202,14 @@ fn evidence(
     several: bool,
     tau0_s: f64,
     digest: RateDigest,
-    octaves: Option<crate::noise::allan::DeviationSet>,
 ) -> GyroEvidence {
     let (lines, identification) = spectral(&channel, &digest, tau0_s, procedure.analysis.line_false_alarm);
     let model = &identification.supported;
     let sigma_tau = sigma_tau::allan_points(&digest.deviations, model, tau0_s);
-    let octaves =
-        octaves.map_or_else(|| sigma_tau.clone(), |set| sigma_tau::allan_points(&set, model, tau0_s));
+    let octaves = digest
+        .octaves
+        .as_ref()
+        .map_or_else(|| sigma_tau.clone(), |set| sigma_tau::allan_points(set, model, tau0_s));
     let longest_stretch_s = digest.deviations.stretches.longest() as f64 * tau0_s;
     let earth = procedure.site.as_ref().map(|site| {
         let o = site.orientation_of(&channel);

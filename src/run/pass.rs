@@ -1,7 +1,6 @@
 //! The sinks of a static test: everything is collected while the recording goes by once.
 
 use crate::condition::temperature_track::{TemperatureFacts, TemperatureTrack};
-use crate::noise::allan::{AllanAccumulator, AllanPlan, DeviationSet};
 use crate::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
 use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
 use crate::noise::family::Estimator;
@@ -16,22 +15,16 @@ pub type HeldKey = (String, usize);
 
 /// What is collected inside the evaluated window.
 pub struct Inside {
-    gyros: Vec<Gyro>,
+    /// Position among the channels, and digest.
+    gyros: Vec<(usize, RateAccumulator)>,
     held: Vec<(HeldKey, usize, TemperatureTrack)>,
     start_s: f64,
 }
 
-struct Gyro {
-    slot: usize,
-    digest: RateAccumulator,
-    /// Octaves beside another grid: the minimum of σ(τ) is read on octaves whatever was asked for.
-    octaves: Option<AllanAccumulator>,
-}
-
 /// What the window left behind.
 pub struct Collected {
-    /// Per gyro channel: position among the channels, digest, octaves where the grid is another.
-    pub gyros: Vec<(usize, RateDigest, Option<DeviationSet>)>,
+    /// Per gyro channel: position among the channels, digest.
+    pub gyros: Vec<(usize, RateDigest)>,
     /// Quantities that must be held.
     pub held: BTreeMap<HeldKey, TemperatureFacts>,
 }
@@ -58,15 +51,7 @@ impl Inside {
                     estimators: estimators.to_vec(),
                     ..DigestPlan::new(tau0_s)
                 };
-                let octaves = (*grid != TauGrid::Octave).then(|| {
-                    AllanAccumulator::new(AllanPlan {
-                        tau0_s,
-                        grid: TauGrid::Octave,
-                        exact: false,
-                        estimators: vec![Estimator::Allan],
-                    })
-                });
-                Gyro { slot, digest: RateAccumulator::new(plan), octaves }
+                (slot, RateAccumulator::new(plan))
             })
             .collect();
         let slot_of = |id: &str| channels.iter().position(|c| c.id == id);
@@ -89,11 +74,7 @@ impl Inside {
 
     /// What was collected.
     pub fn finish(self) -> Collected {
-        let gyros = self
-            .gyros
-            .into_iter()
-            .map(|g| (g.slot, g.digest.finish(), g.octaves.map(|o| o.finish())))
-            .collect();
+        let gyros = self.gyros.into_iter().map(|(slot, digest)| (slot, digest.finish())).collect();
         let held = self.held.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?))).collect();
         Collected { gyros, held }
     }
@@ -101,11 +82,9 @@ impl Inside {
 
 impl Sink for Inside {
     fn push(&mut self, slab: &Slab<'_>) {
-        for gyro in &mut self.gyros {
-            let Some(values) = slab.values.get(gyro.slot) else { continue };
-            gyro.digest.push(values, slab.first_index, slab.continues);
-            if let Some(octaves) = &mut gyro.octaves {
-                push_finite(octaves, values, slab.first_index, slab.continues);
+        for (slot, digest) in &mut self.gyros {
+            if let Some(values) = slab.values.get(*slot) {
+                digest.push(values, slab.first_index, slab.continues);
             }
         }
         for (_, slot, track) in &mut self.held {
@@ -113,23 +92,6 @@ impl Sink for Inside {
                 track.push(values, slab.time_s - self.start_s, slab.continues);
             }
         }
-    }
-}
-
-/// Passes the finite runs of a slab on: a value that is no number splits the record.
-fn push_finite(allan: &mut AllanAccumulator, values: &[f64], first_index: u64, continues: bool) {
-    let mut connected = continues;
-    let mut start = 0;
-    while start < values.len() {
-        if !values[start].is_finite() {
-            connected = false;
-            start += 1;
-            continue;
-        }
-        let end = values[start..].iter().position(|v| !v.is_finite()).map_or(values.len(), |n| start + n);
-        allan.push(&values[start..end], first_index + start as u64, connected);
-        connected = true;
-        start = end;
     }
 }
 
