@@ -263,6 +263,9 @@ pub struct FaultRecord {
     pub count: u64,
     /// What was seen, English.
     pub note: String,
+    /// The same sentence by name, for other languages.
+    #[schemars(with = "serde_json::Value")]
+    pub message: Option<Note>,
 }
 
 /// The evaluated part of a recording.

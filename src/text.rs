@@ -14,10 +14,20 @@ pub enum Lang {
     /// English.
     #[default]
     En,
+    /// Russian.
+    Ru,
+}
+
+impl Lang {
+    /// Every language, the default first.
+    pub const ALL: &'static [Lang] = &[Lang::En, Lang::Ru];
 }
 
 static ENGLISH: LazyLock<BTreeMap<String, String>> =
     LazyLock::new(|| flatten(include_str!("../templates/locale/en.toml")));
+
+static RUSSIAN: LazyLock<BTreeMap<String, String>> =
+    LazyLock::new(|| flatten(include_str!("../templates/locale/ru.toml")));
 
 /// Turns the nested tables of a locale file into dotted keys.
 fn flatten(source: &str) -> BTreeMap<String, String> {
@@ -44,12 +54,13 @@ fn flatten(source: &str) -> BTreeMap<String, String> {
 pub fn table(lang: Lang) -> &'static BTreeMap<String, String> {
     match lang {
         Lang::En => &ENGLISH,
+        Lang::Ru => &RUSSIAN,
     }
 }
 
-/// The text of a key, or `None` when the table lacks it.
+/// The text of a key, in English where the table of the language lacks it; `None` when no table has it.
 pub fn lookup(lang: Lang, key: &str) -> Option<&'static str> {
-    table(lang).get(key).map(String::as_str)
+    table(lang).get(key).or_else(|| table(Lang::En).get(key)).map(String::as_str)
 }
 
 /// One argument of a note.
@@ -148,6 +159,13 @@ impl Note {
                 Arg::Note(n) => n.say(lang),
             })
         })
+    }
+}
+
+impl From<&'static str> for Note {
+    /// A sentence without arguments, by its key.
+    fn from(id: &'static str) -> Note {
+        Note::new(id)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The bytes of a file: unpacked where they are packed, hashed and counted as they pass.
 
 use super::error::{IngestError, IngestErrorKind};
+use crate::text::Note;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -145,9 +146,9 @@ impl ByteStream {
             return Err(IngestError::new(
                 IngestErrorKind::Bomb,
                 &self.path,
-                format!("{packed} packed bytes unpack to more than {} bytes", self.unpacked),
+                Note::new("ingest.bomb").with("packed", packed).with("unpacked", self.unpacked),
             )
-            .hint("no recording packs so well; unpack the file yourself if it is sound"));
+            .hint("ingest.hint.bomb"));
         }
         Ok(done)
     }
@@ -190,11 +191,9 @@ pub(super) fn unchanged(path: &Path, at_open: u64, read: u64, now: u64) -> Resul
     Err(IngestError::new(
         IngestErrorKind::Changed,
         path,
-        format!(
-            "the file changed while it was read: {at_open} bytes at first, {read} read, {now} at the end"
-        ),
+        Note::new("ingest.changed").with("at_open", at_open).with("read", read).with("now", now),
     )
-    .hint("wait until the recording is complete"))
+    .hint("ingest.hint.wait"))
 }
 
 fn hex(bytes: &[u8]) -> String {
@@ -208,21 +207,22 @@ fn hex(bytes: &[u8]) -> String {
 /// The diagnostic of an operating-system error.
 pub(crate) fn io_error(path: &Path, error: &io::Error) -> IngestError {
     let hint = match error.kind() {
-        io::ErrorKind::NotFound => "check the path",
-        io::ErrorKind::PermissionDenied => "check the permissions of the file",
-        _ => "check the disk or the network share",
+        io::ErrorKind::NotFound => "ingest.hint.check_path",
+        io::ErrorKind::PermissionDenied => "ingest.hint.permissions",
+        _ => "ingest.hint.disk",
     };
-    IngestError::new(IngestErrorKind::Io, path, format!("cannot be read: {error}")).hint(hint)
+    IngestError::new(IngestErrorKind::Io, path, Note::new("ingest.io").with("reason", error.to_string()))
+        .hint(hint)
 }
 
 fn unpack_error(path: &Path, error: &io::Error, at: u64) -> IngestError {
     let (message, hint) = if error.kind() == io::ErrorKind::UnexpectedEof {
-        (
-            format!("the packed data end early, after {at} unpacked bytes"),
-            "the file is cut off: copy it again",
-        )
+        (Note::new("ingest.packed_short").with("bytes", at), "ingest.hint.cut_off")
     } else {
-        (format!("the packed data are damaged after {at} unpacked bytes: {error}"), "copy the file again")
+        (
+            Note::new("ingest.packed_damaged").with("bytes", at).with("reason", error.to_string()),
+            "ingest.hint.copy_again",
+        )
     };
     IngestError::new(IngestErrorKind::Damaged, path, message).hint(hint)
 }

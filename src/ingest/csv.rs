@@ -5,6 +5,7 @@ use super::dialect::{self, Dialect};
 use super::error::{IngestError, IngestErrorKind};
 use super::lines::LineParser;
 use super::{Block, Candidate, Column, FileFacts, Format, OnBlock, Opened, Table};
+use crate::text::Note;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -39,7 +40,13 @@ impl Format for DelimitedText {
         let columns = dialect
             .names
             .iter()
-            .map(|name| Column { name: name.clone(), numeric: true, storage: "text".to_owned(), unit: None })
+            .map(|name| Column {
+                name: name.clone(),
+                numeric: true,
+                storage: "text".to_owned(),
+                unit: None,
+                epoch_s: None,
+            })
             .collect();
         let rows_estimate = (file.packing == Packing::Plain && dialect.mean_line > 0.0).then(|| {
             ((file.bytes as f64 - dialect.data_offset as f64).max(0.0) / dialect.mean_line).round() as u64
@@ -85,9 +92,7 @@ impl Table for Text {
             let rows = self.deliver(block_in, &block_back, on_block);
             let digested = match reader.join() {
                 Ok(result) => result,
-                Err(_) => {
-                    Err(IngestError::new(IngestErrorKind::Io, &self.path, "the reading thread stopped"))
-                }
+                Err(_) => Err(IngestError::new(IngestErrorKind::Io, &self.path, "ingest.thread_stopped")),
             };
             let (Some(rows), digested) = (rows, digested?) else { return Ok(None) };
             Ok(digested.map(|d| FileFacts { sha256: d.sha256, bytes: d.bytes, rows }))
@@ -129,9 +134,9 @@ impl Text {
                     return Err(IngestError::new(
                         IngestErrorKind::UnknownFormat,
                         &self.path,
-                        format!("a line is longer than {LONGEST_LINE} bytes"),
+                        Note::new("ingest.long_line").with("bytes", LONGEST_LINE),
                     )
-                    .hint("a recording is a text with one line for each sample"));
+                    .hint("ingest.hint.line_per_sample"));
                 }
             }
             let bytes_done = stream.file_bytes();

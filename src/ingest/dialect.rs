@@ -2,6 +2,7 @@
 
 use super::error::{IngestError, IngestErrorKind};
 use super::number::{self, Field};
+use crate::text::{Arg, Note};
 use std::path::Path;
 
 /// The way a text file is written.
@@ -18,7 +19,7 @@ pub(super) struct Dialect {
     /// Line the data start on, counted from 1.
     pub data_line: u64,
     /// What was decided and why.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// Mean length of the data lines looked at, bytes.
     pub mean_line: f64,
 }
@@ -49,15 +50,11 @@ pub(super) fn sniff(path: &Path, head: &[u8], all: bool) -> Result<Dialect, Inge
     }
     let Some(&(first_at, first_number, first)) = lines.first() else {
         let error = if all {
-            IngestError::new(
-                IngestErrorKind::Empty,
-                path,
-                "the file has no rows, only comments or blank lines",
-            )
+            IngestError::new(IngestErrorKind::Empty, path, "ingest.only_comments")
         } else {
-            IngestError::new(IngestErrorKind::UnknownFormat, path, "the first line does not end")
+            IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.endless_line")
         };
-        return Err(error.hint("a recording is a text with one line for each sample"));
+        return Err(error.hint("ingest.hint.line_per_sample"));
     };
     let body: Vec<&[u8]> = lines.iter().map(|l| l.2).collect();
     let delimiter = delimiter(&body);
@@ -68,23 +65,26 @@ pub(super) fn sniff(path: &Path, head: &[u8], all: bool) -> Result<Dialect, Inge
     let kinds: Vec<Field> = cells.iter().map(|c| number::field(c, decimal)).collect();
     let has_header =
         kinds.contains(&Field::Unparsable) || !kinds.iter().any(|k| matches!(k, Field::Value(_)));
-    let mut notes = vec![format!(
-        "separator {}, decimal sign `{}`",
-        match delimiter {
-            b'\t' => "tab".to_owned(),
-            d => format!("`{}`", d as char),
-        },
-        decimal as char
-    )];
+    let mut notes = vec![
+        Note::new("ingest.note.dialect")
+            .with(
+                "separator",
+                match delimiter {
+                    b'\t' => Arg::Key("ingest.tab".to_owned()),
+                    d => Arg::Text(format!("`{}`", d as char)),
+                },
+            )
+            .with("decimal", (decimal as char).to_string()),
+    ];
     if has_header && lines.len() < 2 && all {
-        return Err(IngestError::new(IngestErrorKind::Empty, path, "the file has a header but no rows")
+        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.header_only")
             .at(first_number, None)
-            .hint("check that the recording was written"));
+            .hint("ingest.hint.check_written"));
     }
     let names = if has_header {
         cells.iter().enumerate().map(|(i, c)| name(c, i)).collect()
     } else {
-        notes.push("no header: the first line holds numbers only".to_owned());
+        notes.push(Note::new("ingest.note.no_header"));
         (1..=cells.len()).map(|i| format!("column_{i}")).collect()
     };
     let (data_offset, data_line) = match lines.get(1) {
@@ -178,14 +178,10 @@ fn refuse_spaces(
     };
     if !data.is_empty() && data.iter().all(spaced) {
         let (line, text) = lines.get(1).or(lines.first()).map_or((1, &b""[..]), |l| (l.1, l.2));
-        return Err(IngestError::new(
-            IngestErrorKind::UnknownFormat,
-            path,
-            "the columns are separated by spaces, which is not read",
-        )
-        .at(line, None)
-        .found(&String::from_utf8_lossy(text))
-        .hint("separate them by commas, semicolons or tabs"));
+        return Err(IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.spaces")
+            .at(line, None)
+            .found(&String::from_utf8_lossy(text))
+            .hint("ingest.hint.separate"));
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Why a recording could not be read: one diagnostic that says where, what was found and what to do.
 
+use crate::text::{Lang, Note};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -35,8 +36,8 @@ struct Details {
     line: Option<u64>,
     column: Option<u64>,
     text: Option<String>,
-    message: String,
-    hint: Option<String>,
+    message: Note,
+    hint: Option<Note>,
 }
 
 /// A recording that could not be read.
@@ -47,8 +48,9 @@ pub struct IngestError(Box<Details>);
 const QUOTED: usize = 40;
 
 impl IngestError {
-    /// An error of a file as a whole. The message is a fragment that says what is wrong.
-    pub fn new(kind: IngestErrorKind, path: &Path, message: impl Into<String>) -> IngestError {
+    /// An error of a file as a whole. The message, a note or the key of one without arguments, is a fragment that says
+    /// what is wrong.
+    pub fn new(kind: IngestErrorKind, path: &Path, message: impl Into<Note>) -> IngestError {
         IngestError(Box::new(Details {
             kind,
             path: path.to_owned(),
@@ -77,7 +79,7 @@ impl IngestError {
 
     /// Adds what to do.
     #[must_use]
-    pub fn hint(mut self, hint: impl Into<String>) -> IngestError {
+    pub fn hint(mut self, hint: impl Into<Note>) -> IngestError {
         self.0.hint = Some(hint.into());
         self
     }
@@ -108,34 +110,40 @@ impl IngestError {
     }
 
     /// What is wrong, without place and hint.
-    pub fn message(&self) -> &str {
+    pub fn message(&self) -> &Note {
         &self.0.message
     }
 
     /// What to do.
-    pub fn advice(&self) -> Option<&str> {
-        self.0.hint.as_deref()
+    pub fn advice(&self) -> Option<&Note> {
+        self.0.hint.as_ref()
+    }
+
+    /// The whole diagnostic in a language: place, what is wrong, what was found, what to do.
+    pub fn say(&self, lang: Lang) -> String {
+        let d = &self.0;
+        let mut out = d.path.display().to_string();
+        if let Some(line) = d.line {
+            out.push_str(&format!(":{line}"));
+            if let Some(column) = d.column {
+                out.push_str(&format!(":{column}"));
+            }
+        }
+        out.push_str(&format!(": {}", d.message.say(lang)));
+        if let Some(text) = &d.text {
+            let found = Note::new("ingest.found").with("text", text.as_str());
+            out.push_str(&format!(" ({})", found.say(lang)));
+        }
+        if let Some(hint) = &d.hint {
+            out.push_str(&format!("; {}", hint.say(lang)));
+        }
+        out
     }
 }
 
 impl fmt::Display for IngestError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let d = &self.0;
-        write!(f, "{}", d.path.display())?;
-        if let Some(line) = d.line {
-            write!(f, ":{line}")?;
-            if let Some(column) = d.column {
-                write!(f, ":{column}")?;
-            }
-        }
-        write!(f, ": {}", d.message)?;
-        if let Some(text) = &d.text {
-            write!(f, " (found `{text}`)")?;
-        }
-        if let Some(hint) = &d.hint {
-            write!(f, "; {hint}")?;
-        }
-        Ok(())
+        f.write_str(&self.say(Lang::En))
     }
 }
 

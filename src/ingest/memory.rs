@@ -18,14 +18,11 @@ pub(super) fn open(
 ) -> Result<Opened, IngestError> {
     let rows = columns.first().map_or(0, |(_, c)| c.len());
     if rows == 0 || columns.iter().any(|(_, c)| c.len() != rows) {
-        return Err(IngestError::new(
-            IngestErrorKind::Empty,
-            path,
-            "the columns are empty or differ in length",
-        ));
+        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.uneven"));
     }
     let (names, columns): (Vec<String>, Vec<Vec<f64>>) = columns.into_iter().unzip();
-    let describe = |name| Column { name, numeric: true, storage: "double".to_owned(), unit: None };
+    let describe =
+        |name| Column { name, numeric: true, storage: "double".to_owned(), unit: None, epoch_s: None };
     Ok(Opened {
         columns: names.into_iter().map(describe).collect(),
         rows_estimate: Some(rows as u64),

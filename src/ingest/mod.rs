@@ -11,6 +11,7 @@ mod error;
 mod lines;
 mod memory;
 mod number;
+mod options;
 mod parquet;
 mod plan;
 mod reduce;
@@ -18,16 +19,18 @@ mod stream;
 
 pub use compressed::Packing;
 pub use error::{IngestError, IngestErrorKind};
+pub use options::{Encoding, ReadOptions, TextOptions};
 pub use plan::{Plan, TimeBaseSpec, prepare};
 pub use stream::{ChannelFacts, StreamReport, stream, stream_path};
 
 use crate::recording::ColumnRef;
+use crate::text::{Arg, Note};
 use compressed::{ByteStream, io_error};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// A column of a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     /// Name in the header, or `column_1`, `column_2` ... where there is none.
     pub name: String,
@@ -37,6 +40,9 @@ pub struct Column {
     pub storage: String,
     /// Unit the format itself declares, for example `ms` for a Parquet time stamp.
     pub unit: Option<String>,
+    /// Seconds from 1970 to the zero of the values, when the reader turned stamps with a date into seconds; the unit is
+    /// `s` then.
+    pub epoch_s: Option<f64>,
 }
 
 /// Why a field is no finite number.
@@ -160,6 +166,8 @@ pub struct Candidate {
     pub head: Vec<u8>,
     /// True when `head` is the whole content.
     pub head_is_all: bool,
+    /// What the user decided about the file.
+    pub options: ReadOptions,
 }
 
 /// What a format says of a file.
@@ -169,7 +177,7 @@ pub struct Opened {
     /// Rows, when the format knows or can estimate them cheaply.
     pub rows_estimate: Option<u64>,
     /// What was decided about the file and why.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// The reader.
     pub table: Box<dyn Table>,
 }
@@ -190,18 +198,18 @@ pub trait Format: Sync {
 /// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
 pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &csv::DelimitedText];
 
-/// First bytes of kinds of files that are not read, with what to do about them.
-const NOT_READ: &[(&[u8], &str, &str)] = &[
-    (b"PK\x03\x04", "a zip archive or a spreadsheet", "export the sheet as CSV, or unpack the archive"),
-    (b"\x89HDF", "an HDF5 file", "export the data as Parquet or CSV"),
-    (b"MATLAB 5.0", "a MATLAB file", "export the data as Parquet or CSV"),
-    (b"\x93NUMPY", "a NumPy array", "export the data as Parquet or CSV"),
-    (b"%PDF", "a PDF document", "give the recording itself"),
-    (b"7z\xbc\xaf", "a 7z archive", "unpack it"),
-    (b"BZh", "a bzip2 file", "unpack it, or pack it with gzip or zstd"),
-    (b"\xfd7zXZ", "an xz file", "unpack it, or pack it with gzip or zstd"),
-    (b"\xff\xfe", "text in UTF-16", "save it as UTF-8"),
-    (b"\xfe\xff", "text in UTF-16", "save it as UTF-8"),
+/// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
+const NOT_READ: &[(&[u8], &str, &'static str)] = &[
+    (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
+    (b"\x89HDF", "ingest.kind.hdf5", "ingest.hint.export_data"),
+    (b"MATLAB 5.0", "ingest.kind.matlab", "ingest.hint.export_data"),
+    (b"\x93NUMPY", "ingest.kind.numpy", "ingest.hint.export_data"),
+    (b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
+    (b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
+    (b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),
+    (b"\xfd7zXZ", "ingest.kind.xz", "ingest.hint.repack"),
+    (b"\xff\xfe", "ingest.kind.utf16", "ingest.hint.save_utf8"),
+    (b"\xfe\xff", "ingest.kind.utf16", "ingest.hint.save_utf8"),
 ];
 
 /// Longest piece of the start of a file that is looked at, bytes.
@@ -221,14 +229,23 @@ pub struct Source {
 /// # Errors
 /// A directory, an unreadable, empty or damaged file, an unknown kind of file, a file without rows.
 pub fn open(path: &Path) -> Result<Source, IngestError> {
+    open_with(path, &ReadOptions::default())
+}
+
+/// Opens a recording as its user says.
+///
+/// # Errors
+/// As [`open`], and where what was said does not fit the file.
+pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestError> {
     let metadata = std::fs::metadata(path).map_err(|e| io_error(path, &e))?;
     if metadata.is_dir() {
-        return Err(IngestError::new(IngestErrorKind::Io, path, "is a folder, not a recording")
-            .hint("name one file in it"));
+        return Err(
+            IngestError::new(IngestErrorKind::Io, path, "ingest.is_folder").hint("ingest.hint.name_a_file")
+        );
     }
     if metadata.len() == 0 {
-        return Err(IngestError::new(IngestErrorKind::Empty, path, "the file is empty")
-            .hint("check that the recording was written"));
+        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_file")
+            .hint("ingest.hint.check_written"));
     }
     let mut first = ByteStream::open(path, Packing::Plain)?;
     let mut magic = [0; 8];
@@ -240,25 +257,28 @@ pub fn open(path: &Path) -> Result<Source, IngestError> {
     head.truncate(n);
     let head_is_all = n < HEAD;
     if head.is_empty() {
-        return Err(IngestError::new(IngestErrorKind::Empty, path, "the packed file holds nothing")
-            .hint("check that the recording was written"));
+        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_packed")
+            .hint("ingest.hint.check_written"));
     }
     if let Some((_, what, hint)) = NOT_READ.iter().find(|(magic, ..)| head.starts_with(magic)) {
         return Err(IngestError::new(
             IngestErrorKind::UnknownFormat,
             path,
-            format!("this is {what}, which is not read"),
+            Note::new("ingest.not_read").with("what", Arg::Key((*what).to_owned())),
         )
         .hint(*hint));
     }
-    let candidate = Candidate { path: path.to_owned(), bytes: metadata.len(), packing, head, head_is_all };
+    let candidate = Candidate {
+        path: path.to_owned(),
+        bytes: metadata.len(),
+        packing,
+        head,
+        head_is_all,
+        options: options.clone(),
+    };
     let Some(format) = FORMATS.iter().find(|f| f.recognises(&candidate)) else {
-        return Err(IngestError::new(
-            IngestErrorKind::UnknownFormat,
-            path,
-            "the file is neither text nor Parquet",
-        )
-        .hint("give CSV (plain, .gz or .zst) or Parquet"));
+        return Err(IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.unknown")
+            .hint("ingest.hint.give_known"));
     };
     let opened = format.open(&candidate)?;
     Ok(Source { path: path.to_owned(), format: format.id(), packing, bytes: metadata.len(), opened })
@@ -315,7 +335,7 @@ impl Source {
     }
 
     /// What was decided about the file and why.
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.opened.notes
     }
 
@@ -324,12 +344,12 @@ impl Source {
     /// # Errors
     /// [`IngestErrorKind::Column`] when it is not there, stands twice, or holds no numbers.
     pub fn resolve(&self, column: &ColumnRef) -> Result<usize, IngestError> {
-        let error = |message: String| IngestError::new(IngestErrorKind::Column, &self.path, message);
+        let error = |message: Note| IngestError::new(IngestErrorKind::Column, &self.path, message);
         let columns = self.columns();
         let index = match column {
             ColumnRef::Position(p) => p.checked_sub(1).filter(|&i| i < columns.len()).ok_or_else(|| {
-                error(format!("there is no column {p}"))
-                    .hint(format!("the file has columns 1 to {}", columns.len()))
+                error(Note::new("ingest.no_column_at").with("position", *p))
+                    .hint(Note::new("ingest.hint.columns_to").with("count", columns.len()))
             })?,
             ColumnRef::Name(name) => {
                 let found: Vec<usize> =
@@ -343,31 +363,38 @@ impl Source {
                             .min()
                             .filter(|(distance, c)| *distance <= 1 + c.chars().count() / 3);
                         let hint = match near {
-                            Some((_, near)) => format!("did you mean `{near}`?"),
+                            Some((_, near)) => {
+                                Note::new("ingest.hint.did_you_mean").with("name", near.as_str())
+                            }
                             None => {
                                 let names: Vec<&str> =
                                     columns.iter().take(30).map(|c| c.name.as_str()).collect();
-                                format!("the file has: {}", names.join(", "))
+                                Note::new("ingest.hint.the_file_has").with("names", names.join(", "))
                             }
                         };
-                        return Err(error(format!("there is no column `{name}`")).hint(hint));
+                        return Err(
+                            error(Note::new("ingest.no_column_named").with("name", name.as_str())).hint(hint)
+                        );
                     }
                     several => {
                         let places: Vec<String> = several.iter().map(|i| (i + 1).to_string()).collect();
-                        return Err(error(format!(
-                            "the name `{name}` stands over {} columns ({})",
-                            several.len(),
-                            places.join(", ")
-                        ))
-                        .hint("give the position of the column instead of its name"));
+                        return Err(error(
+                            Note::new("ingest.name_twice")
+                                .with("name", name.as_str())
+                                .with("count", several.len())
+                                .with("places", places.join(", ")),
+                        )
+                        .hint("ingest.hint.give_position"));
                     }
                 }
             }
         };
         match columns.get(index) {
-            Some(c) if !c.numeric => {
-                Err(error(format!("column `{}` holds {}, not numbers", c.name, c.storage)))
-            }
+            Some(c) if !c.numeric => Err(error(
+                Note::new("ingest.column_no_numbers")
+                    .with("name", c.name.as_str())
+                    .with("storage", c.storage.as_str()),
+            )),
             _ => Ok(index),
         }
     }
@@ -409,8 +436,8 @@ impl Source {
             compressed::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;
         }
         if facts.as_ref().is_some_and(|f| f.rows == 0) {
-            return Err(IngestError::new(IngestErrorKind::Empty, &self.path, "the file has no rows")
-                .hint("check that the recording was written"));
+            return Err(IngestError::new(IngestErrorKind::Empty, &self.path, "ingest.no_rows")
+                .hint("ingest.hint.check_written"));
         }
         Ok(facts)
     }

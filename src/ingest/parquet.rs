@@ -5,6 +5,7 @@ use super::error::{IngestError, IngestErrorKind};
 use super::memory::non_finite;
 use super::number::usable;
 use super::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
+use crate::text::Note;
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use ::parquet::data_type::DataType;
@@ -35,22 +36,22 @@ impl Format for Parquet {
             return Err(IngestError::new(
                 IngestErrorKind::UnknownFormat,
                 &file.path,
-                format!("this is a Parquet file packed with {}", file.packing.id()),
+                Note::new("ingest.packed_parquet").with("packing", file.packing.id()),
             )
-            .hint("unpack it; Parquet is packed inside"));
+            .hint("ingest.hint.unpack_parquet"));
         }
         let reader = reader(&file.path)?;
         let metadata = reader.metadata().file_metadata();
         let rows = u64::try_from(metadata.num_rows()).unwrap_or(0);
         if rows == 0 {
-            return Err(IngestError::new(IngestErrorKind::Empty, &file.path, "the file has no rows")
-                .hint("check that the recording was written"));
+            return Err(IngestError::new(IngestErrorKind::Empty, &file.path, "ingest.no_rows")
+                .hint("ingest.hint.check_written"));
         }
         let columns = metadata.schema_descr().columns().iter().map(|c| describe(c)).collect();
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
-            notes: vec![format!("row groups: {}", reader.num_row_groups())],
+            notes: vec![Note::new("ingest.note.row_groups").with("count", reader.num_row_groups())],
             table: Box::new(ParquetFile { path: file.path.clone() }),
         })
     }
@@ -86,6 +87,7 @@ fn describe(column: &ColumnDescriptor) -> Column {
             Some(LogicalType::Time(t)) => Some(unit(&t.unit).to_owned()),
             _ => None,
         },
+        epoch_s: None,
     }
 }
 
@@ -97,11 +99,11 @@ fn reader(path: &Path) -> Result<SerializedFileReader<File>, IngestError> {
 fn damaged(path: &Path, error: &ParquetError) -> IngestError {
     let text = error.to_string();
     let hint = if text.contains("feature") || text.contains("codec") {
-        "write it with the codec zstd or snappy"
+        "ingest.hint.codec"
     } else {
-        "the file is damaged or cut off: copy it again"
+        "ingest.hint.damaged"
     };
-    IngestError::new(IngestErrorKind::Damaged, path, format!("the Parquet file cannot be decoded: {text}"))
+    IngestError::new(IngestErrorKind::Damaged, path, Note::new("ingest.parquet_damaged").with("reason", text))
         .hint(hint)
 }
 
@@ -125,7 +127,7 @@ impl Table for ParquetFile {
                 // A full return channel only means that the memory is not used again.
                 let _ = block_back.try_send(block);
             }
-            let lost = |_| IngestError::new(IngestErrorKind::Io, &self.path, "the reading thread stopped");
+            let lost = |_| IngestError::new(IngestErrorKind::Io, &self.path, "ingest.thread_stopped");
             let digested = hash.join().map_err(lost)?;
             let rows = decoder.join().map_err(lost)??;
             if stopped {

@@ -3,6 +3,7 @@
 use super::{IngestError, IngestErrorKind, Source};
 use crate::recording::timebase::{Clock, ClockError};
 use crate::recording::{Channel, Role};
+use crate::text::{Arg, Note};
 use crate::units::Unit;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -49,8 +50,8 @@ pub fn prepare<'a>(
 ) -> Result<Plan<'a>, IngestError> {
     let wanted = channels.iter().map(|c| source.resolve(&c.column)).collect::<Result<Vec<_>, _>>()?;
     let maps = channels.iter().map(|c| map(source.path(), c)).collect::<Result<Vec<_>, _>>()?;
-    let no_clock = |e: ClockError, hint: &str| {
-        IngestError::new(IngestErrorKind::TimeBase, source.path(), e.to_string()).hint(hint)
+    let no_clock = |e: ClockError, hint: &'static str| {
+        IngestError::new(IngestErrorKind::TimeBase, source.path(), clock_note(&e)).hint(hint)
     };
     let time = channels.iter().position(|c| c.role == Role::Time).filter(|_| spec.use_stamps);
     let (clock, start_s) = match time.and_then(|i| wanted.get(i).zip(maps.get(i))) {
@@ -61,24 +62,15 @@ pub fn prepare<'a>(
                 stamps.extend(block.columns.iter().flatten().take(room).map(|v| v * map.0 + map.1));
                 if stamps.len() < PROBED { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
             })?;
-            let clock = Clock::probe(&stamps).map_err(|e| {
-                no_clock(
-                    e,
-                    "check the time column and its unit, or declare the sample rate and leave the stamps",
-                )
-            })?;
+            let clock = Clock::probe(&stamps).map_err(|e| no_clock(e, "ingest.hint.check_time"))?;
             (clock, stamps.iter().copied().find(|t| t.is_finite()).unwrap_or(0.0))
         }
         None => {
             let rate = spec.declared_sample_rate_hz.ok_or_else(|| {
-                IngestError::new(
-                    IngestErrorKind::TimeBase,
-                    source.path(),
-                    "there is no time column to tell the sample interval",
-                )
-                .hint("declare the sample rate, or name the time column")
+                IngestError::new(IngestErrorKind::TimeBase, source.path(), "ingest.no_time")
+                    .hint("ingest.hint.declare_rate")
             })?;
-            (Clock::declared(rate).map_err(|e| no_clock(e, "declare the sample rate in Hz"))?, 0.0)
+            (Clock::declared(rate).map_err(|e| no_clock(e, "ingest.hint.rate_in_hz"))?, 0.0)
         }
     };
     let mut maps = maps;
@@ -91,18 +83,38 @@ pub fn prepare<'a>(
     Ok(Plan { source, channels, wanted, maps, time, clock, start_s })
 }
 
+fn clock_note(error: &ClockError) -> Note {
+    let percent = |share: f64| Arg::Text(format!("{:.0}", share * 100.0));
+    match error {
+        ClockError::TooFew => Note::new("ingest.clock_too_few"),
+        ClockError::NotGrowing => Note::new("ingest.clock_not_growing"),
+        ClockError::Falling { share } => Note::new("ingest.clock_falling").with("percent", percent(*share)),
+        ClockError::Coarse { share } => Note::new("ingest.clock_coarse").with("percent", percent(*share)),
+        ClockError::Rate { rate_hz } => Note::new("ingest.clock_rate").with("rate", rate_hz.to_string()),
+    }
+}
+
 /// Factor and offset from the number in the file to the unit inside.
 fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
-    let error = |message: String| IngestError::new(IngestErrorKind::Unit, path, message);
+    let error = |message: Note| IngestError::new(IngestErrorKind::Unit, path, message);
     if !channel.scale.is_finite() || channel.scale == 0.0 {
-        return Err(error(format!("channel `{}` has the scale {}", channel.id, channel.scale))
-            .hint("give a scale that is finite and not zero"));
+        return Err(error(
+            Note::new("ingest.bad_scale")
+                .with("channel", channel.id.as_str())
+                .with("scale", channel.scale.to_string()),
+        )
+        .hint("ingest.hint.scale"));
     }
     let Some(inside) = channel.role.internal_unit() else { return Ok((channel.scale, 0.0)) };
     let affine = Unit::parse(inside).and_then(|inside| channel.unit.affine_to(&inside));
     affine.map(|(factor, offset)| (factor * channel.scale, offset)).map_err(|e| {
-        error(format!("channel `{}` ({}): {e}", channel.id, channel.role.id()))
-            .hint("give the unit after the scale; the scale of counts is the size of one count")
+        error(
+            Note::new("ingest.unit")
+                .with("channel", channel.id.as_str())
+                .with("role", channel.role.id())
+                .with("reason", e.to_string()),
+        )
+        .hint("ingest.hint.unit")
     })
 }
 

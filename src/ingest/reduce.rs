@@ -3,6 +3,7 @@
 
 use super::error::{IngestError, IngestErrorKind};
 use super::{Block, Column, FieldFault, FieldFaultKind};
+use crate::text::Note;
 use std::path::Path;
 
 /// Rows from which it is judged whether a column holds numbers at all.
@@ -76,10 +77,10 @@ pub(super) fn not_numeric(
     let error = IngestError::new(
         IngestErrorKind::NotNumeric,
         path,
-        format!("most of the first rows have no number in column `{name}`"),
+        Note::new("ingest.not_numeric").with("name", name),
     )
     .found(&fault.text)
-    .hint("check the column, the separator and the decimal sign");
+    .hint("ingest.hint.check_dialect");
     if fault.line > 0 { error.at(fault.line, Some(fault.character)) } else { error }
 }
 

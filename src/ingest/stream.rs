@@ -7,6 +7,7 @@ use crate::recording::faults::FaultLog;
 use crate::recording::integrity::{ValueChecks, ValueFacts};
 use crate::recording::timebase::{Step, Tracker};
 use crate::recording::{Channel, Role, Sink, Slab};
+use crate::text::{Arg, Note};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -87,9 +88,9 @@ impl Plan<'_> {
             return Err(IngestError::new(
                 IngestErrorKind::Empty,
                 self.source.path(),
-                "no row of the recording is usable",
+                "ingest.nothing_usable",
             )
-            .hint("check the time column"));
+            .hint("ingest.hint.check_time_column"));
         };
         Ok(state.report(facts))
     }
@@ -159,17 +160,8 @@ impl State<'_> {
                 self.index += missing;
                 self.connected = false;
                 self.log.push("gap", None, at, row, missing, || {
-                    if clock_set {
-                        format!(
-                            "the clock jumps ahead by {} s: taken for a gap of unknown length",
-                            nano(step_s)
-                        )
-                    } else {
-                        format!(
-                            "{} s between stamps, {missing} samples missing before this row",
-                            nano(step_s)
-                        )
-                    }
+                    let note = if clock_set { "fault_note.clock_ahead" } else { "fault_note.gap" };
+                    Note::new(note).with("step_s", nano(step_s)).with("missing", missing)
                 });
                 return true;
             }
@@ -179,35 +171,27 @@ impl State<'_> {
                 integrity.missing_samples += 1;
                 self.index += 1;
                 self.connected = false;
-                self.log.push("gap", None, at, row, 1, || {
-                    "gap of unknown length: the clock was set back".to_owned()
-                });
+                self.log.push("gap", None, at, row, 1, || Note::new("fault_note.gap_set_back"));
                 // One entry of its own, or it would be added to the rows set aside before it.
                 self.log.push("backward_timestamp", Some("clock"), at, row, 1, || {
-                    format!(
-                        "the clock was set back by {} s; time goes on from here as a new stretch",
-                        nano(back_s)
-                    )
+                    Note::new("fault_note.set_back").with("back_s", nano(back_s))
                 });
                 return true;
             }
             Step::Duplicate => {
                 integrity.duplicate_timestamps += 1;
-                self.log.push("duplicate_timestamp", None, at, row, 1, || {
-                    "the stamp equals the one before".to_owned()
-                });
+                self.log.push("duplicate_timestamp", None, at, row, 1, || Note::new("fault_note.duplicate"));
             }
             Step::Backward { back_s } => {
                 integrity.backward_timestamps += 1;
                 self.log.push("backward_timestamp", None, at, row, 1, || {
-                    format!("the stamp is {} s earlier than one before; the row is set aside", nano(back_s))
+                    Note::new("fault_note.backward").with("back_s", nano(back_s))
                 });
             }
             Step::Stray { ahead_s } => {
                 integrity.backward_timestamps += 1;
                 self.log.push("backward_timestamp", None, at, row, 1, || {
-                    format!("the stamp leaps ahead by {} s and the next one is back in line; the row is set aside",
-                        nano(ahead_s))
+                    Note::new("fault_note.stray").with("ahead_s", nano(ahead_s))
                 });
             }
         }
@@ -258,19 +242,23 @@ impl State<'_> {
             };
             let (kind, word) = match fault.kind {
                 FieldFaultKind::NonFinite if fault.text.trim().parse().is_ok_and(f64::is_finite) => {
-                    ("non_finite", "too large a number")
+                    ("non_finite", "fault_note.too_large")
                 }
-                FieldFaultKind::NonFinite => ("non_finite", "no finite number"),
-                FieldFaultKind::Unparsable => ("unparsable", "no number"),
+                FieldFaultKind::NonFinite => ("non_finite", "fault_note.no_finite_number"),
+                FieldFaultKind::Unparsable => ("unparsable", "fault_note.no_number"),
             };
             let channel = self.plan.channels.get(fault.slot).map(|c| c.id.as_str());
             self.log.push(kind, channel, stamp.filter(|s| s.is_finite()), fault.row, 1, || {
                 let place = if fault.line > 0 {
-                    format!(", line {} character {}", fault.line, fault.character)
+                    Note::new("fault_note.place").with("line", fault.line).with("character", fault.character)
                 } else {
-                    String::new()
+                    Note::new("fault_note.no_place")
                 };
-                format!("{word} in column `{}`{place}: `{}`", self.plan.column_name(fault.slot), fault.text)
+                Note::new("fault_note.field")
+                    .with("what", Note::new(word))
+                    .with("column", self.plan.column_name(fault.slot))
+                    .with("place", place)
+                    .with("text", fault.text.as_str())
             });
         }
     }
@@ -326,9 +314,9 @@ impl State<'_> {
 }
 
 /// Rounds a time that is shown to nanoseconds.
-fn nano(time_s: f64) -> f64 {
+fn nano(time_s: f64) -> Arg {
     let rounded = (time_s * 1e9).round() / 1e9;
-    if rounded.is_finite() { rounded } else { time_s }
+    Arg::Stated(if rounded.is_finite() { rounded } else { time_s })
 }
 
 /// [`prepare`] and [`Plan::stream`] in one.

@@ -1,6 +1,7 @@
 //! The list of faults: everything is counted elsewhere, the first of each kind are listed here.
 
 use crate::record::FaultRecord;
+use crate::text::{Lang, Note};
 use std::collections::BTreeMap;
 
 /// At most this many faults of a kind are listed.
@@ -24,7 +25,7 @@ impl FaultLog {
         time_s: Option<f64>,
         row: u64,
         count: u64,
-        note: impl FnOnce() -> String,
+        note: impl FnOnce() -> Note,
     ) {
         let list = self.kinds.entry(kind).or_default();
         let continued = list
@@ -37,13 +38,15 @@ impl FaultLog {
             return;
         }
         if list.len() < LISTED {
+            let message = note();
             list.push(FaultRecord {
                 kind: kind.to_owned(),
                 channel: channel.map(str::to_owned),
                 time_s,
                 row,
                 count,
-                note: note(),
+                note: message.say(Lang::En),
+                message: Some(message),
             });
         }
     }
@@ -65,10 +68,10 @@ mod tests {
         let mut log = FaultLog::default();
         for row in 5..10 {
             for channel in ["x", "y"] {
-                log.push("non_finite", Some(channel), None, row, 1, || "empty".to_owned());
+                log.push("non_finite", Some(channel), None, row, 1, || Note::new("fault_note.duplicate"));
             }
         }
-        log.push("non_finite", Some("x"), None, 20, 1, || "empty".to_owned());
+        log.push("non_finite", Some("x"), None, 20, 1, || Note::new("fault_note.duplicate"));
         let list = log.into_list();
         assert_eq!(list.iter().map(|f| (f.row, f.count)).collect::<Vec<_>>(), [(5, 5), (5, 5), (20, 1)]);
     }
@@ -77,7 +80,7 @@ mod tests {
     fn the_list_is_bounded() {
         let mut log = FaultLog::default();
         for i in 0..1000 {
-            log.push("gap", None, None, 2 * i + 1, 1, String::new);
+            log.push("gap", None, None, 2 * i + 1, 1, || Note::new("fault_note.duplicate"));
         }
         assert_eq!(log.into_list().len(), LISTED);
     }

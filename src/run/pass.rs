@@ -8,6 +8,7 @@ use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::record::FaultRecord;
 use crate::recording::{Channel, Role, Sink, Slab};
+use crate::text::{Lang, Note};
 use std::collections::BTreeMap;
 
 /// Key of a quantity that must be held: kind of condition and its position.
@@ -147,13 +148,15 @@ impl Overview {
             .iter()
             .filter_map(|r| {
                 let (row, time_s) = r.first?;
+                let note = Note::new("fault_note.declared_rails").with("count", r.count);
                 Some(FaultRecord {
                     kind: "saturated".into(),
                     channel: Some(r.channel.clone()),
                     time_s: Some(time_s),
                     row,
                     count: r.count,
-                    note: format!("{} samples at or beyond the declared rails", r.count),
+                    note: note.say(Lang::En),
+                    message: Some(note),
                 })
             })
             .collect()

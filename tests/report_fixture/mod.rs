@@ -232,6 +232,7 @@ pub fn pass() -> RunRecord {
                 row: 17_234,
                 count: 1,
                 note: "1.23 deg/h, 8.1 robust standard deviations from the median".into(),
+                message: None,
             }],
             ..Integrity::default()
         },

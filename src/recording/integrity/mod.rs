@@ -11,6 +11,7 @@ mod stuck;
 
 use super::faults::FaultLog;
 use super::{Channel, Sink, Slab};
+use crate::text::{Arg, Note};
 use lattice::Lattice;
 use outliers::Outliers;
 use rails::Rails;
@@ -283,39 +284,36 @@ impl ValueChecks {
                 faults.outliers += outliers;
                 for (place, z) in g.outliers.listed(threshold) {
                     log.push("outlier", id, at(place), place.row, 1, || {
-                        format!("{z:.1} robust standard deviations from the local median")
+                        Note::new("fault_note.outlier").with("deviations", Arg::Text(format!("{z:.1}")))
                     });
                 }
                 for rail in g.rails.found(deviation) {
                     faults.saturated += rail.count;
                     log.push("saturated", id, at(rail.first), rail.first.row, rail.count, || {
-                        format!(
-                            "the {} value, {} deg/h, occurs {} times, the next one {} times (row of the first)",
-                            rail.side, rail.value, rail.count, rail.next
-                        )
+                        Note::new("fault_note.rail")
+                            .with("side", Arg::key("fault_note.side", rail.side))
+                            .with("value_deg_h", Arg::Stated(rail.value))
+                            .with("count", rail.count)
+                            .with("next", rail.next)
                     });
                 }
                 let stuck = g.runs.finish();
                 faults.stuck += stuck.count;
                 if let Some(mean) = stuck.held {
                     log.push("stuck", id, at(channel.first), channel.first.row, facts.count, || {
-                        format!(
-                            "remark: each value is repeated {mean:.1} times on average: the output is held or very \
-                             coarse, and stuck values cannot be told"
-                        )
+                        Note::new("fault_note.held").with("times", Arg::Text(format!("{mean:.1}")))
                     });
                 }
                 for (place, length) in stuck.listed {
                     log.push("stuck", id, at(place), place.row, length, || {
-                        format!(
-                            "{length} equal values; chance gives no more than {} here",
-                            stuck.longest_by_chance
-                        )
+                        Note::new("fault_note.stuck")
+                            .with("length", length)
+                            .with("longest_by_chance", stuck.longest_by_chance)
                     });
                 }
             } else if constant && facts.count > CONSTANT_AFTER {
                 log.push("stuck", id, at(channel.first), channel.first.row, facts.count, || {
-                    "remark: the value never changes over the whole recording".to_owned()
+                    Note::new("fault_note.constant")
                 });
             }
         }

@@ -181,6 +181,6 @@ fn fault(f: &FaultRecord, words: Words) -> Fault {
             .time_s
             .map_or_else(|| NOTHING.to_owned(), |t| words.quantity(&limit_digits(t, 9, words.lang), "s")),
         count: count(f.count, words.lang),
-        note: f.note.clone(),
+        note: f.message.as_ref().map_or_else(|| f.note.clone(), |m| m.say(words.lang)),
     }
 }

@@ -11,6 +11,7 @@ use crate::noise::identify::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::recording::{Channel, Role, Sink, Slab};
 use crate::run::evaluate::{spectral, tidy};
+use crate::text::Lang;
 
 /// Time over which temperatures are smoothed, s.
 const SMOOTHING_S: f64 = 60.0;
@@ -146,7 +147,7 @@ fn time_base(
     match prepare(source, std::slice::from_ref(time), TimeBaseSpec::default()) {
         Ok(_) => Ok(TimeBase::Stamps(time.id.clone())),
         Err(e) if e.kind() == IngestErrorKind::TimeBase => {
-            Ok(without(Some(format!("`{}`: {}", time.id, e.message()))))
+            Ok(without(Some(format!("`{}`: {}", time.id, e.message().say(Lang::En)))))
         }
         Err(e) => Err(e),
     }

@@ -42,7 +42,7 @@ fn file(page: &mut Page, source: &Source, seen: &Seen) {
         page.row("SHA-256", &seen.report.facts.sha256);
     }
     for (i, note) in source.notes().iter().enumerate() {
-        page.row(&if i == 0 { word("inspect.reader") } else { String::new() }, note);
+        page.note(&if i == 0 { word("inspect.reader") } else { String::new() }, note);
     }
 }
 
