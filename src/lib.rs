@@ -6,8 +6,8 @@
 //! Data flows one way, and modules depend downwards only:
 //!
 //! ```text
-//! numeric, units, text <- estimate, figure, output <- record, recording <- ingest, noise
-//!     <- measurand <- procedure <- condition <- run <- report <- cli
+//! numeric, units, text <- estimate, figure, output <- record, recording
+//!     <- keyed <- ingest, noise <- measurand <- procedure <- condition <- run <- report <- cli
 //! ```
 #![forbid(unsafe_code)]
 
@@ -15,7 +15,9 @@ pub mod cli;
 pub mod condition;
 pub mod estimate;
 pub mod figure;
+pub mod ids;
 pub mod ingest;
+pub mod keyed;
 pub mod measurand;
 pub mod noise;
 pub mod numeric;

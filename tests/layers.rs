@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 /// Modules from the ground up; each may use those of lower floors, and its own.
 const FLOORS: &[&[&str]] = &[
     &["numeric", "units", "text"],
-    &["estimate", "figure", "output"],
+    &["estimate", "figure", "ids", "output"],
     &["record", "recording"],
+    &["keyed"],
     &["ingest", "noise"],
     &["measurand"],
     &["procedure"],

@@ -46,6 +46,7 @@ impl Format for DelimitedText {
                 storage: "text".to_owned(),
                 unit: None,
                 epoch_s: None,
+                rollover_s: None,
             })
             .collect();
         let rows_estimate = (file.packing == Packing::Plain && dialect.mean_line > 0.0).then(|| {
@@ -53,7 +54,14 @@ impl Format for DelimitedText {
         });
         let notes = dialect.notes.clone();
         let table = Text { path: file.path.clone(), packing: file.packing, dialect };
-        Ok(Opened { columns, rows_estimate, notes, table: Box::new(table) })
+        Ok(Opened {
+            columns,
+            rows_estimate,
+            notes,
+            metadata: Vec::new(),
+            stated_sample_rate_hz: None,
+            table: Box::new(table),
+        })
     }
 }
 

@@ -21,12 +21,20 @@ pub(super) fn open(
         return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.uneven"));
     }
     let (names, columns): (Vec<String>, Vec<Vec<f64>>) = columns.into_iter().unzip();
-    let describe =
-        |name| Column { name, numeric: true, storage: "double".to_owned(), unit: None, epoch_s: None };
+    let describe = |name| Column {
+        name,
+        numeric: true,
+        storage: "double".to_owned(),
+        unit: None,
+        epoch_s: None,
+        rollover_s: None,
+    };
     Ok(Opened {
         columns: names.into_iter().map(describe).collect(),
         rows_estimate: Some(rows as u64),
         notes: Vec::new(),
+        metadata: Vec::new(),
+        stated_sample_rate_hz: None,
         table: Box::new(Memory { columns, block_rows: block_rows.max(1) }),
     })
 }
@@ -34,7 +42,14 @@ pub(super) fn open(
 /// Nothing at all: what stands in for a file that could not be opened.
 pub(super) fn nothing() -> Opened {
     let table = Box::new(Memory { columns: Vec::new(), block_rows: 1 });
-    Opened { columns: Vec::new(), rows_estimate: Some(0), notes: Vec::new(), table }
+    Opened {
+        columns: Vec::new(),
+        rows_estimate: Some(0),
+        notes: Vec::new(),
+        metadata: Vec::new(),
+        stated_sample_rate_hz: None,
+        table,
+    }
 }
 
 impl Table for Memory {

@@ -43,6 +43,8 @@ pub struct Column {
     /// Seconds from 1970 to the zero of the values, when the reader turned stamps with a date into seconds; the unit is
     /// `s` then.
     pub epoch_s: Option<f64>,
+    /// Period after which the stamps start again, s: 86400 for clock time, 604800 for seconds of a week.
+    pub rollover_s: Option<f64>,
 }
 
 /// Why a field is no finite number.
@@ -178,6 +180,10 @@ pub struct Opened {
     pub rows_estimate: Option<u64>,
     /// What was decided about the file and why.
     pub notes: Vec<Note>,
+    /// What the file says of itself, key and value as written: a bounded number of bounded length.
+    pub metadata: Vec<(String, String)>,
+    /// Sample rate that the file states, Hz.
+    pub stated_sample_rate_hz: Option<f64>,
     /// The reader.
     pub table: Box<dyn Table>,
 }
@@ -199,7 +205,7 @@ pub trait Format: Sync {
 pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &csv::DelimitedText];
 
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
-const NOT_READ: &[(&[u8], &str, &'static str)] = &[
+const NOT_READ: &[(&[u8], &str, &str)] = &[
     (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
     (b"\x89HDF", "ingest.kind.hdf5", "ingest.hint.export_data"),
     (b"MATLAB 5.0", "ingest.kind.matlab", "ingest.hint.export_data"),
@@ -337,6 +343,16 @@ impl Source {
     /// What was decided about the file and why.
     pub fn notes(&self) -> &[Note] {
         &self.opened.notes
+    }
+
+    /// What the file says of itself, key and value as written.
+    pub fn metadata(&self) -> &[(String, String)] {
+        &self.opened.metadata
+    }
+
+    /// Sample rate that the file states, Hz. It counts only where neither stamps nor the user tell the rate.
+    pub fn stated_sample_rate_hz(&self) -> Option<f64> {
+        self.opened.stated_sample_rate_hz
     }
 
     /// Finds a column; the result is its position from 0.

@@ -52,6 +52,8 @@ impl Format for Parquet {
             columns,
             rows_estimate: Some(rows),
             notes: vec![Note::new("ingest.note.row_groups").with("count", reader.num_row_groups())],
+            metadata: Vec::new(),
+            stated_sample_rate_hz: None,
             table: Box::new(ParquetFile { path: file.path.clone() }),
         })
     }
@@ -88,6 +90,7 @@ fn describe(column: &ColumnDescriptor) -> Column {
             _ => None,
         },
         epoch_s: None,
+        rollover_s: None,
     }
 }
 

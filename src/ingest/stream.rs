@@ -258,7 +258,7 @@ impl State<'_> {
                     .with("what", Note::new(word))
                     .with("column", self.plan.column_name(fault.slot))
                     .with("place", place)
-                    .with("text", fault.text.as_str())
+                    .with("text", format!("`{}`", fault.text))
             });
         }
     }

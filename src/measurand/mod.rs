@@ -5,13 +5,13 @@
 mod allan_minimum;
 pub mod earth_rate;
 pub mod evidence;
-pub mod ids;
 mod noise_terms;
 mod russian;
 mod spectral_line;
 pub mod static_bias;
 
 use crate::estimate::Estimate;
+pub use crate::ids;
 pub use evidence::{Earth, GyroEvidence};
 
 /// Choices a procedure makes for a measurand.

@@ -3,7 +3,7 @@
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
-use crate::measurand::ids::MEASURANDS;
+use crate::ids::MEASURANDS;
 use std::fmt::Write;
 
 /// Every key of a procedure file, as Markdown.

@@ -5,7 +5,7 @@ use super::model::{Loaded, Procedure};
 use super::reader::Reader;
 use super::section::{Entry, Section};
 use crate::estimate::{Limit, Rule};
-use crate::measurand::ids::MeasurandId;
+use crate::ids::MeasurandId;
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
 
 /// Limits, references and typical values of one file, in the units of the measurands.

@@ -3,25 +3,23 @@
 
 mod channel;
 pub mod check;
-pub mod diagnostics;
 pub mod guide;
 pub mod limits;
 mod load;
 pub mod model;
 mod parse;
 pub mod power;
-pub mod quantity;
-mod reader;
 pub mod schema;
-mod section;
-pub mod spec;
 pub mod tables;
 mod tables_conditions;
 pub mod tables_limits;
 mod tables_site;
 mod validate;
-mod values;
 
+pub use crate::keyed::diagnostics;
+pub use crate::keyed::quantity;
+pub use crate::keyed::spec;
+use crate::keyed::{reader, section};
 pub use diagnostics::{Problem, Problems, Severity};
 pub use limits::{EffectiveLimits, LimitsFile, effective};
 pub use load::{load, load_limits, parse_limits, parse_procedure};

@@ -3,7 +3,7 @@
 use super::diagnostics::{Problem, SourceText, Span};
 use super::limits::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
-use crate::measurand::ids::MeasurandId;
+use crate::ids::MeasurandId;
 use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
 use chrono::NaiveDate;

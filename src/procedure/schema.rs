@@ -5,7 +5,7 @@
 use super::spec::{KeySpec, Kind, Need, Range, TableSpec, Word};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
-use crate::measurand::ids::MEASURANDS;
+use crate::ids::MEASURANDS;
 use serde_json::{Map, Value, json};
 
 /// Pattern of a number with its unit.

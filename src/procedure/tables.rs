@@ -15,6 +15,7 @@ pub const ROLES: &[Word] = &[
     ("table_angle", "angle of the table"),
     ("outer_rate", "rate of the table's other axis"),
     ("supply", "supply voltage"),
+    ("counter", "sample counter: grows by one a sample"),
     ("auxiliary", "anything else that is kept beside"),
 ];
 
@@ -27,8 +28,6 @@ pub const FIGURES: &[Word] = &[
     ("autocorrelation", "autocorrelation with the band of white noise"),
     ("histogram", "distribution of the samples against the normal one"),
 ];
-
-const SHARE: Range = Range::between(0.0, 1.0);
 
 /// The procedure file as a whole.
 pub static PROCEDURE_FILE: TableSpec = TableSpec {
@@ -319,6 +318,3 @@ static WAIVER: TableSpec = TableSpec {
         required("date", Kind::Date, "2026-03-01", "Day of the decision."),
     ],
 };
-
-/// Share of the samples that an allowance may state.
-pub(super) const ALLOWANCE_SHARE: Range = SHARE;

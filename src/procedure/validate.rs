@@ -4,7 +4,7 @@ use super::diagnostics::{Problem, SourceText, nearest};
 use super::model::{ChannelSpec, EarthRate, MeasurandSpec, Procedure, Taus};
 use super::reader::{Reader, shorten};
 use super::section::Section;
-use crate::measurand::ids;
+use crate::ids;
 use crate::recording::{ColumnRef, Role};
 
 /// Reports every contradiction.

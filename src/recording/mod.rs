@@ -19,6 +19,8 @@ use serde::Serialize;
 pub enum Role {
     /// Time stamps.
     Time,
+    /// Sample counter: grows by one a sample.
+    Counter,
     /// Angular rate about an input axis; inside: deg/h.
     Rate,
     /// Angle turned during the sample interval, or counts of it; inside: turned into deg/h by the sample interval.
@@ -42,6 +44,7 @@ impl Role {
     pub fn id(self) -> &'static str {
         match self {
             Role::Time => "time",
+            Role::Counter => "counter",
             Role::Rate => "rate",
             Role::AngleIncrement => "angle_increment",
             Role::Temperature => "temperature",
@@ -56,6 +59,7 @@ impl Role {
     /// Every role, in the order of the documentation.
     pub const ALL: &'static [Role] = &[
         Role::Time,
+        Role::Counter,
         Role::Rate,
         Role::AngleIncrement,
         Role::Temperature,
@@ -74,7 +78,7 @@ impl Role {
             Role::AngleIncrement | Role::TableAngle => Some("arcsec"),
             Role::Temperature => Some("degC"),
             Role::Supply => Some("V"),
-            Role::Auxiliary => None,
+            Role::Counter | Role::Auxiliary => None,
         }
     }
 

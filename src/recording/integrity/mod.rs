@@ -291,7 +291,7 @@ impl ValueChecks {
                     faults.saturated += rail.count;
                     log.push("saturated", id, at(rail.first), rail.first.row, rail.count, || {
                         Note::new("fault_note.rail")
-                            .with("side", Arg::key("fault_note.side", rail.side))
+                            .with("side", Arg::Key(rail.side.to_owned()))
                             .with("value_deg_h", Arg::Stated(rail.value))
                             .with("count", rail.count)
                             .with("next", rail.next)

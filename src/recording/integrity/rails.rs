@@ -90,7 +90,7 @@ impl Rails {
                 && e.next.is_finite()
                 && e.value - e.next < 0.5 * deviation
         };
-        [(&self.lower, "smallest"), (&self.upper, "largest")]
+        [(&self.lower, "fault_note.smallest"), (&self.upper, "fault_note.largest")]
             .into_iter()
             .filter(|(e, _)| railed(e))
             .map(|(e, side)| Rail {

@@ -5,7 +5,7 @@ use super::diagnostics::{Problem, Problems, SourceText, Span, nearest};
 use super::section::{Entry, Section};
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::values;
-use crate::measurand::ids::{self, MeasurandId};
+use crate::ids::{self, MeasurandId};
 use crate::recording::Role;
 use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
@@ -25,7 +25,7 @@ const DEEPEST: usize = 500;
 /// Reads a file by its description.
 ///
 /// The section is there whenever the text is TOML at all, with the values that are sound; the problems tell the rest.
-pub(super) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Problems) {
+pub(crate) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Problems) {
     let mut reader = Reader { source, root, problems: Problems::default() };
     if let Some(problem) = unreadable(source) {
         return (None, problem.into());
@@ -114,7 +114,7 @@ fn with_syntax_help(problem: Problem) -> Problem {
     problem.help(help)
 }
 
-pub(super) struct Reader<'s> {
+pub(crate) struct Reader<'s> {
     pub source: &'s SourceText,
     root: &'static TableSpec,
     pub problems: Problems,
@@ -368,7 +368,7 @@ fn written(key: &KeySpec) -> String {
 }
 
 /// A name short enough for a message.
-pub(super) fn shorten(name: &str) -> String {
+pub(crate) fn shorten(name: &str) -> String {
     if name.chars().count() <= 60 {
         name.to_owned()
     } else {

@@ -5,7 +5,6 @@ use super::quantity::{self, QuantityError};
 use super::reader::{Reader, shorten};
 use super::section::{Allowance, Entry, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
-use super::tables::ALLOWANCE_SHARE;
 use crate::recording::ColumnRef;
 use crate::units::Unit;
 use chrono::NaiveDate;
@@ -18,7 +17,7 @@ const LONGEST_TEXT: usize = 2000;
 const MOST_TAUS: usize = 1000;
 
 /// Reads a value that is no table.
-pub(super) fn scalar(
+pub(crate) fn scalar(
     reader: &mut Reader<'_>,
     key: &'static KeySpec,
     value: &DeValue<'_>,
@@ -213,7 +212,7 @@ fn allowance(
             }
         },
         DeValue::String(_) => {
-            quantity_in(reader, key, "1", false, ALLOWANCE_SHARE, value, span).map(Allowance::Share)
+            quantity_in(reader, key, "1", false, Range::SHARE, value, span).map(Allowance::Share)
         }
         _ => reader.wrong(key, value, span),
     }
@@ -257,7 +256,7 @@ fn quantity_in(
 }
 
 /// Reads a quantity whose unit follows from elsewhere.
-pub(super) fn quantity_by(
+pub(crate) fn quantity_by(
     reader: &mut Reader<'_>,
     key: &'static KeySpec,
     unit: &str,

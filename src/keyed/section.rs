@@ -1,7 +1,7 @@
 //! Checked values of a table, by key.
 
 use super::diagnostics::Span;
-use crate::measurand::ids::MeasurandId;
+use crate::ids::MeasurandId;
 use crate::recording::ColumnRef;
 use crate::units::Unit;
 use chrono::NaiveDate;
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// A checked value.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Entry {
+pub(crate) enum Entry {
     Text(String),
     Flag(bool),
     Number(f64),
@@ -71,7 +71,7 @@ impl std::fmt::Display for Allowance {
 
 /// A table that was read: the values that are sound.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Section {
+pub(crate) struct Section {
     /// Where the table begins.
     pub span: Span,
     pub entries: BTreeMap<&'static str, (Entry, Span)>,

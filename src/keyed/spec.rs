@@ -56,6 +56,8 @@ impl Range {
     pub const ANY: Range = Range { low: f64::MIN, high: f64::MAX, open: false };
     /// Above zero.
     pub const POSITIVE: Range = Range { low: 0.0, high: f64::MAX, open: true };
+    /// A part of a whole.
+    pub const SHARE: Range = Range { low: 0.0, high: 1.0, open: false };
     /// Zero or above.
     pub const NOT_NEGATIVE: Range = Range { low: 0.0, high: f64::MAX, open: false };
 
@@ -214,7 +216,7 @@ impl TableSpec {
 }
 
 /// A key that must be there.
-pub(super) const fn required(
+pub(crate) const fn required(
     name: &'static str,
     kind: Kind,
     example: &'static str,
@@ -224,7 +226,7 @@ pub(super) const fn required(
 }
 
 /// A key that may be left out.
-pub(super) const fn optional(
+pub(crate) const fn optional(
     name: &'static str,
     kind: Kind,
     example: &'static str,
@@ -234,7 +236,7 @@ pub(super) const fn optional(
 }
 
 /// A key with a value that holds when it is left out.
-pub(super) const fn with_default(
+pub(crate) const fn with_default(
     name: &'static str,
     kind: Kind,
     default: &'static str,
@@ -245,12 +247,12 @@ pub(super) const fn with_default(
 }
 
 /// A quantity in a unit.
-pub(super) const fn quantity(unit: &'static str, range: Range) -> Kind {
+pub(crate) const fn quantity(unit: &'static str, range: Range) -> Kind {
     Kind::Quantity { unit, difference: false, range }
 }
 
 /// A difference or an uncertainty in a unit.
-pub(super) const fn difference(unit: &'static str, range: Range) -> Kind {
+pub(crate) const fn difference(unit: &'static str, range: Range) -> Kind {
     Kind::Quantity { unit, difference: true, range }
 }
 
