@@ -8,6 +8,7 @@ use sagnac::procedure::tables::PROCEDURE_FILE;
 use sagnac::procedure::tables_limits::LIMITS_FILE;
 use sagnac::procedure::{effective, guide, load, load_limits, parse_limits, parse_procedure, power, schema};
 use sagnac::recording::{ColumnRef, Role};
+use sagnac::text::Lang;
 use std::path::{Path, PathBuf};
 
 fn shipped(path: &str) -> PathBuf {
