@@ -107,8 +107,8 @@ pub enum Layer {
     Label {
         /// Position.
         at: (f64, f64),
-        /// Key or plain text.
-        text: String,
+        /// The word.
+        text: Note,
     },
 }
 

@@ -16,13 +16,13 @@ pub enum Test {
 }
 
 impl Test {
-    /// The test in words.
-    pub fn title(self) -> &'static str {
+    /// Id of the test; `test.<id>` is its name in the locale tables.
+    pub fn id(self) -> &'static str {
         match self {
-            Test::Static => "the static test",
-            Test::Temperature => "the temperature test",
-            Test::RateTable => "the rate-table test",
-            Test::Influence => "an influence or repeatability test",
+            Test::Static => "static",
+            Test::Temperature => "temperature",
+            Test::RateTable => "rate_table",
+            Test::Influence => "influence",
         }
     }
 }

@@ -3,18 +3,19 @@
 //! Everything is written into a hidden folder beside the target, synced to disk, and put in place by one rename. A
 //! run that is killed, or a disk that fills up, leaves the earlier result or none, never half of a new one.
 
+use crate::text::{Note, io_reason};
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 /// Why an output folder could not be written.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 pub enum OutputError {
     /// The operating system refused.
-    #[error("failed to {action} {}: {source}", path.display())]
     Io {
-        /// What was attempted.
+        /// What failed: a key of the locale tables.
         action: &'static str,
         /// On which path.
         path: PathBuf,
@@ -22,19 +23,51 @@ pub enum OutputError {
         source: std::io::Error,
     },
     /// Something that is no earlier result stands in the way.
-    #[error("{} {why}; choose another --out or remove it", path.display())]
     InTheWay {
         /// Where.
         path: PathBuf,
         /// What is the matter with it.
-        why: String,
+        why: Note,
     },
     /// The target is `..`, the root or the like.
-    #[error("{} is not the name of a folder to be made; give --out such a name", .0.display())]
     NoName(PathBuf),
     /// A file that no result folder holds.
-    #[error("`{0}` is no file of a result folder")]
     Unforeseen(String),
+}
+
+impl OutputError {
+    /// What is wrong, as a note.
+    pub fn note(&self) -> Note {
+        let at = |path: &Path| path.display().to_string();
+        match self {
+            OutputError::Io { action, path, source } => {
+                Note::new(action).with("path", at(path)).with("reason", io_reason(source))
+            }
+            OutputError::InTheWay { path, why } => {
+                Note::new("output_error.in_the_way").with("path", at(path)).with("why", why.clone())
+            }
+            OutputError::NoName(path) => Note::new("output_error.no_name").with("path", at(path)),
+            OutputError::Unforeseen(name) => {
+                Note::new("output_error.unforeseen").with("name", name.as_str())
+            }
+        }
+    }
+}
+
+impl fmt::Display for OutputError {
+    /// In English.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.note().fmt(f)
+    }
+}
+
+impl std::error::Error for OutputError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            OutputError::Io { source, .. } => Some(source),
+            _ => None,
+        }
+    }
 }
 
 fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> OutputError + use<> {
@@ -70,7 +103,7 @@ impl StagedFolder {
             replaceable(target)?;
         }
         let parent = parent(target);
-        fs::create_dir_all(parent).map_err(io("create the folder", parent))?;
+        fs::create_dir_all(parent).map_err(io("output_error.create_folder", parent))?;
         let prefix = format!(".{}.partial-", name.to_string_lossy());
         remove_abandoned(parent, &prefix);
         let mut builder = tempfile::Builder::new();
@@ -78,7 +111,7 @@ impl StagedFolder {
         // A result is read by colleagues: the usual rights under the user's umask, not those of a private scratch.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let staging = builder.tempdir_in(parent).map_err(io("write into", parent))?;
+        let staging = builder.tempdir_in(parent).map_err(io("output_error.write_into", parent))?;
         Ok(StagedFolder { target: target.to_owned(), staging })
     }
 
@@ -93,11 +126,11 @@ impl StagedFolder {
         }
         let path = self.staging.path().join(name);
         if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent).map_err(io("create the folder", parent))?;
+            fs::create_dir_all(parent).map_err(io("output_error.create_folder", parent))?;
         }
-        let mut file = File::create(&path).map_err(io("create", &path))?;
-        file.write_all(contents).map_err(io("write", &path))?;
-        file.sync_all().map_err(io("sync", &path))
+        let mut file = File::create(&path).map_err(io("output_error.create", &path))?;
+        file.write_all(contents).map_err(io("output_error.write", &path))?;
+        file.sync_all().map_err(io("output_error.sync", &path))
     }
 
     /// Puts the folder in its place in one step and gives its path back.
@@ -146,20 +179,20 @@ fn foreign(folder: &Path) -> std::io::Result<Option<String>> {
 
 /// Refuses whatever is neither an empty folder nor an earlier result and nothing else.
 fn replaceable(target: &Path) -> Result<(), OutputError> {
-    let in_the_way = |why: String| Err(OutputError::InTheWay { path: target.to_owned(), why });
-    let kind = target.symlink_metadata().map_err(io("look at", target))?.file_type();
+    let in_the_way = |why: Note| Err(OutputError::InTheWay { path: target.to_owned(), why });
+    let kind = target.symlink_metadata().map_err(io("output_error.look_at", target))?.file_type();
     if !kind.is_dir() {
-        let what = if kind.is_symlink() { "a link" } else { "a file" };
-        return in_the_way(format!("exists and is {what}, not a result folder"));
+        let why = if kind.is_symlink() { "output_error.why.link" } else { "output_error.why.file" };
+        return in_the_way(why.into());
     }
-    if fs::read_dir(target).map_err(io("look into", target))?.next().is_none() {
+    if fs::read_dir(target).map_err(io("output_error.look_into", target))?.next().is_none() {
         return Ok(());
     }
     if !is_result(&target.join("result.json")) {
-        return in_the_way("exists and is no result folder of this program".to_owned());
+        return in_the_way("output_error.why.foreign".into());
     }
-    match foreign(target).map_err(io("look into", target))? {
-        Some(name) => in_the_way(format!("holds `{name}`, which this program did not write")),
+    match foreign(target).map_err(io("output_error.look_into", target))? {
+        Some(name) => in_the_way(Note::new("output_error.why.holds").with("name", name)),
         None => Ok(()),
     }
 }
@@ -193,7 +226,7 @@ fn remove_abandoned(parent: &Path, prefix: &str) {
 }
 
 fn sync_folder(path: &Path) -> Result<(), OutputError> {
-    File::open(path).and_then(|f| f.sync_all()).map_err(io("sync", path))
+    File::open(path).and_then(|f| f.sync_all()).map_err(io("output_error.sync", path))
 }
 
 #[cfg(target_os = "linux")]
@@ -210,7 +243,7 @@ fn put_in_place(staged: &Path, target: &Path) -> Result<(), OutputError> {
         replaceable(target)?;
         // An exchange is one step: at no moment is there neither the old folder nor the new one.
         match rename(RenameFlags::EXCHANGE) {
-            Ok(()) => return fs::remove_dir_all(staged).map_err(io("remove the replaced folder", staged)),
+            Ok(()) => return fs::remove_dir_all(staged).map_err(io("output_error.remove", staged)),
             // Another run has just taken the old folder away.
             Err(Errno::NOENT) => {}
             Err(_) => break,
@@ -227,18 +260,18 @@ fn put_in_place(staged: &Path, target: &Path) -> Result<(), OutputError> {
 /// For file systems without an exchange: the old folder steps aside first.
 fn replace_in_two_steps(staged: &Path, target: &Path) -> Result<(), OutputError> {
     if target.symlink_metadata().is_err() {
-        return fs::rename(staged, target).map_err(io("put in place", target));
+        return fs::rename(staged, target).map_err(io("output_error.put_in_place", target));
     }
     replaceable(target)?;
     let mut aside = staged.as_os_str().to_owned();
     aside.push(".replaced");
     let aside = PathBuf::from(aside);
-    fs::rename(target, &aside).map_err(io("set aside", target))?;
+    fs::rename(target, &aside).map_err(io("output_error.set_aside", target))?;
     if let Err(e) = fs::rename(staged, target) {
         let _ = fs::rename(&aside, target);
-        return Err(io("put in place", target)(e));
+        return Err(io("output_error.put_in_place", target)(e));
     }
-    fs::remove_dir_all(&aside).map_err(io("remove the replaced folder", &aside))
+    fs::remove_dir_all(&aside).map_err(io("output_error.remove", &aside))
 }
 
 #[cfg(test)]

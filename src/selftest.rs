@@ -8,15 +8,16 @@ use crate::noise::model::{NoiseModel, unit_allan_variance};
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::noise::windows::edf_of_window_std;
+use crate::text::{Lang, Note, decimal};
 use crate::units::Unit;
 
 /// One oracle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
     /// What is computed.
-    pub name: String,
+    pub name: Note,
     /// Where the number was published.
-    pub source: &'static str,
+    pub source: Note,
     /// Published value.
     pub published: f64,
     /// Value computed here.
@@ -50,33 +51,39 @@ impl SelfTest {
         self.checks.iter().all(Check::passed)
     }
 
-    /// A table for the QA file.
-    pub fn text(&self) -> String {
+    /// A table for the QA file, in a language.
+    pub fn text(&self, lang: Lang) -> String {
+        let words = |key: &'static str| Note::new(key).say(lang);
+        let number = |ascii: String| decimal(&ascii, lang);
+        let title = Note::new("selftest.title")
+            .with("version", env!("CARGO_PKG_VERSION"))
+            .with("system", std::env::consts::OS)
+            .with("machine", std::env::consts::ARCH);
         let mut out = format!(
-            "sagnac {} self-test on {} {}\n\n{:<52} {:>16} {:>20} {:>9} {:>9}  source\n",
-            env!("CARGO_PKG_VERSION"),
-            std::env::consts::OS,
-            std::env::consts::ARCH,
-            "quantity",
-            "published",
-            "computed",
-            "rel.diff",
-            "allowed"
+            "{}\n\n{:<52} {:>16} {:>20} {:>9} {:>9}  {}\n",
+            title.say(lang),
+            words("selftest.quantity"),
+            words("selftest.published"),
+            words("selftest.computed"),
+            words("selftest.difference"),
+            words("selftest.allowed"),
+            words("selftest.source"),
         );
         for c in &self.checks {
             out.push_str(&format!(
-                "{:<52} {:>16} {:>20.12} {:>9.1e} {:>9.1e}  {}{}\n",
-                c.name,
-                c.published,
-                c.computed,
-                c.difference(),
-                c.tolerance,
-                c.source,
-                if c.passed() { "" } else { "  DIFFERS" }
+                "{:<52} {:>16} {:>20} {:>9} {:>9}  {}{}\n",
+                c.name.say(lang),
+                number(c.published.to_string()),
+                number(format!("{:.12}", c.computed)),
+                number(format!("{:.1e}", c.difference())),
+                number(format!("{:.1e}", c.tolerance)),
+                c.source.say(lang),
+                if c.passed() { String::new() } else { format!("  {}", words("selftest.differs")) }
             ));
         }
         let failed = self.checks.iter().filter(|c| !c.passed()).count();
-        out.push_str(&format!("\n{} checks, {failed} differ\n", self.checks.len()));
+        let sum = Note::new("selftest.sum").with("n", self.checks.len()).with("failed", failed);
+        out.push_str(&format!("\n{}\n", sum.say(lang)));
         out
     }
 }
@@ -108,42 +115,46 @@ fn deviation(values: &[f64], m: u64, estimator: Estimator) -> f64 {
     set.curve(estimator).and_then(|c| c.points.first()).map_or(f64::NAN, |p| p.deviation)
 }
 
+fn points(name: &'static str, n: u64, m: u64) -> Note {
+    Note::new("selftest.points").with("name", Note::new(name)).with("n", n).with("m", m)
+}
+
 /// Runs every oracle.
 pub fn run() -> SelfTest {
-    const SP1065: &str = "NIST SP 1065";
+    const SP1065: &str = "selftest.from.sp1065";
     let mut checks = Vec::new();
-    let mut add = |name: String, source, published: f64, computed: f64, tolerance: f64| {
-        checks.push(Check { name, source, published, computed, tolerance });
+    let mut add = |name: Note, source: &'static str, published: f64, computed: f64, tolerance: f64| {
+        checks.push(Check { name, source: Note::new(source), published, computed, tolerance });
     };
     let thousand = thousand();
     let family = [
         (
             Estimator::Allan,
-            "overlapping Allan deviation",
+            "selftest.allan",
             [91.22945, 85.95287],
             [2.922319e-1, 9.159953e-2, 3.241343e-2],
         ),
         (
             Estimator::Modified,
-            "modified Allan deviation",
+            "selftest.modified",
             [91.22945, 74.78849],
             [2.922319e-1, 6.172376e-2, 2.170921e-2],
         ),
         (
             Estimator::Hadamard,
-            "overlapping Hadamard deviation",
+            "selftest.hadamard",
             [70.80607, 85.61487],
             [2.943883e-1, 9.581083e-2, 3.237638e-2],
         ),
-        (Estimator::Total, "total deviation", [91.22945, 93.90379], [2.922319e-1, 9.134743e-2, 3.406530e-2]),
+        (Estimator::Total, "selftest.total", [91.22945, 93.90379], [2.922319e-1, 9.134743e-2, 3.406530e-2]),
     ];
     for (estimator, name, nine, suite) in family {
         for (m, value) in [1, 2].into_iter().zip(nine) {
-            add(format!("{name}, 9 points, m = {m}"), SP1065, value, deviation(&NINE, m, estimator), 1e-7);
+            add(points(name, 9, m), SP1065, value, deviation(&NINE, m, estimator), 1e-7);
         }
         for (m, value) in [1, 10, 100].into_iter().zip(suite) {
             add(
-                format!("{name}, 1000 points, m = {m}"),
+                points(name, 1000, m),
                 SP1065,
                 value,
                 deviation(&thousand, m, estimator),
@@ -155,49 +166,49 @@ pub fn run() -> SelfTest {
     for (n, published) in [(36, 11.4), (100, 18.3), (360, 29.5), (864, 38.8)] {
         let flicker = NoiseModel { b: 1.0, ..NoiseModel::default() };
         let edf = edf_of_window_std(n, 100.0, |t| flicker.mean_variance(t)).unwrap_or(f64::NAN);
-        add(format!("degrees of freedom of {n} means, flicker"), "quadratic form", published, edf, 5e-3);
+        add(Note::new("selftest.degrees").with("n", n), "selftest.from.quadratic_form", published, edf, 5e-3);
     }
     add(
-        "σ of 100-s means over N, white noise".into(),
-        "closed form",
+        Note::new("selftest.sigma_100"),
+        "selftest.from.closed_form",
         6.0,
         white.mean_variance(100.0).sqrt(),
         1e-12,
     );
     add(
-        "flicker floor over B".into(),
-        "IEEE Std 952 annex C",
+        Note::new("selftest.flicker_floor"),
+        "selftest.from.ieee_952",
         0.6642824703,
         unit_allan_variance(NoiseType::Flicker, 1.0).sqrt(),
         1e-10,
     );
     add(
-        "χ² quantile, p = 0.975, 10 degrees".into(),
-        "NIST/SEMATECH handbook",
+        Note::new("selftest.chi_square"),
+        "selftest.from.sematech",
         20.483,
         chi_square_quantile(0.975, 10.0),
         3e-5,
     );
-    add("normal quantile, p = 0.95".into(), "ISO 14253-1", 1.645, normal_quantile(0.95), 1e-4);
+    add(Note::new("selftest.normal"), "selftest.from.iso_14253", 1.645, normal_quantile(0.95), 1e-4);
     let guard = Spread::Normal { standard_uncertainty: 1.0 }.bound(0.0, 0.95).unwrap_or(f64::NAN);
-    add("guard band of 5 % risk over u".into(), "ISO 14253-1", 1.645, guard, 1e-4);
+    add(Note::new("selftest.guard_band"), "selftest.from.iso_14253", 1.645, guard, 1e-4);
     let exact = |value| Uncertain { value, uncertainty: 0.0 };
     let vertical =
         Orientation { latitude_deg: exact(56.0), heading_deg: exact(0.0), elevation_deg: exact(90.0) };
     let north = Orientation { elevation_deg: exact(0.0), ..vertical };
     add(
-        "Earth rate, vertical axis at 56°, deg/h".into(),
-        "geometry",
+        Note::new("selftest.earth_vertical"),
+        "selftest.from.geometry",
         12.47,
         earth_rate(&vertical).value,
         5e-4,
     );
-    add("Earth rate, north axis at 56°, deg/h".into(), "geometry", 8.41, earth_rate(&north).value, 6e-4);
+    add(Note::new("selftest.earth_north"), "selftest.from.geometry", 8.41, earth_rate(&north).value, 6e-4);
     let factor = |a: &str, b: &str| {
         Unit::parse(a).and_then(|a| Unit::parse(b).and_then(|b| a.factor_to(&b))).unwrap_or(f64::NAN)
     };
-    add("rad/s in deg/h".into(), "definition", 206_264.806_247_096_36, factor("rad/s", "deg/h"), 1e-14);
-    add("arcsec/s in deg/h".into(), "definition", 1.0, factor("arcsec/s", "deg/h"), 1e-15);
+    add(Note::new("selftest.rad_s"), "selftest.from.definition", 206_264.806_247_096_36, factor("rad/s", "deg/h"), 1e-14);
+    add(Note::new("selftest.arcsec_s"), "selftest.from.definition", 1.0, factor("arcsec/s", "deg/h"), 1e-15);
     SelfTest { checks }
 }
 
@@ -207,6 +218,6 @@ mod tests {
     fn every_oracle_is_met() {
         let result = super::run();
         assert!(result.checks.len() > 30);
-        assert!(result.passed(), "{}", result.text());
+        assert!(result.passed(), "{}", result.text(crate::text::Lang::En));
     }
 }

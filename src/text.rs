@@ -3,25 +3,16 @@
 //! A [`Note`] is a sentence by name with its numbers; it becomes words only where it is shown, so that the same
 //! result can be read in any language. The tables are `templates/locale/*.toml`.
 
+mod lang;
+mod system;
+
+pub use lang::Lang;
+pub use system::io_reason;
+
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
-
-/// A language a document can be written in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Lang {
-    /// English.
-    #[default]
-    En,
-    /// Russian.
-    Ru,
-}
-
-impl Lang {
-    /// Every language, the default first.
-    pub const ALL: &'static [Lang] = &[Lang::En, Lang::Ru];
-}
 
 static ENGLISH: LazyLock<BTreeMap<String, String>> =
     LazyLock::new(|| flatten(include_str!("../templates/locale/en.toml")));
@@ -79,6 +70,19 @@ pub enum Arg {
     Key(String),
     /// A sentence within the sentence.
     Note(Box<Note>),
+    /// Several arguments with a text between each two.
+    Several(Vec<Arg>, &'static str),
+    /// A number with at most so many decimals, whatever its size.
+    Decimals(f64, usize),
+    /// A number with its own count of significant digits, with or without idle zeros behind the decimal mark.
+    Figures {
+        /// The number.
+        value: f64,
+        /// Significant digits.
+        digits: usize,
+        /// Whether zeros that fill the digits are shown.
+        zeros: bool,
+    },
 }
 
 impl Arg {
@@ -86,6 +90,36 @@ impl Arg {
     pub fn words(key: &str, lang: Lang) -> String {
         lookup(lang, key)
             .map_or_else(|| key.rsplit('.').next().unwrap_or(key).replace('_', " "), str::to_owned)
+    }
+
+    /// A number with significant digits, idle zeros among them.
+    pub fn figures(value: f64, digits: usize) -> Arg {
+        Arg::Figures { value, digits, zeros: true }
+    }
+
+    /// A number with at most so many significant digits, without idle zeros.
+    pub fn rounded(value: f64, digits: usize) -> Arg {
+        Arg::Figures { value, digits, zeros: false }
+    }
+
+    /// The argument in words, with the decimal mark of the language.
+    pub fn say(&self, lang: Lang) -> String {
+        match self {
+            Arg::Number(v) => decimal(&trimmed(significant(*v, 4)), lang),
+            Arg::Stated(v) => decimal(&trimmed(significant(*v, 12)), lang),
+            Arg::Figures { value, digits, zeros: true } => decimal(&significant(*value, *digits), lang),
+            Arg::Figures { value, digits, zeros: false } => {
+                decimal(&trimmed(significant(*value, *digits)), lang)
+            }
+            Arg::Decimals(value, count) => decimal(&trimmed(format!("{value:.count$}")), lang),
+            Arg::Count(v) => v.to_string(),
+            Arg::Text(t) => t.clone(),
+            Arg::Key(k) => Arg::words(k, lang),
+            Arg::Note(n) => n.say(lang),
+            Arg::Several(list, between) => {
+                list.iter().map(|a| a.say(lang)).collect::<Vec<_>>().join(between)
+            }
+        }
     }
 
     /// An id under a prefix of the locale tables, such as `measurand` and `static_bias`.
@@ -150,15 +184,15 @@ impl Note {
     /// The sentence in a language. A key the table lacks shows as itself, so that it is noticed.
     pub fn say(&self, lang: Lang) -> String {
         fill(lookup(lang, self.id).unwrap_or(self.id), |name| {
-            self.args.get(name).map(|arg| match arg {
-                Arg::Number(v) => trimmed(significant(*v, 4)),
-                Arg::Stated(v) => trimmed(significant(*v, 12)),
-                Arg::Count(v) => v.to_string(),
-                Arg::Text(t) => t.clone(),
-                Arg::Key(k) => Arg::words(k, lang),
-                Arg::Note(n) => n.say(lang),
-            })
+            self.args.get(name).map(|arg| arg.say(lang))
         })
+    }
+}
+
+impl std::fmt::Display for Note {
+    /// In English: the language of `result.json`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.say(Lang::En))
     }
 }
 
@@ -199,11 +233,20 @@ pub(crate) fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> Str
 
 /// Without zeros behind the decimal mark that say nothing.
 fn trimmed(text: String) -> String {
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
+    let (mantissa, exponent) = match text.split_once('e') {
+        Some((m, e)) => (m, Some(e)),
+        None => (text.as_str(), None),
+    };
+    if !mantissa.contains('.') {
+        return text;
     }
+    let short = mantissa.trim_end_matches('0').trim_end_matches('.');
+    exponent.map_or_else(|| short.to_owned(), |e| format!("{short}e{e}"))
+}
+
+/// An ASCII number with the decimal mark of a language.
+pub fn decimal(ascii: &str, lang: Lang) -> String {
+    ascii.replace('.', lookup(lang, "number.decimal").unwrap_or("."))
 }
 
 /// A number with the given count of significant digits, plain where that reads well and with an exponent elsewhere.

@@ -15,6 +15,7 @@
 //!
 //! Other units exist at the edges only: in files that are read and in numbers that are shown.
 
+use crate::text::{Arg, Note};
 use std::fmt;
 
 /// Number of base dimensions a unit is made of.
@@ -42,10 +43,9 @@ pub struct Unit {
 }
 
 /// Why a unit text could not be read, or could not be converted.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum UnitError {
     /// The text holds a symbol that is no unit.
-    #[error("`{symbol}` is not a unit{}", suggestion.as_ref().map(|s| format!("; did you mean `{s}`?")).unwrap_or_default())]
     Unknown {
         /// The symbol that was not understood.
         symbol: String,
@@ -53,26 +53,57 @@ pub enum UnitError {
         suggestion: Option<String>,
     },
     /// The text does not follow the grammar of units.
-    #[error("`{text}` is not written like a unit: {reason} (examples: deg/h, deg/sqrt(h), arcsec, degC)")]
     Grammar {
         /// The whole text.
         text: String,
-        /// What was wrong with it.
+        /// What was wrong with it: a key of the locale tables.
         reason: &'static str,
     },
     /// Two units measure different things.
-    #[error("`{from}` measures {from_dimension}, but {to_dimension} is needed here (for example `{to}`)")]
     Dimension {
         /// The unit given.
         from: String,
         /// A unit of the dimension needed.
         to: String,
-        /// What the given unit measures.
-        from_dimension: String,
-        /// What is needed.
-        to_dimension: String,
+        /// What the given unit measures, in words.
+        from_dimension: Box<Arg>,
+        /// What is needed, in words.
+        to_dimension: Box<Arg>,
     },
 }
+
+impl UnitError {
+    /// What is wrong, as a note.
+    pub fn note(&self) -> Note {
+        match self {
+            UnitError::Unknown { symbol, suggestion: None } => {
+                Note::new("unit_error.unknown").with("symbol", symbol.as_str())
+            }
+            UnitError::Unknown { symbol, suggestion: Some(near) } => {
+                Note::new("unit_error.misspelt").with("symbol", symbol.as_str()).with("near", near.as_str())
+            }
+            UnitError::Grammar { text, reason } => {
+                Note::new("unit_error.grammar").with("text", text.as_str()).with("reason", Note::new(*reason))
+            }
+            UnitError::Dimension { from, to, from_dimension, to_dimension } => {
+                Note::new("unit_error.dimension")
+                    .with("from", from.as_str())
+                    .with("to", to.as_str())
+                    .with("from_dimension", (**from_dimension).clone())
+                    .with("to_dimension", (**to_dimension).clone())
+            }
+        }
+    }
+}
+
+impl fmt::Display for UnitError {
+    /// In English.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.note().fmt(f)
+    }
+}
+
+impl std::error::Error for UnitError {}
 
 /// Symbol, factor to the base unit, dimension (in halves).
 fn symbol(name: &str) -> Option<(f64, Dimension)> {
@@ -169,18 +200,18 @@ impl Unit {
     pub fn parse(text: &str) -> Result<Unit, UnitError> {
         let trimmed = text.trim();
         if trimmed.is_empty() {
-            return Err(UnitError::Grammar { text: text.to_owned(), reason: "it is empty" });
+            return Err(UnitError::Grammar { text: text.to_owned(), reason: "unit_error.reason.empty" });
         }
         if trimmed.len() > 64 {
             return Err(UnitError::Grammar {
                 text: trimmed.chars().take(24).collect(),
-                reason: "it is too long",
+                reason: "unit_error.reason.too_long",
             });
         }
         let mut parser = Parser { text: trimmed, rest: trimmed, depth: 0 };
         let (factor, dimension) = parser.product()?;
         if !parser.rest.is_empty() {
-            return Err(parser.grammar("something follows the end of it"));
+            return Err(parser.grammar("unit_error.reason.rest"));
         }
         let offset = match trimmed {
             "degC" | "°C" | "celsius" => 273.15,
@@ -209,8 +240,8 @@ impl Unit {
             return Err(UnitError::Dimension {
                 from: self.text.clone(),
                 to: other.text.clone(),
-                from_dimension: self.describe(),
-                to_dimension: other.describe(),
+                from_dimension: Box::new(self.describe()),
+                to_dimension: Box::new(other.describe()),
             });
         }
         let factor = self.factor / other.factor;
@@ -244,46 +275,58 @@ impl Unit {
     }
 
     /// What the unit measures, in words.
-    pub fn describe(&self) -> String {
+    pub fn describe(&self) -> Arg {
         for (name, example) in KNOWN_DIMENSIONS {
             if Unit::parse(example).is_ok_and(|u| u.same_dimension(self)) {
-                return (*name).to_owned();
+                return Note::new(name).into();
             }
         }
-        const NAMES: [&str; BASES] =
-            ["angle", "time", "temperature", "voltage", "field", "pressure", "length", "current", "count"];
-        let parts: Vec<String> = (0..BASES)
-            .filter(|&i| self.dimension[i] != 0)
-            .map(|i| format!("{}^{}", NAMES[i], f64::from(self.dimension[i]) / 2.0))
-            .collect();
-        if parts.is_empty() { "a pure number".to_owned() } else { parts.join(" ") }
+        const NAMES: [&str; BASES] = [
+            "dimension.base.angle",
+            "dimension.base.time",
+            "dimension.base.temperature",
+            "dimension.base.voltage",
+            "dimension.base.field",
+            "dimension.base.pressure",
+            "dimension.base.length",
+            "dimension.base.current",
+            "dimension.base.count",
+        ];
+        let powers = NAMES.into_iter().zip(self.dimension).filter(|(_, halves)| *halves != 0);
+        let powers = powers.map(|(name, halves)| {
+            let exponent = Arg::Stated(f64::from(halves) / 2.0);
+            Note::new("dimension.power").with("base", Note::new(name)).with("exponent", exponent)
+        });
+        let joined = powers
+            .reduce(|left, right| Note::new("dimension.product").with("left", left).with("right", right));
+        joined.unwrap_or_else(|| Note::new("dimension.number")).into()
     }
 }
 
 /// Names of the dimensions that occur in gyro work, each with one unit of it.
 const KNOWN_DIMENSIONS: &[(&str, &str)] = &[
-    ("a pure number", "1"),
-    ("an angle", "deg"),
-    ("a time", "s"),
-    ("a frequency", "Hz"),
-    ("an angular rate", "deg/h"),
-    ("an angle random walk", "deg/sqrt(h)"),
-    ("a rate random walk", "deg/h/sqrt(h)"),
-    ("a rate ramp (angular acceleration)", "deg/h/h"),
-    ("a temperature", "degC"),
-    ("a rate of temperature", "degC/h"),
-    ("a rate per temperature", "deg/h/degC"),
-    ("a rate per rate of temperature", "deg/h/(degC/min)"),
-    ("a relative change per temperature", "ppm/degC"),
-    ("a voltage", "V"),
-    ("a rate per voltage", "deg/h/V"),
-    ("a magnetic field", "mT"),
-    ("a rate per magnetic field", "deg/h/mT"),
-    ("a pressure", "hPa"),
-    ("an acceleration", "g"),
-    ("a rate per acceleration squared", "deg/h/g^2"),
-    ("a count", "count"),
-    ("an angle per count", "arcsec/count"),
+    ("dimension.number", "1"),
+    ("dimension.angle", "deg"),
+    ("dimension.time", "s"),
+    ("dimension.frequency", "Hz"),
+    ("dimension.rate", "deg/h"),
+    ("dimension.angle_random_walk", "deg/sqrt(h)"),
+    ("dimension.rate_random_walk", "deg/h/sqrt(h)"),
+    ("dimension.rate_ramp", "deg/h/h"),
+    ("dimension.temperature", "degC"),
+    ("dimension.temperature_rate", "degC/h"),
+    ("dimension.rate_per_temperature", "deg/h/degC"),
+    ("dimension.rate_per_temperature_rate", "deg/h/(degC/min)"),
+    ("dimension.per_temperature", "ppm/degC"),
+    ("dimension.voltage", "V"),
+    ("dimension.rate_per_voltage", "deg/h/V"),
+    ("dimension.field", "mT"),
+    ("dimension.rate_per_field", "deg/h/mT"),
+    ("dimension.pressure", "hPa"),
+    ("dimension.acceleration", "g"),
+    ("dimension.rate_per_acceleration_squared", "deg/h/g^2"),
+    ("dimension.count", "count"),
+    ("dimension.angle_per_count", "arcsec/count"),
 ];
 
 impl fmt::Display for Unit {
@@ -321,7 +364,7 @@ impl Parser<'_> {
     fn product(&mut self) -> Result<(f64, Dimension), UnitError> {
         self.depth += 1;
         if self.depth > 8 {
-            return Err(self.grammar("its parentheses are nested too deeply"));
+            return Err(self.grammar("unit_error.reason.nested"));
         }
         let (mut factor, mut dimension) = self.power()?;
         loop {
@@ -336,7 +379,7 @@ impl Parser<'_> {
             factor = if divide { factor / f } else { factor * f };
             for (a, b) in dimension.iter_mut().zip(d) {
                 let sum = i16::from(*a) + if divide { -i16::from(b) } else { i16::from(b) };
-                *a = i8::try_from(sum).map_err(|_| self.grammar("an exponent is too large"))?;
+                *a = i8::try_from(sum).map_err(|_| self.grammar("unit_error.reason.exponent_large"))?;
             }
         }
         self.depth -= 1;
@@ -362,9 +405,9 @@ impl Parser<'_> {
         for (o, d) in out.iter_mut().zip(dimension) {
             let twice = i16::from(d) * i16::from(halves);
             if twice % 2 != 0 {
-                return Err(self.grammar("a fourth root has no meaning here"));
+                return Err(self.grammar("unit_error.reason.fourth_root"));
             }
-            *o = i8::try_from(twice / 2).map_err(|_| self.grammar("an exponent is too large"))?;
+            *o = i8::try_from(twice / 2).map_err(|_| self.grammar("unit_error.reason.exponent_large"))?;
         }
         Ok((factor.powf(f64::from(halves) / 2.0), out))
     }
@@ -384,17 +427,17 @@ impl Parser<'_> {
         };
         self.rest = rest;
         if parenthesised && !self.take(')') {
-            return Err(self.grammar("a parenthesis is not closed"));
+            return Err(self.grammar("unit_error.reason.open"));
         }
         let halves = value.map(|v| v * 2.0).filter(|h| h.fract() == 0.0 && h.abs() <= 12.0);
-        halves.map(|h| h as i8).ok_or_else(|| self.grammar("an exponent must be a whole or half number"))
+        halves.map(|h| h as i8).ok_or_else(|| self.grammar("unit_error.reason.exponent"))
     }
 
     fn atom(&mut self) -> Result<(f64, Dimension), UnitError> {
         self.skip_space();
         if self.take('(') {
             let inner = self.product()?;
-            return if self.take(')') { Ok(inner) } else { Err(self.grammar("a parenthesis is not closed")) };
+            return if self.take(')') { Ok(inner) } else { Err(self.grammar("unit_error.reason.open")) };
         }
         if self.take('√') {
             let (factor, dimension) = self.atom()?;
@@ -403,7 +446,7 @@ impl Parser<'_> {
         let end = self.rest.find(|c: char| "/*·⋅^²³() \t√".contains(c)).unwrap_or(self.rest.len());
         let (name, rest) = self.rest.split_at(end);
         if name.is_empty() {
-            return Err(self.grammar("a symbol is missing"));
+            return Err(self.grammar("unit_error.reason.symbol"));
         }
         self.rest = rest;
         if (name == "sqrt" || name == "rt") && self.rest.starts_with('(') {

@@ -10,7 +10,7 @@ fn told(file: &str) -> Option<String> {
         return None;
     };
     let path: PathBuf = Path::new(&folder).join(file);
-    let text = sagnac::run::inspect::inspect(&path, None, &mut |_, _| {}).unwrap();
+    let text = sagnac::run::inspect::inspect(&path, None, sagnac::text::Lang::En, &mut |_, _| {}).unwrap();
     Some(text.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 

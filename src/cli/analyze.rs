@@ -9,11 +9,12 @@ use crate::record::UnitUnderTest;
 use crate::recording::guess::guess;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::run::{Request, analysis};
+use crate::text::{Lang, Note};
 use crate::units::Unit;
 use chrono::Utc;
 
-pub fn main(args: &AnalyzeArgs) -> u8 {
-    match attempt(args) {
+pub fn main(args: &AnalyzeArgs, lang: Lang) -> u8 {
+    match attempt(args, lang) {
         Ok(code) => code,
         Err(message) => {
             place::complain(&message);
@@ -22,25 +23,23 @@ pub fn main(args: &AnalyzeArgs) -> u8 {
     }
 }
 
-fn attempt(args: &AnalyzeArgs) -> Result<u8, String> {
-    let taus = run::grid(&args.grid)?;
+fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
+    let say = |note: Note| place::error(&note, lang);
+    let taus = run::grid(&args.grid, lang)?;
     if !(args.warm_up >= 0.0 && args.warm_up.is_finite()) {
-        return Err(format!("error: --warm-up: {} is no time; give seconds, 0 or more\n", args.warm_up));
+        return Err(say(Note::new("cli.warm_up").with("given", args.warm_up.to_string())));
     }
-    let renderer = run::renderer(args.templates.as_deref())?;
+    let renderer = run::renderer(args.templates.as_deref(), lang)?;
     let now = Utc::now();
     let stem = args.recording.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
-    let folder = StagedFolder::begin(&out).map_err(|e| format!("error: {e}\n"))?;
-    let source = crate::ingest::open(&args.recording).map_err(|e| format!("error: {e}\n"))?;
-    let channels = channels(args, &source)?;
+    let folder = StagedFolder::begin(&out).map_err(|e| say(e.note()))?;
+    let source = crate::ingest::open(&args.recording).map_err(|e| say(e.note()))?;
+    let channels = channels(args, &source).map_err(say)?;
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     if !use_stamps && args.sample_rate.is_none() {
-        return Err(format!(
-            "error: {}: no time column is used, so the sample rate is needed; give --sample-rate HZ\n",
-            args.recording.display()
-        ));
+        return Err(say(about(args, "cli.no_time")));
     }
     let procedure: Procedure = analysis::procedure(channels, args.sample_rate, args.warm_up);
     let limits = EffectiveLimits::default();
@@ -58,13 +57,18 @@ fn attempt(args: &AnalyzeArgs) -> Result<u8, String> {
         taus,
         exact: args.grid.exact,
     };
-    run::finish(&request, folder, &renderer)
+    run::finish(&request, folder, &renderer, lang)
+}
+
+/// A sentence about the recording.
+fn about(args: &AnalyzeArgs, key: &'static str) -> Note {
+    Note::new(key).with("path", args.recording.display().to_string())
 }
 
 /// The channels: as named, else as their names tell.
-fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String> {
-    let unit =
-        args.unit.as_deref().map(Unit::parse).transpose().map_err(|e| format!("error: --unit: {e}\n"))?;
+fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
+    let unit = args.unit.as_deref().map(Unit::parse).transpose();
+    let unit = unit.map_err(|e| Note::new("cli.of_option").with("option", "--unit").with("what", e.note()))?;
     let mut channels = Vec::new();
     match args.time.as_deref() {
         Some("none") => {}
@@ -88,26 +92,18 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
         args.rate.iter().map(|name| (name.clone(), reference(name))).collect()
     };
     for (name, column) in wanted {
-        let index = source.resolve(&column).map_err(|e| format!("error: {e}\n"))?;
+        let index = source.resolve(&column).map_err(|e| e.note())?;
         let found = &source.columns()[index];
         let guessed = guess(&found.name, found.unit.as_deref());
         let unit = match &unit {
             Some(unit) => unit.clone(),
             None if guessed.role.is_gyro() && guessed.unit_is_named => guessed.unit,
             None => {
-                return Err(format!(
-                    "error: {}: the name of column `{}` does not tell its unit; give --unit (for example deg/h or rad/s)\n",
-                    args.recording.display(),
-                    found.name
-                ));
+                return Err(about(args, "cli.unit_not_told").with("column", found.name.as_str()));
             }
         };
         if wanted_twice(&channels, source, index) {
-            return Err(format!(
-                "error: {}: column `{}` is asked for twice; name each once\n",
-                args.recording.display(),
-                found.name
-            ));
+            return Err(about(args, "cli.column_twice").with("column", found.name.as_str()));
         }
         let role = if Unit::parse("deg").is_ok_and(|angle| angle.same_dimension(&unit)) {
             Role::AngleIncrement
@@ -119,11 +115,7 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
     }
     if !channels.iter().any(|c| c.role.is_gyro()) {
         let names: Vec<&str> = source.columns().iter().map(|c| c.name.as_str()).collect();
-        return Err(format!(
-            "error: {}: no column looks like a gyro output; name it with --rate (columns: {})\n",
-            args.recording.display(),
-            names.join(", ")
-        ));
+        return Err(about(args, "cli.no_gyro").with("columns", names.join(", ")));
     }
     for column in source.columns().iter().filter(|c| c.numeric) {
         let g = guess(&column.name, column.unit.as_deref());
@@ -141,12 +133,12 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
     Ok(channels)
 }
 
-fn time(source: &Source, name: &str) -> Result<Channel, String> {
+fn time(source: &Source, name: &str) -> Result<Channel, Note> {
     let column = reference(name);
-    let index = source.resolve(&column).map_err(|e| format!("error: {e}\n"))?;
+    let index = source.resolve(&column).map_err(|e| e.note())?;
     let found = &source.columns()[index];
     let g = guess(&found.name, found.unit.as_deref());
-    let unit = if g.role == Role::Time { g.unit } else { Unit::parse("s").map_err(|e| e.to_string())? };
+    let unit = if g.role == Role::Time { g.unit } else { Unit::parse("s").map_err(|e| e.note())? };
     Ok(Channel { id: "time".into(), column, role: Role::Time, unit, scale: 1.0 })
 }
 

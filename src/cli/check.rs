@@ -5,9 +5,10 @@ use crate::procedure::check::{Checked, check, check_report_with};
 use crate::procedure::power::{questions, warnings};
 use crate::procedure::{LimitsFile, Loaded, effective};
 use crate::run::power::warning;
+use crate::text::Lang;
 use std::path::Path;
 
-pub fn main(args: &CheckArgs) -> u8 {
+pub fn main(args: &CheckArgs, lang: Lang) -> u8 {
     let paths: Vec<&Path> = args.files.iter().map(|p| p.as_path()).collect();
     // Limits files among the arguments are also set against every procedure among them.
     let limits: Vec<Loaded<LimitsFile>> = paths
@@ -17,7 +18,7 @@ pub fn main(args: &CheckArgs) -> u8 {
             _ => None,
         })
         .collect();
-    let report = check_report_with(&paths, None, |procedure, _| {
+    let report = check_report_with(&paths, None, lang, |procedure, _| {
         let sets: Vec<Option<&Loaded<LimitsFile>>> =
             if limits.is_empty() { vec![None] } else { limits.iter().map(Some).collect() };
         sets.into_iter()

@@ -2,11 +2,14 @@
 
 use super::progress::Progress;
 use super::{InspectArgs, exit, place};
+use crate::run::inspect::inspect;
+use crate::text::{Lang, Note};
 
-pub fn main(args: &InspectArgs) -> u8 {
+pub fn main(args: &InspectArgs, lang: Lang) -> u8 {
     let mut progress = Progress::new();
-    let told = crate::run::inspect::inspect(&args.recording, args.sample_rate, &mut |done, total| {
-        progress.update("reading", done, total);
+    let reading = Note::new("cli.reading").say(lang);
+    let told = inspect(&args.recording, args.sample_rate, lang, &mut |done, total| {
+        progress.update(&reading, done, total);
     });
     progress.finish();
     match told {
@@ -15,7 +18,7 @@ pub fn main(args: &InspectArgs) -> u8 {
             exit::PASS
         }
         Err(e) => {
-            place::complain(&format!("error: {e}\n"));
+            place::complain(&place::error(&e.note(), lang));
             exit::ERROR
         }
     }

@@ -2,6 +2,7 @@
 
 mod analyze;
 mod check;
+mod help;
 mod inspect;
 mod place;
 mod progress;
@@ -9,7 +10,8 @@ mod run;
 mod schema;
 mod selftest;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -34,6 +36,9 @@ pub mod exit {
         Example:\n  sagnac run procedures/static-bias.toml recording.csv --limits procedures/limits/oius-501.toml --serial SN-0042"
 )]
 struct Cli {
+    /// Language of reports and messages [default: from the locale, else en]
+    #[arg(long, global = true, value_name = "LANG", value_parser = ["en", "ru"])]
+    lang: Option<String>,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -167,14 +172,22 @@ struct SchemaArgs {
 
 /// Parses the command line, runs the verb, gives the exit code.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let lang = help::language(&arguments);
+    let cli = match help::command(Cli::command(), lang)
+        .try_get_matches_from(&arguments)
+        .and_then(|matches| Cli::from_arg_matches(&matches))
+    {
+        Ok(cli) => cli,
+        Err(error) => return help::refuse(&error, lang),
+    };
     let code = match cli.verb {
-        Verb::Run(args) => run::main(&args),
-        Verb::Check(args) => check::main(&args),
-        Verb::Inspect(args) => inspect::main(&args),
-        Verb::Analyze(args) => analyze::main(&args),
+        Verb::Run(args) => run::main(&args, lang),
+        Verb::Check(args) => check::main(&args, lang),
+        Verb::Inspect(args) => inspect::main(&args, lang),
+        Verb::Analyze(args) => analyze::main(&args, lang),
         Verb::Schema(args) => schema::main(&args),
-        Verb::Selftest => selftest::main(),
+        Verb::Selftest => selftest::main(lang),
     };
     ExitCode::from(code)
 }

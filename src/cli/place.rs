@@ -1,5 +1,6 @@
 //! Where results go, and how text reaches the user.
 
+use crate::text::{Lang, Note};
 use chrono::{DateTime, Utc};
 use std::io::Write;
 use std::path::PathBuf;
@@ -12,6 +13,11 @@ pub fn print(text: &str) {
 /// Writes to standard error.
 pub fn complain(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// The line of an error for the terminal.
+pub fn error(note: &Note, lang: Lang) -> String {
+    format!("{}: {}\n", Note::new("diagnostic.error").say(lang), note.say(lang))
 }
 
 /// The default name of an output folder: what, which unit, when.

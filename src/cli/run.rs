@@ -10,12 +10,12 @@ use crate::procedure::{effective, load, load_limits};
 use crate::record::{RunRecord, UnitUnderTest};
 use crate::report::{Renderer, render_html, render_markdown, svg};
 use crate::run::{Outcome, Request, RunError, execute, failed};
-use crate::text::{Lang, lookup};
+use crate::text::{Lang, Note, lookup};
 use chrono::Utc;
 use std::path::{Path, PathBuf};
 
-pub fn main(args: &RunArgs) -> u8 {
-    match attempt(args) {
+pub fn main(args: &RunArgs, lang: Lang) -> u8 {
+    match attempt(args, lang) {
         Ok(code) => code,
         Err(message) => {
             place::complain(&message);
@@ -24,8 +24,8 @@ pub fn main(args: &RunArgs) -> u8 {
     }
 }
 
-fn attempt(args: &RunArgs) -> Result<u8, String> {
-    let grid = grid(&args.grid)?;
+fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
+    let grid = grid(&args.grid, lang)?;
     // Both files are read before either complains, so that all problems are seen at once.
     let procedure = load(&args.procedure);
     let limits = args.limits.as_deref().map(load_limits).transpose();
@@ -33,26 +33,26 @@ fn attempt(args: &RunArgs) -> Result<u8, String> {
         (Ok(p), Ok(l)) => (p, l),
         (p, l) => {
             let complaints: Vec<String> =
-                [p.err(), l.err()].into_iter().flatten().map(|e| e.to_string()).collect();
+                [p.err(), l.err()].into_iter().flatten().map(|e| e.say(lang)).collect();
             return Err(complaints.join("\n"));
         }
     };
-    let renderer = renderer(args.templates.as_deref())?;
+    let renderer = renderer(args.templates.as_deref(), lang)?;
     let effective = effective(&procedure, limits.as_ref());
     for warning in procedure.warnings.iter().chain(&effective.warnings) {
-        place::complain(&format!("{warning}\n"));
+        place::complain(&format!("{}\n", warning.say(lang)));
     }
     let now = Utc::now();
     let out = args
         .out
         .clone()
         .unwrap_or_else(|| place::default_folder(&procedure.value.id, args.serial.as_deref(), now));
-    let folder = StagedFolder::begin(&out).map_err(|e| format!("error: {e}\n"))?;
+    let folder = StagedFolder::begin(&out).map_err(|e| place::error(&e.note(), lang))?;
     // A recording that is there and cannot be opened still gets its report: the verdict is an error, and says why. A
     // name that is no file is a slip of the pen, which must not cost an earlier result.
     let (source, refused) = match crate::ingest::open(&args.recording) {
         Ok(source) => (source, None),
-        Err(error) if !args.recording.exists() => return Err(format!("error: {error}\n")),
+        Err(error) if !args.recording.exists() => return Err(place::error(&error.note(), lang)),
         Err(error) => (Source::unopened(&args.recording), Some(error)),
     };
     let family = limits.as_ref().and_then(|l| l.value.family.clone());
@@ -77,22 +77,28 @@ fn attempt(args: &RunArgs) -> Result<u8, String> {
         exact: args.grid.exact,
     };
     match refused {
-        None => finish(&request, folder, &renderer),
-        Some(error) => Err(report_failure(&request, &error.into(), folder, &renderer)?),
+        None => finish(&request, folder, &renderer, lang),
+        Some(error) => Err(report_failure(&request, &error.into(), folder, &renderer, lang)?),
     }
 }
 
 /// Runs a request, writes its folder and says what came out; also used by `analyze`.
-pub fn finish(request: &Request<'_>, folder: StagedFolder, renderer: &Renderer) -> Result<u8, String> {
+pub fn finish(
+    request: &Request<'_>,
+    folder: StagedFolder,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<u8, String> {
     let mut progress = Progress::new();
-    let outcome = execute(request, &mut |done, total| progress.update("reading", done, total));
+    let reading = Note::new("cli.reading").say(lang);
+    let outcome = execute(request, &mut |done, total| progress.update(&reading, done, total));
     progress.finish();
     let outcome = match outcome {
         Ok(outcome) => outcome,
-        Err(error) => return Err(report_failure(request, &error, folder, renderer)?),
+        Err(error) => return Err(report_failure(request, &error, folder, renderer, lang)?),
     };
-    let place = publish(&outcome, folder, renderer)?;
-    place::print(&summary(&outcome.record, &place));
+    let place = publish(&outcome, folder, renderer, lang)?;
+    place::print(&summary(&outcome.record, &place, lang));
     Ok(match outcome.record.verdict {
         Verdict::None | Verdict::Pass => exit::PASS,
         Verdict::Fail => exit::FAIL,
@@ -107,19 +113,27 @@ fn report_failure(
     error: &RunError,
     folder: StagedFolder,
     renderer: &Renderer,
+    lang: Lang,
 ) -> Result<String, String> {
     let outcome = Outcome { record: failed(request, error), figures: vec![], tables: vec![] };
-    let place = publish(&outcome, folder, renderer)?;
-    Ok(format!("error: {error}\nThe report says so: {}\n", place.display()))
+    let place = publish(&outcome, folder, renderer, lang)?;
+    let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
+    Ok(format!("{}{}\n", place::error(&error.note(), lang), report.say(lang)))
 }
 
-fn publish(outcome: &Outcome, folder: StagedFolder, renderer: &Renderer) -> Result<PathBuf, String> {
-    let say = |e: &dyn std::fmt::Display| format!("error: {e}\n");
-    let json = serde_json::to_vec_pretty(&outcome.record).map_err(|e| say(&e))?;
-    let html = render_html(&outcome.record, &outcome.figures, Lang::En, renderer).map_err(|e| say(&e))?;
+fn publish(
+    outcome: &Outcome,
+    folder: StagedFolder,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<PathBuf, String> {
+    let say = |note: Note| place::error(&note, lang);
+    let json = serde_json::to_vec_pretty(&outcome.record)
+        .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
+    let html = render_html(&outcome.record, &outcome.figures, lang, renderer).map_err(|e| say(e.note()))?;
     let markdown =
-        render_markdown(&outcome.record, &outcome.figures, Lang::En, renderer).map_err(|e| say(&e))?;
-    let write = |name: &str, bytes: &[u8]| folder.write(name, bytes).map_err(|e| say(&e));
+        render_markdown(&outcome.record, &outcome.figures, lang, renderer).map_err(|e| say(e.note()))?;
+    let write = |name: &str, bytes: &[u8]| folder.write(name, bytes).map_err(|e| say(e.note()));
     write("result.json", &json)?;
     write("report.html", html.as_bytes())?;
     write("report.md", markdown.as_bytes())?;
@@ -127,30 +141,33 @@ fn publish(outcome: &Outcome, folder: StagedFolder, renderer: &Renderer) -> Resu
         write(name, table.as_bytes())?;
     }
     for figure in &outcome.figures {
-        write(&format!("figures/{}.svg", figure.id), svg::render(figure, Lang::En).as_bytes())?;
+        write(&format!("figures/{}.svg", figure.id), svg::render(figure, lang).as_bytes())?;
     }
-    folder.publish().map_err(|e| say(&e))
+    folder.publish().map_err(|e| say(e.note()))
 }
 
 /// The outcome in a few lines for the terminal.
-fn summary(record: &RunRecord, place: &Path) -> String {
-    let word = |key: String| lookup(Lang::En, &key).map_or(key.clone(), str::to_owned);
+fn summary(record: &RunRecord, place: &Path, lang: Lang) -> String {
+    let word = |key: String| lookup(lang, &key).map_or(key.clone(), str::to_owned);
     let mut out = format!("{}\n", word(format!("verdict.{}", record.verdict.id())).to_uppercase());
     for note in &record.summary {
-        out.push_str(&format!("  {}\n", note.say(Lang::En)));
+        out.push_str(&format!("  {}\n", note.say(lang)));
     }
     out.push_str(&format!("{}\n", place.join("report.html").display()));
     out
 }
 
 /// The averaging times asked for on the command line.
-pub fn grid(args: &GridArgs) -> Result<Option<TauGrid>, String> {
-    args.taus.as_deref().map(str::parse).transpose().map_err(|e| format!("error: --taus: {e}\n"))
+pub fn grid(args: &GridArgs, lang: Lang) -> Result<Option<TauGrid>, String> {
+    args.taus.as_deref().map(str::parse::<TauGrid>).transpose().map_err(|e| {
+        let note = Note::new("cli.of_option").with("option", "--taus").with("what", e.note());
+        place::error(&note, lang)
+    })
 }
 
 /// The renderer with the user's templates, if any.
-pub fn renderer(templates: Option<&Path>) -> Result<Renderer, String> {
+pub fn renderer(templates: Option<&Path>, lang: Lang) -> Result<Renderer, String> {
     templates
         .map_or_else(|| Ok(Renderer::new()), Renderer::with_overrides)
-        .map_err(|e| format!("error: {e}\n"))
+        .map_err(|e| place::error(&e.note(), lang))
 }

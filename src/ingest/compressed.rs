@@ -1,7 +1,7 @@
 //! The bytes of a file: unpacked where they are packed, hashed and counted as they pass.
 
 use super::error::{IngestError, IngestErrorKind};
-use crate::text::Note;
+use crate::text::{Note, io_reason};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -211,7 +211,7 @@ pub(crate) fn io_error(path: &Path, error: &io::Error) -> IngestError {
         io::ErrorKind::PermissionDenied => "ingest.hint.permissions",
         _ => "ingest.hint.disk",
     };
-    IngestError::new(IngestErrorKind::Io, path, Note::new("ingest.io").with("reason", error.to_string()))
+    IngestError::new(IngestErrorKind::Io, path, Note::new("ingest.io").with("reason", io_reason(error)))
         .hint(hint)
 }
 

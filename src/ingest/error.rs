@@ -119,25 +119,35 @@ impl IngestError {
         self.0.hint.as_ref()
     }
 
-    /// The whole diagnostic in a language: place, what is wrong, what was found, what to do.
-    pub fn say(&self, lang: Lang) -> String {
+    /// The whole diagnostic as a note: place, what is wrong, what was found, what to do.
+    pub fn note(&self) -> Note {
         let d = &self.0;
-        let mut out = d.path.display().to_string();
+        let mut place = d.path.display().to_string();
         if let Some(line) = d.line {
-            out.push_str(&format!(":{line}"));
+            place.push_str(&format!(":{line}"));
             if let Some(column) = d.column {
-                out.push_str(&format!(":{column}"));
+                place.push_str(&format!(":{column}"));
             }
         }
-        out.push_str(&format!(": {}", d.message.say(lang)));
+        let key = match (&d.text, &d.hint) {
+            (None, None) => "ingest_error.plain",
+            (Some(_), None) => "ingest_error.found",
+            (None, Some(_)) => "ingest_error.hint",
+            (Some(_), Some(_)) => "ingest_error.found_hint",
+        };
+        let mut note = Note::new(key).with("place", place).with("message", d.message.clone());
         if let Some(text) = &d.text {
-            let found = Note::new("ingest.found").with("text", text.as_str());
-            out.push_str(&format!(" ({})", found.say(lang)));
+            note = note.with("found", Note::new("ingest.found").with("text", text.as_str()));
         }
         if let Some(hint) = &d.hint {
-            out.push_str(&format!("; {}", hint.say(lang)));
+            note = note.with("hint", hint.clone());
         }
-        out
+        note
+    }
+
+    /// The whole diagnostic in a language.
+    pub fn say(&self, lang: Lang) -> String {
+        self.note().say(lang)
     }
 }
 

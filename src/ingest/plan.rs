@@ -112,7 +112,7 @@ fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
             Note::new("ingest.unit")
                 .with("channel", channel.id.as_str())
                 .with("role", channel.role.id())
-                .with("reason", e.to_string()),
+                .with("reason", e.note()),
         )
         .hint("ingest.hint.unit")
     })

@@ -3,6 +3,7 @@
 //! A [`Problem`] carries the line it is about, so that it can be shown without the file. The rendering is plain text:
 //! no colours, columns counted in characters, so that it lines up for text in any alphabet.
 
+use crate::text::{Lang, Note};
 use std::fmt;
 use std::ops::Range;
 
@@ -25,7 +26,7 @@ pub enum Severity {
 }
 
 /// One problem of a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     /// How serious it is.
     pub severity: Severity,
@@ -38,9 +39,9 @@ pub struct Problem {
     /// Column in characters, counted from 1; 0 when the problem is of the file as a whole.
     pub column: usize,
     /// What is wrong.
-    pub message: String,
+    pub message: Note,
     /// What to do.
-    pub help: Option<String>,
+    pub help: Option<Note>,
     /// The offending text, up to the end of its first line.
     pub token: String,
     excerpt: Excerpt,
@@ -56,7 +57,7 @@ struct Excerpt {
 
 impl Problem {
     /// A problem of a file that is not about one place in it (it cannot be opened, for example).
-    pub fn of_file(file: &str, message: impl Into<String>, help: Option<String>) -> Problem {
+    pub fn of_file(file: &str, message: impl Into<Note>, help: Option<Note>) -> Problem {
         Problem {
             severity: Severity::Error,
             file: file.to_owned(),
@@ -72,40 +73,45 @@ impl Problem {
 
     /// The same problem with what to do about it.
     #[must_use]
-    pub fn help(mut self, help: impl Into<String>) -> Problem {
+    pub fn help(mut self, help: impl Into<Note>) -> Problem {
         self.help = Some(help.into());
         self
+    }
+
+    /// In a language: `severity: message`, the place, the line as it stands in the file with the text underlined, and
+    /// what to do.
+    pub fn say(&self, lang: Lang) -> String {
+        let key = match self.severity {
+            Severity::Error => "diagnostic.error",
+            Severity::Warning => "diagnostic.warning",
+        };
+        let mut out = format!("{}: {}\n", Note::new(key).say(lang), self.message.say(lang));
+        if self.line == 0 {
+            out.push_str(&format!(" --> {}\n", self.file));
+        } else {
+            let number = self.line.to_string();
+            let margin = " ".repeat(number.len());
+            let (indent, carets) = (" ".repeat(self.excerpt.start), "^".repeat(self.excerpt.width));
+            out.push_str(&format!("{margin}--> {}:{}:{}\n", self.file, self.line, self.column));
+            out.push_str(&format!("{margin} |\n{number} | {}\n", self.excerpt.text.trim_end()));
+            out.push_str(&format!("{margin} | {indent}{carets}\n"));
+        }
+        if let Some(help) = &self.help {
+            out.push_str(&format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang)));
+        }
+        out
     }
 }
 
 impl fmt::Display for Problem {
-    /// `severity: message`, the place, the line with the text underlined, and what to do.
+    /// In English.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let word = match self.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-        };
-        writeln!(f, "{word}: {}", self.message)?;
-        if self.line == 0 {
-            writeln!(f, " --> {}", self.file)?;
-        } else {
-            let number = self.line.to_string();
-            let margin = " ".repeat(number.len());
-            writeln!(f, "{margin}--> {}:{}:{}", self.file, self.line, self.column)?;
-            writeln!(f, "{margin} |")?;
-            writeln!(f, "{number} | {}", self.excerpt.text.trim_end())?;
-            let (indent, carets) = (" ".repeat(self.excerpt.start), "^".repeat(self.excerpt.width));
-            writeln!(f, "{margin} | {indent}{carets}")?;
-        }
-        if let Some(help) = &self.help {
-            writeln!(f, "  help: {help}")?;
-        }
-        Ok(())
+        f.write_str(&self.say(Lang::En))
     }
 }
 
 /// All problems of one or more files.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Problems {
     /// The problems, in the order of the text.
     pub list: Vec<Problem>,
@@ -115,6 +121,16 @@ impl Problems {
     /// True when one of them forbids the use of the file.
     pub fn has_errors(&self) -> bool {
         self.list.iter().any(|p| p.severity == Severity::Error)
+    }
+
+    /// All of them in a language, an empty line between two.
+    pub fn say(&self, lang: Lang) -> String {
+        let shown: Vec<String> = self.list.iter().take(MOST_SHOWN).map(|p| p.say(lang)).collect();
+        let mut out = shown.join("\n");
+        if let Some(rest) = self.list.len().checked_sub(MOST_SHOWN).filter(|n| *n > 0) {
+            out.push_str(&format!("\n{}\n", Note::new("diagnostic.more").with("n", rest).say(lang)));
+        }
+        out
     }
 
     /// Puts the problems in the order of the text and drops repeated ones.
@@ -131,17 +147,9 @@ impl From<Problem> for Problems {
 }
 
 impl fmt::Display for Problems {
+    /// In English.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, problem) in self.list.iter().take(MOST_SHOWN).enumerate() {
-            if i > 0 {
-                writeln!(f)?;
-            }
-            write!(f, "{problem}")?;
-        }
-        if self.list.len() > MOST_SHOWN {
-            writeln!(f, "\nand {} more", self.list.len() - MOST_SHOWN)?;
-        }
-        Ok(())
+        f.write_str(&self.say(Lang::En))
     }
 }
 
@@ -167,16 +175,16 @@ impl SourceText {
     }
 
     /// An error at a byte range.
-    pub fn error(&self, span: &Span, message: impl Into<String>) -> Problem {
+    pub fn error(&self, span: &Span, message: impl Into<Note>) -> Problem {
         self.problem(Severity::Error, span, message.into())
     }
 
     /// A warning at a byte range.
-    pub fn warning(&self, span: &Span, message: impl Into<String>) -> Problem {
+    pub fn warning(&self, span: &Span, message: impl Into<Note>) -> Problem {
         self.problem(Severity::Warning, span, message.into())
     }
 
-    fn problem(&self, severity: Severity, span: &Span, message: String) -> Problem {
+    fn problem(&self, severity: Severity, span: &Span, message: Note) -> Problem {
         let start = self.floor(span.start);
         let end = self.floor(span.end.max(start));
         let line = self.line_starts.partition_point(|s| *s <= start).max(1);

@@ -6,4 +6,5 @@ pub mod quantity;
 pub(crate) mod reader;
 pub(crate) mod section;
 pub mod spec;
+mod syntax;
 pub(crate) mod values;

@@ -1,5 +1,6 @@
 //! A number with its unit in one text: `"20 degC"`, `"0.0030 deg/sqrt(h)"`, `"0.1 %"`.
 
+use crate::text::Note;
 use crate::units::Unit;
 use std::ops::Range;
 
@@ -9,9 +10,9 @@ pub struct QuantityError {
     /// The part of the text that is wrong, in bytes.
     pub span: Range<usize>,
     /// What is wrong.
-    pub message: String,
+    pub message: Note,
     /// What to do, where that follows from the text alone.
-    pub help: Option<String>,
+    pub help: Option<Note>,
 }
 
 /// Splits a text into its number and the unit behind it.
@@ -27,24 +28,24 @@ pub fn split(text: &str) -> Result<(f64, &str), QuantityError> {
     let whole = || start..text.trim_end().len().max(start);
     if number.is_empty() {
         let message = if body.trim().is_empty() {
-            "a number with its unit is missing".to_owned()
+            Note::new("keyed.quantity.missing")
         } else {
-            format!("`{}` does not begin with a number", body.trim())
+            Note::new("keyed.quantity.no_number").with("text", body.trim())
         };
         return Err(QuantityError { span: whole(), message, help: None });
     }
     if rest.starts_with(',') && rest[1..].starts_with(|c: char| c.is_ascii_digit()) {
         return Err(QuantityError {
             span: whole(),
-            message: format!("`{}` has a decimal comma", body.trim()),
-            help: Some(format!("write `{}`", body.trim().replacen(',', ".", 1))),
+            message: Note::new("keyed.quantity.decimal_comma").with("text", body.trim()),
+            help: Some(Note::new("keyed.help.write").with("text", body.trim().replacen(',', ".", 1))),
         });
     }
     match number.replacen('−', "-", 1).parse::<f64>() {
         Ok(value) if value.is_finite() => Ok((value, rest.trim())),
         _ => Err(QuantityError {
             span: start..start + end,
-            message: format!("`{number}` is not a finite number"),
+            message: Note::new("keyed.quantity.not_finite").with("text", number),
             help: None,
         }),
     }
@@ -96,22 +97,24 @@ pub fn parse(text: &str, unit: &str, difference: bool, bare: bool) -> Result<f64
         if bare && unit == "1" {
             return Ok(value);
         }
-        return Err(QuantityError { span: whole, message: format!("`{trimmed}` has no unit"), help: None });
+        let message = Note::new("keyed.no_unit").with("name", trimmed);
+        return Err(QuantityError { span: whole, message, help: None });
     }
     let unit_start = whole.end - unit_text.len();
-    let wrong_unit = |message: String| QuantityError { span: unit_start..whole.end, message, help: None };
-    let given = Unit::parse(unit_text).map_err(|e| wrong_unit(e.to_string()))?;
-    let target = Unit::parse(unit).map_err(|e| wrong_unit(e.to_string()))?;
+    let wrong_unit = |message: Note| QuantityError { span: unit_start..whole.end, message, help: None };
+    let given = Unit::parse(unit_text).map_err(|e| wrong_unit(e.note()))?;
+    let target = Unit::parse(unit).map_err(|e| wrong_unit(e.note()))?;
     let converted = if difference {
         given.factor_to(&target).map(|factor| value * factor)
     } else {
         given.convert(value, &target)
     };
-    let converted = converted.map_err(|e| wrong_unit(e.to_string()))?;
+    let converted = converted.map_err(|e| wrong_unit(e.note()))?;
     if converted.is_finite() {
         Ok(converted)
     } else {
-        Err(QuantityError { span: whole, message: format!("`{trimmed}` is too large"), help: None })
+        let message = Note::new("keyed.quantity.too_large").with("text", trimmed);
+        Err(QuantityError { span: whole, message, help: None })
     }
 }
 
@@ -145,10 +148,10 @@ mod tests {
     fn the_wrong_part_is_pointed_at() {
         let e = parse("20 bananas", "degC", false, false).unwrap_err();
         assert_eq!(e.span, 3..10);
-        assert!(e.message.contains("`bananas`"), "{}", e.message);
+        assert!(e.message.to_string().contains("`bananas`"), "{}", e.message);
         let e = parse("3 deg/sqrt(h)", "deg/h", false, false).unwrap_err();
-        assert_eq!((e.span, e.message.contains("an angle random walk")), (2..13, true));
-        assert!(parse("20", "degC", false, false).unwrap_err().message.contains("no unit"));
-        assert!(parse("0,4 degC", "degC", false, false).unwrap_err().help.unwrap().contains("0.4 degC"));
+        assert_eq!((e.span, e.message.to_string().contains("an angle random walk")), (2..13, true));
+        assert!(parse("20", "degC", false, false).unwrap_err().message.to_string().contains("no unit"));
+        assert!(parse("0,4 degC", "degC", false, false).unwrap_err().help.unwrap().to_string().contains("0.4 degC"));
     }
 }

@@ -4,9 +4,10 @@
 use super::diagnostics::{Problem, Problems, SourceText, Span, nearest};
 use super::section::{Entry, Section};
 use super::spec::{KeySpec, Kind, Need, TableSpec};
-use super::values;
+use super::{syntax, values};
 use crate::ids::{self, MeasurandId};
 use crate::recording::Role;
+use crate::text::{Arg, Lang, Note, lookup};
 use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
 
@@ -34,8 +35,7 @@ pub(crate) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Sec
     if !errors.is_empty() {
         for error in errors.iter().take(SYNTAX_ERRORS) {
             let span = error.span().unwrap_or(0..0);
-            let problem = source.error(&span, format!("this is not TOML: {}", plain(error.message())));
-            reader.problems.list.push(with_syntax_help(problem));
+            reader.problems.list.push(syntax::problem(source, &span, error.message()));
         }
         reader.problems.sort();
         return (None, reader.problems);
@@ -56,22 +56,22 @@ fn other_format(source: &SourceText, root: &TableSpec, table: &DeTable<'_>) -> O
     })?;
     let value = table.get("format")?;
     let given = value.get_ref().as_str().filter(|given| *given != wanted)?;
-    let message = format!("`{}` is not a format that is read here", shorten(given));
-    let help = format!("this kind of file begins with format = \"{wanted}\"");
+    let message = Note::new("keyed.other_format").with("given", shorten(given));
+    let help = Note::new("keyed.help.format").with("wanted", wanted);
     Some(source.error(&value.span(), message).help(help))
 }
 
 /// Refuses a text that is no procedure by its size or nesting, before the parser sees it.
 fn unreadable(source: &SourceText) -> Option<Problem> {
     if source.text.len() > LARGEST_FILE {
-        let message = format!("the file is larger than {LARGEST_FILE} bytes; a procedure is a few kilobytes");
+        let message = Note::new("keyed.too_large").with("bytes", LARGEST_FILE);
         return Some(Problem::of_file(&source.name, message, None));
     }
     let mut start = 0;
     for line in source.text.split('\n') {
         let depth = line.bytes().filter(|b| matches!(b, b'.' | b'[' | b'{')).count();
         if depth > DEEPEST && !line.trim_start().starts_with('#') && nests(line) {
-            return Some(source.error(&(start..start + line.len()), "this line is nested too deeply"));
+            return Some(source.error(&(start..start + line.len()), "keyed.too_deep"));
         }
         start += line.len() + 1;
     }
@@ -93,27 +93,6 @@ fn nests(line: &str) -> bool {
     count > DEEPEST
 }
 
-/// The parser's message without the part that speaks of its grammar.
-fn plain(message: &str) -> &str {
-    message.strip_suffix(", expected literal string").unwrap_or(message)
-}
-
-/// Adds what to do to the syntax errors that people make most.
-fn with_syntax_help(problem: Problem) -> Problem {
-    let help = if problem.message.contains("duplicate key") {
-        "a key or table may stand only once; lists of tables are written [[name]]"
-    } else if problem.message.contains("date") || problem.message.contains("time") {
-        "dates are written without quotes: calibration_due = 2030-12-31"
-    } else if problem.token.starts_with(|c: char| c.is_ascii_alphanumeric())
-        || problem.message.contains("string")
-    {
-        "texts, and numbers with a unit, stand in double quotes: warm_up = \"30 min\""
-    } else {
-        return problem;
-    };
-    problem.help(help)
-}
-
 pub(crate) struct Reader<'s> {
     pub source: &'s SourceText,
     root: &'static TableSpec,
@@ -128,7 +107,7 @@ impl<'s> Reader<'s> {
 }
 
 impl Reader<'_> {
-    pub fn error(&mut self, span: &Span, message: impl Into<String>, help: Option<String>) {
+    pub fn error(&mut self, span: &Span, message: impl Into<Note>, help: Option<Note>) {
         if self.problems.list.len() < ENOUGH {
             let mut problem = self.source.error(span, message);
             problem.help = help;
@@ -177,13 +156,14 @@ impl Reader<'_> {
                 Need::Optional => {}
                 Need::Required if meant.contains(&key.name) => {}
                 Need::Required => {
-                    let message = format!("{} is missing{}", written(key), self.in_table(spec));
-                    let example = if key.example.is_empty() {
-                        format!("add {}: {}", written(key), key.doc)
+                    let message =
+                        self.placed("keyed.missing", "keyed.missing_in", spec).with("key", written(key));
+                    let help = if key.example.is_empty() {
+                        Note::new("keyed.help.add").with("key", written(key)).with("doc", doc(key))
                     } else {
-                        format!("add for example: {} = {}", key.name, key.example)
+                        Note::new("keyed.help.add_example").with("example", example(key))
                     };
-                    self.error(&section.span.clone(), message, Some(example));
+                    self.error(&section.span.clone(), message, Some(help));
                 }
                 Need::Default(text) => {
                     let Ok(value) = DeValue::parse(text) else { continue };
@@ -200,20 +180,24 @@ impl Reader<'_> {
         let known: Vec<&'static str> = spec.keys.iter().map(|k| k.name).collect();
         let near = nearest(key, known.iter().copied());
         let help = match near {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => self.elsewhere(spec, key).unwrap_or_else(|| format!("known here: {}", known.join(", "))),
+            Some(near) => meant(near),
+            None => self
+                .elsewhere(spec, key)
+                .unwrap_or_else(|| Note::new("keyed.help.known").with("keys", known.join(", "))),
         };
-        self.error(span, format!("unknown key `{}`{}", shorten(key), self.in_table(spec)), Some(help));
+        let message =
+            self.placed("keyed.unknown_key", "keyed.unknown_key_in", spec).with("key", shorten(key));
+        self.error(span, message, Some(help));
         near
     }
 
     /// Says where a key belongs that is known in another table.
-    fn elsewhere(&self, spec: &TableSpec, key: &str) -> Option<String> {
+    fn elsewhere(&self, spec: &TableSpec, key: &str) -> Option<Note> {
         let home = self.root.walk().into_iter().find(|t| t.name != spec.name && t.key(key).is_some())?;
         Some(if home.name.is_empty() {
-            format!("`{key}` stands at the beginning of the file, before the first table")
+            Note::new("keyed.help.at_beginning").with("key", key)
         } else {
-            format!("`{key}` belongs in {}", self.header(home))
+            Note::new("keyed.help.belongs").with("key", key).with("table", self.header(home))
         })
     }
 
@@ -227,8 +211,13 @@ impl Reader<'_> {
         }
     }
 
-    fn in_table(&self, spec: &TableSpec) -> String {
-        if spec.name.is_empty() { String::new() } else { format!(" in {}", self.header(spec)) }
+    /// The sentence about a key of the file itself, or the one about a key in a table.
+    fn placed(&self, of_file: &'static str, in_table: &'static str, spec: &TableSpec) -> Note {
+        if spec.name.is_empty() {
+            Note::new(of_file)
+        } else {
+            Note::new(in_table).with("table", self.header(spec))
+        }
     }
 
     fn value(
@@ -248,16 +237,15 @@ impl Reader<'_> {
                     Some(Entry::Table(self.table(spec, table, key_span)))
                 }
                 DeValue::Table(_) => {
-                    let message = format!("`{}` is a list: there may be several", key.name);
-                    self.error(key_span, message, Some(format!("write [[{}]]", spec.name)));
+                    let message = Note::new("keyed.is_list").with("key", key.name);
+                    let help = Note::new("keyed.help.write_tables").with("table", spec.name);
+                    self.error(key_span, message, Some(help));
                     None
                 }
                 DeValue::Array(items) if items.is_empty() && key.need == Need::Required => {
-                    self.error(
-                        span,
-                        format!("`{}` is empty", key.name),
-                        Some(format!("add a [[{}]]", spec.name)),
-                    );
+                    let message = Note::new("keyed.empty").with("key", key.name);
+                    let help = Note::new("keyed.help.add_table").with("table", spec.name);
+                    self.error(span, message, Some(help));
                     None
                 }
                 DeValue::Array(items) => {
@@ -305,16 +293,19 @@ impl Reader<'_> {
         match ids::find(name) {
             Some(id) if id.available => return Some(id),
             Some(id) => {
-                let message = format!("`{name}` is not available in this version");
-                self.error(span, message, Some(format!("it belongs to {}", id.test.title())));
+                let message = Note::new("keyed.not_available").with("name", name);
+                let help = Note::new("keyed.help.belongs_to_test").with("test", Arg::key("test", id.test.id()));
+                self.error(span, message, Some(help));
             }
             None => {
                 let usable = || ids::MEASURANDS.iter().filter(|m| m.available).map(|m| m.id);
                 let help = match nearest(name, usable()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("measurands: {}", usable().collect::<Vec<_>>().join(", ")),
+                    Some(near) => meant(near),
+                    None => Note::new("keyed.help.measurands")
+                        .with("names", usable().collect::<Vec<_>>().join(", ")),
                 };
-                self.error(span, format!("unknown measurand `{}`", shorten(name)), Some(help));
+                let message = Note::new("keyed.unknown_measurand").with("name", shorten(name));
+                self.error(span, message, Some(help));
             }
         }
         None
@@ -322,11 +313,14 @@ impl Reader<'_> {
 
     /// Reports a value of the wrong type.
     pub fn wrong<T>(&mut self, key: &KeySpec, value: &DeValue<'_>, span: &Span) -> Option<T> {
-        let message = format!("`{}` must be {}, this is {}", key.name, key.kind.describe(), type_name(value));
+        let message = Note::new("keyed.wrong")
+            .with("key", key.name)
+            .with("wanted", key.kind.describe())
+            .with("given", Note::new(type_name(value)));
         let help = if key.example.is_empty() {
-            key.kind.table().map(|t| format!("write a table [{}] with its keys below it", t.name))
+            key.kind.table().map(|t| Note::new("keyed.help.write_table").with("table", t.name))
         } else {
-            Some(format!("for example: {} = {}", key.name, key.example))
+            Some(for_example(key))
         };
         self.error(span, message, help);
         None
@@ -367,6 +361,27 @@ fn written(key: &KeySpec) -> String {
     }
 }
 
+/// What a table declares: in words of the tables where they have it, else as it is described.
+fn doc(key: &KeySpec) -> Arg {
+    let id = format!("table_doc.{}", key.name);
+    if lookup(Lang::En, &id).is_some() { Arg::Key(id) } else { Arg::from(key.doc) }
+}
+
+/// A key with its value, as it is written.
+fn example(key: &KeySpec) -> String {
+    format!("{} = {}", key.name, key.example)
+}
+
+/// Shows how a key is written.
+pub(crate) fn for_example(key: &KeySpec) -> Note {
+    Note::new("keyed.help.example").with("example", example(key))
+}
+
+/// Offers a name that is spelt nearly the same.
+pub(crate) fn meant(near: &str) -> Note {
+    Note::new("keyed.help.did_you_mean").with("name", near)
+}
+
 /// A name short enough for a message.
 pub(crate) fn shorten(name: &str) -> String {
     if name.chars().count() <= 60 {
@@ -378,11 +393,11 @@ pub(crate) fn shorten(name: &str) -> String {
 
 fn type_name(value: &DeValue<'_>) -> &'static str {
     match value {
-        DeValue::String(_) => "a text",
-        DeValue::Integer(_) | DeValue::Float(_) => "a number",
-        DeValue::Boolean(_) => "true or false",
-        DeValue::Datetime(_) => "a date",
-        DeValue::Array(_) => "a list",
-        DeValue::Table(_) => "a table",
+        DeValue::String(_) => "keyed.type.text",
+        DeValue::Integer(_) | DeValue::Float(_) => "keyed.type.number",
+        DeValue::Boolean(_) => "keyed.type.flag",
+        DeValue::Datetime(_) => "keyed.type.date",
+        DeValue::Array(_) => "keyed.type.list",
+        DeValue::Table(_) => "keyed.type.table",
     }
 }

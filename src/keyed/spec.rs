@@ -3,6 +3,8 @@
 //! Reading with its checks, the JSON Schema for editors and the key reference of the guide all come from these
 //! descriptions, so that none can differ from another.
 
+use crate::text::Note;
+
 /// A table and its keys.
 #[derive(Debug)]
 pub struct TableSpec {
@@ -78,22 +80,25 @@ impl Range {
             && if self.open { value > self.low } else { value >= self.low }
     }
 
-    /// The range in words, with a unit behind each number. Of a pure number (unit `1`) it speaks in per cent.
-    pub fn describe(&self, unit: &str) -> String {
+    /// The range in words, with a unit behind each number, as a file has it. Of a pure number (unit `1`) it speaks in
+    /// per cent.
+    pub fn describe(&self, unit: &str) -> Note {
         let percent = unit == "1";
         let shown = |value: f64| match unit {
             "" => value.to_string(),
             "1" => format!("{} %", value * 100.0),
             unit => format!("{value} {unit}"),
         };
-        let low = if self.open { "above" } else { "at least" };
-        match (self.low > f64::MIN, self.high < f64::MAX) {
-            (false, false) if percent => "any finite share".to_owned(),
-            (false, false) => "any finite number".to_owned(),
-            (true, false) => format!("{low} {}", shown(self.low)),
-            (false, true) => format!("at most {}", shown(self.high)),
-            (true, true) => format!("{low} {} and at most {}", shown(self.low), shown(self.high)),
-        }
+        let key = match (self.low > f64::MIN, self.high < f64::MAX, self.open) {
+            (false, false, _) if percent => "keyed.range.share",
+            (false, false, _) => "keyed.range.number",
+            (true, false, true) => "keyed.range.above",
+            (true, false, false) => "keyed.range.at_least",
+            (false, true, _) => "keyed.range.at_most",
+            (true, true, true) => "keyed.range.above_up_to",
+            (true, true, false) => "keyed.range.between",
+        };
+        Note::new(key).with("low", shown(self.low)).with("high", shown(self.high))
     }
 }
 
@@ -160,41 +165,49 @@ impl Kind {
     }
 
     /// What a value must be, in words.
-    pub fn describe(self) -> String {
+    pub fn describe(self) -> Note {
         match self {
-            Kind::Text => "a text".to_owned(),
-            Kind::Format(text) => format!("\"{text}\""),
-            Kind::Id => "a name of letters, digits, `_`, `-` and `.`".to_owned(),
-            Kind::Flag => "true or false".to_owned(),
-            Kind::Number(range) => format!("a number, {}", range.describe("")),
-            Kind::Date => "a date such as 2030-12-31".to_owned(),
-            Kind::Choice(words) => words_in_quotes(words, " or "),
-            Kind::Choices(words) => format!("a list of {}", words_in_quotes(words, ", ")),
+            Kind::Text => Note::new("keyed.kind.text"),
+            Kind::Format(text) => Note::new("keyed.kind.quoted").with("text", text),
+            Kind::Id => Note::new("keyed.kind.id"),
+            Kind::Flag => Note::new("keyed.kind.flag"),
+            Kind::Number(range) => Note::new("keyed.kind.number").with("range", range.describe("")),
+            Kind::Date => Note::new("keyed.kind.date"),
+            Kind::Choice(words) => one_of(words),
+            Kind::Choices(words) => Note::new("keyed.kind.list_of").with("words", in_quotes(words)),
             Kind::Quantity { unit, range, .. } => {
-                let bounds =
-                    if range == Range::ANY { String::new() } else { format!(", {}", range.describe(unit)) };
-                format!("a text with number and unit ({}){bounds}", if unit == "1" { "%" } else { unit })
+                let shown = if unit == "1" { "%" } else { unit };
+                if range == Range::ANY {
+                    Note::new("keyed.kind.quantity").with("unit", shown)
+                } else {
+                    Note::new("keyed.kind.quantity_in")
+                        .with("unit", shown)
+                        .with("range", range.describe(unit))
+                }
             }
-            Kind::QuantityBy(key) => {
-                format!("a text with number and unit, of the dimension that `{key}` needs")
-            }
-            Kind::QuantityMap => "a table from measurand ids to texts with number and unit".to_owned(),
-            Kind::UnitText => "a unit such as \"deg/h\"".to_owned(),
-            Kind::Column => "the name of a column, or its position counted from 1".to_owned(),
-            Kind::Taus => {
-                "\"octave\", \"decade\", \"all\", or a list of times such as [\"1 s\", \"10 s\"]".to_owned()
-            }
-            Kind::Allowance => "a count such as 10, or a share such as \"0.1 %\"".to_owned(),
-            Kind::Measurand => "the id of a measurand".to_owned(),
-            Kind::Table(_) => "a table".to_owned(),
-            Kind::Tables(_) => "a list of tables".to_owned(),
-            Kind::TableOrTables(_) => "a table or a list of tables".to_owned(),
+            Kind::QuantityBy(key) => Note::new("keyed.kind.quantity_by").with("key", key),
+            Kind::QuantityMap => Note::new("keyed.kind.quantity_map"),
+            Kind::UnitText => Note::new("keyed.kind.unit"),
+            Kind::Column => Note::new("keyed.kind.column"),
+            Kind::Taus => Note::new("keyed.kind.taus"),
+            Kind::Allowance => Note::new("keyed.kind.allowance"),
+            Kind::Measurand => Note::new("keyed.kind.measurand"),
+            Kind::Table(_) => Note::new("keyed.kind.table"),
+            Kind::Tables(_) => Note::new("keyed.kind.tables"),
+            Kind::TableOrTables(_) => Note::new("keyed.kind.table_or_tables"),
         }
     }
 }
 
-fn words_in_quotes(words: &[Word], between: &str) -> String {
-    words.iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>().join(between)
+/// `"a" or "b" or "c"`.
+fn one_of(words: &[Word]) -> Note {
+    let mut words = words.iter().rev().map(|(word, _)| Note::new("keyed.kind.quoted").with("text", *word));
+    let last = words.next().unwrap_or_else(|| Note::new("keyed.kind.text"));
+    words.fold(last, |rest, word| Note::new("keyed.kind.or").with("word", word).with("rest", rest))
+}
+
+fn in_quotes(words: &[Word]) -> String {
+    words.iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
 }
 
 impl TableSpec {
@@ -265,8 +278,8 @@ mod tests {
         assert!(!Range::POSITIVE.holds(0.0) && Range::POSITIVE.holds(1e-300));
         assert!(Range::NOT_NEGATIVE.holds(0.0) && !Range::NOT_NEGATIVE.holds(-1e-300));
         assert!(!Range::ANY.holds(f64::NAN) && !Range::ANY.holds(f64::INFINITY));
-        assert_eq!(Range::above_up_to(0.0, 0.5).describe(""), "above 0 and at most 0.5");
-        assert_eq!(Range::POSITIVE.describe("s"), "above 0 s");
-        assert_eq!(Range::between(0.0, 1.0).describe("1"), "at least 0 % and at most 100 %");
+        assert_eq!(Range::above_up_to(0.0, 0.5).describe("").to_string(), "above 0 and at most 0.5");
+        assert_eq!(Range::POSITIVE.describe("s").to_string(), "above 0 s");
+        assert_eq!(Range::between(0.0, 1.0).describe("1").to_string(), "at least 0 % and at most 100 %");
     }
 }

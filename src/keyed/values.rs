@@ -2,10 +2,11 @@
 
 use super::diagnostics::{Span, nearest};
 use super::quantity::{self, QuantityError};
-use super::reader::{Reader, shorten};
+use super::reader::{Reader, for_example, shorten};
 use super::section::{Allowance, Entry, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
 use crate::recording::ColumnRef;
+use crate::text::Note;
 use crate::units::Unit;
 use chrono::NaiveDate;
 use toml::de::DeValue;
@@ -65,16 +66,13 @@ pub(crate) fn scalar(
 fn text(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<String> {
     let DeValue::String(text) = value else { return reader.wrong(key, value, span) };
     if text.trim().is_empty() {
-        reader.error(
-            span,
-            format!("`{}` is empty", key.name),
-            Some("fill it in, or leave the key out".into()),
-        );
+        let message = Note::new("keyed.empty").with("key", key.name);
+        reader.error(span, message, Some("keyed.help.fill_in".into()));
         return None;
     }
     if text.chars().count() > LONGEST_TEXT || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t') {
-        let message = format!("`{}` is no text for a report", key.name);
-        let help = format!("at most {LONGEST_TEXT} characters, none of them a control character");
+        let message = Note::new("keyed.no_text").with("key", key.name);
+        let help = Note::new("keyed.help.text").with("most", LONGEST_TEXT);
         reader.error(span, message, Some(help));
         return None;
     }
@@ -87,9 +85,8 @@ fn id(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span:
     if plain && given.len() <= 64 && given.starts_with(|c: char| c.is_ascii_alphanumeric()) {
         return Some(given);
     }
-    let message = format!("`{}` is not a name for `{}`", shorten(&given), key.name);
-    let help = "use at most 64 letters (a-z), digits, `_`, `-` and `.`, a letter or digit first";
-    reader.error(span, message, Some(help.into()));
+    let message = Note::new("keyed.no_name").with("given", shorten(&given)).with("key", key.name);
+    reader.error(span, message, Some("keyed.help.name".into()));
     None
 }
 
@@ -113,8 +110,8 @@ fn in_range(
 ) -> bool {
     let fits = range.holds(value);
     if !fits {
-        let message = format!("`{}` must be {}", key.name, range.describe(unit));
-        reader.error(span, message, Some(format!("for example: {} = {}", key.name, key.example)));
+        let message = Note::new("keyed.out_of_range").with("key", key.name).with("range", range.describe(unit));
+        reader.error(span, message, Some(for_example(key)));
     }
     fits
 }
@@ -134,8 +131,8 @@ fn date(
         _ => return reader.wrong(key, value, span),
     };
     if parsed.is_none() {
-        let help = format!("write year, month and day: {} = 2030-12-31", key.name);
-        reader.error(span, format!("`{}` is not a date", key.name), Some(help));
+        let message = Note::new("keyed.no_date").with("key", key.name);
+        reader.error(span, message, Some(Note::new("keyed.help.date").with("key", key.name)));
     }
     parsed
 }
@@ -152,11 +149,14 @@ fn word(
         return Some(known);
     }
     let help = match nearest(given, words.iter().map(|(known, _)| *known)) {
-        Some(near) => format!("did you mean \"{near}\"?"),
-        None => format!("one of: {}", words.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ")),
+        Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
+        None => {
+            let all: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
+            Note::new("keyed.help.one_of").with("values", all.join(", "))
+        }
     };
     let at = inside_quotes(reader, given, span);
-    reader.error(&at, format!("`{}` is not a value of `{}`", shorten(given), key.name), Some(help));
+    reader.error(&at, no_value(given, key), Some(help));
     None
 }
 
@@ -166,11 +166,7 @@ fn unit(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, spa
         Ok(unit) => Some(unit),
         Err(e) => {
             let at = inside_quotes(reader, &given, span);
-            reader.error(
-                &at,
-                e.to_string(),
-                Some("examples: deg/h, deg/s, arcsec, count, degC, V, s".into()),
-            );
+            reader.error(&at, e.note(), Some("keyed.help.units".into()));
             None
         }
     }
@@ -189,7 +185,7 @@ fn column(
                 Some(ColumnRef::Position(position as usize))
             }
             _ => {
-                reader.error(span, "columns are counted from 1", None);
+                reader.error(span, "keyed.counted_from_1", None);
                 None
             }
         },
@@ -207,7 +203,7 @@ fn allowance(
         DeValue::Integer(_) => match number(value) {
             Some(count) if count >= 0.0 => Some(Allowance::Count(count as u64)),
             _ => {
-                reader.error(span, format!("`{}` must be a count of 0 or more", key.name), None);
+                reader.error(span, Note::new("keyed.no_count").with("key", key.name), None);
                 None
             }
         },
@@ -226,8 +222,7 @@ fn taus(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, spa
             "all" => Some(Taus::All),
             other => {
                 let at = inside_quotes(reader, other, span);
-                let message = format!("`{}` is not a value of `{}`", shorten(other), key.name);
-                reader.error(&at, message, Some(key.kind.describe()));
+                reader.error(&at, no_value(other, key), Some(key.kind.describe()));
                 None
             }
         },
@@ -287,7 +282,8 @@ fn quantity_text(
             }
         },
         DeValue::Integer(_) | DeValue::Float(_) => {
-            reader.error(span, format!("`{}` has no unit", key.name), Some(quantity_help(key, unit)));
+            let message = Note::new("keyed.no_unit").with("name", key.name);
+            reader.error(span, message, Some(quantity_help(key, unit)));
             None
         }
         _ => reader.wrong(key, value, span),
@@ -296,13 +292,16 @@ fn quantity_text(
 
 /// How a quantity is written. The example of a key stands in only where its unit is the one needed: a guessed unit
 /// would turn hours into seconds.
-fn quantity_help(key: &KeySpec, unit: &str) -> String {
+fn quantity_help(key: &KeySpec, unit: &str) -> Note {
     match key.kind {
-        Kind::QuantityBy(_) | Kind::QuantityMap => {
-            format!("write a text with number and unit; here a unit like {unit} is needed")
-        }
-        _ => format!("write a text with number and unit, for example: {} = {}", key.name, key.example),
+        Kind::QuantityBy(_) | Kind::QuantityMap => Note::new("keyed.help.quantity_like").with("unit", unit),
+        _ => Note::new("keyed.help.quantity").with("key", key.name).with("example", key.example),
     }
+}
+
+/// A word that a key does not know.
+fn no_value(given: &str, key: &KeySpec) -> Note {
+    Note::new("keyed.no_value").with("given", shorten(given)).with("key", key.name)
 }
 
 /// The place of a text between its quotes; the whole value where escapes make the two differ.

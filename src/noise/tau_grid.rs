@@ -1,5 +1,8 @@
 //! Which averaging times a σ(τ) curve is computed at.
 
+use crate::text::Note;
+use std::fmt;
+
 /// The choice of averaging times.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum TauGrid {
@@ -25,18 +28,14 @@ const LARGEST_FACTOR: u64 = 1 << 48;
 const MULTIPLE_TOLERANCE: f64 = 1e-6;
 
 /// What is wrong with a choice of averaging times.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum TauGridError {
     /// The text is neither a known word nor a list of numbers.
-    #[error("`{text}` is no averaging time; write octave, decade, all, or times in seconds such as 1,10,100")]
     Unreadable {
         /// The part that was not understood.
         text: String,
     },
     /// A time that is no multiple of the sample interval.
-    #[error(
-        "the averaging time {tau_s} s is no multiple of the sample interval {tau0_s} s; the nearest are {below_s} s and {above_s} s"
-    )]
     NotAMultiple {
         /// The time asked for, s.
         tau_s: f64,
@@ -48,6 +47,29 @@ pub enum TauGridError {
         above_s: f64,
     },
 }
+
+impl TauGridError {
+    /// What is wrong, as a note.
+    pub fn note(&self) -> Note {
+        match self {
+            TauGridError::Unreadable { text } => Note::new("tau_grid.unreadable").with("text", text.as_str()),
+            TauGridError::NotAMultiple { tau_s, tau0_s, below_s, above_s } => Note::new("tau_grid.no_multiple")
+                .with("tau", tau_s.to_string())
+                .with("interval", tau0_s.to_string())
+                .with("below", below_s.to_string())
+                .with("above", above_s.to_string()),
+        }
+    }
+}
+
+impl fmt::Display for TauGridError {
+    /// In English.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.note().fmt(f)
+    }
+}
+
+impl std::error::Error for TauGridError {}
 
 impl std::str::FromStr for TauGrid {
     type Err = TauGridError;

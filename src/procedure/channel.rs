@@ -4,6 +4,7 @@ use super::quantity;
 use super::reader::Reader;
 use super::section::{Entry, Section};
 use crate::recording::{Channel, Role};
+use crate::text::Note;
 use crate::units::Unit;
 
 /// Reads a channel; gives it with the unit of the file as written, or nothing when a problem was reported.
@@ -26,7 +27,7 @@ pub(super) fn read(section: &Section, reader: &mut Reader<'_>) -> Option<(Channe
     suits(&unit, &in_file, role, section, reader)?;
     let scale = if section.flag("reversed") { -size } else { size };
     if role == Role::Time && scale < 0.0 {
-        reader.error(&section.span_of("reversed"), "time cannot run backwards", None);
+        reader.error(&section.span_of("reversed"), "check.time_backwards", None);
         return None;
     }
     Some((Channel { id, column, role, unit, scale }, in_file))
@@ -44,19 +45,19 @@ fn scaled(
     let (value, unit_text) = match quantity::split(scale) {
         Ok(parts) => parts,
         Err(e) => {
-            reader.error(&at, e.message, Some("write it like \"0.01 arcsec/count\"".into()));
+            reader.error(&at, e.message, Some("check.help.scale".into()));
             return None;
         }
     };
     if value == 0.0 {
-        reader.error(&at, "`scale` must not be 0", None);
+        reader.error(&at, "check.scale_zero", None);
         return None;
     }
     if unit_text.is_empty() {
         return Some((in_file.clone(), value));
     }
     if let Err(e) = Unit::parse(unit_text) {
-        reader.error(&at, e.to_string(), Some("write it like \"0.01 arcsec/count\"".into()));
+        reader.error(&at, e.note(), Some("check.help.scale".into()));
         return None;
     }
     let product = Unit::parse(&format!("({unit_text})*({})", in_file.text())).ok()?;
@@ -81,30 +82,25 @@ fn suits(unit: &Unit, in_file: &str, role: Role, section: &Section, reader: &mut
     let at = section.span_of(if scaled { "scale" } else { "unit" });
     let counts = Unit::parse("count").is_ok_and(|c| c.same_dimension(unit));
     let message = if scaled {
-        let product = unit.describe();
-        format!(
-            "`scale` times `{in_file}` gives {product}, but role `{}` needs {}",
-            role.id(),
-            wanted.describe()
-        )
+        Note::new("check.scale_and_role")
     } else {
-        format!(
-            "`{in_file}` measures {}, but role `{}` needs {}",
-            unit.describe(),
-            role.id(),
-            wanted.describe()
-        )
+        Note::new("check.unit_and_role")
     };
+    let message = message
+        .with("unit", in_file)
+        .with("given", unit.describe())
+        .with("role", role.id())
+        .with("wanted", wanted.describe());
     let help = if scaled {
-        format!("the product of scale and unit must be like `{}`", wanted.text())
+        Note::new("check.help.product").with("unit", wanted.text())
     } else if counts {
-        format!("state the size of a count: scale = \"0.01 {}/count\"", wanted.text())
+        Note::new("check.help.count").with("unit", wanted.text())
     } else if role == Role::Rate && Unit::parse("arcsec").is_ok_and(|u| u.same_dimension(unit)) {
-        "a channel of angles has role = \"angle_increment\"".to_owned()
+        Note::new("check.help.angles")
     } else if role == Role::AngleIncrement && Unit::parse("deg/h").is_ok_and(|u| u.same_dimension(unit)) {
-        "a channel of rates has role = \"rate\"".to_owned()
+        Note::new("check.help.rates")
     } else {
-        format!("for example: unit = \"{}\"", wanted.text())
+        Note::new("check.help.unit").with("unit", wanted.text())
     };
     reader.error(&at, message, Some(help));
     None

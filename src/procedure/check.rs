@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
+use crate::text::{Lang, Note};
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -38,8 +39,8 @@ pub struct CheckReport {
 }
 
 /// Checks files one by one. With `limits`, each procedure is also checked against those limits.
-pub fn check_report(paths: &[&Path], limits: Option<&Loaded<LimitsFile>>) -> CheckReport {
-    check_report_with(paths, limits, |_, _| vec![])
+pub fn check_report(paths: &[&Path], limits: Option<&Loaded<LimitsFile>>, lang: Lang) -> CheckReport {
+    check_report_with(paths, limits, lang, |_, _| vec![])
 }
 
 /// As [`check_report`]; `extra` gives further warnings for a procedure with its limits, such as those of
@@ -47,6 +48,7 @@ pub fn check_report(paths: &[&Path], limits: Option<&Loaded<LimitsFile>>) -> Che
 pub fn check_report_with(
     paths: &[&Path],
     limits: Option<&Loaded<LimitsFile>>,
+    lang: Lang,
     extra: impl Fn(&Loaded<Procedure>, Option<&Loaded<LimitsFile>>) -> Vec<Problem>,
 ) -> CheckReport {
     let mut report = CheckReport::default();
@@ -63,45 +65,42 @@ pub fn check_report_with(
                     Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
                 };
                 for warning in warnings {
-                    report.text.push_str(&format!("{warning}\n"));
+                    report.text.push_str(&format!("{}\n", warning.say(lang)));
                 }
-                report.text.push_str(&format!("{}: {sentence}\n", path.display()));
+                report.text.push_str(&format!("{}: {}\n", path.display(), sentence.say(lang)));
             }
             Err(problems) => {
                 report.failed += 1;
-                let summary = count(problems.list.len(), "problem");
-                report.text.push_str(&format!("{problems}\n{}: {summary}\n", path.display()));
+                let summary = count(problems.list.len(), "check.one_problem", "check.problems").say(lang);
+                report.text.push_str(&format!("{}\n{}: {summary}\n", problems.say(lang), path.display()));
             }
         }
     }
     report
 }
 
-fn count(n: usize, what: &str) -> String {
-    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+/// A count with its noun: one key for one, another for any other number.
+fn count(n: usize, one: &'static str, several: &'static str) -> Note {
+    if n == 1 { Note::new(one) } else { Note::new(several).with("n", n) }
 }
 
-fn procedure_sentence(p: &Loaded<Procedure>) -> String {
+fn procedure_sentence(p: &Loaded<Procedure>) -> Note {
     let p = &p.value;
-    format!(
-        "procedure `{}` revision {}: {}, {}, {}; sound",
-        p.id,
-        p.revision,
-        count(p.channels.len(), "channel"),
-        count(p.measurands.len(), "measurand"),
-        count(p.limits.limits.len(), "limit")
-    )
+    Note::new("check.procedure")
+        .with("id", p.id.as_str())
+        .with("revision", p.revision.as_str())
+        .with("channels", count(p.channels.len(), "check.one_channel", "check.channels"))
+        .with("measurands", count(p.measurands.len(), "check.one_measurand", "check.measurands"))
+        .with("limits", count(p.limits.limits.len(), "check.one_limit", "check.limits"))
 }
 
-fn limits_sentence(l: &Loaded<LimitsFile>) -> String {
+fn limits_sentence(l: &Loaded<LimitsFile>) -> Note {
     let l = &l.value;
-    format!(
-        "limits `{}` revision {}: {}, {}; sound",
-        l.id,
-        l.revision,
-        count(l.set.limits.len(), "limit"),
-        count(l.set.references.len(), "reference value")
-    )
+    Note::new("check.limits_file")
+        .with("id", l.id.as_str())
+        .with("revision", l.revision.as_str())
+        .with("limits", count(l.set.limits.len(), "check.one_limit", "check.limits"))
+        .with("references", count(l.set.references.len(), "check.one_reference", "check.references"))
 }
 
 /// True when the beginning of the file says that it holds limits. Nothing is reported here: reading does that.

@@ -65,7 +65,7 @@ fn value(key: &KeySpec) -> String {
     let what = match key.kind {
         Kind::Choice(_) => "one of the words beside".to_owned(),
         Kind::Choices(_) => "a list of the words beside".to_owned(),
-        kind => kind.describe(),
+        kind => kind.describe().to_string(),
     };
     if key.example.is_empty() || matches!(key.kind, Kind::Format(_) | Kind::Flag) {
         what

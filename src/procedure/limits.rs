@@ -6,6 +6,7 @@ use super::reader::Reader;
 use super::section::{Entry, Section};
 use crate::estimate::{Limit, Rule};
 use crate::ids::MeasurandId;
+use crate::text::Note;
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
 
 /// Limits, references and typical values of one file, in the units of the measurands.
@@ -163,14 +164,14 @@ fn not_measured(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Vec<Problem
     let mut warnings = vec![];
     for limit in &file.value.set.limits {
         if !procedure.measures(limit.measurand.id, limit.channel.as_deref()) {
-            let message =
-                format!("this limit is not judged: procedure `{}` does not measure it", procedure.id);
-            let help = format!("add a [[measurand]] with id = \"{}\" to the procedure", limit.measurand.id);
+            let message = Note::new("check.not_judged").with("procedure", procedure.id.as_str());
+            let help = Note::new("check.help.measure").with("id", limit.measurand.id);
             warnings.push(file.source.warning(&limit.span, message).help(help));
         } else if let Some(channel) = limit.channel.as_deref()
             && procedure.channel(channel).is_none()
         {
-            let message = format!("procedure `{}` has no channel `{channel}`", procedure.id);
+            let message =
+                Note::new("check.no_such_channel").with("procedure", procedure.id.as_str()).with("channel", channel);
             warnings.push(file.source.warning(&limit.span, message));
         }
     }
@@ -185,7 +186,7 @@ pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut
             continue;
         };
         if value < 0.0 && !measurand.signed {
-            reader.error(&section.span_of("value"), format!("`{}` is never negative", measurand.id), None);
+            reader.error(&section.span_of("value"), about("check.never_negative", measurand), None);
         }
         set.references.push(Reference {
             measurand,
@@ -198,7 +199,7 @@ pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut
     if let Some(Entry::Quantities(list)) = root.entry("expected") {
         for (measurand, value, span) in list {
             if *value < 0.0 && !measurand.signed {
-                reader.error(span, format!("`{}` cannot be negative", measurand.id), None);
+                reader.error(span, about("check.cannot_be_negative", measurand), None);
             }
             set.expected.push(Expected { measurand, value: *value, span: span.clone() });
         }
@@ -213,6 +214,11 @@ pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut
     }
     duplicates(&set, reader);
     set
+}
+
+/// A sentence about a measurand.
+fn about(key: &'static str, measurand: &MeasurandId) -> Note {
+    Note::new(key).with("measurand", measurand.id)
 }
 
 /// The limit that a factor makes of a typical value: an upper one, or one on the magnitude of what can be negative.
@@ -247,11 +253,10 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
     let [mut min, mut max, max_abs, factor] = given;
     let states = |key: &str| section.entry(key).is_some();
     if !["min", "max", "max_abs", "factor"].iter().any(|key| states(key)) {
-        let help = "add one of: max = \"...\", min = \"...\", max_abs = \"...\", factor = 1.5";
         reader.error(
             &section.span,
-            format!("this limit of `{}` states no value", measurand.id),
-            Some(help.into()),
+            about("check.limit_without_value", measurand),
+            Some("check.help.limit_value".into()),
         );
         return None;
     }
@@ -259,24 +264,23 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
         |key: &str| states(key) && ["min", "max", "max_abs", "factor"].iter().any(|k| *k != key && states(k));
     for key in ["max_abs", "factor"] {
         if alone(key) {
-            let message = format!("`{key}` stands alone: it already says the whole limit");
-            reader.error(
-                &section.span_of(key),
-                message,
-                Some("remove the other values of this limit".into()),
-            );
+            let message = Note::new("check.stands_alone").with("key", key);
+            reader.error(&section.span_of(key), message, Some("check.help.stands_alone".into()));
             return None;
         }
     }
     if let Some(bound) = max_abs {
         let at = section.span_of("max_abs");
         if !measurand.signed {
-            let message = format!("`{}` is never negative", measurand.id);
-            reader.error(&at, message, Some("write `max` in place of `max_abs`".into()));
+            reader.error(
+                &at,
+                about("check.never_negative", measurand),
+                Some("check.help.max_for_max_abs".into()),
+            );
             return None;
         }
         if bound <= 0.0 {
-            reader.error(&at, "`max_abs` must be above 0", None);
+            reader.error(&at, "check.max_abs_zero", None);
             return None;
         }
         (min, max) = (Some(-bound), Some(bound));
@@ -288,19 +292,19 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
             Some(reference) => match by_factor(measurand, factor, reference.record.value) {
                 Some(made) => (min, max) = made,
                 None => {
-                    let message = format!("`factor` times {} gives no limit", reference.record.value);
-                    reader.error(
-                        &section.span_of("factor"),
-                        message,
-                        Some("state the limit with `max`".into()),
-                    );
+                    let message = Note::new("check.factor_gives_none")
+                        .with("value", reference.record.value.to_string());
+                    let help = "check.help.max_for_factor";
+                    reader.error(&section.span_of("factor"), message, Some(help.into()));
                     return None;
                 }
             },
             None => {
-                let message = format!("`factor` needs a reference value of `{}` in this file", measurand.id);
-                let help = "add a [[reference]], or state the limit with `max`";
-                reader.error(&section.span_of("factor"), message, Some(help.into()));
+                reader.error(
+                    &section.span_of("factor"),
+                    about("check.factor_without_reference", measurand),
+                    Some("check.help.factor".into()),
+                );
                 return None;
             }
         }
@@ -308,16 +312,16 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
     if let (Some(low), Some(high)) = (min, max)
         && low > high
     {
-        let message = format!("`min` ({low} {unit}) is above `max` ({high} {unit})", unit = measurand.unit);
-        reader.error(&section.span_of("min"), message, Some("no unit can meet this limit".into()));
+        let message = Note::new("check.min_above_max")
+            .with("low", low.to_string())
+            .with("high", high.to_string())
+            .with("unit", measurand.unit);
+        reader.error(&section.span_of("min"), message, Some("check.help.nothing_meets".into()));
         return None;
     }
     if let Some(high) = max.filter(|high| !measurand.signed && *high <= 0.0) {
-        let message = format!(
-            "no unit can meet this: `{}` is never {}",
-            measurand.id,
-            if high < 0.0 { "negative" } else { "0" }
-        );
+        let key = if high < 0.0 { "check.unmet_negative" } else { "check.unmet_zero" };
+        let message = about(key, measurand);
         reader.error(&section.span_of(if factor.is_some() { "factor" } else { "max" }), message, None);
         return None;
     }
@@ -334,10 +338,8 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
 fn duplicates(set: &LimitSet, reader: &mut Reader<'_>) {
     for (i, limit) in set.limits.iter().enumerate() {
         if set.limits[..i].iter().any(|l| l.measurand == limit.measurand && l.channel == limit.channel) {
-            let message = format!("a second limit for `{}`", limit.measurand.id);
-            let help =
-                "one limit may hold both `min` and `max`; limits for single channels name their `channel`";
-            reader.error(&limit.span, message, Some(help.into()));
+            let message = about("check.second_limit", limit.measurand);
+            reader.error(&limit.span, message, Some("check.help.second_limit".into()));
         }
     }
 }
@@ -349,11 +351,8 @@ pub(super) fn warnings(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
         let typical = set.references.iter().find(|r| r.measurand == limit.measurand).map(|r| r.record.value);
         let too_tight = matches!((limit.limit.max, typical), (Some(max), Some(value)) if max <= value);
         if too_tight && limit.limit.rule == Rule::GuardBand {
-            let message = format!(
-                "a unit at the typical value of `{}` fails this guarded limit half the time or more",
-                limit.measurand.id
-            );
-            found.push(source.warning(&limit.span, message).help("set the limit above the typical value"));
+            let message = about("check.limit_at_typical", limit.measurand);
+            found.push(source.warning(&limit.span, message).help("check.help.above_typical"));
         }
     }
     found

@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, Problems, SourceText};
 use super::limits::LimitsFile;
 use super::model::{Loaded, Procedure};
 use super::parse;
+use crate::text::{Note, io_reason};
 use sha2::{Digest, Sha256};
 use std::io::Read;
 use std::path::Path;
@@ -72,8 +73,7 @@ fn text_of(name: &str, bytes: &[u8]) -> Result<String, Problems> {
             let sound = String::from_utf8_lossy(body.get(..e.valid_up_to()).unwrap_or(b"")).into_owned();
             let at = sound.len();
             let source = SourceText::new(name, sound);
-            let help = "save the file as UTF-8";
-            Err(source.error(&(at..at), "from here on the file is not UTF-8 text").help(help).into())
+            Err(source.error(&(at..at), "check.not_utf8").help("check.help.utf8").into())
         }
     }
 }
@@ -85,14 +85,14 @@ fn name_of(path: &Path) -> String {
 pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, Problems> {
     let failed = |e: std::io::Error| -> Problems {
         let help = match e.kind() {
-            std::io::ErrorKind::NotFound => Some("check the path".to_owned()),
+            std::io::ErrorKind::NotFound => Some("check.help.path".into()),
             _ => None,
         };
-        Problem::of_file(&name_of(path), format!("the file cannot be read: {e}"), help).into()
+        let message = Note::new("check.unreadable").with("reason", io_reason(&e));
+        Problem::of_file(&name_of(path), message, help).into()
     };
     if path.is_dir() {
-        let message = "this is a folder, not a procedure or limits file";
-        return Err(Problem::of_file(&name_of(path), message, None).into());
+        return Err(Problem::of_file(&name_of(path), "check.is_folder", None).into());
     }
     let file = std::fs::File::open(path).map_err(failed)?;
     let mut bytes = vec![];

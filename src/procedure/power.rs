@@ -7,6 +7,7 @@
 use super::diagnostics::{Problem, SourceText};
 use super::limits::{EffectiveLimits, LimitSpec, LimitsFile};
 use super::model::{Loaded, Procedure};
+use crate::text::Note;
 use std::ops::Range;
 
 /// Typical noise of a family, in inside units. `None`: not stated.
@@ -73,7 +74,7 @@ pub fn warnings(
     questions: &[PowerQuestion],
     procedure: &Loaded<Procedure>,
     limits: Option<&Loaded<LimitsFile>>,
-    mut answer: impl FnMut(&PowerQuestion) -> Option<(String, Option<String>)>,
+    mut answer: impl FnMut(&PowerQuestion) -> Option<(Note, Option<Note>)>,
 ) -> Vec<Problem> {
     let source_of = |name: &str| -> &SourceText {
         match limits {

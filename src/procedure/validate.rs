@@ -2,10 +2,11 @@
 
 use super::diagnostics::{Problem, SourceText, nearest};
 use super::model::{ChannelSpec, EarthRate, MeasurandSpec, Procedure, Taus};
-use super::reader::{Reader, shorten};
+use super::reader::{Reader, meant, shorten};
 use super::section::Section;
 use crate::ids;
 use crate::recording::{ColumnRef, Role};
+use crate::text::Note;
 
 /// Reports every contradiction.
 pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
@@ -24,27 +25,23 @@ pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceTex
     let mut found = super::limits::warnings(&procedure.limits, source);
     for section in root.tables("instrument") {
         if section.flag("required") && section.entry("calibration_due").is_none() {
-            let message =
-                "this instrument is required and has no `calibration_due`: its calibration cannot be shown";
-            found.push(source.warning(&section.span, message).help("add calibration_due = 2030-12-31"));
+            let warning = source.warning(&section.span, "check.no_calibration_due");
+            found.push(warning.help("check.help.calibration_due"));
         }
     }
     let column = |c: &ChannelSpec| c.channel.column.clone();
     for (i, channel) in procedure.channels.iter().enumerate() {
         if let Some(other) = procedure.channels[..i].iter().find(|o| column(o) == column(channel)) {
-            let message = format!(
-                "channels `{}` and `{}` read the same column {}",
-                other.channel.id,
-                channel.channel.id,
-                shown(&channel.channel.column)
-            );
+            let message = Note::new("check.same_column")
+                .with("first", other.channel.id.as_str())
+                .with("second", channel.channel.id.as_str())
+                .with("column", shown(&channel.channel.column));
             found.push(source.warning(&channel.span, message));
         }
     }
     if root.table("conditions").is_none_or(|c| c.entry("minimum_duration").is_none()) {
-        let message = "no `minimum_duration`: a record of any length is a valid test";
         let at = root.table("conditions").map_or(0..0, |c| c.span.clone());
-        found.push(source.warning(&at, message).help("add minimum_duration = \"10 h\" to [conditions]"));
+        found.push(source.warning(&at, "check.no_minimum_duration").help("check.help.minimum_duration"));
     }
     found
 }
@@ -63,17 +60,16 @@ fn channels(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     for section in sections {
         if let Some(id) = section.text("id") {
             if seen.contains(&id) {
-                let help = "give every channel an id of its own";
-                reader.error(&section.span_of("id"), format!("a second channel `{id}`"), Some(help.into()));
+                let message = Note::new("check.second_channel").with("id", id.as_str());
+                reader.error(&section.span_of("id"), message, Some("check.help.second_channel".into()));
             }
             seen.push(id);
         }
         if section.word("role") == Some("time") {
             let id = section.text("id").unwrap_or_default();
             if let Some(first) = &time {
-                let message = format!("a second channel with the role `time`; the first is `{first}`");
-                let help = "one channel gives the time; use role = \"auxiliary\" for the other";
-                reader.error(&section.span_of("role"), message, Some(help.into()));
+                let message = Note::new("check.second_time").with("first", first.as_str());
+                reader.error(&section.span_of("role"), message, Some("check.help.second_time".into()));
             } else {
                 time = Some(id);
             }
@@ -81,15 +77,14 @@ fn channels(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         if let (Some(low), Some(high)) = (section.number("rail_low"), section.number("rail_high"))
             && low >= high
         {
-            reader.error(&section.span_of("rail_low"), "`rail_low` must be below `rail_high`", None);
+            reader.error(&section.span_of("rail_low"), "check.rails", None);
         }
     }
     // A gyro channel with a problem of its own is reported there and not as missing too.
     let gyro = sections.iter().any(|s| matches!(s.word("role"), Some("rate" | "angle_increment") | None));
     if !gyro && !sections.is_empty() && procedure.gyro_channels().next().is_none() {
-        let message = "no channel delivers the output of a gyro";
-        let help = "add a [[channel]] with role = \"rate\" or role = \"angle_increment\"";
-        reader.error(&sections.first().map_or(0..0, |s| s.span.clone()), message, Some(help.into()));
+        let at = sections.first().map_or(0..0, |s| s.span.clone());
+        reader.error(&at, "check.no_gyro", Some("check.help.no_gyro".into()));
     }
 }
 
@@ -101,15 +96,13 @@ fn sample_rate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     }
     let sections = root.tables("channel");
     let Some(first) = sections.first() else { return };
-    let help = "add to [recording]: sample_rate = \"10 Hz\"";
+    let help = "check.help.sample_rate";
     match sections.iter().find(|s| s.word("role") == Some("time")) {
         None if sections.iter().all(|s| s.word("role").is_some()) => {
-            let message = "no channel has the role `time` and no `sample_rate` is declared: the time of the samples is unknown";
-            reader.error(&first.span.clone(), message, Some(help.into()));
+            reader.error(&first.span.clone(), "check.no_time", Some(help.into()));
         }
         Some(time) if !time.flag("required") => {
-            let message = "a recording may lack this time channel and no `sample_rate` is declared";
-            reader.error(&time.span_of("required"), message, Some(help.into()));
+            reader.error(&time.span_of("required"), "check.time_may_lack", Some(help.into()));
         }
         _ => {}
     }
@@ -121,7 +114,7 @@ fn channel_of(
     procedure: &Procedure,
     root: &Section,
     suits: fn(Role) -> bool,
-    wanted: &str,
+    wanted: &'static str,
     reader: &mut Reader<'_>,
 ) {
     let Some(id) = section.text("channel") else { return };
@@ -130,24 +123,23 @@ fn channel_of(
     let Some(declared) = declared else {
         let known: Vec<String> = root.tables("channel").iter().filter_map(|s| s.text("id")).collect();
         let help = match nearest(&id, known.iter().map(String::as_str)) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("declared: {}", known.join(", ")),
+            Some(near) => meant(near),
+            None => Note::new("check.help.declared").with("channels", known.join(", ")),
         };
-        reader.error(&at, format!("no channel `{}` is declared", shorten(&id)), Some(help));
+        reader.error(&at, Note::new("check.undeclared").with("id", shorten(&id)), Some(help));
         return;
     };
     let role = Role::ALL.iter().copied().find(|r| Some(r.id()) == declared.word("role"));
     if let Some(role) = role.filter(|r| !suits(*r)) {
-        let message = format!("channel `{id}` has the role `{}`; {wanted} is needed here", role.id());
+        let message = Note::new(wanted).with("id", id.as_str()).with("role", role.id());
         let fits: Vec<&str> = procedure
             .channels
             .iter()
             .filter(|c| suits(c.channel.role))
             .map(|c| c.channel.id.as_str())
             .collect();
-        let help =
-            if fits.is_empty() { None } else { Some(format!("channels that suit: {}", fits.join(", "))) };
-        reader.error(&at, message, help);
+        let help = Note::new("check.help.suiting").with("channels", fits.join(", "));
+        reader.error(&at, message, (!fits.is_empty()).then_some(help));
     }
 }
 
@@ -156,17 +148,15 @@ fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         if let (Some(least), Some(warm_up)) = (section.number("minimum_duration"), section.number("warm_up"))
             && warm_up >= least
         {
-            let message = "`warm_up` is not shorter than `minimum_duration`";
-            let help =
-                "`minimum_duration` is the usable time after warm-up; is one of the two in a wrong unit?";
-            reader.error(&section.span_of("warm_up"), message, Some(help.into()));
+            let help = "check.help.warm_up";
+            reader.error(&section.span_of("warm_up"), "check.warm_up", Some(help.into()));
         }
         for held in section.tables("temperature") {
-            channel_of(held, procedure, root, |r| r == Role::Temperature, "role `temperature`", reader);
+            channel_of(held, procedure, root, |r| r == Role::Temperature, "check.needs_temperature", reader);
             provable(held, "degC", reader);
         }
         for held in section.tables("supply") {
-            channel_of(held, procedure, root, |r| r == Role::Supply, "role `supply`", reader);
+            channel_of(held, procedure, root, |r| r == Role::Supply, "check.needs_supply", reader);
             provable(held, "V", reader);
         }
     }
@@ -174,7 +164,7 @@ fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         if let (Some(from), Some(to)) = (section.number("from"), section.number("to"))
             && to <= from
         {
-            reader.error(&section.span_of("to"), "`to` must be later than `from`", None);
+            reader.error(&section.span_of("to"), "check.to_before_from", None);
         }
     }
 }
@@ -188,11 +178,15 @@ fn provable(section: &Section, unit: &str, reader: &mut Reader<'_>) {
         return;
     };
     if k * u >= tolerance {
-        let message = format!(
-            "this sensor can never show the tolerance: {k} times {u} {unit} is not less than {tolerance} {unit}"
+        let message = Note::new("check.not_provable")
+            .with("factor", k.to_string())
+            .with("uncertainty", format!("{u} {unit}"))
+            .with("tolerance", format!("{tolerance} {unit}"));
+        reader.error(
+            &section.span_of("sensor_uncertainty"),
+            message,
+            Some("check.help.not_provable".into()),
         );
-        let help = "use a better sensor, or widen the tolerance";
-        reader.error(&section.span_of("sensor_uncertainty"), message, Some(help.into()));
     }
 }
 
@@ -201,17 +195,17 @@ fn site(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     for section in std::iter::once(site).chain(site.tables("axis")) {
         let vertical = section.number("elevation").is_none_or(|e| (e.abs() - 90.0).abs() < 1e-9);
         if !vertical && section.entry("heading").is_none() {
-            let message = "`heading` is missing: the input axis is not vertical";
-            let help = "add for example: heading = \"90 deg\" (from true north, positive to the east)";
-            reader.error(&section.span_of("elevation"), message, Some(help.into()));
+            let help = "check.help.heading";
+            reader.error(&section.span_of("elevation"), "check.no_heading", Some(help.into()));
         }
     }
     let mut seen: Vec<String> = vec![];
     for axis in site.tables("axis") {
-        channel_of(axis, procedure, root, Role::is_gyro, "role `rate` or `angle_increment`", reader);
+        channel_of(axis, procedure, root, Role::is_gyro, "check.needs_gyro", reader);
         let id = axis.text("channel").unwrap_or_default();
         if seen.contains(&id) {
-            reader.error(&axis.span_of("channel"), format!("a second direction of channel `{id}`"), None);
+            let message = Note::new("check.second_direction").with("id", id.as_str());
+            reader.error(&axis.span_of("channel"), message, None);
         }
         seen.push(id);
     }
@@ -221,32 +215,25 @@ fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     let sections = root.tables("measurand");
     let has_site = root.entry("site").is_some();
     for (i, section) in sections.iter().enumerate() {
-        channel_of(section, procedure, root, Role::is_gyro, "role `rate` or `angle_increment`", reader);
+        channel_of(section, procedure, root, Role::is_gyro, "check.needs_gyro", reader);
         let Some(measurand) = section.measurand("id") else { continue };
         let clash = sections[..i].iter().any(|other| {
             let (a, b) = (other.text("channel"), section.text("channel"));
             other.measurand("id") == Some(measurand) && (a == b || a.is_none() || b.is_none())
         });
         if clash {
-            let message = format!("`{}` is declared twice", measurand.id);
-            reader.error(
-                &section.span_of("id"),
-                message,
-                Some("remove one, or give each its `channel`".into()),
-            );
+            let message = Note::new("check.declared_twice").with("id", measurand.id);
+            reader.error(&section.span_of("id"), message, Some("check.help.declared_twice".into()));
         }
         let options = section.table("options");
         let removes = options.and_then(|o| o.word("earth_rate")) != Some("keep");
         let needs_site = measurand.id == "earth_rate_component" || measurand.id == "static_bias" && removes;
         if needs_site && !has_site {
-            let message = format!(
-                "`{}` needs the Earth rate along the input axis, and there is no [site]",
-                measurand.id
-            );
+            let message = Note::new("check.needs_site").with("id", measurand.id);
             let help = if measurand.id == "static_bias" {
-                "add [site] with latitude and elevation, or set options.earth_rate = \"keep\" for the mean as recorded"
+                "check.help.site_or_keep"
             } else {
-                "add [site] with latitude and elevation of the input axis"
+                "check.help.site"
             };
             reader.error(&section.span_of("id"), message, Some(help.into()));
         }
@@ -254,7 +241,8 @@ fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             let set = options.is_some_and(|o| o.entry(key.name).is_some());
             if set && !measurand.options.contains(&key.name) {
                 let at = options.map_or_else(|| section.span.clone(), |o| o.span_of(key.name));
-                reader.error(&at, format!("`{}` is no option of `{}`", key.name, measurand.id), None);
+                let message = Note::new("check.no_option").with("key", key.name).with("id", measurand.id);
+                reader.error(&at, message, None);
             }
         }
     }
@@ -265,21 +253,18 @@ fn limits(procedure: &Procedure, reader: &mut Reader<'_>) {
     for limit in &procedure.limits.limits {
         if let Some(channel) = limit.channel.as_deref().filter(|c| procedure.channel(c).is_none()) {
             let known: Vec<&str> = procedure.channels.iter().map(|c| c.channel.id.as_str()).collect();
-            let help = nearest(channel, known.iter().copied()).map(|near| format!("did you mean `{near}`?"));
-            let message = format!("this limit is for channel `{}`, which is not declared", shorten(channel));
+            let help = nearest(channel, known.iter().copied()).map(meant);
+            let message = Note::new("check.limit_of_undeclared").with("channel", shorten(channel));
             reader.error(&limit.span, message, help);
         } else if !procedure.measures(limit.measurand.id, limit.channel.as_deref()) {
-            let message =
-                format!("a limit of `{}`, which this procedure does not measure", limit.measurand.id);
-            let help =
-                format!("add a [[measurand]] with id = \"{}\", or remove the limit", limit.measurand.id);
+            let message = Note::new("check.limit_not_measured").with("id", limit.measurand.id);
+            let help = Note::new("check.help.limit_not_measured").with("id", limit.measurand.id);
             reader.error(&limit.span, message, Some(help));
         }
     }
     for reference in &procedure.limits.references {
         if let Some(channel) = reference.channel.as_deref().filter(|c| procedure.channel(c).is_none()) {
-            let message =
-                format!("this reference is for channel `{}`, which is not declared", shorten(channel));
+            let message = Note::new("check.reference_of_undeclared").with("channel", shorten(channel));
             reader.error(&reference.span, message, None);
         }
     }
@@ -294,16 +279,13 @@ fn waivers(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         }
         let measured = procedure.measurands.iter().map(|m| m.id.id);
         let help = match (nearest(&row, measured), ids::find(&row)) {
-            (Some(near), _) => format!("did you mean `{near}`?"),
-            (None, Some(_)) => "this procedure does not measure it".to_owned(),
+            (Some(near), _) => meant(near),
+            (None, Some(_)) => Note::new("check.help.waiver_not_measured"),
             // Anything else may be the id of a condition.
             (None, None) => continue,
         };
-        reader.error(
-            &section.span_of("row"),
-            format!("no row `{}` in the report", shorten(&row)),
-            Some(help),
-        );
+        let message = Note::new("check.no_row").with("row", shorten(&row));
+        reader.error(&section.span_of("row"), message, Some(help));
     }
 }
 
@@ -315,10 +297,9 @@ fn averaging_times(procedure: &Procedure, root: &Section, reader: &mut Reader<'_
         let multiple = samples >= 0.5 && (samples - samples.round()).abs() <= 1e-6 * samples.max(1.0);
         if !multiple {
             let at = root.table("analysis").map_or(0..0, |a| a.span_of("taus"));
-            let message = format!(
-                "an averaging time of {tau} s is no multiple of the sample interval of {} s",
-                1.0 / rate
-            );
+            let message = Note::new("check.tau_no_multiple")
+                .with("tau", format!("{tau} s"))
+                .with("interval", format!("{} s", 1.0 / rate));
             reader.error(&at, message, None);
         }
     }

@@ -1,6 +1,7 @@
 //! What a column may be, from its name: role and unit, with the reason. Used where no procedure says it.
 
 use super::Role;
+use crate::text::{Arg, Note};
 use crate::units::Unit;
 
 /// A guess.
@@ -12,8 +13,8 @@ pub struct Guess {
     pub unit: Unit,
     /// False when the name does not tell the unit and the usual one was taken.
     pub unit_is_named: bool,
-    /// Why, in words.
-    pub reason: String,
+    /// Why.
+    pub reason: Note,
 }
 
 /// Name endings that mean a unit, as words joined by `_`.
@@ -97,26 +98,29 @@ pub fn guess(name: &str, declared_unit: Option<&str>) -> Guess {
     let (stem, bracketed) = split_brackets(name);
     let words = words(&stem);
     let (unit, body, source) = if let Some(unit) = declared_unit.and_then(parse) {
-        (Some(unit), words.as_slice(), "the file declares the unit")
+        (Some(unit), words.as_slice(), "guess.declared")
     } else if let Some(unit) = bracketed.as_deref().and_then(parse) {
-        (Some(unit), words.as_slice(), "the unit stands in brackets")
+        (Some(unit), words.as_slice(), "guess.brackets")
     } else if let Some((unit, used)) = unit_at_end(&words) {
-        (Some(unit), words.get(..words.len() - used).unwrap_or_default(), "the name ends with the unit")
+        (Some(unit), words.get(..words.len() - used).unwrap_or_default(), "guess.ending")
     } else {
-        (None, words.as_slice(), "the name gives no unit")
+        (None, words.as_slice(), "guess.none")
     };
     let role = role(body, unit.as_ref());
     let named = unit.is_some();
     let usual = role.internal_unit().unwrap_or("1");
     let fitting = unit.filter(|u| role.internal_unit().is_none_or(|i| parse(i).is_some_and(|i| fits(u, &i))));
     let unit = fitting.unwrap_or_else(|| Unit::parse(usual).expect("the inside units are units"));
-    let reason = if role == Role::Auxiliary {
-        format!("`{name}` names no quantity that is evaluated; {source}")
-    } else if named {
-        format!("`{name}`: {source}, which makes it a {}", role.id().replace('_', " "))
-    } else {
-        format!("`{name}` is a word for {}; {source}, {usual} is assumed", role.id().replace('_', " "))
+    let key = match (role, named) {
+        (Role::Auxiliary, _) => "guess.nothing",
+        (_, true) => "guess.by_unit",
+        (_, false) => "guess.by_name",
     };
+    let reason = Note::new(key)
+        .with("name", name)
+        .with("source", Note::new(source))
+        .with("role", Arg::key("role", role.id()))
+        .with("unit", usual);
     Guess { role, unit, unit_is_named: named, reason }
 }
 
@@ -323,6 +327,6 @@ mod tests {
     #[test]
     fn an_assumed_unit_is_said_to_be_assumed() {
         let g = guess("gyro_z", None);
-        assert!(!g.unit_is_named && g.reason.contains("assumed"), "{}", g.reason);
+        assert!(!g.unit_is_named && g.reason.to_string().contains("assumed"), "{}", g.reason);
     }
 }

@@ -22,7 +22,7 @@ pub fn typographic(ascii: &str, lang: Lang) -> String {
         }
     }
     if let Some(exponent) = exponent {
-        out.push_str("×10");
+        out.push_str(lookup(lang, "number.times").unwrap_or("×10"));
         out.push_str(&superscript(exponent));
     }
     out

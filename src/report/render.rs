@@ -4,10 +4,11 @@ use super::number;
 use super::view::{View, Words};
 use crate::figure::Figure;
 use crate::record::RunRecord;
-use crate::text::{Lang, lookup, table};
+use crate::text::{Lang, Note, io_reason, lookup, table};
 use minijinja::value::{Kwargs, Serde, Value};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
 
 /// The built-in templates by name.
@@ -26,10 +27,9 @@ pub const TEMPLATES: &[(&str, &str)] = &[
 const LARGEST: u64 = 4 << 20;
 
 /// Why a report could not be rendered.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 pub enum ReportError {
     /// A template is wrong.
-    #[error("template `{name}`{}: {reason}", line.map(|l| format!(", line {l}")).unwrap_or_default())]
     Template {
         /// Name of the template.
         name: String,
@@ -39,7 +39,6 @@ pub enum ReportError {
         reason: String,
     },
     /// A folder of templates replaces nothing.
-    #[error("no file in `{path}` replaces a built-in template; their names are {names}")]
     NothingReplaced {
         /// The folder.
         path: String,
@@ -47,7 +46,6 @@ pub enum ReportError {
         names: String,
     },
     /// A file is larger than any template.
-    #[error("`{path}` has {bytes} bytes; a template has at most {LARGEST}")]
     TooLarge {
         /// The file.
         path: String,
@@ -55,13 +53,53 @@ pub enum ReportError {
         bytes: u64,
     },
     /// A file could not be read or written.
-    #[error("`{path}`: {source}")]
     Io {
         /// The file.
         path: String,
         /// The reason.
         source: std::io::Error,
     },
+}
+
+impl ReportError {
+    /// What is wrong, as a note. What the template engine says is in English.
+    pub fn note(&self) -> Note {
+        match self {
+            ReportError::Template { name, line: None, reason } => {
+                Note::new("template_error.wrong").with("name", name.as_str()).with("reason", reason.as_str())
+            }
+            ReportError::Template { name, line: Some(line), reason } => Note::new("template_error.wrong_at")
+                .with("name", name.as_str())
+                .with("line", *line)
+                .with("reason", reason.as_str()),
+            ReportError::NothingReplaced { path, names } => Note::new("template_error.nothing_replaced")
+                .with("path", path.as_str())
+                .with("names", names.as_str()),
+            ReportError::TooLarge { path, bytes } => Note::new("template_error.too_large")
+                .with("path", path.as_str())
+                .with("bytes", *bytes)
+                .with("most", LARGEST),
+            ReportError::Io { path, source } => {
+                Note::new("template_error.io").with("path", path.as_str()).with("reason", io_reason(source))
+            }
+        }
+    }
+}
+
+impl fmt::Display for ReportError {
+    /// In English.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.note().fmt(f)
+    }
+}
+
+impl std::error::Error for ReportError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            ReportError::Io { source, .. } => Some(source),
+            _ => None,
+        }
+    }
 }
 
 /// A set of templates.

@@ -21,6 +21,7 @@ use crate::procedure::model::{EarthRate, Taus};
 use crate::record::{FaultRecord, Integrity, Window};
 use crate::recording::Channel;
 use crate::recording::window::{WindowSpec, Windowed};
+use crate::text::Note;
 use std::collections::BTreeMap;
 
 /// Everything that was found, before verdicts.
@@ -87,10 +88,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     let procedure = request.procedure;
     let channels = channels(procedure, request.source);
     if !channels.iter().any(|c| c.role.is_gyro()) {
-        return Err(RunError::Nothing(format!(
-            "{}: no column with a gyro output was found; name it with --rate or in the procedure",
-            request.source.path().display()
-        )));
+        return Err(RunError::Nothing(about(request, "run_error.no_gyro")));
     }
     let spec =
         TimeBaseSpec { declared_sample_rate_hz: procedure.sample_rate_hz, use_stamps: request.use_stamps };
@@ -126,22 +124,23 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
         })
         .collect();
     if gyros.iter().all(|g| g.digest.samples < 2) {
-        let path = request.source.path().display();
         return Err(RunError::Nothing(if window.usable_s > 0.0 || procedure.conditions.warm_up_s == 0.0 {
-            format!(
-                "{path}: the gyro channels hold fewer than two usable numbers; check the column and its unit"
-            )
+            about(request, "run_error.too_few")
         } else {
-            format!(
-                "{path}: nothing is left after the warm-up of {} s and the exclusions; the recording lasts {:.6} s",
-                procedure.conditions.warm_up_s, report.duration_s
-            )
+            about(request, "run_error.nothing_left")
+                .with("warm_up", procedure.conditions.warm_up_s.to_string())
+                .with("length", format!("{:.6}", report.duration_s))
         }));
     }
     declare_rails(&mut report.integrity, overview.saturated());
     tidy_integrity(&mut report.integrity, tau0_s, &gyros);
     let envelopes = overview.finish();
     Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact })
+}
+
+/// A sentence about the recording.
+fn about(request: &Request<'_>, key: &'static str) -> Note {
+    Note::new(key).with("path", request.source.path().display().to_string())
 }
 
 /// Saturation at declared rails takes the place of what was guessed for the same channel.

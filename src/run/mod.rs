@@ -18,7 +18,9 @@ use crate::ingest::{IngestError, Source};
 use crate::noise::tau_grid::{TauGrid, TauGridError};
 use crate::procedure::{EffectiveLimits, Procedure};
 use crate::record::{ProcedureRecord, RunRecord, Session, UnitUnderTest};
+use crate::text::Note;
 use chrono::{DateTime, Utc};
+use std::fmt;
 
 /// What is to be run.
 pub struct Request<'a> {
@@ -59,18 +61,47 @@ pub struct Outcome {
 }
 
 /// Why a recording could not be evaluated.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 pub enum RunError {
     /// The recording could not be read.
-    #[error("{0}")]
-    Ingest(#[from] IngestError),
+    Ingest(IngestError),
     /// The averaging times do not suit the sample interval.
-    #[error("{0}")]
-    TauGrid(#[from] TauGridError),
+    TauGrid(TauGridError),
     /// There is nothing to evaluate.
-    #[error("{0}")]
-    Nothing(String),
+    Nothing(Note),
 }
+
+impl RunError {
+    /// What is wrong, as a note.
+    pub fn note(&self) -> Note {
+        match self {
+            RunError::Ingest(e) => e.note(),
+            RunError::TauGrid(e) => e.note(),
+            RunError::Nothing(note) => note.clone(),
+        }
+    }
+}
+
+impl From<IngestError> for RunError {
+    fn from(e: IngestError) -> Self {
+        RunError::Ingest(e)
+    }
+}
+
+impl From<TauGridError> for RunError {
+    fn from(e: TauGridError) -> Self {
+        RunError::TauGrid(e)
+    }
+}
+
+impl fmt::Display for RunError {
+    /// In English.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.note().fmt(f)
+    }
+}
+
+impl std::error::Error for RunError {}
 
 /// Runs a procedure on a recording. `progress` is told bytes read and bytes in all.
 ///

@@ -108,7 +108,7 @@ fn message(power: &Power, hours: f64) -> Note {
 }
 
 /// The warning of a procedure's limit that a record of its least length cannot decide, with what to do.
-pub fn warning(question: &PowerQuestion) -> Option<(String, Option<String>)> {
+pub fn warning(question: &PowerQuestion) -> Option<(Note, Option<Note>)> {
     let background = background(&question.typical)?;
     let situation = Situation {
         background,
@@ -124,19 +124,19 @@ pub fn warning(question: &PowerQuestion) -> Option<(String, Option<String>)> {
     }
     let max = limit.limit.max?;
     let hours = question.duration_s / 3600.0;
-    let message = format!(
-        "{hours} h cannot decide {} <= {max} {} for N = {} deg/sqrt(h){}: a unit 1.5 times over the limit is failed \
-         with probability {:.2}, one at half of it passed with {:.2}; otherwise expect indeterminate",
-        limit.measurand.id,
-        limit.measurand.unit,
-        background.n,
-        if question.sample_rate_hz.is_none() { ", one output a second assumed" } else { "" },
-        power.fail_probability_at_1_5,
-        power.pass_probability_at_half,
-    );
+    let key = match question.sample_rate_hz {
+        Some(_) => "check.power.undecided",
+        None => "check.power.undecided_at_1_hz",
+    };
+    let message = Note::new(key)
+        .with("hours", hours.to_string())
+        .with("limit", format!("{} <= {max} {}", limit.measurand.id, limit.measurand.unit))
+        .with("noise", background.n.to_string())
+        .with("fail", format!("{:.2}", power.fail_probability_at_1_5))
+        .with("pass", format!("{:.2}", power.pass_probability_at_half));
     let help = match power.needed_duration_h {
-        Some(h) => format!("a record of {h:.0} h would do"),
-        None => "no record of up to 1000 h would do".to_owned(),
+        Some(h) => Note::new("check.power.needed").with("hours", format!("{h:.0}")),
+        None => Note::new("check.power.never"),
     };
     Some((message, Some(help)))
 }

@@ -4,7 +4,6 @@ use super::evaluate::Found;
 use super::{Request, RunError, session, verdict};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::ingest::IngestError;
 use crate::measurand::GyroEvidence;
 use crate::record::{
     ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord, NoiseModelRecord,
@@ -45,10 +44,7 @@ pub(super) fn record(
 
 pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
     let mut errors = errors(request);
-    errors.push(match error {
-        RunError::Ingest(e) => ingest_note(e),
-        other => Note::new("error.not_evaluated").with("reason", other.to_string()),
-    });
+    errors.push(Note::new("error.not_evaluated").with("reason", error.note()));
     RunRecord {
         verdict: Verdict::Error,
         summary: errors.clone(),
@@ -67,10 +63,6 @@ pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
         errors,
         ..blank(request)
     }
-}
-
-fn ingest_note(e: &IngestError) -> Note {
-    Note::new("error.not_evaluated").with("reason", e.to_string())
 }
 
 fn errors(request: &Request<'_>) -> Vec<Note> {

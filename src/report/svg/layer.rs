@@ -4,6 +4,7 @@ use super::axis::Ruled;
 use super::style::{Look, Marker, look};
 use super::write::{Anchor, px, text, width};
 use crate::figure::{Layer, Panel, Scale, Style};
+use crate::text::Lang;
 use std::fmt::Write;
 
 /// The rectangle of a pair of axes on paper, with its axes.
@@ -226,7 +227,7 @@ pub fn mark(out: &mut String, (x, y): (f64, f64), look: Look, r: f64) {
 
 /// Draws the words of a panel where they cover least: each is tried about its point, away from the others and from
 /// the data.
-pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, say: impl Fn(&str) -> String) {
+pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, lang: Lang) {
     const SIZE: f64 = 11.0;
     let drawn: Vec<(f64, f64)> = panel
         .layers
@@ -252,7 +253,7 @@ pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, say: impl Fn(&st
         if !plot.x.holds(at.0) || !plot.y.holds(at.1) {
             continue;
         }
-        let words = say(words);
+        let words = words.say(lang);
         let (w, h) = (width(&words, SIZE), SIZE + 3.0);
         let (gap, mut best, mut least) = (7.0, [x + 7.0, y - 7.0 - h, w, h], f64::INFINITY);
         for (i, (dx, dy)) in [

@@ -94,7 +94,7 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
         }
         body.push_str("</g>\n");
         frame(&mut body, &plot);
-        layer::labels(&mut body, &plot, panel, say);
+        layer::labels(&mut body, &plot, panel, lang);
         description.push(format!("{} / {}: {}", y.title, x.title, legend.words().join("; ")));
         // Another panel below words of an abscissa keeps its distance from them.
         let apart = if i + 1 < panels.len() { BETWEEN } else { 0.0 };

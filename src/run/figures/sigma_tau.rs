@@ -6,7 +6,7 @@ use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
 use crate::noise::data::NoiseType;
 use crate::noise::model::{TERMS, unit_allan_variance};
-use crate::text::{Note, significant};
+use crate::text::{Arg, Note};
 
 /// Points of a model curve.
 const CURVE_POINTS: usize = 96;
@@ -73,14 +73,11 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
             style: Style::Reference,
             legend: "figure.legend.russian".into(),
         });
-        layers
-            .push(Layer::Label {
-                at: (100.0, drift), text: format!("σ₁₀₀ = {} °/h", significant(drift, 3))
-            });
+        layers.push(Layer::Label { at: (100.0, drift), text: label("figure_label.drift", drift) });
     }
     let lowest = readable.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a });
     if let Some(at) = lowest {
-        layers.push(Layer::Label { at, text: format!("min σ = {} °/h", significant(at.1, 3)) });
+        layers.push(Layer::Label { at, text: label("figure_label.minimum", at.1) });
     }
     if let Some(n) = gyro.identification.angle_random_walk.value {
         let within =
@@ -89,7 +86,7 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
             let points = vec![(3600.0, n)];
             let style = TERMS.iter().position(|t| *t == NoiseType::AngleRandomWalk).unwrap_or(0);
             layers.push(Layer::Points { points, style: Style::Term(style as u8), legend: String::new() });
-            layers.push(Layer::Label { at: (3600.0, n), text: format!("N = {} °/√h", significant(n, 3)) });
+            layers.push(Layer::Label { at: (3600.0, n), text: label("figure_label.arw", n) });
         }
     }
     Figure {
@@ -103,6 +100,11 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
         }],
         remarks: vec![Note::new("figure.remark.record").with("hours", longest_s / 3600.0)],
     }
+}
+
+/// A number at its point.
+fn label(key: &'static str, value: f64) -> Note {
+    Note::new(key).with("value", Arg::figures(value, 3))
 }
 
 fn model_curves(gyro: &GyroEvidence, from: f64, to: f64) -> Vec<Layer> {

@@ -3,7 +3,7 @@
 use super::{axis, line};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
-use crate::text::{Note, significant};
+use crate::text::{Arg, Note};
 
 /// Most points drawn: beyond, neighbouring bins are joined, evenly on the logarithmic axis.
 const POINTS: usize = 700;
@@ -50,8 +50,9 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     strongest.sort_by(|a, b| b.amplitude_deg_h.total_cmp(&a.amplitude_deg_h));
     for found in strongest.into_iter().take(LABELS) {
         if let Some(place) = at(found.frequency_hz) {
-            layers
-                .push(Layer::Label { at: place, text: format!("{} Hz", significant(found.frequency_hz, 4)) });
+            let frequency = Arg::figures(found.frequency_hz, 4);
+            let text = Note::new("figure_label.line").with("frequency", frequency);
+            layers.push(Layer::Label { at: place, text });
         }
     }
     Some(Figure {

@@ -66,8 +66,8 @@ pub(super) fn list(source: &Source) -> Result<Vec<Listed>, IngestError> {
         return Ok(listed);
     }
     Err(refusal.unwrap_or_else(|| {
-        IngestError::new(IngestErrorKind::NotNumeric, source.path(), "no column holds numbers")
-            .hint("check that this is the recording itself")
+        IngestError::new(IngestErrorKind::NotNumeric, source.path(), "ingest.no_numbers")
+            .hint("ingest.hint.recording_itself")
     }))
 }
 

@@ -11,7 +11,7 @@ use crate::noise::identify::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::recording::{Channel, Role, Sink, Slab};
 use crate::run::evaluate::{spectral, tidy};
-use crate::text::Lang;
+use crate::text::{Arg, Note};
 
 /// Time over which temperatures are smoothed, s.
 const SMOOTHING_S: f64 = 60.0;
@@ -22,9 +22,9 @@ pub(super) enum TimeBase {
     /// The time column of this name.
     Stamps(String),
     /// The sample rate that was given; why the time column was left, where there is one.
-    Declared(f64, Option<String>),
+    Declared(f64, Option<Note>),
     /// Nowhere: rows are counted. Why the time column cannot serve, where there is one.
-    Rows(Option<String>),
+    Rows(Option<Note>),
 }
 
 impl TimeBase {
@@ -133,12 +133,12 @@ fn time_base(
     sample_rate_hz: Option<f64>,
 ) -> Result<TimeBase, IngestError> {
     let (channels, _) = columns::channels(listed, true);
-    let without = |why: Option<String>| {
+    let without = |why: Option<Note>| {
         sample_rate_hz.map_or(TimeBase::Rows(why.clone()), |hz| TimeBase::Declared(hz, why))
     };
     let Some(time) = channels.iter().find(|c| c.role == Role::Time) else {
         let text = listed.iter().find_map(|c| match &c.content {
-            Content::Text(sample) if c.guess.role == Role::Time => Some(format!("`{}`: {sample}", c.name)),
+            Content::Text(sample) if c.guess.role == Role::Time => Some(why(&c.name, sample.as_str())),
             _ => None,
         });
         let base = without(text);
@@ -147,10 +147,15 @@ fn time_base(
     match prepare(source, std::slice::from_ref(time), TimeBaseSpec::default()) {
         Ok(_) => Ok(TimeBase::Stamps(time.id.clone())),
         Err(e) if e.kind() == IngestErrorKind::TimeBase => {
-            Ok(without(Some(format!("`{}`: {}", time.id, e.message().say(Lang::En)))))
+            Ok(without(Some(why(&time.id, e.message().clone()))))
         }
         Err(e) => Err(e),
     }
+}
+
+/// Why a time column cannot serve.
+fn why(column: &str, reason: impl Into<Arg>) -> Note {
+    Note::new("inspect.of_column").with("column", column).with("what", reason)
 }
 
 fn spec(time: &TimeBase) -> TimeBaseSpec {

@@ -1,29 +1,38 @@
 //! Plain text in aligned columns, at most 96 characters wide where words allow it.
 
-use crate::text::{Lang, Note, lookup};
+use crate::text::{Arg, Lang, Note};
 
 /// Width of a line, characters.
 const WIDTH: usize = 96;
 /// Width of the column of labels, characters, the space behind it included.
 const LABEL: usize = 19;
 
+/// A label that is left blank: the row belongs to the one above.
+pub(super) const SAME: &str = "";
+
 /// The words of a key.
-pub(super) fn word(key: &'static str) -> String {
-    lookup(Lang::En, key).unwrap_or(key).to_owned()
+pub(super) fn word(key: &'static str) -> Arg {
+    Note::new(key).into()
 }
 
-/// The sentence of a note.
-pub(super) fn say(note: &Note) -> String {
-    note.say(Lang::En)
-}
-
-/// A text that grows section by section.
-#[derive(Debug, Default)]
+/// A text in one language that grows section by section.
+#[derive(Debug)]
 pub(super) struct Page {
     out: String,
+    lang: Lang,
 }
 
 impl Page {
+    /// An empty text.
+    pub fn new(lang: Lang) -> Page {
+        Page { out: String::new(), lang }
+    }
+
+    /// The language of the text.
+    pub fn lang(&self) -> Lang {
+        self.lang
+    }
+
     /// The title of the text.
     pub fn title(&mut self, text: &str) {
         self.out.push_str(text);
@@ -31,13 +40,15 @@ impl Page {
     }
 
     /// The heading of a section.
-    pub fn heading(&mut self, text: &str) {
+    pub fn heading(&mut self, words: impl Into<Arg>) {
         self.out.push('\n');
-        self.title(text);
+        let words = words.into().say(self.lang);
+        self.title(&words);
     }
 
     /// A label and what belongs to it, wrapped beside it.
-    pub fn row(&mut self, label: &str, text: &str) {
+    pub fn row(&mut self, label: impl Into<Arg>, text: impl Into<Arg>) {
+        let (label, text) = (label.into().say(self.lang), text.into().say(self.lang));
         let mut line = format!("  {label}");
         pad(&mut line, LABEL);
         // A label that fills its column still stands apart from the text.
@@ -62,11 +73,6 @@ impl Page {
         }
         self.out.push_str(line.trim_end());
         self.out.push('\n');
-    }
-
-    /// A label and the sentence of a note.
-    pub fn note(&mut self, label: &str, note: &Note) {
-        self.row(label, &say(note));
     }
 
     /// A table; the first `left` columns are set to the left, the others to the right.

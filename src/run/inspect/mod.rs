@@ -15,6 +15,7 @@ mod tracks;
 
 use super::RunError;
 use crate::ingest::Source;
+use crate::text::Lang;
 use std::path::Path;
 
 /// Reads a recording and says what it holds. `sample_rate_hz` is used where no time column serves; `progress` is told
@@ -25,9 +26,10 @@ use std::path::Path;
 pub fn inspect(
     path: &Path,
     sample_rate_hz: Option<f64>,
+    lang: Lang,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<String, RunError> {
-    inspect_source(&crate::ingest::open(path)?, sample_rate_hz, progress)
+    inspect_source(&crate::ingest::open(path)?, sample_rate_hz, lang, progress)
 }
 
 /// The same for an opened recording.
@@ -37,10 +39,11 @@ pub fn inspect(
 pub fn inspect_source(
     source: &Source,
     sample_rate_hz: Option<f64>,
+    lang: Lang,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<String, RunError> {
     let seen = gather::gather(source, sample_rate_hz, progress)?;
-    Ok(show::text(source, &seen))
+    Ok(show::text(source, &seen, lang))
 }
 
 #[cfg(test)]

@@ -1,49 +1,49 @@
 //! Quantities with a unit that reads well.
 
-use crate::text::significant;
+use crate::text::{Arg, Note};
+
+fn amount(key: &'static str, value: f64, digits: usize) -> Arg {
+    Note::new(key).with("value", plain(value, digits)).into()
+}
 
 /// A rate, given in deg/h: in deg/s from 0.1 deg/s on.
-pub(super) fn rate(deg_h: f64) -> String {
+pub(super) fn rate(deg_h: f64) -> Arg {
     if deg_h.abs() >= 360.0 {
-        format!("{} deg/s", plain(deg_h / 3600.0, 4))
+        amount("amount.deg_s", deg_h / 3600.0, 4)
     } else {
-        format!("{} deg/h", plain(deg_h, 4))
+        amount("amount.deg_h", deg_h, 4)
     }
 }
 
 /// Two rates, given in deg/h, in one unit.
-pub(super) fn rates(low_deg_h: f64, high_deg_h: f64) -> (String, String, &'static str) {
-    let (factor, unit) =
-        if low_deg_h.abs().max(high_deg_h.abs()) >= 360.0 { (1.0 / 3600.0, "deg/s") } else { (1.0, "deg/h") };
-    (plain(low_deg_h * factor, 4), plain(high_deg_h * factor, 4), unit)
+pub(super) fn rates(low_deg_h: f64, high_deg_h: f64) -> (Arg, Arg, Arg) {
+    let (factor, unit) = if low_deg_h.abs().max(high_deg_h.abs()) >= 360.0 {
+        (1.0 / 3600.0, "amount.unit_deg_s")
+    } else {
+        (1.0, "amount.unit_deg_h")
+    };
+    (plain(low_deg_h * factor, 4), plain(high_deg_h * factor, 4), Note::new(unit).into())
 }
 
 /// A length of time, given in s.
-pub(super) fn time(s: f64) -> String {
+pub(super) fn time(s: f64) -> Arg {
     match s {
-        s if s.abs() >= 7200.0 => format!("{} h", plain(s / 3600.0, 4)),
-        s if s.abs() >= 300.0 => format!("{} min", plain(s / 60.0, 4)),
-        s if s == 0.0 || s.abs() >= 0.1 => format!("{} s", plain(s, 4)),
-        s if s.abs() >= 1e-4 => format!("{} ms", plain(s * 1e3, 4)),
-        s => format!("{} us", plain(s * 1e6, 3)),
+        s if s.abs() >= 7200.0 => amount("amount.h", s / 3600.0, 4),
+        s if s.abs() >= 300.0 => amount("amount.min", s / 60.0, 4),
+        s if s == 0.0 || s.abs() >= 0.1 => amount("amount.s", s, 4),
+        s if s.abs() >= 1e-4 => amount("amount.ms", s * 1e3, 4),
+        s => amount("amount.us", s * 1e6, 3),
     }
 }
 
 /// A length of time in s and in h.
-pub(super) fn time_both(s: f64) -> String {
-    format!("{} s ({} h)", plain(s, 4), plain(s / 3600.0, 3))
+pub(super) fn time_both(s: f64) -> Arg {
+    Note::new("amount.s_and_h").with("s", plain(s, 4)).with("h", plain(s / 3600.0, 3)).into()
 }
 
-/// A number with significant digits and without idle zeros behind the point.
-pub(super) fn plain(value: f64, digits: usize) -> String {
-    let text = significant(value, digits);
-    let (mantissa, exponent) = match text.split_once('e') {
-        Some((m, e)) => (m, format!("e{e}")),
-        None => (text.as_str(), String::new()),
-    };
-    let mantissa =
-        if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
-    format!("{mantissa}{exponent}")
+/// A number with significant digits and without idle zeros behind the decimal mark.
+pub(super) fn plain(value: f64, digits: usize) -> Arg {
+    Arg::rounded(value, digits)
 }
 
 /// A count in groups of three.

@@ -2,20 +2,20 @@
 
 use super::columns::{Content, Listed};
 use super::gather::{Seen, TimeBase};
-use super::layout::{Page, word};
+use super::layout::{Page, SAME, word};
 use super::quantity::{count, plain, time};
 use super::{show_gyro, support};
 use crate::ingest::{ChannelFacts, Packing, Source};
 use crate::recording::Role;
-use crate::text::Note;
+use crate::text::{Arg, Lang, Note, decimal};
 use crate::units::Unit;
 
 /// Faults listed one by one.
 const LISTED: usize = 3;
 
 /// Everything that was found, in words.
-pub(super) fn text(source: &Source, seen: &Seen) -> String {
-    let mut page = Page::default();
+pub(super) fn text(source: &Source, seen: &Seen, lang: Lang) -> String {
+    let mut page = Page::new(lang);
     page.title(&source.path().display().to_string());
     file(&mut page, source, seen);
     columns(&mut page, seen);
@@ -28,27 +28,28 @@ pub(super) fn text(source: &Source, seen: &Seen) -> String {
 }
 
 fn file(page: &mut Page, source: &Source, seen: &Seen) {
-    page.heading(&word("inspect.file"));
+    page.heading(word("inspect.file"));
     let key = match source.packing() {
         Packing::Plain => "inspect.format_plain",
         Packing::Gzip | Packing::Zstd => "inspect.format_packed",
     };
     let format = Note::new(key).with("format", source.format()).with("packing", source.packing().id());
-    page.note(&word("inspect.format"), &format);
-    page.row(&word("inspect.rows"), &count(seen.report.rows));
+    page.row(word("inspect.format"), format);
+    page.row(word("inspect.rows"), count(seen.report.rows));
     if seen.report.facts.bytes > 0 {
         let size = Note::new("inspect.bytes").with("bytes", count(seen.report.facts.bytes));
-        page.note(&word("inspect.size"), &size);
-        page.row("SHA-256", &seen.report.facts.sha256);
+        page.row(word("inspect.size"), size);
+        page.row("SHA-256", seen.report.facts.sha256.as_str());
     }
     for (i, note) in source.notes().iter().enumerate() {
-        page.note(&if i == 0 { word("inspect.reader") } else { String::new() }, note);
+        page.row(if i == 0 { word("inspect.reader") } else { SAME.into() }, note.clone());
     }
 }
 
 fn columns(page: &mut Page, seen: &Seen) {
-    page.heading(&word("inspect.columns"));
-    let mut rows = vec![vec![
+    page.heading(word("inspect.columns"));
+    let lang = page.lang();
+    let header = [
         word("inspect.name"),
         word("inspect.role"),
         word("inspect.unit"),
@@ -56,28 +57,29 @@ fn columns(page: &mut Page, seen: &Seen) {
         word("inspect.greatest"),
         word("inspect.mean"),
         word("inspect.no_value"),
-    ]];
+    ];
+    let mut rows = vec![header.map(|w| w.say(lang)).to_vec()];
     let mut remarks = Vec::new();
     for (place, column) in seen.listed.iter().enumerate() {
         let slot = seen.places.iter().position(|p| *p == place);
         let facts = slot.and_then(|s| seen.report.channels.get(s));
-        rows.push(row(column, facts, seen.report.tau0_nominal_s));
+        rows.push(row(column, facts, seen.report.tau0_nominal_s, lang));
         remarks.extend(remark(column, facts));
     }
     page.table(&rows, 3);
     for remark in remarks {
-        page.note(&word("inspect.remark"), &remark);
+        page.row(word("inspect.remark"), remark);
     }
 }
 
-fn row(column: &Listed, facts: Option<&ChannelFacts>, tau0_s: f64) -> Vec<String> {
+fn row(column: &Listed, facts: Option<&ChannelFacts>, tau0_s: f64, lang: Lang) -> Vec<String> {
     let name = column.name.clone();
     let Some(facts) = facts else {
         let role = match column.content {
             Content::Text(_) => word("inspect.text"),
             _ => word("inspect.empty"),
         };
-        return vec![name, role];
+        return vec![name, role.say(lang)];
     };
     let guess = &column.guess;
     let unit = match (guess.unit.text(), guess.unit_is_named) {
@@ -87,7 +89,7 @@ fn row(column: &Listed, facts: Option<&ChannelFacts>, tau0_s: f64) -> Vec<String
     };
     let recorded = |value: f64| as_recorded(value, facts, &guess.unit, tau0_s);
     let digits = digits(recorded(facts.values.min), recorded(facts.values.max));
-    let shown = |value: f64| if value.is_finite() { figure(recorded(value), digits) } else { "-".into() };
+    let shown = |value: f64| if value.is_finite() { decimal(&figure(recorded(value), digits), lang) } else { "-".into() };
     let none = match facts.values.non_finite {
         0 => "-".to_owned(),
         n => count(n),
@@ -95,7 +97,8 @@ fn row(column: &Listed, facts: Option<&ChannelFacts>, tau0_s: f64) -> Vec<String
     let v = &facts.values;
     // What rounding leaves of a mean that is zero.
     let mean = if v.mean.abs() < 1e-12 * v.min.abs().max(v.max.abs()) { 0.0 } else { v.mean };
-    vec![name, facts.role.id().replace('_', " "), unit, shown(v.min), shown(v.max), shown(mean), none]
+    let role = Arg::key("role", facts.role.id()).say(lang);
+    vec![name, role, unit, shown(v.min), shown(v.max), shown(mean), none]
 }
 
 /// Significant digits in which values between two extremes can be told apart.
@@ -108,7 +111,7 @@ fn digits(min: f64, max: f64) -> usize {
 fn figure(value: f64, digits: usize) -> String {
     let exponent = value.abs().log10().floor();
     if value == 0.0 || !(-4.0..9.0).contains(&exponent) {
-        return plain(value, digits);
+        return plain(value, digits).say(Lang::En);
     }
     let decimals = (digits as f64 - 1.0 - exponent).max(0.0) as usize;
     let text = format!("{value:.decimals$}");
@@ -141,19 +144,18 @@ fn remark(column: &Listed, facts: Option<&ChannelFacts>) -> Option<Note> {
         return Some(about("inspect.never_changes"));
     }
     let guessed = !column.guess.unit_is_named && column.guess.role != Role::Auxiliary;
-    guessed.then(|| Note::new("inspect.unit_guessed").with("reason", column.guess.reason.as_str()))
+    guessed.then(|| Note::new("inspect.unit_guessed").with("reason", column.guess.reason.clone()))
 }
 
 fn time_base(page: &mut Page, seen: &Seen) {
-    page.heading(&word("inspect.time_base"));
-    let label = |key| word(key);
+    page.heading(word("inspect.time_base"));
     let report = &seen.report;
     match &seen.time {
         TimeBase::Rows(why) | TimeBase::Declared(_, why) => {
             if let Some(why) = why {
-                page.note(
-                    &label("inspect.source"),
-                    &Note::new("inspect.stamps_unusable").with("why", why.as_str()),
+                page.row(
+                    word("inspect.source"),
+                    Note::new("inspect.stamps_unusable").with("why", why.clone()),
                 );
             }
         }
@@ -163,38 +165,37 @@ fn time_base(page: &mut Page, seen: &Seen) {
             } else {
                 "inspect.stamps"
             };
-            page.note(&label("inspect.source"), &Note::new(key).with("column", name.as_str()));
+            page.row(word("inspect.source"), Note::new(key).with("column", name.as_str()));
         }
     }
     match &seen.time {
         TimeBase::Rows(_) => {
             let note = Note::new("inspect.rows_counted").with("rows", count(report.rows));
-            page.note(&label("inspect.rate"), &note);
+            page.row(word("inspect.rate"), note);
             return;
         }
         TimeBase::Declared(hz, _) => {
             let note = Note::new("inspect.declared").with("rate", plain(*hz, 6));
-            page.note(&label("inspect.source"), &note);
+            page.row(word("inspect.source"), note);
         }
         TimeBase::Stamps(_) => {}
     }
     let rate = Note::new("inspect.rate_is")
         .with("rate", plain(1.0 / seen.tau0_s, 6))
         .with("interval", interval(seen.tau0_s));
-    page.note(&label("inspect.rate"), &rate);
+    page.row(word("inspect.rate"), rate);
     if let (TimeBase::Stamps(_), Some(given)) = (&seen.time, seen.declared_hz) {
         let off = (given * seen.tau0_s - 1.0) * 100.0;
         let note = Note::new("inspect.rate_given").with("given", plain(given, 6)).with("off", plain(off, 2));
-        page.note("", &note);
+        page.row(SAME, note);
     }
-    page.row(&label("inspect.length"), &time(report.duration_s));
+    page.row(word("inspect.length"), time(report.duration_s));
     if let TimeBase::Stamps(_) = seen.time {
         if let Some(start) = &report.start {
-            page.row(&label("inspect.start"), start);
+            page.row(word("inspect.start"), start.as_str());
         } else {
-            let start = format!("{:.3}", report.first_stamp_s);
-            let start = start.trim_end_matches('0').trim_end_matches('.');
-            page.note(&label("inspect.start"), &Note::new("inspect.start_at").with("s", start));
+            let start = decimals(report.first_stamp_s, 3);
+            page.row(word("inspect.start"), Note::new("inspect.start_at").with("s", start));
         }
         if let Some(jitter) = report.jitter_s {
             let note = if jitter > 1e-6 * seen.tau0_s {
@@ -204,7 +205,7 @@ fn time_base(page: &mut Page, seen: &Seen) {
             } else {
                 Note::new("inspect.jitter_none")
             };
-            page.note(&label("inspect.jitter"), &note);
+            page.row(word("inspect.jitter"), note);
         }
         let i = &report.integrity;
         let note = match (i.gaps, i.duplicate_timestamps, i.backward_timestamps) {
@@ -215,18 +216,24 @@ fn time_base(page: &mut Page, seen: &Seen) {
                 .with("duplicate", duplicate)
                 .with("backward", backward),
         };
-        page.note(&label("inspect.breaks"), &note);
+        page.row(word("inspect.breaks"), note);
         list(page, seen, &["gap", "duplicate_timestamp", "backward_timestamp"]);
     }
 }
 
 /// A sample interval with enough digits to tell it from the nominal one.
-fn interval(s: f64) -> String {
-    if s < 0.1 { format!("{} ms", plain(s * 1e3, 7)) } else { format!("{} s", plain(s, 7)) }
+fn interval(s: f64) -> Note {
+    let (key, value) = if s < 0.1 { ("amount.ms", s * 1e3) } else { ("amount.s", s) };
+    Note::new(key).with("value", plain(value, 7))
+}
+
+/// A number with at most so many decimals, whatever its size.
+fn decimals(value: f64, count: usize) -> Arg {
+    Arg::Decimals(value, count)
 }
 
 fn faults(page: &mut Page, seen: &Seen) {
-    page.heading(&word("inspect.faults"));
+    page.heading(word("inspect.faults"));
     let i = &seen.report.integrity;
     let kinds = [
         (word("fault.non_finite"), i.non_finite, "inspect.non_finite"),
@@ -238,11 +245,11 @@ fn faults(page: &mut Page, seen: &Seen) {
     let gyros = seen.channels.iter().any(|c| c.role.is_gyro());
     if kinds.iter().all(|(_, n, _)| *n == 0) {
         let key = if gyros { "inspect.no_fault" } else { "inspect.no_fault_plain" };
-        page.note(&word("inspect.values"), &Note::new(key));
+        page.row(word("inspect.values"), Note::new(key));
         return;
     }
     for (label, n, key) in kinds.iter().filter(|(_, n, _)| *n > 0) {
-        page.note(label, &Note::new(key).with("n", count(*n)));
+        page.row(label.clone(), Note::new(key).with("n", count(*n)));
     }
     list(page, seen, &["non_finite", "unparsable", "outlier", "saturated", "stuck"]);
 }
@@ -255,12 +262,15 @@ fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
         let place = match fault.time_s.filter(|_| timed) {
             Some(t) => Note::new("inspect.fault_at_time")
                 .with("row", fault.row)
-                .with("time", format!("{:.6}", t).trim_end_matches('0').trim_end_matches('.')),
+                .with("time", decimals(t, 6)),
             None => Note::new("inspect.fault_at").with("row", fault.row),
         };
         let channel = fault.channel.as_deref().filter(|c| !fault.note.contains(c));
-        let channel = channel.map_or_else(String::new, |c| format!("`{c}`: "));
-        let row = format!("{}: {channel}{}", super::layout::say(&place), fault.note);
-        page.row("", &row);
+        let what = fault.message.clone().map_or_else(|| Arg::from(fault.note.as_str()), Arg::from);
+        let row = match channel {
+            Some(channel) => Note::new("inspect.fault_of").with("channel", channel),
+            None => Note::new("inspect.fault_row"),
+        };
+        page.row(SAME, row.with("place", place).with("what", what));
     }
 }

@@ -2,12 +2,12 @@
 
 use super::gather::{Driven, Gyro, Seen};
 use super::judge::Motion;
-use super::layout::{Page, say, word};
+use super::layout::{Page, SAME, word};
 use super::quantity::{plain, rate, rates, time};
 use crate::noise::family::Estimator;
 use crate::noise::lines::SpectralLine;
 use crate::recording::Role;
-use crate::text::Note;
+use crate::text::{Arg, Note};
 
 /// Lines named for a channel.
 const LINES: usize = 3;
@@ -16,7 +16,7 @@ const LINES: usize = 3;
 pub(super) fn gyros(page: &mut Page, seen: &Seen) {
     let channels = || seen.channels.iter().filter(|c| c.role.is_gyro());
     if channels().next().is_none() {
-        page.heading(&word("inspect.gyro"));
+        page.heading(word("inspect.gyro"));
         let key = if seen.listed.iter().any(|c| c.counts_of_a_gyro()) {
             "inspect.gyro_only_counts"
         } else if !seen.time.is_known() && seen.listed.iter().any(|c| c.guess.role == Role::AngleIncrement) {
@@ -24,22 +24,22 @@ pub(super) fn gyros(page: &mut Page, seen: &Seen) {
         } else {
             "inspect.gyro_none"
         };
-        page.note(&word("inspect.found"), &Note::new(key));
+        page.row(word("inspect.found"), Note::new(key));
         return;
     }
     if seen.gyros.is_empty() {
-        page.heading(&word("inspect.gyro"));
-        page.note(&word("inspect.found"), &Note::new("inspect.gyro_needs_rate"));
+        page.heading(word("inspect.gyro"));
+        page.row(word("inspect.found"), Note::new("inspect.gyro_needs_rate"));
     }
     for gyro in &seen.gyros {
-        page.heading(&say(&Note::new("inspect.gyro_channel").with("name", gyro.name.as_str())));
+        page.heading(Note::new("inspect.gyro_channel").with("name", gyro.name.as_str()));
         one(page, seen, gyro);
     }
 }
 
 fn one(page: &mut Page, seen: &Seen, gyro: &Gyro) {
     if gyro.digest.samples < 2 {
-        page.note(&word("inspect.found"), &Note::new("inspect.gyro_no_value"));
+        page.row(word("inspect.found"), Note::new("inspect.gyro_no_value"));
         return;
     }
     let key = match gyro.motion {
@@ -48,34 +48,30 @@ fn one(page: &mut Page, seen: &Seen, gyro: &Gyro) {
         _ => "inspect.mean_of",
     };
     let still = !gyro.motion.is_motion();
-    page.note(&word("inspect.mean"), &Note::new(key).with("mean", rate(gyro.digest.mean)));
+    page.row(word("inspect.mean"), Note::new(key).with("mean", rate(gyro.digest.mean)));
     if mean_taken_out(gyro) {
-        page.note("", &Note::new("inspect.mean_taken_out"));
+        page.row(SAME, Note::new("inspect.mean_taken_out"));
     }
-    page.note(&word("inspect.motion"), &motion(gyro));
+    page.row(word("inspect.motion"), motion(gyro));
     if still {
         let note = if described(gyro) { noise(seen, gyro) } else { allan(seen, gyro) };
-        page.note(&word("inspect.noise"), &note);
+        page.row(word("inspect.noise"), note);
     } else if let Some(quiet) = gyro.quietest_deg_h {
         let note = Note::new("inspect.noise_quietest").with("sigma", rate(quiet));
-        page.note(&word("inspect.noise"), &note);
+        page.row(word("inspect.noise"), note);
     }
     let sample_noise = if still { sample_deviation(gyro) } else { gyro.quietest_deg_h.unwrap_or(0.0) };
     let step = seen.report.channels.get(gyro.slot).and_then(|c| c.values.quantization_step);
     if let Some(step) = step.filter(|s| *s > 1e-3 * sample_noise) {
         let note = Note::new("inspect.step_is").with("step", rate(step));
-        let note = if sample_noise > 0.0 {
-            format!(
-                "{} {}",
-                say(&note),
-                say(&Note::new("inspect.step_ratio").with("ratio", plain(step / sample_noise, 2)))
-            )
-        } else {
-            say(&note)
-        };
-        page.row(&word("inspect.step"), &note);
+        let mut told = vec![Arg::from(note)];
+        if sample_noise > 0.0 {
+            let ratio = plain(step / sample_noise, 2);
+            told.push(Note::new("inspect.step_ratio").with("ratio", ratio).into());
+        }
+        page.row(word("inspect.step"), Arg::Several(told, " "));
     }
-    page.row(&word("inspect.lines"), &lines(gyro));
+    page.row(word("inspect.lines"), lines(gyro));
     let swing = gyro.angle.max_deg - gyro.angle.min_deg;
     if let Motion::Moved { .. } = gyro.motion {
         let note = Note::new("inspect.angle_is")
@@ -83,7 +79,7 @@ fn one(page: &mut Page, seen: &Seen, gyro: &Gyro) {
             .with("low", plain(gyro.angle.min_deg, 4))
             .with("high", plain(gyro.angle.max_deg, 4))
             .with("swing", plain(swing, 4));
-        page.note(&word("inspect.angle"), &note);
+        page.row(word("inspect.angle"), note);
     }
 }
 
@@ -129,7 +125,7 @@ fn allan(seen: &Seen, gyro: &Gyro) -> Note {
     let deviations = &gyro.digest.deviations;
     let longest_s = deviations.stretches.longest() as f64 * seen.tau0_s / 5.0;
     let points = deviations.curve(Estimator::Allan).map(|c| c.points.as_slice()).unwrap_or_default();
-    let mut shown: Vec<String> = Vec::new();
+    let mut shown: Vec<Arg> = Vec::new();
     let mut last = 0;
     for tau_s in [seen.tau0_s, 1.0, 10.0, 100.0] {
         let off = |m: u64| (m as f64 * seen.tau0_s / tau_s).ln().abs();
@@ -141,11 +137,11 @@ fn allan(seen: &Seen, gyro: &Gyro) -> Note {
         let note = Note::new("inspect.allan_at")
             .with("sigma", rate(p.deviation))
             .with("tau", time(p.m as f64 * seen.tau0_s));
-        shown.push(say(&note));
+        shown.push(note.into());
     }
     Note::new("inspect.noise_undescribed")
         .with("misfit", plain(gyro.identification.misfit.per_dof, 2))
-        .with("points", if shown.is_empty() { "-".to_owned() } else { shown.join(", ") })
+        .with("points", if shown.is_empty() { "-".into() } else { Arg::Several(shown, ", ") })
 }
 
 fn noise(seen: &Seen, gyro: &Gyro) -> Note {
@@ -172,7 +168,7 @@ pub(super) fn strongest(gyro: &Gyro) -> Vec<&SpectralLine> {
     lines
 }
 
-fn lines(gyro: &Gyro) -> String {
+fn lines(gyro: &Gyro) -> Arg {
     let all = strongest(gyro);
     if all.is_empty() {
         let key = if gyro.digest.welch.spectrum.segments > 0 {
@@ -182,26 +178,20 @@ fn lines(gyro: &Gyro) -> String {
         };
         return word(key);
     }
-    let shown: Vec<String> = all
-        .iter()
-        .take(LINES)
-        .map(|l| {
-            say(&Note::new("inspect.line_at")
+    let at = |l: &&SpectralLine| {
+        Arg::from(
+            Note::new("inspect.line_at")
                 .with("frequency", plain(l.frequency_hz, 5))
                 .with("amplitude", rate(l.amplitude_deg_h))
-                .with("excess", plain(l.excess, 2)))
-        })
-        .collect();
-    let mut text = shown.join("; ");
+                .with("excess", plain(l.excess, 2)),
+        )
+    };
+    let mut shown: Vec<Arg> = all.iter().take(LINES).map(at).collect();
     if all.len() > LINES {
-        text.push_str("; ");
-        text.push_str(&say(&Note::new("inspect.lines_more").with("n", all.len() - LINES)));
+        shown.push(Note::new("inspect.lines_more").with("n", all.len() - LINES).into());
     }
-    if gyro.motion.is_motion() {
-        text.push_str(". ");
-        text.push_str(&word("inspect.lines_moving"));
-    }
-    text
+    let shown = Arg::Several(shown, "; ");
+    if gyro.motion.is_motion() { Arg::Several(vec![shown, word("inspect.lines_moving")], ". ") } else { shown }
 }
 
 /// Temperatures and table channels.
@@ -209,7 +199,7 @@ pub(super) fn others(page: &mut Page, seen: &Seen) {
     if seen.temperatures.is_empty() && seen.driven.is_empty() {
         return;
     }
-    page.heading(&word("inspect.others"));
+    page.heading(word("inspect.others"));
     for t in &seen.temperatures {
         let (up, down) = t.runs;
         let range = Note::new("inspect.temperature_is")
@@ -217,36 +207,37 @@ pub(super) fn others(page: &mut Page, seen: &Seen) {
             .with("low", plain(t.min_deg_c, 4))
             .with("high", plain(t.max_deg_c, 4))
             .with("range", plain(t.range(), 3));
-        let mut text = say(&range);
+        let mut told = vec![Arg::from(range)];
         if let Some(steepest) = t.steepest_deg_c_h {
-            text += &say(&Note::new("inspect.temperature_rate").with("rate", plain(steepest.abs(), 3)));
+            let rate = plain(steepest.abs(), 3);
+            told.push(Note::new("inspect.temperature_rate").with("rate", rate).into());
         }
         if t.range() >= 1.0 && seen.time.is_known() {
-            text += &say(&Note::new("inspect.temperature_runs")
-                .with("up", u64::from(up))
-                .with("down", u64::from(down)));
+            let runs = Note::new("inspect.temperature_runs");
+            told.push(runs.with("up", u64::from(up)).with("down", u64::from(down)).into());
         }
-        page.row(&word("inspect.temperature"), &(text + "."));
+        told.push(".".into());
+        page.row(word("inspect.temperature"), Arg::Several(told, ""));
     }
     for d in &seen.driven {
-        page.row(&word("inspect.table"), &driven(d));
+        page.row(word("inspect.table"), driven(d));
     }
     for f in &seen.followers {
         let per_deg_s = f.slope * 3600.0;
         let (slope, unit) =
-            if f.unit == "deg/h" { (f.slope, "deg/s".to_owned()) } else { (per_deg_s, f.unit.clone()) };
+            if f.unit == "deg/h" { (f.slope, word("amount.unit_deg_s")) } else { (per_deg_s, f.unit.clone().into()) };
         let note = Note::new("inspect.follows")
             .with("name", f.name.as_str())
-            .with("correlation", format!("{:.5}", f.correlation))
+            .with("correlation", Arg::Decimals(f.correlation, 5))
             .with("slope", plain(slope, 5))
             .with("unit", unit);
-        page.note("", &note);
+        page.row(SAME, note);
     }
 }
 
-fn driven(d: &Driven) -> String {
+fn driven(d: &Driven) -> Arg {
     let (low, high, unit) = if d.role == Role::TableAngle {
-        (plain(d.facts.min / 3600.0, 5), plain(d.facts.max / 3600.0, 5), "deg")
+        (plain(d.facts.min / 3600.0, 5), plain(d.facts.max / 3600.0, 5), word("amount.unit_deg"))
     } else {
         rates(d.facts.min, d.facts.max)
     };
@@ -260,5 +251,5 @@ fn driven(d: &Driven) -> String {
         0 => Note::new("inspect.table_sweeps"),
         n => Note::new("inspect.table_levels").with("n", n),
     };
-    format!("{} {}", say(&range), say(&rest))
+    Arg::Several(vec![range.into(), rest.into()], " ")
 }

@@ -2,7 +2,7 @@
 
 use super::gather::{Driven, Gyro, Seen, Temperature};
 use super::judge::{ClockRemark, Motion, clock_remark, earth};
-use super::layout::{Page, say, word};
+use super::layout::{Page, SAME, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
 use super::show_gyro::{described, strongest};
 use crate::noise::data::NoiseType;
@@ -21,19 +21,19 @@ const STRONGEST: usize = 3;
 
 /// The last section.
 pub(super) fn statements(page: &mut Page, seen: &Seen) {
-    page.heading(&word("inspect.support"));
+    page.heading(word("inspect.support"));
     let gyro = seen.channels.iter().any(|c| c.role.is_gyro());
     let counts = seen.listed.iter().any(|c| c.counts_of_a_gyro());
     if !gyro && !counts {
-        page.note(&word("inspect.tests"), &Note::new("inspect.no_gyro_no_test"));
+        page.row(word("inspect.tests"), Note::new("inspect.no_gyro_no_test"));
         return;
     }
     assumed(page, seen);
-    page.note(&word("inspect.static_test"), &static_test(seen));
+    page.row(word("inspect.static_test"), static_test(seen));
     averaging(page, seen);
     flicker(page, seen);
-    page.note(&word("inspect.temperature_test"), &temperature(seen));
-    page.note(&word("inspect.scale_factor"), &scale_factor(seen));
+    page.row(word("inspect.temperature_test"), temperature(seen));
+    page.row(word("inspect.scale_factor"), scale_factor(seen));
     known_angle(page, seen);
     clock(page, seen);
     earth_rate(page, seen);
@@ -44,7 +44,7 @@ fn assumed(page: &mut Page, seen: &Seen) {
     let of = |c: &&super::columns::Listed| c.guess.role.is_gyro() && !c.guess.unit_is_named;
     let list = names(seen.listed.iter().filter(of).map(|c| c.name.as_str()));
     if !list.is_empty() {
-        page.note(&word("inspect.unit"), &Note::new("inspect.unit_assumed").with("columns", list));
+        page.row(word("inspect.unit"), Note::new("inspect.unit_assumed").with("columns", list));
     }
 }
 
@@ -100,22 +100,26 @@ fn averaging(page: &mut Page, seen: &Seen) {
     let note = Note::new("inspect.averaging_is")
         .with("floor", time_both(longest_s / 10.0))
         .with("fit", time_both(longest_s / 5.0));
-    page.note(&label, &note);
+    page.row(label, note);
     if stretches.count() > 1 {
         let note = Note::new("inspect.averaging_broken")
             .with("n", count(stretches.count()))
             .with("longest", time(longest_s));
-        page.note("", &note);
+        page.row(SAME, note);
     }
+}
+
+/// A statement on one channel.
+fn of_channel(gyro: &Gyro, statement: Note) -> Note {
+    Note::new("inspect.of_column").with("column", gyro.name.as_str()).with("what", statement)
 }
 
 fn flicker(page: &mut Page, seen: &Seen) {
     let mut label = word("inspect.flicker");
     for gyro in resting(seen) {
         if !described(gyro) {
-            let note = say(&Note::new("inspect.flicker_undescribed"));
-            page.row(&label, &format!("`{}`: {note}", gyro.name));
-            label.clear();
+            let note = Note::new("inspect.flicker_undescribed");
+            page.row(std::mem::replace(&mut label, SAME.into()), of_channel(gyro, note));
             continue;
         }
         let found = &gyro.identification.bias_instability;
@@ -131,8 +135,7 @@ fn flicker(page: &mut Page, seen: &Seen) {
             }
             (None, _) => Note::new("inspect.flicker_unknown"),
         };
-        page.row(&label, &format!("`{}`: {}", gyro.name, say(&note)));
-        label.clear();
+        page.row(std::mem::replace(&mut label, SAME.into()), of_channel(gyro, note));
     }
 }
 
@@ -171,9 +174,9 @@ fn scale_factor(seen: &Seen) -> Note {
     let about = |key| {
         Note::new(key)
             .with("name", table.name.as_str())
-            .with("low", low.as_str())
-            .with("high", high.as_str())
-            .with("unit", unit)
+            .with("low", low.clone())
+            .with("high", high.clone())
+            .with("unit", unit.clone())
             .with("n", facts.levels.len())
     };
     if facts.max == facts.min {
@@ -200,7 +203,7 @@ fn known_angle(page: &mut Page, seen: &Seen) {
     let note = Note::new("inspect.known_angle_is")
         .with("name", most.name.as_str())
         .with("swing", plain(swing(most), 4));
-    page.note(&word("inspect.known_angle"), &note);
+    page.row(word("inspect.known_angle"), note);
 }
 
 /// The strongest remark on the clock, with every channel that bears it out.
@@ -227,8 +230,8 @@ fn clock(page: &mut Page, seen: &Seen) {
         let mut unique: Vec<&str> = channels.collect();
         unique.sort_unstable();
         unique.dedup();
-        page.note(&label, &clock_note(remark, seen.tau0_s).with("channels", names(unique.into_iter())));
-        label.clear();
+        let note = clock_note(remark, seen.tau0_s).with("channels", names(unique.into_iter()));
+        page.row(std::mem::replace(&mut label, SAME.into()), note);
     }
 }
 
@@ -255,6 +258,6 @@ fn earth_rate(page: &mut Page, seen: &Seen) {
     }
     let means: Vec<f64> = seen.gyros.iter().map(|g| g.digest.mean).collect();
     if let Some(length) = earth(&means) {
-        page.note(&word("inspect.earth"), &Note::new("inspect.earth_is").with("length", plain(length, 4)));
+        page.row(word("inspect.earth"), Note::new("inspect.earth_is").with("length", plain(length, 4)));
     }
 }

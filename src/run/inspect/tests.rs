@@ -16,7 +16,7 @@ type Columns = Vec<(&'static str, Vec<f64>)>;
 fn told(columns: Columns, rate_hz: Option<f64>) -> String {
     let columns = columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect();
     let source = Source::from_columns("unit.csv", columns, 4096).unwrap();
-    let text = inspect_source(&source, rate_hz, &mut |_, _| {}).unwrap();
+    let text = inspect_source(&source, rate_hz, crate::text::Lang::En, &mut |_, _| {}).unwrap();
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

@@ -1,0 +1,173 @@
+//! The help and the complaints of the command line in the language of the user.
+//!
+//! The texts of the derived command are English; for another language each is replaced by its entry in the locale
+//! tables: `help.<verb>.about`, `help.<verb>.after`, `help.<verb>.arg.<id>`, `help.<verb>.value.<id>.<word>`, with
+//! `sagnac` for the program itself and `help.common` for what every verb has.
+
+use crate::text::{Lang, Note, lookup};
+use clap::builder::{PossibleValue, StyledStr};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, ArgAction, Command, Error};
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// The language that the arguments ask for, or else the locale. It is needed before the arguments are parsed, for the
+/// help and for the complaints about them.
+pub fn language(arguments: &[OsString]) -> Lang {
+    let mut asked = None;
+    let mut rest = arguments.iter().filter_map(|a| a.to_str());
+    while let Some(argument) = rest.next() {
+        match argument.strip_prefix("--lang") {
+            _ if argument == "--" => break,
+            Some("") => asked = rest.next().and_then(Lang::from_code).or(asked),
+            Some(value) => asked = value.strip_prefix('=').and_then(Lang::from_code).or(asked),
+            None => {}
+        }
+    }
+    asked.unwrap_or_else(|| Lang::of_locale(|name| std::env::var(name).ok()))
+}
+
+/// The command with its texts in a language.
+pub fn command(command: Command, lang: Lang) -> Command {
+    if lang == Lang::En { command } else { translated(command, "sagnac", lang) }
+}
+
+/// The text of a key; `None` where the tables lack it, so that the English text stays.
+fn words(lang: Lang, key: &str) -> Option<&'static str> {
+    lookup(lang, key)
+}
+
+fn translated(command: Command, path: &str, lang: Lang) -> Command {
+    let of = |key: &str| words(lang, &format!("help.{path}.{key}"));
+    let common = |key: &str| words(lang, &format!("help.common.{key}")).unwrap_or_default();
+    let mut command = command
+        .help_template(format!(
+            "{{before-help}}{{about-with-newline}}\n{}: {{usage}}\n\n{{all-args}}{{after-help}}",
+            common("usage")
+        ))
+        .subcommand_help_heading(common("commands"))
+        .disable_help_flag(true)
+        .disable_help_subcommand(true)
+        .arg(
+            Arg::new("help")
+                .short('h')
+                .long("help")
+                .action(ArgAction::Help)
+                .help(common("help"))
+                .help_heading(common("options")),
+        );
+    if path == "sagnac" {
+        command = command.disable_version_flag(true).arg(
+            Arg::new("version")
+                .short('V')
+                .long("version")
+                .action(ArgAction::Version)
+                .help(common("version"))
+                .help_heading(common("options")),
+        );
+    }
+    if let Some(about) = of("about") {
+        command = command.about(about);
+    }
+    if let Some(after) = of("after") {
+        command = command.after_help(after);
+    }
+    let ids: Vec<String> = command.get_arguments().map(|a| a.get_id().to_string()).collect();
+    for id in ids.iter().filter(|id| !matches!(id.as_str(), "help" | "version")) {
+        let text = of(&format!("arg.{id}"));
+        command = command.mut_arg(id, |arg| argument(arg, text, path, lang, &common));
+    }
+    let names: Vec<String> = command.get_subcommands().map(|c| c.get_name().to_owned()).collect();
+    for name in names {
+        command = command.mut_subcommand(&name, |below| translated(below, &name, lang));
+    }
+    command
+}
+
+fn argument(
+    arg: Arg,
+    text: Option<&'static str>,
+    path: &str,
+    lang: Lang,
+    common: &dyn Fn(&str) -> &'static str,
+) -> Arg {
+    let positional = arg.is_positional();
+    let id = arg.get_id().to_string();
+    let mut arg = arg.help_heading(common(if positional { "arguments" } else { "options" }));
+    let mut help = text.map(str::to_owned);
+    // What the library would write itself is English: the list of values and the default.
+    let values: Vec<PossibleValue> = arg.get_possible_values();
+    if arg.get_action().takes_values() && !values.is_empty() {
+        let list: Vec<String> = values
+            .iter()
+            .map(|v| match words(lang, &format!("help.{path}.value.{id}.{}", v.get_name())) {
+                Some(meaning) => format!("{} ({meaning})", v.get_name()),
+                None => v.get_name().to_owned(),
+            })
+            .collect();
+        help = help.map(|h| format!("{h} [{}: {}]", common("values"), list.join(", ")));
+        arg = arg.hide_possible_values(true);
+    }
+    let default: Vec<String> =
+        arg.get_default_values().iter().map(|v| v.to_string_lossy().into_owned()).collect();
+    if arg.get_action().takes_values() && !default.is_empty() {
+        help = help.map(|h| format!("{h} [{}: {}]", common("default"), default.join(", ")));
+        arg = arg.hide_default_value(true);
+    }
+    match help {
+        Some(help) => arg.help(StyledStr::from(help)),
+        None => arg,
+    }
+}
+
+/// Says why the arguments cannot be used, or shows the help that was asked for.
+pub fn refuse(error: &Error, lang: Lang) -> ExitCode {
+    let asked_for = !error.use_stderr();
+    if lang == Lang::En || asked_for || error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        // A reader that went away is no error.
+        let _ = error.print();
+    } else {
+        super::place::complain(&complaint(error, lang));
+    }
+    ExitCode::from(if asked_for { super::exit::PASS } else { super::exit::ERROR })
+}
+
+/// The complaint in a language, for the kinds that the tables know; in the words of the library for others.
+fn complaint(error: &Error, lang: Lang) -> String {
+    let part = |kind: ContextKind| match error.get(kind) {
+        Some(ContextValue::String(text)) => text.clone(),
+        Some(ContextValue::Strings(texts)) => texts.join(", "),
+        _ => String::new(),
+    };
+    let key = match error.kind() {
+        ErrorKind::UnknownArgument => "help.error.unknown_argument",
+        ErrorKind::InvalidSubcommand => "help.error.unknown_verb",
+        ErrorKind::MissingRequiredArgument => "help.error.missing",
+        ErrorKind::MissingSubcommand => "help.error.no_verb",
+        ErrorKind::InvalidValue if part(ContextKind::InvalidValue).is_empty() => "help.error.no_value",
+        ErrorKind::InvalidValue | ErrorKind::ValueValidation => "help.error.invalid_value",
+        ErrorKind::ArgumentConflict => "help.error.twice",
+        ErrorKind::TooManyValues | ErrorKind::WrongNumberOfValues | ErrorKind::TooFewValues => {
+            "help.error.number_of_values"
+        }
+        ErrorKind::InvalidUtf8 => "help.error.not_utf8",
+        _ => return error.to_string(),
+    };
+    let subcommand = part(ContextKind::InvalidSubcommand);
+    let given = part(ContextKind::InvalidArg);
+    let note = Note::new(key)
+        .with("argument", if given.is_empty() { subcommand } else { given })
+        .with("value", part(ContextKind::InvalidValue));
+    let mut out = super::place::error(&note, lang);
+    let near = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::SuggestedValue];
+    if let Some(near) = near.into_iter().map(part).find(|text| !text.is_empty()) {
+        let hint = Note::new("keyed.help.did_you_mean").with("name", near);
+        out.push_str(&format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), hint.say(lang)));
+    }
+    let valid = part(ContextKind::ValidValue);
+    if !valid.is_empty() {
+        out.push_str(&format!("  {}\n", Note::new("help.error.values").with("values", valid).say(lang)));
+    }
+    out.push_str(&format!("\n{}\n", Note::new("help.error.more").say(lang)));
+    out
+}
