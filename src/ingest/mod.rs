@@ -10,6 +10,7 @@ mod csv;
 mod dialect;
 mod error;
 mod lines;
+mod matlab;
 mod memory;
 mod number;
 mod numpy;
@@ -204,7 +205,7 @@ pub trait Format: Sync {
 }
 
 /// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
-pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &numpy::Npy, &numpy::Npz, &csv::DelimitedText];
+pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &numpy::Npy, &numpy::Npz, &matlab::Mat, &csv::DelimitedText];
 
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
 const NOT_READ: &[(&[u8], &str, &str)] = &[
