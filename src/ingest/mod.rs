@@ -4,13 +4,16 @@
 //! one more format costs one file and one line. [`open`] gives a [`Source`]: the columns of a file and a way to read
 //! wanted ones block by block. [`stream`] puts a time base on the blocks and feeds them to sinks.
 
+mod binary;
 pub mod compressed;
 mod csv;
 mod dialect;
 mod error;
 mod lines;
+mod matlab;
 mod memory;
 mod number;
+mod numpy;
 mod options;
 mod parquet;
 mod plan;
@@ -202,14 +205,12 @@ pub trait Format: Sync {
 }
 
 /// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
-pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &csv::DelimitedText];
+pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &numpy::Npy, &numpy::Npz, &matlab::Mat, &csv::DelimitedText];
 
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
 const NOT_READ: &[(&[u8], &str, &str)] = &[
     (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
     (b"\x89HDF", "ingest.kind.hdf5", "ingest.hint.export_data"),
-    (b"MATLAB 5.0", "ingest.kind.matlab", "ingest.hint.export_data"),
-    (b"\x93NUMPY", "ingest.kind.numpy", "ingest.hint.export_data"),
     (b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
     (b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
     (b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),
@@ -266,14 +267,6 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_packed")
             .hint("ingest.hint.check_written"));
     }
-    if let Some((_, what, hint)) = NOT_READ.iter().find(|(magic, ..)| head.starts_with(magic)) {
-        return Err(IngestError::new(
-            IngestErrorKind::UnknownFormat,
-            path,
-            Note::new("ingest.not_read").with("what", Arg::Key((*what).to_owned())),
-        )
-        .hint(*hint));
-    }
     let candidate = Candidate {
         path: path.to_owned(),
         bytes: metadata.len(),
@@ -282,12 +275,42 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         head_is_all,
         options: options.clone(),
     };
-    let Some(format) = FORMATS.iter().find(|f| f.recognises(&candidate)) else {
-        return Err(IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.unknown")
-            .hint("ingest.hint.give_known"));
+    let format = match &options.format {
+        Some(id) => chosen(path, id)?,
+        None => found(&candidate)?,
     };
     let opened = format.open(&candidate)?;
     Ok(Source { path: path.to_owned(), format: format.id(), packing, bytes: metadata.len(), opened })
+}
+
+/// The format of an id.
+fn chosen(path: &Path, id: &str) -> Result<&'static dyn Format, IngestError> {
+    if let Some(format) = FORMATS.iter().find(|f| f.id() == id) {
+        return Ok(*format);
+    }
+    let ids = || FORMATS.iter().map(|f| f.id());
+    let hint = match crate::keyed::diagnostics::nearest(id, ids()) {
+        Some(near) => Note::new("ingest.hint.did_you_mean").with("name", near),
+        None => Note::new("ingest.formats.known").with("ids", ids().collect::<Vec<_>>().join(", ")),
+    };
+    let note = Note::new("ingest.formats.unknown_id").with("id", error::shorten(id));
+    Err(IngestError::new(IngestErrorKind::UnknownFormat, path, note).hint(hint))
+}
+
+/// The format that recognises a file.
+fn found(candidate: &Candidate) -> Result<&'static dyn Format, IngestError> {
+    let unknown = |note: Note| IngestError::new(IngestErrorKind::UnknownFormat, &candidate.path, note);
+    let recognised = FORMATS.iter().find(|f| f.recognises(candidate));
+    // Text is whatever looks like lines, so that kinds known by their first bytes go before it.
+    let other = NOT_READ.iter().find(|(magic, ..)| candidate.head.starts_with(magic));
+    match (recognised, other) {
+        (Some(format), other) if other.is_none() || format.id() != "csv" => Ok(*format),
+        (_, Some((_, what, hint))) => {
+            let what = Arg::Key((*what).to_owned());
+            Err(unknown(Note::new("ingest.not_read").with("what", what)).hint(*hint))
+        }
+        _ => Err(unknown("ingest.unknown".into()).hint("ingest.hint.give_known")),
+    }
 }
 
 impl Source {
