@@ -4,11 +4,10 @@
 //! one more format costs one file and one line. [`open`] gives a [`Source`]: the columns of a file and a way to read
 //! wanted ones block by block. [`stream`] puts a time base on the blocks and feeds them to sinks.
 
+mod choice;
 pub mod compressed;
-mod csv;
-mod dialect;
+mod delimited;
 mod error;
-mod lines;
 mod memory;
 mod number;
 mod options;
@@ -23,7 +22,8 @@ pub use options::{Encoding, ReadOptions, TextOptions};
 pub use plan::{Plan, TimeBaseSpec, prepare};
 pub use stream::{ChannelFacts, StreamReport, stream, stream_path};
 
-use crate::recording::ColumnRef;
+use crate::recording::guess::{Guess, guess};
+use crate::recording::{ColumnRef, Role};
 use crate::text::{Arg, Note};
 use compressed::{ByteStream, io_error};
 use std::ops::ControlFlow;
@@ -45,6 +45,24 @@ pub struct Column {
     pub epoch_s: Option<f64>,
     /// Period after which the stamps start again, s: 86400 for clock time, 604800 for seconds of a week.
     pub rollover_s: Option<f64>,
+}
+
+impl Column {
+    /// What the column may be: from what the reader knows of it, else from its name.
+    pub fn guess(&self) -> Guess {
+        let mut guess = guess(&self.name, self.unit.as_deref());
+        if self.holds_stamps() && guess.role != Role::Time {
+            guess.role = Role::Time;
+            guess.unit_is_named = true;
+            guess.reason = format!("`{}` holds time stamps", self.name);
+        }
+        guess
+    }
+
+    /// True when the reader turned stamps into seconds, or found seconds that start again.
+    pub fn holds_stamps(&self) -> bool {
+        self.epoch_s.is_some() || self.rollover_s.is_some()
+    }
 }
 
 /// Why a field is no finite number.
@@ -202,7 +220,7 @@ pub trait Format: Sync {
 }
 
 /// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
-pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &csv::DelimitedText];
+pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &delimited::DelimitedText];
 
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
 const NOT_READ: &[(&[u8], &str, &str)] = &[
@@ -214,8 +232,6 @@ const NOT_READ: &[(&[u8], &str, &str)] = &[
     (b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
     (b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),
     (b"\xfd7zXZ", "ingest.kind.xz", "ingest.hint.repack"),
-    (b"\xff\xfe", "ingest.kind.utf16", "ingest.hint.save_utf8"),
-    (b"\xfe\xff", "ingest.kind.utf16", "ingest.hint.save_utf8"),
 ];
 
 /// Longest piece of the start of a file that is looked at, bytes.
@@ -266,7 +282,8 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_packed")
             .hint("ingest.hint.check_written"));
     }
-    if let Some((_, what, hint)) = NOT_READ.iter().find(|(magic, ..)| head.starts_with(magic)) {
+    let not_read = NOT_READ.iter().find(|(magic, ..)| head.starts_with(magic));
+    if let Some((_, what, hint)) = not_read.filter(|_| options.format.is_none()) {
         return Err(IngestError::new(
             IngestErrorKind::UnknownFormat,
             path,
@@ -282,10 +299,7 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         head_is_all,
         options: options.clone(),
     };
-    let Some(format) = FORMATS.iter().find(|f| f.recognises(&candidate)) else {
-        return Err(IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.unknown")
-            .hint("ingest.hint.give_known"));
-    };
+    let format = choice::format(&candidate)?;
     let opened = format.open(&candidate)?;
     Ok(Source { path: path.to_owned(), format: format.id(), packing, bytes: metadata.len(), opened })
 }
@@ -353,6 +367,22 @@ impl Source {
     /// Sample rate that the file states, Hz. It counts only where neither stamps nor the user tell the rate.
     pub fn stated_sample_rate_hz(&self) -> Option<f64> {
         self.opened.stated_sample_rate_hz
+    }
+
+    /// The serial number of the unit, where the file states one under a usual key.
+    pub fn stated_serial(&self) -> Option<&str> {
+        choice::serial(self.metadata())
+    }
+
+    /// Position of the column that tells the time, from 0: stamps with a date go before clock times, these before a
+    /// column of numbers that is named like a time.
+    pub fn time_column(&self) -> Option<usize> {
+        let fits = |wanted: fn(&Column) -> bool| {
+            self.columns().iter().position(|c| c.numeric && wanted(c) && c.guess().role == Role::Time)
+        };
+        let several = self.columns().iter().filter(|c| c.numeric && c.guess().role == Role::Time).count() > 1;
+        let dated = || fits(|c| c.epoch_s.is_some());
+        if several { dated().or_else(|| fits(|_| true)) } else { fits(|_| true) }
     }
 
     /// Finds a column; the result is its position from 0.
