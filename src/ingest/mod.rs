@@ -5,11 +5,10 @@
 //! wanted ones block by block. [`stream`] puts a time base on the blocks and feeds them to sinks.
 
 mod binary;
+mod choice;
 pub mod compressed;
-mod csv;
-mod dialect;
+mod delimited;
 mod error;
-mod lines;
 mod matlab;
 mod memory;
 mod number;
@@ -26,8 +25,9 @@ pub use options::{Encoding, ReadOptions, TextOptions};
 pub use plan::{Plan, TimeBaseSpec, prepare};
 pub use stream::{ChannelFacts, StreamReport, stream, stream_path};
 
-use crate::recording::ColumnRef;
-use crate::text::{Arg, Note};
+use crate::recording::guess::{Guess, guess};
+use crate::recording::{ColumnRef, Role};
+use crate::text::Note;
 use compressed::{ByteStream, io_error};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -48,6 +48,24 @@ pub struct Column {
     pub epoch_s: Option<f64>,
     /// Period after which the stamps start again, s: 86400 for clock time, 604800 for seconds of a week.
     pub rollover_s: Option<f64>,
+}
+
+impl Column {
+    /// What the column may be: from what the reader knows of it, else from its name.
+    pub fn guess(&self) -> Guess {
+        let mut guess = guess(&self.name, self.unit.as_deref());
+        if self.holds_stamps() && guess.role != Role::Time {
+            guess.role = Role::Time;
+            guess.unit_is_named = true;
+            guess.reason = Note::new("guess.stamps").with("name", self.name.as_str());
+        }
+        guess
+    }
+
+    /// True when the reader turned stamps into seconds, or found seconds that start again.
+    pub fn holds_stamps(&self) -> bool {
+        self.epoch_s.is_some() || self.rollover_s.is_some()
+    }
 }
 
 /// Why a field is no finite number.
@@ -205,19 +223,8 @@ pub trait Format: Sync {
 }
 
 /// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
-pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &numpy::Npy, &numpy::Npz, &matlab::Mat, &csv::DelimitedText];
-
-/// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
-const NOT_READ: &[(&[u8], &str, &str)] = &[
-    (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
-    (b"\x89HDF", "ingest.kind.hdf5", "ingest.hint.export_data"),
-    (b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
-    (b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
-    (b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),
-    (b"\xfd7zXZ", "ingest.kind.xz", "ingest.hint.repack"),
-    (b"\xff\xfe", "ingest.kind.utf16", "ingest.hint.save_utf8"),
-    (b"\xfe\xff", "ingest.kind.utf16", "ingest.hint.save_utf8"),
-];
+pub static FORMATS: &[&dyn Format] =
+    &[&parquet::Parquet, &numpy::Npy, &numpy::Npz, &matlab::Mat, &delimited::DelimitedText];
 
 /// Longest piece of the start of a file that is looked at, bytes.
 const HEAD: usize = 256 << 10;
@@ -275,42 +282,9 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         head_is_all,
         options: options.clone(),
     };
-    let format = match &options.format {
-        Some(id) => chosen(path, id)?,
-        None => found(&candidate)?,
-    };
+    let format = choice::format(&candidate)?;
     let opened = format.open(&candidate)?;
     Ok(Source { path: path.to_owned(), format: format.id(), packing, bytes: metadata.len(), opened })
-}
-
-/// The format of an id.
-fn chosen(path: &Path, id: &str) -> Result<&'static dyn Format, IngestError> {
-    if let Some(format) = FORMATS.iter().find(|f| f.id() == id) {
-        return Ok(*format);
-    }
-    let ids = || FORMATS.iter().map(|f| f.id());
-    let hint = match crate::keyed::diagnostics::nearest(id, ids()) {
-        Some(near) => Note::new("ingest.hint.did_you_mean").with("name", near),
-        None => Note::new("ingest.formats.known").with("ids", ids().collect::<Vec<_>>().join(", ")),
-    };
-    let note = Note::new("ingest.formats.unknown_id").with("id", error::shorten(id));
-    Err(IngestError::new(IngestErrorKind::UnknownFormat, path, note).hint(hint))
-}
-
-/// The format that recognises a file.
-fn found(candidate: &Candidate) -> Result<&'static dyn Format, IngestError> {
-    let unknown = |note: Note| IngestError::new(IngestErrorKind::UnknownFormat, &candidate.path, note);
-    let recognised = FORMATS.iter().find(|f| f.recognises(candidate));
-    // Text is whatever looks like lines, so that kinds known by their first bytes go before it.
-    let other = NOT_READ.iter().find(|(magic, ..)| candidate.head.starts_with(magic));
-    match (recognised, other) {
-        (Some(format), other) if other.is_none() || format.id() != "csv" => Ok(*format),
-        (_, Some((_, what, hint))) => {
-            let what = Arg::Key((*what).to_owned());
-            Err(unknown(Note::new("ingest.not_read").with("what", what)).hint(*hint))
-        }
-        _ => Err(unknown("ingest.unknown".into()).hint("ingest.hint.give_known")),
-    }
 }
 
 impl Source {
@@ -376,6 +350,22 @@ impl Source {
     /// Sample rate that the file states, Hz. It counts only where neither stamps nor the user tell the rate.
     pub fn stated_sample_rate_hz(&self) -> Option<f64> {
         self.opened.stated_sample_rate_hz
+    }
+
+    /// The serial number of the unit, where the file states one under a usual key.
+    pub fn stated_serial(&self) -> Option<&str> {
+        choice::serial(self.metadata())
+    }
+
+    /// Position of the column that tells the time, from 0: stamps with a date go before clock times, these before a
+    /// column of numbers that is named like a time.
+    pub fn time_column(&self) -> Option<usize> {
+        let fits = |wanted: fn(&Column) -> bool| {
+            self.columns().iter().position(|c| c.numeric && wanted(c) && c.guess().role == Role::Time)
+        };
+        let several = self.columns().iter().filter(|c| c.numeric && c.guess().role == Role::Time).count() > 1;
+        let dated = || fits(|c| c.epoch_s.is_some());
+        if several { dated().or_else(|| fits(|_| true)) } else { fits(|_| true) }
     }
 
     /// Finds a column; the result is its position from 0.

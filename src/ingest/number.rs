@@ -29,12 +29,16 @@ pub enum Field {
 }
 
 /// Reads a plain decimal number (`-12.345`) that starts at `at`; returns it with the position of its terminator, or
-/// `None` when it is anything else (exponent, spaces, quotes, words, more than 19 digits).
+/// `None` when it is anything else (exponent, spaces, quotes, words, more than 19 digits). `BLANKS`: a tab ends it too.
 ///
 /// A mantissa below 2^53 divided by an exact power of ten is rounded once, hence correctly (W. D. Clinger, How to read
 /// floating point numbers accurately, 1990).
 #[inline(always)]
-pub fn plain_decimal<const DECIMAL: u8>(bytes: &[u8], at: usize, delimiter: u8) -> Option<(f64, usize)> {
+pub fn plain_decimal<const DECIMAL: u8, const BLANKS: bool>(
+    bytes: &[u8],
+    at: usize,
+    delimiter: u8,
+) -> Option<(f64, usize)> {
     let byte = |i: usize| bytes.get(i).copied().unwrap_or(b'\n');
     let negative = byte(at) == b'-';
     let start = at + usize::from(negative);
@@ -68,7 +72,7 @@ pub fn plain_decimal<const DECIMAL: u8>(bytes: &[u8], at: usize, delimiter: u8) 
         decimals = i - first;
         digits += decimals;
     }
-    let terminated = c == delimiter || c == b'\n' || c == b'\r';
+    let terminated = c == delimiter || c == b'\n' || c == b'\r' || (BLANKS && c == b'\t');
     if !terminated || digits == 0 || digits > 19 || mantissa >= 1 << 53 {
         return None;
     }
@@ -171,7 +175,7 @@ mod tests {
         ) {
             let sign = if negative { "-" } else { "" };
             let text = format!("{sign}{whole}.{fraction:0decimals$},");
-            if let Some((value, end)) = plain_decimal::<b'.'>(text.as_bytes(), 0, b',') {
+            if let Some((value, end)) = plain_decimal::<b'.', false>(text.as_bytes(), 0, b',') {
                 prop_assert_eq!(end, text.len() - 1);
                 prop_assert_eq!(value.to_bits(), text[..end].parse::<f64>().unwrap().to_bits());
             }
@@ -181,7 +185,7 @@ mod tests {
         fn no_field_panics(bytes: Vec<u8>) {
             let _ = field(&bytes, b'.');
             let _ = field(&bytes, b',');
-            let _ = plain_decimal::<b'.'>(&bytes, 0, b',');
+            let _ = plain_decimal::<b'.', false>(&bytes, 0, b',');
         }
     }
 }

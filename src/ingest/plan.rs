@@ -129,16 +129,21 @@ impl Plan<'_> {
         self.start_s
     }
 
-    /// The start as a date, where the name of the time column or the file format says that stamps count from 1970.
+    /// The start as a date, where the reader, the name of the time column or the file format says what stamps count from.
     pub(super) fn absolute_start(&self, first_s: f64) -> Option<String> {
         let slot = self.time?;
         let column = self.source.columns().get(*self.wanted.get(slot)?)?;
         let name = column.name.to_lowercase();
         let said = ["unix", "epoch", "utc", "posix"].iter().any(|w| name.contains(w));
-        if !(said || column.storage.contains("Timestamp")) || !(0.0..1e11).contains(&first_s) {
+        let known = said || column.storage.contains("Timestamp") || column.epoch_s.is_some();
+        let epoch_s = column.epoch_s.unwrap_or(0.0);
+        if !known || !(0.0..1e11).contains(&(first_s + epoch_s)) {
             return None;
         }
-        let date = chrono::DateTime::from_timestamp(first_s.floor() as i64, (first_s.fract() * 1e9) as u32)?;
+        // Whole seconds and fraction apart, so that a date does not cost the fraction its digits.
+        let whole_s = first_s.floor();
+        let nano = ((first_s - whole_s) * 1e9) as u32;
+        let date = chrono::DateTime::from_timestamp((whole_s + epoch_s) as i64, nano)?;
         Some(date.to_rfc3339_opts(chrono::SecondsFormat::Millis, true))
     }
 

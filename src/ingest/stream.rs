@@ -245,6 +245,9 @@ impl State<'_> {
                     ("non_finite", "fault_note.too_large")
                 }
                 FieldFaultKind::NonFinite => ("non_finite", "fault_note.no_finite_number"),
+                FieldFaultKind::Unparsable if repeats(&fault.text, self.plan.column_name(fault.slot)) => {
+                    ("unparsable", "ingest.delimited.second_header")
+                }
                 FieldFaultKind::Unparsable => ("unparsable", "fault_note.no_number"),
             };
             let channel = self.plan.channels.get(fault.slot).map(|c| c.id.as_str());
@@ -311,6 +314,11 @@ impl State<'_> {
             channels,
         }
     }
+}
+
+/// True when a field holds the name of its column: another header, as where files were put together.
+fn repeats(text: &str, column: &str) -> bool {
+    text.trim().trim_matches('"').trim() == super::error::shorten(column)
 }
 
 /// Rounds a time that is shown to nanoseconds.

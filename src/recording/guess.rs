@@ -133,7 +133,7 @@ fn fits(unit: &Unit, role_unit: &Unit) -> bool {
 }
 
 /// The text before brackets and the text in them: `rate [deg/h]`, `Rate (deg/s)`, `rate, deg/h`.
-fn split_brackets(name: &str) -> (String, Option<String>) {
+pub(crate) fn split_brackets(name: &str) -> (String, Option<String>) {
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {
         if let Some((stem, rest)) = name.split_once(open) {
             let inner = rest.rfind(close).and_then(|end| rest.get(..end));

@@ -1,10 +1,11 @@
 //! Delimited text: one thread reads and hashes, two parse, the caller consumes, all at once.
 
-use super::compressed::{ByteStream, Digested, Packing};
-use super::dialect::{self, Dialect};
-use super::error::{IngestError, IngestErrorKind};
-use super::lines::LineParser;
-use super::{Block, Candidate, Column, FileFacts, Format, OnBlock, Opened, Table};
+use super::encoding::TextStream;
+use super::rows::{LineParser, Lines};
+use crate::ingest::compressed::{ByteStream, Digested, Packing};
+use crate::ingest::error::{IngestError, IngestErrorKind};
+use crate::ingest::options::Encoding;
+use crate::ingest::{Block, FileFacts, OnBlock, Table};
 use crate::text::Note;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -23,52 +24,20 @@ const PARSERS: usize = 2;
 /// Chunks between the reader and the parsers, and blocks between the parsers and the consumer.
 const QUEUE: usize = 4;
 
-/// Delimited text, plain or packed.
-pub(super) struct DelimitedText;
-
-impl Format for DelimitedText {
-    fn id(&self) -> &'static str {
-        "csv"
-    }
-
-    fn recognises(&self, file: &Candidate) -> bool {
-        !file.head.contains(&0)
-    }
-
-    fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
-        let dialect = dialect::sniff(&file.path, &file.head, file.head_is_all)?;
-        let columns = dialect
-            .names
-            .iter()
-            .map(|name| Column {
-                name: name.clone(),
-                numeric: true,
-                storage: "text".to_owned(),
-                unit: None,
-                epoch_s: None,
-                rollover_s: None,
-            })
-            .collect();
-        let rows_estimate = (file.packing == Packing::Plain && dialect.mean_line > 0.0).then(|| {
-            ((file.bytes as f64 - dialect.data_offset as f64).max(0.0) / dialect.mean_line).round() as u64
-        });
-        let notes = dialect.notes.clone();
-        let table = Text { path: file.path.clone(), packing: file.packing, dialect };
-        Ok(Opened {
-            columns,
-            rows_estimate,
-            notes,
-            metadata: Vec::new(),
-            stated_sample_rate_hz: None,
-            table: Box::new(table),
-        })
-    }
-}
-
-struct Text {
-    path: PathBuf,
-    packing: Packing,
-    dialect: Dialect,
+/// A text file of which the writing is known.
+pub(super) struct Text {
+    /// Path.
+    pub path: PathBuf,
+    /// How it is packed.
+    pub packing: Packing,
+    /// Its characters.
+    pub encoding: Encoding,
+    /// How its lines are written.
+    pub lines: Lines,
+    /// Position of the first data line in the text as UTF-8, bytes; within the head that was looked at.
+    pub data_offset: usize,
+    /// Line the data start on, counted from 1.
+    pub data_line: u64,
 }
 
 struct Chunk {
@@ -79,9 +48,8 @@ struct Chunk {
 
 impl Table for Text {
     fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError> {
-        let parser =
-            LineParser::new(self.dialect.delimiter, self.dialect.decimal, self.dialect.names.len(), wanted);
-        let stream = ByteStream::open(&self.path, self.packing)?;
+        let parser = LineParser::new(&self.lines, wanted);
+        let stream = TextStream::new(ByteStream::open(&self.path, self.packing)?, self.encoding);
         let (chunk_out, chunk_in) = sync_channel::<Chunk>(QUEUE);
         let (text_back, text_free) = sync_channel::<Vec<u8>>(2 * QUEUE + PARSERS);
         let (block_out, block_in) = sync_channel::<(u64, Block)>(QUEUE);
@@ -112,13 +80,10 @@ impl Text {
     /// Cuts the text at line ends and hands it out; `None` when nobody wants it any more.
     fn cut(
         &self,
-        mut stream: ByteStream,
+        mut stream: TextStream,
         out: &SyncSender<Chunk>,
         free: &Receiver<Vec<u8>>,
     ) -> Result<Option<Digested>, IngestError> {
-        let mut skipped = vec![0; self.dialect.data_offset];
-        stream.fill(&mut skipped)?;
-        drop(skipped);
         let mut tail: Vec<u8> = Vec::new();
         let mut number = 0;
         loop {
@@ -129,7 +94,10 @@ impl Text {
             text.resize(kept + CHUNK, 0);
             let n = stream.fill(text.get_mut(kept..).unwrap_or_default())?;
             text.truncate(kept + n);
-            let last = n < CHUNK;
+            if number == 0 {
+                text.drain(..self.data_offset.min(text.len()));
+            }
+            let last = stream.ended();
             if last {
                 if text.last().is_some_and(|&c| c != b'\n') {
                     text.push(b'\n');
@@ -166,7 +134,7 @@ impl Text {
         on_block: &mut OnBlock<'_>,
     ) -> Option<u64> {
         let mut waiting: BTreeMap<u64, Block> = BTreeMap::new();
-        let (mut next, mut rows, mut line) = (0, 0u64, self.dialect.data_line);
+        let (mut next, mut rows, mut line) = (0, 0u64, self.data_line);
         for (number, block) in blocks {
             waiting.insert(number, block);
             while let Some(mut block) = waiting.remove(&next) {
@@ -192,7 +160,7 @@ impl Text {
 
 /// One parser: takes chunks until there are none or nobody wants blocks.
 fn parse(
-    parser: &LineParser,
+    parser: &LineParser<'_>,
     chunks: &Mutex<Receiver<Chunk>>,
     text_back: &SyncSender<Vec<u8>>,
     blocks: &SyncSender<(u64, Block)>,
