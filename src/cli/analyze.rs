@@ -6,7 +6,6 @@ use crate::output::StagedFolder;
 use crate::procedure::EffectiveLimits;
 use crate::procedure::model::Procedure;
 use crate::record::UnitUnderTest;
-use crate::recording::guess::guess;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::run::{Request, analysis};
 use crate::units::Unit;
@@ -33,7 +32,7 @@ fn attempt(args: &AnalyzeArgs) -> Result<u8, String> {
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
     let folder = StagedFolder::begin(&out).map_err(|e| format!("error: {e}\n"))?;
-    let source = crate::ingest::open(&args.recording).map_err(|e| format!("error: {e}\n"))?;
+    let source = crate::ingest::open_with(&args.recording, &args.read.options()).map_err(|e| format!("error: {e}\n"))?;
     let channels = channels(args, &source)?;
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     if !use_stamps && args.sample_rate.is_none() {
@@ -70,19 +69,14 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
         Some("none") => {}
         Some(name) => channels.push(time(source, name)?),
         None => {
-            let found = source.columns().iter().find(|c| {
-                let g = guess(&c.name, c.unit.as_deref());
-                c.numeric && g.role == Role::Time
-            });
-            if let Some(column) = found {
+            if let Some(column) = source.time_column().and_then(|i| source.columns().get(i)) {
                 channels.push(time(source, &column.name)?);
             }
         }
     }
     let taken: Vec<ColumnRef> = channels.iter().map(|c| c.column.clone()).collect();
     let wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() {
-        let gyro = |name: &str, unit: Option<&str>| guess(name, unit).role.is_gyro();
-        let columns = source.columns().iter().filter(|c| c.numeric && gyro(&c.name, c.unit.as_deref()));
+        let columns = source.columns().iter().filter(|c| c.numeric && c.guess().role.is_gyro());
         columns.map(|c| (c.name.clone(), ColumnRef::Name(c.name.clone()))).collect()
     } else {
         args.rate.iter().map(|name| (name.clone(), reference(name))).collect()
@@ -90,7 +84,7 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
     for (name, column) in wanted {
         let index = source.resolve(&column).map_err(|e| format!("error: {e}\n"))?;
         let found = &source.columns()[index];
-        let guessed = guess(&found.name, found.unit.as_deref());
+        let guessed = found.guess();
         let unit = match &unit {
             Some(unit) => unit.clone(),
             None if guessed.role.is_gyro() && guessed.unit_is_named => guessed.unit,
@@ -126,7 +120,7 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
         ));
     }
     for column in source.columns().iter().filter(|c| c.numeric) {
-        let g = guess(&column.name, column.unit.as_deref());
+        let g = column.guess();
         let reference = ColumnRef::Name(column.name.clone());
         if g.role == Role::Temperature && g.unit_is_named && !taken.contains(&reference) {
             channels.push(Channel {
@@ -145,7 +139,7 @@ fn time(source: &Source, name: &str) -> Result<Channel, String> {
     let column = reference(name);
     let index = source.resolve(&column).map_err(|e| format!("error: {e}\n"))?;
     let found = &source.columns()[index];
-    let g = guess(&found.name, found.unit.as_deref());
+    let g = found.guess();
     let unit = if g.role == Role::Time { g.unit } else { Unit::parse("s").map_err(|e| e.to_string())? };
     Ok(Channel { id: "time".into(), column, role: Role::Time, unit, scale: 1.0 })
 }

@@ -2,11 +2,15 @@
 
 use super::progress::Progress;
 use super::{InspectArgs, exit, place};
+use crate::run::RunError;
 
 pub fn main(args: &InspectArgs) -> u8 {
     let mut progress = Progress::new();
-    let told = crate::run::inspect::inspect(&args.recording, args.sample_rate, &mut |done, total| {
-        progress.update("reading", done, total);
+    let source = crate::ingest::open_with(&args.recording, &args.read.options());
+    let told = source.map_err(RunError::from).and_then(|source| {
+        crate::run::inspect::inspect_source(&source, args.sample_rate, &mut |done, total| {
+            progress.update("reading", done, total);
+        })
     });
     progress.finish();
     match told {

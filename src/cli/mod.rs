@@ -5,6 +5,7 @@ mod check;
 mod inspect;
 mod place;
 mod progress;
+mod read;
 mod run;
 mod schema;
 mod selftest;
@@ -118,6 +119,8 @@ struct InspectArgs {
     /// Sample rate, where the recording has no time column
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
+    #[command(flatten)]
+    read: read::ReadArgs,
 }
 
 #[derive(Debug, Args)]
@@ -147,6 +150,8 @@ struct AnalyzeArgs {
     templates: Option<PathBuf>,
     #[command(flatten)]
     grid: GridArgs,
+    #[command(flatten)]
+    read: read::ReadArgs,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

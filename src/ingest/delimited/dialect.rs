@@ -352,7 +352,14 @@ impl Sniffed<'_> {
         let below = |i: usize| header.units.as_ref().and_then(|(_, u)| u.get(i)).filter(|u| !u.is_empty()).cloned();
         let units: Vec<Option<String>> =
             names.iter().enumerate().map(|(i, n)| below(i).or_else(|| header::unit_in_name(n))).collect();
-        Ok(kinds::find(&names, &units, &cells, self.cut.decimal))
+        let stamps = &self.file.options.text.stamps;
+        kinds::find(&names, &units, &cells, self.cut.decimal, stamps).map_err(|c| {
+            let message = Note::new("ingest.delimited.not_these_stamps").with("column", c.column);
+            self.error(message)
+                .at(numbers.get(c.row).copied().unwrap_or(0), None)
+                .found(&c.text)
+                .hint("ingest.delimited.hint_stamps")
+        })
     }
 
     fn metadata(&self, above: &[Line<'_>], header: &Header) -> Vec<(String, String)> {

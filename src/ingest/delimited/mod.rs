@@ -12,6 +12,7 @@ mod reader;
 mod rows;
 mod separator;
 mod stamps;
+mod stated;
 
 use super::compressed::Packing;
 use super::error::IngestError;
