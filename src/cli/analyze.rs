@@ -32,7 +32,8 @@ fn attempt(args: &AnalyzeArgs) -> Result<u8, String> {
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
     let folder = StagedFolder::begin(&out).map_err(|e| format!("error: {e}\n"))?;
-    let source = crate::ingest::open_with(&args.recording, &args.read.options()).map_err(|e| format!("error: {e}\n"))?;
+    let source = crate::ingest::open_with(&args.recording, &args.read.options())
+        .map_err(|e| format!("error: {e}\n"))?;
     let channels = channels(args, &source)?;
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     if !use_stamps && args.sample_rate.is_none() {

@@ -22,7 +22,8 @@ pub(super) fn format(file: &Candidate) -> Result<&'static dyn Format, IngestErro
     if format.recognises(file) {
         return Ok(*format);
     }
-    Err(unknown(Note::new("ingest.stated.not_this_format").with("format", stated)).hint("ingest.stated.hint_format"))
+    Err(unknown(Note::new("ingest.stated.not_this_format").with("format", stated))
+        .hint("ingest.stated.hint_format"))
 }
 
 /// Keys under which files state the serial number of a unit, without signs and in lower case.

@@ -1,8 +1,8 @@
 //! A declared channel: its unit and scale against its role.
 
 use super::quantity;
-use super::reading;
 use super::reader::Reader;
+use super::reading;
 use super::section::{Entry, Section};
 use crate::recording::{Channel, Role};
 use crate::units::Unit;

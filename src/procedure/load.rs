@@ -35,7 +35,9 @@ pub fn load_limits(path: &Path) -> Result<Loaded<LimitsFile>, Problems> {
 pub fn parse_procedure(name: &str, bytes: &[u8]) -> Result<Loaded<Procedure>, Problems> {
     let mut procedure = loaded(name, bytes, parse::procedure)?;
     // A layout stands beside its procedure, wherever the program is started.
-    if let (Some(layout), Some(folder)) = (&mut procedure.value.recording.read.layout, Path::new(name).parent()) {
+    if let (Some(layout), Some(folder)) =
+        (&mut procedure.value.recording.read.layout, Path::new(name).parent())
+    {
         *layout = folder.join(&*layout);
     }
     Ok(procedure)

@@ -4,7 +4,8 @@ use super::diagnostics::{Problems, SourceText};
 use super::limits::{self, LimitsFile};
 use super::model::{
     Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, FaultBudget, Instrument, MeasurandSpec,
-    Orientation, Procedure, RecordingSpec, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition, UnitSpec, Waiver,
+    Orientation, Procedure, RecordingSpec, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition,
+    UnitSpec, Waiver,
 };
 use super::reader::{self, Reader};
 use super::section::{Entry, Section};

@@ -7,10 +7,17 @@ use crate::recording::{ColumnRef, Role};
 use std::path::PathBuf;
 
 /// The decisions of `[recording]` and of the time channels.
-pub(super) fn options(section: Option<&Section>, channels: &[Section], reader: &mut Reader<'_>) -> ReadOptions {
+pub(super) fn options(
+    section: Option<&Section>,
+    channels: &[Section],
+    reader: &mut Reader<'_>,
+) -> ReadOptions {
     let stamps = channels.iter().filter_map(|c| stamps(c, reader)).collect();
     let Some(section) = section else {
-        return ReadOptions { text: TextOptions { stamps, ..TextOptions::default() }, ..ReadOptions::default() };
+        return ReadOptions {
+            text: TextOptions { stamps, ..TextOptions::default() },
+            ..ReadOptions::default()
+        };
     };
     let format = section.text("format");
     if let Some(unknown) = format.as_deref().filter(|id| !FORMATS.iter().any(|f| f.id() == *id)) {
@@ -28,7 +35,11 @@ pub(super) fn options(section: Option<&Section>, channels: &[Section], reader: &
     let (header_line, first_line) = (line("header_line"), line("first_line"));
     if let Some((header, first)) = header_line.zip(first_line).filter(|(header, first)| header >= first) {
         let message = format!("`first_line` {first} is not below `header_line` {header}");
-        reader.error(&section.span_of("first_line"), message, Some("the data stand below their names".into()));
+        reader.error(
+            &section.span_of("first_line"),
+            message,
+            Some("the data stand below their names".into()),
+        );
     }
     let text = TextOptions {
         encoding: section.word("encoding").and_then(encoding),
@@ -41,9 +52,18 @@ pub(super) fn options(section: Option<&Section>, channels: &[Section], reader: &
     };
     if text.delimiter == Some(b',') && text.decimal == Some(b',') {
         let message = "a comma cannot separate the fields and mark the decimals at once";
-        reader.error(&section.span_of("decimal"), message, Some("leave `decimal` out where quotes keep the two apart".into()));
+        reader.error(
+            &section.span_of("decimal"),
+            message,
+            Some("leave `decimal` out where quotes keep the two apart".into()),
+        );
     }
-    ReadOptions { format, text, part: section.text("part"), layout: section.text("layout").map(PathBuf::from) }
+    ReadOptions {
+        format,
+        text,
+        part: section.text("part"),
+        layout: section.text("layout").map(PathBuf::from),
+    }
 }
 
 /// The encoding of a word.

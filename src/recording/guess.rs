@@ -224,11 +224,35 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
     let increment =
         has(&["delta", "dtheta", "increment", "inc", "dangle", "dtheta_x", "приращение", "приращения"]);
     let time = has(&[
-        "time", "t", "timestamp", "stamp", "seconds", "sec", "epoch", "utc", "unix", "gps", "tow", "sow", "clock",
-        "datetime", "время", "т", "секунды",
+        "time",
+        "t",
+        "timestamp",
+        "stamp",
+        "seconds",
+        "sec",
+        "epoch",
+        "utc",
+        "unix",
+        "gps",
+        "tow",
+        "sow",
+        "clock",
+        "datetime",
+        "время",
+        "т",
+        "секунды",
     ]);
-    let counter = has(&["counter", "sample", "samples", "seq", "sequence", "счётчик", "счетчик", "отсчёт", "отсчет"])
-        || matches!(words, [only] if ["n", "index", "idx", "i", "count", "номер"].contains(&only.as_str()))
+    let counter = has(&[
+        "counter",
+        "sample",
+        "samples",
+        "seq",
+        "sequence",
+        "счётчик",
+        "счетчик",
+        "отсчёт",
+        "отсчет",
+    ]) || matches!(words, [only] if ["n", "index", "idx", "i", "count", "номер"].contains(&only.as_str()))
         || words.is_empty();
     if is(RATE) {
         return match (table, outer) {
@@ -252,7 +276,8 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
         return if time { Role::Time } else { Role::Auxiliary };
     }
     if is("V") {
-        return if has(&["supply", "vcc", "vdd", "psu", "voltage", "питание", "питания", "напряжение"]) {
+        return if has(&["supply", "vcc", "vdd", "psu", "voltage", "питание", "питания", "напряжение"])
+        {
             Role::Supply
         } else {
             Role::Auxiliary
@@ -273,7 +298,9 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
         _ if gyro => Role::Rate,
         _ if has(&["time", "timestamp", "время"]) || words == ["t"] => Role::Time,
         _ if temperature => Role::Temperature,
-        _ if has(&["supply", "vcc", "vdd", "питание", "питания", "напряжение"]) => Role::Supply,
+        _ if has(&["supply", "vcc", "vdd", "питание", "питания", "напряжение"]) => {
+            Role::Supply
+        }
         _ => Role::Auxiliary,
     }
 }

@@ -283,7 +283,10 @@ mod tests {
             (Unit::parse("degC").unwrap(), Unit::parse("K").unwrap(), Unit::parse("degF").unwrap());
         assert!((c.convert(20.0, &k).unwrap() - 293.15).abs() < 1e-12);
         for russian in ["°С", "град.С", "гр.C", "℃"] {
-            assert!((Unit::parse(russian).unwrap().convert(20.0, &k).unwrap() - 293.15).abs() < 1e-12, "{russian}");
+            assert!(
+                (Unit::parse(russian).unwrap().convert(20.0, &k).unwrap() - 293.15).abs() < 1e-12,
+                "{russian}"
+            );
         }
         assert!((f.convert(68.0, &c).unwrap() - 20.0).abs() < 1e-12);
         assert_eq!(factor("ppm/K", "ppm/degC"), 1.0);

@@ -1,10 +1,25 @@
 //! The symbols of units, English and Russian.
 
-use super::{ANGLE, BASES, COUNT, CURRENT, Dimension, LENGTH, MAGNETIC, PRESSURE, TEMPERATURE, TIME, VOLTAGE};
+use super::{
+    ANGLE, BASES, COUNT, CURRENT, Dimension, LENGTH, MAGNETIC, PRESSURE, TEMPERATURE, TIME, VOLTAGE,
+};
 
 /// Spellings of the degree Celsius. A C may be Latin or Cyrillic.
 pub(super) const CELSIUS: &[&str] = &[
-    "degC", "°C", "ºC", "˚C", "℃", "celsius", "Celsius", "deg.C", "град.C", "град.С", "гр.C", "гр.С", "°С", "ºС",
+    "degC",
+    "°C",
+    "ºC",
+    "˚C",
+    "℃",
+    "celsius",
+    "Celsius",
+    "deg.C",
+    "град.C",
+    "град.С",
+    "гр.C",
+    "гр.С",
+    "°С",
+    "ºС",
     "degС",
 ];
 
@@ -29,11 +44,15 @@ pub(super) fn symbol(name: &str) -> Option<(f64, Dimension)> {
         "%" | "percent" => (1e-2, [0; BASES]),
         "ppm" => (1e-6, [0; BASES]),
         "ppb" => (1e-9, [0; BASES]),
-        "deg" | "degs" | "°" | "º" | "˚" | "degree" | "degrees" | "град" | "градус" => (1.0, one(ANGLE)),
+        "deg" | "degs" | "°" | "º" | "˚" | "degree" | "degrees" | "град" | "градус" => {
+            (1.0, one(ANGLE))
+        }
         "mdeg" | "мград" => (1e-3, one(ANGLE)),
         "udeg" => (1e-6, one(ANGLE)),
         "arcmin" | "угл.мин" | "угл.мин." | "′" => (1.0 / 60.0, one(ANGLE)),
-        "arcsec" | "asec" | "угл.с" | "угл.сек" | "угл.сек." | "\"" | "″" | "ʺ" => (1.0 / 3600.0, one(ANGLE)),
+        "arcsec" | "asec" | "угл.с" | "угл.сек" | "угл.сек." | "\"" | "″" | "ʺ" => {
+            (1.0 / 3600.0, one(ANGLE))
+        }
         "marcsec" | "mas" => (1.0 / 3.6e6, one(ANGLE)),
         "rad" | "рад" => (DEG, one(ANGLE)),
         "mrad" | "мрад" => (DEG * 1e-3, one(ANGLE)),
@@ -42,7 +61,9 @@ pub(super) fn symbol(name: &str) -> Option<(f64, Dimension)> {
         "rev" | "turn" | "об" => (360.0, one(ANGLE)),
         "s" | "sec" | "secs" | "second" | "seconds" | "с" | "сек" | "сек." => (1.0, one(TIME)),
         "ms" | "msec" | "millisecond" | "milliseconds" | "мс" | "мсек" => (1e-3, one(TIME)),
-        "us" | "µs" | "μs" | "usec" | "microsecond" | "microseconds" | "мкс" | "мксек" => (1e-6, one(TIME)),
+        "us" | "µs" | "μs" | "usec" | "microsecond" | "microseconds" | "мкс" | "мксек" => {
+            (1e-6, one(TIME))
+        }
         "ns" | "nsec" | "nanosecond" | "nanoseconds" | "нс" | "нсек" => (1e-9, one(TIME)),
         "min" | "minute" | "minutes" | "мин" | "мин." => (60.0, one(TIME)),
         "h" | "hr" | "hrs" | "hour" | "hours" | "ч" | "час" => (3600.0, one(TIME)),
@@ -82,8 +103,8 @@ pub(super) fn symbol(name: &str) -> Option<(f64, Dimension)> {
         }
         "A" | "А" => (1.0, one(CURRENT)),
         "mA" | "мА" => (1e-3, one(CURRENT)),
-        "count" | "counts" | "cnt" | "LSB" | "lsb" | "pulse" | "pulses" | "имп" | "имп." | "отсч" | "отсч." | "отсчёт"
-        | "отсчет" | "ед" | "ед." | "МЗР" => (1.0, one(COUNT)),
+        "count" | "counts" | "cnt" | "LSB" | "lsb" | "pulse" | "pulses" | "имп" | "имп." | "отсч"
+        | "отсч." | "отсчёт" | "отсчет" | "ед" | "ед." | "МЗР" => (1.0, one(COUNT)),
         _ => return None,
     })
 }

@@ -2,7 +2,7 @@
 
 use super::encoding::{self, Found};
 use super::fields::{Comments, Separator, words};
-use super::header::{self, Above, Header};
+use super::header::{self, Header};
 use super::kinds::{self, Kinds};
 use super::metadata::Metadata;
 use super::rows::Lines;
@@ -37,10 +37,11 @@ pub(super) struct Dialect {
 /// Most lines that are looked at, comments above the data left out.
 const LINES: usize = 200;
 
-struct Line<'a> {
+/// A line of the head: position of its first byte, number counted from 1, text without its end.
+pub(super) struct Line<'a> {
     at: usize,
-    number: u64,
-    text: &'a [u8],
+    pub number: u64,
+    pub text: &'a [u8],
 }
 
 /// Finds the dialect from the start of a file.
@@ -49,7 +50,8 @@ pub(super) fn sniff(file: &Candidate) -> Result<Dialect, IngestError> {
     let found = match options.encoding {
         Some(e) => encoding::stated(path, &file.head, file.head_is_all, e)?,
         None => encoding::find(&file.head, file.head_is_all).ok_or_else(|| {
-            IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.unknown").hint("ingest.hint.give_known")
+            IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.unknown")
+                .hint("ingest.hint.give_known")
         })?,
     };
     let head = encoding::decode(found.encoding, &file.head, file.head_is_all);
@@ -74,7 +76,8 @@ pub(super) fn sniff(file: &Candidate) -> Result<Dialect, IngestError> {
         .map(|l| l.text)
         .collect();
     let cut = separator::find(&after, options.delimiter, options.decimal);
-    let sniffed = Sniffed { path, file, cut, comments: Comments::new(options.comment.as_deref(), Some(cut.separator)) };
+    let sniffed =
+        Sniffed { path, file, cut, comments: Comments::new(options.comment.as_deref(), Some(cut.separator)) };
     let first = sniffed.first_data_line(&lines)?;
     sniffed.check_stated(&after)?;
     let (above, data) = lines.split_at(first);
@@ -131,15 +134,16 @@ fn lines<'a>(head: &'a [u8], all: bool, most: usize, comment: &dyn Fn(&[u8]) -> 
     lines
 }
 
-struct Sniffed<'a> {
-    path: &'a Path,
-    file: &'a Candidate,
-    cut: Cut,
-    comments: Comments,
+/// What is known once the lines can be cut.
+pub(super) struct Sniffed<'a> {
+    pub path: &'a Path,
+    pub file: &'a Candidate,
+    pub cut: Cut,
+    pub comments: Comments,
 }
 
 impl Sniffed<'_> {
-    fn error(&self, message: Note) -> IngestError {
+    pub(super) fn error(&self, message: Note) -> IngestError {
         IngestError::new(IngestErrorKind::UnknownFormat, self.path, message)
     }
 
@@ -152,13 +156,17 @@ impl Sniffed<'_> {
                 .hint("ingest.hint.check_written")
         };
         let last = lines.last().map_or(0, |l| l.number);
-        for (key, stated) in [("header_line", options.header_line.filter(|h| *h > 0)), ("first_line", options.first_line)] {
-            let holds = |number: u64| lines.iter().any(|l| l.number == number && !self.comments.holds(l.text));
+        for (key, stated) in
+            [("header_line", options.header_line.filter(|h| *h > 0)), ("first_line", options.first_line)]
+        {
+            let holds =
+                |number: u64| lines.iter().any(|l| l.number == number && !self.comments.holds(l.text));
             if let Some(number) = stated
                 && !holds(number)
                 && !(key == "header_line" && lines.iter().any(|l| l.number == number))
             {
-                let message = Note::new("ingest.delimited.no_such_line").with("key", key).with("line", number);
+                let message =
+                    Note::new("ingest.delimited.no_such_line").with("key", key).with("line", number);
                 return Err(self.error(message).hint("ingest.delimited.hint_line"));
             }
         }
@@ -212,7 +220,8 @@ impl Sniffed<'_> {
         }
         // The first line may be a header of names such as `time,1,2,3`: whole numbers tell nothing there.
         let fractions = |c: &&&[u8]| c.contains(&b'.') || c.contains(&b',') || c.contains(&b':');
-        let clear = cells.iter().zip(&of).filter(|(_, l)| l.is_value()).map(|(c, _)| c).filter(|c| fractions(c));
+        let clear =
+            cells.iter().zip(&of).filter(|(_, l)| l.is_value()).map(|(c, _)| c).filter(|c| fractions(c));
         values > texts && clear.count() > 0
     }
 
@@ -225,7 +234,9 @@ impl Sniffed<'_> {
     /// Refuses what a user stated where the lines say otherwise.
     fn check_stated(&self, lines: &[&[u8]]) -> Result<(), IngestError> {
         let options = &self.file.options.text;
-        let place = |sign: u8| lines.iter().find(|l| l.contains(&sign)).map(|l| String::from_utf8_lossy(l).into_owned());
+        let place = |sign: u8| {
+            lines.iter().find(|l| l.contains(&sign)).map(|l| String::from_utf8_lossy(l).into_owned())
+        };
         if let Some(delimiter) = options.delimiter {
             let other = separator::find(lines, None, options.decimal);
             if self.cut.fields == 1 && other.fields > 1 {
@@ -253,70 +264,6 @@ impl Sniffed<'_> {
         Ok(())
     }
 
-    /// Names and units above the data; refuses a header that does not fit.
-    fn header(&self, above: &[Line<'_>], data: &[&Line<'_>]) -> Result<Header, IngestError> {
-        let options = &self.file.options.text;
-        let (separator, fields) = (self.cut.separator, self.cut.fields);
-        let cells = |l: &Line<'_>| separator.closed_cells(l.text).len();
-        let lines: Vec<Above<'_>> = above
-            .iter()
-            .map(|l| match self.comments.prefix_of(l.text) {
-                Some(prefix) => {
-                    let text = l.text.trim_ascii_start();
-                    (l.number, text.get(prefix.len()..).unwrap_or_default().trim_ascii(), true)
-                }
-                None => (l.number, l.text, false),
-            })
-            .collect();
-        let header = match options.header_line {
-            Some(0) => Header::default(),
-            stated => header::find(&lines, separator, fields, stated),
-        };
-        let whole = |l: &&&Line<'_>| {
-            let of = separator.closed_cells(l.text);
-            of.iter().all(|c| !c.contains(&b'.') && looks(c, b'.') == Looks::Number)
-        };
-        let commas = self.cut.separator == Separator::Byte(b',') && fields > 1 && self.cut.decimal == b'.';
-        let all_whole = commas && !data.is_empty() && data.iter().all(|l| whole(&l));
-        let plain = || above.iter().filter(|l| !self.comments.holds(l.text));
-        let last = match options.header_line {
-            Some(0) => None,
-            Some(n) => above.iter().find(|l| l.number == n),
-            None => plain().last(),
-        };
-        let named = header.names.is_some();
-        if !named && all_whole && options.delimiter.is_none() {
-            let zeros = |c: &&[u8]| c.len() > 1 && c.starts_with(b"0");
-            let fraction = data.iter().flat_map(|l| separator.cells(l.text).into_iter().skip(1)).any(|c| zeros(&c));
-            let title = last.is_some_and(|l| cells(l) < fields);
-            if let Some(line) = data.first().filter(|_| fraction || title) {
-                return Err(self
-                    .error(Note::new("ingest.delimited.comma_twice"))
-                    .at(line.number, None)
-                    .found(&String::from_utf8_lossy(line.text))
-                    .hint("ingest.delimited.hint_comma"));
-            }
-        }
-        let keyed = |l: &Line<'_>| l.text.contains(&b':') || l.text.contains(&b'=');
-        let block = plain().count() > 1 && plain().all(|l| cells(l) == 2);
-        let stated = options.header_line.is_some_and(|h| h > 0);
-        if let Some(last) = last.filter(|l| !named && (stated || (cells(l) > 1 && !keyed(l) && !block))) {
-            let count = cells(last);
-            let odd = data.iter().find(|l| cells(l) != count);
-            let message = Note::new("ingest.delimited.names_do_not_fit")
-                .with("line", last.number)
-                .with("names", count)
-                .with("fields", odd.map_or(fields, |l| cells(l)));
-            let error = IngestError::new(IngestErrorKind::NotNumeric, self.path, message);
-            let error = match odd {
-                Some(l) => error.at(l.number, None).found(&String::from_utf8_lossy(l.text)),
-                None => error,
-            };
-            return Err(error.hint("ingest.delimited.hint_names"));
-        }
-        Ok(header)
-    }
-
     /// What the columns hold; refuses numbers with signs between thousands.
     fn kinds(&self, header: &Header, data: &[&Line<'_>]) -> Result<Kinds, IngestError> {
         let fields = self.cut.fields;
@@ -329,8 +276,9 @@ impl Sniffed<'_> {
                 numbers.push(line.number);
             }
         }
+        let stated = self.file.options.text.decimal.is_some();
         for column in &cells {
-            if let Some(cell) = separator::thousands(column, self.cut.separator, self.cut.decimal) {
+            if let Some(cell) = separator::thousands(column, self.cut.separator, self.cut.decimal, stated) {
                 let at = column.iter().position(|c| std::ptr::eq(*c, cell));
                 let line = at.and_then(|i| numbers.get(i)).copied().unwrap_or(0);
                 return Err(self
@@ -349,7 +297,8 @@ impl Sniffed<'_> {
                 .collect(),
             None => (0..fields).map(blank).collect(),
         };
-        let below = |i: usize| header.units.as_ref().and_then(|(_, u)| u.get(i)).filter(|u| !u.is_empty()).cloned();
+        let below =
+            |i: usize| header.units.as_ref().and_then(|(_, u)| u.get(i)).filter(|u| !u.is_empty()).cloned();
         let units: Vec<Option<String>> =
             names.iter().enumerate().map(|(i, n)| below(i).or_else(|| header::unit_in_name(n))).collect();
         let stamps = &self.file.options.text.stamps;
@@ -394,7 +343,9 @@ impl Sniffed<'_> {
                 .with("decimal", (self.cut.decimal as char).to_string()),
         );
         notes.push(
-            Note::new("ingest.delimited.fields").with("fields", self.cut.fields).with("lines", self.cut.lines),
+            Note::new("ingest.delimited.fields")
+                .with("fields", self.cut.fields)
+                .with("lines", self.cut.lines),
         );
         match (&header.names, &header.units) {
             (None, _) => notes.push(Note::new("ingest.note.no_header")),

@@ -70,7 +70,8 @@ pub(super) fn find(head: &[u8], all: bool) -> Option<Found> {
     let letters = high().filter(|b| matches!(b, 0xc0..=0xff | 0xa8 | 0xb8)).count();
     let total = high().count();
     // Degree, micro, plus-minus and other signs that Latin-1 and Windows-1251 share.
-    let shared = high().all(|b| matches!(b, 0xa0 | 0xa7 | 0xa9 | 0xab..=0xae | 0xb0 | 0xb1 | 0xb5..=0xb7 | 0xbb));
+    let shared =
+        high().all(|b| matches!(b, 0xa0 | 0xa7 | 0xa9 | 0xab..=0xae | 0xb0 | 0xb1 | 0xb5..=0xb7 | 0xbb));
     let sound_utf8 = head.utf8_chunks().any(|c| !c.valid().is_ascii());
     if shared && !sound_utf8 {
         return found(Encoding::Windows1251, "ingest.delimited.why_signs");
@@ -101,12 +102,7 @@ fn utf16_without_mark(head: &[u8]) -> Option<Encoding> {
 }
 
 /// The encoding that a user stated, when the file does not contradict it.
-pub(super) fn stated(
-    path: &Path,
-    head: &[u8],
-    all: bool,
-    encoding: Encoding,
-) -> Result<Found, IngestError> {
+pub(super) fn stated(path: &Path, head: &[u8], all: bool, encoding: Encoding) -> Result<Found, IngestError> {
     let contradicts = |what: Note| {
         let message = Note::new("ingest.delimited.not_this_encoding")
             .with("stated", name(encoding))
@@ -114,9 +110,8 @@ pub(super) fn stated(
         IngestError::new(IngestErrorKind::UnknownFormat, path, message).hint("ingest.delimited.hint_encoding")
     };
     let found = find(head, all);
-    let other = |f: &Found| {
-        contradicts(Note::new("ingest.delimited.looks_like").with("encoding", name(f.encoding)))
-    };
+    let other =
+        |f: &Found| contradicts(Note::new("ingest.delimited.looks_like").with("encoding", name(f.encoding)));
     let wide = |e: Encoding| matches!(e, Encoding::Utf16Le | Encoding::Utf16Be);
     match &found {
         Some(f) if mark(head).is_some() && f.encoding != encoding => return Err(other(f)),

@@ -15,7 +15,8 @@ pub(super) struct Header {
 impl Header {
     /// True when a line was taken for names or units.
     pub(super) fn uses(&self, number: u64) -> bool {
-        self.names.as_ref().is_some_and(|n| n.0 == number) || self.units.as_ref().is_some_and(|u| u.0 == number)
+        self.names.as_ref().is_some_and(|n| n.0 == number)
+            || self.units.as_ref().is_some_and(|u| u.0 == number)
     }
 }
 
@@ -35,7 +36,8 @@ pub(super) fn find(above: &[Above<'_>], separator: Separator, fields: usize, sta
     }
     // Plain lines go before comments; of each the last counts.
     for comments in [false, true] {
-        let mut lines = above.iter().rev().filter(|l| l.2 == comments && (!comments || nameable(l.1, separator)));
+        let mut lines =
+            above.iter().rev().filter(|l| l.2 == comments && (!comments || nameable(l.1, separator)));
         let Some(last) = lines.next() else { continue };
         let spelt = units(last.1, separator, fields);
         let before = lines.next().and_then(|l| Some((l.0, named(l.1)?)));
@@ -114,11 +116,7 @@ fn units(line: &[u8], separator: Separator, fields: usize) -> Option<Vec<String>
 
 /// The unit that a text spells, with or without brackets around it.
 fn unit_of(text: &str) -> Option<String> {
-    let inner = text
-        .trim()
-        .trim_start_matches(['[', '('])
-        .trim_end_matches([']', ')'])
-        .trim();
+    let inner = text.trim().trim_start_matches(['[', '(']).trim_end_matches([']', ')']).trim();
     Unit::parse(if text.contains('[') { inner } else { text.trim() })
         .or_else(|_| Unit::parse(inner))
         .ok()

@@ -75,8 +75,9 @@ pub(super) fn find(
     for (i, name) in names.iter().enumerate() {
         let shape = shapes.get(i).copied().flatten();
         let column = cells.get(i).map(Vec::as_slice).unwrap_or_default();
-        let stamps: Vec<Stamp> =
-            shape.map(|s| column.iter().filter_map(|c| stamps::parse(bare(c), s)).collect()).unwrap_or_default();
+        let stamps: Vec<Stamp> = shape
+            .map(|s| column.iter().filter_map(|c| stamps::parse(bare(c), s)).collect())
+            .unwrap_or_default();
         let base_s = match (shape, stamps.first()) {
             (Some(s), Some(first)) if s.is_dated() => first.seconds.div_euclid(DAY_S) * DAY_S,
             _ => 0,
@@ -184,9 +185,12 @@ fn week_and_seconds(
         };
         cells.get(i).map(|c| c.iter().filter_map(value).collect()).unwrap_or_default()
     };
-    let named = |words: &[&str]| (0..names.len()).find(|&i| number(i) && names.get(i).is_some_and(|n| has(n, words)));
+    let named =
+        |words: &[&str]| (0..names.len()).find(|&i| number(i) && names.get(i).is_some_and(|n| has(n, words)));
     let stated_second = stated.as_ref().map(|s| s.1).or(stated_seconds);
-    let seconds = stated_second.or_else(|| named(&["tow", "sow", "itow", "seconds_of_week", "time_of_week", "gps_seconds", "gpsseconds"]));
+    let seconds = stated_second.or_else(|| {
+        named(&["tow", "sow", "itow", "seconds_of_week", "time_of_week", "gps_seconds", "gpsseconds"])
+    });
     let Some(second) = seconds else { return };
     let milliseconds = found.columns.get(second).and_then(|c| c.unit.as_deref()) == Some("ms")
         || names.get(second).is_some_and(|n| has(n, &["ms", "мс"]));
@@ -202,7 +206,13 @@ fn week_and_seconds(
     match (week, weeks.first()) {
         (Some(first), Some(&offset)) if whole => {
             let pair = Pair { first, second, offset, scale: WEEK_S, divisor };
-            add(found, pair, Some(GPS_EPOCH_S + offset * WEEK_S), "ingest.delimited.stamps_gps", stated.map(|s| s.2));
+            add(
+                found,
+                pair,
+                Some(GPS_EPOCH_S + offset * WEEK_S),
+                "ingest.delimited.stamps_gps",
+                stated.map(|s| s.2),
+            );
         }
         _ => {
             if let Some(column) = found.columns.get_mut(second) {
@@ -220,10 +230,7 @@ fn add(found: &mut Kinds, pair: Pair, epoch_s: Option<f64>, key: &'static str, n
     let (first, second) = (name(pair.first).to_owned(), name(pair.second).to_owned());
     let joined = name_stated.unwrap_or_else(|| format!("{first}+{second}"));
     found.notes.push(
-        Note::new(key)
-            .with("first", first)
-            .with("second", second)
-            .with("column", Arg::Text(joined.clone())),
+        Note::new(key).with("first", first).with("second", second).with("column", Arg::Text(joined.clone())),
     );
     found.pairs.push(pair);
     found.columns.push(Column {

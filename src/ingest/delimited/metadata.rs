@@ -58,7 +58,9 @@ mod tests {
     fn keys_and_values_are_told_apart() {
         let mut m = Metadata::default();
         let semicolon = Some(Separator::Byte(b';'));
-        for line in ["Serial;SN-0042", "Прибор: ВОГ-1 № 12", "Test of a gyro", "rate = 10 Hz", "---", "12:30:00"] {
+        for line in
+            ["Serial;SN-0042", "Прибор: ВОГ-1 № 12", "Test of a gyro", "rate = 10 Hz", "---", "12:30:00"]
+        {
             m.take(line.as_bytes(), semicolon);
         }
         let list = m.into_list();

@@ -8,6 +8,7 @@ mod fields;
 mod header;
 mod kinds;
 mod metadata;
+mod names;
 mod reader;
 mod rows;
 mod separator;
@@ -33,8 +34,9 @@ impl Format for DelimitedText {
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
         let dialect = dialect::sniff(file)?;
-        let rows_estimate = (file.packing == Packing::Plain && dialect.mean_line > 0.0)
-            .then(|| ((file.bytes as f64 - dialect.data_offset as f64).max(0.0) / dialect.mean_line).round() as u64);
+        let rows_estimate = (file.packing == Packing::Plain && dialect.mean_line > 0.0).then(|| {
+            ((file.bytes as f64 - dialect.data_offset as f64).max(0.0) / dialect.mean_line).round() as u64
+        });
         let table = reader::Text {
             path: file.path.clone(),
             packing: file.packing,
@@ -53,3 +55,6 @@ impl Format for DelimitedText {
         })
     }
 }
+
+#[cfg(test)]
+mod cases_tests;

@@ -156,7 +156,9 @@ impl<'a> LineParser<'a> {
             let mut joined = columns.get_mut(*slot).map(std::mem::take).unwrap_or_default();
             joined.clear();
             if let (Some(first), Some(second)) = (columns.get(*first), columns.get(*second)) {
-                joined.extend(first.iter().zip(second).map(|(a, b)| (a - pair.offset) * pair.scale + b / pair.divisor));
+                joined.extend(
+                    first.iter().zip(second).map(|(a, b)| (a - pair.offset) * pair.scale + b / pair.divisor),
+                );
             }
             if let Some(column) = columns.get_mut(*slot) {
                 *column = joined;

@@ -66,7 +66,9 @@ pub(super) fn list(source: &Source) -> Result<Vec<Listed>, IngestError> {
     if let Some(time) = time {
         // One column keeps time; the others that could are kept beside.
         let others = listed.iter_mut().enumerate().filter(|(i, c)| *i != time && c.guess.role == Role::Time);
-        others.filter(|(_, c)| c.content == Content::Numbers).for_each(|(_, c)| c.guess.role = Role::Auxiliary);
+        others
+            .filter(|(_, c)| c.content == Content::Numbers)
+            .for_each(|(_, c)| c.guess.role = Role::Auxiliary);
     }
     if listed.iter().any(|c| c.content == Content::Numbers) {
         return Ok(listed);

@@ -45,7 +45,10 @@ fn file(page: &mut Page, source: &Source, seen: &Seen) {
         page.note(&if i == 0 { word("inspect.reader") } else { String::new() }, note);
     }
     for (i, (key, value)) in source.metadata().iter().enumerate() {
-        page.row(&if i == 0 { word("inspect.stated.label") } else { String::new() }, &format!("{key}: {value}"));
+        page.row(
+            &if i == 0 { word("inspect.stated.label") } else { String::new() },
+            &format!("{key}: {value}"),
+        );
     }
     if let Some(serial) = source.stated_serial() {
         page.note("", &Note::new("inspect.stated.serial").with("serial", serial));
