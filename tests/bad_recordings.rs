@@ -72,12 +72,9 @@ fn zst(bytes: &[u8]) -> Vec<u8> {
 fn what_is_no_recording_is_refused_by_its_content() {
     let zip = b"PK\x03\x04\x14\x00\x06\x00\x08\x00\x00\x00!\x00[Content_Types].xml";
     let png = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x10\x00\x00\x00\x10\x08\x06\x00\x00\x00";
-    let utf16: Vec<u8> =
-        [0xfeff].into_iter().chain(recording(10).encode_utf16()).flat_map(u16::to_le_bytes).collect();
     let binary: Vec<u8> = (0..4096u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     refused("zip.csv", zip, &["a zip archive or a spreadsheet", "export the sheet as CSV"]);
     refused("png.csv", png, &["neither text nor Parquet"]);
-    refused("utf16.csv", &utf16, &["UTF-16", "save it as UTF-8"]);
     refused("binary.csv", &binary, &["neither text nor Parquet"]);
     refused("nul.csv", rate(500, "12.5\u{0}").as_bytes(), &["neither text nor Parquet"]);
     refused("empty.csv", b"", &["the file is empty"]);
@@ -90,6 +87,34 @@ fn what_is_no_recording_is_refused_by_its_content() {
     for said in [analysed, run] {
         assert_eq!(said.code, 2);
         assert!(said.err.contains("folder.csv: is a folder, not a recording"), "{}", said.err);
+    }
+}
+
+#[test]
+fn a_recording_reads_the_same_in_every_encoding_and_dialect() {
+    let text = recording(ROWS);
+    let dir = tempdir().unwrap();
+    let wide = |marked: &str| -> Vec<u8> { marked.encode_utf16().flat_map(u16::to_le_bytes).collect() };
+    let semicolons = text.replace(',', ";").replace('.', ",");
+    let n = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("r.csv"), bytes).unwrap();
+        let (analysed, run) = both(dir.path(), "r.csv");
+        assert_eq!((analysed.code, run.code), (0, 3), "{analysed:?} {run:?}");
+        let r = result(&dir.path().join("a"));
+        assert_eq!(r["integrity"]["faults"].as_array().unwrap().len(), 0);
+        support::measurand(&r, "angle_random_walk")["value"].as_f64().unwrap()
+    };
+    let expected = n(text.as_bytes());
+    for bytes in [
+        wide(&format!("\u{feff}{text}")),
+        wide(&text),
+        semicolons.clone().into_bytes(),
+        text.replace(',', "   ").into_bytes(),
+        gzip(&wide(&semicolons)),
+        format!("# ВОГ\n{text}").into_bytes(),
+        [&b"# \xc2\xce\xc3\n"[..], text.as_bytes()].concat(),
+    ] {
+        assert_eq!(n(&bytes).to_bits(), expected.to_bits());
     }
 }
 

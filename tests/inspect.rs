@@ -94,12 +94,23 @@ fn a_sample_rate_helps_where_there_is_no_time() {
 }
 
 #[test]
-fn stamps_as_text_are_named() {
+fn stamps_are_read_and_other_text_is_named() {
     let files = Files::new();
     let rows: String = (0..60).map(|i| format!("2026-11-21T05:00:{i:02}Z,{:.3}\n", rate(i))).collect();
     let (code, out, err) = inspect(&files.write("unit.csv", &format!("time,rate_deg_h\n{rows}")), &[]);
     assert_eq!(code, 0, "{err}");
-    assert!(out.contains("`time` looks like a time, but holds text (2026-11-21T05:00:00Z)"), "{out}");
+    for said in [
+        "The stamps of `time`.",
+        "1 Hz, one sample every 1 s",
+        "start 2026-11-21T05:00:00.000Z",
+        "year first",
+    ] {
+        assert!(out.contains(said), "no `{said}` in {out}");
+    }
+    let rows: String = (0..60).map(|i| format!("noon {i},{:.3}\n", rate(i))).collect();
+    let (code, out, err) = inspect(&files.write("noon.csv", &format!("time,rate_deg_h\n{rows}")), &[]);
+    assert_eq!(code, 0, "{err}");
+    assert!(out.contains("`time` looks like a time, but holds text (noon 0)"), "{out}");
 }
 
 #[test]

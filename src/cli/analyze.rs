@@ -6,7 +6,6 @@ use crate::output::StagedFolder;
 use crate::procedure::EffectiveLimits;
 use crate::procedure::model::Procedure;
 use crate::record::UnitUnderTest;
-use crate::recording::guess::guess;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::run::{Request, analysis};
 use crate::text::{Lang, Note};
@@ -35,7 +34,7 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
     let folder = StagedFolder::begin(&out).map_err(|e| say(e.note()))?;
-    let source = crate::ingest::open(&args.recording).map_err(|e| say(e.note()))?;
+    let source = crate::ingest::open_with(&args.recording, &args.read.options()).map_err(|e| say(e.note()))?;
     let channels = channels(args, &source).map_err(say)?;
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     if !use_stamps && args.sample_rate.is_none() {
@@ -75,19 +74,14 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
         Some("none") => {}
         Some(name) => channels.push(time(source, name)?),
         None => {
-            let found = source.columns().iter().find(|c| {
-                let g = guess(&c.name, c.unit.as_deref());
-                c.numeric && g.role == Role::Time
-            });
-            if let Some(column) = found {
+            if let Some(column) = source.time_column().and_then(|i| source.columns().get(i)) {
                 channels.push(time(source, &column.name)?);
             }
         }
     }
     let taken: Vec<ColumnRef> = channels.iter().map(|c| c.column.clone()).collect();
     let wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() {
-        let gyro = |name: &str, unit: Option<&str>| guess(name, unit).role.is_gyro();
-        let columns = source.columns().iter().filter(|c| c.numeric && gyro(&c.name, c.unit.as_deref()));
+        let columns = source.columns().iter().filter(|c| c.numeric && c.guess().role.is_gyro());
         columns.map(|c| (c.name.clone(), ColumnRef::Name(c.name.clone()))).collect()
     } else {
         args.rate.iter().map(|name| (name.clone(), reference(name))).collect()
@@ -95,7 +89,7 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
     for (name, column) in wanted {
         let index = source.resolve(&column).map_err(|e| e.note())?;
         let found = &source.columns()[index];
-        let guessed = guess(&found.name, found.unit.as_deref());
+        let guessed = found.guess();
         let unit = match &unit {
             Some(unit) => unit.clone(),
             None if guessed.role.is_gyro() && guessed.unit_is_named => guessed.unit,
@@ -119,7 +113,7 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
         return Err(about(args, "cli.no_gyro").with("columns", names.join(", ")));
     }
     for column in source.columns().iter().filter(|c| c.numeric) {
-        let g = guess(&column.name, column.unit.as_deref());
+        let g = column.guess();
         let reference = ColumnRef::Name(column.name.clone());
         if g.role == Role::Temperature && g.unit_is_named && !taken.contains(&reference) {
             channels.push(Channel {
@@ -138,7 +132,7 @@ fn time(source: &Source, name: &str) -> Result<Channel, Note> {
     let column = reference(name);
     let index = source.resolve(&column).map_err(|e| e.note())?;
     let found = &source.columns()[index];
-    let g = guess(&found.name, found.unit.as_deref());
+    let g = found.guess();
     let unit = if g.role == Role::Time { g.unit } else { Unit::parse("s").map_err(|e| e.note())? };
     Ok(Channel { id: "time".into(), column, role: Role::Time, unit, scale: 1.0 })
 }

@@ -6,6 +6,7 @@ mod help;
 mod inspect;
 mod place;
 mod progress;
+mod read;
 mod run;
 mod schema;
 mod selftest;
@@ -123,6 +124,8 @@ struct InspectArgs {
     /// Sample rate, where the recording has no time column
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
+    #[command(flatten)]
+    read: read::ReadArgs,
 }
 
 #[derive(Debug, Args)]
@@ -152,6 +155,8 @@ struct AnalyzeArgs {
     templates: Option<PathBuf>,
     #[command(flatten)]
     grid: GridArgs,
+    #[command(flatten)]
+    read: read::ReadArgs,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

@@ -50,7 +50,7 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let folder = StagedFolder::begin(&out).map_err(|e| place::error(&e.note(), lang))?;
     // A recording that is there and cannot be opened still gets its report: the verdict is an error, and says why. A
     // name that is no file is a slip of the pen, which must not cost an earlier result.
-    let (source, refused) = match crate::ingest::open(&args.recording) {
+    let (source, refused) = match crate::ingest::open_with(&args.recording, &procedure.value.recording.read) {
         Ok(source) => (source, None),
         Err(error) if !args.recording.exists() => return Err(place::error(&error.note(), lang)),
         Err(error) => (Source::unopened(&args.recording), Some(error)),

@@ -6,6 +6,7 @@
 
 mod binary;
 mod choice;
+mod column;
 pub mod compressed;
 mod delimited;
 mod error;
@@ -19,54 +20,19 @@ mod plan;
 mod reduce;
 mod stream;
 
+pub use column::Column;
+pub(crate) use column::DATES;
 pub use compressed::Packing;
 pub use error::{IngestError, IngestErrorKind};
-pub use options::{Encoding, ReadOptions, TextOptions};
+pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
 pub use plan::{Plan, TimeBaseSpec, prepare};
 pub use stream::{ChannelFacts, StreamReport, stream, stream_path};
 
-use crate::recording::guess::{Guess, guess};
-use crate::recording::{ColumnRef, Role};
+use crate::recording::ColumnRef;
 use crate::text::Note;
 use compressed::{ByteStream, io_error};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-
-/// A column of a file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Column {
-    /// Name in the header, or `column_1`, `column_2` ... where there is none.
-    pub name: String,
-    /// True when the format can give numbers for it. A text file says so of every column.
-    pub numeric: bool,
-    /// Type in the file, in the format's words, for example `DOUBLE`; `text` for text files.
-    pub storage: String,
-    /// Unit the format itself declares, for example `ms` for a Parquet time stamp.
-    pub unit: Option<String>,
-    /// Seconds from 1970 to the zero of the values, when the reader turned stamps with a date into seconds; the unit is
-    /// `s` then.
-    pub epoch_s: Option<f64>,
-    /// Period after which the stamps start again, s: 86400 for clock time, 604800 for seconds of a week.
-    pub rollover_s: Option<f64>,
-}
-
-impl Column {
-    /// What the column may be: from what the reader knows of it, else from its name.
-    pub fn guess(&self) -> Guess {
-        let mut guess = guess(&self.name, self.unit.as_deref());
-        if self.holds_stamps() && guess.role != Role::Time {
-            guess.role = Role::Time;
-            guess.unit_is_named = true;
-            guess.reason = Note::new("guess.stamps").with("name", self.name.as_str());
-        }
-        guess
-    }
-
-    /// True when the reader turned stamps into seconds, or found seconds that start again.
-    pub fn holds_stamps(&self) -> bool {
-        self.epoch_s.is_some() || self.rollover_s.is_some()
-    }
-}
 
 /// Why a field is no finite number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -350,22 +316,6 @@ impl Source {
     /// Sample rate that the file states, Hz. It counts only where neither stamps nor the user tell the rate.
     pub fn stated_sample_rate_hz(&self) -> Option<f64> {
         self.opened.stated_sample_rate_hz
-    }
-
-    /// The serial number of the unit, where the file states one under a usual key.
-    pub fn stated_serial(&self) -> Option<&str> {
-        choice::serial(self.metadata())
-    }
-
-    /// Position of the column that tells the time, from 0: stamps with a date go before clock times, these before a
-    /// column of numbers that is named like a time.
-    pub fn time_column(&self) -> Option<usize> {
-        let fits = |wanted: fn(&Column) -> bool| {
-            self.columns().iter().position(|c| c.numeric && wanted(c) && c.guess().role == Role::Time)
-        };
-        let several = self.columns().iter().filter(|c| c.numeric && c.guess().role == Role::Time).count() > 1;
-        let dated = || fits(|c| c.epoch_s.is_some());
-        if several { dated().or_else(|| fits(|_| true)) } else { fits(|_| true) }
     }
 
     /// Finds a column; the result is its position from 0.

@@ -1,5 +1,6 @@
 //! How a file is to be read, where its user says so and nothing is left to be found out.
 
+use crate::recording::ColumnRef;
 use std::path::PathBuf;
 
 /// Decisions about a file that were made for it; what is `None` is found from the file, and the finding is told.
@@ -30,6 +31,50 @@ pub struct TextOptions {
     pub first_line: Option<u64>,
     /// Beginning of lines that are comments wherever they stand.
     pub comment: Option<String>,
+    /// How the stamps of columns are written.
+    pub stamps: Vec<StampOptions>,
+}
+
+/// How the stamps of a column are written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StampOptions {
+    /// The column.
+    pub column: ColumnRef,
+    /// How they are written; found from the file where it is left out.
+    pub writing: Option<StampWriting>,
+    /// Column of the date that belongs to the clock time.
+    pub date_column: Option<ColumnRef>,
+    /// Column of the GPS week that belongs to the seconds of week.
+    pub week_column: Option<ColumnRef>,
+}
+
+impl StampOptions {
+    /// Name of the column that two columns make together; `None` where the stamps stand in one.
+    pub fn joined_name(&self) -> Option<String> {
+        let text = |column: &ColumnRef| match column {
+            ColumnRef::Name(name) => name.clone(),
+            ColumnRef::Position(position) => position.to_string(),
+        };
+        let first = self.week_column.as_ref().or(self.date_column.as_ref())?;
+        Some(format!("{}+{}", text(first), text(&self.column)))
+    }
+}
+
+/// How stamps are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StampWriting {
+    /// Date and time with the year first, ISO 8601 or RFC 3339.
+    Iso8601,
+    /// Date and time with the day first.
+    DayFirst,
+    /// Date and time with the month first.
+    MonthFirst,
+    /// Clock time.
+    Clock,
+    /// Numbers of seconds of the GPS week.
+    GpsWeekSeconds,
+    /// Numbers.
+    Number,
 }
 
 /// A character encoding of text files.

@@ -34,7 +34,14 @@ pub fn load_limits(path: &Path) -> Result<Loaded<LimitsFile>, Problems> {
 /// # Errors
 /// Every problem of the text.
 pub fn parse_procedure(name: &str, bytes: &[u8]) -> Result<Loaded<Procedure>, Problems> {
-    loaded(name, bytes, parse::procedure)
+    let mut procedure = loaded(name, bytes, parse::procedure)?;
+    // A layout stands beside its procedure, wherever the program is started.
+    if let (Some(layout), Some(folder)) =
+        (&mut procedure.value.recording.read.layout, Path::new(name).parent())
+    {
+        *layout = folder.join(&*layout);
+    }
+    Ok(procedure)
 }
 
 /// Reads a limits file from its bytes.

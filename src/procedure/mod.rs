@@ -9,6 +9,7 @@ mod load;
 pub mod model;
 mod parse;
 pub mod power;
+pub mod reading;
 pub mod schema;
 pub mod tables;
 mod tables_conditions;

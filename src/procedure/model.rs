@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, SourceText, Span};
 use super::limits::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use crate::ids::MeasurandId;
+use crate::ingest::ReadOptions;
 use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
 use chrono::NaiveDate;
@@ -41,6 +42,8 @@ pub struct Procedure {
     pub author: Option<String>,
     /// The unit it is for.
     pub unit_under_test: UnitSpec,
+    /// How the recording is read.
+    pub recording: RecordingSpec,
     /// Declared sample rate, Hz.
     pub sample_rate_hz: Option<f64>,
     /// Largest relative difference between the declared and the measured sample rate.
@@ -67,6 +70,13 @@ pub struct Procedure {
     pub report: ReportSpec,
     /// Waivers, each for one unit.
     pub waivers: Vec<Waiver>,
+}
+
+/// How a recording is read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RecordingSpec {
+    /// Decisions about the file that the procedure makes.
+    pub read: ReadOptions,
 }
 
 /// The unit a procedure is for.

@@ -4,14 +4,15 @@ use super::diagnostics::{Problems, SourceText};
 use super::limits::{self, LimitsFile};
 use super::model::{
     Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, FaultBudget, Instrument, MeasurandSpec,
-    Orientation, Procedure, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition, UnitSpec, Waiver,
+    Orientation, Procedure, RecordingSpec, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition,
+    UnitSpec, Waiver,
 };
 use super::reader::{self, Reader};
 use super::section::{Entry, Section};
 use super::spec::TableSpec;
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
-use super::{channel, validate};
+use super::{channel, reading, validate};
 use crate::record::{ClauseRecord, WaiverRecord};
 
 /// Reads a procedure from its text. The second value holds every problem, warnings among them.
@@ -71,6 +72,7 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
         clause: text("clause"),
         author: text("author"),
         unit_under_test: unit(root.table("unit_under_test")),
+        recording: RecordingSpec { read: reading::options(recording, root.tables("channel"), reader) },
         sample_rate_hz: recording.and_then(|r| r.number("sample_rate")),
         sample_rate_tolerance: recording.and_then(|r| r.number("sample_rate_tolerance")).unwrap_or(0.01),
         channels: root.tables("channel").iter().filter_map(|s| one_channel(s, reader)).collect(),

@@ -142,8 +142,90 @@ static RECORDING: TableSpec = TableSpec {
             "\"0.1 %\"",
             "Largest relative difference between the declared and the measured sample rate.",
         ),
+        optional("format", Kind::Text, "\"csv\"", "Id of the file format; left out: found by the content."),
+        optional(
+            "encoding",
+            Kind::Choice(ENCODINGS),
+            "\"windows-1251\"",
+            "Character encoding of a text file; left out: found from its bytes.",
+        ),
+        optional(
+            "delimiter",
+            Kind::Choice(DELIMITERS),
+            "\"semicolon\"",
+            "Separator of the fields of a text file; left out: found from its lines.",
+        ),
+        optional(
+            "decimal",
+            Kind::Choice(DECIMALS),
+            "\"comma\"",
+            "Decimal sign of a text file; left out: found from its numbers.",
+        ),
+        optional(
+            "header_line",
+            Kind::Number(Range::between(0.0, 10_000.0)),
+            "4",
+            "Line that names the columns of a text file, counted from 1; 0: there is none; left out: found.",
+        ),
+        optional(
+            "first_line",
+            Kind::Number(Range::between(1.0, 10_000.0)),
+            "6",
+            "First line of data of a text file, counted from 1; left out: found.",
+        ),
+        optional(
+            "comment",
+            Kind::Text,
+            "\"#\"",
+            "Beginning of comment lines of a text file; left out: `#`, `%`, `//`, and `;` where it does not separate.",
+        ),
+        optional(
+            "part",
+            Kind::Text,
+            "\"/imu/gyro\"",
+            "Part of a container that holds the recording: a dataset, a variable, a topic.",
+        ),
+        optional(
+            "layout",
+            Kind::Text,
+            "\"layouts/logger.toml\"",
+            "Layout of the records of a raw binary file, relative to the procedure.",
+        ),
     ],
 };
+
+/// Character encodings of text files.
+pub const ENCODINGS: &[Word] = &[
+    ("utf-8", "UTF-8, with or without byte-order mark"),
+    ("utf-16le", "UTF-16, little endian"),
+    ("utf-16be", "UTF-16, big endian"),
+    ("windows-1251", "Windows-1251, Cyrillic"),
+];
+
+/// Separators of fields, as words and as characters.
+pub const DELIMITERS: &[Word] = &[
+    ("comma", "`,`"),
+    ("semicolon", "`;`"),
+    ("tab", "a tab"),
+    ("space", "runs of spaces or tabs"),
+    ("pipe", "`|`"),
+    (",", "as `comma`"),
+    (";", "as `semicolon`"),
+    ("|", "as `pipe`"),
+];
+
+/// Decimal signs.
+pub const DECIMALS: &[Word] = &[("point", "`.`"), ("comma", "`,`")];
+
+/// Ways to write time stamps.
+pub const STAMPS: &[Word] = &[
+    ("iso8601", "date and time with the year first, ISO 8601 or RFC 3339"),
+    ("day_first", "date and time with the day first, as in Russia"),
+    ("month_first", "date and time with the month first, as in the United States"),
+    ("clock", "clock time, which starts again at midnight"),
+    ("gps_week_seconds", "seconds of the GPS week, which start again after 604800 s"),
+    ("number", "numbers"),
+];
 
 static CHANNEL: TableSpec = TableSpec {
     name: "channel",
@@ -175,6 +257,24 @@ static CHANNEL: TableSpec = TableSpec {
             "false",
             "true",
             "True when the channel counts in the opposite direction; its values change sign.",
+        ),
+        optional(
+            "stamp",
+            Kind::Choice(STAMPS),
+            "\"day_first\"",
+            "How the time stamps of a text file are written, for the role `time`; left out: found. Stamps become seconds, so that `unit` is \"s\".",
+        ),
+        optional(
+            "date_column",
+            Kind::Column,
+            "\"date\"",
+            "Column of the dates that belong to the clock times in `column`, for the role `time`.",
+        ),
+        optional(
+            "week_column",
+            Kind::Column,
+            "\"gps_week\"",
+            "Column of the GPS weeks that belong to the seconds of week in `column`, for the role `time`.",
         ),
         optional(
             "rail_low",

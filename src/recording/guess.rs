@@ -99,7 +99,7 @@ pub fn guess(name: &str, declared_unit: Option<&str>) -> Guess {
     let words = words(&stem);
     let (unit, body, source) = if let Some(unit) = declared_unit.and_then(parse) {
         (Some(unit), words.as_slice(), "guess.declared")
-    } else if let Some(unit) = bracketed.as_deref().and_then(parse) {
+    } else if let Some(unit) = bracketed.as_deref().filter(|b| *b != "1").and_then(parse) {
         (Some(unit), words.as_slice(), "guess.brackets")
     } else if let Some((unit, used)) = unit_at_end(&words) {
         (Some(unit), words.get(..words.len() - used).unwrap_or_default(), "guess.ending")
@@ -142,7 +142,7 @@ pub(crate) fn split_brackets(name: &str) -> (String, Option<String>) {
             }
         }
     }
-    match name.rsplit_once(", ").filter(|(_, u)| parse(u).is_some()) {
+    match name.rsplit_once(',').filter(|(_, u)| parse(u).is_some()) {
         Some((stem, unit)) => (stem.trim().to_owned(), Some(unit.trim().to_owned())),
         None => (name.to_owned(), None),
     }
@@ -189,9 +189,12 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
     let numbered = |stem: &str| {
         words.iter().any(|w| w.strip_prefix(stem).is_some_and(|r| r.chars().all(|c| c.is_ascii_digit())))
     };
-    let temperature = has(&["temperature", "температура", "темп"]) || numbered("temp") || numbered("t");
-    let table = has(&["table", "turntable", "стенд"]);
-    let outer = has(&["outer"]);
+    let temperature = has(&["temperature", "температура", "температуры", "темп"])
+        || numbered("temp")
+        || numbered("t")
+        || numbered("т");
+    let table = has(&["table", "turntable", "стенд", "стенда", "стол", "стола", "платформа", "платформы"]);
+    let outer = has(&["outer", "внешняя", "внешней"]);
     let gyro = has(&[
         "gyro",
         "gyr",
@@ -210,11 +213,51 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
         "gz",
         "fog",
         "rlg",
+        "ω",
+        "ωx",
+        "ωy",
+        "ωz",
         "угловая",
         "скорость",
+        "гироскоп",
+        "гироскопа",
+        "вог",
+        "лг",
+        "выходной",
     ]);
-    let increment = has(&["delta", "dtheta", "increment", "inc", "dangle", "dtheta_x"]);
-    let time = has(&["time", "t", "timestamp", "stamp", "seconds", "sec", "epoch", "время", "utc", "unix"]);
+    let increment =
+        has(&["delta", "dtheta", "increment", "inc", "dangle", "dtheta_x", "приращение", "приращения"]);
+    let time = has(&[
+        "time",
+        "t",
+        "timestamp",
+        "stamp",
+        "seconds",
+        "sec",
+        "epoch",
+        "utc",
+        "unix",
+        "gps",
+        "tow",
+        "sow",
+        "clock",
+        "datetime",
+        "время",
+        "т",
+        "секунды",
+    ]);
+    let counter = has(&[
+        "counter",
+        "sample",
+        "samples",
+        "seq",
+        "sequence",
+        "счётчик",
+        "счетчик",
+        "отсчёт",
+        "отсчет",
+    ]) || matches!(words, [only] if ["n", "index", "idx", "i", "count", "номер"].contains(&only.as_str()))
+        || words.is_empty();
     if is(RATE) {
         return match (table, outer) {
             (_, true) => Role::OuterRate,
@@ -237,7 +280,8 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
         return if time { Role::Time } else { Role::Auxiliary };
     }
     if is("V") {
-        return if has(&["supply", "vcc", "vdd", "psu", "voltage", "питание"]) {
+        return if has(&["supply", "vcc", "vdd", "psu", "voltage", "питание", "питания", "напряжение"])
+        {
             Role::Supply
         } else {
             Role::Auxiliary
@@ -250,14 +294,17 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
     let accel = has(&["accel", "acc", "accelerometer", "mag", "magnetometer", "pressure", "humidity"]);
     match () {
         _ if accel => Role::Auxiliary,
+        _ if counter && !gyro && !increment => Role::Counter,
         _ if counts => Role::Auxiliary,
-        _ if table && has(&["rate", "speed"]) => Role::TableRate,
-        _ if table && has(&["angle", "position"]) => Role::TableAngle,
+        _ if table && has(&["rate", "speed", "скорость"]) => Role::TableRate,
+        _ if table && has(&["angle", "position", "угол", "положение"]) => Role::TableAngle,
         _ if increment => Role::AngleIncrement,
         _ if gyro => Role::Rate,
         _ if has(&["time", "timestamp", "время"]) || words == ["t"] => Role::Time,
         _ if temperature => Role::Temperature,
-        _ if has(&["supply", "vcc", "vdd"]) => Role::Supply,
+        _ if has(&["supply", "vcc", "vdd", "питание", "питания", "напряжение"]) => {
+            Role::Supply
+        }
         _ => Role::Auxiliary,
     }
 }
@@ -302,8 +349,28 @@ mod tests {
             ("pitch_deg", Role::Auxiliary, "deg"),
             ("angle_sum_x_deg", Role::Auxiliary, "deg"),
             ("gyro_raw_counts", Role::Auxiliary, "count"),
-            ("sample_index", Role::Auxiliary, "1"),
-            ("host_counter", Role::Auxiliary, "1"),
+            ("sample_index", Role::Counter, "1"),
+            ("host_counter", Role::Counter, "1"),
+            ("N", Role::Counter, "1"),
+            ("№", Role::Counter, "1"),
+            ("Время, мс", Role::Time, "ms"),
+            ("t, с", Role::Time, "s"),
+            ("timestamp_us", Role::Time, "us"),
+            ("Угловая скорость, град/ч", Role::Rate, "deg/h"),
+            ("ωx, °/с", Role::Rate, "deg/s"),
+            ("Ω", Role::Rate, "deg/h"),
+            ("Выходной сигнал, град/ч", Role::Rate, "deg/h"),
+            ("Гироскоп", Role::Rate, "deg/h"),
+            ("Приращение угла, угл.с", Role::AngleIncrement, "arcsec"),
+            ("Температура, °C", Role::Temperature, "degC"),
+            ("Т1, °С", Role::Temperature, "degC"),
+            ("Т1", Role::Temperature, "degC"),
+            ("Напряжение, В", Role::Supply, "V"),
+            ("Питание, мВ", Role::Supply, "mV"),
+            ("Угол стола, град", Role::TableAngle, "deg"),
+            ("Скорость стенда, град/с", Role::TableRate, "deg/s"),
+            ("segment_index", Role::Auxiliary, "1"),
+            ("rate (1)", Role::Rate, "deg/h"),
             ("section", Role::Auxiliary, "1"),
             ("reset", Role::Auxiliary, "1"),
         ] {

@@ -3,7 +3,7 @@
 use crate::measurand::ids::{MEASURANDS, Test};
 use crate::procedure::limits::LimitSet;
 use crate::procedure::model::{
-    Analysis, ChannelSpec, Conditions, EarthRate, MeasurandSpec, Procedure, ReportSpec, Taus, UnitSpec,
+    Analysis, ChannelSpec, Conditions, EarthRate, MeasurandSpec, Procedure, RecordingSpec, ReportSpec, Taus, UnitSpec,
 };
 use crate::recording::Channel;
 
@@ -17,6 +17,7 @@ pub fn procedure(channels: Vec<Channel>, sample_rate_hz: Option<f64>, warm_up_s:
         clause: None,
         author: None,
         unit_under_test: UnitSpec::default(),
+        recording: RecordingSpec::default(),
         sample_rate_hz,
         sample_rate_tolerance: 0.01,
         channels: channels

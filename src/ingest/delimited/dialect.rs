@@ -2,7 +2,7 @@
 
 use super::encoding::{self, Found};
 use super::fields::{Comments, Separator, words};
-use super::header::{self, Above, Header};
+use super::header::{self, Header};
 use super::kinds::{self, Kinds};
 use super::metadata::Metadata;
 use super::rows::Lines;
@@ -37,10 +37,11 @@ pub(super) struct Dialect {
 /// Most lines that are looked at, comments above the data left out.
 const LINES: usize = 200;
 
-struct Line<'a> {
+/// A line of the head: position of its first byte, number counted from 1, text without its end.
+pub(super) struct Line<'a> {
     at: usize,
-    number: u64,
-    text: &'a [u8],
+    pub number: u64,
+    pub text: &'a [u8],
 }
 
 /// Finds the dialect from the start of a file.
@@ -133,15 +134,16 @@ fn lines<'a>(head: &'a [u8], all: bool, most: usize, comment: &dyn Fn(&[u8]) -> 
     lines
 }
 
-struct Sniffed<'a> {
-    path: &'a Path,
-    file: &'a Candidate,
-    cut: Cut,
-    comments: Comments,
+/// What is known once the lines can be cut.
+pub(super) struct Sniffed<'a> {
+    pub path: &'a Path,
+    pub file: &'a Candidate,
+    pub cut: Cut,
+    pub comments: Comments,
 }
 
 impl Sniffed<'_> {
-    fn error(&self, message: Note) -> IngestError {
+    pub(super) fn error(&self, message: Note) -> IngestError {
         IngestError::new(IngestErrorKind::UnknownFormat, self.path, message)
     }
 
@@ -262,71 +264,6 @@ impl Sniffed<'_> {
         Ok(())
     }
 
-    /// Names and units above the data; refuses a header that does not fit.
-    fn header(&self, above: &[Line<'_>], data: &[&Line<'_>]) -> Result<Header, IngestError> {
-        let options = &self.file.options.text;
-        let (separator, fields) = (self.cut.separator, self.cut.fields);
-        let cells = |l: &Line<'_>| separator.closed_cells(l.text).len();
-        let lines: Vec<Above<'_>> = above
-            .iter()
-            .map(|l| match self.comments.prefix_of(l.text) {
-                Some(prefix) => {
-                    let text = l.text.trim_ascii_start();
-                    (l.number, text.get(prefix.len()..).unwrap_or_default().trim_ascii(), true)
-                }
-                None => (l.number, l.text, false),
-            })
-            .collect();
-        let header = match options.header_line {
-            Some(0) => Header::default(),
-            stated => header::find(&lines, separator, fields, stated),
-        };
-        let whole = |l: &&&Line<'_>| {
-            let of = separator.closed_cells(l.text);
-            of.iter().all(|c| !c.contains(&b'.') && looks(c, b'.') == Looks::Number)
-        };
-        let commas = self.cut.separator == Separator::Byte(b',') && fields > 1 && self.cut.decimal == b'.';
-        let all_whole = commas && !data.is_empty() && data.iter().all(|l| whole(&l));
-        let plain = || above.iter().filter(|l| !self.comments.holds(l.text));
-        let last = match options.header_line {
-            Some(0) => None,
-            Some(n) => above.iter().find(|l| l.number == n),
-            None => plain().last(),
-        };
-        let named = header.names.is_some();
-        if !named && all_whole && options.delimiter.is_none() {
-            let zeros = |c: &&[u8]| c.len() > 1 && c.starts_with(b"0");
-            let fraction =
-                data.iter().flat_map(|l| separator.cells(l.text).into_iter().skip(1)).any(|c| zeros(&c));
-            let title = last.is_some_and(|l| cells(l) < fields);
-            if let Some(line) = data.first().filter(|_| fraction || title) {
-                return Err(self
-                    .error(Note::new("ingest.delimited.comma_twice"))
-                    .at(line.number, None)
-                    .found(&String::from_utf8_lossy(line.text))
-                    .hint("ingest.delimited.hint_comma"));
-            }
-        }
-        let keyed = |l: &Line<'_>| l.text.contains(&b':') || l.text.contains(&b'=');
-        let block = plain().count() > 1 && plain().all(|l| cells(l) == 2);
-        let stated = options.header_line.is_some_and(|h| h > 0);
-        if let Some(last) = last.filter(|l| !named && (stated || (cells(l) > 1 && !keyed(l) && !block))) {
-            let count = cells(last);
-            let odd = data.iter().find(|l| cells(l) != count);
-            let message = Note::new("ingest.delimited.names_do_not_fit")
-                .with("line", last.number)
-                .with("names", count)
-                .with("fields", odd.map_or(fields, |l| cells(l)));
-            let error = IngestError::new(IngestErrorKind::NotNumeric, self.path, message);
-            let error = match odd {
-                Some(l) => error.at(l.number, None).found(&String::from_utf8_lossy(l.text)),
-                None => error,
-            };
-            return Err(error.hint("ingest.delimited.hint_names"));
-        }
-        Ok(header)
-    }
-
     /// What the columns hold; refuses numbers with signs between thousands.
     fn kinds(&self, header: &Header, data: &[&Line<'_>]) -> Result<Kinds, IngestError> {
         let fields = self.cut.fields;
@@ -339,8 +276,9 @@ impl Sniffed<'_> {
                 numbers.push(line.number);
             }
         }
+        let stated = self.file.options.text.decimal.is_some();
         for column in &cells {
-            if let Some(cell) = separator::thousands(column, self.cut.separator, self.cut.decimal) {
+            if let Some(cell) = separator::thousands(column, self.cut.separator, self.cut.decimal, stated) {
                 let at = column.iter().position(|c| std::ptr::eq(*c, cell));
                 let line = at.and_then(|i| numbers.get(i)).copied().unwrap_or(0);
                 return Err(self
@@ -363,7 +301,14 @@ impl Sniffed<'_> {
             |i: usize| header.units.as_ref().and_then(|(_, u)| u.get(i)).filter(|u| !u.is_empty()).cloned();
         let units: Vec<Option<String>> =
             names.iter().enumerate().map(|(i, n)| below(i).or_else(|| header::unit_in_name(n))).collect();
-        Ok(kinds::find(&names, &units, &cells, self.cut.decimal))
+        let stamps = &self.file.options.text.stamps;
+        kinds::find(&names, &units, &cells, self.cut.decimal, stamps).map_err(|c| {
+            let message = Note::new("ingest.delimited.not_these_stamps").with("column", c.column);
+            self.error(message)
+                .at(numbers.get(c.row).copied().unwrap_or(0), None)
+                .found(&c.text)
+                .hint("ingest.delimited.hint_stamps")
+        })
     }
 
     fn metadata(&self, above: &[Line<'_>], header: &Header) -> Vec<(String, String)> {

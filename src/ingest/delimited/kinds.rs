@@ -4,9 +4,9 @@ use super::fields::bare;
 use super::rows::{FieldKind, Pair};
 use super::separator::{Looks, looks};
 use super::stamps::{self, DAY_S, Order, Shape, Stamp};
-use crate::ingest::Column;
+use super::stated::{self, Contradiction};
 use crate::ingest::number::{self, Field};
-use crate::recording::ColumnRef;
+use crate::ingest::{Column, DATES, StampOptions};
 use crate::text::{Arg, Note};
 
 /// Seconds of a week.
@@ -42,7 +42,16 @@ pub(super) fn usual(cells: &[&[u8]], decimal: u8) -> Option<Looks> {
 }
 
 /// Tells the columns from the data lines looked at: `cells` by column.
-pub(super) fn find(names: &[String], units: &[Option<String>], cells: &[Vec<&[u8]>], decimal: u8) -> Kinds {
+///
+/// # Errors
+/// The column and a field of it that is not written as stated.
+pub(super) fn find(
+    names: &[String],
+    units: &[Option<String>],
+    cells: &[Vec<&[u8]>],
+    decimal: u8,
+    stated: &[StampOptions],
+) -> Result<Kinds, Contradiction> {
     let mut found = Kinds::default();
     let mut shapes: Vec<Option<Shape>> = cells
         .iter()
@@ -62,6 +71,7 @@ pub(super) fn find(names: &[String], units: &[Option<String>], cells: &[Vec<&[u8
             }
         }
     }
+    let of_stated = stated::apply(names, cells, stated, &mut shapes)?;
     for (i, name) in names.iter().enumerate() {
         let shape = shapes.get(i).copied().flatten();
         let column = cells.get(i).map(Vec::as_slice).unwrap_or_default();
@@ -83,6 +93,9 @@ pub(super) fn find(names: &[String], units: &[Option<String>], cells: &[Vec<&[u8
         found.kinds.push(match shape {
             Some(shape) => {
                 described.unit = Some("s".to_owned());
+                if let Shape::Date(_) = shape {
+                    described.storage = DATES.to_owned();
+                }
                 if shape.is_dated() {
                     described.epoch_s = Some(base_s as f64);
                 } else {
@@ -95,9 +108,17 @@ pub(super) fn find(names: &[String], units: &[Option<String>], cells: &[Vec<&[u8
         });
         found.columns.push(described);
     }
-    date_and_clock(&mut found, &shapes);
-    week_and_seconds(&mut found, names, cells, decimal);
-    found
+    for (first, second, name) in of_stated.dated {
+        add_dated(&mut found, first, second, Some(name));
+    }
+    if found.pairs.is_empty() {
+        date_and_clock(&mut found, &shapes);
+    }
+    let week = of_stated.weeks.into_iter().next();
+    if week.is_some() || of_stated.seconds.is_some() || found.pairs.is_empty() {
+        week_and_seconds(&mut found, names, cells, decimal, week, of_stated.seconds);
+    }
+    Ok(found)
 }
 
 fn shape_notes(name: &str, shape: Shape, stamps: &[Stamp]) -> Vec<Note> {
@@ -137,14 +158,25 @@ fn date_and_clock(found: &mut Kinds, shapes: &[Option<Shape>]) {
         _ => None,
     };
     if let Some((first, second)) = beside.or(only) {
-        let epoch_s = found.columns.get(first).and_then(|c| c.epoch_s);
-        let pair = Pair { first, second, offset: 0.0, scale: 1.0, divisor: 1.0 };
-        add(found, pair, epoch_s, "ingest.delimited.stamps_two_columns");
+        add_dated(found, first, second, None);
     }
 }
 
-/// One column of GPS week and seconds of week, told by their names.
-fn week_and_seconds(found: &mut Kinds, names: &[String], cells: &[Vec<&[u8]>], decimal: u8) {
+fn add_dated(found: &mut Kinds, first: usize, second: usize, name: Option<String>) {
+    let epoch_s = found.columns.get(first).and_then(|c| c.epoch_s);
+    let pair = Pair { first, second, offset: 0.0, scale: 1.0, divisor: 1.0 };
+    add(found, pair, epoch_s, "ingest.delimited.stamps_two_columns", name);
+}
+
+/// One column of GPS week and seconds of week, stated or told by their names.
+fn week_and_seconds(
+    found: &mut Kinds,
+    names: &[String],
+    cells: &[Vec<&[u8]>],
+    decimal: u8,
+    stated: Option<(usize, usize, String)>,
+    stated_seconds: Option<usize>,
+) {
     let number = |i: usize| found.kinds.get(i) == Some(&FieldKind::Number);
     let values = |i: usize| -> Vec<f64> {
         let value = |c: &&[u8]| match number::field(c, decimal) {
@@ -155,8 +187,10 @@ fn week_and_seconds(found: &mut Kinds, names: &[String], cells: &[Vec<&[u8]>], d
     };
     let named =
         |words: &[&str]| (0..names.len()).find(|&i| number(i) && names.get(i).is_some_and(|n| has(n, words)));
-    let seconds =
-        named(&["tow", "sow", "itow", "seconds_of_week", "time_of_week", "gps_seconds", "gpsseconds"]);
+    let stated_second = stated.as_ref().map(|s| s.1).or(stated_seconds);
+    let seconds = stated_second.or_else(|| {
+        named(&["tow", "sow", "itow", "seconds_of_week", "time_of_week", "gps_seconds", "gpsseconds"])
+    });
     let Some(second) = seconds else { return };
     let milliseconds = found.columns.get(second).and_then(|c| c.unit.as_deref()) == Some("ms")
         || names.get(second).is_some_and(|n| has(n, &["ms", "мс"]));
@@ -165,13 +199,20 @@ fn week_and_seconds(found: &mut Kinds, names: &[String], cells: &[Vec<&[u8]>], d
     if of_week.is_empty() || !of_week.iter().all(|v| (0.0..=WEEK_S).contains(&(v / divisor))) {
         return;
     }
-    let week = named(&["week", "gps_week", "gpsweek", "wn", "weeks", "неделя"]);
+    let stated_first = stated.as_ref().map(|s| s.0);
+    let week = stated_first.or_else(|| named(&["week", "gps_week", "gpsweek", "wn", "weeks", "неделя"]));
     let weeks = week.map(values).unwrap_or_default();
     let whole = !weeks.is_empty() && weeks.iter().all(|w| w.fract() == 0.0 && (0.0..=1e4).contains(w));
     match (week, weeks.first()) {
         (Some(first), Some(&offset)) if whole => {
             let pair = Pair { first, second, offset, scale: WEEK_S, divisor };
-            add(found, pair, Some(GPS_EPOCH_S + offset * WEEK_S), "ingest.delimited.stamps_gps");
+            add(
+                found,
+                pair,
+                Some(GPS_EPOCH_S + offset * WEEK_S),
+                "ingest.delimited.stamps_gps",
+                stated.map(|s| s.2),
+            );
         }
         _ => {
             if let Some(column) = found.columns.get_mut(second) {
@@ -184,10 +225,10 @@ fn week_and_seconds(found: &mut Kinds, names: &[String], cells: &[Vec<&[u8]>], d
     }
 }
 
-fn add(found: &mut Kinds, pair: Pair, epoch_s: Option<f64>, key: &'static str) {
+fn add(found: &mut Kinds, pair: Pair, epoch_s: Option<f64>, key: &'static str, name_stated: Option<String>) {
     let name = |i: usize| found.columns.get(i).map_or("", |c| c.name.as_str());
     let (first, second) = (name(pair.first).to_owned(), name(pair.second).to_owned());
-    let joined = format!("{first}+{second}");
+    let joined = name_stated.unwrap_or_else(|| format!("{first}+{second}"));
     found.notes.push(
         Note::new(key).with("first", first).with("second", second).with("column", Arg::Text(joined.clone())),
     );
@@ -208,12 +249,4 @@ fn has(name: &str, words: &[&str]) -> bool {
     let parts: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).filter(|p| !p.is_empty()).collect();
     let joined = format!("_{}_", parts.join("_"));
     words.iter().any(|w| joined.contains(&format!("_{w}_")))
-}
-
-/// Which column of the file a reference names.
-pub(super) fn position(names: &[String], column: &ColumnRef) -> Option<usize> {
-    match column {
-        ColumnRef::Position(p) => p.checked_sub(1).filter(|i| *i < names.len()),
-        ColumnRef::Name(name) => names.iter().position(|n| n == name),
-    }
 }

@@ -8,10 +8,12 @@ mod fields;
 mod header;
 mod kinds;
 mod metadata;
+mod names;
 mod reader;
 mod rows;
 mod separator;
 mod stamps;
+mod stated;
 
 use super::compressed::Packing;
 use super::error::IngestError;
@@ -53,3 +55,6 @@ impl Format for DelimitedText {
         })
     }
 }
+
+#[cfg(test)]
+mod cases_tests;

@@ -119,8 +119,13 @@ fn measure(lines: &[&[u8]], separator: Separator, decimal: u8) -> Cut {
 }
 
 /// A column whose numbers may have signs between thousands, by the fields of it, of which some may be empty. Returns
-/// the first such field.
-pub(super) fn thousands<'a>(cells: &[&'a [u8]], separator: Separator, decimal: u8) -> Option<&'a [u8]> {
+/// the first such field. `stated`: the decimal sign was stated, so that a comma is not in doubt.
+pub(super) fn thousands<'a>(
+    cells: &[&'a [u8]],
+    separator: Separator,
+    decimal: u8,
+    stated: bool,
+) -> Option<&'a [u8]> {
     let filled = || cells.iter().copied().filter(|c| !bare(c).is_empty());
     let numbers = filled().filter(|c| looks(c, decimal) == Looks::Number).count();
     if 2 * numbers <= filled().count() {
@@ -136,7 +141,7 @@ pub(super) fn thousands<'a>(cells: &[&'a [u8]], separator: Separator, decimal: u
         let with = filled().filter(spaced).count();
         return (2 * with > filled().count()).then(|| filled().find(spaced)).flatten();
     }
-    if decimal != b',' {
+    if decimal != b',' || stated {
         return None;
     }
     // A comma before every last three digits, and other numbers below a thousand without one: 1,234 may be either.

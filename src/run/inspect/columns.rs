@@ -1,7 +1,7 @@
 //! The columns of a file: which hold numbers, and what each is taken for.
 
 use crate::ingest::{FieldFaultKind, IngestError, IngestErrorKind, Source};
-use crate::recording::guess::{Guess, guess};
+use crate::recording::guess::Guess;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::Unit;
 use std::ops::ControlFlow;
@@ -59,8 +59,16 @@ pub(super) fn list(source: &Source) -> Result<Vec<Listed>, IngestError> {
         } else {
             Content::Text(column.storage.clone())
         };
-        let guess = guess(&column.name, column.unit.as_deref());
+        let guess = column.guess();
         listed.push(Listed { name: column.name.clone(), content, guess });
+    }
+    let time = source.time_column().filter(|&t| listed.get(t).is_some_and(|c| c.content == Content::Numbers));
+    if let Some(time) = time {
+        // One column keeps time; the others that could are kept beside.
+        let others = listed.iter_mut().enumerate().filter(|(i, c)| *i != time && c.guess.role == Role::Time);
+        others
+            .filter(|(_, c)| c.content == Content::Numbers)
+            .for_each(|(_, c)| c.guess.role = Role::Auxiliary);
     }
     if listed.iter().any(|c| c.content == Content::Numbers) {
         return Ok(listed);

@@ -44,6 +44,13 @@ fn file(page: &mut Page, source: &Source, seen: &Seen) {
     for (i, note) in source.notes().iter().enumerate() {
         page.row(if i == 0 { word("inspect.reader") } else { SAME.into() }, note.clone());
     }
+    for (i, (key, value)) in source.metadata().iter().enumerate() {
+        let label = if i == 0 { word("inspect.stated.label") } else { SAME.into() };
+        page.row(label, format!("{key}: {value}"));
+    }
+    if let Some(serial) = source.stated_serial() {
+        page.row(SAME, Note::new("inspect.stated.serial").with("serial", serial));
+    }
 }
 
 fn columns(page: &mut Page, seen: &Seen) {

@@ -1,0 +1,61 @@
+//! Options that say how a recording is to be read.
+
+use crate::ingest::{ReadOptions, TextOptions};
+use crate::procedure::reading::{decimal, delimiter, encoding};
+use crate::procedure::tables::{DECIMALS, DELIMITERS, ENCODINGS};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use std::path::PathBuf;
+
+/// What the user decides about the file; the rest is found from it, and the finding is told.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "How the recording is read")]
+pub struct ReadArgs {
+    /// File format [default: found by the content]
+    #[arg(long, value_name = "ID")]
+    format: Option<String>,
+    /// Character encoding of a text file [default: found from its bytes]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(ENCODINGS)))]
+    encoding: Option<String>,
+    /// Separator of the fields of a text file [default: found from its lines]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(DELIMITERS)))]
+    delimiter: Option<String>,
+    /// Decimal sign of a text file [default: found from its numbers]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(DECIMALS)))]
+    decimal: Option<String>,
+    /// Line that names the columns of a text file, counted from 1; 0: there is none
+    #[arg(long, value_name = "LINE")]
+    header_line: Option<u64>,
+    /// First line of data of a text file, counted from 1
+    #[arg(long, value_name = "LINE")]
+    first_line: Option<u64>,
+    /// Part of a container that holds the recording: a dataset, a variable, a topic
+    #[arg(long, value_name = "NAME")]
+    part: Option<String>,
+    /// Layout of the records of a raw binary file (TOML)
+    #[arg(long, value_name = "FILE")]
+    layout: Option<PathBuf>,
+}
+
+fn words(list: &'static [(&'static str, &'static str)]) -> impl Iterator<Item = &'static str> {
+    list.iter().map(|(word, _)| *word)
+}
+
+impl ReadArgs {
+    /// The decisions.
+    pub fn options(&self) -> ReadOptions {
+        ReadOptions {
+            format: self.format.clone(),
+            text: TextOptions {
+                encoding: self.encoding.as_deref().and_then(encoding),
+                delimiter: self.delimiter.as_deref().and_then(delimiter),
+                decimal: self.decimal.as_deref().and_then(decimal),
+                header_line: self.header_line,
+                first_line: self.first_line,
+                ..TextOptions::default()
+            },
+            part: self.part.clone(),
+            layout: self.layout.clone(),
+        }
+    }
+}
