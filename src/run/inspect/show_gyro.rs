@@ -228,7 +228,7 @@ pub(super) fn others(page: &mut Page, seen: &Seen) {
             if f.unit == "deg/h" { (f.slope, word("amount.unit_deg_s")) } else { (per_deg_s, f.unit.clone().into()) };
         let note = Note::new("inspect.follows")
             .with("name", f.name.as_str())
-            .with("correlation", Arg::Decimals(f.correlation, 5))
+            .with("correlation", Arg::figures(f.correlation, 6))
             .with("slope", plain(slope, 5))
             .with("unit", unit);
         page.row(SAME, note);
