@@ -47,9 +47,7 @@ impl OutputError {
                 Note::new("output_error.in_the_way").with("path", at(path)).with("why", why.clone())
             }
             OutputError::NoName(path) => Note::new("output_error.no_name").with("path", at(path)),
-            OutputError::Unforeseen(name) => {
-                Note::new("output_error.unforeseen").with("name", name.as_str())
-            }
+            OutputError::Unforeseen(name) => Note::new("output_error.unforeseen").with("name", name.as_str()),
         }
     }
 }

@@ -128,12 +128,7 @@ pub fn run() -> SelfTest {
     };
     let thousand = thousand();
     let family = [
-        (
-            Estimator::Allan,
-            "selftest.allan",
-            [91.22945, 85.95287],
-            [2.922319e-1, 9.159953e-2, 3.241343e-2],
-        ),
+        (Estimator::Allan, "selftest.allan", [91.22945, 85.95287], [2.922319e-1, 9.159953e-2, 3.241343e-2]),
         (
             Estimator::Modified,
             "selftest.modified",
@@ -153,13 +148,7 @@ pub fn run() -> SelfTest {
             add(points(name, 9, m), SP1065, value, deviation(&NINE, m, estimator), 1e-7);
         }
         for (m, value) in [1, 10, 100].into_iter().zip(suite) {
-            add(
-                points(name, 1000, m),
-                SP1065,
-                value,
-                deviation(&thousand, m, estimator),
-                3e-7,
-            );
+            add(points(name, 1000, m), SP1065, value, deviation(&thousand, m, estimator), 3e-7);
         }
     }
     let white = NoiseModel { n: 1.0, ..NoiseModel::default() };
@@ -207,7 +196,13 @@ pub fn run() -> SelfTest {
     let factor = |a: &str, b: &str| {
         Unit::parse(a).and_then(|a| Unit::parse(b).and_then(|b| a.factor_to(&b))).unwrap_or(f64::NAN)
     };
-    add(Note::new("selftest.rad_s"), "selftest.from.definition", 206_264.806_247_096_36, factor("rad/s", "deg/h"), 1e-14);
+    add(
+        Note::new("selftest.rad_s"),
+        "selftest.from.definition",
+        206_264.806_247_096_36,
+        factor("rad/s", "deg/h"),
+        1e-14,
+    );
     add(Note::new("selftest.arcsec_s"), "selftest.from.definition", 1.0, factor("arcsec/s", "deg/h"), 1e-15);
     SelfTest { checks }
 }

@@ -116,9 +116,7 @@ impl Arg {
             Arg::Text(t) => t.clone(),
             Arg::Key(k) => Arg::words(k, lang),
             Arg::Note(n) => n.say(lang),
-            Arg::Several(list, between) => {
-                list.iter().map(|a| a.say(lang)).collect::<Vec<_>>().join(between)
-            }
+            Arg::Several(list, between) => list.iter().map(|a| a.say(lang)).collect::<Vec<_>>().join(between),
         }
     }
 
@@ -183,9 +181,7 @@ impl Note {
 
     /// The sentence in a language. A key the table lacks shows as itself, so that it is noticed.
     pub fn say(&self, lang: Lang) -> String {
-        fill(lookup(lang, self.id).unwrap_or(self.id), |name| {
-            self.args.get(name).map(|arg| arg.say(lang))
-        })
+        fill(lookup(lang, self.id).unwrap_or(self.id), |name| self.args.get(name).map(|arg| arg.say(lang)))
     }
 }
 

@@ -23,6 +23,7 @@ const ENGLISH: &[(&str, &str)] = &[
 /// Single literals that are no sentence for users: file, part of the text, why.
 const LITERALS: &[(&str, &str, &str)] = &[
     ("src/ingest/parquet.rs", "the column holds no numbers", "a fault of the decoder, quoted as it says it"),
+    ("src/report/svg/mod.rs", "system-ui", "names of fonts"),
     ("src/recording/guess.rs", "the inside units are units", "a message of a programming error"),
 ];
 
@@ -137,8 +138,12 @@ fn the_allow_lists_hold_nothing_idle() {
 
 #[test]
 fn the_search_finds_sentences_and_only_those() {
-    let code = code("let a = \"no such thing\"; // \"a comment here too\"\nlet c = '\"'; let d = \"x y\";\n/// \"a doc comment here\"");
+    let code = code(
+        "let a = \"no such thing\"; // \"a comment here too\"\nlet c = '\"'; let d = \"x y\";\n/// \"a doc comment here\"",
+    );
     assert_eq!(literals(&code), ["no such thing", "x y"]);
     assert!(is_sentence("{path}: no column looks like") && is_sentence("must be a count"));
-    assert!(!is_sentence("keyed.help.example") && !is_sentence("{:<52} {:>16}") && !is_sentence("NIST SP 1065"));
+    assert!(
+        !is_sentence("keyed.help.example") && !is_sentence("{:<52} {:>16}") && !is_sentence("NIST SP 1065")
+    );
 }

@@ -68,7 +68,8 @@ fn about(args: &AnalyzeArgs, key: &'static str) -> Note {
 /// The channels: as named, else as their names tell.
 fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
     let unit = args.unit.as_deref().map(Unit::parse).transpose();
-    let unit = unit.map_err(|e| Note::new("cli.of_option").with("option", "--unit").with("what", e.note()))?;
+    let unit =
+        unit.map_err(|e| Note::new("cli.of_option").with("option", "--unit").with("what", e.note()))?;
     let mut channels = Vec::new();
     match args.time.as_deref() {
         Some("none") => {}

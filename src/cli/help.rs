@@ -74,12 +74,7 @@ fn translated(command: Command, path: &str, lang: Lang) -> Command {
     command
 }
 
-fn flag(
-    name: &'static str,
-    short: char,
-    action: ArgAction,
-    common: &dyn Fn(&str) -> &'static str,
-) -> Arg {
+fn flag(name: &'static str, short: char, action: ArgAction, common: &dyn Fn(&str) -> &'static str) -> Arg {
     let arg = Arg::new(name).short(short).long(name).action(action);
     arg.help(common(name)).help_heading(common("options"))
 }
@@ -110,7 +105,8 @@ fn argument(
     let Some(text) = text else { return arg };
     let mut help = text.to_owned();
     if arg.get_action().takes_values() {
-        let shown = arg.get_value_names().and_then(|names| names.first()).map_or(id.clone(), ToString::to_string);
+        let shown =
+            arg.get_value_names().and_then(|names| names.first()).map_or(id.clone(), ToString::to_string);
         if let Some(name) = words(lang, &format!("help.value_name.{}", shown.to_lowercase())) {
             arg = arg.value_name(name);
         }

@@ -29,7 +29,8 @@ fn the_english_entries_are_the_texts_of_the_command() {
         assert_eq!(entry("after"), shown(command.get_after_help()).as_deref(), "{path}");
         for arg in command.get_arguments() {
             let id = arg.get_id().as_str();
-            let entry = if id == "lang" { lookup(Lang::En, "help.common.lang") } else { entry(&format!("arg.{id}")) };
+            let entry =
+                if id == "lang" { lookup(Lang::En, "help.common.lang") } else { entry(&format!("arg.{id}")) };
             assert_eq!(entry, shown(arg.get_help()).as_deref(), "{path} {id}");
             seen += 1;
             for value in arg.get_possible_values() {
@@ -71,7 +72,9 @@ fn no_visible_text_lacks_its_russian() {
             }
         }
         let shown = command.render_help().to_string();
-        for english in ["Usage", "Options", "Arguments", "Commands", "Print ", "default", "possible", "Example"] {
+        for english in
+            ["Usage", "Options", "Arguments", "Commands", "Print ", "default", "possible", "Example"]
+        {
             assert!(!shown.contains(english), "{path}: {english}\n{shown}");
         }
     }

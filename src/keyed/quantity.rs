@@ -152,6 +152,13 @@ mod tests {
         let e = parse("3 deg/sqrt(h)", "deg/h", false, false).unwrap_err();
         assert_eq!((e.span, e.message.to_string().contains("an angle random walk")), (2..13, true));
         assert!(parse("20", "degC", false, false).unwrap_err().message.to_string().contains("no unit"));
-        assert!(parse("0,4 degC", "degC", false, false).unwrap_err().help.unwrap().to_string().contains("0.4 degC"));
+        assert!(
+            parse("0,4 degC", "degC", false, false)
+                .unwrap_err()
+                .help
+                .unwrap()
+                .to_string()
+                .contains("0.4 degC")
+        );
     }
 }

@@ -294,7 +294,8 @@ impl Reader<'_> {
             Some(id) if id.available => return Some(id),
             Some(id) => {
                 let message = Note::new("keyed.not_available").with("name", name);
-                let help = Note::new("keyed.help.belongs_to_test").with("test", Arg::key("test", id.test.id()));
+                let help =
+                    Note::new("keyed.help.belongs_to_test").with("test", Arg::key("test", id.test.id()));
                 self.error(span, message, Some(help));
             }
             None => {

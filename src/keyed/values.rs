@@ -110,7 +110,8 @@ fn in_range(
 ) -> bool {
     let fits = range.holds(value);
     if !fits {
-        let message = Note::new("keyed.out_of_range").with("key", key.name).with("range", range.describe(unit));
+        let message =
+            Note::new("keyed.out_of_range").with("key", key.name).with("range", range.describe(unit));
         reader.error(span, message, Some(for_example(key)));
     }
     fits

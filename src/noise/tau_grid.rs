@@ -53,11 +53,13 @@ impl TauGridError {
     pub fn note(&self) -> Note {
         match self {
             TauGridError::Unreadable { text } => Note::new("tau_grid.unreadable").with("text", text.as_str()),
-            TauGridError::NotAMultiple { tau_s, tau0_s, below_s, above_s } => Note::new("tau_grid.no_multiple")
-                .with("tau", tau_s.to_string())
-                .with("interval", tau0_s.to_string())
-                .with("below", below_s.to_string())
-                .with("above", above_s.to_string()),
+            TauGridError::NotAMultiple { tau_s, tau0_s, below_s, above_s } => {
+                Note::new("tau_grid.no_multiple")
+                    .with("tau", tau_s.to_string())
+                    .with("interval", tau0_s.to_string())
+                    .with("below", below_s.to_string())
+                    .with("above", above_s.to_string())
+            }
         }
     }
 }

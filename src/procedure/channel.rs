@@ -81,11 +81,7 @@ fn suits(unit: &Unit, in_file: &str, role: Role, section: &Section, reader: &mut
     let scaled = section.entry("scale").is_some();
     let at = section.span_of(if scaled { "scale" } else { "unit" });
     let counts = Unit::parse("count").is_ok_and(|c| c.same_dimension(unit));
-    let message = if scaled {
-        Note::new("check.scale_and_role")
-    } else {
-        Note::new("check.unit_and_role")
-    };
+    let message = if scaled { Note::new("check.scale_and_role") } else { Note::new("check.unit_and_role") };
     let message = message
         .with("unit", in_file)
         .with("given", unit.describe())

@@ -6,8 +6,8 @@ use super::reader::Reader;
 use super::section::{Entry, Section};
 use crate::estimate::{Limit, Rule};
 use crate::ids::MeasurandId;
-use crate::text::Note;
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
+use crate::text::Note;
 
 /// Limits, references and typical values of one file, in the units of the measurands.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -170,8 +170,9 @@ fn not_measured(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Vec<Problem
         } else if let Some(channel) = limit.channel.as_deref()
             && procedure.channel(channel).is_none()
         {
-            let message =
-                Note::new("check.no_such_channel").with("procedure", procedure.id.as_str()).with("channel", channel);
+            let message = Note::new("check.no_such_channel")
+                .with("procedure", procedure.id.as_str())
+                .with("channel", channel);
             warnings.push(file.source.warning(&limit.span, message));
         }
     }

@@ -182,11 +182,7 @@ fn provable(section: &Section, unit: &str, reader: &mut Reader<'_>) {
             .with("factor", k.to_string())
             .with("uncertainty", format!("{u} {unit}"))
             .with("tolerance", format!("{tolerance} {unit}"));
-        reader.error(
-            &section.span_of("sensor_uncertainty"),
-            message,
-            Some("check.help.not_provable".into()),
-        );
+        reader.error(&section.span_of("sensor_uncertainty"), message, Some("check.help.not_provable".into()));
     }
 }
 
@@ -230,11 +226,8 @@ fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         let needs_site = measurand.id == "earth_rate_component" || measurand.id == "static_bias" && removes;
         if needs_site && !has_site {
             let message = Note::new("check.needs_site").with("id", measurand.id);
-            let help = if measurand.id == "static_bias" {
-                "check.help.site_or_keep"
-            } else {
-                "check.help.site"
-            };
+            let help =
+                if measurand.id == "static_bias" { "check.help.site_or_keep" } else { "check.help.site" };
             reader.error(&section.span_of("id"), message, Some(help.into()));
         }
         for key in super::tables::MEASURAND_OPTIONS.keys {

@@ -30,7 +30,9 @@ impl Lang {
     /// The language that the locale of an environment asks for: the first of `LC_ALL`, `LC_MESSAGES` and `LANG` that
     /// is set decides; what is not spoken here is answered in English.
     pub fn of_locale(variable: impl Fn(&str) -> Option<String>) -> Lang {
-        let locale = ["LC_ALL", "LC_MESSAGES", "LANG"].iter().find_map(|name| variable(name).filter(|v| !v.is_empty()));
+        let locale = ["LC_ALL", "LC_MESSAGES", "LANG"]
+            .iter()
+            .find_map(|name| variable(name).filter(|v| !v.is_empty()));
         let locale = locale.unwrap_or_default();
         let code = locale.split(['_', '.', '@', '-']).next().unwrap_or_default();
         Lang::from_code(&code.to_ascii_lowercase()).unwrap_or_default()

@@ -253,10 +253,7 @@ impl View {
             options: record
                 .options
                 .iter()
-                .map(|o| Field {
-                    label: words.name("option", &o.name),
-                    value: option_value(&o.value, words),
-                })
+                .map(|o| Field { label: words.name("option", &o.name), value: option_value(&o.value, words) })
                 .collect(),
             footer: footer(record, words),
         }

@@ -89,7 +89,9 @@ fn row(column: &Listed, facts: Option<&ChannelFacts>, tau0_s: f64, lang: Lang) -
     };
     let recorded = |value: f64| as_recorded(value, facts, &guess.unit, tau0_s);
     let digits = digits(recorded(facts.values.min), recorded(facts.values.max));
-    let shown = |value: f64| if value.is_finite() { decimal(&figure(recorded(value), digits), lang) } else { "-".into() };
+    let shown = |value: f64| {
+        if value.is_finite() { decimal(&figure(recorded(value), digits), lang) } else { "-".into() }
+    };
     let none = match facts.values.non_finite {
         0 => "-".to_owned(),
         n => count(n),
@@ -260,9 +262,7 @@ fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
     let timed = seen.time.is_known();
     for fault in all.take(LISTED) {
         let place = match fault.time_s.filter(|_| timed) {
-            Some(t) => Note::new("inspect.fault_at_time")
-                .with("row", fault.row)
-                .with("time", decimals(t, 6)),
+            Some(t) => Note::new("inspect.fault_at_time").with("row", fault.row).with("time", decimals(t, 6)),
             None => Note::new("inspect.fault_at").with("row", fault.row),
         };
         let channel = fault.channel.as_deref().filter(|c| !fault.note.contains(c));

@@ -191,7 +191,11 @@ fn lines(gyro: &Gyro) -> Arg {
         shown.push(Note::new("inspect.lines_more").with("n", all.len() - LINES).into());
     }
     let shown = Arg::Several(shown, "; ");
-    if gyro.motion.is_motion() { Arg::Several(vec![shown, word("inspect.lines_moving")], ". ") } else { shown }
+    if gyro.motion.is_motion() {
+        Arg::Several(vec![shown, word("inspect.lines_moving")], ". ")
+    } else {
+        shown
+    }
 }
 
 /// Temperatures and table channels.
@@ -224,8 +228,11 @@ pub(super) fn others(page: &mut Page, seen: &Seen) {
     }
     for f in &seen.followers {
         let per_deg_s = f.slope * 3600.0;
-        let (slope, unit) =
-            if f.unit == "deg/h" { (f.slope, word("amount.unit_deg_s")) } else { (per_deg_s, f.unit.clone().into()) };
+        let (slope, unit) = if f.unit == "deg/h" {
+            (f.slope, word("amount.unit_deg_s"))
+        } else {
+            (per_deg_s, f.unit.clone().into())
+        };
         let note = Note::new("inspect.follows")
             .with("name", f.name.as_str())
             .with("correlation", Arg::figures(f.correlation, 6))
