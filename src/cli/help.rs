@@ -2,10 +2,10 @@
 //!
 //! The texts of the derived command are English; for another language each is replaced by its entry in the locale
 //! tables: `help.<verb>.about`, `help.<verb>.after`, `help.<verb>.arg.<id>`, `help.<verb>.value.<id>.<word>`, with
-//! `sagnac` for the program itself and `help.common` for what every verb has.
+//! `sagnac` for the program itself and `help.common` for what every verb has. The English entries repeat the texts of the
+//! command; the tests hold the two together.
 
 use crate::text::{Lang, Note, lookup};
-use clap::builder::{PossibleValue, StyledStr};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, Error};
 use std::ffi::OsString;
@@ -47,41 +47,49 @@ fn translated(command: Command, path: &str, lang: Lang) -> Command {
         ))
         .subcommand_help_heading(common("commands"))
         .disable_help_flag(true)
-        .disable_help_subcommand(true)
-        .arg(
-            Arg::new("help")
-                .short('h')
-                .long("help")
-                .action(ArgAction::Help)
-                .help(common("help"))
-                .help_heading(common("options")),
-        );
-    if path == "sagnac" {
-        command = command.disable_version_flag(true).arg(
-            Arg::new("version")
-                .short('V')
-                .long("version")
-                .action(ArgAction::Version)
-                .help(common("version"))
-                .help_heading(common("options")),
-        );
-    }
+        .disable_help_subcommand(true);
     if let Some(about) = of("about") {
         command = command.about(about);
     }
     if let Some(after) = of("after") {
-        command = command.after_help(after);
+        command = command.after_help(after.trim_start());
     }
     let ids: Vec<String> = command.get_arguments().map(|a| a.get_id().to_string()).collect();
-    for id in ids.iter().filter(|id| !matches!(id.as_str(), "help" | "version")) {
-        let text = of(&format!("arg.{id}"));
+    for id in &ids {
+        // `--lang` is global and stands in one place of the tables.
+        let text = if id == "lang" { words(lang, "help.common.lang") } else { of(&format!("arg.{id}")) };
         command = command.mut_arg(id, |arg| argument(arg, text, path, lang, &common));
     }
+    // What the library would add by itself is English.
+    command = command.arg(flag("help", 'h', ArgAction::Help, &common));
+    if path == "sagnac" {
+        command = command.disable_version_flag(true).arg(flag("version", 'V', ArgAction::Version, &common));
+    }
+    let usage = usage(&command, path, &common);
+    command = command.override_usage(usage);
     let names: Vec<String> = command.get_subcommands().map(|c| c.get_name().to_owned()).collect();
     for name in names {
         command = command.mut_subcommand(&name, |below| translated(below, &name, lang));
     }
     command
+}
+
+fn flag(name: &'static str, short: char, action: ArgAction, common: &dyn Fn(&str) -> &'static str) -> Arg {
+    let arg = Arg::new(name).short(short).long(name).action(action);
+    arg.help(common(name)).help_heading(common("options"))
+}
+
+/// The line that shows how the command is written.
+fn usage(command: &Command, path: &str, common: &dyn Fn(&str) -> &'static str) -> String {
+    let mut out = if path == "sagnac" { path.to_owned() } else { format!("sagnac {path}") };
+    out.push_str(&format!(" [{}]", common("usage_options")));
+    for arg in command.get_positionals() {
+        out.push_str(&format!(" {arg}"));
+    }
+    if command.has_subcommands() {
+        out.push_str(&format!(" <{}>", common("usage_command")));
+    }
+    out
 }
 
 fn argument(
@@ -94,30 +102,33 @@ fn argument(
     let positional = arg.is_positional();
     let id = arg.get_id().to_string();
     let mut arg = arg.help_heading(common(if positional { "arguments" } else { "options" }));
-    let mut help = text.map(str::to_owned);
-    // What the library would write itself is English: the list of values and the default.
-    let values: Vec<PossibleValue> = arg.get_possible_values();
-    if arg.get_action().takes_values() && !values.is_empty() {
-        let list: Vec<String> = values
+    let Some(text) = text else { return arg };
+    let mut help = text.to_owned();
+    if arg.get_action().takes_values() {
+        let shown =
+            arg.get_value_names().and_then(|names| names.first()).map_or(id.clone(), ToString::to_string);
+        if let Some(name) = words(lang, &format!("help.value_name.{}", shown.to_lowercase())) {
+            arg = arg.value_name(name);
+        }
+        let values: Vec<String> = arg
+            .get_possible_values()
             .iter()
             .map(|v| match words(lang, &format!("help.{path}.value.{id}.{}", v.get_name())) {
-                Some(meaning) => format!("{} ({meaning})", v.get_name()),
-                None => v.get_name().to_owned(),
+                Some(meaning) if meaning != v.get_name() => format!("{} ({meaning})", v.get_name()),
+                _ => v.get_name().to_owned(),
             })
             .collect();
-        help = help.map(|h| format!("{h} [{}: {}]", common("values"), list.join(", ")));
-        arg = arg.hide_possible_values(true);
+        if !values.is_empty() {
+            help.push_str(&format!(" [{}: {}]", common("values"), values.join(", ")));
+        }
+        let default: Vec<String> =
+            arg.get_default_values().iter().map(|v| v.to_string_lossy().into_owned()).collect();
+        if !default.is_empty() {
+            help.push_str(&format!(" [{}: {}]", common("default"), default.join(", ")));
+        }
+        arg = arg.hide_possible_values(true).hide_default_value(true);
     }
-    let default: Vec<String> =
-        arg.get_default_values().iter().map(|v| v.to_string_lossy().into_owned()).collect();
-    if arg.get_action().takes_values() && !default.is_empty() {
-        help = help.map(|h| format!("{h} [{}: {}]", common("default"), default.join(", ")));
-        arg = arg.hide_default_value(true);
-    }
-    match help {
-        Some(help) => arg.help(StyledStr::from(help)),
-        None => arg,
-    }
+    arg.help(help)
 }
 
 /// Says why the arguments cannot be used, or shows the help that was asked for.
@@ -171,3 +182,7 @@ fn complaint(error: &Error, lang: Lang) -> String {
     out.push_str(&format!("\n{}\n", Note::new("help.error.more").say(lang)));
     out
 }
+
+#[cfg(test)]
+#[path = "help_tests.rs"]
+mod tests;

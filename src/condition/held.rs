@@ -21,11 +21,11 @@ pub(super) struct Held<'a> {
 /// Shown when every smoothed value lies inside the tolerance less k·u; broken when one lies outside the tolerance
 /// plus k·u; between, it is not shown, and that is not enough.
 pub(super) fn judge(held: &Held<'_>, facts: &Facts<'_>) -> ConditionRecord {
-    let unit = if held.unit == "degC" { "°C" } else { held.unit };
+    let unit = Arg::key("unit", held.unit);
     let required = Note::new("note.required.held")
         .with("nominal", Arg::Stated(held.nominal))
         .with("tolerance", Arg::Stated(held.tolerance))
-        .with("unit", unit);
+        .with("unit", unit.clone());
     let id = if held.position == 0 { held.id.to_owned() } else { format!("{}.{}", held.id, held.channel) };
     let Some(track) = facts.held.get(&(held.id.to_owned(), held.position)) else {
         let note = Note::new("note.condition.no_data").with("channel", held.channel);

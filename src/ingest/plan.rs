@@ -111,7 +111,7 @@ fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
         error(
             Note::new("ingest.unit")
                 .with("channel", channel.id.as_str())
-                .with("role", channel.role.id())
+                .with("role", Arg::key("role", channel.role.id()))
                 .with("reason", e.note()),
         )
         .hint("ingest.hint.unit")

@@ -20,7 +20,7 @@ pub use rows::Row;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::record::RunRecord;
-use crate::report::number::{count, date_time, duration};
+use crate::report::number::{count, date_time, duration, limit};
 use crate::report::{file_name, methods, svg, unit};
 use crate::text::{Arg, Lang, Note, fill, lookup};
 use serde::Serialize;
@@ -253,17 +253,29 @@ impl View {
             options: record
                 .options
                 .iter()
-                .map(|o| Field {
-                    label: words.name("option", &o.name),
-                    value: match o.value.as_str() {
-                        "true" => words.t("report.yes"),
-                        "false" => words.t("report.no"),
-                        value => value.to_owned(),
-                    },
-                })
+                .map(|o| Field { label: words.name("option", &o.name), value: option_value(&o.value, words) })
                 .collect(),
             footer: footer(record, words),
         }
+    }
+}
+
+/// The value of an option, which the result holds as it is written in a procedure.
+fn option_value(value: &str, words: Words) -> String {
+    let number = |text: &str| text.parse::<f64>().ok().map(|v| limit(v, words.lang));
+    let seconds = |text: &str| {
+        let shown = number(text.strip_suffix(" s")?)?;
+        Some(words.with("option_value.seconds", &[("value", &shown)]))
+    };
+    match value {
+        "true" => words.t("report.yes"),
+        "false" => words.t("report.no"),
+        "octave" | "decade" | "all" => words.name("option_value", value),
+        list => list
+            .split(", ")
+            .map(|part| seconds(part).or_else(|| number(part)).unwrap_or_else(|| part.to_owned()))
+            .collect::<Vec<_>>()
+            .join(&words.t("number.list")),
     }
 }
 

@@ -235,7 +235,7 @@ pub(super) fn others(page: &mut Page, seen: &Seen) {
         };
         let note = Note::new("inspect.follows")
             .with("name", f.name.as_str())
-            .with("correlation", Arg::Decimals(f.correlation, 5))
+            .with("correlation", Arg::figures(f.correlation, 6))
             .with("slope", plain(slope, 5))
             .with("unit", unit);
         page.row(SAME, note);
