@@ -8,14 +8,18 @@ pub mod compressed;
 mod csv;
 mod dialect;
 mod error;
+mod hdf5;
 mod lines;
 mod memory;
 mod number;
 mod options;
 mod parquet;
+mod parts;
 mod plan;
+mod pump;
 mod reduce;
 mod stream;
+mod tdms;
 
 pub use compressed::Packing;
 pub use error::{IngestError, IngestErrorKind};
@@ -202,12 +206,11 @@ pub trait Format: Sync {
 }
 
 /// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
-pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &csv::DelimitedText];
+pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &hdf5::Hdf5, &tdms::Tdms, &csv::DelimitedText];
 
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
 const NOT_READ: &[(&[u8], &str, &str)] = &[
     (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
-    (b"\x89HDF", "ingest.kind.hdf5", "ingest.hint.export_data"),
     (b"MATLAB 5.0", "ingest.kind.matlab", "ingest.hint.export_data"),
     (b"\x93NUMPY", "ingest.kind.numpy", "ingest.hint.export_data"),
     (b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
