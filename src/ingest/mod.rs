@@ -18,6 +18,7 @@ mod parts;
 mod plan;
 mod pump;
 mod reduce;
+mod ros;
 mod stream;
 mod tdms;
 
@@ -206,13 +207,14 @@ pub trait Format: Sync {
 }
 
 /// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
-pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &hdf5::Hdf5, &tdms::Tdms, &csv::DelimitedText];
+pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &hdf5::Hdf5, &tdms::Tdms, &ros::Mcap, &ros::RosBag, &csv::DelimitedText];
 
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
 const NOT_READ: &[(&[u8], &str, &str)] = &[
     (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
     (b"MATLAB 5.0", "ingest.kind.matlab", "ingest.hint.export_data"),
     (b"\x93NUMPY", "ingest.kind.numpy", "ingest.hint.export_data"),
+    (b"SQLite format 3\0", "ingest.ros.sqlite", "ingest.ros.hint.convert"),
     (b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
     (b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
     (b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),

@@ -217,8 +217,10 @@ impl Wanted<'_> {
         let rows = (end - start) as usize;
         if let Some(base) = first.base {
             let values = slice::<Whole>(&self.dataset, first.pick, start, end, (low, high))?;
-            for (slot, place) in &self.columns {
-                fill(block, *slot, values.iter().map(|w| (w.0 - base) as f64 * place.map.0));
+            // Division rounds once; 1e-9 is no f64 and would round twice.
+            let per_s = (1.0 / first.map.0).round();
+            for (slot, _) in &self.columns {
+                fill(block, *slot, values.iter().map(|w| (w.0 - base) as f64 / per_s));
             }
             return Ok(());
         }
