@@ -8,7 +8,7 @@ use crate::text::{Arg, Note};
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
 const NOT_READ: &[(&[u8], &str, &str)] = &[
     (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
-    (b"\x89HDF", "ingest.kind.hdf5", "ingest.hint.export_data"),
+    (b"SQLite format 3\0", "ingest.ros.sqlite", "ingest.ros.hint.convert"),
     (b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
     (b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
     (b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),

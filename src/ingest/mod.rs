@@ -10,15 +10,20 @@ mod column;
 pub mod compressed;
 mod delimited;
 mod error;
+mod hdf5;
 mod matlab;
 mod memory;
 mod number;
 mod numpy;
 mod options;
 mod parquet;
+mod parts;
 mod plan;
+mod pump;
 mod reduce;
+mod ros;
 mod stream;
+mod tdms;
 
 pub use column::Column;
 pub(crate) use column::DATES;
@@ -189,8 +194,17 @@ pub trait Format: Sync {
 }
 
 /// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
-pub static FORMATS: &[&dyn Format] =
-    &[&parquet::Parquet, &numpy::Npy, &numpy::Npz, &matlab::Mat, &delimited::DelimitedText];
+pub static FORMATS: &[&dyn Format] = &[
+    &parquet::Parquet,
+    &numpy::Npy,
+    &numpy::Npz,
+    &hdf5::Hdf5,
+    &matlab::Mat,
+    &tdms::Tdms,
+    &ros::Mcap,
+    &ros::RosBag,
+    &delimited::DelimitedText,
+];
 
 /// Longest piece of the start of a file that is looked at, bytes.
 const HEAD: usize = 256 << 10;
