@@ -1,7 +1,7 @@
 //! `sagnac analyze`: the noise of a recording without a procedure.
 
 use super::{AnalyzeArgs, exit, place, run};
-use crate::ingest::Source;
+use crate::ingest::{ReadOptions, Source, open_recording};
 use crate::output::StagedFolder;
 use crate::procedure::EffectiveLimits;
 use crate::procedure::model::Procedure;
@@ -11,6 +11,7 @@ use crate::recording::{Channel, ColumnRef, Role};
 use crate::run::{Request, analysis};
 use crate::units::Unit;
 use chrono::Utc;
+use std::path::{Path, PathBuf};
 
 pub fn main(args: &AnalyzeArgs) -> u8 {
     match attempt(args) {
@@ -29,17 +30,18 @@ fn attempt(args: &AnalyzeArgs) -> Result<u8, String> {
     }
     let renderer = run::renderer(args.templates.as_deref())?;
     let now = Utc::now();
-    let stem = args.recording.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
     let folder = StagedFolder::begin(&out).map_err(|e| format!("error: {e}\n"))?;
-    let source = crate::ingest::open(&args.recording).map_err(|e| format!("error: {e}\n"))?;
+    let recording = open_recording(&args.recording, &ReadOptions::default()).map_err(|e| format!("{e}\n"))?;
+    let (source, manifest) = (recording.source, recording.manifest);
     let channels = channels(args, &source)?;
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     if !use_stamps && args.sample_rate.is_none() {
         return Err(format!(
             "error: {}: no time column is used, so the sample rate is needed; give --sample-rate HZ\n",
-            args.recording.display()
+            named(args).display()
         ));
     }
     let procedure: Procedure = analysis::procedure(channels, args.sample_rate, args.warm_up);
@@ -51,7 +53,7 @@ fn attempt(args: &AnalyzeArgs) -> Result<u8, String> {
         limits: &limits,
         source: &source,
         use_stamps,
-        unit: UnitUnderTest::default(),
+        unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
         operator: None,
         station: None,
         now,
@@ -59,6 +61,11 @@ fn attempt(args: &AnalyzeArgs) -> Result<u8, String> {
         exact: args.grid.exact,
     };
     run::finish(&request, folder, &renderer)
+}
+
+/// The recording as it was named first.
+fn named(args: &AnalyzeArgs) -> &Path {
+    args.recording.first().map_or(Path::new(""), PathBuf::as_path)
 }
 
 /// The channels: as named, else as their names tell.
@@ -79,6 +86,12 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
             }
         }
     }
+    if let Some(name) = args.counter.as_deref() {
+        let column = reference(name);
+        source.resolve(&column).map_err(|e| format!("error: {e}\n"))?;
+        let unit = Unit::parse("count").map_err(|e| e.to_string())?;
+        channels.push(Channel { id: "counter".into(), column, role: Role::Counter, unit, scale: 1.0 });
+    }
     let taken: Vec<ColumnRef> = channels.iter().map(|c| c.column.clone()).collect();
     let wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() {
         let gyro = |name: &str, unit: Option<&str>| guess(name, unit).role.is_gyro();
@@ -97,7 +110,7 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
             None => {
                 return Err(format!(
                     "error: {}: the name of column `{}` does not tell its unit; give --unit (for example deg/h or rad/s)\n",
-                    args.recording.display(),
+                    named(args).display(),
                     found.name
                 ));
             }
@@ -105,7 +118,7 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
         if wanted_twice(&channels, source, index) {
             return Err(format!(
                 "error: {}: column `{}` is asked for twice; name each once\n",
-                args.recording.display(),
+                named(args).display(),
                 found.name
             ));
         }
@@ -121,7 +134,7 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
         let names: Vec<&str> = source.columns().iter().map(|c| c.name.as_str()).collect();
         return Err(format!(
             "error: {}: no column looks like a gyro output; name it with --rate (columns: {})\n",
-            args.recording.display(),
+            named(args).display(),
             names.join(", ")
         ));
     }

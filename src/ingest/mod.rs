@@ -8,20 +8,27 @@ pub mod compressed;
 mod csv;
 mod dialect;
 mod error;
+mod following;
+mod joined;
 mod lines;
+pub mod manifest;
+pub mod manifest_tables;
 mod memory;
 mod number;
 mod options;
 mod parquet;
 mod plan;
+mod recording;
 mod reduce;
 mod stream;
 
 pub use compressed::Packing;
 pub use error::{IngestError, IngestErrorKind};
+pub use joined::PartFacts;
 pub use options::{Encoding, ReadOptions, TextOptions};
 pub use plan::{Plan, TimeBaseSpec, prepare};
-pub use stream::{ChannelFacts, StreamReport, stream, stream_path};
+pub use recording::{Recording, RecordingError, open_recording};
+pub use stream::{ChannelFacts, FileReport, StreamReport, locate, stream, stream_path};
 
 use crate::recording::ColumnRef;
 use crate::text::{Arg, Note};
@@ -79,7 +86,9 @@ pub(crate) const LOCATED_PER_BLOCK: u64 = 100;
 /// Some rows of the wanted columns.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Block {
-    /// Row of the first, counted from 1.
+    /// Which file of the recording, counted from 0.
+    pub part: usize,
+    /// Row of the first, counted from 1; in a recording of several files rows count on.
     pub first_row: u64,
     /// Line of the text that the block starts on, counted from 1.
     pub(crate) first_line: u64,
@@ -228,6 +237,9 @@ pub struct Source {
     packing: Packing,
     bytes: u64,
     opened: Opened,
+    /// The files of a recording of several; empty for one.
+    parts: Vec<joined::Part>,
+    contiguous: bool,
 }
 
 /// Opens a recording; the format is found by its content.
@@ -287,7 +299,7 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
             .hint("ingest.hint.give_known"));
     };
     let opened = format.open(&candidate)?;
-    Ok(Source { path: path.to_owned(), format: format.id(), packing, bytes: metadata.len(), opened })
+    Ok(Source { path: path.to_owned(), format: format.id(), packing, bytes: metadata.len(), opened, parts: Vec::new(), contiguous: false })
 }
 
 impl Source {
@@ -301,13 +313,51 @@ impl Source {
         block_rows: usize,
     ) -> Result<Source, IngestError> {
         let opened = memory::open(Path::new(name), columns, block_rows)?;
-        Ok(Source { path: PathBuf::from(name), format: "memory", packing: Packing::Plain, bytes: 0, opened })
+        Ok(Source::alone(PathBuf::from(name), "memory", opened))
     }
 
     /// A recording without columns under the path of one that could not be opened, so that its report can name it.
     pub fn unopened(path: &Path) -> Source {
         let opened = memory::nothing();
-        Source { path: path.to_owned(), format: "unknown", packing: Packing::Plain, bytes: 0, opened }
+        Source::alone(path.to_owned(), "unknown", opened)
+    }
+
+    fn alone(path: PathBuf, format: &'static str, opened: Opened) -> Source {
+        let (parts, contiguous) = (Vec::new(), false);
+        Source { path, format, packing: Packing::Plain, bytes: 0, opened, parts, contiguous }
+    }
+
+    /// A recording of several files; what describes it comes from the first.
+    fn of_parts(path: &Path, parts: Vec<joined::Part>, contiguous: bool, described: Opened) -> Source {
+        let first = parts.first().map(|p| &p.source);
+        Source {
+            path: path.to_owned(),
+            format: first.map_or("unknown", |s| s.format),
+            packing: first.map_or(Packing::Plain, |s| s.packing),
+            bytes: parts.iter().map(|p| p.source.bytes).sum(),
+            opened: described,
+            parts,
+            contiguous,
+        }
+    }
+
+    /// The files of the recording, in order: one, unless several were joined.
+    pub fn files(&self) -> Vec<&Path> {
+        if self.parts.is_empty() {
+            vec![&self.path]
+        } else {
+            self.parts.iter().map(|p| p.source.path()).collect()
+        }
+    }
+
+    /// The phase of the test that a file belongs to, where a manifest says it.
+    pub fn phase(&self, file: usize) -> Option<&str> {
+        self.parts.get(file)?.phase.as_deref()
+    }
+
+    /// True when each file follows the one before without a gap, as a manifest says.
+    pub fn is_contiguous(&self) -> bool {
+        self.contiguous
     }
 
     /// The file.
@@ -426,6 +476,22 @@ impl Source {
         wanted: &[usize],
         on_block: &mut OnBlock<'_>,
     ) -> Result<Option<FileFacts>, IngestError> {
+        self.read_parts(wanted, on_block, &mut |_, _| {})
+    }
+
+    /// As [`Source::read`]; tells what each file of a recording of several was, once it is read.
+    ///
+    /// # Errors
+    /// As [`Source::read`], for each of the files.
+    pub fn read_parts(
+        &self,
+        wanted: &[usize],
+        on_block: &mut OnBlock<'_>,
+        on_part: &mut dyn FnMut(usize, PartFacts),
+    ) -> Result<Option<FileFacts>, IngestError> {
+        if !self.parts.is_empty() {
+            return joined::read(&self.parts, wanted, on_block, on_part);
+        }
         let mut unique: Vec<usize> = Vec::new();
         for &w in wanted {
             if !unique.contains(&w) {

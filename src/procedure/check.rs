@@ -4,6 +4,8 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
+use crate::ingest::manifest::{self, Manifest, is_manifest};
+use crate::text::{Lang, Note};
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -13,15 +15,19 @@ pub enum Checked {
     Procedure(Box<Loaded<Procedure>>),
     /// A sound limits file.
     Limits(Box<Loaded<LimitsFile>>),
+    /// A manifest whose files are there and what it says.
+    Manifest(Box<Manifest>),
 }
 
 /// Reads a file as what its first table says it is: a file with `[limits]` or `format = "limits/..."` is a limits file,
-/// any other a procedure.
+/// one with `format = "manifest/..."` a manifest, any other a procedure.
 ///
 /// # Errors
 /// Every problem of the file.
 pub fn check(path: &Path) -> Result<Checked, Problems> {
-    if is_limits(path) {
+    if is_manifest(path) {
+        manifest::load(path).map(|m| Checked::Manifest(Box::new(m)))
+    } else if is_limits(path) {
         load_limits(path).map(|l| Checked::Limits(Box::new(l)))
     } else {
         load(path).map(|p| Checked::Procedure(Box::new(p)))
@@ -61,6 +67,7 @@ pub fn check_report_with(
                         (procedure_sentence(p), warnings)
                     }
                     Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
+                    Checked::Manifest(m) => (manifest_sentence(m), vec![]),
                 };
                 for warning in warnings {
                     report.text.push_str(&format!("{warning}\n"));
@@ -102,6 +109,10 @@ fn limits_sentence(l: &Loaded<LimitsFile>) -> String {
         count(l.set.limits.len(), "limit"),
         count(l.set.references.len(), "reference value")
     )
+}
+
+fn manifest_sentence(m: &Manifest) -> String {
+    Note::new("manifest.sound").with("count", m.files.len()).say(Lang::En)
 }
 
 /// True when the beginning of the file says that it holds limits. Nothing is reported here: reading does that.

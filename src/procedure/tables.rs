@@ -188,6 +188,12 @@ static CHANNEL: TableSpec = TableSpec {
             "\"400 deg/s\"",
             "Highest output of the channel: samples at or above it count as saturated.",
         ),
+        optional(
+            "rollover",
+            Kind::QuantityBy("role"),
+            "\"86400 s\"",
+            "Period after which stamps or a counter start again, such as \"86400 s\" for clock time or \"256 count\" for a counter of 8 bits. Usual periods are found without it where no sample is missing there.",
+        ),
         with_default(
             "required",
             Kind::Flag,

@@ -19,7 +19,7 @@ use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::{EarthRate, Taus};
 use crate::record::{FaultRecord, Integrity, Window};
-use crate::recording::Channel;
+use crate::recording::{Channel, Role};
 use crate::recording::window::{WindowSpec, Windowed};
 use std::collections::BTreeMap;
 
@@ -59,8 +59,9 @@ pub(super) fn execute(
         integrity: &found.report.integrity,
         rows: found.report.rows,
         sample_interval_s: found.tau0_s,
+        clock_notes: &found.report.notes,
         has_stamps: request.use_stamps
-            && found.channels.iter().any(|c| c.role == crate::recording::Role::Time),
+            && found.channels.iter().any(|c| c.role == Role::Time),
         usable_s: found.window.usable_s,
         longest_gap_s,
         held: &found.held,
@@ -92,8 +93,13 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
             request.source.path().display()
         )));
     }
-    let spec =
-        TimeBaseSpec { declared_sample_rate_hz: procedure.sample_rate_hz, use_stamps: request.use_stamps };
+    let declared = |role: Role| procedure.channels.iter().find(|c| c.channel.role == role)?.rollover;
+    let spec = TimeBaseSpec {
+        declared_sample_rate_hz: procedure.sample_rate_hz,
+        use_stamps: request.use_stamps,
+        rollover_s: declared(Role::Time),
+        counter_modulus: declared(Role::Counter),
+    };
     let plan = prepare(request.source, &channels, spec)?;
     let nominal_s = plan.clock().interval_s;
     let grid = request.taus.clone().unwrap_or_else(|| match &procedure.analysis.taus {
@@ -138,7 +144,9 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
             )
         }));
     }
-    declare_rails(&mut report.integrity, overview.saturated());
+    let mut saturated = overview.saturated();
+    saturated.iter_mut().for_each(|f| crate::ingest::locate(&report.files, f));
+    declare_rails(&mut report.integrity, saturated);
     tidy_integrity(&mut report.integrity, tau0_s, &gyros);
     let envelopes = overview.finish();
     Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact })
@@ -288,7 +296,6 @@ fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
 
 /// The other channels drawn under the rate, with the bands that they must keep.
 fn below<'a>(procedure: &Procedure, found: &'a Found) -> Vec<figures::time_series::Below<'a>> {
-    use crate::recording::Role;
     let mut list = Vec::new();
     for (slot, channel) in found.channels.iter().enumerate() {
         let Some(envelope) = found.envelopes.get(&slot) else { continue };

@@ -153,6 +153,7 @@ impl Overview {
                     kind: "saturated".into(),
                     channel: Some(r.channel.clone()),
                     time_s: Some(time_s),
+                    file: None,
                     row,
                     count: r.count,
                     note: note.say(Lang::En),

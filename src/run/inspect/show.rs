@@ -7,6 +7,7 @@ use super::quantity::{count, plain, time};
 use super::{show_gyro, support};
 use crate::ingest::{ChannelFacts, Packing, Source};
 use crate::recording::Role;
+use crate::recording::timebase::Measured;
 use crate::text::Note;
 use crate::units::Unit;
 
@@ -36,13 +37,29 @@ fn file(page: &mut Page, source: &Source, seen: &Seen) {
     let format = Note::new(key).with("format", source.format()).with("packing", source.packing().id());
     page.note(&word("inspect.format"), &format);
     page.row(&word("inspect.rows"), &count(seen.report.rows));
-    if seen.report.facts.bytes > 0 {
+    if seen.report.files.len() > 1 {
+        joined(page, seen);
+    }
+    if seen.report.facts.bytes > 0 && seen.report.files.len() < 2 {
         let size = Note::new("inspect.bytes").with("bytes", count(seen.report.facts.bytes));
         page.note(&word("inspect.size"), &size);
         page.row("SHA-256", &seen.report.facts.sha256);
     }
     for (i, note) in source.notes().iter().enumerate() {
         page.note(&if i == 0 { word("inspect.reader") } else { String::new() }, note);
+    }
+}
+
+/// The files of a recording of several.
+fn joined(page: &mut Page, seen: &Seen) {
+    for file in &seen.report.files {
+        let note = Note::new("time_base.file")
+            .with("file", file.path.display().to_string())
+            .with("rows", count(file.facts.rows))
+            .with("start", file.start.clone().unwrap_or_else(|| "-".to_owned()))
+            .with("length", if seen.time.is_known() { time(file.duration_s) } else { "-".to_owned() })
+            .with("sha256", file.facts.sha256.as_str());
+        page.note(&word("time_base.joined"), &note);
     }
 }
 
@@ -187,6 +204,14 @@ fn time_base(page: &mut Page, seen: &Seen) {
         let note = Note::new("inspect.rate_given").with("given", plain(given, 6)).with("off", plain(off, 2));
         page.note("", &note);
     }
+    if let (TimeBase::Stamps(_), Some(clock)) = (&seen.time, &report.clock) {
+        clock_facts(page, clock);
+    }
+    if let TimeBase::Stamps(_) = &seen.time {
+        for note in &report.notes {
+            page.note("", note);
+        }
+    }
     page.row(&label("inspect.length"), &time(report.duration_s));
     if let TimeBase::Stamps(_) = seen.time {
         if let Some(start) = &report.start {
@@ -216,7 +241,25 @@ fn time_base(page: &mut Page, seen: &Seen) {
                 .with("backward", backward),
         };
         page.note(&label("inspect.breaks"), &note);
-        list(page, seen, &["gap", "duplicate_timestamp", "backward_timestamp"]);
+        if i.rollovers > 0 {
+            page.note("", &Note::new("time_base.rollovers").with("count", i.rollovers));
+        }
+        list(page, seen, &["gap", "duplicate_timestamp", "backward_timestamp", "rollover"]);
+    }
+}
+
+/// How well the stamps tell the rate, and whether it drifts.
+fn clock_facts(page: &mut Page, clock: &Measured) {
+    let ppm = clock.uncertainty_s / clock.interval_s * 1e6;
+    if ppm > 0.001 {
+        page.note("", &Note::new("time_base.uncertainty").with("ppm", plain(ppm, 2)));
+    }
+    if let (Some(drift), Some(sigma)) = (clock.drift, clock.drift_uncertainty)
+        && drift.abs() > 4.0 * sigma
+        && drift.abs() > 1e-7
+    {
+        let note = Note::new("time_base.drift").with("ppm", plain(drift * 1e6, 2));
+        page.note("", &note.with("sigma", plain(sigma * 1e6, 2)));
     }
 }
 
@@ -260,7 +303,8 @@ fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
         };
         let channel = fault.channel.as_deref().filter(|c| !fault.note.contains(c));
         let channel = channel.map_or_else(String::new, |c| format!("`{c}`: "));
-        let row = format!("{}: {channel}{}", super::layout::say(&place), fault.note);
+        let file = fault.file.as_ref().map_or_else(String::new, |f| format!("{f}: "));
+        let row = format!("{file}{}: {channel}{}", super::layout::say(&place), fault.note);
         page.row("", &row);
     }
 }
