@@ -93,20 +93,23 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
         channels.push(Channel { id: "counter".into(), column, role: Role::Counter, unit, scale: 1.0 });
     }
     let taken: Vec<ColumnRef> = channels.iter().map(|c| c.column.clone()).collect();
-    let wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() {
+    let mut wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() && args.angle.is_empty() {
         let gyro = |name: &str, unit: Option<&str>| guess(name, unit).role.is_gyro();
         let columns = source.columns().iter().filter(|c| c.numeric && gyro(&c.name, c.unit.as_deref()));
         columns.map(|c| (c.name.clone(), ColumnRef::Name(c.name.clone()))).collect()
     } else {
         args.rate.iter().map(|name| (name.clone(), reference(name))).collect()
     };
-    for (name, column) in wanted {
+    let rates = wanted.len();
+    wanted.extend(args.angle.iter().map(|name| (name.clone(), reference(name))));
+    for (place, (name, column)) in wanted.into_iter().enumerate() {
         let index = source.resolve(&column).map_err(|e| format!("error: {e}\n"))?;
         let found = &source.columns()[index];
         let guessed = guess(&found.name, found.unit.as_deref());
         let unit = match &unit {
             Some(unit) => unit.clone(),
             None if guessed.role.is_gyro() && guessed.unit_is_named => guessed.unit,
+            None if place >= rates && guessed.unit_is_named && is_angle(&guessed.unit) => guessed.unit,
             None => {
                 return Err(format!(
                     "error: {}: the name of column `{}` does not tell its unit; give --unit (for example deg/h or rad/s)\n",
@@ -122,7 +125,9 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, String>
                 found.name
             ));
         }
-        let role = if Unit::parse("deg").is_ok_and(|angle| angle.same_dimension(&unit)) {
+        let role = if place >= rates {
+            Role::AccumulatedAngle
+        } else if is_angle(&unit) {
             Role::AngleIncrement
         } else {
             Role::Rate
@@ -161,6 +166,10 @@ fn time(source: &Source, name: &str) -> Result<Channel, String> {
     let g = guess(&found.name, found.unit.as_deref());
     let unit = if g.role == Role::Time { g.unit } else { Unit::parse("s").map_err(|e| e.to_string())? };
     Ok(Channel { id: "time".into(), column, role: Role::Time, unit, scale: 1.0 })
+}
+
+fn is_angle(unit: &Unit) -> bool {
+    Unit::parse("deg").is_ok_and(|angle| angle.same_dimension(unit))
 }
 
 /// A number is a position, anything else a name.

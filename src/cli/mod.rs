@@ -130,6 +130,9 @@ struct AnalyzeArgs {
     /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]
     rate: Vec<String>,
+    /// Column of an accumulated angle, by name or position, whose differences are the rate; may be repeated
+    #[arg(long, value_name = "COLUMN")]
+    angle: Vec<String>,
     /// Unit of the rate columns [default: from their names]
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,

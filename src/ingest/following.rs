@@ -1,5 +1,6 @@
 //! Rows put on the grid of the recording: by their stamps, by a counter, or by their number.
 
+use super::accumulated::Angles;
 use super::plan::Plan;
 use super::stream::nano;
 use super::{Block, FieldFaultKind};
@@ -41,6 +42,9 @@ pub(super) struct State<'a> {
     shift_s: f64,
     /// The first row of the block was placed by its file.
     joined: bool,
+    angles: Angles,
+    /// The next slab of differences begins a stretch.
+    broken: bool,
 }
 
 impl<'a> State<'a> {
@@ -62,6 +66,8 @@ impl<'a> State<'a> {
             spans: Vec::new(),
             shift_s: 0.0,
             joined: false,
+            angles: Angles::new(plan),
+            broken: false,
         }
     }
 
@@ -335,12 +341,43 @@ impl<'a> State<'a> {
         self.scratch = scratch;
     }
 
+    /// Passes rows on; of accumulated angles, their differences.
     fn emit(&mut self, values: &[Vec<f64>], first_row: u64, time_s: f64, sinks: &mut [&mut dyn Sink]) {
-        if self.spans.last().is_none_or(|s| s.part != self.part) && values.first().is_some_and(|v| !v.is_empty()) {
+        if values.first().is_none_or(Vec::is_empty) {
+            return;
+        }
+        if self.spans.last().is_none_or(|s| s.part != self.part) {
             let (first_index, part) = (self.index, self.part);
             let first_s = if self.plan.time.is_some() { time_s } else { self.plan.start_s() + time_s };
             self.spans.push(FileSpan { part, first_index, last_index: first_index, first_s, last_s: first_s });
         }
+        if self.angles.is_empty() {
+            self.pass_on(values, first_row, time_s, sinks);
+            return;
+        }
+        // The first row of a stretch has no angle before it.
+        let skipped = usize::from(!self.connected);
+        let (rates, wraps) = self.angles.differences(values, !self.connected);
+        for (at, slot, period) in wraps {
+            self.integrity.rollovers += 1;
+            let id = self.plan.channels.get(slot).map(|c| c.id.as_str());
+            let note = || Note::new("time_base.angle_rollover").with("period_deg", period / 3600.0);
+            self.log.push("rollover", id, Some(time_s), first_row + at as u64, 1, note);
+        }
+        if skipped > 0 {
+            self.index += 1;
+            self.broken = true;
+        }
+        if rates.first().is_some_and(|r| !r.is_empty()) {
+            let follows = self.connected && !std::mem::take(&mut self.broken);
+            self.connected = follows;
+            let time_s = time_s + skipped as f64 * self.plan.clock.interval_s;
+            self.pass_on(&rates, first_row + skipped as u64, time_s, sinks);
+        }
+        self.connected = true;
+    }
+
+    fn pass_on(&mut self, values: &[Vec<f64>], first_row: u64, time_s: f64, sinks: &mut [&mut dyn Sink]) {
         let slab = Slab { first_index: self.index, first_row, time_s, continues: self.connected, values };
         self.checks.push(&slab);
         for sink in sinks {

@@ -4,6 +4,7 @@
 //! one more format costs one file and one line. [`open`] gives a [`Source`]: the columns of a file and a way to read
 //! wanted ones block by block. [`stream`] puts a time base on the blocks and feeds them to sinks.
 
+mod accumulated;
 pub mod compressed;
 mod csv;
 mod dialect;

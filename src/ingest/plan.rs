@@ -49,6 +49,10 @@ pub struct Plan<'a> {
     pub(super) clock: Clock,
     pub(super) rollover: Unwrapper,
     pub(super) counter_modulus: Option<f64>,
+    /// Interval by which angles become rates, s.
+    pub(super) increment_s: f64,
+    /// Angle after which an accumulated one starts again, arcsec, by channel.
+    pub(super) angle_periods: Vec<Option<f64>>,
     start_s: f64,
 }
 
@@ -109,16 +113,25 @@ pub fn prepare<'a>(
             (Clock::declared(rate).map_err(|e| no_clock(e, "ingest.hint.rate_in_hz"))?, 0.0)
         }
     };
-    let mut maps = maps;
-    for (channel, map) in channels.iter().zip(&mut maps) {
-        if channel.role == Role::AngleIncrement {
-            // 1 arcsec in 1 s is 1 deg/h.
-            *map = (map.0 / clock.interval_s, map.1 / clock.interval_s);
-        }
-    }
     let rollover = unwrapper(clock.gap_limit_s);
     let counter_modulus = spec.counter_modulus;
-    Ok(Plan { source, channels, wanted, maps, time, counter, clock, rollover, counter_modulus, start_s })
+    let (angle_periods, increment_s) = (vec![None; channels.len()], clock.interval_s);
+    let mut plan = Plan {
+        source,
+        channels,
+        wanted,
+        maps,
+        time,
+        counter,
+        clock,
+        rollover,
+        counter_modulus,
+        increment_s,
+        angle_periods,
+        start_s,
+    };
+    plan.rates_from_angles(1.0, increment_s);
+    Ok(plan)
 }
 
 /// Longest step across a roll-over before the clock is known: three middle steps.
@@ -199,6 +212,36 @@ fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
 }
 
 impl Plan<'_> {
+    /// Turns angle increments into rates by another interval, s: 1 arcsec in 1 s is 1 deg/h.
+    fn rates_from_angles(&mut self, before_s: f64, interval_s: f64) {
+        for (channel, map) in self.channels.iter().zip(&mut self.maps) {
+            if channel.role == Role::AngleIncrement {
+                *map = (map.0 * before_s / interval_s, map.1 * before_s / interval_s);
+            }
+        }
+        self.increment_s = interval_s;
+    }
+
+    /// Divides angles by the interval that was measured over the whole recording.
+    pub fn set_increment_interval(&mut self, interval_s: f64) {
+        if interval_s.is_normal() && interval_s > 0.0 {
+            self.rates_from_angles(self.increment_s, interval_s);
+        }
+    }
+
+    /// True when a channel of angles is read, whose rates depend on the interval.
+    pub fn reads_angles(&self) -> bool {
+        self.channels.iter().any(|c| matches!(c.role, Role::AngleIncrement | Role::AccumulatedAngle))
+    }
+
+    /// Says after which angle a channel starts again, in the unit of its numbers.
+    pub fn set_angle_period(&mut self, channel: &str, period: f64) {
+        let slot = self.channels.iter().position(|c| c.id == channel && c.role == Role::AccumulatedAngle);
+        if let Some(place) = slot.and_then(|s| self.angle_periods.get_mut(s)) {
+            *place = Some(period);
+        }
+    }
+
     /// The nominal clock.
     pub fn clock(&self) -> Clock {
         self.clock

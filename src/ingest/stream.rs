@@ -149,7 +149,7 @@ impl State<'_> {
                 role: c.role,
                 unit: c.unit.text().to_owned(),
                 unit_inside: match c.role {
-                    Role::AngleIncrement => "deg/h".to_owned(),
+                    Role::AngleIncrement | Role::AccumulatedAngle => "deg/h".to_owned(),
                     role => role.internal_unit().map_or_else(|| c.unit.text().to_owned(), str::to_owned),
                 },
                 values,

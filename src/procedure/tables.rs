@@ -10,6 +10,7 @@ pub const ROLES: &[Word] = &[
     ("time", "time stamps"),
     ("rate", "angular rate about an input axis"),
     ("angle_increment", "angle turned during the sample interval, or counts of it"),
+    ("accumulated_angle", "angle turned since the beginning; its differences are the rate"),
     ("temperature", "a temperature"),
     ("table_rate", "rate of the table about the input axis"),
     ("table_angle", "angle of the table"),

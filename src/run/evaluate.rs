@@ -5,7 +5,7 @@ use super::{Outcome, Request, RunError, figures, power, settle, sigma_tau, verdi
 use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::figure::Figure;
-use crate::ingest::{Source, StreamReport, TimeBaseSpec, prepare};
+use crate::ingest::{Plan, Source, StreamReport, TimeBaseSpec, prepare};
 use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
 use crate::noise::digest::RateDigest;
 use crate::noise::envelope::Envelope;
@@ -100,7 +100,12 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
         rollover_s: declared(Role::Time),
         counter_modulus: declared(Role::Counter),
     };
-    let plan = prepare(request.source, &channels, spec)?;
+    let mut plan = prepare(request.source, &channels, spec)?;
+    for c in &procedure.channels {
+        if let Some(period) = c.rollover {
+            plan.set_angle_period(&c.channel.id, period);
+        }
+    }
     let nominal_s = plan.clock().interval_s;
     let grid = request.taus.clone().unwrap_or_else(|| match &procedure.analysis.taus {
         Taus::Octave => TauGrid::Octave,
@@ -110,16 +115,28 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     });
     grid.check(tidy(nominal_s))?;
     let exact = request.exact || procedure.analysis.exact;
-    let estimators = Estimator::ALL;
-    let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
-    let inside = Inside::new(procedure, &channels, &grid, estimators, exact, tidy(nominal_s), plan.start_s());
-    let window = WindowSpec {
-        from_s: procedure.conditions.warm_up_s,
-        to_s: None,
-        exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
+    let mut read = |plan: &Plan<'_>| -> Result<_, RunError> {
+        let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
+        let inside =
+            Inside::new(procedure, &channels, &grid, Estimator::ALL, exact, tidy(nominal_s), plan.start_s());
+        let window = WindowSpec {
+            from_s: procedure.conditions.warm_up_s,
+            to_s: None,
+            exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
+        };
+        let mut windowed = Windowed::new(inside, window, plan.start_s(), nominal_s);
+        let report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
+        Ok((overview, windowed, report))
     };
-    let mut windowed = Windowed::new(inside, window, plan.start_s(), nominal_s);
-    let mut report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
+    let mut found = read(&plan)?;
+    // Rates from angles are divided by the interval of the first rows; where the whole recording measures another one,
+    // they are made again with that.
+    let measured_s = found.2.tau0_measured_s;
+    if plan.reads_angles() && (measured_s / nominal_s - 1.0).abs() > 1e-6 {
+        plan.set_increment_interval(measured_s);
+        found = read(&plan)?;
+    }
+    let (overview, windowed, mut report) = found;
     let (inside, window) = windowed.finish();
     let Collected { gyros, held } = inside.finish();
     let tau0_s = tidy(report.tau0_measured_s);
