@@ -94,7 +94,8 @@ fn serial(given: Option<&str>, manifest: Option<&Manifest>) -> Result<Option<Str
     match (given, stated) {
         (Some(given), Some(stated)) if given.trim() != stated.trim() => {
             let path = manifest.map(|m| m.path.display().to_string()).unwrap_or_default();
-            let note = Note::new("manifest.serial").with("path", path).with("stated", stated).with("given", given);
+            let note =
+                Note::new("manifest.serial").with("path", path).with("stated", stated).with("given", given);
             Err(format!("error: {}\n", note.say(Lang::En)))
         }
         _ => Ok(given.or(stated).map(str::to_owned)),

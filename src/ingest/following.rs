@@ -123,9 +123,8 @@ impl<'a> State<'a> {
             let at = stamp.map(|s| self.tracker.on_scale(s)).filter(|t| t.is_finite());
             let row = block.first_row + rollover.at as u64;
             let key = if counter { "time_base.counter_rollover" } else { "time_base.rollover" };
-            self.log.push("rollover", Some(if counter { "counter" } else { "clock" }), at, row, 1, || {
-                Note::new(key).with("period", nano(rollover.period))
-            });
+            self.log
+                .push("rollover", None, at, row, 1, || Note::new(key).with("period", nano(rollover.period)));
         }
     }
 
@@ -157,7 +156,8 @@ impl<'a> State<'a> {
                 if let Some(back_s) = self.tracker.join(stamp) {
                     self.integrity.backward_timestamps += 1;
                     let at = Some(self.tracker.on_scale(stamp));
-                    let note = Note::new("time_base.joint_back").with("file", name).with("back_s", nano(back_s));
+                    let note =
+                        Note::new("time_base.joint_back").with("file", name).with("back_s", nano(back_s));
                     self.log.push("backward_timestamp", Some("clock"), at, row, 1, || note);
                     self.unknown_gap(row, at, Note::new("fault_note.gap_set_back"));
                     self.joined = true;
@@ -232,7 +232,8 @@ impl<'a> State<'a> {
                 continue;
             }
             self.part(columns, first_row, time_at(self.index), start..i, sinks);
-            start = if self.account_count(step, row, Some(stamp).filter(|s| s.is_finite())) { i } else { i + 1 };
+            start =
+                if self.account_count(step, row, Some(stamp).filter(|s| s.is_finite())) { i } else { i + 1 };
         }
         self.part(columns, first_row, time_at(self.index), start..counts.len(), sinks);
     }
@@ -349,7 +350,13 @@ impl<'a> State<'a> {
         if self.spans.last().is_none_or(|s| s.part != self.part) {
             let (first_index, part) = (self.index, self.part);
             let first_s = if self.plan.time.is_some() { time_s } else { self.plan.start_s() + time_s };
-            self.spans.push(FileSpan { part, first_index, last_index: first_index, first_s, last_s: first_s });
+            self.spans.push(FileSpan {
+                part,
+                first_index,
+                last_index: first_index,
+                first_s,
+                last_s: first_s,
+            });
         }
         if self.angles.is_empty() {
             self.pass_on(values, first_row, time_s, sinks);

@@ -73,10 +73,12 @@ pub(super) fn open(
     let Some(columns) = first else { return Err(error(name, Note::new("ingest.joined.none"))) };
     twice(&parts)?;
     let rows = parts.iter().map(|p| p.source.rows_estimate()).sum::<Option<u64>>();
-    let notes = std::iter::once(Note::new("ingest.joined.note").with("count", parts.len()))
-        .chain(parts.iter().flat_map(|p| p.source.notes().iter().take(8).cloned()))
-        .take(64)
-        .collect();
+    let mut notes = vec![Note::new("ingest.joined.note").with("count", parts.len())];
+    for note in parts.iter().flat_map(|p| p.source.notes()) {
+        if notes.len() < 64 && !notes.contains(note) {
+            notes.push(note.clone());
+        }
+    }
     let metadata = parts.first().map(|p| p.source.metadata().to_vec()).unwrap_or_default();
     let stated = parts.first().and_then(|p| p.source.stated_sample_rate_hz());
     let described = Opened {
@@ -112,7 +114,8 @@ fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usi
             *t = true;
         }
         let (factor, offset) = conversion(column, other).ok_or_else(|| {
-            let units = |c: &Column| c.unit.clone().unwrap_or_else(|| guess(&c.name, None).unit.text().into());
+            let units =
+                |c: &Column| c.unit.clone().unwrap_or_else(|| guess(&c.name, None).unit.text().into());
             let note = Note::new("ingest.joined.units")
                 .with("column", other.name.as_str())
                 .with("unit", units(other))
@@ -165,8 +168,9 @@ fn twice(parts: &[Part]) -> Result<(), IngestError> {
             }
             if *hash == own {
                 let note = Note::new("ingest.joined.twice").with("other", other.display().to_string());
-                return Err(IngestError::new(IngestErrorKind::Parts, path, note)
-                    .hint("ingest.joined.hint.name_once"));
+                return Err(
+                    IngestError::new(IngestErrorKind::Parts, path, note).hint("ingest.joined.hint.name_once")
+                );
             }
         }
         seen.push((bytes, path, own));

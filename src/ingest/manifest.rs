@@ -91,7 +91,11 @@ pub fn is_manifest(path: &Path) -> bool {
 pub fn load(path: &Path) -> Result<Manifest, Problems> {
     let name = path.display().to_string();
     let bytes = bytes_of(path).map_err(|e| {
-        Problems::from(Problem::of_file(&name, say(Note::new("manifest.unreadable").with("reason", e.to_string())), None))
+        Problems::from(Problem::of_file(
+            &name,
+            say(Note::new("manifest.unreadable").with("reason", e.to_string())),
+            None,
+        ))
     })?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     parse(path, &name, &bytes, folder)
@@ -150,7 +154,12 @@ fn files(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Manifest
         (None, false) => {
             // A wrong value of `files` has been reported already.
             if root.entry("files").is_none() {
-                complain(reader, &root.span.clone(), Note::new("manifest.no_files"), Some("manifest.help.no_files"));
+                complain(
+                    reader,
+                    &root.span.clone(),
+                    Note::new("manifest.no_files"),
+                    Some("manifest.help.no_files"),
+                );
             }
             vec![]
         }
@@ -177,7 +186,8 @@ fn by_list(listed: &[Section], folder: &Path, reader: &mut Reader<'_>) -> Vec<Ma
         if let Some(other) = found.last().filter(|f| f.phase != phase) {
             let span = if phase.is_some() { section.span_of("phase") } else { section.span.clone() };
             let word = |p: &Option<String>| p.clone().unwrap_or_else(|| "-".to_owned());
-            let note = Note::new("manifest.phases").with("phase", word(&phase)).with("other", word(&other.phase));
+            let note =
+                Note::new("manifest.phases").with("phase", word(&phase)).with("other", word(&other.phase));
             complain(reader, &inside(reader.source, &span), note, Some("manifest.help.phases"));
         }
         found.push(ManifestFile { path, sha256, phase });
@@ -267,7 +277,7 @@ fn safe(text: &str, folder: &Path, at: &Span, reader: &mut Reader<'_>) -> Option
     if !stays_inside(text, at, reader) {
         return None;
     }
-    let path = folder.join(text);
+    let path = if folder == Path::new(".") { PathBuf::from(text) } else { folder.join(text) };
     let about = |key: &'static str| Note::new(key).with("path", text);
     let canonical = match path.canonicalize() {
         Ok(canonical) => canonical,
@@ -352,7 +362,8 @@ fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOpt
 /// The place of a text between its quotes.
 fn inside(source: &SourceText, span: &Span) -> Span {
     let raw = source.text.get(span.clone()).unwrap_or("");
-    let quoted = raw.len() >= 2 && (raw.starts_with('"') && raw.ends_with('"') || raw.starts_with('\'') && raw.ends_with('\''));
+    let quoted = raw.len() >= 2
+        && (raw.starts_with('"') && raw.ends_with('"') || raw.starts_with('\'') && raw.ends_with('\''));
     if quoted && !raw.starts_with("\"\"\"") { span.start + 1..span.end - 1 } else { span.clone() }
 }
 

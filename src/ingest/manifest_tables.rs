@@ -22,7 +22,12 @@ pub static MANIFEST_FILE: TableSpec = TableSpec {
             "true",
             "True when each file follows the one before without a gap, whatever its stamps are; needed for files without stamps, whose joints are gaps of unknown length otherwise.",
         ),
-        optional("recording", Kind::Table(&READING), "", "How the files are read, where it is not to be found out."),
+        optional(
+            "recording",
+            Kind::Table(&READING),
+            "",
+            "How the files are read, where it is not to be found out.",
+        ),
         optional("file", Kind::Tables(&FILE), "", "The files, one table each, in their order."),
     ],
 };
@@ -52,7 +57,12 @@ static READING: TableSpec = TableSpec {
     doc: "How the files are read. What is left out is found from each file.",
     keys: &[
         optional("format", Kind::Text, "\"csv\"", "Id of the file format."),
-        optional("encoding", Kind::Choice(ENCODINGS), "\"windows-1251\"", "Character encoding of text files."),
+        optional(
+            "encoding",
+            Kind::Choice(ENCODINGS),
+            "\"windows-1251\"",
+            "Character encoding of text files.",
+        ),
         optional("delimiter", Kind::Choice(DELIMITERS), "\"semicolon\"", "Separator of fields."),
         optional("decimal", Kind::Choice(DECIMALS), "\"comma\"", "Decimal sign."),
         optional(

@@ -94,7 +94,11 @@ pub fn prepare<'a>(
                     take(1, map, &mut counts);
                 }
                 // The clock is found from the first file alone: where the next one begins is not known.
-                if stamps.len() < PROBED && block.part == 0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+                if stamps.len() < PROBED && block.part == 0 {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
             })?;
             let start_s = stamps.iter().copied().find(|t| t.is_finite()).unwrap_or(0.0);
             unwrapper(step_limit(&stamps)).apply(&mut stamps);

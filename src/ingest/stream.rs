@@ -190,7 +190,9 @@ impl State<'_> {
             }
         }
         let off = measured / nominal - 1.0;
-        if off.abs() > 1e-6 && self.measured().is_some_and(|m| (measured - nominal).abs() > 5.0 * m.uncertainty_s) {
+        if off.abs() > 1e-6
+            && self.measured().is_some_and(|m| (measured - nominal).abs() > 5.0 * m.uncertainty_s)
+        {
             notes.push(Note::new("time_base.first_rows").with("ppm", off * 1e6));
         }
         notes
@@ -199,7 +201,8 @@ impl State<'_> {
     /// What is known of each file.
     fn files(&self, facts: &FileFacts, parts: Vec<PartFacts>, measured: f64) -> Vec<FileReport> {
         let source = self.plan.source;
-        let parts = if parts.is_empty() { vec![PartFacts { facts: facts.clone(), rows_before: 0 }] } else { parts };
+        let parts =
+            if parts.is_empty() { vec![PartFacts { facts: facts.clone(), rows_before: 0 }] } else { parts };
         let paths = source.files();
         let (first, last) = self.span_s(measured);
         let several = parts.len() > 1;

@@ -19,8 +19,8 @@ use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::{EarthRate, Taus};
 use crate::record::{FaultRecord, Integrity, Window};
-use crate::recording::{Channel, Role};
 use crate::recording::window::{WindowSpec, Windowed};
+use crate::recording::{Channel, Role};
 use std::collections::BTreeMap;
 
 /// Everything that was found, before verdicts.
@@ -60,8 +60,7 @@ pub(super) fn execute(
         rows: found.report.rows,
         sample_interval_s: found.tau0_s,
         clock_notes: &found.report.notes,
-        has_stamps: request.use_stamps
-            && found.channels.iter().any(|c| c.role == Role::Time),
+        has_stamps: request.use_stamps && found.channels.iter().any(|c| c.role == Role::Time),
         usable_s: found.window.usable_s,
         longest_gap_s,
         held: &found.held,

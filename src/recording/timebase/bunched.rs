@@ -50,9 +50,8 @@ pub(super) fn probe(t: &[f64]) -> Option<Clock> {
         return None;
     }
     let interval_s = slope(&starts, period_s / rows)?;
-    let off = |w: &[(f64, f64)]| {
-        departure(&w.iter().map(|(row, t)| t - row * interval_s).collect::<Vec<f64>>())
-    };
+    let off =
+        |w: &[(f64, f64)]| departure(&w.iter().map(|(row, t)| t - row * interval_s).collect::<Vec<f64>>());
     let window = WINDOW.min(starts.len());
     let windows = starts.chunks_exact(window);
     let count = windows.len();
@@ -68,8 +67,7 @@ pub(super) fn probe(t: &[f64]) -> Option<Clock> {
 
 /// Middle number of rows from one bunch to the next, taken as a mean over those within 1 of the median.
 fn rows_of_a_bunch(starts: &[(f64, f64)]) -> Option<f64> {
-    let mut counts: Vec<f64> =
-        starts.iter().zip(starts.get(1..)?).map(|(a, b)| b.0 - a.0).collect();
+    let mut counts: Vec<f64> = starts.iter().zip(starts.get(1..)?).map(|(a, b)| b.0 - a.0).collect();
     if counts.is_empty() {
         return None;
     }

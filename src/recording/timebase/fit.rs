@@ -121,8 +121,7 @@ impl Fit {
             let room = (self.segment_rows as f64 - self.current.n).max(1.0) as usize;
             let part = rest.get(..room.min(rest.len())).unwrap_or(rest);
             let sums = block_sums(part, at, self.nominal, self.current.stretch);
-            self.current =
-                if self.current.n == 0.0 { sums } else { self.current.merged(sums, self.nominal) };
+            self.current = if self.current.n == 0.0 { sums } else { self.current.merged(sums, self.nominal) };
             done += part.len();
         }
     }

@@ -169,7 +169,9 @@ fn rounded_stamps_with_losses_keep_their_count() {
 #[test]
 fn shared_stamps_and_packets_give_the_mean_rate() {
     let mut wrong = String::new();
-    for (interval, floor) in [(0.01, 1.0), (1.0 / 102.4, 1.0), (0.001, 0.01), (1.0 / 3.7, 1.0), (0.0004, 0.001)] {
+    for (interval, floor) in
+        [(0.01, 1.0), (1.0 / 102.4, 1.0), (0.001, 0.01), (1.0 / 3.7, 1.0), (0.0004, 0.001)]
+    {
         let m = Made { interval, floor, ..EVEN };
         let within = 1.5 * floor.min(interval) / (interval * ROWS as f64);
         wrong += &check(&format!("{interval} in stamps of {floor}"), m, within);
@@ -212,7 +214,9 @@ fn the_stated_uncertainty_covers_the_error() {
         t.iter().for_each(|s| assert_eq!(tracker.step(*s, None), Step::Next));
         let m = tracker.measured().unwrap();
         outside += u32::from((m.interval_s - 0.01).abs() > 2.0 * m.uncertainty_s);
-        assert!(m.uncertainty_s < 1e-9 && m.drift.is_none_or(|d| d.abs() < 5.0 * m.drift_uncertainty.unwrap()));
+        assert!(
+            m.uncertainty_s < 1e-9 && m.drift.is_none_or(|d| d.abs() < 5.0 * m.drift_uncertainty.unwrap())
+        );
     }
     // Two standard deviations leave 2 of 40 outside; more than 6 has a probability below 1 %.
     assert!(outside <= 6, "{outside} of 40");

@@ -56,7 +56,8 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
     let coarse = resolution_s > 0.3 * median;
     let odd = steps(&t).filter(|d| (d / median - 1.0).abs() > 0.3).count() as f64 / (t.len() - 1) as f64;
     let rounded = coarse && straight(&t, resolution_s) >= 0.5;
-    let (every_nth, declared_s) = (rounded && every_nth_is_double(&t, resolution_s), declared_hz.map(f64::recip));
+    let (every_nth, declared_s) =
+        (rounded && every_nth_is_double(&t, resolution_s), declared_hz.map(f64::recip));
     let slower = span_interval(&t);
     if every_nth && !declared_s.is_some_and(|d| (d / slower - 1.0).abs() < (d / resolution_s - 1.0).abs()) {
         let mut clock = Clock::even(resolution_s, resolution_s, 1.5 * resolution_s);
@@ -170,7 +171,8 @@ fn scored(t: &[f64], median: f64, resolution_s: f64) -> Option<Clock> {
     // The phase of each step about whole multiples tells whether single stamps can be compared.
     positive.iter_mut().for_each(|d| *d = (*d / tau - (*d / tau).round()).abs());
     let outside = positive.iter().filter(|d| **d > 0.25).count();
-    let even = outside * 50 <= positive.len() && resolution_s <= 0.3 * tau;
+    let whole = (tau / resolution_s - (tau / resolution_s).round()).abs() < 1e-3;
+    let even = outside * 50 <= positive.len() && (resolution_s <= 0.3 * tau || whole);
     let mut clock = Clock::even(tau, resolution_s, 1.5 * tau);
     if !even {
         clock.cadence = Cadence::Uneven;

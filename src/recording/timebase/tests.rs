@@ -43,7 +43,10 @@ fn every_nth_double_step_is_a_loss_unless_the_declared_rate_says_otherwise() {
         assert!((lossy.interval_s / step - 1.0).abs() < 1e-9, "{lossy:?}");
         assert!((lossy.ambiguous_with_s.unwrap() / slow - 1.0).abs() < 1e-3, "{lossy:?}");
         let clock = Clock::probe_with(&t, Some(1.0 / slow)).unwrap();
-        assert!((clock.interval_s / slow - 1.0).abs() < 1e-6 && clock.ambiguous_with_s.is_none(), "{clock:?}");
+        assert!(
+            (clock.interval_s / slow - 1.0).abs() < 1e-6 && clock.ambiguous_with_s.is_none(),
+            "{clock:?}"
+        );
         let lossy = Clock::probe_with(&t, Some(1.0 / step)).unwrap();
         assert!((lossy.interval_s / step - 1.0).abs() < 1e-9 && lossy.ambiguous_with_s.is_none());
     }

@@ -325,7 +325,11 @@ impl Tracker {
 
     /// Latest stamp used, on the scale of [`Tracker::on_scale`].
     pub fn latest_s(&self) -> Option<f64> {
-        self.latest.map(|t| self.on_scale(t))
+        // The last row of a bunch is later than its stamp.
+        let bunched = matches!(self.clock.cadence, Cadence::Bunched { .. }) && self.course.n > 1.0;
+        let latest =
+            if bunched { self.course.phase + self.course.rows * self.course.interval } else { self.latest? };
+        Some(self.on_scale(latest))
     }
 
     /// The clock by regression of the stamps on the number of the sample; `None` with too few.

@@ -156,9 +156,13 @@ fn time_base(
 fn spec(time: &TimeBase) -> TimeBaseSpec {
     match time {
         TimeBase::Stamps(_) => TimeBaseSpec::default(),
-        TimeBase::Declared(hz, _) => TimeBaseSpec { declared_sample_rate_hz: Some(*hz), use_stamps: false, ..TimeBaseSpec::default() },
+        TimeBase::Declared(hz, _) => {
+            TimeBaseSpec { declared_sample_rate_hz: Some(*hz), use_stamps: false, ..TimeBaseSpec::default() }
+        }
         // One row a second, so that positions can be told; no time is shown.
-        TimeBase::Rows(_) => TimeBaseSpec { declared_sample_rate_hz: Some(1.0), use_stamps: false, ..TimeBaseSpec::default() },
+        TimeBase::Rows(_) => {
+            TimeBaseSpec { declared_sample_rate_hz: Some(1.0), use_stamps: false, ..TimeBaseSpec::default() }
+        }
     }
 }
 
