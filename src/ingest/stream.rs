@@ -137,7 +137,7 @@ impl State<'_> {
         for fault in &mut integrity.faults {
             locate(&files, fault);
         }
-        let notes = self.notes(nominal, measured);
+        let notes = self.notes(nominal, measured, integrity.rollovers);
         let channels = plan
             .channels
             .iter()
@@ -175,7 +175,7 @@ impl State<'_> {
     }
 
     /// What must be known of the time base.
-    fn notes(&self, nominal: f64, measured: f64) -> Vec<Note> {
+    fn notes(&self, nominal: f64, measured: f64, rollovers: u64) -> Vec<Note> {
         let clock = self.plan.clock;
         let mut notes = Vec::new();
         if let Some(other) = clock.ambiguous_with_s {
@@ -188,6 +188,9 @@ impl State<'_> {
             Cadence::Bunched { period_s, rows } => {
                 notes.push(Note::new("time_base.bunched").with("rows", rows).with("period_s", period_s));
             }
+        }
+        if rollovers > 0 {
+            notes.push(Note::new("time_base.rollovers").with("count", rollovers));
         }
         let off = measured / nominal - 1.0;
         if off.abs() > 1e-6

@@ -241,9 +241,6 @@ fn time_base(page: &mut Page, seen: &Seen) {
                 .with("backward", backward),
         };
         page.note(&label("inspect.breaks"), &note);
-        if i.rollovers > 0 {
-            page.note("", &Note::new("time_base.rollovers").with("count", i.rollovers));
-        }
         list(page, seen, &["gap", "duplicate_timestamp", "backward_timestamp", "rollover"]);
     }
 }
