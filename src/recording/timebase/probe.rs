@@ -285,5 +285,5 @@ fn every_nth_is_double(t: &[f64], resolution_s: f64) -> bool {
     }
     let distances: Vec<usize> =
         doubles.iter().zip(doubles.get(1..).unwrap_or_default()).map(|(a, b)| b - a).collect();
-    distances.len() >= 8 && distances.iter().all(|d| Some(d) == distances.first())
+    distances.len() >= 8 && distances.iter().all(|d| *d > 1 && Some(d) == distances.first())
 }
