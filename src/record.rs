@@ -163,6 +163,13 @@ pub struct RecordingFile {
     pub samples: u64,
     /// Measured mean sample interval, s.
     pub sample_interval_s: f64,
+    /// Standard uncertainty of the interval from the scatter of the stamps, s; absent without stamps. What the clock is
+    /// off by against true time is not in it.
+    pub sample_interval_uncertainty_s: Option<f64>,
+    /// Change of the clock's rate from the beginning to the end, ppm, where the stamps tell it.
+    pub clock_drift_ppm: Option<f64>,
+    /// Phase of the test that the file belongs to, where a manifest says it.
+    pub phase: Option<String>,
     /// Start of the recording, RFC 3339, when the stamps are absolute.
     pub start: Option<String>,
     /// Last stamp minus first stamp plus one interval, s.
@@ -228,6 +235,10 @@ pub struct Integrity {
     pub duplicate_timestamps: u64,
     /// Rows whose stamp is earlier than one before.
     pub backward_timestamps: u64,
+    /// Places where stamps or a counter of limited width started again; no fault.
+    pub rollovers: u64,
+    /// Rows where stamps and counter disagree; the counter is followed.
+    pub timestamp_disagreements: u64,
     /// Fields that hold NaN, infinity or a number beyond 1e60, or are empty.
     pub non_finite: u64,
     /// Fields that are no number.
@@ -251,13 +262,15 @@ pub struct Integrity {
 /// One fault.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FaultRecord {
-    /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `non_finite`, `unparsable`, `outlier`, `saturated`, `stuck`.
+    /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`, `unparsable`, `outlier`, `saturated`, `stuck`.
     pub kind: String,
     /// Channel, when the fault is of one channel.
     pub channel: Option<String>,
     /// Time of the first sample concerned, s on the recording's own scale.
     pub time_s: Option<f64>,
-    /// Row of the first sample concerned, counted from 1 without header lines.
+    /// File, where the recording is of several.
+    pub file: Option<String>,
+    /// Row of the first sample concerned, counted from 1 without header lines; in its own file.
     pub row: u64,
     /// Samples concerned.
     pub count: u64,

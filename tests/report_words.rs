@@ -147,6 +147,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         integrity: &integrity,
         rows: 1000,
         sample_interval_s: 1.1,
+        clock_notes: &[],
         has_stamps: true,
         usable_s: 1.0,
         longest_gap_s: 100.0,

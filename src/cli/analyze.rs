@@ -1,7 +1,7 @@
 //! `sagnac analyze`: the noise of a recording without a procedure.
 
 use super::{AnalyzeArgs, exit, place, run};
-use crate::ingest::Source;
+use crate::ingest::{Source, open_recording};
 use crate::output::StagedFolder;
 use crate::procedure::EffectiveLimits;
 use crate::procedure::model::Procedure;
@@ -11,6 +11,7 @@ use crate::run::{Request, analysis};
 use crate::text::{Lang, Note};
 use crate::units::Unit;
 use chrono::Utc;
+use std::path::{Path, PathBuf};
 
 pub fn main(args: &AnalyzeArgs, lang: Lang) -> u8 {
     match attempt(args, lang) {
@@ -30,11 +31,12 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     }
     let renderer = run::renderer(args.templates.as_deref(), lang)?;
     let now = Utc::now();
-    let stem = args.recording.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
     let folder = StagedFolder::begin(&out).map_err(|e| say(e.note()))?;
-    let source = crate::ingest::open_with(&args.recording, &args.read.options()).map_err(|e| say(e.note()))?;
+    let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
+    let (source, manifest) = (recording.source, recording.manifest);
     let channels = channels(args, &source).map_err(say)?;
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     if !use_stamps && args.sample_rate.is_none() {
@@ -49,7 +51,7 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         limits: &limits,
         source: &source,
         use_stamps,
-        unit: UnitUnderTest::default(),
+        unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
         operator: None,
         station: None,
         now,
@@ -61,7 +63,12 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
 
 /// A sentence about the recording.
 fn about(args: &AnalyzeArgs, key: &'static str) -> Note {
-    Note::new(key).with("path", args.recording.display().to_string())
+    Note::new(key).with("path", named(args).display().to_string())
+}
+
+/// The recording as it was named first.
+fn named(args: &AnalyzeArgs) -> &Path {
+    args.recording.first().map_or(Path::new(""), PathBuf::as_path)
 }
 
 /// The channels: as named, else as their names tell.
@@ -79,20 +86,29 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
             }
         }
     }
+    if let Some(name) = args.counter.as_deref() {
+        let column = reference(name);
+        source.resolve(&column).map_err(|e| e.note())?;
+        let unit = Unit::parse("count").map_err(|e| e.note())?;
+        channels.push(Channel { id: "counter".into(), column, role: Role::Counter, unit, scale: 1.0 });
+    }
     let taken: Vec<ColumnRef> = channels.iter().map(|c| c.column.clone()).collect();
-    let wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() {
+    let mut wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() && args.angle.is_empty() {
         let columns = source.columns().iter().filter(|c| c.numeric && c.guess().role.is_gyro());
         columns.map(|c| (c.name.clone(), ColumnRef::Name(c.name.clone()))).collect()
     } else {
         args.rate.iter().map(|name| (name.clone(), reference(name))).collect()
     };
-    for (name, column) in wanted {
+    let rates = wanted.len();
+    wanted.extend(args.angle.iter().map(|name| (name.clone(), reference(name))));
+    for (place, (name, column)) in wanted.into_iter().enumerate() {
         let index = source.resolve(&column).map_err(|e| e.note())?;
         let found = &source.columns()[index];
         let guessed = found.guess();
         let unit = match &unit {
             Some(unit) => unit.clone(),
             None if guessed.role.is_gyro() && guessed.unit_is_named => guessed.unit,
+            None if place >= rates && guessed.unit_is_named && is_angle(&guessed.unit) => guessed.unit,
             None => {
                 return Err(about(args, "cli.unit_not_told").with("column", found.name.as_str()));
             }
@@ -100,7 +116,9 @@ fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
         if wanted_twice(&channels, source, index) {
             return Err(about(args, "cli.column_twice").with("column", found.name.as_str()));
         }
-        let role = if Unit::parse("deg").is_ok_and(|angle| angle.same_dimension(&unit)) {
+        let role = if place >= rates {
+            Role::AccumulatedAngle
+        } else if is_angle(&unit) {
             Role::AngleIncrement
         } else {
             Role::Rate
@@ -135,6 +153,10 @@ fn time(source: &Source, name: &str) -> Result<Channel, Note> {
     let g = found.guess();
     let unit = if g.role == Role::Time { g.unit } else { Unit::parse("s").map_err(|e| e.note())? };
     Ok(Channel { id: "time".into(), column, role: Role::Time, unit, scale: 1.0 })
+}
+
+fn is_angle(unit: &Unit) -> bool {
+    Unit::parse("deg").is_ok_and(|angle| angle.same_dimension(unit))
 }
 
 /// A number is a position, anything else a name.

@@ -2,17 +2,22 @@
 
 use super::progress::Progress;
 use super::{InspectArgs, exit, place};
-use crate::run::RunError;
+use crate::ingest::open_recording;
+use crate::run::inspect::inspect_source;
 use crate::text::{Lang, Note};
 
 pub fn main(args: &InspectArgs, lang: Lang) -> u8 {
     let mut progress = Progress::new();
     let reading = Note::new("cli.reading").say(lang);
-    let source = crate::ingest::open_with(&args.recording, &args.read.options());
-    let told = source.map_err(RunError::from).and_then(|source| {
-        crate::run::inspect::inspect_source(&source, args.sample_rate, lang, &mut |done, total| {
-            progress.update(&reading, done, total);
-        })
+    let recording = match open_recording(&args.recording, &args.read.options()) {
+        Ok(recording) => recording,
+        Err(e) => {
+            place::complain(&e.say(lang));
+            return exit::ERROR;
+        }
+    };
+    let told = inspect_source(&recording.source, args.sample_rate, lang, &mut |done, total| {
+        progress.update(&reading, done, total);
     });
     progress.finish();
     match told {

@@ -75,8 +75,9 @@ enum Verb {
 struct RunArgs {
     /// Procedure (TOML)
     procedure: PathBuf,
-    /// Recording: CSV (plain, .gz, .zst) or Parquet
-    recording: PathBuf,
+    /// Recording: CSV (plain, .gz, .zst) or Parquet; several files in sequence, a pattern in quotes, or a manifest
+    #[arg(required = true)]
+    recording: Vec<PathBuf>,
     /// Limits file; replaces limits of the procedure for the same measurand
     #[arg(long, value_name = "FILE")]
     limits: Option<PathBuf>,
@@ -112,15 +113,16 @@ struct GridArgs {
 
 #[derive(Debug, Args)]
 struct CheckArgs {
-    /// Procedures and limits files (TOML)
+    /// Procedures, limits files and manifests (TOML)
     #[arg(required = true)]
     files: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 struct InspectArgs {
-    /// Recording: CSV (plain, .gz, .zst) or Parquet
-    recording: PathBuf,
+    /// Recording: CSV (plain, .gz, .zst) or Parquet; several files in sequence, a pattern in quotes, or a manifest
+    #[arg(required = true)]
+    recording: Vec<PathBuf>,
     /// Sample rate, where the recording has no time column
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
@@ -130,14 +132,21 @@ struct InspectArgs {
 
 #[derive(Debug, Args)]
 struct AnalyzeArgs {
-    /// Recording: CSV (plain, .gz, .zst) or Parquet
-    recording: PathBuf,
+    /// Recording: CSV (plain, .gz, .zst) or Parquet; several files in sequence, a pattern in quotes, or a manifest
+    #[arg(required = true)]
+    recording: Vec<PathBuf>,
     /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]
     rate: Vec<String>,
+    /// Column of an accumulated angle, by name or position, whose differences are the rate; may be repeated
+    #[arg(long, value_name = "COLUMN")]
+    angle: Vec<String>,
     /// Unit of the rate columns [default: from their names]
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
+    /// Sample counter by name or position: lost and repeated samples are told by it
+    #[arg(long, value_name = "COLUMN")]
+    counter: Option<String>,
     /// Time column by name or position, or `none` to go by the sample rate alone [default: from the names]
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
@@ -167,6 +176,8 @@ enum SchemaKind {
     Limits,
     /// result.json
     Result,
+    /// A manifest: several files as one recording
+    Manifest,
 }
 
 #[derive(Debug, Args)]

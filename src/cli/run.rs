@@ -3,7 +3,8 @@
 use super::progress::Progress;
 use super::{GridArgs, RunArgs, exit, place};
 use crate::estimate::Verdict;
-use crate::ingest::Source;
+use crate::ingest::manifest::Manifest;
+use crate::ingest::{Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
 use crate::output::StagedFolder;
 use crate::procedure::{effective, load, load_limits};
@@ -50,11 +51,16 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let folder = StagedFolder::begin(&out).map_err(|e| place::error(&e.note(), lang))?;
     // A recording that is there and cannot be opened still gets its report: the verdict is an error, and says why. A
     // name that is no file is a slip of the pen, which must not cost an earlier result.
-    let (source, refused) = match crate::ingest::open_with(&args.recording, &procedure.value.recording.read) {
-        Ok(source) => (source, None),
-        Err(error) if !args.recording.exists() => return Err(place::error(&error.note(), lang)),
-        Err(error) => (Source::unopened(&args.recording), Some(error)),
+    let name = args.recording.first().map_or(Path::new(""), PathBuf::as_path);
+    let (source, manifest, refused) = match open_recording(&args.recording, &procedure.value.recording.read) {
+        Ok(recording) => (recording.source, recording.manifest, None),
+        Err(error) if !args.recording.iter().all(|r| r.exists()) => return Err(error.say(lang)),
+        Err(error) => {
+            place::complain(&error.say(lang));
+            (Source::unopened(name), None, Some(error.into_ingest(name)))
+        }
     };
+    let serial = serial(args.serial.as_deref(), manifest.as_ref(), lang)?;
     let family = limits.as_ref().and_then(|l| l.value.family.clone());
     let request = Request {
         kind: "run",
@@ -64,7 +70,7 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         source: &source,
         use_stamps: true,
         unit: UnitUnderTest {
-            serial: args.serial.clone(),
+            serial,
             family: procedure.value.unit_under_test.family.clone().or(family),
             part: procedure.value.unit_under_test.part.clone(),
             revision: procedure.value.unit_under_test.revision.clone(),
@@ -79,6 +85,20 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     match refused {
         None => finish(&request, folder, &renderer, lang),
         Some(error) => Err(report_failure(&request, &error.into(), folder, &renderer, lang)?),
+    }
+}
+
+/// The serial number given; the manifest's where none is. Two that differ are an error: this is another unit's recording.
+fn serial(given: Option<&str>, manifest: Option<&Manifest>, lang: Lang) -> Result<Option<String>, String> {
+    let stated = manifest.and_then(|m| m.serial.as_deref());
+    match (given, stated) {
+        (Some(given), Some(stated)) if given.trim() != stated.trim() => {
+            let path = manifest.map(|m| m.path.display().to_string()).unwrap_or_default();
+            let note =
+                Note::new("manifest.serial").with("path", path).with("stated", stated).with("given", given);
+            Err(place::error(&note, lang))
+        }
+        _ => Ok(given.or(stated).map(str::to_owned)),
     }
 }
 

@@ -33,6 +33,8 @@ pub struct Facts<'a> {
     pub rows: u64,
     /// Measured mean sample interval, s.
     pub sample_interval_s: f64,
+    /// What must be known of the time base.
+    pub clock_notes: &'a [Note],
     /// True when the interval was measured from stamps.
     pub has_stamps: bool,
     /// Time with usable samples in the evaluated window, s.

@@ -27,6 +27,8 @@ pub enum IngestErrorKind {
     TimeBase,
     /// A channel's unit does not fit its role.
     Unit,
+    /// The files of a recording do not belong together.
+    Parts,
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -4,13 +4,18 @@
 //! one more format costs one file and one line. [`open`] gives a [`Source`]: the columns of a file and a way to read
 //! wanted ones block by block. [`stream`] puts a time base on the blocks and feeds them to sinks.
 
+mod accumulated;
 mod binary;
 mod choice;
 mod column;
 pub mod compressed;
 mod delimited;
 mod error;
+mod following;
 mod hdf5;
+mod joined;
+pub mod manifest;
+pub mod manifest_tables;
 mod matlab;
 mod memory;
 mod number;
@@ -20,8 +25,10 @@ mod parquet;
 mod parts;
 mod plan;
 mod pump;
+mod recording;
 mod reduce;
 mod ros;
+mod source;
 mod stream;
 mod tdms;
 
@@ -29,15 +36,16 @@ pub use column::Column;
 pub(crate) use column::DATES;
 pub use compressed::Packing;
 pub use error::{IngestError, IngestErrorKind};
+pub use joined::PartFacts;
 pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
 pub use plan::{Plan, TimeBaseSpec, prepare};
-pub use stream::{ChannelFacts, StreamReport, stream, stream_path};
+pub use recording::{Recording, RecordingError, open_recording};
+pub use source::{Source, open, open_with};
+pub use stream::{ChannelFacts, FileReport, StreamReport, locate, stream, stream_path};
 
-use crate::recording::ColumnRef;
 use crate::text::Note;
-use compressed::{ByteStream, io_error};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Why a field is no finite number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,7 +79,9 @@ pub(crate) const LOCATED_PER_BLOCK: u64 = 100;
 /// Some rows of the wanted columns.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Block {
-    /// Row of the first, counted from 1.
+    /// Which file of the recording, counted from 0.
+    pub part: usize,
+    /// Row of the first, counted from 1; in a recording of several files rows count on.
     pub first_row: u64,
     /// Line of the text that the block starts on, counted from 1.
     pub(crate) first_line: u64,
@@ -208,233 +218,6 @@ pub static FORMATS: &[&dyn Format] = &[
 
 /// Longest piece of the start of a file that is looked at, bytes.
 const HEAD: usize = 256 << 10;
-
-/// A recording that can be read: a file, or columns in memory.
-pub struct Source {
-    path: PathBuf,
-    format: &'static str,
-    packing: Packing,
-    bytes: u64,
-    opened: Opened,
-}
-
-/// Opens a recording; the format is found by its content.
-///
-/// # Errors
-/// A directory, an unreadable, empty or damaged file, an unknown kind of file, a file without rows.
-pub fn open(path: &Path) -> Result<Source, IngestError> {
-    open_with(path, &ReadOptions::default())
-}
-
-/// Opens a recording as its user says.
-///
-/// # Errors
-/// As [`open`], and where what was said does not fit the file.
-pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestError> {
-    let metadata = std::fs::metadata(path).map_err(|e| io_error(path, &e))?;
-    if metadata.is_dir() {
-        return Err(
-            IngestError::new(IngestErrorKind::Io, path, "ingest.is_folder").hint("ingest.hint.name_a_file")
-        );
-    }
-    if metadata.len() == 0 {
-        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_file")
-            .hint("ingest.hint.check_written"));
-    }
-    let mut first = ByteStream::open(path, Packing::Plain)?;
-    let mut magic = [0; 8];
-    let n = first.fill(&mut magic)?;
-    let packing = Packing::of(&magic[..n]);
-    let mut head = vec![0; HEAD];
-    let mut stream = ByteStream::open(path, packing)?;
-    let n = stream.fill(&mut head)?;
-    head.truncate(n);
-    let head_is_all = n < HEAD;
-    if head.is_empty() {
-        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_packed")
-            .hint("ingest.hint.check_written"));
-    }
-    let candidate = Candidate {
-        path: path.to_owned(),
-        bytes: metadata.len(),
-        packing,
-        head,
-        head_is_all,
-        options: options.clone(),
-    };
-    let format = choice::format(&candidate)?;
-    let opened = format.open(&candidate)?;
-    Ok(Source { path: path.to_owned(), format: format.id(), packing, bytes: metadata.len(), opened })
-}
-
-impl Source {
-    /// A recording in memory: names with columns of equal length. Used by simulations and tests.
-    ///
-    /// # Errors
-    /// [`IngestErrorKind::Empty`] without columns or rows or with columns of different length.
-    pub fn from_columns(
-        name: &str,
-        columns: Vec<(String, Vec<f64>)>,
-        block_rows: usize,
-    ) -> Result<Source, IngestError> {
-        let opened = memory::open(Path::new(name), columns, block_rows)?;
-        Ok(Source { path: PathBuf::from(name), format: "memory", packing: Packing::Plain, bytes: 0, opened })
-    }
-
-    /// A recording without columns under the path of one that could not be opened, so that its report can name it.
-    pub fn unopened(path: &Path) -> Source {
-        let opened = memory::nothing();
-        Source { path: path.to_owned(), format: "unknown", packing: Packing::Plain, bytes: 0, opened }
-    }
-
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Id of the format, `memory` for a recording in memory.
-    pub fn format(&self) -> &'static str {
-        self.format
-    }
-
-    /// How the file is packed.
-    pub fn packing(&self) -> Packing {
-        self.packing
-    }
-
-    /// Size of the file, bytes.
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
-    /// Columns in the order of the file.
-    pub fn columns(&self) -> &[Column] {
-        &self.opened.columns
-    }
-
-    /// Rows, where that is known or can be estimated without reading the file.
-    pub fn rows_estimate(&self) -> Option<u64> {
-        self.opened.rows_estimate
-    }
-
-    /// What was decided about the file and why.
-    pub fn notes(&self) -> &[Note] {
-        &self.opened.notes
-    }
-
-    /// What the file says of itself, key and value as written.
-    pub fn metadata(&self) -> &[(String, String)] {
-        &self.opened.metadata
-    }
-
-    /// Sample rate that the file states, Hz. It counts only where neither stamps nor the user tell the rate.
-    pub fn stated_sample_rate_hz(&self) -> Option<f64> {
-        self.opened.stated_sample_rate_hz
-    }
-
-    /// Finds a column; the result is its position from 0.
-    ///
-    /// # Errors
-    /// [`IngestErrorKind::Column`] when it is not there, stands twice, or holds no numbers.
-    pub fn resolve(&self, column: &ColumnRef) -> Result<usize, IngestError> {
-        let error = |message: Note| IngestError::new(IngestErrorKind::Column, &self.path, message);
-        let columns = self.columns();
-        let index = match column {
-            ColumnRef::Position(p) => p.checked_sub(1).filter(|&i| i < columns.len()).ok_or_else(|| {
-                error(Note::new("ingest.no_column_at").with("position", *p))
-                    .hint(Note::new("ingest.hint.columns_to").with("count", columns.len()))
-            })?,
-            ColumnRef::Name(name) => {
-                let found: Vec<usize> =
-                    (0..columns.len()).filter(|&i| columns.get(i).is_some_and(|c| c.name == *name)).collect();
-                match found.as_slice() {
-                    [one] => *one,
-                    [] => {
-                        let near = columns
-                            .iter()
-                            .map(|c| (strsim::damerau_levenshtein(&c.name, name), &c.name))
-                            .min()
-                            .filter(|(distance, c)| *distance <= 1 + c.chars().count() / 3);
-                        let hint = match near {
-                            Some((_, near)) => {
-                                Note::new("ingest.hint.did_you_mean").with("name", near.as_str())
-                            }
-                            None => {
-                                let names: Vec<&str> =
-                                    columns.iter().take(30).map(|c| c.name.as_str()).collect();
-                                Note::new("ingest.hint.the_file_has").with("names", names.join(", "))
-                            }
-                        };
-                        return Err(
-                            error(Note::new("ingest.no_column_named").with("name", name.as_str())).hint(hint)
-                        );
-                    }
-                    several => {
-                        let places: Vec<String> = several.iter().map(|i| (i + 1).to_string()).collect();
-                        return Err(error(
-                            Note::new("ingest.name_twice")
-                                .with("name", name.as_str())
-                                .with("count", several.len())
-                                .with("places", places.join(", ")),
-                        )
-                        .hint("ingest.hint.give_position"));
-                    }
-                }
-            }
-        };
-        match columns.get(index) {
-            Some(c) if !c.numeric => Err(error(
-                Note::new("ingest.column_no_numbers")
-                    .with("name", c.name.as_str())
-                    .with("storage", c.storage.as_str()),
-            )),
-            _ => Ok(index),
-        }
-    }
-
-    /// Reads wanted columns (positions from 0; one may be wanted twice) in blocks, in order. `None` when the consumer
-    /// stopped the reading.
-    ///
-    /// # Errors
-    /// Whatever keeps the file from being read to its end; [`IngestErrorKind::NotNumeric`] when more than half of the
-    /// first 1000 fields of a wanted column are no numbers.
-    pub fn read(
-        &self,
-        wanted: &[usize],
-        on_block: &mut OnBlock<'_>,
-    ) -> Result<Option<FileFacts>, IngestError> {
-        let mut unique: Vec<usize> = Vec::new();
-        for &w in wanted {
-            if !unique.contains(&w) {
-                unique.push(w);
-            }
-        }
-        let slots: Vec<usize> = wanted.iter().filter_map(|w| unique.iter().position(|u| u == w)).collect();
-        let mut guard = reduce::FirstRows::new(unique.len());
-        let mut refusal = None;
-        let facts = self.opened.table.read(&unique, &mut |block| {
-            if let Some(fault) = guard.judge(block) {
-                refusal = Some(fault);
-                return ControlFlow::Break(());
-            }
-            reduce::spread(block, &slots);
-            let flow = on_block(block);
-            reduce::gather(block, unique.len());
-            flow
-        })?;
-        if let Some(fault) = refusal.or_else(|| guard.judge_short()) {
-            return Err(reduce::not_numeric(&self.path, &fault, &unique, self.columns()));
-        }
-        if let Some(facts) = &facts {
-            compressed::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;
-        }
-        if facts.as_ref().is_some_and(|f| f.rows == 0) {
-            return Err(IngestError::new(IngestErrorKind::Empty, &self.path, "ingest.no_rows")
-                .hint("ingest.hint.check_written"));
-        }
-        Ok(facts)
-    }
-}
 
 #[cfg(test)]
 mod tests;

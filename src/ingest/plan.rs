@@ -1,7 +1,7 @@
 //! What must be known before a recording is read: its columns, the units of its channels, its clock.
 
 use super::{IngestError, IngestErrorKind, Source};
-use crate::recording::timebase::{Clock, ClockError};
+use crate::recording::timebase::{Clock, ClockError, Unwrapper, moduli};
 use crate::recording::{Channel, Role};
 use crate::text::{Arg, Note};
 use crate::units::Unit;
@@ -18,11 +18,20 @@ pub struct TimeBaseSpec {
     pub declared_sample_rate_hz: Option<f64>,
     /// Use the time channel, where there is one. Without it every row is one interval after the one before.
     pub use_stamps: bool,
+    /// Period after which the stamps start again, s; the file may tell it, and usual ones are found.
+    pub rollover_s: Option<f64>,
+    /// Count after which the counter starts again; usual ones are found.
+    pub counter_modulus: Option<f64>,
 }
 
 impl Default for TimeBaseSpec {
     fn default() -> TimeBaseSpec {
-        TimeBaseSpec { declared_sample_rate_hz: None, use_stamps: true }
+        TimeBaseSpec {
+            declared_sample_rate_hz: None,
+            use_stamps: true,
+            rollover_s: None,
+            counter_modulus: None,
+        }
     }
 }
 
@@ -35,7 +44,15 @@ pub struct Plan<'a> {
     pub(super) maps: Vec<(f64, f64)>,
     /// Which channel gives the stamps.
     pub(super) time: Option<usize>,
+    /// Which channel counts the samples.
+    pub(super) counter: Option<usize>,
     pub(super) clock: Clock,
+    pub(super) rollover: Unwrapper,
+    pub(super) counter_modulus: Option<f64>,
+    /// Interval by which angles become rates, s.
+    pub(super) increment_s: f64,
+    /// Angle after which an accumulated one starts again, arcsec, by channel.
+    pub(super) angle_periods: Vec<Option<f64>>,
     start_s: f64,
 }
 
@@ -54,33 +71,113 @@ pub fn prepare<'a>(
         IngestError::new(IngestErrorKind::TimeBase, source.path(), clock_note(&e)).hint(hint)
     };
     let time = channels.iter().position(|c| c.role == Role::Time).filter(|_| spec.use_stamps);
-    let (clock, start_s) = match time.and_then(|i| wanted.get(i).zip(maps.get(i))) {
-        Some((&column, map)) => {
-            let mut stamps = Vec::new();
-            source.read(&[column], &mut |block| {
+    let counter = channels.iter().position(|c| c.role == Role::Counter);
+    let stamped = time.and_then(|i| Some((*wanted.get(i)?, *maps.get(i)?)));
+    let rollover_s = spec.rollover_s.or_else(|| source.columns().get(stamped?.0)?.rollover_s);
+    let unwrapper = |limit_s: f64| {
+        let usual = stamped.map(|(_, map)| moduli(map.0.abs())).unwrap_or_default();
+        Unwrapper::new(rollover_s, usual, limit_s)
+    };
+    let (clock, start_s) = match stamped {
+        Some((column, map)) => {
+            let (mut stamps, mut counts) = (Vec::new(), Vec::new());
+            let counted = counter.and_then(|i| Some((*wanted.get(i)?, *maps.get(i)?)));
+            let columns: Vec<usize> = std::iter::once(column).chain(counted.map(|c| c.0)).collect();
+            source.read(&columns, &mut |block| {
                 let room = PROBED.saturating_sub(stamps.len());
-                stamps.extend(block.columns.iter().flatten().take(room).map(|v| v * map.0 + map.1));
-                if stamps.len() < PROBED { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+                let take = |slot: usize, map: (f64, f64), into: &mut Vec<f64>| {
+                    let values = block.columns.get(slot).into_iter().flatten();
+                    into.extend(values.take(room).map(|v| v * map.0 + map.1));
+                };
+                take(0, map, &mut stamps);
+                if let Some((_, map)) = counted {
+                    take(1, map, &mut counts);
+                }
+                // The clock is found from the first file alone: where the next one begins is not known.
+                if stamps.len() < PROBED && block.part == 0 {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
             })?;
-            let clock = Clock::probe(&stamps).map_err(|e| no_clock(e, "ingest.hint.check_time"))?;
-            (clock, stamps.iter().copied().find(|t| t.is_finite()).unwrap_or(0.0))
+            let start_s = stamps.iter().copied().find(|t| t.is_finite()).unwrap_or(0.0);
+            unwrapper(step_limit(&stamps)).apply(&mut stamps);
+            let counted = counted.and_then(|_| by_counter(&stamps, &mut counts, spec.counter_modulus));
+            let clock = match counted {
+                Some(interval_s) => Clock::declared(1.0 / interval_s),
+                None => Clock::probe_with(&stamps, spec.declared_sample_rate_hz),
+            };
+            (clock.map_err(|e| no_clock(e, "ingest.hint.check_time"))?, start_s)
         }
         None => {
-            let rate = spec.declared_sample_rate_hz.ok_or_else(|| {
+            let rate = spec.declared_sample_rate_hz.or(source.stated_sample_rate_hz()).ok_or_else(|| {
                 IngestError::new(IngestErrorKind::TimeBase, source.path(), "ingest.no_time")
                     .hint("ingest.hint.declare_rate")
             })?;
             (Clock::declared(rate).map_err(|e| no_clock(e, "ingest.hint.rate_in_hz"))?, 0.0)
         }
     };
-    let mut maps = maps;
-    for (channel, map) in channels.iter().zip(&mut maps) {
-        if channel.role == Role::AngleIncrement {
-            // 1 arcsec in 1 s is 1 deg/h.
-            *map = (map.0 / clock.interval_s, map.1 / clock.interval_s);
-        }
+    let rollover = unwrapper(clock.gap_limit_s);
+    let counter_modulus = spec.counter_modulus;
+    let (angle_periods, increment_s) = (vec![None; channels.len()], clock.interval_s);
+    let mut plan = Plan {
+        source,
+        channels,
+        wanted,
+        maps,
+        time,
+        counter,
+        clock,
+        rollover,
+        counter_modulus,
+        increment_s,
+        angle_periods,
+        start_s,
+    };
+    plan.rates_from_angles(1.0, increment_s);
+    Ok(plan)
+}
+
+/// Longest step across a roll-over before the clock is known: three middle steps.
+fn step_limit(stamps: &[f64]) -> f64 {
+    let steps = stamps.iter().zip(stamps.get(1..).unwrap_or_default()).map(|(a, b)| b - a);
+    let mut growing: Vec<f64> = steps.filter(|d| *d > 0.0).take(4096).collect();
+    if growing.is_empty() {
+        return 0.0;
     }
-    Ok(Plan { source, channels, wanted, maps, time, clock, start_s })
+    let middle = growing.len() / 2;
+    3.0 * *growing.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// The interval by the first stamps and counts: the middle one over 64 rows.
+fn by_counter(stamps: &[f64], counts: &mut [f64], modulus: Option<f64>) -> Option<f64> {
+    Unwrapper::of_counter(modulus).apply(counts);
+    let lag = (counts.len() / 4).clamp(1, 64);
+    let pairs = || stamps.iter().zip(counts.iter());
+    let mut found: Vec<f64> = pairs()
+        .zip(pairs().skip(lag))
+        .filter(|((_, a), (_, b))| b > a)
+        .map(|((t0, a), (t1, b))| (t1 - t0) / (b - a))
+        .filter(|d| d.is_finite() && *d > 0.0)
+        .collect();
+    if found.len() < 2 {
+        return None;
+    }
+    let middle = found.len() / 2;
+    Some(*found.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// A date, s after a whole second from 1970.
+fn date(epoch_s: f64, s: f64) -> Option<String> {
+    let whole = s.floor();
+    let seconds = epoch_s + whole;
+    if !(-6e10..2.5e11).contains(&seconds) {
+        return None;
+    }
+    // Rounded to the microsecond: stamps in s hold no more.
+    let nanoseconds = (((s - whole) * 1e6).round() * 1e3).clamp(0.0, 999_999_000.0);
+    let date = chrono::DateTime::from_timestamp(seconds as i64, nanoseconds as u32)?;
+    Some(date.to_rfc3339_opts(chrono::SecondsFormat::Millis, true))
 }
 
 fn clock_note(error: &ClockError) -> Note {
@@ -119,6 +216,36 @@ fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
 }
 
 impl Plan<'_> {
+    /// Turns angle increments into rates by another interval, s: 1 arcsec in 1 s is 1 deg/h.
+    fn rates_from_angles(&mut self, before_s: f64, interval_s: f64) {
+        for (channel, map) in self.channels.iter().zip(&mut self.maps) {
+            if channel.role == Role::AngleIncrement {
+                *map = (map.0 * before_s / interval_s, map.1 * before_s / interval_s);
+            }
+        }
+        self.increment_s = interval_s;
+    }
+
+    /// Divides angles by the interval that was measured over the whole recording.
+    pub fn set_increment_interval(&mut self, interval_s: f64) {
+        if interval_s.is_normal() && interval_s > 0.0 {
+            self.rates_from_angles(self.increment_s, interval_s);
+        }
+    }
+
+    /// True when a channel of angles is read, whose rates depend on the interval.
+    pub fn reads_angles(&self) -> bool {
+        self.channels.iter().any(|c| matches!(c.role, Role::AngleIncrement | Role::AccumulatedAngle))
+    }
+
+    /// Says after which angle a channel starts again, in the unit of its numbers.
+    pub fn set_angle_period(&mut self, channel: &str, period: f64) {
+        let slot = self.channels.iter().position(|c| c.id == channel && c.role == Role::AccumulatedAngle);
+        if let Some(place) = slot.and_then(|s| self.angle_periods.get_mut(s)) {
+            *place = Some(period);
+        }
+    }
+
     /// The nominal clock.
     pub fn clock(&self) -> Clock {
         self.clock
@@ -133,6 +260,9 @@ impl Plan<'_> {
     pub(super) fn absolute_start(&self, first_s: f64) -> Option<String> {
         let slot = self.time?;
         let column = self.source.columns().get(*self.wanted.get(slot)?)?;
+        if let Some(epoch_s) = column.epoch_s {
+            return date(epoch_s, first_s);
+        }
         let name = column.name.to_lowercase();
         let said = ["unix", "epoch", "utc", "posix"].iter().any(|w| name.contains(w));
         let known = said || column.storage.contains("Timestamp") || column.epoch_s.is_some();
@@ -140,11 +270,7 @@ impl Plan<'_> {
         if !known || !(0.0..1e11).contains(&(first_s + epoch_s)) {
             return None;
         }
-        // Whole seconds and fraction apart, so that a date does not cost the fraction its digits.
-        let whole_s = first_s.floor();
-        let nano = ((first_s - whole_s) * 1e9) as u32;
-        let date = chrono::DateTime::from_timestamp((whole_s + epoch_s) as i64, nano)?;
-        Some(date.to_rfc3339_opts(chrono::SecondsFormat::Millis, true))
+        date(0.0, first_s)
     }
 
     pub(super) fn column_name(&self, slot: usize) -> &str {

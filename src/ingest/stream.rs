@@ -1,15 +1,15 @@
 //! A recording as a stream: columns become channels in inside units, stamps become a time base, slabs go to sinks.
 
+use super::following::State;
 use super::plan::{Plan, TimeBaseSpec, prepare};
-use super::{Block, FieldFaultKind, FileFacts, IngestError, IngestErrorKind, Source};
-use crate::record::Integrity;
-use crate::recording::faults::FaultLog;
+use super::{FileFacts, IngestError, IngestErrorKind, PartFacts, Source};
+use crate::record::{FaultRecord, Integrity};
 use crate::recording::integrity::{ValueChecks, ValueFacts};
-use crate::recording::timebase::{Step, Tracker};
-use crate::recording::{Channel, Role, Sink, Slab};
+use crate::recording::timebase::{Cadence, Measured};
+use crate::recording::{Channel, Role, Sink};
 use crate::text::{Arg, Note};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A channel after the whole recording was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +26,25 @@ pub struct ChannelFacts {
     pub unit_inside: String,
     /// What the values are like, in the unit inside.
     pub values: ValueFacts,
+}
+
+/// What is known of one file when a recording was read to its end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileReport {
+    /// The file.
+    pub path: PathBuf,
+    /// Phase of the test that it belongs to, where a manifest says it.
+    pub phase: Option<String>,
+    /// Hash, size and rows.
+    pub facts: FileFacts,
+    /// Rows of the recording before this file.
+    pub rows_before: u64,
+    /// Mean interval within the file, s.
+    pub sample_interval_s: f64,
+    /// Start, RFC 3339, where the stamps are known to count from 1970.
+    pub start: Option<String>,
+    /// Last stamp minus first stamp plus one interval, s.
+    pub duration_s: f64,
 }
 
 /// What is known when a recording was read to its end.
@@ -49,7 +68,13 @@ pub struct StreamReport {
     pub duration_s: f64,
     /// Start of the recording, RFC 3339, where the stamps are known to count from 1970.
     pub start: Option<String>,
-    /// Rows in the file.
+    /// Standard uncertainty of the interval from the scatter of the stamps, drift: where stamps were fitted.
+    pub clock: Option<Measured>,
+    /// What must be known of the time base.
+    pub notes: Vec<Note>,
+    /// The files, in order: one, unless several were joined.
+    pub files: Vec<FileReport>,
+    /// Rows of the recording.
     pub rows: u64,
     /// Rows that were passed on.
     pub rows_used: u64,
@@ -67,23 +92,18 @@ impl Plan<'_> {
         sinks: &mut [&mut dyn Sink],
         progress: &mut dyn FnMut(u64, u64),
     ) -> Result<StreamReport, IngestError> {
-        let mut state = State {
-            plan: self,
-            tracker: Tracker::new(self.clock),
-            checks: ValueChecks::new(self.channels, self.clock.interval_s),
-            log: FaultLog::default(),
-            integrity: Integrity::default(),
-            index: 0,
-            used: 0,
-            connected: false,
-            scratch: Vec::new(),
-        };
+        let mut state = State::new(self);
+        let mut parts: Vec<PartFacts> = Vec::new();
         let total = self.source.bytes();
-        let facts = self.source.read(&self.wanted, &mut |block| {
-            state.block(block, sinks);
-            progress(block.bytes_done.min(total), total);
-            ControlFlow::Continue(())
-        })?;
+        let facts = self.source.read_parts(
+            &self.wanted,
+            &mut |block| {
+                state.block(block, sinks);
+                progress(block.bytes_done.min(total), total);
+                ControlFlow::Continue(())
+            },
+            &mut |_, part| parts.push(part),
+        )?;
         let Some(facts) = facts.filter(|_| state.used > 0) else {
             return Err(IngestError::new(
                 IngestErrorKind::Empty,
@@ -92,196 +112,32 @@ impl Plan<'_> {
             )
             .hint("ingest.hint.check_time_column"));
         };
-        Ok(state.report(facts))
+        Ok(state.report(facts, parts))
     }
-}
-
-struct State<'a> {
-    plan: &'a Plan<'a>,
-    tracker: Tracker,
-    checks: ValueChecks,
-    log: FaultLog,
-    integrity: Integrity,
-    /// Grid position of the next sample.
-    index: u64,
-    used: u64,
-    /// True when the next sample follows the last one passed on.
-    connected: bool,
-    scratch: Vec<Vec<f64>>,
 }
 
 impl State<'_> {
-    fn block(&mut self, block: &mut Block, sinks: &mut [&mut dyn Sink]) {
-        for (column, &(factor, offset)) in block.columns.iter_mut().zip(&self.plan.maps) {
-            if (factor, offset) != (1.0, 0.0) {
-                column.iter_mut().for_each(|v| *v = *v * factor + offset);
-            }
-        }
-        self.field_faults(block);
-        let rows = block.rows();
-        let Some(time) = self.plan.time else {
-            let time_s = self.index as f64 * self.plan.clock.interval_s;
-            self.emit(&block.columns, block.first_row, time_s, sinks);
-            return;
-        };
-        let columns = std::mem::take(&mut block.columns);
-        let stamps = columns.get(time).map(Vec::as_slice).unwrap_or_default();
-        if self.connected && self.tracker.take_unbroken(stamps) {
-            let time_s = self.tracker.on_scale(stamps.first().copied().unwrap_or(0.0));
-            self.emit(&columns, block.first_row, time_s, sinks);
-        } else {
-            let mut start = 0;
-            let mut start_s = self.tracker.on_scale(stamps.first().copied().unwrap_or(0.0));
-            for i in 0..rows {
-                let Some(&stamp) = stamps.get(i) else { break };
-                let step = self.tracker.step(stamp, stamps.get(i + 1).copied());
-                if step == Step::Next && (self.connected || start < i) {
-                    continue;
-                }
-                self.part(&columns, block.first_row, start_s, start..i, sinks);
-                start = if self.account(step, block.first_row + i as u64, stamp) { i } else { i + 1 };
-                start_s = self.tracker.on_scale(stamps.get(start).copied().unwrap_or(stamp));
-            }
-            self.part(&columns, block.first_row, start_s, start..rows, sinks);
-        }
-        block.columns = columns;
-    }
-
-    /// Counts and lists what a step means; true when its row is used.
-    fn account(&mut self, step: Step, row: u64, stamp: f64) -> bool {
-        let integrity = &mut self.integrity;
-        let at = Some(self.tracker.on_scale(stamp)).filter(|t| t.is_finite());
-        match step {
-            Step::Next => return true,
-            Step::Unusable => {}
-            Step::Gap { missing, step_s, clock_set } => {
-                integrity.gaps += 1;
-                integrity.missing_samples += missing;
-                self.index += missing;
-                self.connected = false;
-                self.log.push("gap", None, at, row, missing, || {
-                    let note = if clock_set { "fault_note.clock_ahead" } else { "fault_note.gap" };
-                    Note::new(note).with("step_s", nano(step_s)).with("missing", missing)
-                });
-                return true;
-            }
-            Step::SetBack { back_s } => {
-                integrity.backward_timestamps += 1;
-                integrity.gaps += 1;
-                integrity.missing_samples += 1;
-                self.index += 1;
-                self.connected = false;
-                self.log.push("gap", None, at, row, 1, || Note::new("fault_note.gap_set_back"));
-                // One entry of its own, or it would be added to the rows set aside before it.
-                self.log.push("backward_timestamp", Some("clock"), at, row, 1, || {
-                    Note::new("fault_note.set_back").with("back_s", nano(back_s))
-                });
-                return true;
-            }
-            Step::Duplicate => {
-                integrity.duplicate_timestamps += 1;
-                self.log.push("duplicate_timestamp", None, at, row, 1, || Note::new("fault_note.duplicate"));
-            }
-            Step::Backward { back_s } => {
-                integrity.backward_timestamps += 1;
-                self.log.push("backward_timestamp", None, at, row, 1, || {
-                    Note::new("fault_note.backward").with("back_s", nano(back_s))
-                });
-            }
-            Step::Stray { ahead_s } => {
-                integrity.backward_timestamps += 1;
-                self.log.push("backward_timestamp", None, at, row, 1, || {
-                    Note::new("fault_note.stray").with("ahead_s", nano(ahead_s))
-                });
-            }
-        }
-        false
-    }
-
-    /// Passes some rows of a block on.
-    fn part(
-        &mut self,
-        columns: &[Vec<f64>],
-        first_row: u64,
-        time_s: f64,
-        range: std::ops::Range<usize>,
-        sinks: &mut [&mut dyn Sink],
-    ) {
-        if range.is_empty() {
-            return;
-        }
-        let mut scratch = std::mem::take(&mut self.scratch);
-        scratch.resize_with(columns.len(), Vec::new);
-        for (part, column) in scratch.iter_mut().zip(columns) {
-            part.clear();
-            part.extend_from_slice(column.get(range.clone()).unwrap_or_default());
-        }
-        self.emit(&scratch, first_row + range.start as u64, time_s, sinks);
-        self.scratch = scratch;
-    }
-
-    fn emit(&mut self, values: &[Vec<f64>], first_row: u64, time_s: f64, sinks: &mut [&mut dyn Sink]) {
-        let slab = Slab { first_index: self.index, first_row, time_s, continues: self.connected, values };
-        self.checks.push(&slab);
-        for sink in sinks {
-            sink.push(&slab);
-        }
-        self.index += slab.len() as u64;
-        self.used += slab.len() as u64;
-        self.connected = true;
-    }
-
-    fn field_faults(&mut self, block: &Block) {
-        self.integrity.non_finite += block.non_finite.iter().sum::<u64>();
-        self.integrity.unparsable += block.unparsable.iter().sum::<u64>();
-        for fault in &block.faults {
-            let row = usize::try_from(fault.row.saturating_sub(block.first_row)).unwrap_or(usize::MAX);
-            let stamp = match self.plan.time {
-                Some(t) => block.columns.get(t).and_then(|c| c.get(row)).map(|s| self.tracker.on_scale(*s)),
-                None => Some((fault.row - 1) as f64 * self.plan.clock.interval_s),
-            };
-            let (kind, word) = match fault.kind {
-                FieldFaultKind::NonFinite if fault.text.trim().parse().is_ok_and(f64::is_finite) => {
-                    ("non_finite", "fault_note.too_large")
-                }
-                FieldFaultKind::NonFinite => ("non_finite", "fault_note.no_finite_number"),
-                FieldFaultKind::Unparsable if repeats(&fault.text, self.plan.column_name(fault.slot)) => {
-                    ("unparsable", "ingest.delimited.second_header")
-                }
-                FieldFaultKind::Unparsable => ("unparsable", "fault_note.no_number"),
-            };
-            let channel = self.plan.channels.get(fault.slot).map(|c| c.id.as_str());
-            self.log.push(kind, channel, stamp.filter(|s| s.is_finite()), fault.row, 1, || {
-                let place = if fault.line > 0 {
-                    Note::new("fault_note.place").with("line", fault.line).with("character", fault.character)
-                } else {
-                    Note::new("fault_note.no_place")
-                };
-                Note::new("fault_note.field")
-                    .with("what", Note::new(word))
-                    .with("column", self.plan.column_name(fault.slot))
-                    .with("place", place)
-                    .with("text", format!("`{}`", fault.text))
-            });
-        }
-    }
-
-    fn report(mut self, facts: FileFacts) -> StreamReport {
+    fn report(mut self, facts: FileFacts, parts: Vec<PartFacts>) -> StreamReport {
         let plan = self.plan;
-        let (values, faults) = self.checks.finish(&mut self.log);
+        let clock = self.measured();
+        let checks = std::mem::replace(&mut self.checks, ValueChecks::new(&[], 1.0));
+        let (values, faults) = checks.finish(&mut self.log);
         let nominal = plan.clock.interval_s;
-        let stamped = plan.time.is_some();
-        let measured = if stamped { self.tracker.mean_interval_s() } else { nominal };
-        let first = self.tracker.first_s().unwrap_or(0.0);
-        let last = self.tracker.latest_s().unwrap_or_else(|| self.index.saturating_sub(1) as f64 * nominal);
-        let mut integrity = self.integrity;
+        let measured = clock.map(|c| c.interval_s).filter(|i| i.is_normal() && *i > 0.0).unwrap_or(nominal);
+        let (first, last) = self.span_s(measured);
+        let mut integrity = std::mem::take(&mut self.integrity);
         integrity.outliers = faults.outliers;
         integrity.saturated = faults.saturated;
         integrity.stuck = faults.stuck;
         integrity.outlier_threshold = faults.outlier_threshold;
-        integrity.timestamp_jitter_s = if stamped { self.tracker.jitter_s() } else { None };
+        integrity.timestamp_jitter_s = self.jitter_s();
         integrity.quantization_step_deg_h = values.iter().find_map(|v| v.quantization_step);
-        integrity.faults = self.log.into_list();
+        integrity.faults = std::mem::take(&mut self.log).into_list();
+        let files = self.files(&facts, parts, measured);
+        for fault in &mut integrity.faults {
+            locate(&files, fault);
+        }
+        let notes = self.notes(nominal, measured, integrity.rollovers);
         let channels = plan
             .channels
             .iter()
@@ -293,7 +149,7 @@ impl State<'_> {
                 role: c.role,
                 unit: c.unit.text().to_owned(),
                 unit_inside: match c.role {
-                    Role::AngleIncrement => "deg/h".to_owned(),
+                    Role::AngleIncrement | Role::AccumulatedAngle => "deg/h".to_owned(),
                     role => role.internal_unit().map_or_else(|| c.unit.text().to_owned(), str::to_owned),
                 },
                 values,
@@ -310,19 +166,87 @@ impl State<'_> {
             last_stamp_s: last,
             duration_s: last - first + measured,
             start: plan.absolute_start(first),
+            clock,
+            notes,
+            files,
             rows_used: self.used,
             channels,
         }
     }
+
+    /// What must be known of the time base.
+    fn notes(&self, nominal: f64, measured: f64, rollovers: u64) -> Vec<Note> {
+        let clock = self.plan.clock;
+        let mut notes = Vec::new();
+        if let Some(other) = clock.ambiguous_with_s {
+            let note = Note::new("time_base.ambiguous").with("interval_s", clock.interval_s);
+            notes.push(note.with("other_s", other));
+        }
+        match clock.cadence {
+            Cadence::Even => {}
+            Cadence::Uneven => notes.push(Note::new("time_base.uneven")),
+            Cadence::Bunched { period_s, rows } => {
+                notes.push(Note::new("time_base.bunched").with("rows", rows).with("period_s", period_s));
+            }
+        }
+        if rollovers > 0 {
+            notes.push(Note::new("time_base.rollovers").with("count", rollovers));
+        }
+        let off = measured / nominal - 1.0;
+        if off.abs() > 1e-6
+            && self.measured().is_some_and(|m| (measured - nominal).abs() > 5.0 * m.uncertainty_s)
+        {
+            notes.push(Note::new("time_base.first_rows").with("ppm", off * 1e6));
+        }
+        notes
+    }
+
+    /// What is known of each file.
+    fn files(&self, facts: &FileFacts, parts: Vec<PartFacts>, measured: f64) -> Vec<FileReport> {
+        let source = self.plan.source;
+        let parts =
+            if parts.is_empty() { vec![PartFacts { facts: facts.clone(), rows_before: 0 }] } else { parts };
+        let paths = source.files();
+        let (first, last) = self.span_s(measured);
+        let several = parts.len() > 1;
+        parts
+            .into_iter()
+            .enumerate()
+            .map(|(i, part)| {
+                let span = self.spans.iter().find(|s| s.part == i);
+                let (from, to, samples) = match span.filter(|_| several) {
+                    Some(s) => (s.first_s, s.last_s, s.last_index.saturating_sub(s.first_index)),
+                    None if several => (first, first - measured, 0),
+                    None => (first, last, 0),
+                };
+                let sample_interval_s = if samples > 1 { (to - from) / samples as f64 } else { measured };
+                FileReport {
+                    path: paths.get(i).map(|p| p.to_path_buf()).unwrap_or_default(),
+                    phase: source.phase(i).map(str::to_owned),
+                    facts: part.facts,
+                    rows_before: part.rows_before,
+                    sample_interval_s,
+                    start: self.plan.absolute_start(from),
+                    duration_s: to - from + measured,
+                }
+            })
+            .collect()
+    }
 }
 
-/// True when a field holds the name of its column: another header, as where files were put together.
-fn repeats(text: &str, column: &str) -> bool {
-    text.trim().trim_matches('"').trim() == super::error::shorten(column)
+/// Gives a fault its file and the row in it, where the recording is of several.
+pub fn locate(files: &[FileReport], fault: &mut FaultRecord) {
+    if files.len() < 2 || fault.file.is_some() {
+        return;
+    }
+    if let Some(file) = files.iter().rev().find(|f| f.rows_before < fault.row) {
+        fault.file = Some(file.path.display().to_string());
+        fault.row -= file.rows_before;
+    }
 }
 
 /// Rounds a time that is shown to nanoseconds.
-fn nano(time_s: f64) -> Arg {
+pub(super) fn nano(time_s: f64) -> Arg {
     let rounded = (time_s * 1e9).round() / 1e9;
     Arg::Stated(if rounded.is_finite() { rounded } else { time_s })
 }

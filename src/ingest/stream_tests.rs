@@ -1,5 +1,6 @@
 use super::*;
 use crate::recording::ColumnRef;
+use crate::recording::Slab;
 use crate::units::Unit;
 
 fn channel(id: &str, role: Role, unit: &str, scale: f64) -> Channel {
@@ -81,7 +82,8 @@ fn values_arrive_in_inside_units() {
 #[test]
 fn a_unit_that_does_not_fit_is_refused() {
     let columns = || vec![("r", vec![1.0; 10])];
-    let spec = TimeBaseSpec { declared_sample_rate_hz: Some(10.0), use_stamps: true };
+    let spec =
+        TimeBaseSpec { declared_sample_rate_hz: Some(10.0), use_stamps: true, ..TimeBaseSpec::default() };
     let e = run(columns(), &[channel("r", Role::Rate, "degC", 1.0)], spec, 5).err().unwrap();
     assert_eq!(e.kind(), IngestErrorKind::Unit);
     let e = run(columns(), &[channel("r", Role::Rate, "deg/h", 0.0)], spec, 5).err().unwrap();
@@ -152,7 +154,8 @@ fn a_clock_set_back_makes_a_new_stretch_in_time() {
 
 #[test]
 fn without_stamps_rows_are_the_grid() {
-    let spec = TimeBaseSpec { declared_sample_rate_hz: Some(100.0), use_stamps: false };
+    let spec =
+        TimeBaseSpec { declared_sample_rate_hz: Some(100.0), use_stamps: false, ..TimeBaseSpec::default() };
     let channels = [channel("t", Role::Time, "s", 1.0), channel("r", Role::Rate, "deg/h", 1.0)];
     let columns = vec![("t", vec![7.0; 1000]), ("r", (0..1000).map(f64::from).collect())];
     let (keep, report) = run(columns, &channels, spec, 300).unwrap();

@@ -1,4 +1,6 @@
 use super::*;
+use crate::recording::ColumnRef;
+use std::path::Path;
 use std::io::Write;
 use tempfile::{NamedTempFile, TempDir};
 

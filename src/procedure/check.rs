@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
+use crate::ingest::manifest::{self, Manifest, is_manifest};
 use crate::text::{Lang, Note};
 use std::path::Path;
 
@@ -14,15 +15,19 @@ pub enum Checked {
     Procedure(Box<Loaded<Procedure>>),
     /// A sound limits file.
     Limits(Box<Loaded<LimitsFile>>),
+    /// A manifest whose files are there and what it says.
+    Manifest(Box<Manifest>),
 }
 
 /// Reads a file as what its first table says it is: a file with `[limits]` or `format = "limits/..."` is a limits file,
-/// any other a procedure.
+/// one with `format = "manifest/..."` a manifest, any other a procedure.
 ///
 /// # Errors
 /// Every problem of the file.
 pub fn check(path: &Path) -> Result<Checked, Problems> {
-    if is_limits(path) {
+    if is_manifest(path) {
+        manifest::load(path).map(|m| Checked::Manifest(Box::new(m)))
+    } else if is_limits(path) {
         load_limits(path).map(|l| Checked::Limits(Box::new(l)))
     } else {
         load(path).map(|p| Checked::Procedure(Box::new(p)))
@@ -63,6 +68,7 @@ pub fn check_report_with(
                         (procedure_sentence(p), warnings)
                     }
                     Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
+                    Checked::Manifest(m) => (manifest_sentence(m), vec![]),
                 };
                 for warning in warnings {
                     report.text.push_str(&format!("{}\n", warning.say(lang)));
@@ -101,6 +107,10 @@ fn limits_sentence(l: &Loaded<LimitsFile>) -> Note {
         .with("revision", l.revision.as_str())
         .with("limits", count(l.set.limits.len(), "check.one_limit", "check.limits"))
         .with("references", count(l.set.references.len(), "check.one_reference", "check.references"))
+}
+
+fn manifest_sentence(m: &Manifest) -> Note {
+    Note::new("manifest.sound").with("count", m.files.len())
 }
 
 /// True when the beginning of the file says that it holds limits. Nothing is reported here: reading does that.

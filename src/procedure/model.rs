@@ -103,6 +103,8 @@ pub struct ChannelSpec {
     pub rail_low: Option<f64>,
     /// Samples at or above this are saturated; unit of the role inside.
     pub rail_high: Option<f64>,
+    /// Stamps or counts after which the channel starts again: s, or counts.
+    pub rollover: Option<f64>,
     /// False when a recording may lack the column.
     pub required: bool,
     /// Where it is declared.

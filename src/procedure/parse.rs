@@ -108,6 +108,7 @@ fn one_channel(section: &Section, reader: &mut Reader<'_>) -> Option<ChannelSpec
         unit_in_file,
         rail_low: section.number("rail_low"),
         rail_high: section.number("rail_high"),
+        rollover: section.number("rollover").filter(|r| *r > 0.0),
         required: section.flag("required"),
         span: section.span.clone(),
     })

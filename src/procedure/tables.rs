@@ -10,6 +10,7 @@ pub const ROLES: &[Word] = &[
     ("time", "time stamps"),
     ("rate", "angular rate about an input axis"),
     ("angle_increment", "angle turned during the sample interval, or counts of it"),
+    ("accumulated_angle", "angle turned since the beginning; its differences are the rate"),
     ("temperature", "a temperature"),
     ("table_rate", "rate of the table about the input axis"),
     ("table_angle", "angle of the table"),
@@ -287,6 +288,12 @@ static CHANNEL: TableSpec = TableSpec {
             Kind::QuantityBy("role"),
             "\"400 deg/s\"",
             "Highest output of the channel: samples at or above it count as saturated.",
+        ),
+        optional(
+            "rollover",
+            Kind::QuantityBy("role"),
+            "\"86400 s\"",
+            "Period after which stamps or a counter start again, such as \"86400 s\" for clock time or \"256 count\" for a counter of 8 bits. Usual periods are found without it where no sample is missing there.",
         ),
         with_default(
             "required",

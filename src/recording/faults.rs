@@ -43,6 +43,7 @@ impl FaultLog {
                 kind: kind.to_owned(),
                 channel: channel.map(str::to_owned),
                 time_s,
+                file: None,
                 row,
                 count,
                 note: message.say(Lang::En),

@@ -124,6 +124,18 @@ pub fn guess(name: &str, declared_unit: Option<&str>) -> Guess {
     Guess { role, unit, unit_is_named: named, reason }
 }
 
+/// The words of a name without its unit: `Rate [deg/h]` and `rate_deg_s` are one quantity.
+pub fn stem(name: &str) -> Vec<String> {
+    let (body, bracketed) = split_brackets(name);
+    let mut words = words(&body);
+    if bracketed.is_none()
+        && let Some((_, used)) = unit_at_end(&words)
+    {
+        words.truncate(words.len() - used);
+    }
+    words
+}
+
 fn parse(text: &str) -> Option<Unit> {
     Unit::parse(text).ok()
 }

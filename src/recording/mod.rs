@@ -25,6 +25,8 @@ pub enum Role {
     Rate,
     /// Angle turned during the sample interval, or counts of it; inside: turned into deg/h by the sample interval.
     AngleIncrement,
+    /// Angle turned since the beginning, as an integrating gyro logs it; inside: differenced into deg/h.
+    AccumulatedAngle,
     /// A temperature; inside: degC.
     Temperature,
     /// Rate of the table about the input axis; inside: deg/h.
@@ -47,6 +49,7 @@ impl Role {
             Role::Counter => "counter",
             Role::Rate => "rate",
             Role::AngleIncrement => "angle_increment",
+            Role::AccumulatedAngle => "accumulated_angle",
             Role::Temperature => "temperature",
             Role::TableRate => "table_rate",
             Role::TableAngle => "table_angle",
@@ -62,6 +65,7 @@ impl Role {
         Role::Counter,
         Role::Rate,
         Role::AngleIncrement,
+        Role::AccumulatedAngle,
         Role::Temperature,
         Role::TableRate,
         Role::TableAngle,
@@ -75,7 +79,7 @@ impl Role {
         match self {
             Role::Time => Some("s"),
             Role::Rate | Role::TableRate | Role::OuterRate => Some("deg/h"),
-            Role::AngleIncrement | Role::TableAngle => Some("arcsec"),
+            Role::AngleIncrement | Role::AccumulatedAngle | Role::TableAngle => Some("arcsec"),
             Role::Temperature => Some("degC"),
             Role::Supply => Some("V"),
             Role::Counter | Role::Auxiliary => None,
@@ -84,7 +88,7 @@ impl Role {
 
     /// True for the roles that deliver a gyro output.
     pub fn is_gyro(self) -> bool {
-        matches!(self, Role::Rate | Role::AngleIncrement)
+        matches!(self, Role::Rate | Role::AngleIncrement | Role::AccumulatedAngle)
     }
 }
 

@@ -27,6 +27,7 @@ pub fn procedure(channels: Vec<Channel>, sample_rate_hz: Option<f64>, warm_up_s:
                 channel,
                 rail_low: None,
                 rail_high: None,
+                rollover: None,
                 required: true,
                 span: 0..0,
             })

@@ -5,7 +5,7 @@ use super::{Outcome, Request, RunError, figures, power, settle, sigma_tau, verdi
 use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::figure::Figure;
-use crate::ingest::{Source, StreamReport, TimeBaseSpec, prepare};
+use crate::ingest::{Plan, Source, StreamReport, TimeBaseSpec, prepare};
 use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
 use crate::noise::digest::RateDigest;
 use crate::noise::envelope::Envelope;
@@ -19,8 +19,8 @@ use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::{EarthRate, Taus};
 use crate::record::{FaultRecord, Integrity, Window};
-use crate::recording::Channel;
 use crate::recording::window::{WindowSpec, Windowed};
+use crate::recording::{Channel, Role};
 use crate::text::Note;
 use std::collections::BTreeMap;
 
@@ -60,8 +60,8 @@ pub(super) fn execute(
         integrity: &found.report.integrity,
         rows: found.report.rows,
         sample_interval_s: found.tau0_s,
-        has_stamps: request.use_stamps
-            && found.channels.iter().any(|c| c.role == crate::recording::Role::Time),
+        clock_notes: &found.report.notes,
+        has_stamps: request.use_stamps && found.channels.iter().any(|c| c.role == Role::Time),
         usable_s: found.window.usable_s,
         longest_gap_s,
         held: &found.held,
@@ -90,9 +90,19 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     if !channels.iter().any(|c| c.role.is_gyro()) {
         return Err(RunError::Nothing(about(request, "run_error.no_gyro")));
     }
-    let spec =
-        TimeBaseSpec { declared_sample_rate_hz: procedure.sample_rate_hz, use_stamps: request.use_stamps };
-    let plan = prepare(request.source, &channels, spec)?;
+    let declared = |role: Role| procedure.channels.iter().find(|c| c.channel.role == role)?.rollover;
+    let spec = TimeBaseSpec {
+        declared_sample_rate_hz: procedure.sample_rate_hz,
+        use_stamps: request.use_stamps,
+        rollover_s: declared(Role::Time),
+        counter_modulus: declared(Role::Counter),
+    };
+    let mut plan = prepare(request.source, &channels, spec)?;
+    for c in &procedure.channels {
+        if let Some(period) = c.rollover {
+            plan.set_angle_period(&c.channel.id, period);
+        }
+    }
     let nominal_s = plan.clock().interval_s;
     let grid = request.taus.clone().unwrap_or_else(|| match &procedure.analysis.taus {
         Taus::Octave => TauGrid::Octave,
@@ -102,16 +112,28 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     });
     grid.check(tidy(nominal_s))?;
     let exact = request.exact || procedure.analysis.exact;
-    let estimators = Estimator::ALL;
-    let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
-    let inside = Inside::new(procedure, &channels, &grid, estimators, exact, tidy(nominal_s), plan.start_s());
-    let window = WindowSpec {
-        from_s: procedure.conditions.warm_up_s,
-        to_s: None,
-        exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
+    let mut read = |plan: &Plan<'_>| -> Result<_, RunError> {
+        let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
+        let inside =
+            Inside::new(procedure, &channels, &grid, Estimator::ALL, exact, tidy(nominal_s), plan.start_s());
+        let window = WindowSpec {
+            from_s: procedure.conditions.warm_up_s,
+            to_s: None,
+            exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
+        };
+        let mut windowed = Windowed::new(inside, window, plan.start_s(), nominal_s);
+        let report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
+        Ok((overview, windowed, report))
     };
-    let mut windowed = Windowed::new(inside, window, plan.start_s(), nominal_s);
-    let mut report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
+    let mut found = read(&plan)?;
+    // Rates from angles are divided by the interval of the first rows; where the whole recording measures another one,
+    // they are made again with that.
+    let measured_s = found.2.tau0_measured_s;
+    if plan.reads_angles() && (measured_s / nominal_s - 1.0).abs() > 1e-6 {
+        plan.set_increment_interval(measured_s);
+        found = read(&plan)?;
+    }
+    let (overview, windowed, mut report) = found;
     let (inside, window) = windowed.finish();
     let Collected { gyros, held } = inside.finish();
     let tau0_s = tidy(report.tau0_measured_s);
@@ -132,7 +154,9 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
                 .with("length", format!("{:.6}", report.duration_s))
         }));
     }
-    declare_rails(&mut report.integrity, overview.saturated());
+    let mut saturated = overview.saturated();
+    saturated.iter_mut().for_each(|f| crate::ingest::locate(&report.files, f));
+    declare_rails(&mut report.integrity, saturated);
     tidy_integrity(&mut report.integrity, tau0_s, &gyros);
     let envelopes = overview.finish();
     Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact })
@@ -287,7 +311,6 @@ fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
 
 /// The other channels drawn under the rate, with the bands that they must keep.
 fn below<'a>(procedure: &Procedure, found: &'a Found) -> Vec<figures::time_series::Below<'a>> {
-    use crate::recording::Role;
     let mut list = Vec::new();
     for (slot, channel) in found.channels.iter().enumerate() {
         let Some(envelope) = found.envelopes.get(&slot) else { continue };

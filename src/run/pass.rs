@@ -129,7 +129,9 @@ impl Overview {
                 .enumerate()
                 .filter_map(|(slot, c)| {
                     let spec = procedure.channel(&c.id)?;
-                    if spec.rail_low.is_none() && spec.rail_high.is_none() {
+                    // What is inside is the rate; an angle has no rails.
+                    let angle = c.role == Role::AccumulatedAngle;
+                    if angle || spec.rail_low.is_none() && spec.rail_high.is_none() {
                         return None;
                     }
                     // Rails of increments are stated as angles; inside, increments are rates.
@@ -153,6 +155,7 @@ impl Overview {
                     kind: "saturated".into(),
                     channel: Some(r.channel.clone()),
                     time_s: Some(time_s),
+                    file: None,
                     row,
                     count: r.count,
                     note: note.say(Lang::En),

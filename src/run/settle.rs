@@ -10,6 +10,7 @@ use crate::record::{
     OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
 };
 use crate::text::Note;
+use std::path::Path;
 
 pub(super) fn record(
     request: &Request<'_>,
@@ -24,7 +25,7 @@ pub(super) fn record(
     RunRecord {
         verdict,
         summary,
-        recording: vec![recording(request, found)],
+        recording: recording(request, found),
         conditions,
         integrity: found.report.integrity.clone(),
         window: found.window.clone(),
@@ -48,18 +49,7 @@ pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
     RunRecord {
         verdict: Verdict::Error,
         summary: errors.clone(),
-        recording: vec![RecordingFile {
-            path: request.source.path().display().to_string(),
-            sha256: crate::ingest::compressed::digest(request.source.path())
-                .map(|d| d.sha256)
-                .unwrap_or_default(),
-            bytes: std::fs::metadata(request.source.path()).map_or(0, |m| m.len()),
-            samples: 0,
-            sample_interval_s: 0.0,
-            start: None,
-            duration_s: 0.0,
-            columns: vec![],
-        }],
+        recording: request.source.files().into_iter().map(unread).collect(),
         errors,
         ..blank(request)
     }
@@ -104,27 +94,59 @@ fn blank(request: &Request<'_>) -> RunRecord {
     }
 }
 
-fn recording(request: &Request<'_>, found: &Found) -> RecordingFile {
-    let report = &found.report;
+/// A file of a recording that was not evaluated.
+fn unread(path: &Path) -> RecordingFile {
     RecordingFile {
-        path: request.source.path().display().to_string(),
-        sha256: report.facts.sha256.clone(),
-        bytes: report.facts.bytes,
-        samples: report.rows,
-        sample_interval_s: found.tau0_s,
-        start: report.start.clone(),
-        duration_s: report.duration_s,
-        columns: report
-            .channels
-            .iter()
-            .map(|c| ColumnRecord {
-                name: c.column.clone(),
-                channel: c.id.clone(),
-                role: c.role.id().to_owned(),
-                unit: c.unit.clone(),
-            })
-            .collect(),
+        path: path.display().to_string(),
+        sha256: crate::ingest::compressed::digest(path).map(|d| d.sha256).unwrap_or_default(),
+        bytes: std::fs::metadata(path).map_or(0, |m| m.len()),
+        samples: 0,
+        sample_interval_s: 0.0,
+        sample_interval_uncertainty_s: None,
+        clock_drift_ppm: None,
+        phase: None,
+        start: None,
+        duration_s: 0.0,
+        columns: vec![],
     }
+}
+
+/// The files of the recording.
+fn recording(request: &Request<'_>, found: &Found) -> Vec<RecordingFile> {
+    let report = &found.report;
+    let several = report.files.len() > 1;
+    let columns: Vec<ColumnRecord> = report
+        .channels
+        .iter()
+        .map(|c| ColumnRecord {
+            name: c.column.clone(),
+            channel: c.id.clone(),
+            role: c.role.id().to_owned(),
+            unit: c.unit.clone(),
+        })
+        .collect();
+    let used = |m: Option<f64>| m.filter(|_| request.use_stamps).filter(|v| v.is_finite());
+    report
+        .files
+        .iter()
+        .map(|f| RecordingFile {
+            path: f.path.display().to_string(),
+            sha256: f.facts.sha256.clone(),
+            bytes: f.facts.bytes,
+            samples: f.facts.rows,
+            sample_interval_s: if several {
+                super::evaluate::tidy(f.sample_interval_s)
+            } else {
+                found.tau0_s
+            },
+            sample_interval_uncertainty_s: used(report.clock.map(|c| c.uncertainty_s)),
+            clock_drift_ppm: used(report.clock.and_then(|c| c.drift)).map(|d| d * 1e6),
+            phase: f.phase.clone(),
+            start: f.start.clone(),
+            duration_s: f.duration_s,
+            columns: columns.clone(),
+        })
+        .collect()
 }
 
 fn lines(gyro: &GyroEvidence) -> Vec<LineRecord> {

@@ -183,6 +183,9 @@ pub fn pass() -> RunRecord {
             bytes: 1_482_112,
             samples: 36_000,
             sample_interval_s: 1.0,
+            sample_interval_uncertainty_s: Some(1e-9),
+            clock_drift_ppm: None,
+            phase: None,
             start: Some("2026-11-20T04:10:00Z".into()),
             duration_s: 36_000.0,
             columns: vec![
@@ -229,6 +232,7 @@ pub fn pass() -> RunRecord {
                 kind: "outlier".into(),
                 channel: Some("rate".into()),
                 time_s: Some(17_233.0),
+                file: None,
                 row: 17_234,
                 count: 1,
                 note: "1.23 deg/h, 8.1 robust standard deviations from the median".into(),

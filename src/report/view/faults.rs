@@ -173,6 +173,7 @@ fn first_of_each_kind(faults: &[FaultRecord]) -> Vec<&FaultRecord> {
 }
 
 fn fault(f: &FaultRecord, words: Words) -> Fault {
+    let note = f.message.as_ref().map_or_else(|| f.note.clone(), |m| m.say(words.lang));
     Fault {
         kind: words.name("fault", &f.kind),
         channel: f.channel.clone().unwrap_or_default(),
@@ -181,6 +182,6 @@ fn fault(f: &FaultRecord, words: Words) -> Fault {
             .time_s
             .map_or_else(|| NOTHING.to_owned(), |t| words.quantity(&limit_digits(t, 9, words.lang), "s")),
         count: count(f.count, words.lang),
-        note: f.message.as_ref().map_or_else(|| f.note.clone(), |m| m.say(words.lang)),
+        note: f.file.as_ref().map_or_else(|| note.clone(), |file| format!("{file}: {note}")),
     }
 }

@@ -161,9 +161,13 @@ fn why(column: &str, reason: impl Into<Arg>) -> Note {
 fn spec(time: &TimeBase) -> TimeBaseSpec {
     match time {
         TimeBase::Stamps(_) => TimeBaseSpec::default(),
-        TimeBase::Declared(hz, _) => TimeBaseSpec { declared_sample_rate_hz: Some(*hz), use_stamps: false },
+        TimeBase::Declared(hz, _) => {
+            TimeBaseSpec { declared_sample_rate_hz: Some(*hz), use_stamps: false, ..TimeBaseSpec::default() }
+        }
         // One row a second, so that positions can be told; no time is shown.
-        TimeBase::Rows(_) => TimeBaseSpec { declared_sample_rate_hz: Some(1.0), use_stamps: false },
+        TimeBase::Rows(_) => {
+            TimeBaseSpec { declared_sample_rate_hz: Some(1.0), use_stamps: false, ..TimeBaseSpec::default() }
+        }
     }
 }
 

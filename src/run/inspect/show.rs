@@ -7,6 +7,7 @@ use super::quantity::{count, plain, time};
 use super::{show_gyro, support};
 use crate::ingest::{ChannelFacts, Packing, Source};
 use crate::recording::Role;
+use crate::recording::timebase::Measured;
 use crate::text::{Arg, Lang, Note, decimal};
 use crate::units::Unit;
 
@@ -36,7 +37,10 @@ fn file(page: &mut Page, source: &Source, seen: &Seen) {
     let format = Note::new(key).with("format", source.format()).with("packing", source.packing().id());
     page.row(word("inspect.format"), format);
     page.row(word("inspect.rows"), count(seen.report.rows));
-    if seen.report.facts.bytes > 0 {
+    if seen.report.files.len() > 1 {
+        joined(page, seen);
+    }
+    if seen.report.facts.bytes > 0 && seen.report.files.len() < 2 {
         let size = Note::new("inspect.bytes").with("bytes", count(seen.report.facts.bytes));
         page.row(word("inspect.size"), size);
         page.row("SHA-256", seen.report.facts.sha256.as_str());
@@ -50,6 +54,19 @@ fn file(page: &mut Page, source: &Source, seen: &Seen) {
     }
     if let Some(serial) = source.stated_serial() {
         page.row(SAME, Note::new("inspect.stated.serial").with("serial", serial));
+    }
+}
+
+/// The files of a recording of several.
+fn joined(page: &mut Page, seen: &Seen) {
+    for file in &seen.report.files {
+        let note = Note::new("time_base.file")
+            .with("file", file.path.display().to_string())
+            .with("rows", count(file.facts.rows))
+            .with("start", file.start.clone().unwrap_or_else(|| "-".to_owned()))
+            .with("length", if seen.time.is_known() { time(file.duration_s) } else { "-".into() })
+            .with("sha256", file.facts.sha256.as_str());
+        page.row(word("time_base.joined"), note);
     }
 }
 
@@ -198,6 +215,14 @@ fn time_base(page: &mut Page, seen: &Seen) {
         let note = Note::new("inspect.rate_given").with("given", plain(given, 6)).with("off", plain(off, 2));
         page.row(SAME, note);
     }
+    if let (TimeBase::Stamps(_), Some(clock)) = (&seen.time, &report.clock) {
+        clock_facts(page, clock);
+    }
+    if let TimeBase::Stamps(_) = &seen.time {
+        for note in &report.notes {
+            page.row(SAME, note.clone());
+        }
+    }
     page.row(word("inspect.length"), time(report.duration_s));
     if let TimeBase::Stamps(_) = seen.time {
         if let Some(start) = &report.start {
@@ -226,7 +251,22 @@ fn time_base(page: &mut Page, seen: &Seen) {
                 .with("backward", backward),
         };
         page.row(word("inspect.breaks"), note);
-        list(page, seen, &["gap", "duplicate_timestamp", "backward_timestamp"]);
+        list(page, seen, &["gap", "duplicate_timestamp", "backward_timestamp", "rollover"]);
+    }
+}
+
+/// How well the stamps tell the rate, and whether it drifts.
+fn clock_facts(page: &mut Page, clock: &Measured) {
+    let ppm = clock.uncertainty_s / clock.interval_s * 1e6;
+    if ppm > 0.001 {
+        page.row(SAME, Note::new("time_base.uncertainty").with("ppm", plain(ppm, 2)));
+    }
+    if let (Some(drift), Some(sigma)) = (clock.drift, clock.drift_uncertainty)
+        && drift.abs() > 4.0 * sigma
+        && drift.abs() > 1e-7
+    {
+        let note = Note::new("time_base.drift").with("ppm", plain(drift * 1e6, 2));
+        page.row(SAME, note.with("sigma", plain(sigma * 1e6, 2)));
     }
 }
 
@@ -278,6 +318,10 @@ fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
             Some(channel) => Note::new("inspect.fault_of").with("channel", channel),
             None => Note::new("inspect.fault_row"),
         };
-        page.row(SAME, row.with("place", place).with("what", what));
+        let row = match &fault.file {
+            Some(file) => Note::new("time_base.fault_in").with("file", file.as_str()).with("row", row.with("place", place).with("what", what)),
+            None => row.with("place", place).with("what", what),
+        };
+        page.row(SAME, row);
     }
 }

@@ -17,8 +17,9 @@ fn gaps(stamps: &[f64]) -> usize {
 fn rounded_stamps_give_the_interval_and_no_gap() {
     for (interval, step) in [
         (0.001, 1e-3),
-        (0.0015, 1e-3),
-        (0.0012, 1e-3),
+        (1.0 / 819.2, 1e-3),
+        (0.00142, 1e-3),
+        (0.0025, 1e-3),
         (1.0 / 64.0, 1e-3),
         (1.0 / 102.4, 1e-6),
         (10.06, 1.0),
@@ -30,6 +31,24 @@ fn rounded_stamps_give_the_interval_and_no_gap() {
             assert!((clock.interval_s / interval - 1.0).abs() < 0.01, "{interval} {step} {start} {clock:?}");
             assert_eq!(gaps(&t), 0, "{interval} {step} {start}");
         }
+    }
+}
+
+#[test]
+fn every_nth_double_step_is_a_loss_unless_the_declared_rate_says_otherwise() {
+    // 0, 1, 3, 4, 6 ... are the stamps of a clock that loses every third sample and of one 1.5 times slower.
+    for (slow, step) in [(1.5, 1.0), (0.0012, 1e-3), (1.25, 1.0)] {
+        let t = rounded(slow, step, 0.0, 6000);
+        let lossy = Clock::probe(&t).unwrap();
+        assert!((lossy.interval_s / step - 1.0).abs() < 1e-9, "{lossy:?}");
+        assert!((lossy.ambiguous_with_s.unwrap() / slow - 1.0).abs() < 1e-3, "{lossy:?}");
+        let clock = Clock::probe_with(&t, Some(1.0 / slow)).unwrap();
+        assert!(
+            (clock.interval_s / slow - 1.0).abs() < 1e-6 && clock.ambiguous_with_s.is_none(),
+            "{clock:?}"
+        );
+        let lossy = Clock::probe_with(&t, Some(1.0 / step)).unwrap();
+        assert!((lossy.interval_s / step - 1.0).abs() < 1e-9 && lossy.ambiguous_with_s.is_none());
     }
 }
 
@@ -117,9 +136,21 @@ fn stamps_that_cannot_serve_are_refused() {
     assert_eq!(Clock::probe(&[1.0]), Err(ClockError::TooFew));
     assert_eq!(Clock::probe(&[f64::NAN; 9]), Err(ClockError::TooFew));
     assert_eq!(Clock::probe(&[3.0, 3.0, 3.0]), Err(ClockError::NotGrowing));
-    assert!(matches!(Clock::probe(&rounded(1e-3, 1.0, 0.0, 5000)), Err(ClockError::Coarse { .. })));
+    // Each second row has the stamp of the one before, at random places: copied rows or coarse stamps.
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(4);
+    let mut copied = Vec::new();
+    for i in 0..5000 {
+        copied.push(f64::from(i));
+        if rng.random_bool(0.3) {
+            copied.push(f64::from(i));
+        }
+    }
+    assert!(matches!(Clock::probe(&copied), Err(ClockError::Coarse { .. })));
     let noise: Vec<f64> = (0..1000).map(|i| f64::from(i * i % 101)).collect();
     assert!(matches!(Clock::probe(&noise), Err(ClockError::Falling { .. })));
     assert!(matches!(Clock::declared(-5.0), Err(ClockError::Rate { .. })));
     assert!(matches!(Clock::declared(f64::NAN), Err(ClockError::Rate { .. })));
 }
+
+#[path = "generator_tests.rs"]
+mod generators;

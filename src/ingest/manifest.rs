@@ -1,0 +1,373 @@
+//! Manifests: the files of a recording in their order, with what must be known to read them.
+//!
+//! A manifest is checked as a whole before a file is read: every problem has its place in it.
+
+use super::compressed;
+use super::joined::PartSpec;
+use super::manifest_tables::MANIFEST_FILE;
+use super::options::{Encoding, ReadOptions, TextOptions};
+use super::recording::natural;
+use crate::keyed::diagnostics::{Problem, Problems, SourceText, Span};
+use crate::keyed::reader::{self, Reader};
+use crate::keyed::section::Section;
+use crate::text::Note;
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+
+/// Most bytes that are read of a manifest: enough to know that it is too large.
+const MOST_BYTES: u64 = (1 << 20) + 1;
+
+/// A manifest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Manifest {
+    /// The manifest file, as given.
+    pub path: PathBuf,
+    /// Serial number of the unit that was recorded.
+    pub serial: Option<String>,
+    /// True when each file follows the one before without a gap.
+    pub contiguous: bool,
+    /// How the files are to be read.
+    pub options: ReadOptions,
+    /// The files, in order.
+    pub files: Vec<ManifestFile>,
+}
+
+/// One file of a manifest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ManifestFile {
+    /// Path as it can be opened.
+    pub path: PathBuf,
+    /// SHA-256 stated for it, hexadecimal.
+    pub sha256: Option<String>,
+    /// Phase of the test that it belongs to.
+    pub phase: Option<String>,
+}
+
+impl Manifest {
+    /// The files to be joined.
+    pub fn parts(&self) -> Vec<PartSpec> {
+        let part = |f: &ManifestFile| PartSpec {
+            path: f.path.clone(),
+            sha256: f.sha256.clone(),
+            phase: f.phase.clone(),
+        };
+        self.files.iter().map(part).collect()
+    }
+
+    /// What the manifest decides, over what was decided elsewhere.
+    pub fn options_over(&self, other: &ReadOptions) -> ReadOptions {
+        let (own, text) = (self.options.clone(), self.options.text.clone());
+        ReadOptions {
+            format: own.format.or_else(|| other.format.clone()),
+            text: TextOptions {
+                encoding: text.encoding.or(other.text.encoding),
+                delimiter: text.delimiter.or(other.text.delimiter),
+                decimal: text.decimal.or(other.text.decimal),
+                header_line: text.header_line.or(other.text.header_line),
+                first_line: text.first_line.or(other.text.first_line),
+                comment: text.comment.or_else(|| other.text.comment.clone()),
+                stamps: other.text.stamps.clone(),
+            },
+            part: own.part.or_else(|| other.part.clone()),
+            layout: own.layout.or_else(|| other.layout.clone()),
+        }
+    }
+}
+
+/// True when a file says at its beginning that it is a manifest, or is named like one and is no other kind of TOML.
+pub fn is_manifest(path: &Path) -> bool {
+    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
+        return false;
+    }
+    let Ok(bytes) = bytes_of(path) else { return false };
+    let text = String::from_utf8_lossy(&bytes);
+    let said = text.lines().map(str::trim).find_map(|l| l.strip_prefix("format"));
+    said.map_or_else(|| path.file_stem().is_some_and(|s| s == "manifest"), |rest| rest.contains("manifest/"))
+}
+
+/// Reads a manifest and checks that its files are there and are what it says.
+///
+/// # Errors
+/// Every problem, each with its place.
+pub fn load(path: &Path) -> Result<Manifest, Problems> {
+    let name = path.display().to_string();
+    let bytes = bytes_of(path).map_err(|e| {
+        Problems::from(Problem::of_file(
+            &name,
+            Note::new("manifest.unreadable").with("reason", e.to_string()),
+            None,
+        ))
+    })?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    parse(path, &name, &bytes, folder)
+}
+
+/// Reads a manifest from its bytes; its files are looked for in `folder`.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Manifest, Problems> {
+    let body = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = match std::str::from_utf8(body) {
+        Ok(text) => text.to_owned(),
+        Err(e) => {
+            let sound = String::from_utf8_lossy(body.get(..e.valid_up_to()).unwrap_or(b"")).into_owned();
+            let at = sound.len();
+            let problem = SourceText::new(name, sound).error(&(at..at), Note::new("manifest.not_utf8"));
+            return Err(problem.into());
+        }
+    };
+    let source = SourceText::new(name, text);
+    let (root, problems) = reader::read(&source, &MANIFEST_FILE);
+    let Some(root) = root else { return Err(problems) };
+    let mut reader = Reader::resume(&source, &MANIFEST_FILE, problems);
+    let files = files(&root, folder, &mut reader);
+    let recording = root.table("recording");
+    let manifest = Manifest {
+        path: path.to_owned(),
+        serial: root.text("serial"),
+        contiguous: root.flag("contiguous"),
+        options: recording.map(|r| options(r, folder, &mut reader)).unwrap_or_default(),
+        files,
+    };
+    let mut problems = reader.problems;
+    problems.sort();
+    if problems.has_errors() { Err(problems) } else { Ok(manifest) }
+}
+
+/// The words of a problem.
+
+fn complain(reader: &mut Reader<'_>, span: &Span, note: Note, help: Option<&'static str>) {
+    reader.error(span, note, help.map(Note::new));
+}
+
+fn files(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
+    let (pattern, listed) = (root.text("files"), root.tables("file"));
+    match (pattern, root.entry("file").is_some()) {
+        (Some(_), true) => {
+            let at = root.span_of("files");
+            complain(reader, &at, Note::new("manifest.both"), Some("manifest.help.both"));
+            vec![]
+        }
+        (None, false) => {
+            // A wrong value of `files` has been reported already.
+            if root.entry("files").is_none() {
+                complain(
+                    reader,
+                    &root.span.clone(),
+                    Note::new("manifest.no_files"),
+                    Some("manifest.help.no_files"),
+                );
+            }
+            vec![]
+        }
+        (Some(pattern), false) => by_pattern(&pattern, &root.span_of("files"), folder, reader),
+        (None, true) => by_list(listed, folder, reader),
+    }
+}
+
+fn by_list(listed: &[Section], folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
+    let mut found: Vec<ManifestFile> = Vec::new();
+    let mut real: Vec<(PathBuf, usize)> = Vec::new();
+    for section in listed {
+        let Some(text) = section.text("path") else { continue };
+        let at = inside(reader.source, &section.span_of("path"));
+        let Some((path, canonical)) = safe(&text, folder, &at, reader) else { continue };
+        if let Some((_, line)) = real.iter().find(|(p, _)| *p == canonical) {
+            let note = Note::new("manifest.twice").with("path", text.as_str()).with("line", *line);
+            complain(reader, &at, note, Some("manifest.help.twice"));
+            continue;
+        }
+        real.push((canonical, reader.source.error(&at, "").line));
+        let sha256 = section.text("sha256").filter(|stated| checked(stated, &path, section, reader));
+        let phase = section.text("phase");
+        if let Some(other) = found.last().filter(|f| f.phase != phase) {
+            let span = if phase.is_some() { section.span_of("phase") } else { section.span.clone() };
+            let word = |p: &Option<String>| p.clone().unwrap_or_else(|| "-".to_owned());
+            let note =
+                Note::new("manifest.phases").with("phase", word(&phase)).with("other", word(&other.phase));
+            complain(reader, &inside(reader.source, &span), note, Some("manifest.help.phases"));
+        }
+        found.push(ManifestFile { path, sha256, phase });
+    }
+    found
+}
+
+/// True when a stated hash is that of the file.
+fn checked(stated: &str, path: &Path, section: &Section, reader: &mut Reader<'_>) -> bool {
+    let at = inside(reader.source, &section.span_of("sha256"));
+    if stated.len() != 64 || !stated.chars().all(|c| c.is_ascii_hexdigit()) {
+        complain(reader, &at, Note::new("manifest.no_hash"), Some("manifest.help.no_hash"));
+        return false;
+    }
+    match compressed::digest(path) {
+        Ok(found) if found.sha256.eq_ignore_ascii_case(stated) => true,
+        Ok(found) => {
+            let note = Note::new("manifest.wrong_hash")
+                .with("path", path.display().to_string())
+                .with("found", found.sha256);
+            complain(reader, &at, note, Some("manifest.help.wrong_hash"));
+            false
+        }
+        Err(e) => {
+            complain(reader, &at, Note::new("manifest.unreadable").with("reason", e.to_string()), None);
+            false
+        }
+    }
+}
+
+fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
+    let at = inside(reader.source, span);
+    if !stays_inside(pattern, &at, reader) {
+        return vec![];
+    }
+    let wanted = match glob::Pattern::new(pattern) {
+        Ok(wanted) => wanted,
+        Err(e) => {
+            complain(reader, &at, Note::new("manifest.bad_pattern").with("reason", e.msg), None);
+            return vec![];
+        }
+    };
+    let escaped = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(wanted.as_str());
+    let options = glob::MatchOptions { require_literal_separator: true, ..glob::MatchOptions::new() };
+    let matches = glob::glob_with(&escaped.to_string_lossy(), options);
+    let most = super::joined::MOST_FILES;
+    let mut names: Vec<PathBuf> =
+        matches.into_iter().flatten().filter_map(Result::ok).filter(|p| p.is_file()).take(most + 1).collect();
+    names.sort_by_cached_key(|f| natural(&f.to_string_lossy()));
+    if names.is_empty() {
+        let note = Note::new("manifest.no_match").with("folder", folder.display().to_string());
+        complain(reader, &at, note, Some("manifest.help.no_match"));
+    } else if names.len() > most {
+        complain(reader, &at, Note::new("manifest.too_many").with("most", most), None);
+        return vec![];
+    }
+    let mut found = Vec::new();
+    for path in names {
+        let relative = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().into_owned();
+        if let Some((path, _)) = safe(&relative, folder, &at, reader) {
+            found.push(ManifestFile { path, sha256: None, phase: None });
+        }
+    }
+    found
+}
+
+/// True when a path as written cannot lead out of the folder of its manifest.
+fn stays_inside(text: &str, at: &Span, reader: &mut Reader<'_>) -> bool {
+    let drive = text.as_bytes().get(1) == Some(&b':');
+    let key = if Path::new(text).is_absolute() || text.starts_with(['/', '\\']) || drive {
+        "manifest.absolute"
+    } else if text.split(['/', '\\']).any(|part| part == "..") {
+        "manifest.leaves"
+    } else if text.contains('\\') {
+        "manifest.backslash"
+    } else if Path::new(text).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir)) {
+        "manifest.leaves"
+    } else {
+        return true;
+    };
+    complain(reader, at, Note::new(key).with("path", text), Some("manifest.help.inside"));
+    false
+}
+
+/// A path of the manifest as it can be opened, and where it really is; `None` when a problem was reported.
+fn safe(text: &str, folder: &Path, at: &Span, reader: &mut Reader<'_>) -> Option<(PathBuf, PathBuf)> {
+    if !stays_inside(text, at, reader) {
+        return None;
+    }
+    let path = if folder == Path::new(".") { PathBuf::from(text) } else { folder.join(text) };
+    let about = |key: &'static str| Note::new(key).with("path", text);
+    let canonical = match path.canonicalize() {
+        Ok(canonical) => canonical,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            complain(reader, at, about("manifest.missing"), Some("manifest.help.missing"));
+            return None;
+        }
+        Err(e) => {
+            complain(reader, at, about("manifest.unreadable").with("reason", e.to_string()), None);
+            return None;
+        }
+    };
+    let home = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    if !canonical.starts_with(&home) {
+        complain(reader, at, about("manifest.link_leaves"), Some("manifest.help.inside"));
+        return None;
+    }
+    if canonical.is_dir() {
+        complain(reader, at, about("manifest.folder"), Some("manifest.help.folder"));
+        return None;
+    }
+    if !canonical.is_file() {
+        complain(reader, at, about("manifest.no_file"), Some("manifest.help.inside"));
+        return None;
+    }
+    Some((path, canonical))
+}
+
+fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOptions {
+    let whole = |key: &'static str, reader: &mut Reader<'_>| {
+        let value = section.number(key)?;
+        if value.fract() == 0.0 {
+            return Some(value as u64);
+        }
+        complain(reader, &section.span_of(key), Note::new("manifest.no_line").with("key", key), None);
+        None
+    };
+    let byte = |word: Option<&str>| match word {
+        Some("comma") => Some(b','),
+        Some("semicolon") => Some(b';'),
+        Some("tab") => Some(b'\t'),
+        Some("space") => Some(b' '),
+        Some("pipe") => Some(b'|'),
+        Some("point") => Some(b'.'),
+        _ => None,
+    };
+    let layout = section.text("layout").and_then(|text| {
+        let at = inside(reader.source, &section.span_of("layout"));
+        safe(&text, folder, &at, reader).map(|(path, _)| path)
+    });
+    let format = section.text("format").filter(|id| {
+        let known = super::FORMATS.iter().any(|f| f.id() == id);
+        if !known {
+            let at = inside(reader.source, &section.span_of("format"));
+            let ids: Vec<&str> = super::FORMATS.iter().map(|f| f.id()).collect();
+            let note = Note::new("manifest.no_format").with("id", id.as_str()).with("known", ids.join(", "));
+            complain(reader, &at, note, None);
+        }
+        known
+    });
+    ReadOptions {
+        format,
+        text: TextOptions {
+            encoding: match section.word("encoding") {
+                Some("utf-8") => Some(Encoding::Utf8),
+                Some("utf-16le") => Some(Encoding::Utf16Le),
+                Some("utf-16be") => Some(Encoding::Utf16Be),
+                Some("windows-1251") => Some(Encoding::Windows1251),
+                _ => None,
+            },
+            delimiter: byte(section.word("delimiter")),
+            decimal: byte(section.word("decimal")),
+            header_line: whole("header_line", reader),
+            first_line: whole("first_line", reader),
+            comment: section.text("comment"),
+            stamps: Vec::new(),
+        },
+        part: section.text("part"),
+        layout,
+    }
+}
+
+/// The place of a text between its quotes.
+fn inside(source: &SourceText, span: &Span) -> Span {
+    let raw = source.text.get(span.clone()).unwrap_or("");
+    let quoted = raw.len() >= 2
+        && (raw.starts_with('"') && raw.ends_with('"') || raw.starts_with('\'') && raw.ends_with('\''));
+    if quoted && !raw.starts_with("\"\"\"") { span.start + 1..span.end - 1 } else { span.clone() }
+}
+
+fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}

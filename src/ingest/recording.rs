@@ -1,0 +1,162 @@
+//! From what a user names to one recording: a file, several files, a pattern, a manifest.
+
+use super::error::{IngestError, IngestErrorKind};
+use super::joined::{self, PartSpec};
+use super::manifest::{self, Manifest};
+use super::{ReadOptions, Source, open_with};
+use crate::keyed::diagnostics::Problems;
+use crate::text::{Lang, Note};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// An opened recording and what its manifest says beside.
+pub struct Recording {
+    /// The recording.
+    pub source: Source,
+    /// The manifest, where there is one.
+    pub manifest: Option<Manifest>,
+}
+
+/// Why a recording could not be opened.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RecordingError {
+    /// One of its files.
+    File(IngestError),
+    /// Its manifest.
+    Manifest(Problems),
+}
+
+impl RecordingError {
+    /// The error as one of reading; of a manifest, its first problem.
+    pub fn into_ingest(self, path: &Path) -> IngestError {
+        match self {
+            RecordingError::File(e) => e,
+            RecordingError::Manifest(problems) => {
+                let first = problems.list.first();
+                let reason = first.map_or_else(|| Note::new("ingest.joined.no_reason"), |p| p.message.clone());
+                let note = Note::new("ingest.joined.manifest").with("reason", reason);
+                let error = IngestError::new(IngestErrorKind::Parts, path, note);
+                match first.filter(|p| p.line > 0) {
+                    Some(p) => error.at(p.line as u64, Some(p.column as u64)),
+                    None => error,
+                }
+            }
+        }
+    }
+}
+
+impl RecordingError {
+    /// The diagnostic as it goes to the terminal, in a language.
+    pub fn say(&self, lang: Lang) -> String {
+        match self {
+            RecordingError::File(e) => format!("{}: {}\n", Note::new("diagnostic.error").say(lang), e.say(lang)),
+            RecordingError::Manifest(problems) => problems.say(lang),
+        }
+    }
+}
+
+impl fmt::Display for RecordingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.say(Lang::En).trim_end())
+    }
+}
+
+impl std::error::Error for RecordingError {}
+
+impl From<IngestError> for RecordingError {
+    fn from(e: IngestError) -> Self {
+        RecordingError::File(e)
+    }
+}
+
+/// Opens what a user named: one file, several in sequence, patterns such as `unit7/*.csv`, or a manifest.
+///
+/// # Errors
+/// [`RecordingError`].
+pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Recording, RecordingError> {
+    let none = Path::new("");
+    let name = named.first().map_or(none, PathBuf::as_path);
+    if named.len() == 1 && manifest::is_manifest(name) {
+        let manifest = manifest::load(name).map_err(RecordingError::Manifest)?;
+        let options = manifest.options_over(options);
+        let source = joined::open(name, &manifest.parts(), manifest.contiguous, &options)?;
+        return Ok(Recording { source, manifest: Some(manifest) });
+    }
+    let mut files = Vec::new();
+    for path in named {
+        match pattern(path) {
+            Some(pattern) => files.extend(expand(path, &pattern)?),
+            None => files.push(path.clone()),
+        }
+    }
+    if let [one] = files.as_slice() {
+        return Ok(Recording { source: open_with(one, options)?, manifest: None });
+    }
+    if let Some(odd) = files.iter().find(|f| manifest::is_manifest(f)) {
+        let error = IngestError::new(IngestErrorKind::Parts, odd, "ingest.joined.manifest_alone");
+        return Err(error.hint("ingest.joined.hint.manifest_alone").into());
+    }
+    let specs: Vec<PartSpec> =
+        files.iter().map(|f| PartSpec { path: f.clone(), ..PartSpec::default() }).collect();
+    Ok(Recording { source: joined::open(name, &specs, false, options)?, manifest: None })
+}
+
+/// The text of a path that is a pattern and no file.
+fn pattern(path: &Path) -> Option<String> {
+    let text = path.to_str()?;
+    (text.contains(['*', '?', '[']) && !path.exists()).then(|| text.to_owned())
+}
+
+/// The files that a pattern names, part2 before part10.
+fn expand(path: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
+    let error = |note: Note| IngestError::new(IngestErrorKind::Io, path, note);
+    let bad = |reason: String| error(Note::new("ingest.joined.bad_pattern").with("reason", reason));
+    let options = glob::MatchOptions { require_literal_separator: true, ..glob::MatchOptions::new() };
+    let found = glob::glob_with(pattern, options).map_err(|e| bad(e.to_string()))?;
+    let mut files = Vec::new();
+    for entry in found {
+        let file = entry.map_err(|e| bad(e.to_string()))?;
+        if file.is_file() {
+            files.push(file);
+        }
+        if files.len() > joined::MOST_FILES {
+            let most = joined::MOST_FILES;
+            let note = Note::new("ingest.joined.too_many").with("count", files.len()).with("most", most);
+            return Err(error(note));
+        }
+    }
+    if files.is_empty() {
+        return Err(error(Note::new("ingest.joined.no_match")).hint("ingest.joined.hint.quote_pattern"));
+    }
+    files.sort_by_cached_key(|f| natural(&f.to_string_lossy()));
+    Ok(files)
+}
+
+/// A key that sorts numbers in names by their value.
+pub(super) fn natural(name: &str) -> Vec<(String, u128, String)> {
+    let mut key = Vec::new();
+    let mut rest = name;
+    while !rest.is_empty() {
+        let words = rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(words);
+        let length = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
+        let (digits, after) = after.split_at(length);
+        // Numbers of more than 38 digits sort as text.
+        let value = digits.parse().unwrap_or(if digits.is_empty() { 0 } else { u128::MAX });
+        key.push((word.to_owned(), value, digits.to_owned()));
+        rest = after;
+    }
+    key
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_names_sort_by_value() {
+        let mut names = ["part10.csv", "part2.csv", "part1.csv", "part02.csv", "a.csv", "part.csv"];
+        names.sort_by_cached_key(|n| natural(n));
+        assert_eq!(names, ["a.csv", "part.csv", "part1.csv", "part02.csv", "part2.csv", "part10.csv"]);
+    }
+}
