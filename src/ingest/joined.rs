@@ -158,8 +158,7 @@ fn twice(parts: &[Part]) -> Result<(), IngestError> {
     for part in parts {
         let (bytes, path) = (part.source.bytes(), part.source.path());
         let mut own = None;
-        for (other_bytes, other, hash) in seen.iter_mut().filter(|s| s.0 == bytes) {
-            debug_assert_eq!(*other_bytes, bytes);
+        for (_, other, hash) in seen.iter_mut().filter(|s| s.0 == bytes) {
             if hash.is_none() {
                 *hash = Some(digest(other)?.sha256);
             }

@@ -11,6 +11,7 @@ use crate::keyed::diagnostics::{Problem, Problems, SourceText, Span};
 use crate::keyed::reader::{self, Reader};
 use crate::keyed::section::Section;
 use crate::text::Note;
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
@@ -168,17 +169,22 @@ fn files(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Manifest
 
 fn by_list(listed: &[Section], folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
     let mut found: Vec<ManifestFile> = Vec::new();
-    let mut real: Vec<(PathBuf, usize)> = Vec::new();
+    let mut real: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    let most = super::joined::MOST_FILES;
+    if let Some(beyond) = listed.get(most) {
+        complain(reader, &beyond.span, Note::new("manifest.too_many").with("most", most), None);
+        return found;
+    }
     for section in listed {
         let Some(text) = section.text("path") else { continue };
         let at = inside(reader.source, &section.span_of("path"));
         let Some((path, canonical)) = safe(&text, folder, &at, reader) else { continue };
-        if let Some((_, line)) = real.iter().find(|(p, _)| *p == canonical) {
+        if let Some(line) = real.get(&canonical) {
             let note = Note::new("manifest.twice").with("path", text.as_str()).with("line", *line);
             complain(reader, &at, note, Some("manifest.help.twice"));
             continue;
         }
-        real.push((canonical, reader.source.error(&at, "").line));
+        real.insert(canonical, reader.source.error(&at, "").line);
         let sha256 = section.text("sha256").filter(|stated| checked(stated, &path, section, reader));
         let phase = section.text("phase");
         if let Some(other) = found.last().filter(|f| f.phase != phase) {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::recording::ColumnRef;
-use std::path::Path;
 use std::io::Write;
+use std::path::Path;
 use tempfile::{NamedTempFile, TempDir};
 
 fn file(bytes: &[u8]) -> NamedTempFile {

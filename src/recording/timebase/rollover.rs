@@ -73,9 +73,10 @@ impl Unwrapper {
                 self.offset += period;
                 found.push(Rollover { at, period });
             }
-            // A value far ahead of a fall is a straggler from before it.
+            // A value from the end of the period soon after its fall is a straggler.
             let straggler = self.last.is_some_and(|last| {
-                self.declared.is_some_and(|p| raw - last > 0.5 * p && self.offset >= p && raw <= p)
+                self.declared
+                    .is_some_and(|p| last < 0.05 * p && raw > 0.95 * p && raw <= p && self.offset >= p)
             });
             if straggler {
                 *value = raw + self.offset - self.declared.unwrap_or(0.0);
