@@ -67,7 +67,12 @@ pub(super) fn find(head: &[u8], all: bool) -> Option<Found> {
         Err(e) => e,
     };
     let high = || head.iter().filter(|b| **b >= 0x80);
-    let letters = high().filter(|b| matches!(b, 0xc0..=0xff | 0xa8 | 0xb8)).count();
+    // Letters, and the number sign.
+    let letter = |b: &u8| matches!(b, 0xc0..=0xff | 0xa8 | 0xb8 | 0xb9);
+    let letters = high().filter(|b| letter(b)).count();
+    // A lone one behind a digit is rather a damaged number.
+    let damaged =
+        letters == 1 && head.windows(2).any(|w| matches!(w, [d, l] if d.is_ascii_digit() && letter(l)));
     let total = high().count();
     // Degree, micro, plus-minus and other signs that Latin-1 and Windows-1251 share.
     let shared =
@@ -76,7 +81,7 @@ pub(super) fn find(head: &[u8], all: bool) -> Option<Found> {
     if shared && !sound_utf8 {
         return found(Encoding::Windows1251, "ingest.delimited.why_signs");
     }
-    if !sound_utf8 && letters as f64 >= CYRILLIC_SHARE * total as f64 && letters > 1 {
+    if !sound_utf8 && letters as f64 >= CYRILLIC_SHARE * total as f64 && letters > 0 && !damaged {
         return found(Encoding::Windows1251, "ingest.delimited.why_cyrillic");
     }
     Some(Found {
@@ -231,6 +236,8 @@ mod tests {
         // "Время;град/ч" in Windows-1251.
         assert_eq!(of(b"\xc2\xf0\xe5\xec\xff;\xe3\xf0\xe0\xe4/\xf7\n0;1\n"), Some(Encoding::Windows1251));
         assert_eq!(of(b"t;T [\xb0C]\n0;1\n"), Some(Encoding::Windows1251));
+        assert_eq!(of(b"\xb9;\xd21\n0;1\n"), Some(Encoding::Windows1251));
+        assert_eq!(of(b"t;r\n0;1\xff5\n"), Some(Encoding::Utf8));
         assert_eq!(of(b"abc\0def\0\x01"), None);
         assert_eq!(of(b"t,r\n0,1\0\n"), None);
         let damaged = find("°,r\n".as_bytes().get(..3).unwrap_or_default(), true);

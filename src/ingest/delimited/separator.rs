@@ -74,7 +74,7 @@ pub(super) fn find(lines: &[&[u8]], delimiter: Option<u8>, decimal: Option<u8>) 
         for sign in [b'.', b','] {
             // A comma is both only where quotes keep the two apart.
             let twice = sign == b',' && separator == Separator::Byte(b',') && !quoted;
-            if decimal.is_some_and(|d| d != sign) || (twice && decimal.is_none()) {
+            if decimal.is_some_and(|d| d != sign) || (twice && delimiter.is_none()) {
                 continue;
             }
             let cut = measure(lines, separator, sign);
@@ -85,7 +85,9 @@ pub(super) fn find(lines: &[&[u8]], delimiter: Option<u8>, decimal: Option<u8>) 
         }
     }
     best.unwrap_or_else(|| {
-        let separator = delimiter.map_or(Separator::Byte(b','), Separator::of);
+        // One column: a comma in it that marks decimals separates nothing.
+        let idle = if decimal == Some(b',') { b';' } else { b',' };
+        let separator = delimiter.map_or(Separator::Byte(idle), Separator::of);
         let of_sign = |sign| measure(lines, separator, sign);
         match decimal {
             Some(sign) => of_sign(sign),
