@@ -70,11 +70,22 @@ pub enum Arg {
     Key(String),
     /// A sentence within the sentence.
     Note(Box<Note>),
-    /// Several arguments with a text between each two.
+    /// Several arguments with a text between each two; serialised in English.
+    #[serde(serialize_with = "joined")]
     Several(Vec<Arg>, &'static str),
-    /// A number with at most so many decimals, whatever its size.
-    Decimals(f64, usize),
-    /// A number with its own count of significant digits, with or without idle zeros behind the decimal mark.
+    /// A number with so many decimals, whatever its size, with or without idle zeros; serialised as the number.
+    #[serde(serialize_with = "bare")]
+    Decimals {
+        /// The number.
+        value: f64,
+        /// Decimals.
+        digits: usize,
+        /// Whether zeros that fill the decimals are shown.
+        zeros: bool,
+    },
+    /// A number with its own count of significant digits, with or without idle zeros behind the decimal mark;
+    /// serialised as the number.
+    #[serde(serialize_with = "bare")]
     Figures {
         /// The number.
         value: f64,
@@ -102,6 +113,16 @@ impl Arg {
         Arg::Figures { value, digits, zeros: false }
     }
 
+    /// A number with a fixed count of decimals.
+    pub fn fixed(value: f64, digits: usize) -> Arg {
+        Arg::Decimals { value, digits, zeros: true }
+    }
+
+    /// A number with at most so many decimals.
+    pub fn decimals(value: f64, digits: usize) -> Arg {
+        Arg::Decimals { value, digits, zeros: false }
+    }
+
     /// The argument in words, with the decimal mark of the language.
     pub fn say(&self, lang: Lang) -> String {
         match self {
@@ -111,7 +132,10 @@ impl Arg {
             Arg::Figures { value, digits, zeros: false } => {
                 decimal(&trimmed(significant(*value, *digits)), lang)
             }
-            Arg::Decimals(value, count) => decimal(&trimmed(format!("{value:.count$}")), lang),
+            Arg::Decimals { value, digits, zeros: true } => decimal(&format!("{value:.digits$}"), lang),
+            Arg::Decimals { value, digits, zeros: false } => {
+                decimal(&trimmed(format!("{value:.digits$}")), lang)
+            }
             Arg::Count(v) => v.to_string(),
             Arg::Text(t) => t.clone(),
             Arg::Key(k) => Arg::words(k, lang),
@@ -124,6 +148,16 @@ impl Arg {
     pub fn key(prefix: &str, id: &str) -> Arg {
         Arg::Key(format!("{prefix}.{id}"))
     }
+}
+
+/// A number without its presentation.
+fn bare<S: Serializer>(value: &f64, _: &usize, _: &bool, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(*value)
+}
+
+fn joined<S: Serializer>(list: &[Arg], between: &&str, serializer: S) -> Result<S::Ok, S::Error> {
+    let words: Vec<String> = list.iter().map(|a| a.say(Lang::En)).collect();
+    serializer.serialize_str(&words.join(between))
 }
 
 impl From<f64> for Arg {

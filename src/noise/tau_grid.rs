@@ -1,6 +1,6 @@
 //! Which averaging times a σ(τ) curve is computed at.
 
-use crate::text::Note;
+use crate::text::{Arg, Note};
 use std::fmt;
 
 /// The choice of averaging times.
@@ -55,10 +55,10 @@ impl TauGridError {
             TauGridError::Unreadable { text } => Note::new("tau_grid.unreadable").with("text", text.as_str()),
             TauGridError::NotAMultiple { tau_s, tau0_s, below_s, above_s } => {
                 Note::new("tau_grid.no_multiple")
-                    .with("tau", tau_s.to_string())
-                    .with("interval", tau0_s.to_string())
-                    .with("below", below_s.to_string())
-                    .with("above", above_s.to_string())
+                    .with("tau", Arg::Stated(*tau_s))
+                    .with("interval", Arg::Stated(*tau0_s))
+                    .with("below", Arg::Stated(*below_s))
+                    .with("above", Arg::Stated(*above_s))
             }
         }
     }

@@ -21,7 +21,7 @@ use crate::procedure::model::{EarthRate, Taus};
 use crate::record::{FaultRecord, Integrity, Window};
 use crate::recording::window::{WindowSpec, Windowed};
 use crate::recording::{Channel, Role};
-use crate::text::Note;
+use crate::text::{Arg, Note};
 use std::collections::BTreeMap;
 
 /// Everything that was found, before verdicts.
@@ -150,8 +150,8 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
             about(request, "run_error.too_few")
         } else {
             about(request, "run_error.nothing_left")
-                .with("warm_up", procedure.conditions.warm_up_s.to_string())
-                .with("length", format!("{:.6}", report.duration_s))
+                .with("warm_up", Arg::Stated(procedure.conditions.warm_up_s))
+                .with("length", Arg::decimals(report.duration_s, 6))
         }));
     }
     let mut saturated = overview.saturated();

@@ -12,7 +12,7 @@ use crate::noise::windows::edf_of_window_std;
 use crate::procedure::EffectiveLimits;
 use crate::procedure::power::{PowerQuestion, TypicalNoise};
 use crate::record::PowerRecord;
-use crate::text::Note;
+use crate::text::{Arg, Note};
 
 /// The situation a limit is to be decided in.
 #[derive(Debug, Clone, Copy)]
@@ -129,11 +129,11 @@ pub fn warning(question: &PowerQuestion) -> Option<(Note, Option<Note>)> {
         None => "check.power.undecided_at_1_hz",
     };
     let message = Note::new(key)
-        .with("hours", hours.to_string())
+        .with("hours", Arg::Stated(hours))
         .with("limit", format!("{} <= {max} {}", limit.measurand.id, limit.measurand.unit))
-        .with("noise", background.n.to_string())
-        .with("fail", format!("{:.2}", power.fail_probability_at_1_5))
-        .with("pass", format!("{:.2}", power.pass_probability_at_half));
+        .with("noise", Arg::Stated(background.n))
+        .with("fail", Arg::fixed(power.fail_probability_at_1_5, 2))
+        .with("pass", Arg::fixed(power.pass_probability_at_half, 2));
     let help = match power.needed_duration_h {
         Some(h) => Note::new("check.power.needed").with("hours", format!("{h:.0}")),
         None => Note::new("check.power.never"),

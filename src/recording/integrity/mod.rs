@@ -284,7 +284,7 @@ impl ValueChecks {
                 faults.outliers += outliers;
                 for (place, z) in g.outliers.listed(threshold) {
                     log.push("outlier", id, at(place), place.row, 1, || {
-                        Note::new("fault_note.outlier").with("deviations", Arg::Text(format!("{z:.1}")))
+                        Note::new("fault_note.outlier").with("deviations", Arg::fixed(z, 1))
                     });
                 }
                 for rail in g.rails.found(deviation) {
@@ -301,7 +301,7 @@ impl ValueChecks {
                 faults.stuck += stuck.count;
                 if let Some(mean) = stuck.held {
                     log.push("stuck", id, at(channel.first), channel.first.row, facts.count, || {
-                        Note::new("fault_note.held").with("times", Arg::Text(format!("{mean:.1}")))
+                        Note::new("fault_note.held").with("times", Arg::fixed(mean, 1))
                     });
                 }
                 for (place, length) in stuck.listed {

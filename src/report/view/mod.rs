@@ -159,7 +159,7 @@ impl Words {
                 Arg::Text(t) => t.clone(),
                 Arg::Key(k) => Arg::words(k, self.lang),
                 Arg::Note(n) => self.say(n),
-                Arg::Decimals(..) | Arg::Several(..) => arg.say(self.lang),
+                Arg::Decimals { .. } | Arg::Several(..) => arg.say(self.lang),
                 Arg::Figures { value, digits, zeros: true } => {
                     super::number::digits(*value, *digits, self.lang)
                 }

@@ -278,7 +278,7 @@ fn interval(s: f64) -> Note {
 
 /// A number with at most so many decimals, whatever its size.
 fn decimals(value: f64, count: usize) -> Arg {
-    Arg::Decimals(value, count)
+    Arg::decimals(value, count)
 }
 
 fn faults(page: &mut Page, seen: &Seen) {
