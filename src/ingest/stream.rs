@@ -275,6 +275,7 @@ impl State<'_> {
         integrity.outliers = faults.outliers;
         integrity.saturated = faults.saturated;
         integrity.stuck = faults.stuck;
+        integrity.repeated = faults.repeated;
         integrity.outlier_threshold = faults.outlier_threshold;
         integrity.timestamp_jitter_s = if stamped { self.tracker.jitter_s() } else { None };
         integrity.quantization_step_deg_h = values.iter().find_map(|v| v.quantization_step);

@@ -234,6 +234,7 @@ fn faults(page: &mut Page, seen: &Seen) {
         (word("fault.outlier"), i.outliers, "inspect.outliers"),
         (word("fault.saturated"), i.saturated, "inspect.saturated"),
         (word("fault.stuck"), i.stuck, "inspect.stuck"),
+        (word("fault.repeated"), i.repeated, "repeated.inspect"),
     ];
     let gyros = seen.channels.iter().any(|c| c.role.is_gyro());
     if kinds.iter().all(|(_, n, _)| *n == 0) {
@@ -244,7 +245,7 @@ fn faults(page: &mut Page, seen: &Seen) {
     for (label, n, key) in kinds.iter().filter(|(_, n, _)| *n > 0) {
         page.note(label, &Note::new(key).with("n", count(*n)));
     }
-    list(page, seen, &["non_finite", "unparsable", "outlier", "saturated", "stuck"]);
+    list(page, seen, &["non_finite", "unparsable", "outlier", "saturated", "stuck", "repeated"]);
 }
 
 /// The first faults of some kinds, where they are.
