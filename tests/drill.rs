@@ -115,9 +115,16 @@ fn every_corruption_is_caught_by_name_or_changes_nothing() {
                     if only.as_ref().is_some_and(|o| !what.contains(o.as_str())) {
                         continue;
                     }
+                    let begun = std::time::Instant::now();
                     let result = drilled(own.path(), what, SAMPLES[sample]);
+                    if only.is_some() {
+                        println!("{what} on {}: {:.2?}", SAMPLES[sample], begun.elapsed());
+                    }
                     let judged = judge(expected[sample], &sound[sample], &result)
-                        .map(|said| said.replace(&own.path().display().to_string(), "").replace('/', "/"));
+                        .map(|said| said.replace(&format!("{}/", own.path().display()), ""));
+                    if let (Err(why), true) = (&judged, only.is_some()) {
+                        println!("  {what}: {:?}: {why}", expected[sample]);
+                    }
                     outcomes.lock().unwrap().push((case, sample, judged));
                 }
             });

@@ -6,7 +6,7 @@
 //! mistakes are tried; one that brings it within the bound itself explains it, and the test is not valid. A bias that no
 //! mistake explains is a bias: it fails by its limit.
 
-use super::{Condition, Facts, GyroFact, id_of, mistakes, record};
+use super::{Condition, Facts, GyroFact, id_of, mistakes, noise_level, record};
 use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
 use crate::procedure::model::EarthRate as Removal;
 use crate::record::{ConditionRecord, ConditionStatus};
@@ -89,7 +89,11 @@ fn explain(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec<No
     }
     if let Some(spec) = facts.procedure.channel(&gyro.channel) {
         let scaled = mistakes::rate_factors(&spec.unit_in_file);
-        found.extend(scaled.into_iter().filter(|m| near(mean * m.factor, m.factor)).map(|m| m.note));
+        // A factor puts right the noise as well; where it would spoil it, the mean is near by chance.
+        let fits = |m: &mistakes::Mistake| {
+            near(mean * m.factor, m.factor) && !noise_level::is_far(gyro, m.factor, facts)
+        };
+        found.extend(scaled.into_iter().filter(fits).map(|m| m.note));
     }
     found.extend(other_axis(gyro, earth, bound, facts));
     if found.is_empty() && mean.abs() <= bound + 3.0 * u {

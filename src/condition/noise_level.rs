@@ -39,6 +39,15 @@ pub(super) fn white_levels(gyro: &GyroFact) -> Option<(f64, f64)> {
     range.0.is_finite().then_some(range)
 }
 
+/// Whether the noise would be far from that of the family if the values were multiplied by a factor.
+pub(super) fn is_far(gyro: &GyroFact, factor: f64, facts: &Facts<'_>) -> bool {
+    let typical = facts.limits.expected("angle_random_walk").filter(|n| *n > 0.0);
+    typical.zip(white_levels(gyro)).is_some_and(|(typical, (low, high))| {
+        let factor = factor.abs();
+        low * factor > FAR * typical || high * factor * FAR < typical
+    })
+}
+
 fn one(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let (low, high) = white_levels(gyro)?;
     let ratio = if low > FAR * typical {

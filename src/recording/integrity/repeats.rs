@@ -29,6 +29,8 @@ const RECENT: usize = 512;
 const MEASURED: usize = 256;
 /// Times that a run is judged; beyond, the output repeats itself too readily to tell.
 const TRIALS: u32 = 500;
+/// Share beyond which the output repeats itself so regularly that no more of it is looked at.
+const REGULAR: f64 = 0.98;
 /// Runs whose place is kept.
 const KEPT: usize = 100;
 
@@ -220,7 +222,8 @@ impl Repeats {
                     to: position,
                     evidence: window,
                     first_row: earlier_row,
-                    judged_at: FEWEST.max(window),
+                    // A single window may be one of many alike; a second anchor at the same distance is asked for.
+                    judged_at: FEWEST.max(window + 8),
                     by_chance: None,
                 });
             }
@@ -293,6 +296,9 @@ fn share(samples: &[f64]) -> f64 {
         }
         alive.retain(|(i, j)| samples.get(i + k) == samples.get(j + k));
         largest = largest.max(alive.len() as f64 / could as f64);
+        if largest > REGULAR {
+            break;
+        }
     }
     largest.min(1.0)
 }
