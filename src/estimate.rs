@@ -82,6 +82,10 @@ impl Spread {
             Spread::Normal { standard_uncertainty } => {
                 Some(value + normal_quantile(confidence) * standard_uncertainty)
             }
+            // The normal law to a millionth; the inverse of statrs need not come to an end there.
+            Spread::StudentT { standard_uncertainty: u, dof } if *dof > 1e6 || *u == 0.0 => {
+                Some(value + normal_quantile(confidence) * u)
+            }
             Spread::StudentT { standard_uncertainty, dof } => {
                 let t = StudentsT::new(0.0, 1.0, dof.max(1.0)).ok()?;
                 Some(value + t.inverse_cdf(confidence) * standard_uncertainty)
