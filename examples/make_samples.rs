@@ -79,7 +79,7 @@ fn recording(unit: &Unit) -> String {
     let thermometer = NoiseModel { n: 0.01 * unit.tau0_s.sqrt() / 60.0, ..NoiseModel::default() };
     let setup = Setup::for_record(unit.seed + 1000, unit.tau0_s, samples as u64);
     let noise = Simulator::new(&thermometer, &setup).take(samples);
-    let mut out = String::from("time_s,rate_deg_h,temp_degC\n");
+    let mut out = String::from("# serial: SN-0001\ntime_s,rate_deg_h,temp_degC\n");
     for (i, (rate, noise)) in rate.iter().zip(&noise).enumerate() {
         let t = i as f64 * unit.tau0_s;
         let rate = rate + EARTH_DEG_H + unit.bias_deg_h + WARM_UP.0 * (-t / WARM_UP.1).exp();

@@ -76,11 +76,14 @@ pub enum Spread {
 }
 
 impl Spread {
-    /// The value that the quantity stays below with the given confidence.
+    /// The value that the quantity stays below with the given confidence; Student's law is normal beyond 1e6 degrees.
     pub fn bound(&self, value: f64, confidence: f64) -> Option<f64> {
         match self {
             Spread::Normal { standard_uncertainty } => {
                 Some(value + normal_quantile(confidence) * standard_uncertainty)
+            }
+            Spread::StudentT { standard_uncertainty: u, dof } if *dof > 1e6 || *u == 0.0 => {
+                Some(value + normal_quantile(confidence) * u)
             }
             Spread::StudentT { standard_uncertainty, dof } => {
                 let t = StudentsT::new(0.0, 1.0, dof.max(1.0)).ok()?;

@@ -249,6 +249,8 @@ pub struct Integrity {
     pub saturated: u64,
     /// Samples that repeat the one before for longer than chance allows.
     pub stuck: u64,
+    /// Samples in stretches that occurred before, bit for bit.
+    pub repeated: u64,
     /// Rms deviation of the stamps from a uniform clock, s.
     pub timestamp_jitter_s: Option<f64>,
     /// Size of a step of the rate output, deg/h, when the values lie on a lattice.
@@ -262,7 +264,8 @@ pub struct Integrity {
 /// One fault.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FaultRecord {
-    /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`, `unparsable`, `outlier`, `saturated`, `stuck`.
+    /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`,
+    /// `unparsable`, `outlier`, `saturated`, `stuck`, `repeated`, `interpolated`.
     pub kind: String,
     /// Channel, when the fault is of one channel.
     pub channel: Option<String>,

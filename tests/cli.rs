@@ -212,7 +212,7 @@ fn wrong_usages_of_run_are_refused_in_one_message() {
     let said = sagnac(dir.path(), &["run", r, r]);
     assert_eq!(said.code, 2);
     assert!(said.err.starts_with("error: this is not TOML"), "{}", said.err);
-    assert!(said.err.contains("unit-pass.csv:1:7"), "{}", said.err);
+    assert!(said.err.contains("unit-pass.csv:2:7"), "{}", said.err);
     assert_eq!(said.err.matches("error: ").count(), 5, "not one for each of 36 180 lines: {}", said.err);
 }
 

@@ -23,6 +23,8 @@ const LISTED: &[(&str, &[&str])] = &[
             "outlier",
             "saturated",
             "stuck",
+            "repeated",
+            "interpolated",
         ],
     ),
     ("excluded", &["warm_up", "declared", "gap"]),

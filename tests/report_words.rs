@@ -2,11 +2,13 @@
 //! real runs over the samples.
 
 use sagnac::condition::temperature_track::{Extreme, TemperatureFacts};
-use sagnac::condition::{CONDITIONS, Facts, WarmUpFact, judge_all};
+use sagnac::condition::{
+    BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
+};
 use sagnac::measurand::ids::{MEASURANDS, Test};
 use sagnac::noise::model::TERMS;
 use sagnac::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
-use sagnac::procedure::{effective, load, load_limits};
+use sagnac::procedure::{EffectiveLimits, effective, load, load_limits};
 use sagnac::record::{Integrity, RunRecord, UnitUnderTest};
 use sagnac::run::{Request, execute};
 use sagnac::text::{Lang, lookup};
@@ -98,6 +100,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         outliers: strict,
         saturated: strict,
         stuck: strict,
+        repeated: strict,
         timestamp_jitter_s: Some(1e-3),
     };
     procedure.sample_rate_hz = Some(1.0);
@@ -118,6 +121,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         outliers: 1,
         saturated: 1,
         stuck: 1,
+        repeated: 1,
         timestamp_jitter_s: Some(1.0),
         ..Integrity::default()
     };
@@ -142,6 +146,24 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         significance: 50.0,
         bias_uncertainty_deg_h: 0.001,
     }];
+    let limits: EffectiveLimits = effective(
+        &load(&root("procedures/static-bias.toml")).unwrap(),
+        Some(&load_limits(&root("procedures/limits/sample-unit.toml")).unwrap()),
+    );
+    let gyro = GyroFact {
+        channel: "rate".into(),
+        mean_deg_h: -12.4,
+        earth_deg_h: Some((12.47, 1e-4)),
+        tau0_s: 1.0,
+        deviations: vec![(1.0, 1e-6), (2.0, 1e-6)],
+        longest_stretch_s: 36_000.0,
+        angle_random_walk: Some(0.002),
+        quantization_step_deg_h: Some(1.0),
+        bias_step: Some(BiasStep { time_s: 1.0, size_deg_h: 1.0, significance: 20.0 }),
+        noise_change: Some(NoiseChange { ratio: 2.0, loudest_s: 1.0, quietest_s: 2.0 }),
+        ..GyroFact::default()
+    };
+    let columns = [ColumnFact { channel: "rate".into(), name: "rate_deg_s".into(), unit: None }];
     let records = judge_all(&Facts {
         procedure: &procedure,
         integrity: &integrity,
@@ -153,11 +175,17 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         longest_gap_s: 100.0,
         held: &held,
         warm_up: &warm_up,
+        gyros: &[gyro],
+        limits: &limits,
+        columns: &columns,
+        duration_s: 1e9,
+        stated_serial: Some("SN-2"),
+        serial: Some("SN-1"),
         today: chrono::NaiveDate::from_ymd_opt(2100, 1, 1).unwrap(),
     });
     let kinds: BTreeSet<&str> = records.iter().filter_map(|c| c.id.split('.').next()).collect();
-    // One kind a condition, ten more of faults.
-    assert_eq!(kinds.len(), CONDITIONS.len() - 1 + 11, "{kinds:?}");
+    // One kind a condition, eleven more of faults.
+    assert_eq!(kinds.len(), CONDITIONS.len() - 1 + 12, "{kinds:?}");
     let mut keys: BTreeSet<String> = kinds.iter().map(|k| format!("condition.{k}")).collect();
     for c in &records {
         keys.extend(c.observed.keys().map(|name| format!("observed.{name}")));

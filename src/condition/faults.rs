@@ -11,7 +11,7 @@ impl Condition for Faults {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
         let budget = &facts.procedure.conditions.faults;
         let found = facts.integrity;
-        let counted: [(&str, u64, Option<Allowance>); 9] = [
+        let counted: [(&str, u64, Option<Allowance>); 10] = [
             ("gaps", found.gaps, budget.gaps),
             ("missing_samples", found.missing_samples, budget.missing_samples),
             ("duplicate_timestamps", found.duplicate_timestamps, budget.duplicate_timestamps),
@@ -21,6 +21,7 @@ impl Condition for Faults {
             ("outliers", found.outliers, budget.outliers),
             ("saturated", found.saturated, budget.saturated),
             ("stuck", found.stuck, budget.stuck),
+            ("repeated", found.repeated, budget.repeated),
         ];
         let mut records = Vec::new();
         for (id, count, allowance) in counted {

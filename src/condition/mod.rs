@@ -4,17 +4,28 @@
 //! A condition is met only when it is shown to be met, the sensor's uncertainty included. One that is not makes the
 //! whole indeterminate: a test that was not done right neither passes nor fails a unit.
 
+mod clock;
 mod duration;
+mod earth_rate;
 mod faults;
+mod gyro_fact;
 mod held;
 mod instruments;
+mod mistakes;
+mod noise_level;
+mod output;
 mod sample_rate;
+mod steadiness;
 mod supply;
 mod temperature;
 pub mod temperature_track;
+mod unit_named;
+mod units;
 mod warm_up;
 
-use crate::procedure::Procedure;
+pub use gyro_fact::{BiasStep, ColumnFact, GyroFact, NoiseChange};
+
+use crate::procedure::{EffectiveLimits, Procedure};
 use crate::record::{ConditionRecord, ConditionStatus, Integrity};
 use crate::text::{Lang, Note};
 use chrono::NaiveDate;
@@ -45,6 +56,18 @@ pub struct Facts<'a> {
     pub held: &'a BTreeMap<(String, usize), TemperatureFacts>,
     /// Means of consecutive tenths of the first hours of each gyro channel: (channel, residual of the warm-up fit).
     pub warm_up: &'a [WarmUpFact],
+    /// Gyro channels in the evaluated window.
+    pub gyros: &'a [GyroFact],
+    /// Limits and typical values that hold.
+    pub limits: &'a EffectiveLimits,
+    /// Columns that the channels are read from.
+    pub columns: &'a [ColumnFact],
+    /// Length of the recording by its stamps, s.
+    pub duration_s: f64,
+    /// Serial number that the recording states.
+    pub stated_serials: &'a [&'a str],
+    /// Serial number under which the unit is tested.
+    pub serial: Option<&'a str>,
     /// Day of the test.
     pub today: NaiveDate,
 }
@@ -72,11 +95,18 @@ pub trait Condition: Sync {
 
 /// Every condition, in the order of the report.
 pub static CONDITIONS: &[&dyn Condition] = &[
+    &unit_named::UnitNamed,
+    &units::Units,
+    &clock::Clock,
+    &earth_rate::EarthRate,
+    &noise_level::NoiseLevel,
     &temperature::Temperature,
     &supply::Supply,
     &duration::Duration,
     &warm_up::WarmUp,
     &sample_rate::SampleRate,
+    &steadiness::Steadiness,
+    &output::Output,
     &faults::Faults,
     &instruments::Instruments,
 ];
@@ -84,6 +114,11 @@ pub static CONDITIONS: &[&dyn Condition] = &[
 /// Judges every condition.
 pub fn judge_all(facts: &Facts<'_>) -> Vec<ConditionRecord> {
     CONDITIONS.iter().flat_map(|c| c.judge(facts)).collect()
+}
+
+/// The id of a condition on a channel: the channel is named where there are several.
+fn id_of(id: &str, channel: &str, facts: &Facts<'_>) -> String {
+    if facts.gyros.len() > 1 { format!("{id}.{channel}") } else { id.to_owned() }
 }
 
 /// A record with its sentence in both forms.

@@ -72,13 +72,19 @@ const SERIAL_KEYS: &[&str] = &[
     "серийныйномер",
 ];
 
-/// The serial number among metadata.
-pub(super) fn serial(metadata: &[(String, String)]) -> Option<&str> {
+/// The serial numbers among metadata, each once.
+pub(super) fn serials(metadata: &[(String, String)]) -> Vec<&str> {
     let plain = |key: &str| -> String {
         key.chars().filter(|c| c.is_alphanumeric() && *c != '№').flat_map(char::to_lowercase).collect()
     };
-    let stated = metadata.iter().find(|(key, _)| SERIAL_KEYS.contains(&plain(key).as_str()));
-    stated.map(|(_, value)| value.trim().trim_start_matches('№').trim()).filter(|v| !v.is_empty())
+    let mut found: Vec<&str> = Vec::new();
+    for (_, value) in metadata.iter().filter(|(key, _)| SERIAL_KEYS.contains(&plain(key).as_str())) {
+        let value = value.trim().trim_start_matches('№').trim();
+        if !value.is_empty() && !found.contains(&value) {
+            found.push(value);
+        }
+    }
+    found
 }
 
 #[cfg(test)]
@@ -102,10 +108,10 @@ mod tests {
             "Serial No.",
         ] {
             let metadata = [("rate".to_owned(), "10".to_owned()), (key.to_owned(), " SN-0042 ".to_owned())];
-            assert_eq!(serial(&metadata), Some("SN-0042"), "{key}");
+            assert_eq!(serials(&metadata), ["SN-0042"], "{key}");
         }
         for key in ["snow", "number", "прибор", "serialisation"] {
-            assert_eq!(serial(&[(key.to_owned(), "1".to_owned())]), None, "{key}");
+            assert!(serials(&[(key.to_owned(), "1".to_owned())]).is_empty(), "{key}");
         }
     }
 }

@@ -41,9 +41,10 @@ impl Column {
 pub(crate) const DATES: &str = "dates";
 
 impl Source {
-    /// The serial number of the unit, where the file states one under a usual key.
-    pub fn stated_serial(&self) -> Option<&str> {
-        choice::serial(self.metadata())
+    /// The serial numbers of units that the recording states under usual keys: more than one where files of several
+    /// units were put together.
+    pub fn stated_serials(&self) -> Vec<&str> {
+        choice::serials(self.metadata())
     }
 
     /// Position of the column that tells the time, from 0: the first that goes on, else the first that starts again,

@@ -9,6 +9,9 @@ use crate::units::Unit;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+/// Most statements of the files about themselves that are kept.
+const MOST_METADATA: usize = 256;
+
 /// Most files of a recording.
 pub const MOST_FILES: usize = 10_000;
 
@@ -79,7 +82,12 @@ pub(super) fn open(
             notes.push(note.clone());
         }
     }
-    let metadata = parts.first().map(|p| p.source.metadata().to_vec()).unwrap_or_default();
+    let mut metadata: Vec<(String, String)> = Vec::new();
+    for pair in parts.iter().flat_map(|p| p.source.metadata()) {
+        if metadata.len() < MOST_METADATA && !metadata.contains(pair) {
+            metadata.push(pair.clone());
+        }
+    }
     let stated = parts.first().and_then(|p| p.source.stated_sample_rate_hz());
     let described = Opened {
         columns,

@@ -129,6 +129,7 @@ impl State<'_> {
         integrity.outliers = faults.outliers;
         integrity.saturated = faults.saturated;
         integrity.stuck = faults.stuck;
+        integrity.repeated = faults.repeated;
         integrity.outlier_threshold = faults.outlier_threshold;
         integrity.timestamp_jitter_s = self.jitter_s();
         integrity.quantization_step_deg_h = values.iter().find_map(|v| v.quantization_step);

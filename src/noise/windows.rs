@@ -125,15 +125,20 @@ impl WindowMeans {
     }
 }
 
+/// Windows that degrees of freedom are computed for.
+const MOST_WINDOWS: u64 = 1 << 20;
+
 /// Equivalent degrees of freedom of the variance of `n` adjacent window means: 2E\[s²\]²/Var\[s²\] for Gaussian noise
 /// with the given variance of a mean over t, as [`super::model::NoiseModel::mean_variance`] (the unit of t is the caller's; a deterministic ramp has no part in it).
 ///
-/// From traces of the centred covariance matrix, which is Toeplitz: time and memory linear in n. `None` below two
-/// windows, or when V is no variance.
+/// From traces of the centred covariance matrix, which is Toeplitz: time and memory linear in n. More than a million
+/// windows count as a million, which gives too few degrees of freedom rather than too many: stamps in a wrong unit make
+/// records of millions of years. `None` below two windows, or when V is no variance.
 pub fn edf_of_window_std(n: u64, window: f64, variance_of_average: impl Fn(f64) -> f64) -> Option<f64> {
     if n < 2 {
         return None;
     }
+    let n = n.min(MOST_WINDOWS);
     let size = n as usize;
     let count = n as f64;
     // Variance of the angle turned in k windows; its second difference is twice the covariance of window means.
@@ -194,6 +199,9 @@ mod tests {
         assert!(edf(1_000_000, Flicker) > edf(1000, Flicker));
         assert!(edf_of_window_std(1, 1.0, |t| 1.0 / t).is_none());
         assert!(edf_of_window_std(10, 1.0, |_| f64::NAN).is_none());
+        // Stamps in µs taken for seconds: more windows than any memory holds.
+        let white = edf_of_window_std(1 << 60, 1.0, |t| 1.0 / t).unwrap();
+        assert!((white / f64::from(1 << 20) - 1.0).abs() < 1e-3, "{white}");
     }
 
     #[test]

@@ -187,6 +187,7 @@ pub struct FaultBudget {
     pub outliers: Option<Allowance>,
     pub saturated: Option<Allowance>,
     pub stuck: Option<Allowance>,
+    pub repeated: Option<Allowance>,
     /// Rms deviation of the stamps from a uniform clock, s.
     pub timestamp_jitter_s: Option<f64>,
 }

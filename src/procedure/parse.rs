@@ -157,6 +157,7 @@ fn faults(section: &Section) -> FaultBudget {
         outliers: section.allowance("outliers"),
         saturated: section.allowance("saturated"),
         stuck: section.allowance("stuck"),
+        repeated: section.allowance("repeated"),
         timestamp_jitter_s: section.number("timestamp_jitter"),
     }
 }

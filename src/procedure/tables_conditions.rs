@@ -117,6 +117,12 @@ static FAULTS: TableSpec = TableSpec {
             "Samples that repeat the one before for longer than chance allows.",
         ),
         optional(
+            "repeated",
+            Kind::Allowance,
+            "0",
+            "Samples in stretches that occurred before, bit for bit, beyond chance.",
+        ),
+        optional(
             "timestamp_jitter",
             quantity("s", Range::POSITIVE),
             "\"1 ms\"",

@@ -136,6 +136,15 @@ pub fn stem(name: &str) -> Vec<String> {
     words
 }
 
+/// The unit that the format of a file declares for a column, or else the one that its name spells, whatever it measures.
+pub fn named_unit(name: &str, declared_unit: Option<&str>) -> Option<Unit> {
+    let (stem, bracketed) = split_brackets(name);
+    declared_unit
+        .and_then(parse)
+        .or_else(|| bracketed.as_deref().and_then(parse))
+        .or_else(|| unit_at_end(&words(&stem)).map(|(unit, _)| unit))
+}
+
 fn parse(text: &str) -> Option<Unit> {
     Unit::parse(text).ok()
 }

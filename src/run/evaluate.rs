@@ -1,7 +1,10 @@
 //! From a recording to the outcome.
 
 use super::pass::{Collected, HeldKey, Inside, Overview};
-use super::{Outcome, Request, RunError, figures, power, settle, sigma_tau, verdict, warm_up};
+use super::{
+    Outcome, Request, RunError, figures, gyro_facts, power, settle, sigma_tau, verdict,
+    warm_up,
+};
 use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::figure::Figure;
@@ -55,6 +58,8 @@ pub(super) fn execute(
         .filter(|s| s.reason == "gap")
         .map(|s| s.to_s - s.from_s)
         .fold(0.0, f64::max);
+    let gyros = if request.kind == "run" { gyro_facts::gyros(&found) } else { vec![] };
+    let stated_serials = request.source.stated_serials();
     let conditions = judge_all(&Facts {
         procedure,
         integrity: &found.report.integrity,
@@ -66,6 +71,12 @@ pub(super) fn execute(
         longest_gap_s,
         held: &found.held,
         warm_up: if request.kind == "run" { &warm_up } else { &[] },
+        gyros: &gyros,
+        limits: request.limits,
+        columns: &gyro_facts::columns(request.source, &found),
+        duration_s: found.report.duration_s,
+        stated_serials: if request.kind == "run" { &stated_serials } else { &[] },
+        serial: request.unit.serial.as_deref(),
         today: request.now.date_naive(),
     });
     let rows = measure(request, &found);

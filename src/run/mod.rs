@@ -5,11 +5,13 @@
 pub mod analysis;
 mod evaluate;
 pub mod figures;
+mod gyro_facts;
 pub mod inspect;
 mod pass;
 pub mod power;
 mod settle;
 mod sigma_tau;
+mod steadiness;
 mod verdict;
 mod warm_up;
 

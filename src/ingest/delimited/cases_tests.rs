@@ -146,9 +146,9 @@ fn metadata_are_kept_as_written() {
     let (source, ..) = read(content.as_bytes(), TextOptions::default()).unwrap();
     let expected = [("Serial", "SN-0042"), ("rate", "10 Hz"), ("title", "a remark")];
     assert_eq!(source.metadata(), expected.map(|(k, v)| (k.to_owned(), v.to_owned())));
-    assert_eq!(source.stated_serial(), Some("SN-0042"));
+    assert_eq!(source.stated_serials(), ["SN-0042"]);
     let (source, ..) = read("Зав. №;0042\nt;r\n0;1,5\n1;2,5\n".as_bytes(), TextOptions::default()).unwrap();
-    assert_eq!(source.stated_serial(), Some("0042"));
+    assert_eq!(source.stated_serials(), ["0042"]);
     let many: String = (0..100).map(|i| format!("# key{i}: {}\n", "v".repeat(1000))).collect();
     let (source, ..) = read(format!("{many}t,r\n0,1\n1,2\n").as_bytes(), TextOptions::default()).unwrap();
     assert_eq!((source.metadata().len(), source.metadata()[0].1.len()), (64, 200));

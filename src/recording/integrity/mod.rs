@@ -1,20 +1,25 @@
 //! Checks of the values of a recording, in one pass and bounded memory. Faults are counted and located; nothing is
 //! removed or repaired.
 //!
-//! Gyro channels: outliers, values at a rail, stuck values, the lattice the values lie on. Other channels: only whether
+//! Gyro channels: outliers, values at a rail, stuck values, stretches that occur twice, interpolation,
+//! the lattice the values lie on. Other channels: only whether
 //! the value ever changes, since a slow sensor repeats its values for long with good reason.
 
+mod interpolated;
 mod lattice;
 mod outliers;
 mod rails;
+mod repeats;
 mod stuck;
 
 use super::faults::FaultLog;
 use super::{Channel, Sink, Slab};
 use crate::text::{Arg, Note};
+use interpolated::Lines;
 use lattice::Lattice;
 use outliers::Outliers;
 use rails::Rails;
+use repeats::Repeats;
 use stuck::Runs;
 
 /// Samples looked at at once.
@@ -22,6 +27,9 @@ const CHUNK: usize = 1024;
 
 /// Samples after which a channel that never changed is remarked on.
 const CONSTANT_AFTER: u64 = 1000;
+
+/// Largest step of the lattice, in standard deviations, at which straight lines between samples can be told.
+const FINE: f64 = 1e-2;
 
 /// What the values of a channel are like.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +57,8 @@ pub struct ValueFaults {
     pub saturated: u64,
     /// Samples that repeat the one before for longer than chance allows.
     pub stuck: u64,
+    /// Samples in stretches that occurred before, bit for bit.
+    pub repeated: u64,
     /// Threshold of the outlier test in robust standard deviations; `None` without a gyro channel.
     pub outlier_threshold: Option<f64>,
 }
@@ -108,6 +118,8 @@ struct GyroChecks {
     runs: Runs,
     rails: Rails,
     lattice: Lattice,
+    repeats: Repeats,
+    lines: Lines,
 }
 
 #[derive(Debug, Clone)]
@@ -170,6 +182,8 @@ impl ChannelChecks {
             g.runs.take(values, place, interval_s);
             g.rails.take(values, s.min, s.max, place, interval_s);
             g.lattice.take(values);
+            g.repeats.take(values, place);
+            g.lines.take(values);
         }
         self.count += values.len() as u64;
         self.min = self.min.min(s.min);
@@ -261,6 +275,8 @@ impl ValueChecks {
                     runs: Runs::default(),
                     rails: Rails::default(),
                     lattice: Lattice::default(),
+                    repeats: Repeats::new(interval_s),
+                    lines: Lines::default(),
                 }),
                 first: Place { row: 0, time_s: f64::NAN },
             })
@@ -304,11 +320,28 @@ impl ValueChecks {
                         Note::new("fault_note.held").with("times", Arg::fixed(mean, 1))
                     });
                 }
-                for (place, length) in stuck.listed {
+                for &(place, length) in &stuck.listed {
                     log.push("stuck", id, at(place), place.row, length, || {
                         Note::new("fault_note.stuck")
                             .with("length", length)
                             .with("longest_by_chance", stuck.longest_by_chance)
+                    });
+                }
+                let (repeated, list) = g.repeats.finish();
+                faults.repeated += repeated;
+                for repeat in list {
+                    log.push("repeated", id, at(repeat.place), repeat.place.row, repeat.length, || {
+                        Note::new("repeated.fault")
+                            .with("length", repeat.length)
+                            .with("first_row", repeat.first_row)
+                            .with("by_chance", repeat.by_chance)
+                    });
+                }
+                let coarse = facts.quantization_step.is_some_and(|q| q > FINE * deviation);
+                if let Some(share) = g.lines.finish().filter(|_| !coarse && stuck.held.is_none()) {
+                    log.push("interpolated", id, at(channel.first), channel.first.row, facts.count, || {
+                        Note::new("interpolated.fault")
+                            .with("percent", Arg::Text(format!("{:.0}", share * 100.0)))
                     });
                 }
             } else if constant && facts.count > CONSTANT_AFTER {

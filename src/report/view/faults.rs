@@ -60,7 +60,7 @@ pub struct Fault {
 }
 
 /// Counted faults: id and count.
-fn counts(i: &Integrity) -> [(&'static str, u64); 9] {
+fn counts(i: &Integrity) -> [(&'static str, u64); 10] {
     [
         ("gaps", i.gaps),
         ("missing_samples", i.missing_samples),
@@ -71,6 +71,7 @@ fn counts(i: &Integrity) -> [(&'static str, u64); 9] {
         ("outliers", i.outliers),
         ("saturated", i.saturated),
         ("stuck", i.stuck),
+        ("repeated", i.repeated),
     ]
 }
 

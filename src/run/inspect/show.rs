@@ -52,7 +52,7 @@ fn file(page: &mut Page, source: &Source, seen: &Seen) {
         let label = if i == 0 { word("inspect.stated.label") } else { SAME.into() };
         page.row(label, format!("{key}: {value}"));
     }
-    if let Some(serial) = source.stated_serial() {
+    for serial in source.stated_serials() {
         page.row(SAME, Note::new("inspect.stated.serial").with("serial", serial));
     }
 }
@@ -290,6 +290,7 @@ fn faults(page: &mut Page, seen: &Seen) {
         (word("fault.outlier"), i.outliers, "inspect.outliers"),
         (word("fault.saturated"), i.saturated, "inspect.saturated"),
         (word("fault.stuck"), i.stuck, "inspect.stuck"),
+        (word("fault.repeated"), i.repeated, "repeated.inspect"),
     ];
     let gyros = seen.channels.iter().any(|c| c.role.is_gyro());
     if kinds.iter().all(|(_, n, _)| *n == 0) {
@@ -300,7 +301,7 @@ fn faults(page: &mut Page, seen: &Seen) {
     for (label, n, key) in kinds.iter().filter(|(_, n, _)| *n > 0) {
         page.row(label.clone(), Note::new(key).with("n", count(*n)));
     }
-    list(page, seen, &["non_finite", "unparsable", "outlier", "saturated", "stuck"]);
+    list(page, seen, &["non_finite", "unparsable", "outlier", "saturated", "stuck", "repeated"]);
 }
 
 /// The first faults of some kinds, where they are.

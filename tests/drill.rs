@@ -1,0 +1,167 @@
+//! The bad-data drill: every sample corrupted in every way of the list. Each corruption is caught by a diagnostic that
+//! names it, or changes neither the verdict nor, within their intervals, the values. What catches what was written by
+//! hand. `SAGNAC_WRITE_DRILL=1 cargo test --release --test drill` writes the table to docs/drill.md.
+
+mod drill_support;
+
+use drill_support::corruptions::corrupt;
+use drill_support::expected::{CASES, Expect};
+use drill_support::{SAMPLES, run};
+use sagnac::record::{ConditionStatus, RunRecord};
+use std::fmt::Write;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+type Result = std::result::Result<RunRecord, String>;
+
+/// What is different from the run of the sound sample, beyond what the intervals allow.
+fn difference(sound: &RunRecord, spoilt: &RunRecord) -> Option<String> {
+    if sound.verdict != spoilt.verdict {
+        return Some(format!("the verdict is {:?} and was {:?}", spoilt.verdict, sound.verdict));
+    }
+    if sound.measurands.len() != spoilt.measurands.len() {
+        return Some("another number of rows".into());
+    }
+    for (a, b) in sound.measurands.iter().zip(&spoilt.measurands) {
+        if (&a.id, a.verdict) != (&b.id, b.verdict) {
+            return Some(format!("{}: {:?} and was {:?}", b.id, b.verdict, a.verdict));
+        }
+        if let (Some(value), Some(interval)) = (b.value, &a.interval)
+            && !(interval.low <= value && value <= interval.high)
+        {
+            return Some(format!("{}: {value} is outside {} to {}", b.id, interval.low, interval.high));
+        }
+    }
+    None
+}
+
+/// The sentence that catches, or what is missing.
+fn judge(expect: Expect, sound: &RunRecord, result: &Result) -> std::result::Result<String, String> {
+    let condition = |id: &str, fragment: &str, invalid: bool| -> std::result::Result<String, String> {
+        let record = result.as_ref().map_err(|e| format!("refused: {e}"))?;
+        let kind = |c: &str| c.split('.').next() == Some(id);
+        let wanted =
+            |s: ConditionStatus| s == ConditionStatus::Invalid || !invalid && s == ConditionStatus::Remark;
+        let caught =
+            record.conditions.iter().find(|c| kind(&c.id) && wanted(c.status) && c.note.contains(fragment));
+        if invalid && record.verdict.id() != "indeterminate" {
+            return Err(format!("the verdict is {}", record.verdict.id()));
+        }
+        let other = || record.conditions.iter().filter(|c| c.status != ConditionStatus::Ok);
+        caught.map(|c| format!("{}: {}", c.id, c.note)).ok_or_else(|| {
+            other().map(|c| format!("\n    {:?} {}: {}", c.status, c.id, c.note)).collect::<String>()
+        })
+    };
+    match expect {
+        Expect::Same => match result {
+            Ok(record) => difference(sound, record).map_or_else(|| Ok("unchanged".into()), Err),
+            Err(e) => Err(format!("refused: {e}")),
+        },
+        Expect::Condition(id, fragment) => condition(id, fragment, false),
+        Expect::Invalid(id, fragment) => condition(id, fragment, true),
+        Expect::Fault(kind, fragment) => {
+            let record = result.as_ref().map_err(|e| format!("refused: {e}"))?;
+            let faults = || record.integrity.faults.iter();
+            let caught = faults().find(|f| f.kind == kind && f.note.contains(fragment));
+            let seen =
+                || faults().take(5).map(|f| format!("\n    {}: {}", f.kind, f.note)).collect::<String>();
+            caught.map(|f| format!("{}, row {}: {}", f.kind, f.row, f.note)).ok_or_else(seen)
+        }
+        Expect::Refused(fragment) => match result {
+            Err(e) if e.contains(fragment) => Ok(format!("refused: {e}")),
+            Err(e) => Err(format!("refused: {e}")),
+            Ok(record) => Err(format!("read; the verdict is {:?}", record.verdict)),
+        },
+        Expect::RefusedOrSame(fragment) => match result {
+            Err(_) => judge(Expect::Refused(fragment), sound, result),
+            Ok(_) => judge(Expect::Same, sound, result),
+        },
+    }
+}
+
+fn drilled(folder: &Path, what: &str, sample: &str) -> Result {
+    let path = folder.join(if what == "gzip" { "recording.csv.gz" } else { "recording.csv" });
+    std::fs::write(&path, corrupt(what, sample)).unwrap();
+    let by_position = what.ends_with("column_by_position");
+    run::run(folder, &path, |text| {
+        assert!(text.contains("column = \"rate_deg_h\""));
+        if by_position { text.replace("column = \"rate_deg_h\"", "column = 2") } else { text }
+    })
+}
+
+#[test]
+fn every_corruption_is_caught_by_name_or_changes_nothing() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let dir = tempfile::tempdir().unwrap();
+    let sound: Vec<RunRecord> = SAMPLES
+        .iter()
+        .map(|s| run::run(dir.path(), &root.join(format!("samples/unit-{s}.csv")), |t| t).unwrap())
+        .collect();
+    let verdicts: Vec<&str> = sound.iter().map(|r| r.verdict.id()).collect();
+    assert_eq!(verdicts, ["pass", "fail", "indeterminate", "indeterminate"]);
+    assert!(CASES.len() >= 30);
+    let only = std::env::var("SAGNAC_DRILL").ok();
+    let next = AtomicUsize::new(0);
+    let outcomes = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                let own = tempfile::tempdir().unwrap();
+                loop {
+                    let task = next.fetch_add(1, Ordering::Relaxed);
+                    let (case, sample) = (task / SAMPLES.len(), task % SAMPLES.len());
+                    let Some((what, expected)) = CASES.get(case) else { break };
+                    if only.as_ref().is_some_and(|o| !what.contains(o.as_str())) {
+                        continue;
+                    }
+                    let begun = std::time::Instant::now();
+                    let result = drilled(own.path(), what, SAMPLES[sample]);
+                    if only.is_some() {
+                        println!("{what} on {}: {:.2?}", SAMPLES[sample], begun.elapsed());
+                    }
+                    let judged = judge(expected[sample], &sound[sample], &result)
+                        .map(|said| said.replace(&format!("{}/", own.path().display()), ""));
+                    if let (Err(why), true) = (&judged, only.is_some()) {
+                        println!("  {what}: {:?}: {why}", expected[sample]);
+                    }
+                    outcomes.lock().unwrap().push((case, sample, judged));
+                }
+            });
+        }
+    });
+    let mut outcomes = outcomes.into_inner().unwrap();
+    outcomes.sort_by_key(|(case, sample, _)| (*case, *sample));
+    let missed: Vec<String> = outcomes
+        .iter()
+        .filter_map(|(case, sample, judged)| {
+            let (what, expected) = CASES[*case];
+            let why = judged.as_ref().err()?;
+            Some(format!("{what} on {}: expected {:?}, found {why}", SAMPLES[*sample], expected[*sample]))
+        })
+        .collect();
+    assert!(missed.is_empty(), "{} missed:\n{}", missed.len(), missed.join("\n"));
+    if std::env::var_os("SAGNAC_WRITE_DRILL").is_some() {
+        let said = outcomes.into_iter().map(|(_, _, judged)| judged.unwrap_or_default()).collect::<Vec<_>>();
+        std::fs::write(root.join("docs/drill.md"), table(&said)).unwrap();
+    }
+}
+
+/// The table of the document.
+fn table(said: &[String]) -> String {
+    let caught = said.iter().filter(|s| *s != "unchanged").count();
+    let mut out = format!(
+        "# Bad-data drill\n\nWritten by `SAGNAC_WRITE_DRILL=1 cargo test --release --test drill`. {} corruptions of {} samples: {caught} \
+         caught by name, {} that change neither a verdict nor, within its interval, a value.\n\n| corruption | {} |\n|---|{}\n",
+        CASES.len(),
+        SAMPLES.len(),
+        said.len() - caught,
+        SAMPLES.join(" | "),
+        "---|".repeat(SAMPLES.len())
+    );
+    for ((what, _), cells) in CASES.iter().zip(said.chunks(SAMPLES.len())) {
+        let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|").replace('\n', " ")).collect();
+        let _ = writeln!(out, "| {} | {} |", what.replace('_', " "), cells.join(" | "));
+    }
+    out
+}
