@@ -27,6 +27,8 @@ pub enum IngestErrorKind {
     TimeBase,
     /// A channel's unit does not fit its role.
     Unit,
+    /// The layout of a raw binary file is missing, broken, or does not fit it.
+    Layout,
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -17,6 +17,7 @@ mod numpy;
 mod options;
 mod parquet;
 mod plan;
+pub mod raw;
 mod reduce;
 mod stream;
 
@@ -204,8 +205,10 @@ pub trait Format: Sync {
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError>;
 }
 
-/// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
-pub static FORMATS: &[&dyn Format] = &[&parquet::Parquet, &numpy::Npy, &numpy::Npz, &matlab::Mat, &csv::DelimitedText];
+/// Every format, the most particular first: raw records only where a layout is given, text last, because it takes
+/// whatever looks like lines.
+pub static FORMATS: &[&dyn Format] =
+    &[&raw::Raw, &parquet::Parquet, &numpy::Npy, &numpy::Npz, &matlab::Mat, &csv::DelimitedText];
 
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
 const NOT_READ: &[(&[u8], &str, &str)] = &[
@@ -309,7 +312,11 @@ fn found(candidate: &Candidate) -> Result<&'static dyn Format, IngestError> {
             let what = Arg::Key((*what).to_owned());
             Err(unknown(Note::new("ingest.not_read").with("what", what)).hint(*hint))
         }
-        _ => Err(unknown("ingest.unknown".into()).hint("ingest.hint.give_known")),
+        _ => {
+            let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();
+            let hint = Note::new("ingest.formats.give").with("ids", ids.join(", "));
+            Err(unknown("ingest.formats.unknown".into()).hint(hint))
+        }
     }
 }
 

@@ -100,7 +100,8 @@ impl Tape {
 
     /// Goes on to a byte of the stream.
     pub fn go_to(&mut self, at: u64) -> io::Result<()> {
-        let ahead = at.checked_sub(self.at).ok_or_else(|| damaged("an element is longer than what holds it"))?;
+        let ahead =
+            at.checked_sub(self.at).ok_or_else(|| damaged("an element is longer than what holds it"))?;
         if !self.bytes.skip(ahead)? {
             return Err(ErrorKind::UnexpectedEof.into());
         }

@@ -40,12 +40,8 @@ pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<F
                 .hint("ingest.hint.give_recording"));
         }
         let fail = |e: io::Error| stream_error(&file.path, &format!("@{next}"), &e);
-        let raw = Stream {
-            name: format!("@{next}"),
-            from: next,
-            length: at.size - next,
-            coding: Coding::Stored,
-        };
+        let raw =
+            Stream { name: format!("@{next}"), from: next, length: at.size - next, coding: Coding::Stored };
         let mut tape = Tape::new(raw.open(at), order);
         let tag = tape.tag().map_err(fail)?;
         if tag.bytes > at.size.saturating_sub(next.saturating_add(tag.at)) {
@@ -57,8 +53,7 @@ pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<F
         let stream = found.streams.len();
         match tag.kind {
             COMPRESSED => {
-                let packed =
-                    Stream { from: next + tag.at, length: tag.bytes, coding: Coding::Zlib, ..raw };
+                let packed = Stream { from: next + tag.at, length: tag.bytes, coding: Coding::Zlib, ..raw };
                 let mut inner = Tape::new(packed.open(at), order);
                 let tag = inner.tag().map_err(fail)?;
                 if tag.kind == MATRIX {
@@ -80,7 +75,9 @@ pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<F
 /// The stream under the name of the variable that is in it.
 fn named(stream: Stream, found: &Found, index: usize) -> Stream {
     match found.numbers.iter().find(|n| n.stream == index) {
-        Some(numbers) => Stream { name: numbers.owner.clone().unwrap_or_else(|| numbers.name.clone()), ..stream },
+        Some(numbers) => {
+            Stream { name: numbers.owner.clone().unwrap_or_else(|| numbers.name.clone()), ..stream }
+        }
         None => stream,
     }
 }
@@ -90,7 +87,8 @@ fn named(stream: Stream, found: &Found, index: usize) -> Stream {
 fn matrix(tape: &mut Tape, found: &mut Found, stream: usize, owner: Option<(&str, &str)>) -> io::Result<()> {
     let order = tape.order;
     let flags = tape.tag()?;
-    let flags = *wholes(&tape.data(&flags)?, order).first().ok_or_else(|| damaged("an array has no flags"))?;
+    let flags =
+        *wholes(&tape.data(&flags)?, order).first().ok_or_else(|| damaged("an array has no flags"))?;
     let class = flags & 0xff;
     if class == 17 {
         return opaque(tape, found, owner);
