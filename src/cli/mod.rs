@@ -69,7 +69,7 @@ enum Verb {
 struct RunArgs {
     /// Procedure (TOML)
     procedure: PathBuf,
-    /// Recording: CSV (plain, .gz, .zst) or Parquet
+    /// Recording: CSV, Parquet, NumPy, MATLAB; text and raw records also packed (.gz, .zst)
     recording: PathBuf,
     /// Limits file; replaces limits of the procedure for the same measurand
     #[arg(long, value_name = "FILE")]
@@ -113,7 +113,7 @@ struct CheckArgs {
 
 #[derive(Debug, Args)]
 struct InspectArgs {
-    /// Recording: CSV (plain, .gz, .zst) or Parquet
+    /// Recording: CSV, Parquet, NumPy, MATLAB; text and raw records also packed (.gz, .zst)
     recording: PathBuf,
     /// Sample rate, where the recording has no time column
     #[arg(long, value_name = "HZ")]
@@ -122,7 +122,7 @@ struct InspectArgs {
 
 #[derive(Debug, Args)]
 struct AnalyzeArgs {
-    /// Recording: CSV (plain, .gz, .zst) or Parquet
+    /// Recording: CSV, Parquet, NumPy, MATLAB; text and raw records also packed (.gz, .zst)
     recording: PathBuf,
     /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]
@@ -155,6 +155,8 @@ enum SchemaKind {
     Procedure,
     /// A limits file
     Limits,
+    /// A layout of raw binary records
+    Layout,
     /// result.json
     Result,
 }

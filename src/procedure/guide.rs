@@ -4,6 +4,7 @@ use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use crate::ids::MEASURANDS;
+use crate::ingest::raw::tables::LAYOUT_FILE;
 use std::fmt::Write;
 
 /// Every key of a procedure file, as Markdown.
@@ -14,6 +15,11 @@ pub fn procedure_reference() -> String {
 /// Every key of a limits file, as Markdown.
 pub fn limits_reference() -> String {
     reference(&LIMITS_FILE)
+}
+
+/// Every key of a layout of raw binary records, as Markdown.
+pub fn layout_reference() -> String {
+    reference(&LAYOUT_FILE)
 }
 
 /// Every measurand that may be asked for, as Markdown.

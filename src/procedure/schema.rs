@@ -6,6 +6,7 @@ use super::spec::{KeySpec, Kind, Need, Range, TableSpec, Word};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use crate::ids::MEASURANDS;
+use crate::ingest::raw::tables::LAYOUT_FILE;
 use serde_json::{Map, Value, json};
 
 /// Pattern of a number with its unit.
@@ -19,6 +20,11 @@ pub fn procedure() -> Value {
 /// The schema of a limits file.
 pub fn limits() -> Value {
     document(&LIMITS_FILE, "Sagnac limits")
+}
+
+/// The schema of a layout of raw binary records.
+pub fn layout() -> Value {
+    document(&LAYOUT_FILE, "Sagnac layout")
 }
 
 fn document(root: &'static TableSpec, title: &str) -> Value {
