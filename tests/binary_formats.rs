@@ -102,7 +102,11 @@ fn arrays_of_every_shape_and_order_give_their_values() {
     let named = ["time_s", "rate_deg_h", "temp_degC"];
     for name in ["structured.npy", "big_endian.npy", "stored.npz", "v4.mat", "v5.mat", "v7.mat"] {
         let read = sound(name);
-        assert_eq!((read.names, read.columns), (named.map(str::to_owned).to_vec(), columns(&[time_s, rate, temperature])), "{name}");
+        assert_eq!(
+            (read.names, read.columns),
+            (named.map(str::to_owned).to_vec(), columns(&[time_s, rate, temperature])),
+            "{name}"
+        );
         assert!(read.faults.is_empty());
     }
     for name in ["rows.npy", "fortran.npy"] {
@@ -114,7 +118,10 @@ fn arrays_of_every_shape_and_order_give_their_values() {
     assert!(notes(&flat.source).contains("2 × 250 values: taken for 2 columns of 250 rows"));
     assert_eq!(sound("vector.npy").columns, columns(&[rate]));
     let cyrillic = sound("version3.npy");
-    assert_eq!((cyrillic.names, cyrillic.columns), (vec!["время".into(), "скорость".into()], columns(&[time_s, rate])));
+    assert_eq!(
+        (cyrillic.names, cyrillic.columns),
+        (vec!["время".into(), "скорость".into()], columns(&[time_s, rate]))
+    );
     let types = sound("types.npy");
     assert_eq!(types.names.len(), 12);
     for (name, column) in types.names.iter().zip(&types.columns) {
@@ -144,7 +151,11 @@ fn containers_say_what_they_hold_and_what_is_left_out() {
     assert_eq!(read.names, ["time_s", "rate_deg_h", "temp_degC", "xy[0]", "xy[1]"]);
     assert_eq!(read.columns[3..], columns(&[time_s, rate]));
     assert_eq!(read.source.stated_sample_rate_hz(), Some(200.0));
-    assert!(read.source.metadata().contains(&("serial".into(), "SN-7".into())), "{:?}", read.source.metadata());
+    assert!(
+        read.source.metadata().contains(&("serial".into(), "SN-7".into())),
+        "{:?}",
+        read.source.metadata()
+    );
     let said = notes(&read.source);
     assert!(said.contains("`short` is left out: it has 5 rows, the recording 250"), "{said}");
     assert!(said.contains("`obj.npy` is left out: the array holds Python objects"), "{said}");
@@ -153,7 +164,12 @@ fn containers_say_what_they_hold_and_what_is_left_out() {
     assert_eq!(read.source.stated_sample_rate_hz(), Some(200.0));
     assert!(read.source.metadata().contains(&("serial".into(), "SN-7".into())));
     let said = notes(&read.source);
-    for left in ["`z` is left out: its numbers are complex", "`sp` is left out: it is a sparse", "`c` is left out: it is a cell", "`short` is left out: it has 5"] {
+    for left in [
+        "`z` is left out: its numbers are complex",
+        "`sp` is left out: it is a sparse",
+        "`c` is left out: it is a cell",
+        "`short` is left out: it has 5",
+    ] {
         assert!(said.contains(left), "{said}");
     }
     let read = sound("struct.mat");
@@ -171,7 +187,10 @@ fn containers_say_what_they_hold_and_what_is_left_out() {
     assert_eq!(read_names("matrix.mat", &part("m")), ["m(:,1)", "m(:,2)"]);
     let error = read_error(&fixture("v7.mat"), &part("rote"));
     assert_eq!(error.kind(), IngestErrorKind::Column);
-    assert!(error.to_string().contains("there is no array `rote`; the file has: time_s, rate_deg_h"), "{error}");
+    assert!(
+        error.to_string().contains("there is no array `rote`; the file has: time_s, rate_deg_h"),
+        "{error}"
+    );
 }
 
 fn read_names(name: &str, options: &ReadOptions) -> Vec<String> {
@@ -322,7 +341,7 @@ fn a_layout_that_does_not_fit_is_refused() {
         ("EB 90", "EB 91", "the layout does not fit: of the first 250 records 0 are sound"),
         ("\"crc32\"", "\"crc16-ccitt\"", "0 are sound"),
         ("header_bytes = 16", "header_bytes = 9000", "less than the header and one record"),
-        ("\"i16\"", "\"int16\"", "layout.toml:28:9: `int16` is not a value of `type`"),
+        ("\"i16\"", "\"int16\"", "layout.toml:27:9: `int16` is not a value of `type`"),
     ] {
         let options = with_layout(dir.path(), &IMU.replace(change, to));
         let error = read_error(&path, &options).to_string();
@@ -343,10 +362,11 @@ fn one_record_gives_the_same_curve_from_every_format() {
     let vector = |f: fn(usize) -> f64| (0..250).map(f).collect::<Vec<f64>>();
     let all = [("time_s", vector(time_s)), ("rate_deg_h", vector(rate)), ("temp_degC", vector(temperature))];
     std::fs::write(dir.path().join("big.mat"), big_endian_mat(&all)).unwrap();
-    let mut files: Vec<PathBuf> = ["structured.npy", "stored.npz", "packed.npz", "v4.mat", "v5.mat", "v7.mat"]
-        .iter()
-        .map(|name| fixture(name))
-        .collect();
+    let mut files: Vec<PathBuf> =
+        ["structured.npy", "stored.npz", "packed.npz", "v4.mat", "v5.mat", "v7.mat"]
+            .iter()
+            .map(|name| fixture(name))
+            .collect();
     files.push(dir.path().join("big.mat"));
     let curve = |path: &Path| {
         let out = dir.path().join("out").join(path.file_name().unwrap());
@@ -405,7 +425,8 @@ fn files_with_changed_bytes_are_refused_or_read_without_harm() {
                 1 => whole.len() - 1 - random.random_range(0..whole.len().min(300)),
                 _ => random.random_range(0..whole.len()),
             };
-            broken[at] = if k % 3 == 0 { random.random() } else { broken[at] ^ (1 << random.random_range(0..8)) };
+            broken[at] =
+                if k % 3 == 0 { random.random() } else { broken[at] ^ (1 << random.random_range(0..8)) };
             std::fs::write(&path, &broken).unwrap();
             match read(&path, &ReadOptions::default()) {
                 Err(error) => assert!(error.to_string().contains(name), "{name} byte {at}: {error}"),
