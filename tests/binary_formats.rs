@@ -1,19 +1,16 @@
 //! NumPy, MATLAB and raw recordings: the right values from files that other tools wrote, and a diagnostic or the right
 //! values from damaged ones.
 
+mod binary_support;
 mod support;
 
+use binary_support::*;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sagnac::ingest::{FieldFault, IngestError, IngestErrorKind, ReadOptions, Source, open_with};
-use std::ops::ControlFlow;
+use sagnac::ingest::{IngestErrorKind, ReadOptions};
 use std::path::{Path, PathBuf};
-use support::{sagnac, shipped};
+use support::sagnac;
 use tempfile::tempdir;
-
-fn fixture(name: &str) -> PathBuf {
-    PathBuf::from(shipped(&format!("tests/fixtures/binary/{name}")))
-}
 
 const ALL: &[&str] = &[
     "structured.npy",
@@ -36,65 +33,8 @@ const ALL: &[&str] = &[
     "nothing.mat",
 ];
 
-fn time_s(i: usize) -> f64 {
-    // The decimal that was written, not the product.
-    format!("{:.3}", i as f64 * 0.005).parse().unwrap()
-}
-
-fn rate(i: usize) -> f64 {
-    format!("{:.2}", (((i * 7919) % 1000) as f64 - 500.0) / 100.0).parse().unwrap()
-}
-
-fn temperature(i: usize) -> f64 {
-    20.0 + (i % 7) as f64 / 8.0
-}
-
-fn columns(of: &[fn(usize) -> f64]) -> Vec<Vec<f64>> {
-    of.iter().map(|f| (0..250).map(f).collect()).collect()
-}
-
-struct Read {
-    names: Vec<String>,
-    columns: Vec<Vec<f64>>,
-    faults: Vec<FieldFault>,
-    source: Source,
-}
-
-/// Every column of numbers of a file, read in one go.
-fn read(path: &Path, options: &ReadOptions) -> Result<Read, IngestError> {
-    let source = open_with(path, options)?;
-    let wanted: Vec<usize> = (0..source.columns().len()).filter(|i| source.columns()[*i].numeric).collect();
-    let names = wanted.iter().map(|i| source.columns()[*i].name.clone()).collect();
-    let mut columns = vec![Vec::new(); wanted.len()];
-    let mut faults = Vec::new();
-    let facts = source.read(&wanted, &mut |block| {
-        assert_eq!(block.first_row as usize, columns[0].len() + 1);
-        for (all, part) in columns.iter_mut().zip(&block.columns) {
-            all.extend_from_slice(part);
-        }
-        faults.extend_from_slice(&block.faults);
-        ControlFlow::Continue(())
-    })?;
-    assert_eq!(facts.unwrap().rows as usize, columns[0].len());
-    // A single column comes out as it does among the others.
-    for (slot, w) in wanted.iter().enumerate().take(3) {
-        let mut one = Vec::new();
-        source.read(&[*w], &mut |block| {
-            one.extend_from_slice(&block.columns[0]);
-            ControlFlow::Continue(())
-        })?;
-        let bits = |c: &[f64]| c.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-        assert_eq!(bits(&one), bits(&columns[slot]));
-    }
-    Ok(Read { names, columns, faults, source })
-}
-
 fn sound(name: &str) -> Read {
     read(&fixture(name), &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
-}
-
-fn notes(source: &Source) -> String {
-    source.notes().iter().map(|n| n.say(sagnac::text::Lang::En) + "\n").collect()
 }
 
 #[test]
@@ -197,10 +137,6 @@ fn read_names(name: &str, options: &ReadOptions) -> Vec<String> {
     read(&fixture(name), options).unwrap_or_else(|e| panic!("{e}")).names
 }
 
-fn read_error(path: &Path, options: &ReadOptions) -> IngestError {
-    read(path, options).err().expect("an error")
-}
-
 #[test]
 fn what_holds_no_numbers_is_refused_with_advice() {
     let plain = ReadOptions::default();
@@ -241,114 +177,6 @@ fn big_endian_mat(vectors: &[(&str, Vec<f64>)]) -> Vec<u8> {
         out.extend_from_slice(&body);
     }
     out
-}
-
-/// Records of 32 bytes: sync, counter, stamp in µs, rate, temperature, padding, CRC-32.
-fn imu(rows: usize) -> Vec<u8> {
-    let mut out = vec![0x77; 16];
-    for i in 0..rows {
-        let mut record = vec![0xeb, 0x90];
-        record.extend_from_slice(&(i as u16).to_le_bytes());
-        record.extend_from_slice(&(5000 * i as u32).to_le_bytes());
-        record.extend_from_slice(&rate(i).to_le_bytes());
-        record.extend_from_slice(&((temperature(i) * 8.0) as i16).to_le_bytes());
-        record.resize(28, 0);
-        let mut crc = flate2::Crc::new();
-        crc.update(&record);
-        record.extend_from_slice(&crc.sum().to_le_bytes());
-        out.extend_from_slice(&record);
-    }
-    out
-}
-
-const IMU: &str = r#"
-format = "layout/1"
-header_bytes = 16
-record_bytes = 32
-sync = "EB 90"
-
-[checksum]
-type = "crc32"
-
-[[field]]
-name = "counter"
-type = "u16"
-
-[[field]]
-name = "time_us"
-type = "u32"
-unit = "us"
-rolls_over = "4294.967296 s"
-
-[[field]]
-name = "rate_deg_h"
-type = "f64"
-unit = "deg/h"
-
-[[field]]
-name = "temp_degC"
-type = "i16"
-scale = 0.125
-unit = "degC"
-"#;
-
-fn with_layout(dir: &Path, layout: &str) -> ReadOptions {
-    let path = dir.join("layout.toml");
-    std::fs::write(&path, layout).unwrap();
-    ReadOptions { layout: Some(path), ..ReadOptions::default() }
-}
-
-#[test]
-fn raw_records_are_read_by_their_layout() {
-    let dir = tempdir().unwrap();
-    let options = with_layout(dir.path(), IMU);
-    let path = dir.path().join("imu.bin");
-    let bytes = imu(250);
-    std::fs::write(&path, &bytes).unwrap();
-    let sound = read(&path, &options).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(sound.columns, columns(&[|i| i as f64, |i| 5000.0 * i as f64, rate, temperature]));
-    assert_eq!(sound.source.columns()[1].rollover_s, Some(4294.967296));
-    let seen = sagnac::run::inspect::inspect_source(&sound.source, None, &mut |_, _| {}).unwrap();
-    assert!(seen.contains("200 Hz") && seen.contains("records of 32 bytes"), "{seen}");
-
-    // Packed, and with a byte turned over, three bytes dropped, and the end cut off.
-    let mut damaged = bytes.clone();
-    damaged[16 + 32 * 100 + 12] ^= 4;
-    damaged.drain(16 + 32 * 200 + 5..16 + 32 * 200 + 8);
-    damaged.truncate(damaged.len() - 10);
-    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-    std::io::Write::write_all(&mut packed, &damaged).unwrap();
-    let path = dir.path().join("imu.bin.gz");
-    std::fs::write(&path, packed.finish().unwrap()).unwrap();
-    let read = read(&path, &options).unwrap_or_else(|e| panic!("{e}"));
-    let lost = [100, 200, 249];
-    for i in 0..250 {
-        let value = read.columns[2][i];
-        if lost.contains(&i) { assert!(value.is_nan(), "row {i}") } else { assert_eq!(value, rate(i)) }
-    }
-    let told: Vec<_> = read.faults.iter().filter(|f| f.slot == 2).map(|f| (f.row, f.text.as_str())).collect();
-    assert_eq!(told[0].0, 101);
-    assert!(told[0].1.starts_with("crc32 ") && told[0].1.ends_with("@3216"), "{told:?}");
-    assert_eq!(told[1..], [(201, "sync @6416 +29 B"), (250, "22/32 B @7981")]);
-}
-
-#[test]
-fn a_layout_that_does_not_fit_is_refused() {
-    let dir = tempdir().unwrap();
-    let path = dir.path().join("imu.bin");
-    std::fs::write(&path, imu(250)).unwrap();
-    for (change, to, says) in [
-        ("EB 90", "EB 91", "the layout does not fit: of the first 250 records 0 are sound"),
-        ("\"crc32\"", "\"crc16-ccitt\"", "0 are sound"),
-        ("header_bytes = 16", "header_bytes = 9000", "less than the header and one record"),
-        ("\"i16\"", "\"int16\"", "layout.toml:27:9: `int16` is not a value of `type`"),
-    ] {
-        let options = with_layout(dir.path(), &IMU.replace(change, to));
-        let error = read_error(&path, &options).to_string();
-        assert!(error.contains(says), "{error}");
-    }
-    let options = ReadOptions { layout: Some(dir.path().join("none.toml")), ..ReadOptions::default() };
-    assert!(read_error(&path, &options).to_string().contains("the layout cannot be read"));
 }
 
 #[test]
