@@ -182,7 +182,9 @@ fn sync(root: &Section, reader: &mut Reader<'_>) -> Vec<u8> {
     let hex = plain.bytes().all(|b| b.is_ascii_hexdigit());
     let bytes: Option<Vec<u8>> = plain.as_bytes().chunks(2).map(byte).collect();
     match bytes {
-        Some(bytes) if hex && plain.len().is_multiple_of(2) && (1..=LONGEST_SYNC).contains(&bytes.len()) => bytes,
+        Some(bytes) if hex && plain.len().is_multiple_of(2) && (1..=LONGEST_SYNC).contains(&bytes.len()) => {
+            bytes
+        }
         _ => {
             let help =
                 format!("write 1 to {LONGEST_SYNC} bytes of two digits each, for example: sync = \"AA 55\"");
