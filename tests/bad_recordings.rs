@@ -74,9 +74,9 @@ fn what_is_no_recording_is_refused_by_its_content() {
     let png = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x10\x00\x00\x00\x10\x08\x06\x00\x00\x00";
     let binary: Vec<u8> = (0..4096u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     refused("zip.csv", zip, &["a zip archive or a spreadsheet", "export the sheet as CSV"]);
-    refused("png.csv", png, &["neither text nor Parquet"]);
-    refused("binary.csv", &binary, &["neither text nor Parquet"]);
-    refused("nul.csv", rate(500, "12.5\u{0}").as_bytes(), &["neither text nor Parquet"]);
+    refused("png.csv", png, &["neither text nor of a binary kind"]);
+    refused("binary.csv", &binary, &["neither text nor of a binary kind"]);
+    refused("nul.csv", rate(500, "12.5\u{0}").as_bytes(), &["neither text nor of a binary kind"]);
     refused("empty.csv", b"", &["the file is empty"]);
     refused("blank.csv", b"\n\n  \n", &["no rows"]);
     refused("header.csv", format!("{HEADER}\n").as_bytes(), &["no rows"]);

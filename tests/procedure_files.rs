@@ -337,6 +337,7 @@ fn the_guide_is_the_key_tables() {
         ("procedure.md", "keys", guide::procedure_reference()),
         ("procedure.md", "measurands", guide::measurand_reference()),
         ("limits.md", "keys", guide::limits_reference()),
+        ("layout.md", "keys", guide::layout_reference()),
     ] {
         let path = guide_folder.join(file);
         let page = std::fs::read_to_string(&path).unwrap();
@@ -365,4 +366,7 @@ fn the_files_shown_in_the_guide_are_sound() {
     assert!(procedure.warnings.is_empty());
     let limits = parse_limits("limits.md", page("limits.md").as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(limits.value.set.limits.len(), 4);
+    let layout = sagnac::ingest::raw::layout::parse("layout.md", page("layout.md").as_bytes());
+    let layout = layout.unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((layout.record_bytes, layout.names().count()), (32, 11));
 }

@@ -179,7 +179,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         limits: &limits,
         columns: &columns,
         duration_s: 1e9,
-        stated_serial: Some("SN-2"),
+        stated_serials: &["SN-2"],
         serial: Some("SN-1"),
         today: chrono::NaiveDate::from_ymd_opt(2100, 1, 1).unwrap(),
     });

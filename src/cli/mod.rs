@@ -75,7 +75,7 @@ enum Verb {
 struct RunArgs {
     /// Procedure (TOML)
     procedure: PathBuf,
-    /// Recording: CSV (plain, .gz, .zst) or Parquet; several files in sequence, a pattern in quotes, or a manifest
+    /// Recording: a file of any kind that is read; several files in sequence, a pattern in quotes, or a manifest
     #[arg(required = true)]
     recording: Vec<PathBuf>,
     /// Limits file; replaces limits of the procedure for the same measurand
@@ -120,7 +120,7 @@ struct CheckArgs {
 
 #[derive(Debug, Args)]
 struct InspectArgs {
-    /// Recording: CSV (plain, .gz, .zst) or Parquet; several files in sequence, a pattern in quotes, or a manifest
+    /// Recording: a file of any kind that is read; several files in sequence, a pattern in quotes, or a manifest
     #[arg(required = true)]
     recording: Vec<PathBuf>,
     /// Sample rate, where the recording has no time column
@@ -132,7 +132,7 @@ struct InspectArgs {
 
 #[derive(Debug, Args)]
 struct AnalyzeArgs {
-    /// Recording: CSV (plain, .gz, .zst) or Parquet; several files in sequence, a pattern in quotes, or a manifest
+    /// Recording: a file of any kind that is read; several files in sequence, a pattern in quotes, or a manifest
     #[arg(required = true)]
     recording: Vec<PathBuf>,
     /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
@@ -174,6 +174,8 @@ enum SchemaKind {
     Procedure,
     /// A limits file
     Limits,
+    /// A layout of raw binary records
+    Layout,
     /// result.json
     Result,
     /// A manifest: several files as one recording

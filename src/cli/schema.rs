@@ -8,6 +8,7 @@ pub fn main(args: &SchemaArgs) -> u8 {
         SchemaKind::Procedure => crate::procedure::schema::procedure(),
         SchemaKind::Limits => crate::procedure::schema::limits(),
         SchemaKind::Manifest => crate::procedure::schema::manifest(),
+        SchemaKind::Layout => crate::procedure::schema::layout(),
         SchemaKind::Result => serde_json::to_value(schemars::schema_for!(RunRecord)).unwrap_or_default(),
     };
     super::place::print(&format!("{schema:#}\n"));

@@ -50,7 +50,11 @@ fn found(file: &Candidate) -> Result<&'static dyn Format, IngestError> {
             let what = Arg::Key((*what).to_owned());
             Err(unknown(Note::new("ingest.not_read").with("what", what)).hint(*hint))
         }
-        _ => Err(unknown("ingest.unknown".into()).hint("ingest.hint.give_known")),
+        _ => {
+            let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();
+            let hint = Note::new("ingest.formats.give").with("ids", ids.join(", "));
+            Err(unknown("ingest.formats.unknown".into()).hint(hint))
+        }
     }
 }
 

@@ -29,6 +29,8 @@ pub enum IngestErrorKind {
     Unit,
     /// The files of a recording do not belong together.
     Parts,
+    /// The layout of a raw binary file is missing, broken, or does not fit it.
+    Layout,
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -25,6 +25,7 @@ mod parquet;
 mod parts;
 mod plan;
 mod pump;
+pub mod raw;
 mod recording;
 mod reduce;
 mod ros;
@@ -203,8 +204,10 @@ pub trait Format: Sync {
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError>;
 }
 
-/// Every format, the most particular first. Text comes last: it takes whatever looks like lines.
+/// Every format, the most particular first: raw records only where a layout is given, text last, because it takes
+/// whatever looks like lines.
 pub static FORMATS: &[&dyn Format] = &[
+    &raw::Raw,
     &parquet::Parquet,
     &numpy::Npy,
     &numpy::Npz,

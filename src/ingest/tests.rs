@@ -109,7 +109,7 @@ fn unreadable_files_are_refused_with_their_reason() {
         (b"PK\x03\x04abc", UnknownFormat, "a zip archive"),
         (b"\x89HDF\r\n\x1a\n", UnknownFormat, "an HDF5 file"),
         (b"\xff\xfet\0,\0r\0", Empty, "a header but no rows"),
-        (b"abc\0def\0\x01", UnknownFormat, "neither text nor Parquet"),
+        (b"abc\0def\0\x01", UnknownFormat, "neither text nor of a binary kind"),
         (b"PAR1 but no more", Damaged, "cannot be decoded"),
         (b"rate\n0,5\n1,5\n", UnknownFormat, "a comma seems to separate"),
         (&gzip(b""), Empty, "holds nothing"),

@@ -5,6 +5,7 @@ use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use crate::ids::MEASURANDS;
 use crate::ingest::manifest_tables::MANIFEST_FILE;
+use crate::ingest::raw::tables::LAYOUT_FILE;
 use std::fmt::Write;
 
 /// Every key of a procedure file, as Markdown.
@@ -20,6 +21,11 @@ pub fn limits_reference() -> String {
 /// Every key of a manifest, as Markdown.
 pub fn manifest_reference() -> String {
     reference(&MANIFEST_FILE)
+}
+
+/// Every key of a layout of raw binary records, as Markdown.
+pub fn layout_reference() -> String {
+    reference(&LAYOUT_FILE)
 }
 
 /// Every measurand that may be asked for, as Markdown.

@@ -7,6 +7,7 @@ use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use crate::ids::MEASURANDS;
 use crate::ingest::manifest_tables::MANIFEST_FILE;
+use crate::ingest::raw::tables::LAYOUT_FILE;
 use serde_json::{Map, Value, json};
 
 /// Pattern of a number with its unit.
@@ -25,6 +26,11 @@ pub fn limits() -> Value {
 /// The schema of a manifest.
 pub fn manifest() -> Value {
     document(&MANIFEST_FILE, "Sagnac manifest")
+}
+
+/// The schema of a layout of raw binary records.
+pub fn layout() -> Value {
+    document(&LAYOUT_FILE, "Sagnac layout")
 }
 
 fn document(root: &'static TableSpec, title: &str) -> Value {

@@ -31,6 +31,20 @@ pub(in crate::ingest) struct Cut {
     pub bad: Vec<(usize, String)>,
 }
 
+impl Cut {
+    /// Takes records of which the last one is cut off: it becomes a bad one. `at`: place of the first in the file.
+    fn keep_rest(&mut self, bytes: &[u8], stride: usize, at: u64) {
+        let whole = bytes.len() / stride;
+        let rest = bytes.len() - whole * stride;
+        let at = at + (whole * stride) as u64;
+        self.records.clear();
+        self.bad.clear();
+        self.records.extend_from_slice(bytes.get(..whole * stride).unwrap_or_default());
+        self.records.resize((whole + 1) * stride, 0);
+        self.bad.push((whole, format!("{rest}/{stride} B @{at}")));
+    }
+}
+
 /// Finds the records in a stream in which they are not simply one after another.
 pub(in crate::ingest) trait Framer {
     /// Takes the next bytes, the last ones when `end` is true, and gives the records that are complete.
@@ -169,6 +183,10 @@ impl Records {
                     cut.bad.clear();
                     let end = chunk.bytes.len() < (CHUNK / stride).clamp(1, ROWS) * stride;
                     framer.take(&chunk.bytes, end, &mut cut);
+                    &cut.records
+                }
+                None if self.declared_rows.is_none() && !chunk.bytes.len().is_multiple_of(stride) => {
+                    cut.keep_rest(&chunk.bytes, stride, self.header_bytes + rows * stride as u64);
                     &cut.records
                 }
                 None => &chunk.bytes,

@@ -39,7 +39,7 @@ pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<F
             return Err(IngestError::new(IngestErrorKind::Damaged, &file.path, note)
                 .hint("ingest.hint.give_recording"));
         }
-        let fail = |e: io::Error| stream_error(&file.path, &format!("@{next}"), &e);
+        let fail = |e: io::Error| element_error(file, next, &e);
         let raw =
             Stream { name: format!("@{next}"), from: next, length: at.size - next, coding: Coding::Stored };
         let mut tape = Tape::new(raw.open(at), order);
@@ -70,6 +70,19 @@ pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<F
         next = next.saturating_add(tag.at).saturating_add(tag.bytes);
     }
     Ok(found)
+}
+
+/// The diagnostic of an element that cannot be read.
+fn element_error(file: &Candidate, at: u64, error: &io::Error) -> IngestError {
+    let (note, hint) = match error.kind() {
+        io::ErrorKind::UnexpectedEof => (Note::new("ingest.mat.element_short"), "ingest.hint.cut_off"),
+        io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput => {
+            let note = Note::new("ingest.mat.element_damaged").with("reason", error.to_string());
+            (note, "ingest.hint.copy_again")
+        }
+        _ => return stream_error(&file.path, &at.to_string(), error),
+    };
+    IngestError::new(IngestErrorKind::Damaged, &file.path, note.with("at", at)).hint(hint)
 }
 
 /// The stream under the name of the variable that is in it.
