@@ -4,13 +4,14 @@
 mod support;
 
 use sagnac::ingest::{IngestError, IngestErrorKind, ReadOptions, Source, open_with};
+use sagnac::recording::guess::guess;
 use sagnac::text::Lang;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use support::{sagnac, shipped};
 use tempfile::tempdir;
 
-const ROWS: usize = 104;
+const ROWS: usize = 84;
 /// 2026-01-02T03:04:05Z.
 const START_S: f64 = 1_767_323_045.0;
 
@@ -70,6 +71,9 @@ fn every_format_gives_the_numbers_that_were_written() {
     assert_eq!(column("chunked.h5", None, "temp"), rows(|k| 25.0 + k as f64 / 8.0));
     assert_eq!(column("wave.tdms", None, "temp"), rows(|k| 25.0 + k as f64 / 8.0));
     for name in ["zstd.mcap", "lz4.mcap", "lz4.bag"] {
+        let source = open(name, None).unwrap();
+        let gyros = source.columns().iter().filter(|c| guess(&c.name, c.unit.as_deref()).role.is_gyro());
+        assert_eq!(gyros.count(), 3, "{name}: the three angular velocities and nothing else");
         assert_eq!(column(name, None, "angular_velocity.x"), rows(rate), "{name}");
         assert_eq!(column(name, None, "angular_velocity.z"), rows(|k| 2.0 * rate(k)), "{name}");
         assert_eq!(column(name, None, "orientation.w"), rows(|_| 1.0), "{name}");
@@ -204,7 +208,7 @@ fn what_is_not_read_is_refused_with_advice() {
 #[test]
 fn a_file_that_breaks_off_is_read_as_far_as_it_goes() {
     let dir = tempdir().unwrap();
-    for (name, cut, at_least) in [("wave.tdms", 300, 70), ("lz4.mcap", 3000, 40), ("lz4.bag", 4000, 40)] {
+    for (name, cut, at_least) in [("wave.tdms", 300, 80), ("lz4.mcap", 2500, 25), ("lz4.bag", 2500, 25)] {
         let whole = std::fs::read(fixture(name)).unwrap();
         let path = dir.path().join(name);
         std::fs::write(&path, &whole[..whole.len() - cut]).unwrap();
@@ -313,7 +317,7 @@ fn a_damaged_file_gives_numbers_or_a_diagnostic() {
     ];
     for name in names {
         let whole = std::fs::read(fixture(name)).unwrap();
-        assert!(whole.len() < 10_000, "{name}");
+        assert!(whole.len() < 10 << 10, "{name}");
         for round in 0..rounds {
             let mut bytes = whole.clone();
             if round % 3 == 0 {
