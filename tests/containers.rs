@@ -272,6 +272,51 @@ fn a_message_that_ends_early_is_a_located_fault() {
     assert_eq!(seen, [(0, 2, text.clone()), (2, 2, text)]);
 }
 
+/// A TDMS file in big-endian order with interleaved values, written by hand: rate -k as i16 and b k/4 as f64. The second
+/// segment says nothing of its channels, the third was left open after one row and a piece.
+fn interleaved_tdms() -> Vec<u8> {
+    const VALUES: u32 = 1 << 3 | 1 << 5 | 1 << 6;
+    let text = |t: &str| [&(t.len() as u32).to_be_bytes()[..], t.as_bytes()].concat();
+    let channel = |path: &str, kind: u32| {
+        let numbers = [20u32, kind, 1].map(u32::to_be_bytes).concat();
+        [text(path), numbers, 3u64.to_be_bytes().to_vec(), 0u32.to_be_bytes().to_vec()].concat()
+    };
+    let metadata = [2u32.to_be_bytes().to_vec(), channel("/'g'/'rate'", 2), channel("/'g'/'b'", 10)].concat();
+    let row = |k: i16| [&(-k).to_be_bytes()[..], &(f64::from(k) / 4.0).to_be_bytes()].concat();
+    let segment = |toc: u32, metadata: &[u8], values: &[u8], open: bool| {
+        let length = if open { u64::MAX } else { (metadata.len() + values.len()) as u64 };
+        let mut out = b"TDSm".to_vec();
+        out.extend(toc.to_le_bytes());
+        out.extend(4713u32.to_be_bytes());
+        out.extend(length.to_be_bytes());
+        out.extend((metadata.len() as u64).to_be_bytes());
+        out.extend(metadata);
+        out.extend(values);
+        out
+    };
+    let rows = |range: std::ops::Range<i16>| range.flat_map(row).collect::<Vec<u8>>();
+    let mut broken = rows(9..11);
+    broken.truncate(15);
+    [
+        segment(VALUES | 1 << 1 | 1 << 2, &metadata, &rows(0..6), false),
+        segment(VALUES, &[], &rows(6..9), false),
+        segment(VALUES, &[], &broken, true),
+    ]
+    .concat()
+}
+
+#[test]
+fn interleaved_and_big_endian_values_are_read() {
+    let dir = tempdir().unwrap();
+    let path = dir.path().join("interleaved.tdms");
+    std::fs::write(&path, interleaved_tdms()).unwrap();
+    let source = open_with(&path, &options(None)).unwrap();
+    let found = columns(&source).unwrap();
+    assert_eq!(found[0], ("rate".to_owned(), (0..10).map(|k| -f64::from(k)).collect()));
+    assert_eq!(found[1], ("b".to_owned(), (0..10).map(|k| f64::from(k) / 4.0).collect()));
+    assert!(notes(&source).contains("breaks off"), "{}", notes(&source));
+}
+
 /// Numbers that depend on the seed alone.
 struct Random(u64);
 
