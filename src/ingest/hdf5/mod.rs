@@ -20,6 +20,9 @@ const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Largest chunk, and memory for chunks that are used again, bytes.
 const LARGEST_CHUNK: usize = 256 << 20;
 const CHUNK_CACHE: usize = 64 << 20;
+/// Bytes of a chunk that are always allowed, and how many more per byte of the file.
+const CHUNK_ALLOWED: usize = 16 << 20;
+const CHUNK_RATIO: u64 = 50;
 /// Largest slice, bytes as stored.
 const LARGEST_SLICE: usize = 64 << 20;
 /// Bytes of a dataset per byte of the file beyond which a file is refused, and where that starts to count.
@@ -100,10 +103,10 @@ impl Format for Hdf5 {
 /// Opens the file for reading by ranges; nothing larger than the limits is held.
 fn container(path: &Path, bytes: u64) -> Result<Hdf5File, IngestError> {
     let storage = FileStorage::open(path).map_err(|e| damaged(path, &e))?;
-    let per_file = usize::try_from(bytes.saturating_mul(BOMB_RATIO)).unwrap_or(usize::MAX);
+    let per_file = usize::try_from(bytes.saturating_mul(CHUNK_RATIO)).unwrap_or(usize::MAX);
     let options = OpenOptions::default()
         .with_chunk_cache_bytes(CHUNK_CACHE)
-        .with_max_chunk_bytes(LARGEST_CHUNK.min(per_file.max(1 << 20)))
+        .with_max_chunk_bytes(LARGEST_CHUNK.min(per_file.max(CHUNK_ALLOWED)))
         .with_max_read_bytes(LARGEST_SLICE)
         .with_max_object_header_bytes(usize::try_from(bytes).unwrap_or(usize::MAX).min(16 << 20));
     Hdf5File::from_storage_with_options(Arc::new(storage), options).map_err(|e| damaged(path, &e))

@@ -36,10 +36,10 @@ static LAYOUTS: &[Layout] = &[
         name: "sensor_msgs/Imu",
         items: &[
             Item::Header,
-            Item::Number("orientation.x", None),
-            Item::Number("orientation.y", None),
-            Item::Number("orientation.z", None),
-            Item::Number("orientation.w", None),
+            Item::Number("orientation.x", Some("1")),
+            Item::Number("orientation.y", Some("1")),
+            Item::Number("orientation.z", Some("1")),
+            Item::Number("orientation.w", Some("1")),
             Item::Skip(9),
             Item::Number("angular_velocity.x", Some("rad/s")),
             Item::Number("angular_velocity.y", Some("rad/s")),
@@ -217,7 +217,7 @@ mod tests {
             (_, 0 | 1) => 8,
             _ => 4,
         };
-        while body.len() % align != 0 {
+        while !body.len().is_multiple_of(align) {
             body.push(0xaa);
         }
         body.extend(double(25.5));

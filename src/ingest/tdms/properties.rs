@@ -50,7 +50,7 @@ impl Value {
             Value::Number(v) => Some(v.to_string()),
             Value::Text(t) => Some(t.clone()),
             Value::Stamp(s, f) => {
-                let ns = (u128::from(*f) * 1_000_000_000 >> 64) as u32;
+                let ns = ((u128::from(*f) * 1_000_000_000) >> 64) as u32;
                 chrono::DateTime::from_timestamp(*s, ns)
                     .map(|d| d.to_rfc3339_opts(chrono::SecondsFormat::AutoSi, true))
             }
