@@ -114,8 +114,8 @@ fn stamps(section: &Section, reader: &mut Reader<'_>) -> Option<StampOptions> {
         _ => StampWriting::Number,
     });
     let key = ["stamp", "date_column", "week_column"].into_iter().find(|k| section.entry(k).is_some())?;
-    if section.word("role").is_some_and(|r| r != Role::Time.id()) {
-        let message = format!("`{key}` belongs to a channel with the role `time`");
+    if let Some(role) = section.word("role").filter(|r| *r != Role::Time.id()) {
+        let message = format!("`{key}` is for time stamps, but the channel has the role `{role}`");
         reader.error(&section.span_of(key), message, None);
         return None;
     }
