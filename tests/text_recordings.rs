@@ -72,7 +72,7 @@ fn wrong_decisions_are_pointed_at() {
         ("first_line = 4", "first_line = 2", "2", "is not below `header_line` 2"),
         ("comment = \"!\"", "format = \"docx\"", "\"docx\"", "is no file format"),
         ("stamp = \"day_first\"", "week_column = 3", "3", "a date or a GPS week, not both"),
-        ("column = \"Выход\"", "column = \"Выход\"\nstamp = \"clock\"", "\"clock\"", "role `time`"),
+        ("column = \"Выход\"", "column = \"Выход\"\nstamp = \"clock\"", "\"clock\"", "has the role `rate`"),
     ] {
         let text = PROCEDURE.replacen(from, to, 1);
         let problems = parse_procedure("p.toml", text.as_bytes()).unwrap_err();

@@ -108,8 +108,9 @@ fn stamps(section: &Section, reader: &mut Reader<'_>) -> Option<StampOptions> {
         _ => StampWriting::Number,
     });
     let key = ["stamp", "date_column", "week_column"].into_iter().find(|k| section.entry(k).is_some())?;
-    if section.word("role").is_some_and(|r| r != Role::Time.id()) {
-        reader.error(&section.span_of(key), Note::new("reading.not_time").with("key", key), None);
+    if let Some(role) = section.word("role").filter(|r| *r != Role::Time.id()) {
+        let message = Note::new("reading.not_time").with("key", key).with("role", role);
+        reader.error(&section.span_of(key), message, None);
         return None;
     }
     if date_column.is_some() && week_column.is_some() {

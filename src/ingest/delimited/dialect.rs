@@ -72,7 +72,7 @@ pub(super) fn sniff(file: &Candidate) -> Result<Dialect, IngestError> {
     let after: Vec<&[u8]> = body
         .iter()
         .filter(|l| options.first_line.is_none_or(|f| l.number >= f))
-        .filter(|l| options.header_line.is_none_or(|h| l.number > h))
+        .filter(|l| options.header_line.is_none_or(|h| l.number >= h))
         .map(|l| l.text)
         .collect();
     let cut = separator::find(&after, options.delimiter, options.decimal);
@@ -186,7 +186,13 @@ impl Sniffed<'_> {
                 continue;
             }
             if begins(at, i, line) {
-                return Ok(i);
+                // Names that stand twice: the second time they are a row of words, as in files put together.
+                let mut before =
+                    lines.iter().enumerate().take(i).rev().filter(|(_, l)| !self.comments.holds(l.text));
+                return Ok(match (before.next(), before.next()) {
+                    (Some((again, a)), Some((_, b))) if a.text == b.text && self.is_names(a) => again,
+                    _ => i,
+                });
             }
             at += 1;
         }
@@ -204,7 +210,7 @@ impl Sniffed<'_> {
     /// True when a line has the usual number of fields and holds values; `at`: how many plain lines stand before it,
     /// `below`: the lines after it.
     fn is_data(&self, line: &Line<'_>, at: usize, below: &[Line<'_>]) -> bool {
-        let cells = self.cut.separator.closed_cells(line.text);
+        let cells = self.cut.separator.usual_cells(line.text, self.cut.fields);
         if cells.len() != self.cut.fields {
             return false;
         }
@@ -227,7 +233,7 @@ impl Sniffed<'_> {
 
     /// True for a line of the usual number of fields, all of them text.
     fn is_names(&self, line: &Line<'_>) -> bool {
-        let cells = self.cut.separator.closed_cells(line.text);
+        let cells = self.cut.separator.usual_cells(line.text, self.cut.fields);
         cells.len() == self.cut.fields && cells.iter().all(|c| looks(c, self.cut.decimal) == Looks::Text)
     }
 
@@ -270,7 +276,7 @@ impl Sniffed<'_> {
         let mut cells: Vec<Vec<&[u8]>> = vec![Vec::new(); fields];
         let mut numbers: Vec<u64> = Vec::new();
         for line in data {
-            let of = self.cut.separator.closed_cells(line.text);
+            let of = self.cut.separator.usual_cells(line.text, self.cut.fields);
             if of.len() == fields {
                 cells.iter_mut().zip(of).for_each(|(column, cell)| column.push(cell));
                 numbers.push(line.number);

@@ -1,7 +1,5 @@
 //! Lines into fields, and which lines are comments.
 
-use crate::ingest::number::{self, Field};
-
 /// What separates the fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separator {
@@ -61,12 +59,11 @@ impl Separator {
         cells
     }
 
-    /// The fields of a line for telling how a file is written: a separator at the end opens no further field.
-    pub(super) fn closed_cells(self, line: &[u8]) -> Vec<&[u8]> {
+    /// The fields of a line where `fields` are usual: a separator behind the last opens no further field.
+    pub(super) fn usual_cells(self, line: &[u8], fields: usize) -> Vec<&[u8]> {
         let mut cells = self.cells(line);
-        let blank = cells.last().is_some_and(|c| c.trim_ascii().is_empty());
-        let full = cells.iter().rev().skip(1).all(|c| number::field(c, b'.') != Field::Empty);
-        if cells.len() > 1 && blank && full && self != Separator::Blanks {
+        if cells.len() == fields.saturating_add(1) && cells.last().is_some_and(|c| c.trim_ascii().is_empty())
+        {
             cells.pop();
         }
         cells

@@ -67,7 +67,7 @@ fn all_units(names: &[String]) -> bool {
 
 /// The names in a line, when there are as many as fields.
 fn names(line: &[u8], separator: Separator, fields: usize) -> Option<Vec<String>> {
-    let cells: Vec<String> = separator.closed_cells(line).into_iter().map(words).collect();
+    let cells: Vec<String> = separator.usual_cells(line, fields).into_iter().map(words).collect();
     let found = if cells.len() == fields {
         cells
     } else if separator == Separator::Blanks {
@@ -104,7 +104,7 @@ fn wide(line: &[u8], fields: usize) -> Option<Vec<String>> {
 
 /// The units in a line, when every field that is filled spells one.
 fn units(line: &[u8], separator: Separator, fields: usize) -> Option<Vec<String>> {
-    let cells: Vec<String> = separator.closed_cells(line).into_iter().map(words).collect();
+    let cells: Vec<String> = separator.usual_cells(line, fields).into_iter().map(words).collect();
     if cells.len() != fields {
         return None;
     }

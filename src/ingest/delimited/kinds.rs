@@ -145,7 +145,7 @@ fn shape_notes(name: &str, shape: Shape, stamps: &[Stamp]) -> Vec<Note> {
 /// One column of a date and a clock: the two that stand side by side, or the only two.
 fn date_and_clock(found: &mut Kinds, shapes: &[Option<Shape>]) {
     let of = |wanted: fn(&Shape) -> bool| -> Vec<usize> {
-        let fits = |(i, s): (usize, &Option<Shape>)| s.filter(|s| wanted(s)).map(|_| i);
+        let fits = |(i, s): (usize, &Option<Shape>)| s.filter(&wanted).map(|_| i);
         shapes.iter().enumerate().filter_map(fits).collect()
     };
     let (dates, clocks) = (of(|s| matches!(s, Shape::Date(_))), of(|s| *s == Shape::Clock));

@@ -23,7 +23,7 @@ impl Metadata {
             return;
         }
         let cells: Vec<String> =
-            separator.map(|s| s.closed_cells(line)).unwrap_or_default().into_iter().map(words).collect();
+            separator.map(|s| s.usual_cells(line, 2)).unwrap_or_default().into_iter().map(words).collect();
         let (key, value) = match (cells.as_slice(), text.split_once([':', '='])) {
             ([key, value], _) if separator != Some(Separator::Blanks) => {
                 (key.trim_end_matches([':', '=']).trim().to_owned(), value.clone())

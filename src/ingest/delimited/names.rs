@@ -13,7 +13,7 @@ impl Sniffed<'_> {
     pub(super) fn header(&self, above: &[Line<'_>], data: &[&Line<'_>]) -> Result<Header, IngestError> {
         let options = &self.file.options.text;
         let (separator, fields) = (self.cut.separator, self.cut.fields);
-        let cells = |l: &Line<'_>| separator.closed_cells(l.text).len();
+        let cells = |l: &Line<'_>| separator.usual_cells(l.text, fields).len();
         let lines: Vec<Above<'_>> = above
             .iter()
             .map(|l| match self.comments.prefix_of(l.text) {
@@ -32,7 +32,7 @@ impl Sniffed<'_> {
             },
         };
         let whole = |l: &&&Line<'_>| {
-            let of = separator.closed_cells(l.text);
+            let of = separator.usual_cells(l.text, fields);
             of.iter().all(|c| !c.contains(&b'.') && looks(c, b'.') == Looks::Number)
         };
         let commas = self.cut.separator == Separator::Byte(b',') && fields > 1 && self.cut.decimal == b'.';
@@ -41,7 +41,7 @@ impl Sniffed<'_> {
         let last = match options.header_line {
             Some(0) => None,
             Some(n) => above.iter().find(|l| l.number == n),
-            None => plain().last(),
+            None => plain().next_back(),
         };
         let named = header.names.is_some();
         if !named && all_whole && options.delimiter.is_none() {

@@ -96,28 +96,46 @@ pub(super) fn find(lines: &[&[u8]], delimiter: Option<u8>, decimal: Option<u8>) 
     })
 }
 
+/// What is counted of the lines with one number of fields.
+#[derive(Default)]
+struct Count {
+    /// Fields that hold values.
+    values: usize,
+    /// Last such line.
+    last: usize,
+    /// Lines that hold values.
+    lines: usize,
+    /// Fields that are not empty, in such lines.
+    filled: usize,
+    /// True when the last field of any line, a header too, is filled.
+    ends_filled: bool,
+}
+
 fn measure(lines: &[&[u8]], separator: Separator, decimal: u8) -> Cut {
-    // Number of fields: values in lines of that count, last such line, lines, fields that are not empty.
-    let mut counts: std::collections::BTreeMap<usize, [usize; 4]> = std::collections::BTreeMap::new();
+    let mut counts: std::collections::BTreeMap<usize, Count> = std::collections::BTreeMap::new();
     let mut valued_lines = 0;
     for (i, line) in lines.iter().enumerate() {
-        let cells = separator.closed_cells(line);
+        let cells = separator.cells(line);
         let of: Vec<Looks> = cells.iter().map(|c| looks(c, decimal)).collect();
         let values = of.iter().filter(|l| l.is_value()).count();
-        let filled = of.iter().filter(|l| **l != Looks::Empty).count();
-        valued_lines += usize::from(values > 0);
         let count = counts.entry(cells.len()).or_default();
-        *count = if values > 0 {
-            [count[0] + values, i, count[2] + 1, count[3] + filled]
-        } else {
-            [count[0], count[1].max(i), count[2], count[3]]
-        };
+        count.ends_filled |= of.last().is_some_and(|l| *l != Looks::Empty);
+        if values > 0 {
+            valued_lines += 1;
+            count.values += values;
+            count.last = i;
+            count.lines += 1;
+            count.filled += of.iter().filter(|l| **l != Looks::Empty).count();
+        }
     }
-    let most = counts.iter().max_by_key(|(_, c)| (c[0], c[1]));
-    let (fields, [values, _, with, filled]) = most.map_or((1, [0; 4]), |(n, c)| (*n, *c));
+    let nothing = Count { ends_filled: true, ..Count::default() };
+    let most = counts.iter().max_by_key(|(_, c)| (c.values, c.last));
+    let (cells, count) = most.map_or((1, &nothing), |(n, c)| (*n, c));
+    // A separator at the end of every line opens no further field.
+    let fields = if count.ends_filled || cells == 1 { cells } else { cells - 1 };
     let share = |part: usize, whole: usize| if whole == 0 { 0.0 } else { part as f64 / whole as f64 };
-    let merit = share(values, filled) * share(with, valued_lines);
-    Cut { separator, decimal, fields, lines: with, merit }
+    let merit = share(count.values, count.filled) * share(count.lines, valued_lines);
+    Cut { separator, decimal, fields, lines: count.lines, merit }
 }
 
 /// A column whose numbers may have signs between thousands, by the fields of it, of which some may be empty. Returns

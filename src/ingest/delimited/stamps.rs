@@ -2,6 +2,7 @@
 
 /// In which order a date is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(clippy::enum_variant_names, reason = "what stands first is the whole difference")]
 pub(super) enum Order {
     /// `2026-03-01`, `2026/03/01`, `20260301`.
     YearFirst,
