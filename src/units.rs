@@ -15,6 +15,10 @@
 //!
 //! Other units exist at the edges only: in files that are read and in numbers that are shown.
 
+mod error;
+
+pub use error::UnitError;
+
 use crate::text::{Arg, Note};
 use std::fmt;
 
@@ -41,69 +45,6 @@ pub struct Unit {
     offset: f64,
     dimension: Dimension,
 }
-
-/// Why a unit text could not be read, or could not be converted.
-#[derive(Debug, Clone, PartialEq)]
-pub enum UnitError {
-    /// The text holds a symbol that is no unit.
-    Unknown {
-        /// The symbol that was not understood.
-        symbol: String,
-        /// A known symbol that is spelt nearly the same.
-        suggestion: Option<String>,
-    },
-    /// The text does not follow the grammar of units.
-    Grammar {
-        /// The whole text.
-        text: String,
-        /// What was wrong with it: a key of the locale tables.
-        reason: &'static str,
-    },
-    /// Two units measure different things.
-    Dimension {
-        /// The unit given.
-        from: String,
-        /// A unit of the dimension needed.
-        to: String,
-        /// What the given unit measures, in words.
-        from_dimension: Box<Arg>,
-        /// What is needed, in words.
-        to_dimension: Box<Arg>,
-    },
-}
-
-impl UnitError {
-    /// What is wrong, as a note.
-    pub fn note(&self) -> Note {
-        match self {
-            UnitError::Unknown { symbol, suggestion: None } => {
-                Note::new("unit_error.unknown").with("symbol", symbol.as_str())
-            }
-            UnitError::Unknown { symbol, suggestion: Some(near) } => {
-                Note::new("unit_error.misspelt").with("symbol", symbol.as_str()).with("near", near.as_str())
-            }
-            UnitError::Grammar { text, reason } => {
-                Note::new("unit_error.grammar").with("text", text.as_str()).with("reason", Note::new(*reason))
-            }
-            UnitError::Dimension { from, to, from_dimension, to_dimension } => {
-                Note::new("unit_error.dimension")
-                    .with("from", from.as_str())
-                    .with("to", to.as_str())
-                    .with("from_dimension", (**from_dimension).clone())
-                    .with("to_dimension", (**to_dimension).clone())
-            }
-        }
-    }
-}
-
-impl fmt::Display for UnitError {
-    /// In English.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.note().fmt(f)
-    }
-}
-
-impl std::error::Error for UnitError {}
 
 /// Symbol, factor to the base unit, dimension (in halves).
 fn symbol(name: &str) -> Option<(f64, Dimension)> {
@@ -469,68 +410,5 @@ impl Parser<'_> {
 pub const EARTH_RATE_DEG_H: f64 = 15.041_067;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn factor(from: &str, to: &str) -> f64 {
-        Unit::parse(from).unwrap().factor_to(&Unit::parse(to).unwrap()).unwrap()
-    }
-
-    #[test]
-    fn conversions_that_gyro_work_lives_on_are_exact() {
-        assert_eq!(factor("deg/s", "deg/h"), 3600.0);
-        assert_eq!(factor("arcsec/s", "deg/h"), 1.0);
-        assert!((factor("rad/s", "deg/h") / 206_264.806_247_096_36 - 1.0).abs() < 1e-14);
-        assert!((factor("deg/sqrt(s)", "deg/sqrt(h)") - 60.0).abs() < 1e-12);
-        assert!((factor("(deg/h)/sqrt(Hz)", "deg/sqrt(h)") - 1.0 / 60.0).abs() < 1e-16);
-        assert!((factor("deg/h^1.5", "deg/h/sqrt(h)") - 1.0).abs() < 1e-15);
-        assert_eq!(factor("deg/h/(degC/h)", "deg/h/(degC/min)"), 60.0);
-    }
-
-    #[test]
-    fn other_spellings_mean_the_same() {
-        for (a, b) in [
-            ("град/ч", "deg/h"),
-            ("град/√ч", "deg/sqrt(h)"),
-            ("°/√h", "deg/sqrt(h)"),
-            ("deg/hr", "deg/h"),
-            ("dph", "deg/h"),
-            ("deg/h²", "deg/h/h"),
-            ("deg/h^(3/2)", "deg/h/sqrt(h)"),
-        ] {
-            assert!((factor(a, b) - 1.0).abs() < 1e-14, "{a} {b}");
-        }
-    }
-
-    #[test]
-    fn temperatures_carry_their_offset_and_differences_do_not() {
-        let (c, k, f) =
-            (Unit::parse("degC").unwrap(), Unit::parse("K").unwrap(), Unit::parse("degF").unwrap());
-        assert!((c.convert(20.0, &k).unwrap() - 293.15).abs() < 1e-12);
-        assert!((f.convert(68.0, &c).unwrap() - 20.0).abs() < 1e-12);
-        assert_eq!(factor("ppm/K", "ppm/degC"), 1.0);
-    }
-
-    #[test]
-    fn a_wrong_dimension_is_named() {
-        let e = Unit::parse("deg/sqrt(h)")
-            .unwrap()
-            .factor_to(&Unit::parse("deg/h").unwrap())
-            .unwrap_err()
-            .to_string();
-        assert!(e.contains("an angle random walk") && e.contains("an angular rate"), "{e}");
-    }
-
-    #[test]
-    fn nonsense_is_refused_with_a_hint() {
-        assert_eq!(
-            Unit::parse("dge/h").unwrap_err(),
-            UnitError::Unknown { symbol: "dge".into(), suggestion: Some("deg".into()) }
-        );
-        for bad in
-            ["", "deg/", "(deg", "deg/h)", "deg^0.3", "((((((((((deg))))))))))", "sqrt", "deg//h", "/h"]
-        {
-            assert!(Unit::parse(bad).is_err(), "{bad}");
-        }
-    }
-}
+#[path = "units_tests.rs"]
+mod tests;
