@@ -120,6 +120,7 @@ impl Clock {
             mean(steps().filter(|&d| d > 0.0 && (d - median).abs() <= 0.5 * median))
         };
         let interval_s = whole_steps(interval_s.unwrap_or(median), resolution_s);
+        let interval_s = if lost(&t, interval_s, resolution_s) { resolution_s } else { interval_s };
         let interval_s = tidy(interval_s);
         let ratio = interval_s / resolution_s;
         let rounded = resolution_s > 0.0 && (ratio - ratio.round()).abs() > 1e-3;
@@ -198,6 +199,22 @@ pub enum Step {
     },
     /// No stamp: the row is set aside.
     Unusable,
+}
+
+/// True where most steps are one step of the rounding and the stamps do not keep to a straight line of `interval_s`:
+/// stamps of a uniform clock that are rounded stay within a step of one, and lost samples lead ever farther away.
+fn lost(stamps: &[f64], interval_s: f64, resolution_s: f64) -> bool {
+    if resolution_s <= 0.0 || (interval_s / resolution_s - 1.0).abs() > 0.5 {
+        return false;
+    }
+    let steps = stamps.iter().zip(stamps.iter().skip(1)).map(|(a, b)| b - a);
+    let single = steps.filter(|d| (d / resolution_s - 1.0).abs() < 1e-6).count();
+    let origin = stamps.first().copied().unwrap_or(0.0);
+    let count = stamps.len().saturating_sub(1).max(1) as f64;
+    let slope = (stamps.last().copied().unwrap_or(0.0) - origin) / count;
+    let off = stamps.iter().enumerate().map(|(i, t)| t - origin - slope * i as f64);
+    let (low, high) = off.fold((0.0f64, 0.0f64), |(low, high), d| (low.min(d), high.max(d)));
+    2 * single > stamps.len() && high - low > 2.0 * resolution_s
 }
 
 /// Follows the stamps of a recording.
