@@ -7,7 +7,8 @@ mod drill_support;
 use drill_support::corruptions::corrupt;
 use drill_support::expected::{CASES, Expect};
 use drill_support::{SAMPLES, run};
-use sagnac::record::{ConditionStatus, RunRecord};
+use sagnac::estimate::Verdict;
+use sagnac::record::{ConditionStatus, MeasurandRecord, RunRecord};
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Mutex;
@@ -67,6 +68,13 @@ fn judge(expect: Expect, sound: &RunRecord, result: &Result) -> std::result::Res
             let seen =
                 || faults().take(5).map(|f| format!("\n    {}: {}", f.kind, f.note)).collect::<String>();
             caught.map(|f| format!("{}, row {}: {}", f.kind, f.row, f.note)).ok_or_else(seen)
+        }
+        Expect::Fails(id) => {
+            let record = result.as_ref().map_err(|e| format!("refused: {e}"))?;
+            let fails = |m: &&MeasurandRecord| m.id == id && m.verdict == Verdict::Fail;
+            let row = record.measurands.iter().find(fails);
+            row.map(|m| format!("not named; {} fails: {:.3e} {}", m.id, m.value.unwrap_or_default(), m.unit))
+                .ok_or_else(|| format!("{id} does not fail"))
         }
         Expect::Refused(fragment) => match result {
             Err(e) if e.contains(fragment) => Ok(format!("refused: {e}")),

@@ -1,4 +1,4 @@
-//! Whether the stamps can be what they are taken for: the unit of the time, and a rate that is no round number.
+//! Whether the stamps can be what they are taken for: the unit of the time, even steps, a rate that is no round number.
 
 use super::{Condition, Facts, record};
 use crate::record::{ConditionRecord, ConditionStatus};
@@ -10,6 +10,8 @@ pub(super) struct Clock;
 const LONGEST_S: f64 = 366.0 * 86_400.0;
 /// Gyros are sampled more slowly.
 const FASTEST_HZ: f64 = 1e6;
+/// Rms scatter of the stamps, in intervals, from which they are not those of a uniform clock.
+const UNEVEN: f64 = 0.15;
 /// Relative difference from a round rate below which it is met.
 const MET: f64 = 1e-3;
 /// Relative difference up to which a round rate is the one that was meant.
@@ -27,6 +29,13 @@ impl Condition for Clock {
                 .with("hz", rate_hz)
         } else if rate_hz > FASTEST_HZ {
             Note::new("clock.too_fast").with("hz", rate_hz)
+        } else if let Some(jitter_s) =
+            facts.integrity.timestamp_jitter_s.filter(|j| *j > UNEVEN * facts.sample_interval_s)
+        {
+            Note::new("clock.uneven")
+                .with("jitter_s", jitter_s)
+                .with("interval_s", facts.sample_interval_s)
+                .with("percent", 100.0 * jitter_s / facts.sample_interval_s)
         } else if let Some(round_hz) =
             round_near(rate_hz).filter(|_| facts.procedure.sample_rate_hz.is_none())
         {

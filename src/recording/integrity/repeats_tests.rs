@@ -95,3 +95,66 @@ fn regular_and_stuck_outputs_are_no_repeats() {
     let held: Vec<f64> = gauss(4_000, 5).iter().flat_map(|v| [*v; 10]).collect();
     assert_eq!(found(&held), (0, vec![]));
 }
+
+/// Clean records of many kinds: white, coarse from a hundredth to five standard deviations, walking, smoothed, counts of
+/// a slow turn with and without noise.
+fn clean(kind: usize, seed: u64, n: usize) -> Vec<f64> {
+    let noise = gauss(n, seed);
+    let mut drift = 0.0;
+    match kind {
+        0 => noise,
+        1 => rounded(&noise, 0.01),
+        2 => rounded(&noise, 0.3),
+        3 => rounded(&noise, 1.0),
+        4 => rounded(&noise, 3.0),
+        5 => rounded(&noise, 5.0),
+        6 => {
+            let walk: Vec<f64> = noise
+                .iter()
+                .map(|v| {
+                    drift += 0.05 * v;
+                    drift
+                })
+                .collect();
+            rounded(&walk, 0.2)
+        }
+        7 => rounded(&noise.windows(20).map(|w| w.iter().sum::<f64>() / 20.0).collect::<Vec<_>>(), 0.05),
+        8 => {
+            let mut before = 0.0;
+            noise
+                .iter()
+                .map(|v| {
+                    drift += 0.37 + 0.1 * v;
+                    let step = drift.floor() - before;
+                    before = drift.floor();
+                    step
+                })
+                .collect()
+        }
+        _ => {
+            (0..n).map(|i| (i as f64 * 0.6180339).floor() - ((i as f64 - 1.0) * 0.6180339).floor()).collect()
+        }
+    }
+}
+
+#[test]
+fn clean_records_of_many_kinds_show_no_repeat() {
+    for kind in 0..10 {
+        for seed in 0..5 {
+            assert_eq!(found(&clean(kind, 100 + seed, 20_000)), (0, vec![]), "kind {kind}, seed {seed}");
+        }
+    }
+}
+
+#[test]
+#[ignore = "takes a minute; the short form is `clean_records_of_many_kinds_show_no_repeat`"]
+fn false_repeats_stay_at_the_stated_rate() {
+    let mut false_alarms = [0; 10];
+    for seed in 0..250 {
+        for (kind, count) in false_alarms.iter_mut().enumerate() {
+            *count += u32::from(found(&clean(kind, 5000 + seed, 20_000)).0 > 0);
+        }
+    }
+    println!("of 250 records of each kind: {false_alarms:?}");
+    assert_eq!(false_alarms, [0; 10]);
+}

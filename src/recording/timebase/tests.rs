@@ -152,5 +152,20 @@ fn stamps_that_cannot_serve_are_refused() {
     assert!(matches!(Clock::declared(f64::NAN), Err(ClockError::Rate { .. })));
 }
 
+#[test]
+fn lost_rows_do_not_stretch_a_clock_of_whole_seconds() {
+    // Every stamp is a whole number of intervals; rows are lost without order.
+    let lost = |i: u32| i.wrapping_mul(2_654_435_761) >> 16 < 650;
+    for interval in [1.0, 10.0] {
+        let stamps: Vec<f64> = (0..30_000).filter(|i| !lost(*i)).map(|i| f64::from(i) * interval).collect();
+        let clock = Clock::probe(&stamps).unwrap();
+        assert_eq!(clock.interval_s, interval);
+        assert!(clock.gap_limit_s < 2.0 * interval, "{clock:?}");
+    }
+    // A clock of 1.01 s whose stamps are rounded to whole seconds is no clock of 1 s with lost rows.
+    let rounded: Vec<f64> = (0..30_000).map(|i| (f64::from(i) * 1.01).round()).collect();
+    assert!((Clock::probe(&rounded).unwrap().interval_s - 1.01).abs() < 1e-4);
+}
+
 #[path = "generator_tests.rs"]
 mod generators;
