@@ -2,6 +2,7 @@
 
 use super::plan::{Plan, TimeBaseSpec, prepare};
 use super::{Block, FieldFaultKind, FileFacts, IngestError, IngestErrorKind, Source};
+use crate::numeric::range::settled;
 use crate::record::Integrity;
 use crate::recording::faults::FaultLog;
 use crate::recording::integrity::{ValueChecks, ValueFacts};
@@ -113,8 +114,10 @@ struct State<'a> {
 impl State<'_> {
     fn block(&mut self, block: &mut Block, sinks: &mut [&mut dyn Sink]) {
         for (column, &(factor, offset)) in block.columns.iter_mut().zip(&self.plan.maps) {
-            if (factor, offset) != (1.0, 0.0) {
-                column.iter_mut().for_each(|v| *v = *v * factor + offset);
+            if (factor, offset) == (1.0, 0.0) {
+                column.iter_mut().for_each(|v| *v = settled(*v));
+            } else {
+                column.iter_mut().for_each(|v| *v = settled(*v * factor + offset));
             }
         }
         self.field_faults(block);
