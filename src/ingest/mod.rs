@@ -8,6 +8,7 @@ pub mod compressed;
 mod csv;
 mod dialect;
 mod error;
+mod identity;
 mod lines;
 mod memory;
 mod number;
@@ -26,6 +27,7 @@ pub use stream::{ChannelFacts, StreamReport, stream, stream_path};
 use crate::recording::ColumnRef;
 use crate::text::{Arg, Note};
 use compressed::{ByteStream, io_error};
+use identity::FileIdentity;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -227,6 +229,8 @@ pub struct Source {
     format: &'static str,
     packing: Packing,
     bytes: u64,
+    /// Of a file; columns in memory have none.
+    identity: Option<FileIdentity>,
     opened: Opened,
 }
 
@@ -287,7 +291,15 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
             .hint("ingest.hint.give_known"));
     };
     let opened = format.open(&candidate)?;
-    Ok(Source { path: path.to_owned(), format: format.id(), packing, bytes: metadata.len(), opened })
+    let identity = FileIdentity::of(&metadata);
+    Ok(Source {
+        path: path.to_owned(),
+        format: format.id(),
+        packing,
+        bytes: metadata.len(),
+        identity: Some(identity),
+        opened,
+    })
 }
 
 impl Source {
@@ -301,13 +313,27 @@ impl Source {
         block_rows: usize,
     ) -> Result<Source, IngestError> {
         let opened = memory::open(Path::new(name), columns, block_rows)?;
-        Ok(Source { path: PathBuf::from(name), format: "memory", packing: Packing::Plain, bytes: 0, opened })
+        Ok(Source {
+            path: PathBuf::from(name),
+            format: "memory",
+            packing: Packing::Plain,
+            bytes: 0,
+            identity: None,
+            opened,
+        })
     }
 
     /// A recording without columns under the path of one that could not be opened, so that its report can name it.
     pub fn unopened(path: &Path) -> Source {
         let opened = memory::nothing();
-        Source { path: path.to_owned(), format: "unknown", packing: Packing::Plain, bytes: 0, opened }
+        Source {
+            path: path.to_owned(),
+            format: "unknown",
+            packing: Packing::Plain,
+            bytes: 0,
+            identity: None,
+            opened,
+        }
     }
 
     /// The file.
@@ -444,12 +470,18 @@ impl Source {
             let flow = on_block(block);
             reduce::gather(block, unique.len());
             flow
-        })?;
+        });
+        // A file that was still being written is not a damaged one.
+        let facts = match (facts, &self.identity) {
+            (Err(e), Some(identity)) => return Err(identity.still_at(&self.path).err().unwrap_or(e)),
+            (facts, _) => facts?,
+        };
         if let Some(fault) = refusal.or_else(|| guard.judge_short()) {
             return Err(reduce::not_numeric(&self.path, &fault, &unique, self.columns()));
         }
         if let Some(facts) = &facts {
             compressed::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;
+            self.identity.as_ref().map_or(Ok(()), |identity| identity.still_at(&self.path))?;
         }
         if facts.as_ref().is_some_and(|f| f.rows == 0) {
             return Err(IngestError::new(IngestErrorKind::Empty, &self.path, "ingest.no_rows")
