@@ -34,7 +34,8 @@ fn study(model: &NoiseModel, hours: f64, tau0_s: f64, records: u64, seed: u64) -
         let setup =
             Setup { bias_deg_h: 0.37, ..Setup::for_record(seed * 1_000_003 + run, tau0_s, samples as u64) };
         let mean = Simulator::new(model, &setup).take(samples);
-        let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean };
+        let blocks =
+            BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean, rounding: vec![] };
         let found = Whittle::default().identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]));
         let [n, b, k, r, q] = found.estimates();
         let mut wrong = false;
@@ -172,7 +173,13 @@ fn speed() {
     let start = std::time::Instant::now();
     let mean = Simulator::new(&model, &Setup::for_record(1, tau_s, count as u64)).take(count);
     println!("simulation {:.1} ns a sample", start.elapsed().as_secs_f64() * 1e9 / count as f64);
-    let blocks = BlockSeries { block_len, first_index: 0, count: vec![block_len as u32; count], mean };
+    let blocks = BlockSeries {
+        block_len,
+        first_index: 0,
+        count: vec![block_len as u32; count],
+        mean,
+        rounding: vec![],
+    };
     let density = (0..=segment_len / 2)
         .map(|k| model.density((k.max(1) as f64) / (segment_len as f64 * tau0_s), tau0_s) / tau0_s)
         .collect();

@@ -24,7 +24,8 @@ fn simulated(
     for run in 0..runs {
         let mean =
             Simulator::new(model, &Setup::for_record(run + 40_000, tau0_s, samples as u64)).take(samples);
-        let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean };
+        let blocks =
+            BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean, rounding: vec![] };
         let found = Whittle::default().identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]));
         let estimate = match term {
             NoiseType::Flicker => &found.bias_instability,
@@ -60,7 +61,8 @@ fn expected_limit_is_the_median_of_simulated_limits() {
         .filter_map(|run| {
             let mean =
                 Simulator::new(&background, &Setup::for_record(run, tau0_s, samples as u64)).take(samples);
-            let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean };
+            let blocks =
+                BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean, rounding: vec![] };
             let found = Whittle::default().identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]));
             found.bias_instability.upper_limit.map(|l| l.value)
         })

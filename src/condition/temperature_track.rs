@@ -1,5 +1,6 @@
 //! One pass over a temperature channel: smoothed extremes and the steepest trend.
 
+use crate::numeric::compensated::Compensated;
 use std::collections::VecDeque;
 
 /// Length of the windows in which the trend of the temperature is measured, s.
@@ -12,11 +13,13 @@ pub struct TemperatureTrack {
     trend_samples: u64,
     tau0_s: f64,
     window: VecDeque<f64>,
-    window_sum: f64,
+    /// Sum of the window. What enters leaves again later: without compensation one absurd value would take the digits
+    /// of all others with it.
+    window_sum: Compensated,
     since_resum: usize,
     usable: u64,
     unusable: u64,
-    sum: f64,
+    sum: Compensated,
     raw_min: f64,
     raw_max: f64,
     smooth_min: Extreme,
@@ -63,26 +66,28 @@ pub struct TemperatureFacts {
 #[derive(Debug, Clone, Copy, Default)]
 struct Trend {
     n: u64,
-    sum_x: f64,
+    /// First value: sums are taken from it, so that a large offset costs no digits.
+    origin: f64,
     sum_y: f64,
-    sum_xx: f64,
     sum_xy: f64,
 }
 
 impl Trend {
-    fn push(&mut self, y: f64) {
-        let x = self.n as f64;
-        self.n += 1;
-        self.sum_x += x;
+    fn push(&mut self, value: f64) {
+        if self.n == 0 {
+            self.origin = value;
+        }
+        let y = value - self.origin;
         self.sum_y += y;
-        self.sum_xx += x * x;
-        self.sum_xy += x * y;
+        self.sum_xy += self.n as f64 * y;
+        self.n += 1;
     }
 
     /// Least-squares slope per sample.
     fn slope(&self) -> f64 {
         let n = self.n as f64;
-        (n * self.sum_xy - self.sum_x * self.sum_y) / (n * self.sum_xx - self.sum_x * self.sum_x)
+        let centre = 0.5 * (n - 1.0);
+        (self.sum_xy - centre * self.sum_y) * 12.0 / (n * (n * n - 1.0))
     }
 }
 
@@ -95,11 +100,11 @@ impl TemperatureTrack {
             trend_samples: (TREND_WINDOW_S / tau0_s).round().max(2.0) as u64,
             tau0_s,
             window: VecDeque::new(),
-            window_sum: 0.0,
+            window_sum: Compensated::default(),
             since_resum: 0,
             usable: 0,
             unusable: 0,
-            sum: 0.0,
+            sum: Compensated::default(),
             raw_min: f64::INFINITY,
             raw_max: f64::NEG_INFINITY,
             smooth_min: start(f64::INFINITY),
@@ -117,7 +122,7 @@ impl TemperatureTrack {
         if !continues {
             self.flush_short_stretch(time_s);
             self.window.clear();
-            self.window_sum = 0.0;
+            self.window_sum = Compensated::default();
             self.trend = Trend::default();
         }
         for (i, &value) in values.iter().enumerate() {
@@ -126,23 +131,24 @@ impl TemperatureTrack {
                 continue;
             }
             self.usable += 1;
-            self.sum += value;
+            self.sum.add(value);
             self.raw_min = self.raw_min.min(value);
             self.raw_max = self.raw_max.max(value);
             self.window.push_back(value);
-            self.window_sum += value;
+            self.window_sum.add(value);
             if self.window.len() > self.smoothing_samples {
-                self.window_sum -= self.window.pop_front().unwrap_or(0.0);
+                self.window_sum.add(-self.window.pop_front().unwrap_or(0.0));
             }
             self.since_resum += 1;
             if self.since_resum > 1 << 16 {
                 // A running sum drifts by rounding; now and then it is taken afresh.
-                self.window_sum = self.window.iter().sum();
+                self.window_sum = Compensated::default();
+                self.window.iter().for_each(|v| self.window_sum.add(*v));
                 self.since_resum = 0;
             }
             if self.window.len() == self.smoothing_samples {
                 let middle = time_s + (i as f64 - 0.5 * (self.smoothing_samples - 1) as f64) * self.tau0_s;
-                self.smoothed(self.window_sum / self.smoothing_samples as f64, middle);
+                self.smoothed(self.window_sum.value() / self.smoothing_samples as f64, middle);
             }
             self.trend.push(value);
             if self.trend.n == self.trend_samples {
@@ -171,7 +177,7 @@ impl TemperatureTrack {
     /// A stretch shorter than the smoothing time still counts, with the mean of what it has.
     fn flush_short_stretch(&mut self, time_s: f64) {
         if !self.window.is_empty() && self.window.len() < self.smoothing_samples {
-            let mean = self.window_sum / self.window.len() as f64;
+            let mean = self.window_sum.value() / self.window.len() as f64;
             self.smoothed(mean, time_s);
         }
     }
@@ -185,7 +191,7 @@ impl TemperatureTrack {
         Some(TemperatureFacts {
             usable: self.usable,
             unusable: self.unusable,
-            mean: self.sum / self.usable as f64,
+            mean: self.sum.value() / self.usable as f64,
             raw: (self.raw_min, self.raw_max),
             smooth_min: self.smooth_min,
             smooth_max: self.smooth_max,

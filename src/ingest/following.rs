@@ -5,6 +5,7 @@ use super::plan::Plan;
 use super::stream::nano;
 use super::{Block, FieldFaultKind};
 use crate::record::Integrity;
+use crate::numeric::range::settled;
 use crate::recording::faults::FaultLog;
 use crate::recording::integrity::ValueChecks;
 use crate::recording::timebase::{CounterStep, CounterTracker, Measured, Rollover, Step, Tracker, Unwrapper};
@@ -73,8 +74,10 @@ impl<'a> State<'a> {
 
     pub fn block(&mut self, block: &mut Block, sinks: &mut [&mut dyn Sink]) {
         for (column, &(factor, offset)) in block.columns.iter_mut().zip(&self.plan.maps) {
-            if (factor, offset) != (1.0, 0.0) {
-                column.iter_mut().for_each(|v| *v = *v * factor + offset);
+            if (factor, offset) == (1.0, 0.0) {
+                column.iter_mut().for_each(|v| *v = settled(*v));
+            } else {
+                column.iter_mut().for_each(|v| *v = settled(*v * factor + offset));
             }
         }
         self.unwrap(block);

@@ -13,6 +13,7 @@ mod delimited;
 mod error;
 mod following;
 mod hdf5;
+mod identity;
 mod joined;
 pub mod manifest;
 pub mod manifest_tables;

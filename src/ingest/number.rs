@@ -6,14 +6,7 @@ const POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
-/// Largest magnitude that is taken for a number. No sensor gives more, and sums of fourth powers of it stay finite over
-/// any record; beyond, one field could make every figure of a record overflow.
-const LARGEST: f64 = 1e60;
-
-/// True for a number that can be reckoned with: neither NaN nor infinite nor absurdly large.
-pub fn usable(value: f64) -> bool {
-    value.abs() <= LARGEST
-}
+pub use crate::numeric::range::usable;
 
 /// What a field holds.
 #[derive(Debug, Clone, Copy, PartialEq)]

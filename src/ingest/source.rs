@@ -2,6 +2,7 @@
 
 use super::compressed::{self, ByteStream, Packing, io_error};
 use super::error::{IngestError, IngestErrorKind};
+use super::identity::FileIdentity;
 use super::joined::{self, PartFacts};
 use super::{
     Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, choice, memory, reduce,
@@ -17,6 +18,8 @@ pub struct Source {
     format: &'static str,
     packing: Packing,
     bytes: u64,
+    /// Of a file; columns in memory have none.
+    identity: Option<FileIdentity>,
     opened: Opened,
     /// The files of a recording of several; empty for one.
     parts: Vec<joined::Part>,
@@ -74,6 +77,7 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         format: format.id(),
         packing,
         bytes: metadata.len(),
+        identity: Some(FileIdentity::of(&metadata)),
         opened,
         parts: Vec::new(),
         contiguous: false,
@@ -102,7 +106,7 @@ impl Source {
 
     fn alone(path: PathBuf, format: &'static str, opened: Opened) -> Source {
         let (parts, contiguous) = (Vec::new(), false);
-        Source { path, format, packing: Packing::Plain, bytes: 0, opened, parts, contiguous }
+        Source { path, format, packing: Packing::Plain, bytes: 0, identity: None, opened, parts, contiguous }
     }
 
     /// A recording of several files; what describes it comes from the first.
@@ -118,6 +122,7 @@ impl Source {
             format: first.map_or("unknown", |s| s.format),
             packing: first.map_or(Packing::Plain, |s| s.packing),
             bytes: parts.iter().map(|p| p.source.bytes).sum(),
+            identity: None,
             opened: described,
             parts,
             contiguous,
@@ -293,12 +298,18 @@ impl Source {
             let flow = on_block(block);
             reduce::gather(block, unique.len());
             flow
-        })?;
+        });
+        // A file that was still being written is not a damaged one.
+        let facts = match (facts, &self.identity) {
+            (Err(e), Some(identity)) => return Err(identity.still_at(&self.path).err().unwrap_or(e)),
+            (facts, _) => facts?,
+        };
         if let Some(fault) = refusal.or_else(|| guard.judge_short()) {
             return Err(reduce::not_numeric(&self.path, &fault, &unique, self.columns()));
         }
         if let Some(facts) = &facts {
             compressed::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;
+            self.identity.as_ref().map_or(Ok(()), |identity| identity.still_at(&self.path))?;
         }
         if facts.as_ref().is_some_and(|f| f.rows == 0) {
             return Err(IngestError::new(IngestErrorKind::Empty, &self.path, "ingest.no_rows")

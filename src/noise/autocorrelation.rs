@@ -37,11 +37,15 @@ pub fn of_series(series: &[f64], max_lag: usize) -> Option<Autocorrelation> {
     }
     let first = series.iter().copied().find(|v| v.is_finite())?;
     let finite = || series.iter().filter(|v| v.is_finite());
-    let mean = first + finite().map(|v| v - first).sum::<f64>() / present as f64;
+    // Taken off one after the other: their sum would be rounded to the digits of a large offset.
+    let rest = finite().map(|v| v - first).sum::<f64>() / present as f64;
     let max_lag = max_lag.min(n - 1);
     let length = (n + max_lag + 1).next_power_of_two();
-    let products =
-        lagged_products(series.iter().map(|v| if v.is_finite() { v - mean } else { 0.0 }), length, max_lag)?;
+    let products = lagged_products(
+        series.iter().map(|v| if v.is_finite() { (v - first) - rest } else { 0.0 }),
+        length,
+        max_lag,
+    )?;
     let pairs = if present == n {
         (0..=max_lag).map(|k| (n - k) as f64).collect()
     } else {

@@ -1,6 +1,7 @@
 //! The record as at most 2^18 block means on its uniform grid: what slow noise is identified on.
 
 use super::data::BlockSeries;
+use super::phase::two_sum;
 
 /// Blocks that remain at most.
 pub const MOST_BLOCKS: usize = 1 << 18;
@@ -68,15 +69,17 @@ impl BlockSeriesAccumulator {
 
     /// The block means so far.
     pub fn finish(&self) -> BlockSeries {
+        let (mean, rounding) = self
+            .blocks
+            .iter()
+            .map(|(sum, n)| if *n == 0 { (f64::NAN, 0.0) } else { two_sum(self.reference, sum / *n as f64) })
+            .unzip();
         BlockSeries {
             block_len: 1 << self.shift,
             first_index: self.first_block << self.shift,
-            mean: self
-                .blocks
-                .iter()
-                .map(|(sum, n)| if *n == 0 { f64::NAN } else { self.reference + sum / *n as f64 })
-                .collect(),
+            mean,
             count: self.blocks.iter().map(|b| u32::try_from(b.1).unwrap_or(u32::MAX)).collect(),
+            rounding,
         }
     }
 

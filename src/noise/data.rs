@@ -12,6 +12,18 @@ pub struct BlockSeries {
     pub mean: Vec<f64>,
     /// Number of usable samples in each block.
     pub count: Vec<u32>,
+    /// What rounding took from each mean, deg/h: where the offset is large against the noise, a mean over many samples
+    /// has more digits than one double holds. Empty: nothing.
+    pub rounding: Vec<f64>,
+}
+
+impl BlockSeries {
+    /// The means less the first one, with every digit they have; NaN where there is none.
+    pub fn about_first(&self) -> Vec<f64> {
+        let first = self.mean.iter().copied().find(|m| m.is_finite()).unwrap_or(0.0);
+        let rest = self.rounding.iter().copied().chain(std::iter::repeat(0.0));
+        self.mean.iter().zip(rest).map(|(m, r)| (m - first) + r).collect()
+    }
 }
 
 /// Averaged periodogram (Welch: Hann window, half overlap, mean of each segment removed).

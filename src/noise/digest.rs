@@ -10,9 +10,13 @@ use super::phase::Compensated;
 use super::tau_grid::TauGrid;
 use super::welch::{WelchAccumulator, WelchResult};
 use super::windows::{WindowMeans, WindowStatistics};
+use crate::numeric::range;
 
 /// Samples that go through all accumulators while they are in cache.
 const SLICE: usize = 8192;
+
+/// Largest rate that can be used, deg/h: the largest number of a file in rad/s, rounded up.
+const LARGEST: f64 = 1e6 * range::LARGEST;
 
 /// What a digest of a rate channel is to hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +46,10 @@ impl DigestPlan {
     }
 }
 
+fn usable(rate_deg_h: f64) -> bool {
+    rate_deg_h.abs() <= LARGEST
+}
+
 /// Everything one pass leaves behind. Rates in deg/h.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RateDigest {
@@ -49,7 +57,7 @@ pub struct RateDigest {
     pub tau0_s: f64,
     /// Finite samples.
     pub samples: u64,
-    /// Samples that were not finite: each splits the record.
+    /// Samples that were not finite or beyond 1e66 deg/h: each splits the record.
     pub unusable: u64,
     /// Mean of the finite samples, deg/h; NaN without any.
     pub mean: f64,
@@ -130,8 +138,8 @@ impl RateAccumulator {
         }
     }
 
-    /// Takes contiguous samples, deg/h, the first at grid index `first_index`. Samples that are not finite cannot be
-    /// used: they are counted, and split the record there. `continues = false` splits it before the first sample.
+    /// Takes contiguous samples, deg/h, the first at grid index `first_index`. Samples that are not finite, or
+    /// beyond 1e66 in magnitude, cannot be used: they are counted, and split the record there. `continues = false` splits it before the first sample.
     pub fn push(&mut self, samples: &[f64], first_index: u64, continues: bool) {
         if samples.is_empty() {
             self.next_index = self.next_index.filter(|_| continues);
@@ -141,7 +149,7 @@ impl RateAccumulator {
         let mut continues = continues && self.next_index == Some(first_index);
         for slice in samples.chunks(SLICE) {
             let mut offset = 0;
-            for run in slice.split(|y| !y.is_finite()) {
+            for run in slice.split(|y| !usable(*y)) {
                 if !run.is_empty() {
                     self.run(run, at.saturating_add(offset as u64), continues);
                     continues = true;

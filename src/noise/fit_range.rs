@@ -134,7 +134,8 @@ mod tests {
             .map(|_| 60.0 * n * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng))
             .collect();
         let mean: Vec<f64> = white.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
-        let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean };
+        let blocks =
+            BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: vec![] };
         Evidence::new(&blocks, None, 1.0, &[])
     }
 
@@ -158,7 +159,8 @@ mod tests {
         let mean: Vec<f64> = (0..36_000)
             .map(|_| 0.12 * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng))
             .collect();
-        let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean };
+        let blocks =
+            BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: vec![] };
         let evidence = Evidence::new(&blocks, None, 1.0, &[]);
         let ranged = identify_in_range(&Whittle::default(), "rate", &evidence, 0.5);
         assert_eq!((ranged.highest_hz, ranged.widened), (None, 1.0));

@@ -7,6 +7,8 @@ const SHORTEST: usize = 64;
 /// Bins from −8 to +8 scale units.
 const BINS: usize = 128;
 const REACH: f64 = 8.0;
+/// Fourth powers beyond are summed in other units: many of them would leave the range of a double.
+const LARGEST_POWER: f64 = 1e150;
 
 /// Histogram with moments. Values in deg/h.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -45,8 +47,10 @@ pub struct HistogramAccumulator {
     above: u64,
     samples: u64,
     unused: u64,
-    /// Sums of powers 2, 3, 4 in units of the scale.
+    /// Sums of powers 2, 3, 4 in units of the scale times the magnitude.
     powers: [f64; 3],
+    /// Size of the largest deviations in units of the scale, where their fourth powers would be too large; 0: 1.
+    magnitude: f64,
     blocks: u64,
 }
 
@@ -91,7 +95,7 @@ impl HistogramAccumulator {
             above: self.above,
             samples: self.samples,
             unused_samples: self.unused,
-            standard_deviation: scale * variance.sqrt(),
+            standard_deviation: scale * self.magnitude.max(1.0) * variance.sqrt(),
             skewness: ratio(third, 1.5),
             excess_kurtosis: if variance > 0.0 { ratio(fourth, 2.0) - 3.0 } else { 0.0 },
         }
@@ -108,8 +112,9 @@ impl HistogramAccumulator {
     fn flush(&mut self) {
         let n = self.pending.len() as f64;
         let first = self.pending.first().copied().unwrap_or(0.0);
-        let mean = first + self.pending.iter().map(|y| y - first).sum::<f64>() / n;
-        self.pending.iter_mut().for_each(|y| *y -= mean);
+        // A mean that was rounded to the digits of a large offset would leave a constant behind.
+        let rest = self.pending.iter().map(|y| y - first).sum::<f64>() / n;
+        self.pending.iter_mut().for_each(|y| *y = (*y - first) - rest);
         if self.scale.is_none() {
             self.scale = robust_scale(&self.pending);
         }
@@ -133,14 +138,32 @@ impl HistogramAccumulator {
                     self.above += 1;
                 }
             }
-            self.powers[0] += two;
-            self.powers[1] += three;
-            self.powers[2] += four;
+            if four > LARGEST_POWER || self.magnitude > 0.0 {
+                self.add_far(inverse);
+            } else {
+                self.powers[0] += two;
+                self.powers[1] += three;
+                self.powers[2] += four;
+            }
         } else if let Some(count) = self.counts.get_mut(BINS / 2) {
             // A flat record so far: every deviation is 0.
             *count += self.pending.len() as u64;
         }
         self.pending.clear();
+    }
+}
+
+impl HistogramAccumulator {
+    /// Adds the powers of a block in units of the largest deviation so far.
+    fn add_far(&mut self, inverse: f64) {
+        let before = if self.magnitude > 0.0 { self.magnitude } else { 1.0 };
+        let now = self.pending.iter().fold(before, |m, y| m.max((y * inverse).abs()));
+        let shrink = before / now;
+        for (power, order) in self.powers.iter_mut().zip(2..) {
+            *power *= shrink.powi(order);
+            *power += self.pending.iter().map(|y| (y * inverse / now).powi(order)).sum::<f64>();
+        }
+        self.magnitude = now;
     }
 }
 

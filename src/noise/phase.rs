@@ -1,24 +1,6 @@
 //! From rate to phase: running sums that keep their digits.
 
-/// A sum with Neumaier's compensation.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Compensated {
-    sum: f64,
-    lost: f64,
-}
-
-impl Compensated {
-    pub(crate) fn add(&mut self, value: f64) {
-        let sum = self.sum + value;
-        self.lost +=
-            if self.sum.abs() >= value.abs() { (self.sum - sum) + value } else { (value - sum) + self.sum };
-        self.sum = sum;
-    }
-
-    pub(crate) fn value(self) -> f64 {
-        self.sum + self.lost
-    }
-}
+pub(crate) use crate::numeric::compensated::{Compensated, two_sum};
 
 /// Samples in one step of the phase.
 pub(crate) const BLOCK: usize = 4096;
@@ -82,15 +64,6 @@ impl PhaseBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn compensation_keeps_small_terms() {
-        let mut sum = Compensated::default();
-        for v in [1e16, 1.0, 1.0, -1e16] {
-            sum.add(v);
-        }
-        assert_eq!(sum.value(), 2.0);
-    }
 
     #[test]
     fn phases_do_not_depend_on_the_blocks() {

@@ -175,9 +175,11 @@ impl Engine {
     }
 
     fn transform(&mut self) {
-        let mean = self.tail.iter().sum::<f64>() / self.tail.len() as f64;
+        // A mean that was rounded to the digits of a large offset would leave a constant behind.
+        let first = self.tail.first().copied().unwrap_or(0.0);
+        let rest = self.tail.iter().map(|y| y - first).sum::<f64>() / self.tail.len() as f64;
         for ((x, y), w) in self.input.iter_mut().zip(&self.tail).zip(&self.window) {
-            *x = (y - mean) * w;
+            *x = ((y - first) - rest) * w;
         }
         // Lengths come from the plan itself, so that this cannot fail.
         if self.plan.process_with_scratch(&mut self.input, &mut self.output, &mut self.scratch).is_ok() {

@@ -31,9 +31,12 @@ pub struct WindowMeans {
     window_s: f64,
     samples: u64,
     filled: u64,
+    /// First sample of the window.
     reference: f64,
     sum: f64,
     n: u64,
+    /// First sample of all: moments are taken about it, so that a large offset costs no digits.
+    origin: Option<f64>,
     mean: f64,
     squares: f64,
     means: Vec<f64>,
@@ -52,6 +55,7 @@ impl WindowMeans {
             reference: 0.0,
             sum: 0.0,
             n: 0,
+            origin: None,
             mean: 0.0,
             squares: 0.0,
             means: vec![],
@@ -79,7 +83,7 @@ impl WindowMeans {
             }
             self.filled += now.len() as u64;
             if self.filled == self.samples {
-                self.add(self.reference + self.sum / self.samples as f64);
+                self.add(self.sum / self.samples as f64);
                 self.filled = 0;
             }
             rest = later;
@@ -94,7 +98,7 @@ impl WindowMeans {
             window_s: self.window_s,
             samples: self.samples,
             n: self.n,
-            mean: if self.n > 0 { self.mean } else { f64::NAN },
+            mean: if self.n > 0 { self.origin.unwrap_or(0.0) + self.mean } else { f64::NAN },
             standard_deviation: if self.n > 1 {
                 (self.squares / (self.n - 1) as f64).sqrt()
             } else {
@@ -113,14 +117,17 @@ impl WindowMeans {
         self.filled = 0;
     }
 
-    fn add(&mut self, value: f64) {
+    /// Adds the mean of a window, given from its first sample.
+    fn add(&mut self, above: f64) {
+        let origin = *self.origin.get_or_insert(self.reference);
+        let value = (self.reference - origin) + above;
         self.n += 1;
         self.in_stretch += 1;
         let step = value - self.mean;
         self.mean += step / self.n as f64;
         self.squares += step * (value - self.mean);
         if self.means.len() < KEPT_MEANS {
-            self.means.push(value);
+            self.means.push(self.reference + above);
         }
     }
 }

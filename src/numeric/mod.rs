@@ -1,4 +1,6 @@
 //! Numerical tools that know no gyro.
 
+pub(crate) mod compensated;
 pub mod cosine;
+pub mod range;
 pub mod special;

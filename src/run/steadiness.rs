@@ -89,7 +89,7 @@ mod tests {
     use crate::noise::simulate::{Setup, Simulator};
 
     fn blocks(mean: Vec<f64>) -> BlockSeries {
-        BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean }
+        BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: Vec::new() }
     }
 
     fn noise(model: NoiseModel, seed: u64, n: usize) -> Vec<f64> {

@@ -10,6 +10,7 @@ pub(super) const LEAST_STRETCH: usize = 16;
 /// Block means with counts, at one averaging time.
 pub(super) struct Series {
     pub(super) tau_s: f64,
+    /// Means less the first one.
     pub(super) mean: Vec<f64>,
     pub(super) count: Vec<f64>,
     pub(super) full: f64,
@@ -20,10 +21,10 @@ impl Series {
         let full = blocks.block_len.max(1) as f64;
         let usable = |m: f64, c: u32| m.is_finite() && c > 0 && f64::from(c) >= LEAST_FILLING * full;
         let pairs: Vec<(f64, f64)> = blocks
-            .mean
-            .iter()
+            .about_first()
+            .into_iter()
             .zip(&blocks.count)
-            .map(|(&m, &c)| if usable(m, c) { (m, f64::from(c)) } else { (0.0, 0.0) })
+            .map(|(m, &c)| if usable(m, c) { (m, f64::from(c)) } else { (0.0, 0.0) })
             .collect();
         Series {
             tau_s: full * tau0_s,

@@ -16,8 +16,9 @@ const LEAST_BLOCKS: usize = 64;
 /// Draws the autocorrelation; `None` when the record is too short or constant.
 pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     let blocks = gyro.blocks();
+    let means = blocks.about_first();
     let full_rate = if blocks.block_len == 1 {
-        of_series(&blocks.mean, SHORT_LAGS.min(blocks.mean.len() / 4))
+        of_series(&means, SHORT_LAGS.min(means.len() / 4))
     } else {
         of_spectrum(gyro.spectrum(), SHORT_LAGS)
     };
@@ -26,9 +27,9 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         panels.push(panel(&acf, gyro.tau0_s, "axis.lag", true));
     }
     // The long panel spans about a quarter of the record in at most LONG_LAGS steps.
-    let merge = (blocks.mean.len() / (4 * LONG_LAGS)).max(1);
-    if merge * blocks.block_len as usize > 1 && blocks.mean.len() / merge >= LEAST_BLOCKS {
-        let coarse: Vec<f64> = blocks.mean.chunks(merge).map(mean_of_present).collect();
+    let merge = (means.len() / (4 * LONG_LAGS)).max(1);
+    if merge * blocks.block_len as usize > 1 && means.len() / merge >= LEAST_BLOCKS {
+        let coarse: Vec<f64> = means.chunks(merge).map(mean_of_present).collect();
         if let Some(acf) = of_series(&coarse, LONG_LAGS.min(coarse.len() / 4)) {
             let block_s = gyro.tau0_s * blocks.block_len as f64 * merge as f64;
             panels.push(panel(&acf, block_s, "axis.lag_of_means", false));

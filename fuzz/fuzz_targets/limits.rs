@@ -1,0 +1,8 @@
+//! Limits in TOML.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| {
+    sagnac_fuzz::file_of_keys(data, |bytes| sagnac::procedure::parse_limits("l.toml", bytes));
+});

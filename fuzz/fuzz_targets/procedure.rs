@@ -1,0 +1,8 @@
+//! Procedures in TOML.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| {
+    sagnac_fuzz::file_of_keys(data, |bytes| sagnac::procedure::parse_procedure("p.toml", bytes));
+});

@@ -1,0 +1,16 @@
+//! A template of the user in place of a built-in one.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use sagnac::report::{Renderer, render_html};
+use sagnac::text::Lang;
+
+fuzz_target!(|text: &str| {
+    let Ok(folder) = tempfile::tempdir() else { return };
+    if std::fs::write(folder.path().join("signoff.html"), text).is_err() {
+        return;
+    }
+    let Ok(renderer) = Renderer::with_overrides(folder.path()) else { return };
+    let (record, figures) = sagnac_fuzz::sample();
+    let _ = render_html(record, figures, Lang::En, &renderer);
+});
