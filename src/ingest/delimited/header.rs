@@ -36,8 +36,10 @@ pub(super) fn find(above: &[Above<'_>], separator: Separator, fields: usize, sta
     }
     // Plain lines go before comments; of each the last counts.
     for comments in [false, true] {
-        let mut lines =
-            above.iter().rev().filter(|l| l.2 == comments && (!comments || nameable(l.1, separator)));
+        let mut lines = above
+            .iter()
+            .rev()
+            .filter(|l| l.2 == comments && lettered(l.1) && (!comments || nameable(l.1, separator)));
         let Some(last) = lines.next() else { continue };
         let spelt = units(last.1, separator, fields);
         let before = lines.next().and_then(|l| Some((l.0, named(l.1)?)));
@@ -54,11 +56,15 @@ pub(super) fn find(above: &[Above<'_>], separator: Separator, fields: usize, sta
     header
 }
 
-/// True when a comment may hold names: no key with a value where blanks separate, at least one letter.
+/// True for a line with a letter: rows of numbers that are skipped name nothing.
+fn lettered(line: &[u8]) -> bool {
+    String::from_utf8_lossy(line).chars().any(|c| c.is_alphabetic() || c == '№')
+}
+
+/// True when a comment may hold names: no key with a value where blanks separate.
 fn nameable(line: &[u8], separator: Separator) -> bool {
     let keyed = line.iter().any(|c| matches!(c, b':' | b'='));
-    let letters = String::from_utf8_lossy(line).chars().any(char::is_alphabetic);
-    letters && !(keyed && separator == Separator::Blanks)
+    !(keyed && separator == Separator::Blanks)
 }
 
 fn all_units(names: &[String]) -> bool {

@@ -169,7 +169,8 @@ fn remark(column: &Listed, facts: Option<&ChannelFacts>) -> Option<Note> {
     if facts.values.count > 0 && facts.values.min == facts.values.max {
         return Some(about("inspect.never_changes"));
     }
-    let guessed = !column.guess.unit_is_named && column.guess.role != Role::Auxiliary;
+    let unitless = matches!(column.guess.role, Role::Auxiliary | Role::Counter);
+    let guessed = !column.guess.unit_is_named && !unitless;
     guessed.then(|| Note::new("inspect.unit_guessed").with("reason", column.guess.reason.clone()))
 }
 
