@@ -410,5 +410,4 @@ impl Parser<'_> {
 pub const EARTH_RATE_DEG_H: f64 = 15.041_067;
 
 #[cfg(test)]
-#[path = "units_tests.rs"]
 mod tests;
