@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 /// Modules from the ground up; each may use those of lower floors, and its own.
 const FLOORS: &[&[&str]] = &[
-    &["numeric", "units", "text"],
+    &["text"],
+    &["numeric", "units"],
     &["estimate", "figure", "ids", "output"],
     &["record", "recording"],
     &["keyed"],
