@@ -9,7 +9,10 @@
 use crate::text::Note;
 use schemars::JsonSchema;
 use serde::Serialize;
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+
+#[path = "estimate_student.rs"]
+mod student;
 
 /// The standard normal quantile of a probability.
 pub fn normal_quantile(probability: f64) -> f64 {
@@ -86,8 +89,7 @@ impl Spread {
                 Some(value + normal_quantile(confidence) * u)
             }
             Spread::StudentT { standard_uncertainty, dof } => {
-                let t = StudentsT::new(0.0, 1.0, dof.max(1.0)).ok()?;
-                Some(value + t.inverse_cdf(confidence) * standard_uncertainty)
+                Some(value + student::quantile(confidence, *dof) * standard_uncertainty)
             }
             Spread::ChiSquare { dof } => {
                 let q = chi_square_quantile(1.0 - confidence, *dof);
@@ -109,8 +111,7 @@ impl Spread {
                 }
             }
             Spread::StudentT { standard_uncertainty: u, dof } => {
-                let t = StudentsT::new(0.0, 1.0, dof.max(1.0)).ok()?;
-                (*u > 0.0).then(|| 1.0 - t.cdf((threshold - value) / u))
+                (*u > 0.0).then(|| student::upper_tail((threshold - value) / u, *dof))
             }
             Spread::ChiSquare { dof } => {
                 let d = ChiSquared::new(dof.max(1e-3)).ok()?;
