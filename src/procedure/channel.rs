@@ -4,6 +4,7 @@ use super::quantity;
 use super::reader::Reader;
 use super::section::{Entry, Section};
 use crate::recording::{Channel, Role};
+use crate::text::{Lang, Note};
 use crate::units::Unit;
 
 /// Reads a channel; gives it with the unit of the file as written, or nothing when a problem was reported.
@@ -64,6 +65,38 @@ fn scaled(
     match plain_unit(role).and_then(|u| Some((product.factor_to(&u).ok()?, u))) {
         Some((factor, plain)) => Some((plain, value * factor)),
         None => Some((product, value)),
+    }
+}
+
+/// The period after which a channel starts again: s of stamps, counts of a counter, arcsec of an accumulated angle.
+pub(super) fn rollover(section: &Section, role: Role, reader: &mut Reader<'_>) -> Option<f64> {
+    let text = section.text("rollover")?;
+    let at = section.span_of("rollover");
+    let unit = match role {
+        Role::Time => "s",
+        Role::Counter => "count",
+        Role::AccumulatedAngle => "arcsec",
+        other => {
+            let note = Note::new("time_base.rollover_role").with("role", other.id());
+            reader.error(&at, note.say(Lang::En), None);
+            return None;
+        }
+    };
+    let example = match role {
+        Role::Counter => "rollover = \"256 count\"",
+        Role::AccumulatedAngle => "rollover = \"360 deg\"",
+        _ => "rollover = \"86400 s\"",
+    };
+    match quantity::parse(&text, unit, true, false) {
+        Ok(period) if period > 0.0 => Some(period),
+        Ok(_) => {
+            reader.error(&at, Note::new("time_base.rollover_positive").say(Lang::En), Some(example.into()));
+            None
+        }
+        Err(e) => {
+            reader.error(&at, e.message, Some(example.into()));
+            None
+        }
     }
 }
 
