@@ -14,6 +14,15 @@ struct Angle {
     last: f64,
 }
 
+/// An angle started again.
+pub(super) struct Wrapped {
+    /// Row among those given.
+    pub row: usize,
+    pub slot: usize,
+    /// Angle after which it started again, arcsec.
+    pub period: f64,
+}
+
 /// The accumulated angles of a recording.
 pub(super) struct Angles {
     list: Vec<Angle>,
@@ -37,13 +46,8 @@ impl Angles {
         self.list.is_empty()
     }
 
-    /// Rows with rates in place of angles, without the first row where a stretch begins; and the roll-overs: row, slot,
-    /// period.
-    pub fn differences(
-        &mut self,
-        values: &[Vec<f64>],
-        begins: bool,
-    ) -> (Vec<Vec<f64>>, Vec<(usize, usize, f64)>) {
+    /// Rows with rates in place of angles, without the first row where a stretch begins; and the roll-overs.
+    pub fn differences(&mut self, values: &[Vec<f64>], begins: bool) -> (Vec<Vec<f64>>, Vec<Wrapped>) {
         let skipped = usize::from(begins);
         let mut out: Vec<Vec<f64>> =
             values.iter().map(|v| v.get(skipped..).unwrap_or_default().to_vec()).collect();
@@ -58,7 +62,7 @@ impl Angles {
                 let mut step = *value - angle.last;
                 if let Some(period) = wrap(angle, *value, step) {
                     step -= period * (step / period).round();
-                    wraps.push((i + skipped, angle.slot, period));
+                    wraps.push(Wrapped { row: i + skipped, slot: angle.slot, period });
                 }
                 angle.last = *value;
                 *value = step / self.interval_s;

@@ -1,6 +1,6 @@
 //! Rows put on the grid of the recording: by their stamps, by a counter, or by their number.
 
-use super::accumulated::Angles;
+use super::accumulated::{Angles, Wrapped};
 use super::plan::Plan;
 use super::stream::nano;
 use super::{Block, FieldFaultKind};
@@ -368,7 +368,7 @@ impl<'a> State<'a> {
         // The first row of a stretch has no angle before it.
         let skipped = usize::from(!self.connected);
         let (rates, wraps) = self.angles.differences(values, !self.connected);
-        for (at, slot, period) in wraps {
+        for Wrapped { row: at, slot, period } in wraps {
             self.integrity.rollovers += 1;
             let id = self.plan.channels.get(slot).map(|c| c.id.as_str());
             let note = || Note::new("time_base.angle_rollover").with("period_deg", period / 3600.0);

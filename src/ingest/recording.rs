@@ -135,7 +135,10 @@ fn expand(path: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
 /// A key that sorts numbers in names by their value.
 pub(super) fn natural(name: &str) -> Vec<(String, u128, String)> {
     let mut key = Vec::new();
-    let mut rest = name;
+    // Without what follows the first dot of the name, so that part.csv comes before part1.csv.
+    let file = name.rfind('/').map_or(0, |slash| slash + 1);
+    let dot = name.get(file..).and_then(|n| n.find('.')).map_or(name.len(), |dot| file + dot);
+    let (mut rest, extension) = name.split_at(dot);
     while !rest.is_empty() {
         let words = rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len());
         let (word, after) = rest.split_at(words);
@@ -146,6 +149,7 @@ pub(super) fn natural(name: &str) -> Vec<(String, u128, String)> {
         key.push((word.to_owned(), value, digits.to_owned()));
         rest = after;
     }
+    key.push((extension.to_owned(), 0, String::new()));
     key
 }
 

@@ -69,6 +69,39 @@ fn scaled(
     }
 }
 
+/// The period after which a channel starts again: s of stamps, counts of a counter, arcsec of an accumulated angle.
+pub(super) fn rollover(section: &Section, role: Role, reader: &mut Reader<'_>) -> Option<f64> {
+    let text = section.text("rollover")?;
+    let at = section.span_of("rollover");
+    let unit = match role {
+        Role::Time => "s",
+        Role::Counter => "count",
+        Role::AccumulatedAngle => "arcsec",
+        other => {
+            let note = Note::new("time_base.rollover_role").with("role", other.id());
+            reader.error(&at, note, None);
+            return None;
+        }
+    };
+    let example = match role {
+        Role::Counter => "rollover = \"256 count\"",
+        Role::AccumulatedAngle => "rollover = \"360 deg\"",
+        _ => "rollover = \"86400 s\"",
+    };
+    let example = || Note::new("keyed.help.example").with("example", example);
+    match quantity::parse(&text, unit, true, false) {
+        Ok(period) if period > 0.0 => Some(period),
+        Ok(_) => {
+            reader.error(&at, "time_base.rollover_positive", Some(example()));
+            None
+        }
+        Err(e) => {
+            reader.error(&at, e.message, Some(example()));
+            None
+        }
+    }
+}
+
 fn plain_unit(role: Role) -> Option<Unit> {
     role.internal_unit().and_then(|u| Unit::parse(u).ok())
 }

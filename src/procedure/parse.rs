@@ -103,12 +103,13 @@ fn unit(section: Option<&Section>) -> UnitSpec {
 
 fn one_channel(section: &Section, reader: &mut Reader<'_>) -> Option<ChannelSpec> {
     let (channel, unit_in_file) = channel::read(section, reader)?;
+    let rollover = channel::rollover(section, channel.role, reader);
     Some(ChannelSpec {
         channel,
         unit_in_file,
         rail_low: section.number("rail_low"),
         rail_high: section.number("rail_high"),
-        rollover: section.number("rollover").filter(|r| *r > 0.0),
+        rollover,
         required: section.flag("required"),
         span: section.span.clone(),
     })

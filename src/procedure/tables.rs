@@ -291,7 +291,7 @@ static CHANNEL: TableSpec = TableSpec {
         ),
         optional(
             "rollover",
-            Kind::QuantityBy("role"),
+            Kind::Text,
             "\"86400 s\"",
             "Period after which stamps or a counter start again, such as \"86400 s\" for clock time or \"256 count\" for a counter of 8 bits. Usual periods are found without it where no sample is missing there.",
         ),

@@ -56,13 +56,15 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
     let coarse = resolution_s > 0.3 * median;
     let odd = steps(&t).filter(|d| (d / median - 1.0).abs() > 0.3).count() as f64 / (t.len() - 1) as f64;
     let rounded = coarse && straight(&t, resolution_s) >= 0.5;
-    let (every_nth, declared_s) =
-        (rounded && every_nth_is_double(&t, resolution_s), declared_hz.map(f64::recip));
-    let slower = span_interval(&t);
-    if every_nth && !declared_s.is_some_and(|d| (d / slower - 1.0).abs() < (d / resolution_s - 1.0).abs()) {
-        let mut clock = Clock::even(resolution_s, resolution_s, 1.5 * resolution_s);
-        clock.ambiguous_with_s = declared_s.is_none().then_some(slower);
-        return Ok(clock);
+    let declared_s = declared_hz.map(f64::recip);
+    if let Some(n) = every_nth_is_double(&t, resolution_s).filter(|_| rounded) {
+        let slower = resolution_s * (1.0 + 1.0 / n as f64);
+        let off = |interval_s: f64| declared_s.map(|d| (d / interval_s - 1.0).abs());
+        if off(slower).zip(off(resolution_s)).is_none_or(|(slower, whole)| slower >= whole) {
+            let mut clock = Clock::even(resolution_s, resolution_s, 1.5 * resolution_s);
+            clock.ambiguous_with_s = declared_s.is_none().then_some(slower);
+            return Ok(clock);
+        }
     }
     if !rounded && (coarse || odd > ODD_SHARE) {
         return Ok(scored(&t, median, resolution_s).unwrap_or_else(|| plain(&t, median, &long, resolution_s)));
@@ -217,12 +219,6 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / count as f64)
 }
 
-/// Mean interval from the first to the last stamp.
-fn span_interval(t: &[f64]) -> f64 {
-    let span = t.last().copied().unwrap_or(0.0) - t.first().copied().unwrap_or(0.0);
-    span / (t.len().max(2) - 1) as f64
-}
-
 /// A whole number of the steps that the stamps are rounded to, where the interval is one within 1e-4: a row too many or
 /// too few among coarse stamps shifts their mean by less.
 fn whole_steps(interval_s: f64, resolution_s: f64) -> f64 {
@@ -272,18 +268,19 @@ pub(super) fn departure(values: &[f64]) -> f64 {
     high - low
 }
 
-/// True when every interval is one step of the rounding or two, and those of two stand at one distance throughout. A
+/// The distance of the double steps, when every interval is one step of the rounding or two, and those of two stand at one distance throughout. A
 /// clock that loses every n-th sample writes such stamps, and so does a slower one whose stamps are rounded.
-fn every_nth_is_double(t: &[f64], resolution_s: f64) -> bool {
+fn every_nth_is_double(t: &[f64], resolution_s: f64) -> Option<usize> {
     let mut doubles: Vec<usize> = Vec::new();
     for (i, d) in steps(t).enumerate() {
         match (d / resolution_s).round() {
             1.0 => {}
             2.0 => doubles.push(i),
-            _ => return false,
+            _ => return None,
         }
     }
     let distances: Vec<usize> =
         doubles.iter().zip(doubles.get(1..).unwrap_or_default()).map(|(a, b)| b - a).collect();
-    distances.len() >= 8 && distances.iter().all(|d| *d > 1 && Some(d) == distances.first())
+    let first = distances.first().copied()?;
+    (distances.len() >= 8 && distances.iter().all(|d| *d > 1 && *d == first)).then_some(first)
 }

@@ -290,7 +290,13 @@ fn what_cannot_be_used_is_said_and_does_no_harm() {
     says(&text, &["The sample rate that was given, 10 Hz", "200 s is less than the 10 h"]);
     let n = angle_random_walk(&text);
     assert!((n / 0.1 - 1.0).abs() < 0.1, "{n}");
-    let coarse: Vec<f64> = (0..2000).map(|i| f64::from(i / 10)).collect();
+    // Rows share their stamps without any regularity: no rate follows from them.
+    let coarse: Vec<f64> = (0..2000u32)
+        .scan(0.0, |t, i| {
+            *t += f64::from(u32::from(i.wrapping_mul(2_654_435_761) >> 20 < 400)) * f64::from(1 + i % 3);
+            Some(*t)
+        })
+        .collect();
     let text = told(vec![("time_s", coarse), ("rate_deg_h", noise(0.1, 11, 0.1, 2000))], None);
     says(
         &text,
