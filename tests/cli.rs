@@ -171,13 +171,13 @@ fn limits_on_the_command_line_replace_those_of_the_procedure() {
 #[test]
 fn the_default_folder_is_named_after_what_and_when() {
     let dir = tempdir().unwrap();
-    let said = sagnac(dir.path(), &["run", &procedure(), &sample("pass"), "--serial", "SN/42"]);
+    let said = sagnac(dir.path(), &["run", &procedure(), &sample("pass"), "--serial", "SN/0001"]);
     assert_eq!(said.code, 0, "{said:?}");
     let said = sagnac(dir.path(), &["analyze", &sample("pass")]);
     assert_eq!(said.code, 0, "{said:?}");
     let found = names(dir.path());
     assert_eq!(found.len(), 2, "{found:?}");
-    for (name, stem) in found.iter().zip(["analysis_unit-pass_", "static-bias_SN_42_"]) {
+    for (name, stem) in found.iter().zip(["analysis_unit-pass_", "static-bias_SN_0001_"]) {
         let stamp = name.strip_prefix(stem).unwrap_or_else(|| panic!("{name}"));
         let shape: String = stamp.chars().map(|c| if c.is_ascii_digit() { '9' } else { c }).collect();
         assert_eq!(shape, "99999999T999999Z");
@@ -201,7 +201,7 @@ fn wrong_usages_of_run_are_refused_in_one_message() {
         (&["run", p], &["<RECORDING>", "--help"]),
         (&["run", p, r, "--seriel", "x"], &["--seriel", "--serial"]),
         (&["analyse", r], &["analyse", "analyze"]),
-        (&["schema", "report"], &["procedure, limits, result"]),
+        (&["schema", "report"], &["procedure, limits, layout, result, manifest"]),
         (&["check"], &["<FILES>"]),
     ];
     for (args, fragments) in cases {

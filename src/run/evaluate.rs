@@ -59,6 +59,8 @@ pub(super) fn execute(
         .map(|s| s.to_s - s.from_s)
         .fold(0.0, f64::max);
     let gyros = if request.kind == "run" { gyro_facts::gyros(&found) } else { vec![] };
+    // Without a procedure the unit comes from the name of the column, or from a user who knows better.
+    let columns = if request.kind == "run" { gyro_facts::columns(request.source, &found) } else { vec![] };
     let stated_serials = request.source.stated_serials();
     let conditions = judge_all(&Facts {
         procedure,
@@ -73,7 +75,7 @@ pub(super) fn execute(
         warm_up: if request.kind == "run" { &warm_up } else { &[] },
         gyros: &gyros,
         limits: request.limits,
-        columns: &gyro_facts::columns(request.source, &found),
+        columns: &columns,
         duration_s: found.report.duration_s,
         stated_serials: if request.kind == "run" { &stated_serials } else { &[] },
         serial: request.unit.serial.as_deref(),

@@ -41,12 +41,14 @@ pub(super) fn columns(source: &Source, found: &Found) -> Vec<ColumnFact> {
     let column = |channel: &crate::recording::Channel| {
         let place = source.resolve(&channel.column).ok()?;
         let column = source.columns().get(place)?;
-        Some(ColumnFact {
+        // Of stamps that a reader turned into seconds, the name may still say what they were.
+        let converted = column.epoch_s.is_some() || column.rollover_s.is_some();
+        let fact = || ColumnFact {
             channel: channel.id.clone(),
             name: column.name.clone(),
-            // A reader that turned stamps into seconds says so itself.
-            unit: column.unit.clone().filter(|_| column.epoch_s.is_none()),
-        })
+            unit: column.unit.clone(),
+        };
+        (!converted).then(fact)
     };
     found.channels.iter().filter_map(column).collect()
 }

@@ -150,7 +150,7 @@ fn between(min: Option<String>, max: Option<String>, symmetric: bool, words: Wor
 }
 
 fn limits(l: &LimitRecord, row_unit: &str, words: Words) -> String {
-    let symmetric = l.min.zip(l.max).is_some_and(|(a, b)| b > 0.0 && a == -b);
+    let symmetric = l.min.zip(l.max).is_some_and(|(a, b)| b > 0.0 && (a + b).abs() <= 1e-9 * b);
     let text =
         between(l.min.map(|v| limit(v, words.lang)), l.max.map(|v| limit(v, words.lang)), symmetric, words);
     if l.unit == row_unit { text } else { words.quantity(&text, &l.unit) }
@@ -160,7 +160,7 @@ fn accepted(l: &LimitRecord, words: Words) -> String {
     between(
         l.acceptance_min.map(|v| acceptance(v, false, words.lang)),
         l.acceptance_max.map(|v| acceptance(v, true, words.lang)),
-        l.acceptance_min.zip(l.acceptance_max).is_some_and(|(a, b)| b > 0.0 && a == -b),
+        l.acceptance_min.zip(l.acceptance_max).is_some_and(|(a, b)| b > 0.0 && (a + b).abs() <= 1e-9 * b),
         words,
     )
 }
