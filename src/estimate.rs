@@ -11,7 +11,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
-#[path = "estimate_student.rs"]
 mod student;
 
 /// The standard normal quantile of a probability.

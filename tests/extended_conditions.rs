@@ -25,7 +25,8 @@ use support::synthetic::white;
 fn intervals_and_jitter_are_right_for_hard_stamps() {
     let mut worst = Worst::default();
     let jitter = |i: u64| white(9, i);
-    let cases: [(&str, Box<dyn Fn(u64) -> f64>); 6] = [
+    type Stamp = Box<dyn Fn(u64) -> f64>;
+    let cases: [(&str, Stamp); 6] = [
         ("1 kHz from 1970", Box::new(move |i| 1.7e9 + i as f64 * 1e-3 + 2e-6 * jitter(i))),
         ("1 kHz from 0", Box::new(move |i| i as f64 * 1e-3 + 2e-6 * jitter(i))),
         ("1 Hz from 1970", Box::new(move |i| 1.7e9 + i as f64 + 1e-3 * jitter(i))),
