@@ -172,8 +172,9 @@ fn fields_that_are_no_numbers_are_located() {
 
 #[test]
 fn rows_of_the_wrong_shape_are_faults_of_every_column() {
-    // Nobody can tell which field of such a row is which: its stamp and its rate are both unusable.
-    let both_columns = [("unparsable", 500, 1), ("unparsable", 500, 1)];
+    // Nobody can tell which field of such a row is which: its stamp and its rate are both unusable, and a sample is
+    // missing where it stood.
+    let both_columns = [("unparsable", 500, 1), ("unparsable", 500, 1), ("gap", 501, 1)];
     faulty("short.csv", &changed(|r, _| (r == 500).then(|| "499,12.5".to_owned())), &both_columns);
     faulty("long.csv", &changed(|r, row| (r == 500).then(|| format!("{row},1,2"))), &both_columns);
     faulty("decimal-comma.csv", &rate(500, "12,5"), &both_columns);

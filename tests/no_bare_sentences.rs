@@ -18,6 +18,14 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/report/methods.rs", "formulas and names of sources"),
     ("src/cli/mod.rs", "the help in English; a test holds it against the tables"),
     ("src/lib.rs", "documentation"),
+    ("src/ingest/manifest_tables.rs", "the key tables of manifests: documentation, as of procedures"),
+    ("src/ingest/raw/tables.rs", "the key tables of layouts: documentation, as of procedures"),
+    ("src/ingest/matlab/tape.rs", "faults of the decoder, quoted as it says them"),
+    ("src/ingest/matlab/v5.rs", "faults of the decoder, quoted as it says them"),
+    ("src/ingest/binary/lanes.rs", "faults of the decoder, quoted as it says them"),
+    ("src/ingest/tdms/mod.rs", "types of storage, quoted as the format names them"),
+    ("src/ingest/tdms/scale.rs", "faults of the decoder, quoted as it says them"),
+    ("src/ingest/hdf5/walk.rs", "types of storage, quoted as the format names them"),
 ];
 
 /// Single literals that are no sentence for users: file, part of the text, why.

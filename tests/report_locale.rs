@@ -25,12 +25,16 @@ const LISTED: &[(&str, &[&str])] = &[
             "stuck",
             "repeated",
             "interpolated",
+            "rollover",
+            "timestamp_disagreement",
         ],
     ),
     ("excluded", &["warm_up", "declared", "gap"]),
     ("clause", &["here", "elsewhere", "not_applicable"]),
     ("status", &["ok", "remark", "invalid"]),
     ("calibration", &["ok", "remark", "invalid"]),
+    // Of each channel: the id goes on with its name.
+    ("condition", &["steadiness"]),
     ("verdict", &["none", "pass", "indeterminate", "fail", "error"]),
 ];
 

@@ -101,7 +101,10 @@ fn argument(
 ) -> Arg {
     let positional = arg.is_positional();
     let id = arg.get_id().to_string();
-    let mut arg = arg.help_heading(common(if positional { "arguments" } else { "options" }));
+    // The only heading of its own is that of the options for reading.
+    let own = arg.get_help_heading().is_some();
+    let heading = if positional { "arguments" } else if own { "how_read" } else { "options" };
+    let mut arg = arg.help_heading(common(heading));
     let Some(text) = text else { return arg };
     let mut help = text.to_owned();
     if arg.get_action().takes_values() {

@@ -113,7 +113,7 @@ struct GridArgs {
 
 #[derive(Debug, Args)]
 struct CheckArgs {
-    /// Procedures, limits files and manifests (TOML)
+    /// Procedures, limits files, manifests and layouts (TOML)
     #[arg(required = true)]
     files: Vec<PathBuf>,
 }

@@ -4,7 +4,7 @@ use super::progress::Progress;
 use super::{GridArgs, RunArgs, exit, place};
 use crate::estimate::Verdict;
 use crate::ingest::manifest::Manifest;
-use crate::ingest::{Source, open_recording};
+use crate::ingest::{RecordingError, Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
 use crate::output::StagedFolder;
 use crate::procedure::{effective, load, load_limits};
@@ -56,7 +56,10 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         Ok(recording) => (recording.source, recording.manifest, None),
         Err(error) if !args.recording.iter().all(|r| r.exists()) => return Err(error.say(lang)),
         Err(error) => {
-            place::complain(&error.say(lang));
+            // Of a manifest every problem is told; the report holds the first.
+            if let RecordingError::Manifest(problems) = &error {
+                place::complain(&problems.say(lang));
+            }
             (Source::unopened(name), None, Some(error.into_ingest(name)))
         }
     };

@@ -31,7 +31,7 @@ pub(super) fn format(file: &Candidate) -> Result<&'static dyn Format, IngestErro
         let note = Note::new("ingest.stated.no_such_format").with("format", shorten(stated));
         return Err(unknown(note).hint(hint));
     };
-    if format.recognises(file) {
+    if format.may_be(file) {
         return Ok(*format);
     }
     Err(unknown(Note::new("ingest.stated.not_this_format").with("format", stated))

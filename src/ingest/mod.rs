@@ -198,6 +198,10 @@ pub trait Format: Sync {
     fn id(&self) -> &'static str;
     /// True when the first bytes are of this format.
     fn recognises(&self, file: &Candidate) -> bool;
+    /// True when a file may be opened as of this format because its user says so; opening then says what is wrong.
+    fn may_be(&self, file: &Candidate) -> bool {
+        self.recognises(file)
+    }
     /// Opens a file that was recognised.
     ///
     /// # Errors

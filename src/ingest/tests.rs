@@ -107,7 +107,7 @@ fn unreadable_files_are_refused_with_their_reason() {
         (b"t,r\n", Empty, "a header but no rows"),
         (b"# only\n# comments\n", Empty, "only comments"),
         (b"PK\x03\x04abc", UnknownFormat, "a zip archive"),
-        (b"\x89HDF\r\n\x1a\n", UnknownFormat, "an HDF5 file"),
+        (b"\x89HDF\r\n\x1a\n", Damaged, "the HDF5 file cannot be decoded"),
         (b"\xff\xfet\0,\0r\0", Empty, "a header but no rows"),
         (b"abc\0def\0\x01", UnknownFormat, "neither text nor of a binary kind"),
         (b"PAR1 but no more", Damaged, "cannot be decoded"),

@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
+use crate::ingest::raw::layout::{self, Layout};
 use crate::ingest::manifest::{self, Manifest, is_manifest};
 use crate::text::{Lang, Note};
 use std::path::Path;
@@ -17,16 +18,20 @@ pub enum Checked {
     Limits(Box<Loaded<LimitsFile>>),
     /// A manifest whose files are there and what it says.
     Manifest(Box<Manifest>),
+    /// A layout of raw binary records.
+    Layout(Box<Layout>),
 }
 
 /// Reads a file as what its first table says it is: a file with `[limits]` or `format = "limits/..."` is a limits file,
-/// one with `format = "manifest/..."` a manifest, any other a procedure.
+/// one with `format = "manifest/..."` a manifest, one with `format = "layout/..."` a layout, any other a procedure.
 ///
 /// # Errors
 /// Every problem of the file.
 pub fn check(path: &Path) -> Result<Checked, Problems> {
     if is_manifest(path) {
         manifest::load(path).map(|m| Checked::Manifest(Box::new(m)))
+    } else if says(path, |line| line.strip_prefix("format").is_some_and(|rest| rest.contains("\"layout/"))) {
+        layout::load(path).map(|l| Checked::Layout(Box::new(l)))
     } else if is_limits(path) {
         load_limits(path).map(|l| Checked::Limits(Box::new(l)))
     } else {
@@ -69,6 +74,7 @@ pub fn check_report_with(
                     }
                     Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
                     Checked::Manifest(m) => (manifest_sentence(m), vec![]),
+                    Checked::Layout(l) => (layout_sentence(l), vec![]),
                 };
                 for warning in warnings {
                     report.text.push_str(&format!("{}\n", warning.say(lang)));
@@ -113,12 +119,19 @@ fn manifest_sentence(m: &Manifest) -> Note {
     Note::new("manifest.sound").with("count", m.files.len())
 }
 
-/// True when the beginning of the file says that it holds limits. Nothing is reported here: reading does that.
+fn layout_sentence(l: &Layout) -> Note {
+    Note::new("layout.sound").with("bytes", l.record_bytes).with("count", l.names().count())
+}
+
+/// True when the file says that it holds limits.
 fn is_limits(path: &Path) -> bool {
-    let Ok(bytes) = super::load::bytes_of(path) else { return false };
-    let text = String::from_utf8_lossy(&bytes);
-    let mut lines = text.lines().map(str::trim);
-    lines.any(|line| {
+    says(path, |line| {
         line == "[limits]" || line.strip_prefix("format").is_some_and(|rest| rest.contains("\"limits/"))
     })
+}
+
+/// True when a line of a file is as wanted. Nothing is reported here: reading does that.
+fn says(path: &Path, wanted: impl Fn(&str) -> bool) -> bool {
+    let Ok(bytes) = super::load::bytes_of(path) else { return false };
+    String::from_utf8_lossy(&bytes).lines().map(str::trim).any(wanted)
 }

@@ -12,7 +12,7 @@ const SUDDEN: f64 = 0.6;
 /// Parts whose noise is compared.
 const PARTS: usize = 16;
 /// Ratio of the noise of two parts that is worth saying.
-const LOUDER: f64 = 1.3;
+const LOUDER: f64 = 1.4;
 
 /// The most significant step, timed from the start of the grid.
 pub(super) fn bias_step(blocks: &BlockSeries, tau0_s: f64) -> Option<BiasStep> {
@@ -73,8 +73,9 @@ pub(super) fn noise_change(blocks: &BlockSeries, tau0_s: f64) -> Option<NoiseCha
     let quietest = levels.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let ratio = loudest.0 / quietest.0;
     let least = levels.iter().map(|l| l.2).min().unwrap_or(1) as f64;
-    // The mean size of a difference is known to about 1/√n.
-    let certain = ratio.ln() > 8.0 / least.sqrt();
+    // The mean size of a difference is known to about 1/√n, and half as well where differences are correlated, as those
+    // of quantisation noise are; the extremes of sixteen lie some three of its deviations to each side.
+    let certain = ratio.ln() > 12.0 / least.sqrt();
     (quietest.0 > 0.0 && ratio.is_finite() && ratio > LOUDER && certain).then_some(NoiseChange {
         ratio,
         loudest_s: loudest.1,

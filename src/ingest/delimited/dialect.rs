@@ -50,8 +50,8 @@ pub(super) fn sniff(file: &Candidate) -> Result<Dialect, IngestError> {
     let found = match options.encoding {
         Some(e) => encoding::stated(path, &file.head, file.head_is_all, e)?,
         None => encoding::find(&file.head, file.head_is_all).ok_or_else(|| {
-            IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.unknown")
-                .hint("ingest.hint.give_known")
+            IngestError::new(IngestErrorKind::UnknownFormat, path, "ingest.formats.unknown")
+                .hint("ingest.hint.give_recording")
         })?,
     };
     let head = encoding::decode(found.encoding, &file.head, file.head_is_all);

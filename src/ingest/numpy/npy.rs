@@ -25,7 +25,7 @@ impl Format for Npy {
         let path = &file.path;
         let refuse = |(note, hint): Fault| IngestError::new(IngestErrorKind::Damaged, path, note).hint(hint);
         if !file.head.starts_with(MAGIC) {
-            return Err(refuse(("ingest.npy.no_magic".into(), "ingest.formats.hint")));
+            return Err(refuse(("ingest.npy.no_magic".into(), "ingest.stated.hint_format")));
         }
         let array = array::header(&file.head).map_err(refuse)?;
         let data = usize::try_from(array.data_at).ok().and_then(|at| file.head.get(at..)).unwrap_or_default();

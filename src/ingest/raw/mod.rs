@@ -31,6 +31,11 @@ impl Format for Raw {
         file.options.layout.is_some()
     }
 
+    fn may_be(&self, _file: &Candidate) -> bool {
+        // Opening says that a layout is needed, and how to write one.
+        true
+    }
+
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
         let Some(path) = &file.options.layout else {
             return Err(IngestError::new(IngestErrorKind::Layout, &file.path, "ingest.raw.no_layout")

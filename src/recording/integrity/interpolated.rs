@@ -11,31 +11,35 @@ const SHARE: f64 = 0.4;
 /// Fewest samples that can be judged.
 const FEWEST: u64 = 1000;
 
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Lines {
-    last: Option<(f64, f64)>,
+    /// The two latest samples; NaN before there were any, which judges nothing.
+    last: (f64, f64),
     judged: u64,
     straight: u64,
 }
 
+impl Default for Lines {
+    fn default() -> Self {
+        Lines { last: (f64::NAN, f64::NAN), judged: 0, straight: 0 }
+    }
+}
+
 impl Lines {
     pub(super) fn take(&mut self, values: &[f64]) {
-        let Some((mut a, mut b)) = self.last.or_else(|| values.first().copied().zip(values.get(1).copied()))
-        else {
-            return;
-        };
-        let rest = if self.last.is_some() { values } else { values.get(2..).unwrap_or_default() };
-        let mut straight = 0u64;
-        for &c in rest {
+        let (mut a, mut b) = self.last;
+        let (mut straight, mut judged) = (0u64, 0u64);
+        for &c in values {
             let (before, after) = (b - a, c - b);
+            let second = (after - before).abs();
+            judged += u64::from(second.is_finite());
             // Equal values are for the test of stuck ones.
-            let line = (after - before).abs() < STRAIGHT * before.abs().min(after.abs());
-            straight += u64::from(line);
+            straight += u64::from(second < STRAIGHT * before.abs().min(after.abs()));
             (a, b) = (b, c);
         }
         self.straight += straight;
-        self.judged += rest.len() as u64;
-        self.last = Some((a, b));
+        self.judged += judged;
+        self.last = (a, b);
     }
 
     /// The share of straight samples, where it tells of interpolation.
@@ -54,6 +58,9 @@ mod tests {
     fn share(values: &[f64]) -> Option<f64> {
         let mut lines = Lines::default();
         values.chunks(97).for_each(|part| lines.take(part));
+        let mut one_by_one = Lines::default();
+        values.chunks(1).for_each(|part| one_by_one.take(part));
+        assert_eq!(one_by_one.finish(), lines.finish());
         lines.finish()
     }
 
