@@ -8,6 +8,7 @@ pub mod compressed;
 mod csv;
 mod dialect;
 mod error;
+mod guarded;
 mod identity;
 mod lines;
 mod memory;
