@@ -44,7 +44,8 @@ pub fn with_file(name: &str, bytes: &[u8], f: impl FnOnce(&Path)) {
 pub fn read_all(path: &Path, options: &ReadOptions, input: usize) {
     watched(input, || {
         let Ok(source) = open_with(path, options) else { return };
-        let wanted: Vec<usize> = (0..source.columns().len()).filter(|i| source.columns()[*i].numeric).collect();
+        let wanted: Vec<usize> =
+            (0..source.columns().len()).filter(|i| source.columns()[*i].numeric).collect();
         let mut rows = 0u64;
         let facts = source.read(&wanted, &mut |block| {
             assert!(block.columns.iter().all(|c| c.len() == block.rows()));
@@ -58,10 +59,7 @@ pub fn read_all(path: &Path, options: &ReadOptions, input: usize) {
 }
 
 /// Parses a file of keys; whatever it says must be sayable.
-pub fn file_of_keys<T>(
-    bytes: &[u8],
-    parse: impl Fn(&[u8]) -> Result<T, sagnac::procedure::Problems>,
-) {
+pub fn file_of_keys<T>(bytes: &[u8], parse: impl Fn(&[u8]) -> Result<T, sagnac::procedure::Problems>) {
     watched(bytes.len(), || {
         if let Err(problems) = parse(bytes) {
             assert!(!problems.list.is_empty());
@@ -81,7 +79,13 @@ fn outcome(source: &Source) -> Option<Outcome> {
             Role::Temperature => (Role::Temperature, guessed.unit),
             _ => (Role::Rate, unit.clone()),
         };
-        channels.push(Channel { id: format!("c{i}"), column: ColumnRef::Position(i + 1), role, unit, scale: 1.0 });
+        channels.push(Channel {
+            id: format!("c{i}"),
+            column: ColumnRef::Position(i + 1),
+            role,
+            unit,
+            scale: 1.0,
+        });
     }
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     let procedure = analysis::procedure(channels, Some(10.0), 0.0);

@@ -12,6 +12,7 @@ pub mod compressed;
 mod delimited;
 mod error;
 mod following;
+mod guarded;
 mod hdf5;
 mod identity;
 mod joined;

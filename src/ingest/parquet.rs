@@ -2,6 +2,7 @@
 
 use super::compressed::{Packing, digest, io_error};
 use super::error::{IngestError, IngestErrorKind};
+use super::guarded::guarded;
 use super::memory::non_finite;
 use super::number::usable;
 use super::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
@@ -96,7 +97,7 @@ fn describe(column: &ColumnDescriptor) -> Column {
 
 fn reader(path: &Path) -> Result<SerializedFileReader<File>, IngestError> {
     let file = File::open(path).map_err(|e| io_error(path, &e))?;
-    SerializedFileReader::new(file).map_err(|e| damaged(path, &e))
+    guarded(path, || SerializedFileReader::new(file).map_err(|e| damaged(path, &e)))
 }
 
 fn damaged(path: &Path, error: &ParquetError) -> IngestError {
@@ -120,7 +121,8 @@ impl Table for ParquetFile {
         let (block_back, block_free) = sync_channel::<Block>(8);
         std::thread::scope(|scope| {
             let hash = scope.spawn(|| digest(&self.path));
-            let decoder = scope.spawn(move || self.decode(wanted, &block_out, &block_free));
+            let decode = move || self.decode(wanted, &block_out, &block_free);
+            let decoder = scope.spawn(|| guarded(&self.path, decode));
             let mut stopped = false;
             for mut block in block_in {
                 if on_block(&mut block).is_break() {
