@@ -11,7 +11,8 @@ fn matches(expected: &str, problem: &Problem) -> bool {
     let mut parts = expected.splitn(3, ": ");
     let (place, token, fragment) =
         (parts.next().unwrap(), parts.next().expect("offending text"), parts.next().expect("fragment"));
-    let said = format!("{} {}", problem.message, problem.help.as_ref().map(ToString::to_string).unwrap_or_default());
+    let said =
+        format!("{} {}", problem.message, problem.help.as_ref().map(ToString::to_string).unwrap_or_default());
     place == format!("{}:{}", problem.line, problem.column)
         && token == problem.token
         && said.contains(fragment)

@@ -33,7 +33,12 @@ fn broken_manifests_are_reported_at_their_place() {
             let at = found.iter().position(|p| {
                 place == format!("{}:{}", p.line, p.column)
                     && p.token == token
-                    && format!("{} {}", p.message, p.help.as_ref().map(ToString::to_string).unwrap_or_default()).contains(fragment)
+                    && format!(
+                        "{} {}",
+                        p.message,
+                        p.help.as_ref().map(ToString::to_string).unwrap_or_default()
+                    )
+                    .contains(fragment)
             });
             match at {
                 Some(i) => drop(found.remove(i)),

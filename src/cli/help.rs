@@ -103,7 +103,13 @@ fn argument(
     let id = arg.get_id().to_string();
     // The only heading of its own is that of the options for reading.
     let own = arg.get_help_heading().is_some();
-    let heading = if positional { "arguments" } else if own { "how_read" } else { "options" };
+    let heading = if positional {
+        "arguments"
+    } else if own {
+        "how_read"
+    } else {
+        "options"
+    };
     let mut arg = arg.help_heading(common(heading));
     let Some(text) = text else { return arg };
     let mut help = text.to_owned();

@@ -33,7 +33,8 @@ impl RecordingError {
             RecordingError::File(e) => e,
             RecordingError::Manifest(problems) => {
                 let first = problems.list.first();
-                let reason = first.map_or_else(|| Note::new("ingest.joined.no_reason"), |p| p.message.clone());
+                let reason =
+                    first.map_or_else(|| Note::new("ingest.joined.no_reason"), |p| p.message.clone());
                 let note = Note::new("ingest.joined.manifest").with("reason", reason);
                 let error = IngestError::new(IngestErrorKind::Parts, path, note);
                 match first.filter(|p| p.line > 0) {
@@ -49,7 +50,9 @@ impl RecordingError {
     /// The diagnostic as it goes to the terminal, in a language.
     pub fn say(&self, lang: Lang) -> String {
         match self {
-            RecordingError::File(e) => format!("{}: {}\n", Note::new("diagnostic.error").say(lang), e.say(lang)),
+            RecordingError::File(e) => {
+                format!("{}: {}\n", Note::new("diagnostic.error").say(lang), e.say(lang))
+            }
             RecordingError::Manifest(problems) => problems.say(lang),
         }
     }

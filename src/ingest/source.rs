@@ -4,9 +4,7 @@ use super::compressed::{self, ByteStream, Packing, io_error};
 use super::error::{IngestError, IngestErrorKind};
 use super::identity::FileIdentity;
 use super::joined::{self, PartFacts};
-use super::{
-    Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, choice, memory, reduce,
-};
+use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, choice, memory, reduce};
 use crate::recording::ColumnRef;
 use crate::text::Note;
 use std::ops::ControlFlow;

@@ -4,8 +4,8 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
-use crate::ingest::raw::layout::{self, Layout};
 use crate::ingest::manifest::{self, Manifest, is_manifest};
+use crate::ingest::raw::layout::{self, Layout};
 use crate::text::{Lang, Note};
 use std::path::Path;
 

@@ -3,7 +3,8 @@
 use crate::measurand::ids::{MEASURANDS, Test};
 use crate::procedure::limits::LimitSet;
 use crate::procedure::model::{
-    Analysis, ChannelSpec, Conditions, EarthRate, MeasurandSpec, Procedure, RecordingSpec, ReportSpec, Taus, UnitSpec,
+    Analysis, ChannelSpec, Conditions, EarthRate, MeasurandSpec, Procedure, RecordingSpec, ReportSpec, Taus,
+    UnitSpec,
 };
 use crate::recording::Channel;
 

@@ -1,10 +1,7 @@
 //! From a recording to the outcome.
 
 use super::pass::{Collected, HeldKey, Inside, Overview};
-use super::{
-    Outcome, Request, RunError, figures, gyro_facts, power, settle, sigma_tau, verdict,
-    warm_up,
-};
+use super::{Outcome, Request, RunError, figures, gyro_facts, power, settle, sigma_tau, verdict, warm_up};
 use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::figure::Figure;

@@ -148,7 +148,8 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
     if record_bytes < end {
         let last = taken.iter().max_by_key(|t| t.to).filter(|t| t.to == end);
         let what = last.map_or("checksum", |t| t.what.as_str());
-        let message = Note::new("layout.too_short").with("bytes", record_bytes).with("what", what).with("end", end);
+        let message =
+            Note::new("layout.too_short").with("bytes", record_bytes).with("what", what).with("end", end);
         let help = Note::new("layout.write_bytes").with("end", end);
         reader.error(&root.span_of("record_bytes"), message, Some(help));
     }
@@ -206,7 +207,8 @@ struct Taken {
 fn overlap(place: &Taken, taken: &[Taken], span: &Span, reader: &mut Reader<'_>) {
     let clash = |t: &&Taken| t.from < place.to && place.from < t.to && !(t.bits && place.bits);
     if let Some(other) = taken.iter().find(clash) {
-        let message = Note::new("layout.overlap").with("one", place.what.as_str()).with("other", other.what.as_str());
+        let message =
+            Note::new("layout.overlap").with("one", place.what.as_str()).with("other", other.what.as_str());
         reader.error(span, message, Some("layout.own_bytes".into()));
     }
 }

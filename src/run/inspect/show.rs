@@ -321,7 +321,9 @@ fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
             None => Note::new("inspect.fault_row"),
         };
         let row = match &fault.file {
-            Some(file) => Note::new("time_base.fault_in").with("file", file.as_str()).with("row", row.with("place", place).with("what", what)),
+            Some(file) => Note::new("time_base.fault_in")
+                .with("file", file.as_str())
+                .with("row", row.with("place", place).with("what", what)),
             None => row.with("place", place).with("what", what),
         };
         page.row(SAME, row);
