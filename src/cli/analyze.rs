@@ -39,10 +39,13 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let (source, manifest) = (recording.source, recording.manifest);
     let channels = channels(args, &source).map_err(say)?;
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
-    if !use_stamps && args.sample_rate.is_none() {
+    // What the file states serves where there are no stamps and the user says nothing.
+    let stated = source.stated_sample_rate_hz().filter(|_| !use_stamps);
+    let sample_rate = args.sample_rate.or(stated);
+    if !use_stamps && sample_rate.is_none() {
         return Err(say(about(args, "cli.no_time")));
     }
-    let procedure: Procedure = analysis::procedure(channels, args.sample_rate, args.warm_up);
+    let procedure: Procedure = analysis::procedure(channels, sample_rate, args.warm_up);
     let limits = EffectiveLimits::default();
     let request = Request {
         kind: "analyze",

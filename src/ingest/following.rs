@@ -1,9 +1,9 @@
 //! Rows put on the grid of the recording: by their stamps, by a counter, or by their number.
 
+use super::Block;
 use super::accumulated::{Angles, Wrapped};
 use super::plan::Plan;
 use super::stream::nano;
-use super::{Block, FieldFaultKind};
 use crate::numeric::range::settled;
 use crate::record::Integrity;
 use crate::recording::faults::FaultLog;
@@ -24,7 +24,7 @@ pub(super) struct FileSpan {
 /// What goes along while a recording is read.
 pub(super) struct State<'a> {
     pub plan: &'a Plan<'a>,
-    tracker: Tracker,
+    pub tracker: Tracker,
     counter: CounterTracker,
     rollover: Unwrapper,
     counts: Unwrapper,
@@ -398,41 +398,6 @@ impl<'a> State<'a> {
         self.connected = true;
     }
 
-    fn field_faults(&mut self, block: &Block) {
-        self.integrity.non_finite += block.non_finite.iter().sum::<u64>();
-        self.integrity.unparsable += block.unparsable.iter().sum::<u64>();
-        for fault in &block.faults {
-            let row = usize::try_from(fault.row.saturating_sub(block.first_row)).unwrap_or(usize::MAX);
-            let stamp = match self.plan.time {
-                Some(t) => block.columns.get(t).and_then(|c| c.get(row)).map(|s| self.tracker.on_scale(*s)),
-                None => Some((fault.row - 1) as f64 * self.plan.clock.interval_s),
-            };
-            let (kind, word) = match fault.kind {
-                FieldFaultKind::NonFinite if fault.text.trim().parse().is_ok_and(f64::is_finite) => {
-                    ("non_finite", "fault_note.too_large")
-                }
-                FieldFaultKind::NonFinite => ("non_finite", "fault_note.no_finite_number"),
-                FieldFaultKind::Unparsable if repeats(&fault.text, self.plan.column_name(fault.slot)) => {
-                    ("unparsable", "ingest.delimited.second_header")
-                }
-                FieldFaultKind::Unparsable => ("unparsable", "fault_note.no_number"),
-            };
-            let channel = self.plan.channels.get(fault.slot).map(|c| c.id.as_str());
-            self.log.push(kind, channel, stamp.filter(|s| s.is_finite()), fault.row, 1, || {
-                let place = if fault.line > 0 {
-                    Note::new("fault_note.place").with("line", fault.line).with("character", fault.character)
-                } else {
-                    Note::new("fault_note.no_place")
-                };
-                Note::new("fault_note.field")
-                    .with("what", Note::new(word))
-                    .with("column", self.plan.column_name(fault.slot))
-                    .with("place", place)
-                    .with("text", format!("`{}`", fault.text))
-            });
-        }
-    }
-
     /// The clock as fitted, where stamps were.
     pub fn measured(&self) -> Option<Measured> {
         self.plan.time?;
@@ -458,9 +423,4 @@ impl<'a> State<'a> {
         let first = self.counter.first_s().unwrap_or(0.0);
         (first, first + samples * measured)
     }
-}
-
-/// True when a field holds the name of its column: another header, as where files were put together.
-fn repeats(text: &str, column: &str) -> bool {
-    text.trim().trim_matches('"').trim() == super::error::shorten(column)
 }

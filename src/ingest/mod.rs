@@ -11,6 +11,7 @@ mod column;
 pub mod compressed;
 mod delimited;
 mod error;
+mod field_faults;
 mod following;
 mod guarded;
 mod hdf5;

@@ -282,7 +282,9 @@ impl Sniffed<'_> {
                 numbers.push(line.number);
             }
         }
-        let stated = self.file.options.text.decimal.is_some();
+        // One file has one decimal sign: a column in which a comma cannot stand before thousands settles all others.
+        let settled = |c: &&[u8]| separator::marks_decimals(c);
+        let stated = self.file.options.text.decimal.is_some() || cells.iter().flatten().any(settled);
         for column in &cells {
             if let Some(cell) = separator::thousands(column, self.cut.separator, self.cut.decimal, stated) {
                 let at = column.iter().position(|c| std::ptr::eq(*c, cell));

@@ -174,6 +174,16 @@ pub(super) fn thousands<'a>(
     if groups && (whole || quoted) { with.first().copied() } else { None }
 }
 
+/// True for a number whose only comma does not stand before three digits.
+pub(super) fn marks_decimals(cell: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(bare(cell)).into_owned();
+    let body = text.trim_start_matches(['-', '+']);
+    let digits = |g: &str| g.bytes().all(|c| c.is_ascii_digit());
+    body.split_once(',').is_some_and(|(whole, rest)| {
+        digits(whole) && digits(rest) && !whole.is_empty() && !rest.is_empty() && rest.len() != 3
+    })
+}
+
 /// True for one to three digits, not all zero, and then groups of three, each behind the sign.
 fn grouped(text: &str, sign: char) -> bool {
     let mut groups = text.split(sign);

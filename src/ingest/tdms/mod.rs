@@ -158,7 +158,12 @@ impl Waveform {
             let start = p.get("wf_start_time").filter(|v| matches!(v, Value::Stamp(s, _) if *s > 0));
             match shared {
                 None => shared = Some((increment, offset, start)),
-                Some(s) if s == (increment, offset, start) => {}
+                // A channel without a start begins with the others.
+                Some((i, o, s))
+                    if (i, o) == (increment, offset) && (s == start || s.is_none() || start.is_none()) =>
+                {
+                    shared = Some((i, o, s.or(start)));
+                }
                 Some(_) => return None,
             }
         }

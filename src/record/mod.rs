@@ -4,6 +4,12 @@
 //! compared byte for byte. `result.json` is this value; HTML and Markdown are views of it; nothing is computed in a
 //! template.
 
+mod beside;
+mod integrity;
+
+pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use integrity::{FaultRecord, Integrity};
+
 use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
 use crate::text::Note;
 use schemars::JsonSchema;
@@ -224,66 +230,6 @@ pub struct ConditionRecord {
     pub message: Option<Note>,
 }
 
-/// Faults of the recording, counted; the first of each kind listed with row and time.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
-pub struct Integrity {
-    /// Places where samples are missing.
-    pub gaps: u64,
-    /// Samples missing in them.
-    pub missing_samples: u64,
-    /// Rows whose stamp equals the one before.
-    pub duplicate_timestamps: u64,
-    /// Rows whose stamp is earlier than one before.
-    pub backward_timestamps: u64,
-    /// Places where stamps or a counter of limited width started again; no fault.
-    pub rollovers: u64,
-    /// Rows where stamps and counter disagree; the counter is followed.
-    pub timestamp_disagreements: u64,
-    /// Fields that hold NaN, infinity or a number beyond 1e60, or are empty.
-    pub non_finite: u64,
-    /// Fields that are no number.
-    pub unparsable: u64,
-    /// Samples far outside the noise about them.
-    pub outliers: u64,
-    /// Samples at a rail.
-    pub saturated: u64,
-    /// Samples that repeat the one before for longer than chance allows.
-    pub stuck: u64,
-    /// Samples in stretches that occurred before, bit for bit.
-    pub repeated: u64,
-    /// Rms deviation of the stamps from a uniform clock, s.
-    pub timestamp_jitter_s: Option<f64>,
-    /// Size of a step of the rate output, deg/h, when the values lie on a lattice.
-    pub quantization_step_deg_h: Option<f64>,
-    /// Threshold of the outlier test, in robust standard deviations.
-    pub outlier_threshold: Option<f64>,
-    /// The faults one by one, at most 100 of a kind.
-    pub faults: Vec<FaultRecord>,
-}
-
-/// One fault.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct FaultRecord {
-    /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`,
-    /// `unparsable`, `outlier`, `saturated`, `stuck`, `repeated`, `interpolated`.
-    pub kind: String,
-    /// Channel, when the fault is of one channel.
-    pub channel: Option<String>,
-    /// Time of the first sample concerned, s on the recording's own scale.
-    pub time_s: Option<f64>,
-    /// File, where the recording is of several.
-    pub file: Option<String>,
-    /// Row of the first sample concerned, counted from 1 without header lines; in its own file.
-    pub row: u64,
-    /// Samples concerned.
-    pub count: u64,
-    /// What was seen, English.
-    pub note: String,
-    /// The same sentence by name, for other languages.
-    #[schemars(with = "serde_json::Value")]
-    pub message: Option<Note>,
-}
-
 /// The evaluated part of a recording.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Window {
@@ -436,54 +382,6 @@ pub struct PowerRecord {
     /// The same in words.
     #[schemars(with = "NoteSchema")]
     pub message: Note,
-}
-
-/// An instrument and its calibration.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct InstrumentRecord {
-    /// Name.
-    pub name: String,
-    /// Serial number.
-    pub serial: Option<String>,
-    /// Date until which its calibration holds, ISO 8601.
-    pub calibration_due: Option<String>,
-    /// State on the day of the test.
-    pub status: ConditionStatus,
-}
-
-/// A waiver: who lets a row pass although it does not, why and when. Beside the verdict, never part of it.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct WaiverRecord {
-    /// Measurand or condition concerned.
-    pub row: String,
-    /// Who decided.
-    pub by: String,
-    /// Why.
-    pub reason: String,
-    /// When, ISO 8601 date.
-    pub date: String,
-}
-
-/// A clause of the standard.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct ClauseRecord {
-    /// Clause, for example `12.11`.
-    pub clause: String,
-    /// Its title.
-    pub title: String,
-    /// `here`, `elsewhere`, `not_applicable`.
-    pub status: String,
-    /// Where or why.
-    pub note: String,
-}
-
-/// An option that the analysis used.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct OptionRecord {
-    /// Name, dotted.
-    pub name: String,
-    /// Value as text with unit.
-    pub value: String,
 }
 
 /// A figure of the report.
