@@ -19,6 +19,16 @@ const LATIN: &[&str] = &[
     "SHA",
     "UTF",
     "PDF",
+    "ASCII",
+    "DAQmx",
+    "LabVIEW",
+    "Latin",
+    "MCAP",
+    "Python",
+    "ROS",
+    "SQLite",
+    "TDMS",
+    "deflate",
     "HDF",
     "NumPy",
     "gzip",
@@ -138,6 +148,10 @@ const LATIN: &[&str] = &[
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "ingest.parts.and",
+    "ingest.raw.hint.help",
+    "ingest.raw.problem",
+    "time_base.fault_in",
     "report.sha256",
     "report.at_most",
     "report.interval",
@@ -215,17 +229,23 @@ fn both_tables_have_the_same_keys_and_arguments() {
 #[test]
 fn nothing_is_left_untranslated() {
     let (en, ru) = (table(Lang::En), table(Lang::Ru));
+    let mut latin: Vec<String> = vec![];
     for (key, russian) in ru {
         let same = SAME.iter().any(|s| key == s || (s.ends_with('.') && key.starts_with(s)));
-        assert!(same || *russian != en[key], "{key} is the same in both languages: {russian}");
+        if !same && *russian == en[key] {
+            latin.push(format!("{key} is the same in both languages: {russian}"));
+        }
         let foreign = if key == "language.code" { vec![] } else { strangers(&prose(russian)) };
-        assert!(foreign.is_empty(), "{key}: {foreign:?} in `{russian}`");
+        if !foreign.is_empty() {
+            latin.push(format!("{key}: {foreign:?} in `{russian}`"));
+        }
         // A decimal point between digits, but for what is written in a procedure.
         let digits: Vec<char> = prose(russian).chars().collect();
         let point = !russian.contains(" = ")
             && digits.windows(3).any(|w| w[0].is_ascii_digit() && w[1] == '.' && w[2].is_ascii_digit());
         assert!(!point, "{key}: a decimal point in `{russian}`");
     }
+    assert!(latin.is_empty(), "{latin:#?}");
 }
 
 #[test]

@@ -125,7 +125,15 @@ pub const CASES: &[Case] = &[
             Refused("this is no clock"),
         ],
     ),
-    ("every_third_row_lost", all(Condition("clock", "rows are missing at regular places"))),
+    (
+        "every_third_row_lost",
+        [
+            Invalid("gaps", "more than allowed"),
+            Invalid("gaps", "more than allowed"),
+            Invalid("gaps", "more than allowed"),
+            Condition("clock", "rows are missing at regular places"),
+        ],
+    ),
     ("1_percent_of_rows_lost", all(Invalid("gaps", "more than allowed"))),
     ("5_percent_nan", all(Invalid("non_finite", "more than allowed"))),
     ("20_spikes", all(Fault("outlier", "robust standard deviations"))),
