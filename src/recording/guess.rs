@@ -322,8 +322,8 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
         _ if increment => Role::AngleIncrement,
         _ if gyro => Role::Rate,
         _ if has(&["time", "timestamp", "время"]) || words == ["t"] => Role::Time,
-        // `seconds_of_day`, `tow`: nothing but time is counted in them.
-        _ if has(&["seconds", "sod", "sow", "tow", "секунды"]) => Role::Time,
+        // `seconds_of_day`: nothing but time is counted in them. Seconds of a week are told by the reader.
+        _ if has(&["seconds", "sod", "секунды"]) => Role::Time,
         _ if temperature => Role::Temperature,
         _ if has(&["supply", "vcc", "vdd", "питание", "питания", "напряжение"]) => {
             Role::Supply
@@ -345,7 +345,6 @@ mod tests {
             ("Timestamp [ms]", Role::Time, "ms"),
             ("time", Role::Time, "s"),
             ("seconds_of_day", Role::Time, "s"),
-            ("GPS sow", Role::Time, "s"),
             ("rate_deg_h", Role::Rate, "deg/h"),
             ("gyro_x_rad_s", Role::Rate, "rad/s"),
             ("rate_x_deg_s", Role::Rate, "deg/s"),
