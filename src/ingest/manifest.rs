@@ -136,8 +136,6 @@ pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Man
     if problems.has_errors() { Err(problems) } else { Ok(manifest) }
 }
 
-/// The words of a problem.
-
 fn complain(reader: &mut Reader<'_>, span: &Span, note: Note, help: Option<&'static str>) {
     reader.error(span, note, help.map(Note::new));
 }

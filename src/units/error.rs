@@ -44,7 +44,7 @@ impl UnitError {
                 Note::new("unit_error.misspelt").with("symbol", symbol.as_str()).with("near", near.as_str())
             }
             UnitError::Grammar { text, reason } => {
-                Note::new("unit_error.grammar").with("text", text.as_str()).with("reason", Note::new(*reason))
+                Note::new("unit_error.grammar").with("text", text.as_str()).with("reason", Note::new(reason))
             }
             UnitError::Dimension { from, to, from_dimension, to_dimension } => {
                 Note::new("unit_error.dimension")
