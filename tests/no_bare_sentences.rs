@@ -18,6 +18,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/report/methods.rs", "formulas and names of sources"),
     ("src/cli/mod.rs", "the help in English; a test holds it against the tables"),
     ("src/lib.rs", "documentation"),
+    ("src/ingest/read_words.rs", "words of keys: documentation, as of procedures"),
     ("src/ingest/manifest_tables.rs", "the key tables of manifests: documentation, as of procedures"),
     ("src/ingest/raw/tables.rs", "the key tables of layouts: documentation, as of procedures"),
     ("src/ingest/matlab/tape.rs", "faults of the decoder, quoted as it says them"),

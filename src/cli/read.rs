@@ -1,8 +1,7 @@
 //! Options that say how a recording is to be read.
 
+use crate::ingest::read_words::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding};
 use crate::ingest::{ReadOptions, TextOptions};
-use crate::procedure::reading::{decimal, delimiter, encoding};
-use crate::procedure::tables::{DECIMALS, DELIMITERS, ENCODINGS};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;

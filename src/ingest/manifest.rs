@@ -5,7 +5,8 @@
 use super::compressed;
 use super::joined::PartSpec;
 use super::manifest_tables::MANIFEST_FILE;
-use super::options::{Encoding, ReadOptions, TextOptions};
+use super::options::{ReadOptions, TextOptions};
+use super::read_words::{decimal, delimiter, encoding};
 use super::recording::natural;
 use crate::keyed::diagnostics::{Problem, Problems, SourceText, Span};
 use crate::keyed::reader::{self, Reader};
@@ -317,15 +318,6 @@ fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOpt
         complain(reader, &section.span_of(key), Note::new("manifest.no_line").with("key", key), None);
         None
     };
-    let byte = |word: Option<&str>| match word {
-        Some("comma") => Some(b','),
-        Some("semicolon") => Some(b';'),
-        Some("tab") => Some(b'\t'),
-        Some("space") => Some(b' '),
-        Some("pipe") => Some(b'|'),
-        Some("point") => Some(b'.'),
-        _ => None,
-    };
     let layout = section.text("layout").and_then(|text| {
         let at = inside(reader.source, &section.span_of("layout"));
         safe(&text, folder, &at, reader).map(|(path, _)| path)
@@ -343,15 +335,9 @@ fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOpt
     ReadOptions {
         format,
         text: TextOptions {
-            encoding: match section.word("encoding") {
-                Some("utf-8") => Some(Encoding::Utf8),
-                Some("utf-16le") => Some(Encoding::Utf16Le),
-                Some("utf-16be") => Some(Encoding::Utf16Be),
-                Some("windows-1251") => Some(Encoding::Windows1251),
-                _ => None,
-            },
-            delimiter: byte(section.word("delimiter")),
-            decimal: byte(section.word("decimal")),
+            encoding: section.word("encoding").and_then(encoding),
+            delimiter: section.word("delimiter").and_then(delimiter),
+            decimal: section.word("decimal").and_then(decimal),
             header_line: whole("header_line", reader),
             first_line: whole("first_line", reader),
             comment: section.text("comment"),

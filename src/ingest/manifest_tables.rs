@@ -1,6 +1,7 @@
 //! The tables of a manifest.
 
-use crate::keyed::spec::{Kind, Range, TableSpec, Word, optional, required, with_default};
+use super::read_words::{DECIMALS, DELIMITERS, ENCODINGS};
+use crate::keyed::spec::{Kind, Range, TableSpec, optional, required, with_default};
 
 /// A manifest as a whole.
 pub static MANIFEST_FILE: TableSpec = TableSpec {
@@ -87,20 +88,3 @@ static READING: TableSpec = TableSpec {
         optional("layout", Kind::Text, "\"layout.toml\"", "Layout of the records of raw binary files."),
     ],
 };
-
-const ENCODINGS: &[Word] = &[
-    ("utf-8", "UTF-8"),
-    ("utf-16le", "UTF-16, little endian"),
-    ("utf-16be", "UTF-16, big endian"),
-    ("windows-1251", "Windows-1251, Cyrillic"),
-];
-
-const DELIMITERS: &[Word] = &[
-    ("comma", "`,`"),
-    ("semicolon", "`;`"),
-    ("tab", "tab"),
-    ("space", "any run of spaces and tabs"),
-    ("pipe", "vertical bar"),
-];
-
-const DECIMALS: &[Word] = &[("point", "`.`"), ("comma", "`,`")];

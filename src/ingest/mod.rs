@@ -29,6 +29,7 @@ mod parts;
 mod plan;
 mod pump;
 pub mod raw;
+pub mod read_words;
 mod recording;
 mod reduce;
 mod ros;

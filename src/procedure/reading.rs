@@ -2,7 +2,8 @@
 
 use super::reader::Reader;
 use super::section::{Entry, Section};
-use crate::ingest::{Encoding, FORMATS, ReadOptions, StampOptions, StampWriting, TextOptions};
+use crate::ingest::read_words::{decimal, delimiter, encoding};
+use crate::ingest::{FORMATS, ReadOptions, StampOptions, StampWriting, TextOptions};
 use crate::recording::{ColumnRef, Role};
 use crate::text::Note;
 use std::path::PathBuf;
@@ -57,38 +58,6 @@ pub(super) fn options(
         text,
         part: section.text("part"),
         layout: section.text("layout").map(PathBuf::from),
-    }
-}
-
-/// The encoding of a word.
-pub fn encoding(word: &str) -> Option<Encoding> {
-    match word {
-        "utf-8" => Some(Encoding::Utf8),
-        "utf-16le" => Some(Encoding::Utf16Le),
-        "utf-16be" => Some(Encoding::Utf16Be),
-        "windows-1251" => Some(Encoding::Windows1251),
-        _ => None,
-    }
-}
-
-/// The character that separates, by its word or itself.
-pub fn delimiter(word: &str) -> Option<u8> {
-    match word {
-        "comma" | "," => Some(b','),
-        "semicolon" | ";" => Some(b';'),
-        "tab" | "\t" => Some(b'\t'),
-        "space" | " " => Some(b' '),
-        "pipe" | "|" => Some(b'|'),
-        _ => None,
-    }
-}
-
-/// The decimal sign of a word.
-pub fn decimal(word: &str) -> Option<u8> {
-    match word {
-        "point" | "." => Some(b'.'),
-        "comma" | "," => Some(b','),
-        _ => None,
     }
 }
 

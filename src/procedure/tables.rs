@@ -4,6 +4,7 @@ use super::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, wi
 use super::tables_conditions::{CONDITIONS, EXCLUDE};
 use super::tables_limits::{LIMIT, REFERENCE};
 use super::tables_site::{INSTRUMENT, SITE};
+use crate::ingest::read_words::{DECIMALS, DELIMITERS, ENCODINGS};
 
 /// Roles a channel may have, with their meaning.
 pub const ROLES: &[Word] = &[
@@ -194,29 +195,6 @@ static RECORDING: TableSpec = TableSpec {
         ),
     ],
 };
-
-/// Character encodings of text files.
-pub const ENCODINGS: &[Word] = &[
-    ("utf-8", "UTF-8, with or without byte-order mark"),
-    ("utf-16le", "UTF-16, little endian"),
-    ("utf-16be", "UTF-16, big endian"),
-    ("windows-1251", "Windows-1251, Cyrillic"),
-];
-
-/// Separators of fields, as words and as characters.
-pub const DELIMITERS: &[Word] = &[
-    ("comma", "`,`"),
-    ("semicolon", "`;`"),
-    ("tab", "a tab"),
-    ("space", "runs of spaces or tabs"),
-    ("pipe", "`|`"),
-    (",", "as `comma`"),
-    (";", "as `semicolon`"),
-    ("|", "as `pipe`"),
-];
-
-/// Decimal signs.
-pub const DECIMALS: &[Word] = &[("point", "`.`"), ("comma", "`,`")];
 
 /// Ways to write time stamps.
 pub const STAMPS: &[Word] = &[

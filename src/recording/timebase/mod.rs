@@ -113,7 +113,14 @@ impl Clock {
     /// # Errors
     /// [`ClockError`] when the stamps cannot serve.
     pub fn probe_with(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, ClockError> {
-        probe::probe(stamps, declared_hz)
+        let clock = probe::probe(stamps, declared_hz)?;
+        // Bunches can grow from one to the next by their rows and yet fall on the whole: no clock does.
+        let runs = |v: f64| v.is_normal() && v > 0.0;
+        if runs(clock.interval_s) && runs(clock.gap_limit_s) {
+            Ok(clock)
+        } else {
+            Err(ClockError::NotGrowing)
+        }
     }
 
     fn even(interval_s: f64, resolution_s: f64, gap_limit_s: f64) -> Clock {

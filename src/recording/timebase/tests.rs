@@ -168,5 +168,18 @@ fn lost_rows_do_not_stretch_a_clock_of_whole_seconds() {
     assert!(clock.ambiguous_with_s.is_some_and(|other| (other - 1.01).abs() < 1e-4), "{clock:?}");
 }
 
+proptest::proptest! {
+    #[test]
+    fn every_clock_runs_forward(
+        levels in proptest::collection::vec(-1e6f64..1e6, 2..6),
+        places in proptest::collection::vec(0usize..6, 2..600),
+    ) {
+        let stamps: Vec<f64> = places.iter().map(|p| levels[p % levels.len()]).collect();
+        if let Ok(clock) = Clock::probe(&stamps) {
+            proptest::prop_assert!(clock.interval_s > 0.0 && clock.gap_limit_s >= clock.interval_s, "{:?}", clock);
+        }
+    }
+}
+
 #[path = "generator_tests.rs"]
 mod generators;
