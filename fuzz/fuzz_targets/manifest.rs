@@ -6,6 +6,11 @@ use std::path::Path;
 
 fuzz_target!(|data: &[u8]| {
     sagnac_fuzz::file_of_keys(data, |bytes| {
-        sagnac::ingest::manifest::parse(Path::new("manifest.toml"), "manifest.toml", bytes, Path::new("nowhere"))
+        sagnac::ingest::manifest::parse(
+            Path::new("manifest.toml"),
+            "manifest.toml",
+            bytes,
+            Path::new("nowhere"),
+        )
     });
 });
