@@ -1,5 +1,6 @@
 //! Which noise terms a record shows, and how large they are.
 
+use super::composite::{Described, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
@@ -68,6 +69,35 @@ pub struct Identification {
     pub covariance: [[f64; 5]; 5],
     /// How well `supported` fits.
     pub misfit: Misfit,
+    /// The best description with every kind of term, and the covariance of its parameters. For predictions, residuals
+    /// and drawing; its N, B, K, R and Q are those of `supported`.
+    pub described: Described,
+    /// Markov processes found.
+    pub markov: Vec<MarkovFound>,
+    /// Quasi-periodic disturbances found, the strongest first.
+    pub quasi_periodic: Vec<QuasiPeriodicFound>,
+    /// −3 dB cut-off of the measurement, Hz, where the record shows a filter.
+    pub cutoff: Option<Estimate>,
+}
+
+/// A first-order Markov process that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MarkovFound {
+    /// Standard deviation, deg/h.
+    pub sigma: Estimate,
+    /// Correlation time, s.
+    pub correlation_time: Estimate,
+}
+
+/// A quasi-periodic disturbance that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuasiPeriodicFound {
+    /// Rms, deg/h.
+    pub amplitude: Estimate,
+    /// Centre frequency, Hz.
+    pub frequency: Estimate,
+    /// Coherence time, s: 1/(π × full width at half power).
+    pub coherence_time: Estimate,
 }
 
 /// Id, unit in the order of [`TERMS`].
@@ -156,7 +186,21 @@ impl Identification {
             rate_ramp: none(4),
             covariance: [[0.0; 5]; 5],
             misfit: Misfit::none(),
+            described: Described::default(),
+            markov: vec![],
+            quasi_periodic: vec![],
+            cutoff: None,
         }
+    }
+}
+
+/// The description that N, B, K, R and Q alone give.
+fn described(model: NoiseModel, covariance: &[[f64; 5]; 5]) -> Described {
+    let present: Vec<usize> = (0..5).filter(|i| model.coefficient(TERMS[*i]) != 0.0).collect();
+    Described {
+        model: model.into(),
+        parameters: present.iter().map(|i| Parameter::Coefficient(TERMS[*i])).collect(),
+        covariance: present.iter().map(|i| present.iter().map(|j| covariance[*i][*j]).collect()).collect(),
     }
 }
 
@@ -180,6 +224,7 @@ impl Identify for Whittle {
         let Some(best) = fit(&supported) else { return out };
         out.supported = best.model();
         out.covariance = likelihood.covariance_bound(&out.supported, &supported);
+        out.described = described(out.supported, &out.covariance);
         out.misfit =
             Misfit::of(evidence, &likelihood.whitened(&best), supported.iter().filter(|s| **s).count());
         let mut estimates: [Option<Estimate>; 5] = [const { None }; 5];

@@ -3,6 +3,7 @@
 pub mod allan;
 pub mod autocorrelation;
 pub mod block_series;
+pub mod composite;
 pub mod data;
 mod difference_sums;
 pub mod digest;
@@ -23,6 +24,7 @@ mod phase;
 pub mod profile;
 pub mod russian;
 pub mod simulate;
+pub mod spectral_record;
 pub mod static_bias;
 pub mod stretches;
 mod strided;

@@ -7,13 +7,13 @@ use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::figure::Figure;
 use crate::ingest::{Plan, Source, StreamReport, TimeBaseSpec, prepare};
 use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
+use crate::noise::composite::Sampling;
 use crate::noise::digest::RateDigest;
 use crate::noise::envelope::Envelope;
-use crate::noise::evidence::{Evidence, Mask};
 use crate::noise::family::Estimator;
-use crate::noise::fit_range::identify_in_range;
-use crate::noise::identify::{Identification, Whittle};
+use crate::noise::identify::Identification;
 use crate::noise::lines::{SpectralLine, find_lines};
+use crate::noise::spectral_record::SpectralRecord;
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
@@ -220,13 +220,15 @@ pub(super) fn spectral(
     line_false_alarm: f64,
 ) -> (Vec<SpectralLine>, Identification) {
     let lines = find_lines(&digest.welch.spectrum, tau0_s, line_false_alarm).lines;
-    // A line fills the main lobe of the window: two bins to each side.
-    let masks: Vec<Mask> = lines
-        .iter()
-        .map(|l| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz })
-        .collect();
-    let evidence = Evidence::new(&digest.blocks, Some(&digest.welch.spectrum), tau0_s, &masks);
-    (lines, identify_in_range(&Whittle::default(), channel, &evidence, 0.5 / tau0_s).identification)
+    let record = SpectralRecord {
+        blocks: &digest.blocks,
+        welch: Some(&digest.welch.spectrum),
+        tau0_s,
+        lines: &lines,
+        sampling: Sampling::Averaging,
+    };
+    let identification = record.identify(channel).identification;
+    (lines, identification)
 }
 
 fn evidence(

@@ -1,10 +1,20 @@
 //! Reproducible simulation of the noise of a rate-integrating gyro: box averages over each sample interval.
 //!
-//! White rate noise, flicker, rate random walk in its interval-mean form, ramp, and rounding of the angle. A seed
-//! fixes every bit of the output, however it is cut into blocks.
+//! White rate noise, flicker, rate random walk in its interval-mean form, Markov processes, quasi-periodic disturbances,
+//! lines, ramp, a filter of the output and rounding of the angle. A seed fixes every bit of the output, however it is
+//! cut into blocks.
 
+mod flicker;
+mod output;
+mod rotating;
+
+use self::flicker::{Flicker, Markov};
+use self::output::Output;
+use self::rotating::Rotating;
+use super::composite::{Composite, Line};
 use super::model::NoiseModel;
-use rand::{Rng, SeedableRng};
+use rand::RngExt as _;
+use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::{SplitMix64, Xoshiro256PlusPlus};
 use std::f64::consts::PI;
@@ -37,6 +47,10 @@ pub struct Simulator {
     white_sigma: f64,
     flicker: Option<Flicker>,
     walk: Walk,
+    markov: Vec<(Markov, Xoshiro256PlusPlus)>,
+    rotating: Vec<Rotating>,
+    lines: Vec<(Line, f64)>,
+    output: Option<Output>,
     bias: f64,
     ramp_per_sample: f64,
     index: u64,
@@ -46,23 +60,47 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// Starts a simulation.
+    /// Starts a simulation of N, B, K, R and Q.
     pub fn new(model: &NoiseModel, setup: &Setup) -> Simulator {
+        Simulator::of(&Composite::from(*model), setup)
+    }
+
+    /// Starts a simulation of every term. Samples are averages over their interval.
+    pub fn of(model: &Composite, setup: &Setup) -> Simulator {
         let mut seeds = SplitMix64::seed_from_u64(setup.seed);
         let mut stream = || Xoshiro256PlusPlus::from_rng(&mut seeds);
         let (white, flicker, walk) = (stream(), stream(), stream());
+        let terms = &model.terms;
         let tau_h = setup.tau0_s / 3600.0;
-        let step = model.k.abs() * tau_h.sqrt();
+        let step = terms.k.abs() * tau_h.sqrt();
+        let markov = model.markov.iter().map(|m| {
+            let mut rng = stream();
+            (Markov::new(setup.tau0_s / m.decay_time_s, m.rms_deg_h, &mut rng), rng)
+        });
+        let markov = markov.collect();
+        let rotating =
+            model.quasi_periodic.iter().map(|p| Rotating::new(p, setup.tau0_s, stream())).collect();
+        let lines = model.lines.iter().map(|l| {
+            let phase: f64 = stream().random();
+            (*l, 2.0 * PI * phase)
+        });
+        let lines = lines.collect();
+        let white_sigma = terms.n.abs() / tau_h.sqrt();
+        let output = model.bandwidth.as_ref().map(|b| Output::new(b, white_sigma, setup.tau0_s, stream()));
         Simulator {
             white,
-            white_sigma: model.n.abs() / tau_h.sqrt(),
-            flicker: (model.b != 0.0)
-                .then(|| Flicker::new(model.b, setup.tau0_s, setup.flicker_lowest_hz, flicker)),
+            white_sigma: if output.is_some() { 0.0 } else { white_sigma },
+            flicker: (terms.b != 0.0)
+                .then(|| Flicker::new(terms.b, setup.tau0_s, setup.flicker_lowest_hz, flicker)),
             walk: Walk { level: 0.0, step, rng: walk },
+            markov,
+            rotating,
+            lines,
+            output,
             bias: setup.bias_deg_h,
-            ramp_per_sample: model.r * tau_h,
+            ramp_per_sample: terms.r * tau_h,
             index: 0,
-            angle_step: model.q.abs() * 12f64.sqrt(),
+            angle_step: terms.q.abs() * 12f64.sqrt(),
             angle_rest: 0.0,
             tau0_s: setup.tau0_s,
         }
@@ -71,7 +109,8 @@ impl Simulator {
     /// Fills `out` with the next samples, deg/h.
     pub fn fill(&mut self, out: &mut [f64]) {
         for y in out.iter_mut() {
-            let mut rate = self.bias + self.ramp_per_sample * (self.index as f64 + 0.5);
+            let middle = self.index as f64 + 0.5;
+            let mut rate = self.bias + self.ramp_per_sample * middle;
             self.index += 1;
             if self.white_sigma > 0.0 {
                 rate += self.white_sigma * normal(&mut self.white);
@@ -81,6 +120,20 @@ impl Simulator {
             }
             if self.walk.step > 0.0 {
                 rate += self.walk.next();
+            }
+            if let Some(output) = &mut self.output {
+                rate = output.next(rate);
+            }
+            for (process, rng) in &mut self.markov {
+                rate += process.next(normal(rng));
+            }
+            for process in &mut self.rotating {
+                rate += process.next();
+            }
+            for (line, phase) in &self.lines {
+                let half = PI * line.frequency_hz * self.tau0_s;
+                let averaged = if half.abs() < 1e-9 { 1.0 } else { half.sin() / half };
+                rate += line.amplitude_deg_h * averaged * (2.0 * half * middle + phase).cos();
             }
             *y = rate;
         }
@@ -122,104 +175,6 @@ impl Walk {
         let mean = self.level + 0.5 * increment + self.step / 12f64.sqrt() * normal(&mut self.rng);
         self.level += increment;
         mean
-    }
-}
-
-/// Spacing of the correlation times, as a ratio. The ripple of the sum is 2 sech(π²/ln ratio) = 0.3 %.
-const RATIO: f64 = 4.0;
-/// Processes slower than this many samples are driven by uniform numbers: their values are sums of so many of them
-/// that no test could tell them from normal ones.
-const SLOW: f64 = 1.0 / 64.0;
-
-/// 1/f noise as a sum of averaged Gauss-Markov processes with geometrically spaced correlation times, each exact as
-/// an ARMA(1,1) series of box averages.
-#[derive(Debug, Clone)]
-struct Flicker {
-    fast: Vec<Markov>,
-    slow: Vec<Markov>,
-    rest_sigma: f64,
-    rng: Xoshiro256PlusPlus,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Markov {
-    phi: f64,
-    innovation: f64,
-    carried: f64,
-    value: f64,
-}
-
-impl Flicker {
-    fn new(b: f64, tau0_s: f64, lowest_hz: f64, mut rng: Xoshiro256PlusPlus) -> Flicker {
-        let spacing = RATIO.ln();
-        let variance = b * b / PI * spacing;
-        // Rates times τ0. Below the slowest lies (2/π)·rate/ω of the density; above the fastest all is white.
-        let slowest = (0.02 * 2.0 * PI * lowest_hz * tau0_s).clamp(1e-12, 1.0);
-        let (mut fast, mut slow) = (vec![], vec![]);
-        let mut rate = slowest;
-        while rate < 64.0 {
-            let process = Markov::new(rate, variance.sqrt(), &mut rng);
-            if rate < SLOW {
-                slow.push(process)
-            } else {
-                fast.push(process)
-            }
-            rate *= RATIO;
-        }
-        // Each faster process adds 2σ²/rate·(1 − 1/rate) to the variance of a sample.
-        let tail = 1.0 / (1.0 - 1.0 / RATIO);
-        let tail2 = 1.0 / (1.0 - 1.0 / (RATIO * RATIO));
-        let rest = 2.0 * variance * (tail / rate - tail2 / (rate * rate));
-        Flicker { fast, slow, rest_sigma: rest.sqrt(), rng }
-    }
-
-    fn next(&mut self) -> f64 {
-        let mut sum = self.rest_sigma * normal(&mut self.rng);
-        for process in &mut self.fast {
-            sum += process.next(normal(&mut self.rng));
-        }
-        for four in self.slow.chunks_mut(4) {
-            let mut bits = self.rng.next_u64();
-            for process in four {
-                // Sixteen bits, centred and scaled to variance 1.
-                let uniform = ((bits & 0xffff) as f64 - 32767.5) * (12f64.sqrt() / 65536.0);
-                bits >>= 16;
-                sum += process.next(uniform);
-            }
-        }
-        sum
-    }
-}
-
-impl Markov {
-    /// A process of standard deviation `sigma` and rate·τ0 = `a`, in its stationary state.
-    fn new(a: f64, sigma: f64, rng: &mut Xoshiro256PlusPlus) -> Markov {
-        let phi = (-a).exp();
-        let lost = -(-a).exp_m1();
-        let gamma0 = if a < 0.02 {
-            1.0 - a / 3.0 + a * a / 12.0 - a.powi(3) / 60.0 + a.powi(4) / 360.0
-        } else {
-            2.0 * (a - lost) / (a * a)
-        };
-        let gamma1 = (lost / a).powi(2);
-        // y_i − φ y_{i−1} is a moving average of order one with these two covariances.
-        let r0 = gamma0 * (1.0 + phi * phi) - 2.0 * phi * gamma1;
-        let r1 = gamma1 - phi * gamma0;
-        let half = (0.5 * r0 / r1).max(1.0);
-        let theta = half - (half * half - 1.0).sqrt();
-        let innovation = sigma * (r0 / (1.0 + theta * theta)).sqrt();
-        let e0 = innovation * normal(rng);
-        let value = e0 + (sigma * sigma * gamma0 - innovation * innovation).max(0.0).sqrt() * normal(rng);
-        Markov { phi, innovation, carried: theta, value: phi * value + theta * e0 }
-    }
-
-    /// The next value, given an innovation of variance 1.
-    #[inline]
-    fn next(&mut self, unit: f64) -> f64 {
-        let e = self.innovation * unit;
-        let y = self.value + e;
-        self.value = self.phi * y + self.carried * e;
-        y
     }
 }
 
@@ -307,5 +262,63 @@ mod tests {
         let model = NoiseModel { r: 3600.0, ..Default::default() };
         let setup = Setup { bias_deg_h: 2.0, ..Setup::for_record(0, 2.0, 4) };
         assert_eq!(Simulator::new(&model, &setup).take(3), vec![3.0, 5.0, 7.0]);
+    }
+
+    #[test]
+    fn damped_processes_and_filters_have_their_closed_densities() {
+        use crate::noise::composite::{Bandwidth, Damped};
+        let n = 2048;
+        let damped = |f, t| Damped { rms_deg_h: 1.0, frequency_hz: f, decay_time_s: t };
+        let white = NoiseModel { n: 0.01, ..Default::default() };
+        let cases = [
+            Composite { markov: vec![damped(0.0, 1.5)], ..Default::default() },
+            Composite { markov: vec![damped(0.0, 300.0)], ..Default::default() },
+            Composite { quasi_periodic: vec![damped(0.12, 200.0)], ..Default::default() },
+            Composite { quasi_periodic: vec![damped(0.003, 2000.0)], ..Default::default() },
+            Composite {
+                bandwidth: Some(Bandwidth::FirstOrder { time_constant_s: 2.5 }),
+                ..Composite::from(white)
+            },
+            Composite { bandwidth: Some(Bandwidth::MovingAverage { samples: 4 }), ..Composite::from(white) },
+        ];
+        for (case, model) in cases.into_iter().enumerate() {
+            let runs = 400;
+            let mut power = vec![0.0; n];
+            for run in 0..runs {
+                let setup = Setup::for_record(case as u64 * 10_000 + run, 1.0, n as u64);
+                for (p, c) in power.iter_mut().zip(dct2(&Simulator::of(&model, &setup).take(n))) {
+                    *p += c * c / runs as f64;
+                }
+            }
+            let expected = |k: usize| {
+                let sampling = crate::noise::composite::Sampling::Averaging;
+                let damped = model.markov.iter().chain(&model.quasi_periodic);
+                let sum: f64 = damped.map(|d| d.mode_power(k, n, 1.0, sampling)).sum();
+                sum + model.part_density(
+                    crate::noise::composite::Part::Term(NoiseType::AngleRandomWalk),
+                    k as f64 / (2.0 * n as f64),
+                    1.0,
+                )
+            };
+            let mut low = 1;
+            while low < n {
+                let high = (low + low / 8 + 1).min(n);
+                let (mut got, mut want) = (0.0, 0.0);
+                let mut square = 0.0;
+                for (k, p) in power.iter().enumerate().take(high).skip(low) {
+                    let e = expected(k);
+                    got += p;
+                    want += e;
+                    square += e * e;
+                }
+                let sigma = (2.0 * square / runs as f64).sqrt() / want;
+                assert!(
+                    (got / want - 1.0).abs() < 4.5 * sigma + 0.01,
+                    "case {case} modes {low}..{high}: {}",
+                    got / want
+                );
+                low = high;
+            }
+        }
     }
 }

@@ -1,0 +1,133 @@
+//! The bandwidth of a measurement: what a filter between the physics and the samples does to noise.
+
+use super::damped::{Damped, Sampling};
+use super::sampled_density;
+use crate::noise::data::NoiseType;
+use std::f64::consts::PI;
+
+/// A low-pass filter of the output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bandwidth {
+    /// First order, before sampling.
+    FirstOrder {
+        /// Time constant, s; the −3 dB cut-off lies at 1/(2π·time constant).
+        time_constant_s: f64,
+    },
+    /// Mean of the last so many samples, at every sample.
+    MovingAverage {
+        /// Samples in the mean, at least 2.
+        samples: u32,
+    },
+}
+
+/// Neighbouring aliases summed on each side; what is left out is below 1e-4 of the rest.
+const ALIASES: i32 = 6;
+
+impl Bandwidth {
+    /// −3 dB cut-off, Hz.
+    pub fn cutoff_hz(&self, tau0_s: f64) -> f64 {
+        match *self {
+            Bandwidth::FirstOrder { time_constant_s } => 1.0 / (2.0 * PI * time_constant_s),
+            Bandwidth::MovingAverage { samples } => 0.443 / (f64::from(samples) * tau0_s),
+        }
+    }
+
+    /// Density of samples of a term for a coefficient of 1, (deg/h)²/Hz.
+    pub fn unit_density(&self, term: NoiseType, frequency_hz: f64, tau0_s: f64, sampling: Sampling) -> f64 {
+        if term == NoiseType::Quantization {
+            // Rounding comes after the filter.
+            return sampled_density(term, frequency_hz, tau0_s, sampling);
+        }
+        match *self {
+            Bandwidth::MovingAverage { samples } => {
+                let n = f64::from(samples.max(1));
+                let x = PI * frequency_hz * tau0_s;
+                let gain = if x.sin().abs() < 1e-12 { 1.0 } else { (n * x).sin() / (n * x.sin()) };
+                gain * gain * sampled_density(term, frequency_hz, tau0_s, sampling)
+            }
+            Bandwidth::FirstOrder { time_constant_s } => match term {
+                NoiseType::AngleRandomWalk => white(time_constant_s).density(frequency_hz, tau0_s, sampling),
+                NoiseType::Flicker => (-ALIASES..=ALIASES)
+                    .map(|k| {
+                        let f = frequency_hz + f64::from(k) / tau0_s;
+                        let x = PI * f * tau0_s;
+                        let averaged = match sampling {
+                            Sampling::Averaging if x != 0.0 => (x.sin() / x).powi(2),
+                            _ => 1.0,
+                        };
+                        averaged / (2.0 * PI * f.abs()) / (1.0 + (2.0 * PI * f * time_constant_s).powi(2))
+                    })
+                    .sum(),
+                // Aliases of a random walk fall as f⁻⁶ here: the filter acts on the sampled density.
+                _ => {
+                    sampled_density(term, frequency_hz, tau0_s, sampling)
+                        / (1.0 + (2.0 * PI * frequency_hz * time_constant_s).powi(2))
+                }
+            },
+        }
+    }
+
+    /// V(t) of filtered white noise of N = 1 deg/√h, (deg/h)².
+    pub fn unit_white_mean_variance(&self, t_s: f64, tau0_s: f64) -> f64 {
+        match *self {
+            Bandwidth::FirstOrder { time_constant_s } => white(time_constant_s).mean_variance(t_s),
+            Bandwidth::MovingAverage { samples } => {
+                let n = f64::from(samples.max(1));
+                let m = (t_s / tau0_s).round().max(1.0);
+                // Variance of the mean of m samples: a trapezoid of n + m − 1 weights.
+                let (short, long) = (n.min(m), n.max(m));
+                let inner = (long - short + 1.0) * short * short;
+                let ends = (short - 1.0) * short * (2.0 * short - 1.0) / 3.0;
+                3600.0 / tau0_s * (inner + ends) / (n * m).powi(2)
+            }
+        }
+    }
+}
+
+/// White noise of N = 1 deg/√h behind a first-order filter is a Markov process.
+fn white(time_constant_s: f64) -> Damped {
+    Damped {
+        rms_deg_h: (3600.0 / (2.0 * time_constant_s)).sqrt(),
+        frequency_hz: 0.0,
+        decay_time_s: time_constant_s,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn filtered_white_noise_keeps_its_density_at_low_frequencies() {
+        for filter in
+            [Bandwidth::FirstOrder { time_constant_s: 2.0 }, Bandwidth::MovingAverage { samples: 7 }]
+        {
+            let low = filter.unit_density(NoiseType::AngleRandomWalk, 1e-5, 1.0, Sampling::Averaging);
+            assert!((low / 3600.0 - 1.0).abs() < 1e-6, "{filter:?}: {low}");
+            for term in [NoiseType::Flicker, NoiseType::RateRandomWalk] {
+                let plain = sampled_density(term, 1e-4, 1.0, Sampling::Averaging);
+                let got = filter.unit_density(term, 1e-4, 1.0, Sampling::Averaging);
+                assert!((got / plain - 1.0).abs() < 1e-4, "{filter:?} {term:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_filter_takes_away_half_at_its_cut_off() {
+        for filter in
+            [Bandwidth::FirstOrder { time_constant_s: 50.0 }, Bandwidth::MovingAverage { samples: 100 }]
+        {
+            let f = filter.cutoff_hz(1.0);
+            let half = filter.unit_density(NoiseType::AngleRandomWalk, f, 1.0, Sampling::Averaging) / 3600.0;
+            assert!((half - 0.5).abs() < 0.002, "{filter:?}: {half}");
+        }
+    }
+
+    #[test]
+    fn a_moving_average_of_white_noise_has_the_variance_of_a_trapezoid() {
+        let filter = Bandwidth::MovingAverage { samples: 3 };
+        // Mean of 2 of the means of 3: weights 1 2 2 1 over 6 → 10/36.
+        assert!((filter.unit_white_mean_variance(2.0, 1.0) / 3600.0 - 10.0 / 36.0).abs() < 1e-12);
+        assert!((filter.unit_white_mean_variance(1.0, 1.0) / 3600.0 - 1.0 / 3.0).abs() < 1e-12);
+    }
+}

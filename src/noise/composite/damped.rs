@@ -1,0 +1,212 @@
+//! Noise whose autocovariance is σ² e^(−|t|/T) cos(2πf₀t): a first-order Markov process at f₀ = 0, a quasi-periodic
+//! disturbance elsewhere. Exact for averages over the sample interval and for instantaneous samples.
+//!
+//! With the complex rate c = 1/T − 2πi f₀ every formula of the Markov process holds with its real part taken.
+//! Sources: IEEE Std 952 Annex C (Markov); N. F. Zhang, Metrologia 2008 (sampled forms).
+
+use nalgebra::Complex;
+use std::f64::consts::PI;
+
+/// How samples are taken from the continuous rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sampling {
+    /// Each sample is the mean over its interval (counts of angle, averaged rate).
+    #[default]
+    Averaging,
+    /// Each sample is the rate at an instant.
+    Instantaneous,
+}
+
+/// A damped-cosine process.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damped {
+    /// Standard deviation σ of the continuous process, deg/h.
+    pub rms_deg_h: f64,
+    /// Centre frequency f₀, Hz; 0 for a Markov process.
+    pub frequency_hz: f64,
+    /// Decay time T of the autocovariance, s.
+    pub decay_time_s: f64,
+}
+
+fn expm1_c(z: Complex<f64>) -> Complex<f64> {
+    // e^z − 1 without cancellation near 0.
+    let (a, b) = (z.re, z.im);
+    let half = (0.5 * b).sin();
+    Complex::new(a.exp_m1() * b.cos() - 2.0 * half * half, a.exp() * b.sin())
+}
+
+/// (z − 1 + e^(−z))/z².
+fn ramped(z: Complex<f64>) -> Complex<f64> {
+    if z.norm() > 0.5 {
+        return (z + expm1_c(-z)) / (z * z);
+    }
+    // Σ (−z)^k/(k+2)!
+    let mut term = Complex::new(0.5, 0.0);
+    let mut sum = term;
+    for k in 1..20 {
+        term = term * -z / f64::from(k + 2);
+        sum += term;
+    }
+    sum
+}
+
+impl Damped {
+    /// Complex rate c, 1/s.
+    pub fn rate(&self) -> Complex<f64> {
+        Complex::new(1.0 / self.decay_time_s, -2.0 * PI * self.frequency_hz)
+    }
+
+    /// The factors of the autocovariance of samples, for σ = 1: γ₀ and γ_d = Re\[h ρ^d\] for d ≥ 1.
+    fn covariance(&self, tau_s: f64, sampling: Sampling) -> (f64, Complex<f64>, Complex<f64>) {
+        let z = self.rate() * tau_s;
+        let rho = (-z).exp();
+        match sampling {
+            Sampling::Averaging => {
+                let lost = -expm1_c(-z);
+                // ρ h = (1 − e^(−z))(e^z − 1) ρ/z² = (1 − e^(−z))²/z²: h carries 1/ρ, kept apart to stay finite.
+                (2.0 * ramped(z).re, lost * lost / (z * z), rho)
+            }
+            Sampling::Instantaneous => (1.0, rho, rho),
+        }
+    }
+
+    /// Two-sided density of samples over `tau_s` at `frequency_hz`, aliases included, (deg/h)²/Hz.
+    pub fn density(&self, frequency_hz: f64, tau_s: f64, sampling: Sampling) -> f64 {
+        let (gamma0, first, rho) = self.covariance(tau_s, sampling);
+        let cos = (2.0 * PI * frequency_hz * tau_s).cos();
+        // γ_d = Re[first·ρ^(d−1)]; Σ_{d≥1} ρ^(d−1) cos(θd) = (cosθ − ρ)/(1 − 2ρcosθ + ρ²).
+        let sum = first * (Complex::new(cos, 0.0) - rho) / (1.0 - 2.0 * cos * rho + rho * rho);
+        (self.rms_deg_h.powi(2) * tau_s * (gamma0 + 2.0 * sum.re)).max(0.0)
+    }
+
+    /// E\[c_k²\]·τ of the orthonormal cosine mode k of `blocks` samples over `tau_s`: what the density becomes in a
+    /// record that is not long against T.
+    pub fn mode_power(&self, mode: usize, blocks: usize, tau_s: f64, sampling: Sampling) -> f64 {
+        let (gamma0, first, rho) = self.covariance(tau_s, sampling);
+        let m = blocks as f64;
+        let a = PI * mode as f64 / m;
+        let one = Complex::new(1.0, 0.0);
+        // Sums over d = 1 … M − 1 of z^(d−1)·e^(±iad) with weights 1 and d.
+        let turn = Complex::new(a.cos(), a.sin());
+        let sums = |turn: Complex<f64>| {
+            let z = rho * turn;
+            let last = z.powf(m - 1.0);
+            let plain = turn * (one - last) / (one - z);
+            let weighted = turn * (one - last * m + last * z * (m - 1.0)) / ((one - z) * (one - z));
+            (plain, weighted)
+        };
+        let ((up, up_d), (down, down_d)) = (sums(turn), sums(turn.conj()));
+        let cosine = 0.5 * (up + down);
+        let cosine_d = 0.5 * (up_d + down_d);
+        let sine = (up - down) / Complex::new(0.0, 2.0);
+        let tail = cosine - cosine_d / m - sine / (m * a.sin());
+        (self.rms_deg_h.powi(2) * tau_s * (gamma0 + 2.0 * (first * tail).re)).max(0.0)
+    }
+
+    /// V(t), (deg/h)²: the variance of the mean over `t_s` of the continuous process.
+    pub fn mean_variance(&self, t_s: f64) -> f64 {
+        2.0 * self.rms_deg_h.powi(2) * ramped(self.rate() * t_s).re
+    }
+
+    /// Allan variance at `tau_s`, (deg/h)².
+    pub fn allan_variance(&self, tau_s: f64) -> f64 {
+        2.0 * (self.mean_variance(tau_s) - self.mean_variance(2.0 * tau_s)).max(0.0)
+    }
+
+    /// Density at zero frequency of a Markov process as an angle random walk: q_c·T_c, deg/√h.
+    pub fn white_equivalent_deg_rt_h(&self) -> f64 {
+        self.rms_deg_h * (2.0 * self.decay_time_s / 3600.0).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn covariance_sum(d: &Damped, k: usize, blocks: usize, tau: f64) -> f64 {
+        // The same by quadrature of the continuous covariance and a plain double sum over pairs.
+        let r = |t: f64| {
+            d.rms_deg_h.powi(2) * (-t.abs() / d.decay_time_s).exp() * (2.0 * PI * d.frequency_hz * t).cos()
+        };
+        let steps = 400;
+        let gamma = |lag: usize| {
+            // ∫∫ R(lag τ + u − v) = ∫ (1 − |w|) R((lag + w) τ) dw over −1..1.
+            (0..2 * steps)
+                .map(|i| {
+                    let w = (i as f64 + 0.5) / steps as f64 - 1.0;
+                    (1.0 - w.abs()) * r((lag as f64 + w) * tau) / steps as f64
+                })
+                .sum::<f64>()
+        };
+        let g: Vec<f64> = (0..blocks).map(gamma).collect();
+        let phase = |j: usize| (PI * k as f64 * (j as f64 + 0.5) / blocks as f64).cos();
+        let mut sum = 0.0;
+        for i in 0..blocks {
+            for j in 0..blocks {
+                sum += 2.0 / blocks as f64 * g[i.abs_diff(j)] * phase(i) * phase(j);
+            }
+        }
+        sum * tau
+    }
+
+    #[test]
+    fn modes_agree_with_the_covariance_summed_over_all_pairs() {
+        for (f, t) in [(0.0, 1.5), (0.0, 40.0), (0.07, 30.0), (0.21, 400.0)] {
+            let d = Damped { rms_deg_h: 1.3, frequency_hz: f, decay_time_s: t };
+            for k in [1, 2, 9, 31, 63] {
+                let expected = covariance_sum(&d, k, 64, 2.0);
+                let got = d.mode_power(k, 64, 2.0, Sampling::Averaging);
+                assert!((got / expected - 1.0).abs() < 2e-4, "{f} {t} {k}: {got} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn densities_integrate_to_the_variance_of_the_samples() {
+        for (f, t) in [(0.0, 0.8), (0.0, 25.0), (0.11, 20.0), (0.7, 60.0)] {
+            let d = Damped { rms_deg_h: 2.0, frequency_hz: f, decay_time_s: t };
+            for (sampling, expected) in
+                [(Sampling::Averaging, d.mean_variance(1.0)), (Sampling::Instantaneous, 4.0)]
+            {
+                let steps = 100_000;
+                let total: f64 = (0..steps)
+                    .map(|i| d.density((f64::from(i) + 0.5) * 0.5 / f64::from(steps), 1.0, sampling))
+                    .sum::<f64>()
+                    / f64::from(steps);
+                assert!((total / expected - 1.0).abs() < 1e-4, "{f} {t} {sampling:?}: {total} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn published_allan_deviations_of_the_markov_process() {
+        // u = τ/T: deviation over σ.
+        let d = Damped { rms_deg_h: 1.0, frequency_hz: 0.0, decay_time_s: 50.0 };
+        for (u, expected) in [
+            (0.1, 0.248_780_84),
+            (0.5, 0.482_672_55),
+            (1.892_617_78, 0.617_364_28),
+            (10.0, 0.412_312_76),
+            (100.0, 0.140_356_69),
+        ] {
+            assert!((d.allan_variance(50.0 * u).sqrt() - expected).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_coherent_disturbance_reaches_the_published_maximum() {
+        let d = Damped { rms_deg_h: 0.5f64.sqrt(), frequency_hz: 0.1, decay_time_s: 1e9 };
+        let tau = 0.371_009_65 / 0.1;
+        assert!((d.allan_variance(tau).sqrt() - 0.724_611_35).abs() < 1e-6);
+    }
+
+    #[test]
+    fn slow_processes_keep_their_digits() {
+        let d = Damped { rms_deg_h: 1.0, frequency_hz: 0.0, decay_time_s: 1e7 };
+        // τ ≪ T: a random walk of q_c²τ/3 with q_c² = 2σ²/T.
+        assert!((d.allan_variance(1.0) / (2.0 / 1e7 / 3.0) - 1.0).abs() < 1e-6);
+        let fast = Damped { rms_deg_h: 1.0, frequency_hz: 0.0, decay_time_s: 1e-3 };
+        let n2 = fast.white_equivalent_deg_rt_h().powi(2) * 3600.0;
+        assert!((fast.density(0.1, 1.0, Sampling::Averaging) / n2 - 1.0).abs() < 1e-2);
+    }
+}

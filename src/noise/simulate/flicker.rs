@@ -1,0 +1,104 @@
+//! 1/f noise, and Markov processes as exact series of box averages.
+
+use super::normal;
+use rand::Rng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::f64::consts::PI;
+
+/// Spacing of the correlation times, as a ratio. The ripple of the sum is 2 sech(π²/ln ratio) = 0.3 %.
+const RATIO: f64 = 4.0;
+/// Processes slower than this many samples are driven by uniform numbers: their values are sums of so many of them
+/// that no test could tell them from normal ones.
+const SLOW: f64 = 1.0 / 64.0;
+
+/// 1/f noise as a sum of averaged Gauss-Markov processes with geometrically spaced correlation times, each exact as
+/// an ARMA(1,1) series of box averages.
+#[derive(Debug, Clone)]
+pub(super) struct Flicker {
+    fast: Vec<Markov>,
+    slow: Vec<Markov>,
+    rest_sigma: f64,
+    rng: Xoshiro256PlusPlus,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Markov {
+    phi: f64,
+    innovation: f64,
+    carried: f64,
+    value: f64,
+}
+
+impl Flicker {
+    pub(super) fn new(b: f64, tau0_s: f64, lowest_hz: f64, mut rng: Xoshiro256PlusPlus) -> Flicker {
+        let spacing = RATIO.ln();
+        let variance = b * b / PI * spacing;
+        // Rates times τ0. Below the slowest lies (2/π)·rate/ω of the density; above the fastest all is white.
+        let slowest = (0.02 * 2.0 * PI * lowest_hz * tau0_s).clamp(1e-12, 1.0);
+        let (mut fast, mut slow) = (vec![], vec![]);
+        let mut rate = slowest;
+        while rate < 64.0 {
+            let process = Markov::new(rate, variance.sqrt(), &mut rng);
+            if rate < SLOW {
+                slow.push(process)
+            } else {
+                fast.push(process)
+            }
+            rate *= RATIO;
+        }
+        // Each faster process adds 2σ²/rate·(1 − 1/rate) to the variance of a sample.
+        let tail = 1.0 / (1.0 - 1.0 / RATIO);
+        let tail2 = 1.0 / (1.0 - 1.0 / (RATIO * RATIO));
+        let rest = 2.0 * variance * (tail / rate - tail2 / (rate * rate));
+        Flicker { fast, slow, rest_sigma: rest.sqrt(), rng }
+    }
+
+    pub(super) fn next(&mut self) -> f64 {
+        let mut sum = self.rest_sigma * normal(&mut self.rng);
+        for process in &mut self.fast {
+            sum += process.next(normal(&mut self.rng));
+        }
+        for four in self.slow.chunks_mut(4) {
+            let mut bits = self.rng.next_u64();
+            for process in four {
+                // Sixteen bits, centred and scaled to variance 1.
+                let uniform = ((bits & 0xffff) as f64 - 32767.5) * (12f64.sqrt() / 65536.0);
+                bits >>= 16;
+                sum += process.next(uniform);
+            }
+        }
+        sum
+    }
+}
+
+impl Markov {
+    /// A process of standard deviation `sigma` and rate·τ0 = `a`, in its stationary state.
+    pub(super) fn new(a: f64, sigma: f64, rng: &mut Xoshiro256PlusPlus) -> Markov {
+        let phi = (-a).exp();
+        let lost = -(-a).exp_m1();
+        let gamma0 = if a < 0.02 {
+            1.0 - a / 3.0 + a * a / 12.0 - a.powi(3) / 60.0 + a.powi(4) / 360.0
+        } else {
+            2.0 * (a - lost) / (a * a)
+        };
+        let gamma1 = (lost / a).powi(2);
+        // y_i − φ y_{i−1} is a moving average of order one with these two covariances.
+        let r0 = gamma0 * (1.0 + phi * phi) - 2.0 * phi * gamma1;
+        let r1 = gamma1 - phi * gamma0;
+        let half = (0.5 * r0 / r1).max(1.0);
+        let theta = half - (half * half - 1.0).sqrt();
+        let innovation = sigma * (r0 / (1.0 + theta * theta)).sqrt();
+        let e0 = innovation * normal(rng);
+        let value = e0 + (sigma * sigma * gamma0 - innovation * innovation).max(0.0).sqrt() * normal(rng);
+        Markov { phi, innovation, carried: theta, value: phi * value + theta * e0 }
+    }
+
+    /// The next value, given an innovation of variance 1.
+    #[inline]
+    pub(super) fn next(&mut self, unit: f64) -> f64 {
+        let e = self.innovation * unit;
+        let y = self.value + e;
+        self.value = self.phi * y + self.carried * e;
+        y
+    }
+}
