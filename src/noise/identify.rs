@@ -30,7 +30,7 @@ pub struct Whittle {
 
 impl Default for Whittle {
     fn default() -> Self {
-        Whittle { thresholds: [4.0, 4.5, 4.0, 6.0, 8.5] }
+        Whittle { thresholds: [4.0, 4.5, 4.0, 8.5, 8.5] }
     }
 }
 
@@ -101,7 +101,7 @@ pub struct QuasiPeriodicFound {
 }
 
 /// Id, unit in the order of [`TERMS`].
-const IDS: [(&str, &str); 5] = [
+pub(super) const IDS: [(&str, &str); 5] = [
     ("angle_random_walk", "deg/sqrt(h)"),
     ("bias_instability", "deg/h"),
     ("rate_random_walk", "deg/h/sqrt(h)"),
@@ -114,11 +114,11 @@ const WALK: usize = 2;
 const QUANTIZATION: usize = 3;
 /// 2 Δ ln L from which quantisation that is not claimed widens the interval of N.
 const SUSPICION: f64 = 1.0;
-const METHOD: &str = "whittle";
+pub(super) const METHOD: &str = "whittle";
 /// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
-const PRICE: f64 = 2.71;
+pub(super) const PRICE: f64 = 2.71;
 /// Coverage of upper limits.
-const LIMIT_COVERAGE: f64 = 0.95;
+pub(super) const LIMIT_COVERAGE: f64 = 0.95;
 /// Rise of the deviance that makes an upper limit. A limit is only given when the term was not claimed, that is when
 /// chance made it look small; 5 in place of 2.71 keeps the coverage in spite of that.
 pub(super) const LIMIT_RISE: f64 = 5.0;
@@ -160,6 +160,17 @@ impl Identification {
             &mut self.rate_random_walk,
             &mut self.rate_ramp,
             &mut self.quantization,
+        ]
+    }
+
+    /// The estimates in the order of [`TERMS`]: N, B, K, Q, R.
+    pub(super) fn estimates_mut_by_term(&mut self) -> [&mut Estimate; 5] {
+        [
+            &mut self.angle_random_walk,
+            &mut self.bias_instability,
+            &mut self.rate_random_walk,
+            &mut self.quantization,
+            &mut self.rate_ramp,
         ]
     }
 
@@ -301,9 +312,14 @@ fn estimate(
     let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT_COVERAGE });
     let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD);
     if ambiguous && term != 0 && supported[term] {
-        return estimate.note(Note::new("note.low_frequency_ambiguous"));
+        return estimate.note(low_frequency_note());
     }
     estimate
+}
+
+/// Low-frequency noise is there, and which of the terms it is stays open.
+pub(super) fn low_frequency_note() -> Note {
+    Note::new("note.low_frequency_ambiguous")
 }
 
 /// The term that can stand for this one at the lowest frequencies.
@@ -359,7 +375,8 @@ impl Search {
         let with_ramp = usize::from(ramp_ratio > ramp_threshold);
         // Random walk must show with a ramp allowed for, and also in the description that the record is given.
         let walk = ratio(2, 1).min(ratio(2, with_ramp));
-        let ratios = [ratio(0, 0), ratio(1, with_ramp), walk, ratio(3, 0), ramp_ratio];
+        // A ramp that is left out bends the whole model, and other terms would seem to mend it.
+        let ratios = [ratio(0, with_ramp), ratio(1, with_ramp), walk, ratio(3, with_ramp), ramp_ratio];
         Some(Search { points, full: if with_ramp == 1 { restricted } else { full }, ratios })
     }
 

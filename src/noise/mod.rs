@@ -17,6 +17,7 @@ pub mod fit_range;
 pub mod histogram;
 pub mod identify;
 pub mod intervals;
+pub mod joint;
 pub mod lines;
 pub mod misfit;
 pub mod model;

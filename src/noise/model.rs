@@ -48,6 +48,8 @@ pub struct Bin {
     pub mode: usize,
     /// Number of means transformed, 0 for an averaged periodogram.
     pub blocks: usize,
+    /// Samples under the window of an averaged periodogram, 0 for a cosine mode.
+    pub segment: usize,
 }
 
 /// A stochastic term that has a spectrum. Anything that implements it can be fitted to [`super::evidence::Evidence`].
@@ -55,17 +57,27 @@ pub trait Spectral {
     /// Two-sided density of the means, aliases included, (deg/h)²/Hz, that the transform shows on average at `bin`,
     /// for a coefficient of 1.
     fn density(&self, bin: &Bin) -> f64;
+
+    /// True when [`Spectral::density`] knows what the window of a periodogram does to it. Otherwise the window is
+    /// accounted for by the curvature of the density.
+    fn knows_windows(&self) -> bool {
+        false
+    }
 }
 
 impl Spectral for NoiseType {
     fn density(&self, bin: &Bin) -> f64 {
-        let plain = unit_density(*self, bin.frequency_hz, bin.tau_s);
-        match self {
-            NoiseType::AngleRandomWalk => plain * bin.filling.max(1.0),
-            NoiseType::Flicker => plain * flicker_mode_ratio(bin.mode, bin.blocks),
-            NoiseType::Quantization => plain * quantization_mode_ratio(bin.mode, bin.blocks),
-            NoiseType::RateRandomWalk | NoiseType::RateRamp => plain,
-        }
+        unit_density(*self, bin.frequency_hz, bin.tau_s) * bin_ratio(*self, bin)
+    }
+}
+
+/// What the transform shows at a bin on average, over the density there.
+pub(crate) fn bin_ratio(term: NoiseType, bin: &Bin) -> f64 {
+    match term {
+        NoiseType::AngleRandomWalk => bin.filling.max(1.0),
+        NoiseType::Flicker => flicker_mode_ratio(bin.mode, bin.blocks),
+        NoiseType::Quantization => quantization_mode_ratio(bin.mode, bin.blocks),
+        NoiseType::RateRandomWalk | NoiseType::RateRamp => 1.0,
     }
 }
 

@@ -4,7 +4,7 @@ use super::composite::Sampling;
 use super::data::{BlockSeries, WelchSpectrum};
 use super::evidence::{Evidence, Mask};
 use super::fit_range::{RangedIdentification, identify_in_range};
-use super::identify::Whittle;
+use super::joint::MaximumLikelihood;
 use super::lines::SpectralLine;
 
 /// What one pass left of a channel, as identification needs it.
@@ -36,6 +36,7 @@ impl SpectralRecord<'_> {
 
     /// Identifies the noise.
     pub fn identify(&self, channel: &str) -> RangedIdentification {
-        identify_in_range(&Whittle::default(), channel, &self.evidence(), 0.5 / self.tau0_s)
+        let method = MaximumLikelihood { sampling: self.sampling, ..Default::default() };
+        identify_in_range(&method, channel, &self.evidence(), 0.5 / self.tau0_s)
     }
 }

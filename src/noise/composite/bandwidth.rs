@@ -20,8 +20,8 @@ pub enum Bandwidth {
     },
 }
 
-/// Neighbouring aliases summed on each side; what is left out is below 1e-4 of the rest.
-const ALIASES: i32 = 6;
+/// Neighbouring aliases summed on each side; what is left out falls as the fifth power of the distance.
+const ALIASES: i32 = 3;
 
 impl Bandwidth {
     /// −3 dB cut-off, Hz.

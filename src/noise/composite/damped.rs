@@ -28,6 +28,45 @@ pub struct Damped {
     pub decay_time_s: f64,
 }
 
+/// Expected powers of the cosine modes of a [`Damped`] process.
+#[derive(Debug, Clone, Copy)]
+pub struct Modes {
+    gamma0: f64,
+    first: Complex<f64>,
+    rho: Complex<f64>,
+    /// ρ^(M − 1).
+    last: Complex<f64>,
+    blocks: usize,
+    scale: f64,
+}
+
+impl Modes {
+    /// E\[c_k²\]·τ of mode k, (deg/h)²/Hz.
+    pub fn power(&self, mode: usize) -> f64 {
+        let m = self.blocks as f64;
+        let (sin, cos) = (PI * mode as f64 / m).sin_cos();
+        let one = Complex::new(1.0, 0.0);
+        // e^(ia(M − 1)) = (−1)^k e^(−ia).
+        let sign = if mode.is_multiple_of(2) { 1.0 } else { -1.0 };
+        // Sums over d = 1 … M − 1 of z^(d−1)·e^(±iad) with weights 1 and d.
+        let sums = |turn: Complex<f64>| {
+            let z = self.rho * turn;
+            let last = self.last * turn.conj() * sign;
+            let inverse = one / (one - z);
+            let plain = turn * (one - last) * inverse;
+            let weighted = turn * (one - last * m + last * z * (m - 1.0)) * inverse * inverse;
+            (plain, weighted)
+        };
+        let turn = Complex::new(cos, sin);
+        let ((up, up_d), (down, down_d)) = (sums(turn), sums(turn.conj()));
+        let cosine = 0.5 * (up + down);
+        let cosine_d = 0.5 * (up_d + down_d);
+        let sine = (up - down) / Complex::new(0.0, 2.0);
+        let tail = cosine - cosine_d / m - sine / (m * sin);
+        (self.scale * (self.gamma0 + 2.0 * (self.first * tail).re)).max(0.0)
+    }
+}
+
 fn expm1_c(z: Complex<f64>) -> Complex<f64> {
     // e^z − 1 without cancellation near 0.
     let (a, b) = (z.re, z.im);
@@ -82,25 +121,42 @@ impl Damped {
     /// E\[c_k²\]·τ of the orthonormal cosine mode k of `blocks` samples over `tau_s`: what the density becomes in a
     /// record that is not long against T.
     pub fn mode_power(&self, mode: usize, blocks: usize, tau_s: f64, sampling: Sampling) -> f64 {
+        self.modes(blocks, tau_s, sampling).power(mode)
+    }
+
+    /// The powers of all cosine modes of `blocks` samples over `tau_s`.
+    pub fn modes(&self, blocks: usize, tau_s: f64, sampling: Sampling) -> Modes {
         let (gamma0, first, rho) = self.covariance(tau_s, sampling);
-        let m = blocks as f64;
-        let a = PI * mode as f64 / m;
+        let last = rho.powf(blocks as f64 - 1.0);
+        let scale = self.rms_deg_h.powi(2) * tau_s;
+        Modes { gamma0, first, rho, last, blocks, scale }
+    }
+
+    /// Two-sided density that a Hann window over `segment` samples shows on average at `frequency_hz`, (deg/h)²/Hz:
+    /// what a resonance narrower than the window becomes.
+    pub fn windowed_density(&self, frequency_hz: f64, segment: usize, tau_s: f64, sampling: Sampling) -> f64 {
+        let (gamma0, first, rho) = self.covariance(tau_s, sampling);
+        let l = segment as f64;
         let one = Complex::new(1.0, 0.0);
-        // Sums over d = 1 … M − 1 of z^(d−1)·e^(±iad) with weights 1 and d.
-        let turn = Complex::new(a.cos(), a.sin());
-        let sums = |turn: Complex<f64>| {
-            let z = rho * turn;
-            let last = z.powf(m - 1.0);
-            let plain = turn * (one - last) / (one - z);
-            let weighted = turn * (one - last * m + last * z * (m - 1.0)) / ((one - z) * (one - z));
-            (plain, weighted)
-        };
-        let ((up, up_d), (down, down_d)) = (sums(turn), sums(turn.conj()));
-        let cosine = 0.5 * (up + down);
-        let cosine_d = 0.5 * (up_d + down_d);
-        let sine = (up - down) / Complex::new(0.0, 2.0);
-        let tail = cosine - cosine_d / m - sine / (m * a.sin());
-        (self.rms_deg_h.powi(2) * tau_s * (gamma0 + 2.0 * (first * tail).re)).max(0.0)
+        let turn = |phase: f64| Complex::new(phase.cos(), phase.sin());
+        // Autocorrelation of the window: (1 − x)(2 + cos 2πx)/3 + sin(2πx)/(2π), x = d/L.
+        let (theta, bin) = (2.0 * PI * frequency_hz * tau_s, 2.0 * PI / l);
+        let mut sum = Complex::new(0.0, 0.0);
+        for side in [theta, -theta] {
+            for shift in [-1.0, 0.0, 1.0] {
+                let u = turn(side + shift * bin);
+                let z = rho * u;
+                let last = z.powf(l - 1.0);
+                let plain = u * (one - last) / (one - z);
+                let weighted = u * (one - last * l + last * z * (l - 1.0)) / ((one - z) * (one - z));
+                let (even, odd) = match shift {
+                    0.0 => (2.0 / 3.0, Complex::new(0.0, 0.0)),
+                    s => (1.0 / 6.0, Complex::new(0.0, -s / (4.0 * PI))),
+                };
+                sum += (plain - weighted / l) * even + plain * odd;
+            }
+        }
+        (self.rms_deg_h.powi(2) * tau_s * (gamma0 + (first * sum).re)).max(0.0)
     }
 
     /// V(t), (deg/h)²: the variance of the mean over `t_s` of the continuous process.
@@ -157,6 +213,35 @@ mod tests {
                 let expected = covariance_sum(&d, k, 64, 2.0);
                 let got = d.mode_power(k, 64, 2.0, Sampling::Averaging);
                 assert!((got / expected - 1.0).abs() < 2e-4, "{f} {t} {k}: {got} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_window_shows_the_covariance_weighted_with_its_own() {
+        let l = 64usize;
+        let window: Vec<f64> =
+            (0..l).map(|i| 0.5 - 0.5 * (2.0 * PI * (i as f64 + 0.5) / l as f64).cos()).collect();
+        let square: f64 = window.iter().map(|w| w * w).sum();
+        for (f, t) in [(0.0, 3.0), (0.0, 900.0), (0.2, 5000.0), (0.13, 20.0)] {
+            let d = Damped { rms_deg_h: 1.0, frequency_hz: f, decay_time_s: t };
+            let (gamma0, first, rho) = d.covariance(1.0, Sampling::Averaging);
+            let gamma = |lag: usize| match lag {
+                0 => gamma0,
+                _ => (first * rho.powf(lag as f64 - 1.0)).re,
+            };
+            for k in [0, 5, 8, 13, 20] {
+                let f = k as f64 / l as f64;
+                let mut expected = 0.0;
+                for i in 0..l {
+                    for j in 0..l {
+                        let phase = 2.0 * PI * f * (i as f64 - j as f64);
+                        expected += window[i] * window[j] * gamma(i.abs_diff(j)) * phase.cos() / square;
+                    }
+                }
+                let got = d.windowed_density(f, l, 1.0, Sampling::Averaging);
+                // The window is summed at middles of samples here and integrated there.
+                assert!((got - expected).abs() < 5e-3 * expected + 2e-4, "{f} {t} {k}: {got} {expected}");
             }
         }
     }

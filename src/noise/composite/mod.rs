@@ -6,7 +6,7 @@ pub mod damped;
 mod described;
 
 pub use bandwidth::Bandwidth;
-pub use damped::{Damped, Sampling};
+pub use damped::{Damped, Modes, Sampling};
 pub use described::{Described, Parameter};
 
 use super::data::NoiseType;

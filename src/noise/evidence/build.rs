@@ -1,9 +1,11 @@
 //! Turns block means and an averaged periodogram into bands.
 
+use super::fine::widest;
 use super::series::{LEAST_STRETCH, Series};
-use super::{Band, Cell, Evidence, Mask, Piece};
+use super::{Band, Cell, Evidence, FineBin, Mask, Piece, Zone};
 use crate::noise::data::WelchSpectrum;
 use crate::numeric::cosine::dct2;
+use std::sync::Arc;
 
 /// Modes that keep a band of their own.
 const SINGLE_MODES: usize = 64;
@@ -51,24 +53,63 @@ fn merge(bands: Vec<Band>) -> Vec<Band> {
     out
 }
 
+/// Bands of bins: those of one transform that lie side by side are joined while the band stays narrow enough.
+pub(super) fn banded(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
+    let mut bands: Vec<Band> = vec![];
+    for bin in fine {
+        let (piece, k, f) = (bin.piece as usize, bin.index as usize, bin.frequency_hz);
+        // Bins of one transform arrive in ascending order, so that only the newest band can take them.
+        if !bin.alone
+            && let Some(band) = bands.last_mut()
+            && let Some(cell) = band.cells.last_mut()
+            && cell.piece == piece
+            && cell.to + 1 == k
+            && f - band.low_hz <= widest(0.5 * (f + band.low_hz), BAND_WIDTH, zones)
+        {
+            let total = band.dof + bin.dof;
+            let sums = [bin.power, bin.cross, bin.ramp];
+            for (value, sum) in [&mut band.power, &mut band.cross, &mut band.ramp].into_iter().zip(sums) {
+                *value += (sum - *value) * bin.dof / total;
+            }
+            band.dof = total;
+            band.high_hz = f;
+            cell.to = k;
+            cell.dof = total;
+            continue;
+        }
+        bands.push(Band {
+            low_hz: f,
+            high_hz: f,
+            dof: bin.dof,
+            power: bin.power,
+            cross: bin.cross,
+            ramp: bin.ramp,
+            cells: vec![Cell { piece, from: k, to: k, dof: bin.dof }],
+        });
+    }
+    bands.sort_by(|a, b| a.low_hz.total_cmp(&b.low_hz));
+    if bands.len() > MANY_BANDS + 64 * zones.len() {
+        bands = merge(bands);
+    }
+    bands
+}
+
 pub(super) struct Builder<'a> {
     evidence: Evidence,
     masks: &'a [Mask],
+    fine: Vec<FineBin>,
 }
 
 impl<'a> Builder<'a> {
     pub(super) fn new(tau0_s: f64, masks: &'a [Mask]) -> Builder<'a> {
-        Builder { evidence: Evidence { tau0_s, ..Default::default() }, masks }
+        Builder { evidence: Evidence { tau0_s, ..Default::default() }, masks, fine: vec![] }
     }
 
     pub(super) fn finish(mut self, span_s: f64, usable_s: f64) -> Evidence {
         self.evidence.span_s = span_s;
         self.evidence.usable_s = usable_s;
-        let bands = &mut self.evidence.bands;
-        bands.sort_by(|a, b| a.low_hz.total_cmp(&b.low_hz));
-        if bands.len() > MANY_BANDS {
-            *bands = merge(std::mem::take(bands));
-        }
+        self.evidence.bands = banded(&self.fine, &[]);
+        self.evidence.fine = Arc::new(self.fine);
         self.evidence
     }
 
@@ -190,34 +231,16 @@ impl<'a> Builder<'a> {
 
     fn add_bin(&mut self, piece: usize, k: usize, dof: f64, sums: [f64; 3], alone: bool) {
         let Some(step_hz) = self.evidence.pieces.get(piece).map(|p| p.step_hz) else { return };
-        let f = k as f64 * step_hz;
-        let bands = &mut self.evidence.bands;
-        // Bins of one transform arrive in ascending order, so that only the newest band can take them.
-        if !alone
-            && let Some(band) = bands.last_mut()
-            && let Some(cell) = band.cells.last_mut()
-            && cell.piece == piece
-            && cell.to + 1 == k
-            && f <= band.low_hz * (1.0 + BAND_WIDTH)
-        {
-            let total = band.dof + dof;
-            for (value, sum) in [&mut band.power, &mut band.cross, &mut band.ramp].into_iter().zip(sums) {
-                *value += (sum - *value) * dof / total;
-            }
-            band.dof = total;
-            band.high_hz = f;
-            cell.to = k;
-            cell.dof = total;
-            return;
-        }
-        bands.push(Band {
-            low_hz: f,
-            high_hz: f,
+        let [power, cross, ramp] = sums;
+        self.fine.push(FineBin {
+            frequency_hz: k as f64 * step_hz,
+            power,
             dof,
-            power: sums[0],
-            cross: sums[1],
-            ramp: sums[2],
-            cells: vec![Cell { piece, from: k, to: k, dof }],
+            cross,
+            ramp,
+            piece: piece as u32,
+            index: k as u32,
+            alone,
         });
     }
 }

@@ -7,12 +7,15 @@
 //! Sykulski et al., Biometrika 106, 2019).
 
 mod build;
+mod fine;
 mod series;
 
 use self::build::{Builder, ramp_modes};
+pub use self::fine::{FineBin, Zone};
 use self::series::{LEAST_STRETCH, Series};
 use super::data::{BlockSeries, WelchSpectrum};
 use super::model::{Bin, NoiseModel, Spectral, TERMS};
+use std::sync::Arc;
 
 /// A frequency range to leave out: a spectral line found elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,19 +40,24 @@ struct Piece {
 }
 
 impl Piece {
-    fn expectation(&self, term: &dyn Spectral, index: f64) -> f64 {
-        let bin = |index: f64| Bin {
+    fn bin(&self, index: f64) -> Bin {
+        Bin {
             frequency_hz: index * self.step_hz,
             tau_s: self.tau_s,
             filling: self.filling,
             mode: if self.blocks > 0 { index.round() as usize } else { 0 },
             blocks: self.blocks,
-        };
-        let here = term.density(&bin(index));
+            segment: if self.blocks > 0 { 0 } else { (1.0 / (self.step_hz * self.tau_s)).round() as usize },
+        }
+    }
+
+    fn expectation(&self, term: &dyn Spectral, index: f64) -> f64 {
+        let here = term.density(&self.bin(index));
         let nyquist = 0.5 / (self.tau_s * self.step_hz);
-        if self.blocks > 0 || index < 2.0 || index + 1.0 > nyquist {
+        if self.blocks > 0 || index < 2.0 || index + 1.0 > nyquist || term.knows_windows() {
             return here;
         }
+        let bin = |index: f64| self.bin(index);
         // A Hann window spreads a density over a kernel with a second moment of one third of a bin squared.
         here + (term.density(&bin(index - 1.0)) - 2.0 * here + term.density(&bin(index + 1.0))) / 6.0
     }
@@ -109,6 +117,7 @@ pub struct Evidence {
     /// coarse means.
     pub samples_in_short_stretches: u64,
     pieces: Vec<Piece>,
+    fine: Arc<Vec<FineBin>>,
 }
 
 impl Evidence {
@@ -168,6 +177,8 @@ impl Evidence {
         }
         let length = samples as f64 * tau0_s;
         let mut evidence = builder.finish(length, length);
+        // There is nothing in it that could be looked at more closely.
+        evidence.fine = Arc::default();
         let mut power = vec![0.0; evidence.bands.len()];
         for term in TERMS {
             let square = model.coefficient(term).powi(2);
@@ -212,6 +223,7 @@ impl Evidence {
     pub fn up_to(&self, highest_hz: f64) -> Evidence {
         let mut part = self.clone();
         part.bands.retain(|b| b.high_hz <= highest_hz);
+        part.fine = Arc::new(self.fine.iter().filter(|b| b.frequency_hz <= highest_hz).copied().collect());
         part
     }
 

@@ -217,7 +217,14 @@ mod tests {
             }
             let expected = |k: usize| {
                 let f = k as f64 / (2.0 * n as f64);
-                term.density(&Bin { frequency_hz: f, tau_s: 1.0, filling: 1.0, mode: k, blocks: n })
+                term.density(&Bin {
+                    frequency_hz: f,
+                    tau_s: 1.0,
+                    filling: 1.0,
+                    mode: k,
+                    blocks: n,
+                    segment: 0,
+                })
             };
             // Geometric bands; tolerance three standard deviations of the band's mean, at most 2 % where it is wide.
             let mut low = 1;

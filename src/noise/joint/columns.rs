@@ -1,0 +1,113 @@
+//! Expected band powers of each part for a coefficient of 1.
+
+use super::{BASE, Shape};
+use crate::noise::composite::{Bandwidth, Damped, Modes, Sampling, sampled_density};
+use crate::noise::data::NoiseType;
+use crate::noise::evidence::Evidence;
+use crate::noise::model::{Bin, Spectral, bin_ratio};
+use std::cell::Cell;
+use std::f64::consts::PI;
+
+/// A term behind a filter.
+struct Filtered {
+    term: NoiseType,
+    filter: Option<Bandwidth>,
+    tau0_s: f64,
+    sampling: Sampling,
+}
+
+impl Spectral for Filtered {
+    fn density(&self, bin: &Bin) -> f64 {
+        let (f, tau) = (bin.frequency_hz, bin.tau_s);
+        let plain = match self.filter {
+            None => sampled_density(self.term, f, tau, self.sampling_of(bin)),
+            Some(filter @ Bandwidth::FirstOrder { .. }) => {
+                filter.unit_density(self.term, f, tau, self.sampling_of(bin))
+            }
+            Some(Bandwidth::MovingAverage { samples }) => {
+                let n = f64::from(samples.max(1));
+                let x = PI * f * self.tau0_s;
+                let rounding = self.term == NoiseType::Quantization || x.sin().abs() < 1e-12;
+                let gain = if rounding { 1.0 } else { (n * x).sin() / (n * x.sin()) };
+                gain * gain * sampled_density(self.term, f, tau, self.sampling_of(bin))
+            }
+        };
+        plain * bin_ratio(self.term, bin)
+    }
+}
+
+impl Filtered {
+    /// Means over blocks of instantaneous samples are averages to a good approximation.
+    fn sampling_of(&self, bin: &Bin) -> Sampling {
+        if bin.tau_s > 1.5 * self.tau0_s { Sampling::Averaging } else { self.sampling }
+    }
+}
+
+/// A process of standard deviation 1.
+struct Process {
+    process: Damped,
+    tau0_s: f64,
+    sampling: Sampling,
+    /// The modes of the transform that was asked for last: bins of one transform come together.
+    last: Cell<Option<(f64, usize, Modes)>>,
+}
+
+impl Spectral for Process {
+    fn density(&self, bin: &Bin) -> f64 {
+        let sampling = if bin.tau_s > 1.5 * self.tau0_s { Sampling::Averaging } else { self.sampling };
+        if bin.mode > 0 {
+            let modes = match self.last.get() {
+                Some((tau_s, blocks, modes)) if tau_s == bin.tau_s && blocks == bin.blocks => modes,
+                _ => self.process.modes(bin.blocks, bin.tau_s, sampling),
+            };
+            self.last.set(Some((bin.tau_s, bin.blocks, modes)));
+            modes.power(bin.mode)
+        } else if bin.segment > 0 {
+            self.process.windowed_density(bin.frequency_hz, bin.segment, bin.tau_s, sampling)
+        } else {
+            self.process.density(bin.frequency_hz, bin.tau_s, sampling)
+        }
+    }
+
+    fn knows_windows(&self) -> bool {
+        true
+    }
+}
+
+/// The columns of N, B, K and Q behind a filter.
+pub(super) fn base(evidence: &Evidence, filter: Option<Bandwidth>, sampling: Sampling) -> Vec<Vec<f64>> {
+    BASE.iter()
+        .map(|term| {
+            if filter.is_none() && sampling == Sampling::Averaging {
+                return evidence.expectation(term);
+            }
+            evidence.expectation(&Filtered { term: *term, filter, tau0_s: evidence.tau0_s, sampling })
+        })
+        .collect()
+}
+
+/// The column of one process.
+pub(super) fn process(evidence: &Evidence, process: &Damped, sampling: Sampling) -> Vec<f64> {
+    let unit = Damped { rms_deg_h: 1.0, ..*process };
+    evidence.expectation(&Process { process: unit, tau0_s: evidence.tau0_s, sampling, last: Cell::new(None) })
+}
+
+/// All columns of a shape.
+#[derive(Debug, Clone)]
+pub(super) struct Columns {
+    pub(super) base: Vec<Vec<f64>>,
+    pub(super) damped: Vec<Vec<f64>>,
+}
+
+impl Columns {
+    pub(super) fn of(evidence: &Evidence, shape: &Shape, sampling: Sampling) -> Columns {
+        Columns {
+            base: base(evidence, shape.filter, sampling),
+            damped: shape.damped.iter().map(|(_, d)| process(evidence, d, sampling)).collect(),
+        }
+    }
+
+    pub(super) fn all(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.base.iter().chain(&self.damped)
+    }
+}

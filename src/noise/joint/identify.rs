@@ -1,0 +1,332 @@
+//! Identification with every kind of term.
+
+use super::search::{all_free, best_of};
+use super::{
+    BASE, ExtraThresholds, Extras, Free, Joint, JointPoint, JointProfile, Kind, Shape, Variable, find_extras,
+    parameter_covariance,
+};
+use crate::estimate::{Estimate, Spread, UpperLimit};
+use crate::noise::composite::{Bandwidth, Described, Sampling};
+use crate::noise::data::NoiseType;
+use crate::noise::evidence::Evidence;
+use crate::noise::fit::RAMP;
+use crate::noise::identify::{
+    IDS, Identification, Identify, LIMIT_COVERAGE, LIMIT_RISE, METHOD, MarkovFound, PRICE,
+    QuasiPeriodicFound, Whittle, low_frequency_note, rival_of,
+};
+use crate::noise::misfit::Misfit;
+use crate::noise::model::TERMS;
+use crate::noise::profile::wider;
+use std::f64::consts::PI;
+
+/// Maximum Whittle likelihood over N, B, K, Q and R, and over Markov processes, quasi-periodic disturbances and a
+/// filter where the record calls for them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MaximumLikelihood {
+    /// How N, B, K, Q and R are claimed.
+    pub base: Whittle,
+    /// How everything else is accepted.
+    pub extras: ExtraThresholds,
+    /// How samples were taken.
+    pub sampling: Sampling,
+}
+
+impl Identify for MaximumLikelihood {
+    fn identify(&self, channel: &str, evidence: &Evidence) -> Identification {
+        let plain = self.base.identify(channel, evidence);
+        let ramp = plain.claims(NoiseType::RateRamp);
+        let mut extras = find_extras(evidence, self.sampling, ramp, &self.extras);
+        if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
+            return plain;
+        }
+        // A part that became needless after a later one is taken out again.
+        loop {
+            let resolved = evidence.resolving(&extras.zones);
+            let Some(joint) = Joint::new(&resolved, self.sampling) else { return plain };
+            let Some(found) = Found::of(&joint, &extras.shape, self) else { return plain };
+            match found.needless {
+                Some(part) => extras = without(&extras, part),
+                None => return found.report(channel, &joint, plain),
+            }
+            if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
+                return plain;
+            }
+        }
+    }
+}
+
+/// A part beside N, B, K, Q and R.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Part {
+    Filter,
+    Damped(usize),
+}
+
+fn without_shape(shape: &Shape, part: Part) -> Shape {
+    let mut out = shape.clone();
+    match part {
+        Part::Filter => out.filter = None,
+        Part::Damped(i) if i < out.damped.len() => {
+            out.damped.remove(i);
+        }
+        Part::Damped(_) => {}
+    }
+    out
+}
+
+fn without(extras: &Extras, part: Part) -> Extras {
+    Extras { shape: without_shape(&extras.shape, part), zones: extras.zones.clone() }
+}
+
+/// Everything that fits of one shape say.
+struct Found {
+    full: JointPoint,
+    ratios: [f64; 5],
+    claimed: [bool; 5],
+    supported: JointPoint,
+    free: Free,
+    needless: Option<Part>,
+}
+
+impl Found {
+    fn of(joint: &Joint<'_>, shape: &Shape, method: &MaximumLikelihood) -> Option<Found> {
+        let level = best_of(joint, shape, false);
+        let sloped = best_of(joint, shape, true);
+        // The ramp: plain likelihood on both sides, at the restricted estimate.
+        let held = Free { held: Some(Variable::Ramp), ..all_free(shape, true, true) };
+        let plain = joint.maximise(&sloped, &held);
+        let ramp_ratio = (level.deviance - plain.deviance).max(0.0);
+        let ramp = ramp_ratio > method.base.thresholds[RAMP];
+        let full = if ramp { sloped.clone() } else { level.clone() };
+        if !full.deviance.is_finite() {
+            return None;
+        }
+        let drop_base = |i: usize, top: &JointPoint, ramp: bool| {
+            let mut free = all_free(shape, ramp, true);
+            free.variance[i] = false;
+            let mut start = top.clone();
+            start.variance[i] = 0.0;
+            (joint.maximise(&start, &free).deviance - top.deviance).max(0.0)
+        };
+        let walk = drop_base(2, &sloped, true).min(drop_base(2, &full, ramp));
+        let ratios = [
+            drop_base(0, &full, ramp),
+            drop_base(1, &full, ramp),
+            walk,
+            drop_base(3, &full, ramp),
+            ramp_ratio,
+        ];
+        let mut claimed = [false; 5];
+        for (flag, (ratio, threshold)) in claimed.iter_mut().zip(ratios.iter().zip(method.base.thresholds)) {
+            *flag = *ratio > threshold;
+        }
+        let needless = needless(joint, shape, &full, ramp, &method.extras);
+        let (supported, free) = supported(joint, shape, &full, &claimed, ramp);
+        Some(Found { full, ratios, claimed, supported, free, needless })
+    }
+
+    fn report(&self, channel: &str, joint: &Joint<'_>, plain: Identification) -> Identification {
+        let mut out = plain;
+        let point = &self.supported;
+        out.likelihood_ratios = self.ratios;
+        out.claimed = TERMS.into_iter().zip(self.claimed).filter(|(_, c)| *c).map(|(t, _)| t).collect();
+        out.full = self.full.terms();
+        out.supported = point.terms();
+        let mut model = point.terms();
+        for (term, claimed) in TERMS.into_iter().zip(self.claimed) {
+            if !claimed {
+                model = model.with(term, 0.0);
+            }
+        }
+        out.model = model;
+        out.ambiguous = (0..BASE.len()).any(|i| self.free.variance[i] && !self.claimed[i]);
+        let (variables, covariance) = parameter_covariance(joint, point, &self.free);
+        out.covariance = base_covariance(&variables, &covariance);
+        out.misfit = Misfit::of(joint.evidence(), &joint.whitened(point), variables.len());
+        for (term, estimate) in out.estimates_mut_by_term().into_iter().enumerate() {
+            *estimate = self.base_estimate(channel, joint, term);
+        }
+        self.report_parts(channel, joint, &mut out);
+        out.described = Described {
+            model: point.composite(joint.sampling()),
+            parameters: variables.iter().filter_map(|v| point.parameter(*v)).collect(),
+            covariance,
+        };
+        out
+    }
+
+    fn profile(&self, joint: &Joint<'_>, variable: Variable, free: &Free) -> (JointPoint, Spread) {
+        let best = joint.maximise(&self.supported, free);
+        let spread = JointProfile::new(joint, &best, free, variable).spread();
+        (best, spread)
+    }
+
+    /// The estimate of one of [`TERMS`].
+    fn base_estimate(&self, channel: &str, joint: &Joint<'_>, term: usize) -> Estimate {
+        let (id, unit) = IDS[term];
+        let variable = if term == RAMP { Variable::Ramp } else { Variable::Variance(term) };
+        let mut free = self.free.clone();
+        if term == 0 || term == 3 {
+            // Low-frequency noise that is too weak to be named still adds to the level of the white part.
+            (free.variance[1], free.variance[2]) = (true, true);
+        }
+        if self.claimed[term] {
+            let (best, mut spread) = self.profile(joint, variable, &free);
+            let value = best.reported(variable);
+            if let Some(rival) = rival_of(term).filter(|r| !free.variance[*r]) {
+                let mut wide = free.clone();
+                wide.variance[rival] = true;
+                spread = wider(value, &spread, &self.profile(joint, variable, &wide).1);
+            }
+            return Estimate::measured(id, channel, value, unit, spread, METHOD);
+        }
+        // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
+        let mut open = all_free(&self.supported.shape, self.claimed[RAMP], true);
+        if term == RAMP {
+            open.ramp = true;
+        }
+        let mut limits = vec![];
+        for rival in [None, rival_of(term).filter(|r| !self.claimed[*r])] {
+            let mut free = open.clone();
+            let mut start = self.full.clone();
+            if let Some(r) = rival {
+                free.variance[r] = false;
+                start.variance[r] = 0.0;
+            }
+            let best = joint.maximise(&start, &free);
+            limits.extend(JointProfile::new(joint, &best, &free, variable).upper_limit(LIMIT_RISE));
+        }
+        let limit = limits.into_iter().max_by(f64::total_cmp);
+        let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT_COVERAGE });
+        let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD);
+        let ambiguous = (0..BASE.len()).any(|i| self.free.variance[i] && !self.claimed[i]);
+        let needed = term != 0 && self.free.variance.get(term) == Some(&true) && term != RAMP;
+        if ambiguous && needed { estimate.note(low_frequency_note()) } else { estimate }
+    }
+
+    fn report_parts(&self, channel: &str, joint: &Joint<'_>, out: &mut Identification) {
+        let measured = |id: &'static str, unit: &'static str, variable: Variable| {
+            let (best, spread) = self.profile(joint, variable, &self.free);
+            Estimate::measured(id, channel, best.reported(variable), unit, spread, METHOD)
+        };
+        for (i, (kind, _)) in self.supported.shape.damped.iter().enumerate() {
+            let sigma = Variable::Variance(BASE.len() + i);
+            match kind {
+                Kind::Markov => out.markov.push(MarkovFound {
+                    sigma: measured("markov_sigma", "deg/h", sigma),
+                    correlation_time: measured("markov_correlation_time", "s", Variable::DecayTime(i)),
+                }),
+                Kind::QuasiPeriodic => out.quasi_periodic.push(QuasiPeriodicFound {
+                    amplitude: measured("quasi_periodic_amplitude", "deg/h", sigma),
+                    frequency: measured("quasi_periodic_frequency", "Hz", Variable::Frequency(i)),
+                    coherence_time: measured("quasi_periodic_coherence_time", "s", Variable::DecayTime(i)),
+                }),
+            }
+        }
+        out.quasi_periodic
+            .sort_by(|a, b| b.amplitude.value.unwrap_or(0.0).total_cmp(&a.amplitude.value.unwrap_or(0.0)));
+        let id = "measurement_bandwidth";
+        out.cutoff = match self.supported.shape.filter {
+            None => None,
+            Some(filter @ Bandwidth::MovingAverage { .. }) => {
+                let value = filter.cutoff_hz(joint.evidence().tau0_s);
+                Some(Estimate::measured(id, channel, value, "Hz", Spread::Unknown, METHOD))
+            }
+            Some(Bandwidth::FirstOrder { .. }) => {
+                let (best, spread) = self.profile(joint, Variable::FilterTime, &self.free);
+                let cutoff = |time_s: f64| 1.0 / (2.0 * PI * time_s);
+                let spread = match spread {
+                    Spread::Curve(points) => {
+                        Spread::Curve(points.iter().rev().map(|(z, t)| (-z, cutoff(*t))).collect())
+                    }
+                    other => other,
+                };
+                let value = cutoff(best.reported(Variable::FilterTime));
+                Some(Estimate::measured(id, channel, value, "Hz", spread, METHOD))
+            }
+        };
+    }
+}
+
+/// The part whose loss costs less than it was accepted for, by the most.
+fn needless(
+    joint: &Joint<'_>,
+    shape: &Shape,
+    full: &JointPoint,
+    ramp: bool,
+    thresholds: &ExtraThresholds,
+) -> Option<Part> {
+    let filter = shape.filter.map(|_| (Part::Filter, thresholds.filter));
+    let damped = shape.damped.iter().enumerate().map(|(i, (kind, _))| {
+        let threshold = match kind {
+            Kind::Markov => thresholds.markov,
+            Kind::QuasiPeriodic => thresholds.quasi_periodic,
+        };
+        (Part::Damped(i), threshold)
+    });
+    if usize::from(shape.filter.is_some()) + shape.damped.len() < 2 {
+        return None;
+    }
+    filter
+        .into_iter()
+        .chain(damped)
+        .map(|(part, threshold)| {
+            let less = without_shape(shape, part);
+            let mut start = JointPoint { shape: less.clone(), ..full.clone() };
+            if let Part::Damped(i) = part {
+                start.variance.remove(BASE.len() + i);
+            }
+            let free = all_free(&less, ramp, true);
+            let point = joint.maximise(&start, &free);
+            (part, point.deviance - full.deviance - threshold)
+        })
+        .filter(|(_, excess)| *excess < 0.0)
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(part, _)| part)
+}
+
+/// The best description: claimed terms, and as few others as pay their price.
+fn supported(
+    joint: &Joint<'_>,
+    shape: &Shape,
+    full: &JointPoint,
+    claimed: &[bool; 5],
+    ramp: bool,
+) -> (JointPoint, Free) {
+    let open: Vec<usize> = (0..BASE.len()).filter(|i| !claimed[*i] && *i != 3).collect();
+    let mut best: Option<(f64, JointPoint, Free)> = None;
+    for set in 0..1usize << open.len() {
+        let mut free = all_free(shape, ramp, true);
+        let mut start = full.clone();
+        for i in 0..BASE.len() {
+            let in_set = open.iter().position(|o| *o == i).is_some_and(|p| set >> p & 1 == 1);
+            if !claimed[i] && !in_set {
+                free.variance[i] = false;
+                start.variance[i] = 0.0;
+            }
+        }
+        let point = joint.maximise(&start, &free);
+        let cost = point.deviance + PRICE * f64::from(set.count_ones());
+        if point.deviance.is_finite() && best.as_ref().is_none_or(|b| cost < b.0) {
+            best = Some((cost, point, free));
+        }
+    }
+    best.map_or_else(|| (full.clone(), all_free(shape, ramp, true)), |(_, point, free)| (point, free))
+}
+
+fn base_covariance(variables: &[Variable], covariance: &[Vec<f64>]) -> [[f64; 5]; 5] {
+    let place = |v: &Variable| match v {
+        Variable::Variance(i) if *i < BASE.len() => Some(*i),
+        Variable::Ramp => Some(RAMP),
+        _ => None,
+    };
+    let mut out = [[0.0; 5]; 5];
+    for (a, row) in variables.iter().zip(covariance) {
+        for (b, value) in variables.iter().zip(row) {
+            if let (Some(i), Some(j)) = (place(a), place(b)) {
+                out[i][j] = *value;
+            }
+        }
+    }
+    out
+}

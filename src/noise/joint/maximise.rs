@@ -1,0 +1,390 @@
+//! Fisher scoring of the joint likelihood.
+
+use super::columns::{Columns, base, process};
+use super::solve::bounded_step;
+use super::{BASE, JointPoint, Shape, Variable};
+use crate::noise::composite::{Bandwidth, Sampling};
+use crate::noise::evidence::Evidence;
+use nalgebra::{DMatrix, DVector};
+
+/// Fall of the deviance below which a fit is done.
+const DONE: f64 = 1e-3;
+/// Steps of a fit at most.
+const STEPS: usize = 80;
+/// Relative step of numeric derivatives.
+const EPSILON: f64 = 1e-3;
+
+struct Row {
+    dof: f64,
+    power: f64,
+    cross: f64,
+    ramp: f64,
+}
+
+impl Row {
+    fn power_without(&self, r: f64) -> f64 {
+        (self.power - 2.0 * r * self.cross + r * r * self.ramp).max(0.0)
+    }
+}
+
+/// Which variables a fit may change.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Free {
+    /// Free variances, in the order of [`JointPoint::variance`].
+    pub variance: Vec<bool>,
+    /// Whether times and frequencies are free.
+    pub nonlinear: bool,
+    /// Whether the ramp is free (restricted likelihood) or held.
+    pub ramp: bool,
+    /// One variable that is held whatever the others say.
+    pub held: Option<Variable>,
+}
+
+/// The joint likelihood of an evidence.
+pub struct Joint<'a> {
+    evidence: &'a Evidence,
+    sampling: Sampling,
+    rows: Vec<Row>,
+    used: Vec<usize>,
+    plain: Vec<Vec<f64>>,
+}
+
+impl<'a> Joint<'a> {
+    /// Prepares the likelihood; `None` when there is no power in any band or too few bands to say anything.
+    pub fn new(evidence: &'a Evidence, sampling: Sampling) -> Option<Joint<'a>> {
+        let used: Vec<usize> = evidence
+            .bands
+            .iter()
+            .enumerate()
+            .filter(|(_, b)| b.power.is_finite() && b.power >= 0.0 && b.dof > 0.0)
+            .map(|(i, _)| i)
+            .collect();
+        let rows: Vec<Row> = used
+            .iter()
+            .filter_map(|i| evidence.bands.get(*i))
+            .map(|b| Row { dof: b.dof, power: b.power, cross: b.cross, ramp: b.ramp })
+            .collect();
+        let total: f64 = rows.iter().map(|r| r.dof * r.power).sum();
+        if rows.len() < 8 || total <= 0.0 || !total.is_finite() {
+            return None;
+        }
+        let mut joint = Joint { evidence, sampling, rows, used, plain: vec![] };
+        joint.plain = joint.restrict(base(evidence, None, sampling));
+        Some(joint)
+    }
+
+    /// How samples were taken.
+    pub fn sampling(&self) -> Sampling {
+        self.sampling
+    }
+
+    /// The evidence fitted.
+    pub fn evidence(&self) -> &'a Evidence {
+        self.evidence
+    }
+
+    fn restrict(&self, columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        if self.used.len() == self.evidence.bands.len() {
+            return columns;
+        }
+        let pick = |c: Vec<f64>| self.used.iter().map(|i| c.get(*i).copied().unwrap_or(0.0)).collect();
+        columns.into_iter().map(pick).collect()
+    }
+
+    pub(super) fn columns(&self, shape: &Shape) -> Columns {
+        if shape.filter.is_none() {
+            let damped = shape.damped.iter().map(|(_, d)| process(self.evidence, d, self.sampling)).collect();
+            return Columns { base: self.plain.clone(), damped: self.restrict(damped) };
+        }
+        let all = Columns::of(self.evidence, shape, self.sampling);
+        Columns { base: self.restrict(all.base), damped: self.restrict(all.damped) }
+    }
+
+    fn density(&self, columns: &Columns, variance: &[f64]) -> Vec<f64> {
+        let mut s = vec![0.0; self.rows.len()];
+        for (column, v) in columns.all().zip(variance) {
+            if *v > 0.0 {
+                for (s, c) in s.iter_mut().zip(column) {
+                    *s += v * c;
+                }
+            }
+        }
+        s
+    }
+
+    fn deviance(&self, s: &[f64], ramp: f64, restricted: bool) -> f64 {
+        let mut sum = if restricted { self.ramp_information(s).max(f64::MIN_POSITIVE).ln() } else { 0.0 };
+        for (row, s) in self.rows.iter().zip(s) {
+            if *s <= 0.0 || !s.is_finite() {
+                return f64::INFINITY;
+            }
+            sum += row.dof * (s.ln() + row.power_without(ramp) / s);
+        }
+        sum
+    }
+
+    fn ramp_information(&self, s: &[f64]) -> f64 {
+        self.rows.iter().zip(s).map(|(row, s)| row.dof * row.ramp / s).sum()
+    }
+
+    fn best_ramp(&self, s: &[f64]) -> f64 {
+        let (mut cross, mut square) = (0.0, 0.0);
+        for (row, s) in self.rows.iter().zip(s) {
+            cross += row.dof * row.cross / s;
+            square += row.dof * row.ramp / s;
+        }
+        if square > 0.0 { cross / square } else { 0.0 }
+    }
+
+    /// A start: every free variance at the size at which it alone would make the smallest bands.
+    pub fn start(&self, shape: &Shape, free: &[bool]) -> JointPoint {
+        let columns = self.columns(shape);
+        let dof: f64 = self.rows.iter().map(|r| r.dof).sum();
+        let mean = self.rows.iter().map(|r| r.dof * r.power).sum::<f64>() / dof;
+        let active = free.iter().filter(|f| **f).count().max(1) as f64;
+        let scale = |column: &Vec<f64>| {
+            let sum: f64 =
+                self.rows.iter().zip(column).map(|(r, c)| r.dof * c / (r.power + 1e-9 * mean)).sum();
+            if sum > 0.0 { dof / sum / active } else { 0.0 }
+        };
+        let variance = columns.all().zip(free).map(|(c, f)| if *f { scale(c) } else { 0.0 }).collect();
+        JointPoint { variance, shape: shape.clone(), ramp: 0.0, deviance: f64::INFINITY }
+    }
+
+    /// The variables of a fit beside the ramp.
+    pub(super) fn variables(&self, shape: &Shape, free: &Free) -> Vec<Variable> {
+        let mut out: Vec<Variable> = free
+            .variance
+            .iter()
+            .enumerate()
+            .filter(|(_, f)| **f)
+            .map(|(i, _)| Variable::Variance(i))
+            .collect();
+        if free.nonlinear {
+            if let Some(Bandwidth::FirstOrder { .. }) = shape.filter {
+                out.push(Variable::FilterTime);
+            }
+            for (i, (_, d)) in shape.damped.iter().enumerate() {
+                if free.variance.get(BASE.len() + i) == Some(&true) {
+                    out.push(Variable::DecayTime(i));
+                    if d.frequency_hz > 0.0 {
+                        out.push(Variable::Frequency(i));
+                    }
+                }
+            }
+        }
+        out.retain(|v| Some(*v) != free.held);
+        out
+    }
+
+    /// The scale on which a variable is stepped: the derivative of the density to it is per this step.
+    fn moved(&self, shape: &Shape, variable: Variable, step: f64) -> Shape {
+        let mut out = shape.clone();
+        let (span, tau0) = (self.evidence.span_s.max(self.evidence.tau0_s), self.evidence.tau0_s);
+        match variable {
+            Variable::FilterTime => {
+                if let Some(Bandwidth::FirstOrder { time_constant_s }) = &mut out.filter {
+                    *time_constant_s = (*time_constant_s * step.exp()).clamp(0.05 * tau0, span);
+                }
+            }
+            Variable::DecayTime(i) => {
+                if let Some((_, d)) = out.damped.get_mut(i) {
+                    d.decay_time_s = (d.decay_time_s * step.exp()).clamp(0.05 * tau0, 100.0 * span);
+                }
+            }
+            Variable::Frequency(i) => {
+                if let Some((_, d)) = out.damped.get_mut(i) {
+                    let width = 1.0 / (2.0 * std::f64::consts::PI * d.decay_time_s).max(0.3 / span);
+                    let width = width.min(0.1 * d.frequency_hz).max(0.3 / span);
+                    d.frequency_hz = (d.frequency_hz + step * width).clamp(1.0 / span, 0.5 / tau0);
+                }
+            }
+            Variable::Variance(_) | Variable::Ramp => {}
+        }
+        out
+    }
+
+    /// d density / d variable, one column a variable.
+    pub(super) fn gradient(
+        &self,
+        point: &JointPoint,
+        columns: &Columns,
+        variables: &[Variable],
+    ) -> Vec<Vec<f64>> {
+        let column = |variable: &Variable| -> Vec<f64> {
+            match *variable {
+                Variable::Variance(i) => columns.all().nth(i).cloned().unwrap_or_default(),
+                Variable::FilterTime => {
+                    let moved = self.columns(&self.moved(&point.shape, *variable, EPSILON));
+                    let mut out = vec![0.0; self.rows.len()];
+                    for ((now, then), v) in columns.base.iter().zip(&moved.base).zip(&point.variance) {
+                        for ((o, a), b) in out.iter_mut().zip(now).zip(then) {
+                            *o += v * (b - a) / EPSILON;
+                        }
+                    }
+                    out
+                }
+                Variable::DecayTime(i) | Variable::Frequency(i) => {
+                    let up = self.moved(&point.shape, *variable, EPSILON);
+                    let Some(((_, d), v)) = up.damped.get(i).zip(point.variance.get(BASE.len() + i)) else {
+                        return vec![0.0; self.rows.len()];
+                    };
+                    let then = self.restrict(vec![process(self.evidence, d, self.sampling)]);
+                    let (Some(then), Some(now)) = (then.first(), columns.damped.get(i)) else {
+                        return vec![0.0; self.rows.len()];
+                    };
+                    now.iter().zip(then).map(|(a, b)| v * (b - a) / EPSILON).collect()
+                }
+                Variable::Ramp => vec![0.0; self.rows.len()],
+            }
+        };
+        variables.iter().map(column).collect()
+    }
+
+    /// Fisher information of variables at a point, per unit of variance and per step of [`Joint::moved`].
+    pub(super) fn information(&self, s: &[f64], gradient: &[Vec<f64>]) -> DMatrix<f64> {
+        let p = gradient.len();
+        let mut h = DMatrix::zeros(p, p);
+        for (a, ga) in gradient.iter().enumerate() {
+            for (b, gb) in gradient.iter().enumerate().take(a + 1) {
+                let mut sum = 0.0;
+                for (((row, s), x), y) in self.rows.iter().zip(s).zip(ga).zip(gb) {
+                    sum += 0.5 * row.dof * x * y / (s * s);
+                }
+                h[(a, b)] = sum;
+                h[(b, a)] = sum;
+            }
+        }
+        h
+    }
+
+    /// The maximum from a start; variances that are not free keep their value.
+    pub fn maximise(&self, start: &JointPoint, free: &Free) -> JointPoint {
+        self.climb(start, free, STEPS)
+    }
+
+    /// At most so many steps towards the maximum.
+    pub(super) fn climb(&self, start: &JointPoint, free: &Free, steps: usize) -> JointPoint {
+        let mut point = start.clone();
+        let restricted = free.ramp && free.held != Some(Variable::Ramp);
+        let mut columns = self.columns(&point.shape);
+        self.lift(&mut point, &columns, free);
+        let mut s = self.density(&columns, &point.variance);
+        if restricted {
+            point.ramp = self.best_ramp(&s);
+        }
+        point.deviance = self.deviance(&s, point.ramp, restricted);
+        if !point.deviance.is_finite() {
+            return point;
+        }
+        let mut damping = 0.0;
+        for _ in 0..steps {
+            let variables = self.variables(&point.shape, free);
+            if variables.is_empty() {
+                break;
+            }
+            let gradient = self.gradient(&point, &columns, &variables);
+            let mut h = self.information(&s, &gradient);
+            let ramp_variance =
+                if restricted { 1.0 / self.ramp_information(&s).max(f64::MIN_POSITIVE) } else { 0.0 };
+            let g = DVector::from_fn(variables.len(), |a, _| {
+                let mut sum = 0.0;
+                for ((row, s), x) in self.rows.iter().zip(&s).zip(&gradient[a]) {
+                    let power = row.power_without(point.ramp) + ramp_variance * row.ramp;
+                    sum += 0.5 * row.dof * x * (power - s) / (s * s);
+                }
+                sum
+            });
+            let mut lower = vec![f64::NEG_INFINITY; variables.len()];
+            for (a, variable) in variables.iter().enumerate() {
+                match variable {
+                    Variable::Variance(i) => lower[a] = -point.variance[*i],
+                    // Times and frequencies bend: a little damping keeps steps short where nothing holds them.
+                    _ => h[(a, a)] += 0.05 + damping * h[(a, a)],
+                }
+            }
+            let step = bounded_step(&h, &g, &lower);
+            let before = point.deviance;
+            let mut scale = 1.0;
+            let mut improved = false;
+            for _ in 0..12 {
+                let mut trial = point.clone();
+                let mut bent = false;
+                for (variable, d) in variables.iter().zip(step.iter()) {
+                    match variable {
+                        Variable::Variance(i) => {
+                            trial.variance[*i] = (trial.variance[*i] + scale * d).max(0.0);
+                        }
+                        other => {
+                            trial.shape = self.moved(&trial.shape, *other, (scale * d).clamp(-1.0, 1.0));
+                            bent = true;
+                        }
+                    }
+                }
+                let trial_columns = if bent { self.columns(&trial.shape) } else { columns.clone() };
+                let trial_s = self.density(&trial_columns, &trial.variance);
+                if restricted && trial_s.iter().all(|s| *s > 0.0) {
+                    trial.ramp = self.best_ramp(&trial_s);
+                }
+                trial.deviance = self.deviance(&trial_s, trial.ramp, restricted);
+                if trial.deviance < point.deviance {
+                    (point, columns, s) = (trial, trial_columns, trial_s);
+                    improved = true;
+                    break;
+                }
+                scale *= if scale > 0.2 { 0.5 } else { 0.25 };
+            }
+            damping = if scale < 1.0 { (damping + 0.1) * 2.0 } else { damping * 0.3 };
+            if !improved || before - point.deviance < DONE {
+                break;
+            }
+        }
+        point
+    }
+
+    /// A variance at exactly zero is lifted a little, so that the first step sees its term.
+    fn lift(&self, point: &mut JointPoint, columns: &Columns, free: &Free) {
+        let s = self.density(columns, &point.variance);
+        point.variance.resize(BASE.len() + point.shape.damped.len(), 0.0);
+        let any = s.iter().any(|s| *s > 0.0);
+        for (i, column) in columns.all().enumerate() {
+            let held = free.held == Some(Variable::Variance(i));
+            if free.variance.get(i) != Some(&true) || held || point.variance[i] > 0.0 {
+                continue;
+            }
+            let smallest = self
+                .rows
+                .iter()
+                .zip(&s)
+                .zip(column)
+                .filter(|(_, c)| **c > 0.0)
+                .map(|((row, s), c)| if any { s / c } else { row.power / c })
+                .fold(f64::INFINITY, f64::min);
+            if smallest.is_finite() {
+                point.variance[i] = if any { 1e-3 * smallest } else { smallest };
+            }
+        }
+    }
+
+    /// Power over density and degrees of freedom of each band at a point.
+    pub fn whitened(&self, point: &JointPoint) -> Vec<(f64, f64)> {
+        let s = self.density(&self.columns(&point.shape), &point.variance);
+        self.rows.iter().zip(s).map(|(row, s)| (row.power_without(point.ramp) / s, row.dof)).collect()
+    }
+
+    pub(super) fn density_at(&self, point: &JointPoint) -> Vec<f64> {
+        self.density(&self.columns(&point.shape), &point.variance)
+    }
+
+    pub(super) fn ramp_sigma(&self, s: &[f64]) -> f64 {
+        let information = self.ramp_information(s);
+        if information > 0.0 { information.sqrt().recip() } else { 0.0 }
+    }
+
+    /// How far one step of [`Joint::moved`] changes the reported value of a variable.
+    pub(super) fn unit_of(&self, point: &JointPoint, variable: Variable) -> f64 {
+        let mut moved = point.clone();
+        moved.shape = self.moved(&point.shape, variable, EPSILON);
+        (moved.reported(variable) - point.reported(variable)) / EPSILON
+    }
+}

@@ -1,0 +1,177 @@
+//! Joint maximum likelihood of every kind of term: N, B, K, Q, R, Markov processes, quasi-periodic disturbances and the
+//! bandwidth of the measurement, over the same spectral evidence as [`super::fit`].
+//!
+//! Variances enter the expected power linearly, correlation times, frequencies and filter times do not. Fisher scoring
+//! over both, variances bounded at zero.
+
+mod columns;
+mod identify;
+mod interval;
+mod maximise;
+mod peaks;
+mod search;
+mod solve;
+
+pub use identify::MaximumLikelihood;
+pub use interval::{JointProfile, parameter_covariance};
+pub use maximise::{Free, Joint};
+pub use search::{ExtraThresholds, Extras, find_extras};
+
+use super::composite::{Bandwidth, Composite, Damped, Parameter, Sampling};
+use super::data::NoiseType;
+use super::model::NoiseModel;
+
+/// Terms with a spectrum that every model may have, in the order of their variances.
+pub const BASE: [NoiseType; 4] =
+    [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk, NoiseType::Quantization];
+
+/// What a damped process stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// First-order Markov noise.
+    Markov,
+    /// Quasi-periodic disturbance.
+    QuasiPeriodic,
+}
+
+/// The nonlinear part of a model: what there is beside N, B, K, Q and R, with its times and frequencies.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Shape {
+    /// Bandwidth of the measurement.
+    pub filter: Option<Bandwidth>,
+    /// Damped processes; their rms is left to the fit and 1 here.
+    pub damped: Vec<(Kind, Damped)>,
+}
+
+impl Shape {
+    /// True when there is nothing beside N, B, K, Q and R.
+    pub fn is_plain(&self) -> bool {
+        self.filter.is_none() && self.damped.is_empty()
+    }
+
+    /// With one more process.
+    #[must_use]
+    pub fn with(&self, kind: Kind, frequency_hz: f64, decay_time_s: f64) -> Shape {
+        let mut out = self.clone();
+        out.damped.push((kind, Damped { rms_deg_h: 1.0, frequency_hz, decay_time_s }));
+        out
+    }
+}
+
+/// A point of the joint likelihood.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct JointPoint {
+    /// N², B², K², Q², then the variances of the damped processes.
+    pub variance: Vec<f64>,
+    /// Times and frequencies.
+    pub shape: Shape,
+    /// Ramp, deg/h/h.
+    pub ramp: f64,
+    /// −2 ln L up to a constant of the evidence.
+    pub deviance: f64,
+}
+
+impl JointPoint {
+    /// N, B, K, Q and R.
+    pub fn terms(&self) -> NoiseModel {
+        let root = |i: usize| self.variance.get(i).copied().unwrap_or(0.0).max(0.0).sqrt();
+        NoiseModel { n: root(0), b: root(1), k: root(2), q: root(3), r: self.ramp }
+    }
+
+    /// The whole model.
+    pub fn composite(&self, sampling: Sampling) -> Composite {
+        let mut out =
+            Composite { terms: self.terms(), bandwidth: self.shape.filter, sampling, ..Default::default() };
+        for ((kind, process), variance) in self.shape.damped.iter().zip(self.variance.iter().skip(BASE.len()))
+        {
+            let process = Damped { rms_deg_h: variance.max(0.0).sqrt(), ..*process };
+            match kind {
+                Kind::Markov => out.markov.push(process),
+                Kind::QuasiPeriodic => out.quasi_periodic.push(process),
+            }
+        }
+        out
+    }
+}
+
+/// A parameter of a [`JointPoint`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variable {
+    /// A variance, by position.
+    Variance(usize),
+    /// Logarithm of the time constant of a first-order filter.
+    FilterTime,
+    /// Logarithm of the decay time of a process, by position.
+    DecayTime(usize),
+    /// Centre frequency of a process, by position.
+    Frequency(usize),
+    /// The ramp.
+    Ramp,
+}
+
+impl JointPoint {
+    /// Value in the unit that is reported: coefficients and standard deviations, times in s, frequencies in Hz.
+    pub fn reported(&self, variable: Variable) -> f64 {
+        let process = |i: usize| self.shape.damped.get(i).map(|(_, d)| *d);
+        match variable {
+            Variable::Variance(i) => self.variance.get(i).copied().unwrap_or(0.0).max(0.0).sqrt(),
+            Variable::FilterTime => match self.shape.filter {
+                Some(Bandwidth::FirstOrder { time_constant_s }) => time_constant_s,
+                _ => 0.0,
+            },
+            Variable::DecayTime(i) => process(i).map_or(0.0, |d| d.decay_time_s),
+            Variable::Frequency(i) => process(i).map_or(0.0, |d| d.frequency_hz),
+            Variable::Ramp => self.ramp,
+        }
+    }
+
+    /// Sets a variable from a reported value.
+    pub fn set_reported(&mut self, variable: Variable, value: f64) {
+        match variable {
+            Variable::Variance(i) => {
+                if let Some(v) = self.variance.get_mut(i) {
+                    *v = value * value;
+                }
+            }
+            Variable::FilterTime => {
+                if let Some(Bandwidth::FirstOrder { time_constant_s }) = &mut self.shape.filter {
+                    *time_constant_s = value;
+                }
+            }
+            Variable::DecayTime(i) => {
+                if let Some((_, d)) = self.shape.damped.get_mut(i) {
+                    d.decay_time_s = value;
+                }
+            }
+            Variable::Frequency(i) => {
+                if let Some((_, d)) = self.shape.damped.get_mut(i) {
+                    d.frequency_hz = value;
+                }
+            }
+            Variable::Ramp => self.ramp = value,
+        }
+    }
+
+    /// The parameter of the [`Composite`] of this point that a variable is.
+    pub fn parameter(&self, variable: Variable) -> Option<Parameter> {
+        let place = |i: usize| {
+            let kind = self.shape.damped.get(i)?.0;
+            let before = self.shape.damped.iter().take(i).filter(|(k, _)| *k == kind).count();
+            Some((kind, before))
+        };
+        Some(match variable {
+            Variable::Ramp => Parameter::Coefficient(NoiseType::RateRamp),
+            Variable::FilterTime => Parameter::FilterTime,
+            Variable::Variance(i) if i < BASE.len() => Parameter::Coefficient(*BASE.get(i)?),
+            Variable::Variance(i) => match place(i - BASE.len())? {
+                (Kind::Markov, j) => Parameter::MarkovSigma(j),
+                (Kind::QuasiPeriodic, j) => Parameter::QuasiPeriodicRms(j),
+            },
+            Variable::DecayTime(i) => match place(i)? {
+                (Kind::Markov, j) => Parameter::MarkovTime(j),
+                (Kind::QuasiPeriodic, j) => Parameter::QuasiPeriodicTime(j),
+            },
+            Variable::Frequency(i) => Parameter::QuasiPeriodicFrequency(place(i)?.1),
+        })
+    }
+}

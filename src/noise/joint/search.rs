@@ -1,0 +1,221 @@
+//! What there is beside N, B, K, Q and R: one more part at a time, while one is worth its parameters.
+
+use super::peaks::strongest;
+use super::{BASE, Free, Joint, JointPoint, Kind, Shape};
+use crate::noise::composite::{Bandwidth, Sampling};
+use crate::noise::evidence::{Evidence, Zone};
+use std::f64::consts::PI;
+
+/// Gains in 2 ln L from which a part is accepted, what was searched over counted. Calibrated by simulation of units
+/// with N, B, K, Q and R alone (validated in the identification study).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExtraThresholds {
+    /// A filter of the output.
+    pub filter: f64,
+    /// A Markov process.
+    pub markov: f64,
+    /// A quasi-periodic disturbance, beside twice the logarithm of the resolved places searched.
+    pub quasi_periodic: f64,
+}
+
+impl Default for ExtraThresholds {
+    fn default() -> Self {
+        ExtraThresholds { filter: 11.0, markov: 13.0, quasi_periodic: 14.0 }
+    }
+}
+
+/// Parts found beside N, B, K, Q and R.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extras {
+    /// The shape of the model.
+    pub shape: Shape,
+    /// Resonances that the bands must resolve.
+    pub zones: Vec<Zone>,
+}
+
+/// Parts accepted at most.
+const MOST: usize = 4;
+/// Correlation times tried, per octave.
+const PER_OCTAVE: f64 = 1.5;
+/// Longest correlation time that is told from random walk: this share of the record.
+const LONGEST: f64 = 0.125;
+/// Steps of a fit that screens a grid, and of one that counts.
+const SCREEN: usize = 3;
+const FULL: usize = 40;
+/// Peaks of a scan that are fitted.
+const PEAKS: usize = 3;
+/// A disturbance that decays in less than this many periods is a bump and no oscillation.
+const LEAST_PERIODS: f64 = 1.0;
+
+/// A candidate with the maximum it reaches.
+struct Candidate {
+    point: JointPoint,
+    zones: Vec<Zone>,
+    excess: f64,
+}
+
+/// Searches an evidence. `ramp` tells whether a ramp is part of the record.
+pub fn find_extras(
+    evidence: &Evidence,
+    sampling: Sampling,
+    ramp: bool,
+    thresholds: &ExtraThresholds,
+) -> Extras {
+    let mut found = Extras { shape: Shape::default(), zones: vec![] };
+    for _ in 0..MOST {
+        let resolved = evidence.resolving(&found.zones);
+        let Some(joint) = Joint::new(&resolved, sampling) else { break };
+        let current = best_of(&joint, &found.shape, ramp);
+        if !current.deviance.is_finite() {
+            break;
+        }
+        let mut candidates = vec![];
+        candidates.extend(filters(&joint, &found, &current, ramp, thresholds));
+        candidates.extend(markovs(&joint, &found, &current, ramp, thresholds));
+        candidates.extend(periodics(evidence, &joint, &found, &current, ramp, thresholds));
+        let best = candidates.into_iter().max_by(|a, b| a.excess.total_cmp(&b.excess));
+        match best {
+            Some(best) if best.excess > 0.0 => {
+                found = Extras { shape: best.point.shape, zones: best.zones };
+            }
+            _ => break,
+        }
+    }
+    found
+}
+
+/// Everything free.
+pub(super) fn all_free(shape: &Shape, ramp: bool, nonlinear: bool) -> Free {
+    Free { variance: vec![true; BASE.len() + shape.damped.len()], nonlinear, ramp, held: None }
+}
+
+/// The maximum with N, B, K, Q and the parts of a shape.
+pub(super) fn best_of(joint: &Joint<'_>, shape: &Shape, ramp: bool) -> JointPoint {
+    let free = all_free(shape, ramp, !shape.is_plain());
+    joint.maximise(&joint.start(shape, &free.variance), &free)
+}
+
+/// The maximum at a given shape, from the maximum without its last part.
+fn at_shape(joint: &Joint<'_>, shape: &Shape, near: &JointPoint, ramp: bool, steps: usize) -> JointPoint {
+    let free = all_free(shape, ramp, false);
+    let mut start = joint.start(shape, &free.variance);
+    // Half of what was found before leaves room for the new part.
+    for (i, v) in near.variance.iter().enumerate() {
+        if let Some(s) = start.variance.get_mut(i) {
+            *s = (*v).max(1e-3 * *s);
+        }
+    }
+    start.ramp = near.ramp;
+    joint.climb(&start, &free, steps)
+}
+
+fn refined(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> JointPoint {
+    joint.maximise(point, &all_free(&point.shape, ramp, true))
+}
+
+fn filters(
+    joint: &Joint<'_>,
+    found: &Extras,
+    current: &JointPoint,
+    ramp: bool,
+    thresholds: &ExtraThresholds,
+) -> Option<Candidate> {
+    if found.shape.filter.is_some() {
+        return None;
+    }
+    let evidence = joint.evidence();
+    let tau0_s = evidence.tau0_s;
+    let highest = evidence.bands.iter().map(|b| b.high_hz).fold(0.0, f64::max);
+    let mut tried = vec![];
+    let mut time_s = 0.15 * tau0_s;
+    // A filter below a hundredth of the highest frequency leaves no white part to be seen.
+    while time_s < 100.0 / (2.0 * PI * highest.max(1e-300)) && time_s < 0.02 * evidence.span_s {
+        tried.push(Bandwidth::FirstOrder { time_constant_s: time_s });
+        time_s *= 2f64.powf(1.0 / PER_OCTAVE);
+    }
+    for samples in [2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 32, 40, 50, 64, 80, 100] {
+        if f64::from(samples) * tau0_s < 0.01 * evidence.span_s {
+            tried.push(Bandwidth::MovingAverage { samples });
+        }
+    }
+    let best = tried
+        .into_iter()
+        .map(|filter| {
+            let shape = Shape { filter: Some(filter), ..found.shape.clone() };
+            at_shape(joint, &shape, current, ramp, SCREEN)
+        })
+        .min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
+    let point = refined(joint, &best, ramp);
+    let excess = current.deviance - point.deviance - thresholds.filter;
+    Some(Candidate { point, zones: found.zones.clone(), excess })
+}
+
+fn markovs(
+    joint: &Joint<'_>,
+    found: &Extras,
+    current: &JointPoint,
+    ramp: bool,
+    thresholds: &ExtraThresholds,
+) -> Option<Candidate> {
+    let evidence = joint.evidence();
+    let octaves = (LONGEST * evidence.span_s / (0.4 * evidence.tau0_s)).log2().max(0.0);
+    let count = (octaves * PER_OCTAVE) as usize;
+    let best = (0..=count)
+        .map(|i| {
+            let time_s = 0.4 * evidence.tau0_s * 2f64.powf(i as f64 / PER_OCTAVE);
+            at_shape(joint, &found.shape.with(Kind::Markov, 0.0, time_s), current, ramp, SCREEN)
+        })
+        .min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
+    if current.deviance - best.deviance < 0.3 * thresholds.markov {
+        return None;
+    }
+    let point = refined(joint, &best, ramp);
+    let time_s = point.shape.damped.last()?.1.decay_time_s;
+    if time_s > LONGEST * evidence.span_s {
+        return None;
+    }
+    let excess = current.deviance - point.deviance - thresholds.markov;
+    Some(Candidate { point, zones: found.zones.clone(), excess })
+}
+
+fn periodics(
+    evidence: &Evidence,
+    joint: &Joint<'_>,
+    found: &Extras,
+    current: &JointPoint,
+    ramp: bool,
+    thresholds: &ExtraThresholds,
+) -> Option<Candidate> {
+    let density = joint.density_at(current);
+    let mut best: Option<Candidate> = None;
+    for peak in strongest(joint.evidence(), &density, PEAKS) {
+        let need = thresholds.quasi_periodic + 2.0 * resolved_places(evidence, &peak.zone).ln();
+        if peak.gain < 0.5 * need {
+            continue;
+        }
+        let mut zones = found.zones.clone();
+        zones.push(peak.zone);
+        let resolved = evidence.resolving(&zones);
+        let Some(fine) = Joint::new(&resolved, joint.sampling()) else { continue };
+        let before = at_shape(&fine, &found.shape, current, ramp, FULL);
+        let time_s = 1.0 / (2.0 * PI * peak.zone.half_width_hz);
+        let shape = found.shape.with(Kind::QuasiPeriodic, peak.zone.centre_hz, time_s);
+        let point = refined(&fine, &at_shape(&fine, &shape, &before, ramp, FULL), ramp);
+        let Some((_, process)) = point.shape.damped.last() else { continue };
+        if process.frequency_hz * process.decay_time_s < LEAST_PERIODS {
+            continue;
+        }
+        let excess = before.deviance - point.deviance - need;
+        if best.as_ref().is_none_or(|b| excess > b.excess) {
+            best = Some(Candidate { point, zones, excess });
+        }
+    }
+    best
+}
+
+/// Places of this width that the record resolves.
+fn resolved_places(evidence: &Evidence, zone: &Zone) -> f64 {
+    let highest = evidence.fine().iter().map(|b| b.frequency_hz).fold(0.0, f64::max);
+    let step = evidence.resolution_hz(zone.centre_hz);
+    (highest / (2.0 * zone.half_width_hz).max(step)).max(1.0)
+}
