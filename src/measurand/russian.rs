@@ -60,12 +60,11 @@ const UNSEEN_WALK: f64 = 0.6;
 /// it need not be certain to be there.
 fn degrees_of_freedom(gyro: &GyroEvidence, windows: &WindowStatistics) -> f64 {
     let found = &gyro.identification;
-    let mut model = found.full;
     // A ramp is no noise: it shifts the value and does not scatter it.
-    model.r = 0.0;
+    let mut model = found.allowed.without_ramp();
     if let Some(limit) = found.rate_random_walk.upper_limit {
-        model.k = model.k.max(UNSEEN_WALK * limit.value);
+        model.terms.k = model.terms.k.max(UNSEEN_WALK * limit.value);
     }
     let white = windows.n.saturating_sub(1) as f64;
-    edf_of_window_std(windows.n, windows.window_s, |t| model.mean_variance(t)).unwrap_or(white).max(1.0)
+    edf_of_window_std(windows.n, windows.window_s, |t| model.mean_variance(t, gyro.tau0_s)).unwrap_or(white).max(1.0)
 }

@@ -20,7 +20,7 @@ pub fn uncertainty(gyro: &GyroEvidence, earth_removed: bool) -> BiasUncertainty 
         .map(|e| ("earth_rate", e.uncertainty_deg_h))
         .into_iter()
         .collect();
-    BiasUncertainty::of_mean(&gyro.identification.full, gyro.usable_s(), None, &earth)
+    BiasUncertainty::of_mean(&gyro.identification.allowed, gyro.usable_s(), None, &earth)
 }
 
 /// Least degrees of freedom of the uncertainty. Slow noise rules it, and a record shows little of that: below what it

@@ -1,6 +1,6 @@
 //! Which noise terms a record shows, and how large they are.
 
-use super::composite::{Described, Parameter};
+use super::composite::{Composite, Described, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
@@ -72,6 +72,9 @@ pub struct Identification {
     /// The best description with every kind of term, and the covariance of its parameters. For predictions, residuals
     /// and drawing; its N, B, K, R and Q are those of `supported`.
     pub described: Described,
+    /// The maximum with N, B, K and Q allowed beside everything that was found: [`Identification::full`] with the rest.
+    /// For uncertainties.
+    pub allowed: Composite,
     /// Markov processes found.
     pub markov: Vec<MarkovFound>,
     /// Quasi-periodic disturbances found, the strongest first.
@@ -198,6 +201,7 @@ impl Identification {
             covariance: [[0.0; 5]; 5],
             misfit: Misfit::none(),
             described: Described::default(),
+            allowed: Composite::default(),
             markov: vec![],
             quasi_periodic: vec![],
             cutoff: None,
@@ -230,6 +234,7 @@ impl Identify for Whittle {
         out.claimed = TERMS.into_iter().zip(claimed).filter(|(_, c)| *c).map(|(t, _)| t).collect();
         out.ambiguous = needed;
         out.full = search.full.model();
+        out.allowed = out.full.into();
         let fit = |structure: &Structure| likelihood.maximise(structure, None, None);
         out.model = fit(&claimed).map_or_else(NoiseModel::default, |p| p.model());
         let Some(best) = fit(&supported) else { return out };

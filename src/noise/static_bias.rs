@@ -3,7 +3,7 @@
 //! Source: GUM (JCGM 100) for the combination; the variance of a mean of correlated noise from its spectrum. Not
 //! σ/√n: neighbouring samples of flicker and random walk are not independent.
 
-use super::model::NoiseModel;
+use super::composite::Composite;
 use crate::numeric::special::cosine_integral;
 use std::f64::consts::PI;
 
@@ -23,6 +23,8 @@ pub struct BiasUncertainty {
     pub rate_ramp: f64,
     /// 2Q²/T².
     pub quantization: f64,
+    /// Variance of the mean of Markov processes and quasi-periodic disturbances.
+    pub correlated: f64,
     /// Contributions from elsewhere, by name: Earth rate, temperature, table.
     pub others: Vec<(&'static str, f64)>,
     /// Lowest frequency that flicker was counted from, Hz. The mean of flicker is not stationary: it must be stated.
@@ -32,15 +34,17 @@ pub struct BiasUncertainty {
 impl BiasUncertainty {
     /// The uncertainty of the mean over `length_s`.
     ///
-    /// `model` should hold every term the record allows, claimed or not ([`super::identify::Identification::full`]),
+    /// `noise` should hold every term the record allows, claimed or not ([`super::identify::Identification::allowed`]),
     /// so that flicker too weak to be claimed is not ignored. `lowest_hz` defaults to 1/(2πT). `others` are standard
     /// uncertainties in deg/h.
     pub fn of_mean(
-        model: &NoiseModel,
+        noise: &Composite,
         length_s: f64,
         lowest_hz: Option<f64>,
         others: &[(&'static str, f64)],
     ) -> BiasUncertainty {
+        let model = &noise.terms;
+        let correlated = noise.markov.iter().chain(&noise.quasi_periodic);
         let length_h = length_s / 3600.0;
         let lowest_hz = lowest_hz.filter(|f| *f > 0.0).unwrap_or(1.0 / (2.0 * PI * length_s));
         BiasUncertainty {
@@ -49,6 +53,7 @@ impl BiasUncertainty {
             rate_random_walk: model.k * model.k * length_h / 3.0,
             rate_ramp: (model.r * length_h).powi(2) / 12.0,
             quantization: 2.0 * (model.q / length_s).powi(2),
+            correlated: correlated.map(|d| d.mean_variance(length_s)).sum(),
             others: others.iter().map(|(name, u)| (*name, u * u)).collect(),
             lowest_hz,
         }
@@ -61,6 +66,7 @@ impl BiasUncertainty {
             + self.rate_random_walk
             + self.rate_ramp
             + self.quantization
+            + self.correlated
             + self.others.iter().map(|(_, v)| v).sum::<f64>()
     }
 
@@ -131,6 +137,7 @@ pub fn earth_rate(orientation: &Orientation) -> Uncertain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noise::model::NoiseModel;
     use crate::noise::simulate::{Setup, Simulator};
 
     fn exact(value: f64) -> Uncertain {
@@ -177,7 +184,7 @@ mod tests {
         let model = NoiseModel { n: 0.002, k: 0.0008, q: 0.05, ..Default::default() };
         let (samples, tau0_s) = (600, 10.0);
         let stated =
-            BiasUncertainty::of_mean(&model, samples as f64 * tau0_s, None, &[("table", 0.0)]).variance();
+            BiasUncertainty::of_mean(&model.into(), samples as f64 * tau0_s, None, &[("table", 0.0)]).variance();
         let runs = 3000;
         let mut square = 0.0;
         let mut inside = 0;
@@ -198,7 +205,7 @@ mod tests {
         // The difference of the means over a record and over its first sixteenth does not depend on the lowest
         // frequency: V(t) − V(T) of the model against the difference of two brackets.
         let model = NoiseModel { b: 0.01, ..Default::default() };
-        let u2 = |t| BiasUncertainty::of_mean(&model, t, Some(1e-9), &[]).flicker;
+        let u2 = |t| BiasUncertainty::of_mean(&model.into(), t, Some(1e-9), &[]).flicker;
         let from_model = model.mean_variance(1000.0) - model.mean_variance(16000.0);
         assert!(((u2(1000.0) - u2(16000.0)) / from_model - 1.0).abs() < 1e-3);
     }

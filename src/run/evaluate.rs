@@ -239,7 +239,7 @@ fn evidence(
     digest: RateDigest,
 ) -> GyroEvidence {
     let (lines, identification) = spectral(&channel, &digest, tau0_s, procedure.analysis.line_false_alarm);
-    let model = &identification.supported;
+    let model = &identification.described.model;
     let sigma_tau = sigma_tau::allan_points(&digest.deviations, model, tau0_s);
     let octaves = digest
         .octaves

@@ -51,7 +51,7 @@ pub fn of_limit(id: &str, limit: &Limit, situation: &Situation) -> Option<Power>
         "static_bias" => {
             let uncertainty = |h: f64| {
                 let others = [("earth_rate", s.earth_uncertainty_deg_h)];
-                BiasUncertainty::of_mean(&s.background, h * 3600.0, None, &others).standard()
+                BiasUncertainty::of_mean(&s.background.into(), h * 3600.0, None, &others).standard()
             };
             return Some(bias_power(max, uncertainty, hours, limit.risk));
         }

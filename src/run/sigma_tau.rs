@@ -12,7 +12,7 @@ pub fn csv(gyro: &GyroEvidence) -> String {
     for curve in &gyro.digest.deviations.curves {
         for point in &curve.points {
             let tau_s = point.m as f64 * gyro.tau0_s;
-            let noise = gyro.identification.supported.dominant(tau_s);
+            let noise = gyro.identification.described.model.dominant(tau_s, gyro.tau0_s);
             let b = bounded(curve.estimator, point, &curve.stretches, noise);
             let (low, high) = b.interval95.map_or((None, None), |i| (Some(i.low), Some(i.high)));
             let number = |v: Option<f64>| v.map(|v| format!("{v:e}")).unwrap_or_default();
@@ -38,14 +38,14 @@ pub fn csv(gyro: &GyroEvidence) -> String {
 /// The points of the overlapping Allan deviation with their intervals.
 pub fn allan_points(
     set: &crate::noise::allan::DeviationSet,
-    model: &crate::noise::model::NoiseModel,
+    model: &crate::noise::composite::Composite,
     tau0_s: f64,
 ) -> Vec<crate::noise::intervals::BoundedPoint> {
     set.curve(Estimator::Allan).map_or_else(Vec::new, |curve| {
         curve
             .points
             .iter()
-            .map(|p| bounded(Estimator::Allan, p, &curve.stretches, model.dominant(p.m as f64 * tau0_s)))
+            .map(|p| bounded(Estimator::Allan, p, &curve.stretches, model.dominant(p.m as f64 * tau0_s, tau0_s)))
             .collect()
     })
 }

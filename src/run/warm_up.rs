@@ -61,10 +61,10 @@ pub fn fact(gyro: &GyroEvidence, bias_uncertainty_deg_h: f64) -> Option<WarmUpFa
 
 /// Covariance of adjacent means under the identified noise, up to a constant that the fitted mean takes up.
 fn covariance(gyro: &GyroEvidence, step_s: f64) -> DMatrix<f64> {
-    let mut model = gyro.identification.full;
-    model.r = 0.0;
-    let angle =
-        |k: usize| if k == 0 { 0.0 } else { (k as f64).powi(2) * model.mean_variance(k as f64 * step_s) };
+    let model = gyro.identification.allowed.without_ramp();
+    let angle = |k: usize| {
+        if k == 0 { 0.0 } else { (k as f64).powi(2) * model.mean_variance(k as f64 * step_s, gyro.tau0_s) }
+    };
     let lag: Vec<f64> =
         (0..MEANS).map(|k| 0.5 * (angle(k + 1) - 2.0 * angle(k) + angle(k.abs_diff(1)))).collect();
     // Flicker and random walk have a variance only up to a constant; one large enough makes the matrix definite and

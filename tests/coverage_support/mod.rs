@@ -159,7 +159,7 @@ pub fn study(mix: &Mix, hours: f64, tau0_s: f64, records: u64, seed: u64) -> Tal
     let samples = (hours * 3600.0 / tau0_s) as usize;
     let length_s = samples as f64 * tau0_s;
     let without = NoiseModel { b: 0.0, ..mix.model };
-    let known = 1.96 * BiasUncertainty::of_mean(&mix.model, length_s, None, &[]).standard();
+    let known = 1.96 * BiasUncertainty::of_mean(&mix.model.into(), length_s, None, &[]).standard();
     let sigma = |window_s: f64| {
         predict(&mix.model, window_s, (length_s / window_s).round() as u64).expect("a prediction").sigma
     };

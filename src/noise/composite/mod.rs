@@ -182,6 +182,46 @@ impl Composite {
     }
 }
 
+impl Composite {
+    /// The kind of power-law noise that the model is most like at `tau_s`: what the degrees of freedom of a deviation
+    /// there follow. A Markov process is white noise when averaged over longer than 1.9 times its correlation time and
+    /// random walk over less; an oscillation is random walk below its maximum and white angle noise beyond.
+    pub fn dominant(&self, tau_s: f64, tau0_s: f64) -> NoiseType {
+        let largest = self
+            .parts()
+            .into_iter()
+            .map(|part| (part, self.part_allan_variance(part, tau_s, tau0_s)))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        let below = |turning_s: f64, later: NoiseType| {
+            if tau_s < turning_s { NoiseType::RateRandomWalk } else { later }
+        };
+        match largest {
+            Some((Part::Term(term), _)) => term,
+            Some((Part::Markov(i), _)) => {
+                let time_s = self.markov.get(i).map_or(0.0, |d| d.decay_time_s);
+                below(1.89 * time_s, NoiseType::AngleRandomWalk)
+            }
+            Some((Part::QuasiPeriodic(i), _)) => {
+                let frequency_hz = self.quasi_periodic.get(i).map_or(0.0, |d| d.frequency_hz);
+                below(0.371 / frequency_hz, NoiseType::Quantization)
+            }
+            Some((Part::Line(i), _)) => {
+                let frequency_hz = self.lines.get(i).map_or(0.0, |l| l.frequency_hz);
+                below(0.371 / frequency_hz, NoiseType::Quantization)
+            }
+            None => NoiseType::AngleRandomWalk,
+        }
+    }
+
+    /// Without its ramp, which is no noise.
+    #[must_use]
+    pub fn without_ramp(&self) -> Composite {
+        let mut out = self.clone();
+        out.terms.r = 0.0;
+        out
+    }
+}
+
 /// Density of samples of an unfiltered term for a coefficient of 1. Instantaneous samples of white and flicker rate
 /// noise have no finite variance without a filter: their density is that of the continuous rate, with what folds back
 /// counted in N.
@@ -245,6 +285,20 @@ mod tests {
             assert!((two / model.part_allan_variance(part, 100.0, 1.0) - 1.0).abs() < 1e-9, "{part:?}");
         }
         assert_eq!(model.expected_variance(100.0, 1, 1.0), None);
+    }
+
+    #[test]
+    fn what_a_part_is_most_like_follows_its_slope() {
+        let model = all();
+        // A Markov process alone, on both sides of its hump; an oscillation on both sides of its maximum.
+        let markov = Composite { markov: model.markov.clone(), ..Default::default() };
+        assert_eq!(markov.dominant(100.0, 1.0), NoiseType::RateRandomWalk);
+        assert_eq!(markov.dominant(1000.0, 1.0), NoiseType::AngleRandomWalk);
+        let periodic = Composite { quasi_periodic: model.quasi_periodic.clone(), ..Default::default() };
+        assert_eq!(periodic.dominant(10.0, 1.0), NoiseType::RateRandomWalk);
+        assert_eq!(periodic.dominant(100.0, 1.0), NoiseType::Quantization);
+        assert_eq!(Composite::from(model.terms).dominant(1e-2, 1e-2), NoiseType::Quantization);
+        assert_eq!(Composite::default().dominant(1.0, 1.0), NoiseType::AngleRandomWalk);
     }
 
     #[test]

@@ -131,6 +131,7 @@ impl Found {
         out.likelihood_ratios = self.ratios;
         out.claimed = TERMS.into_iter().zip(self.claimed).filter(|(_, c)| *c).map(|(t, _)| t).collect();
         out.full = self.full.terms();
+        out.allowed = self.full.composite(joint.sampling());
         out.supported = point.terms();
         let mut model = point.terms();
         for (term, claimed) in TERMS.into_iter().zip(self.claimed) {
