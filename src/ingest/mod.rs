@@ -30,6 +30,7 @@ mod plan;
 mod pump;
 pub mod raw;
 pub mod read_words;
+pub(crate) mod reading;
 mod recording;
 mod reduce;
 mod ros;
