@@ -100,13 +100,14 @@ pub fn load(path: &Path) -> Result<Manifest, Problems> {
 /// # Errors
 /// As [`load`].
 pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Manifest, Problems> {
-    let (manifest, problems) = checked(&file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| Manifest {
-        path: path.to_owned(),
-        serial: root.text("serial"),
-        contiguous: root.flag("contiguous"),
-        options: root.table("recording").map(|r| options(r, folder, reader)).unwrap_or_default(),
-        files: files(root, folder, reader),
-    });
+    let (manifest, problems) =
+        checked(&file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| Manifest {
+            path: path.to_owned(),
+            serial: root.text("serial"),
+            contiguous: root.flag("contiguous"),
+            options: root.table("recording").map(|r| options(r, folder, reader)).unwrap_or_default(),
+            files: files(root, folder, reader),
+        });
     manifest.ok_or(problems)
 }
 

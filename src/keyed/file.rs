@@ -63,10 +63,7 @@ pub(crate) fn source(name: &str, bytes: &[u8]) -> Result<SourceText, Problems> {
     std::str::from_utf8(body).map(|text| SourceText::new(name, text.to_owned())).map_err(|e| {
         let sound = String::from_utf8_lossy(body.get(..e.valid_up_to()).unwrap_or(b"")).into_owned();
         let at = sound.len();
-        SourceText::new(name, sound)
-            .error(&(at..at), "text_file.not_utf8")
-            .help("text_file.save_utf8")
-            .into()
+        SourceText::new(name, sound).error(&(at..at), "text_file.not_utf8").help("text_file.save_utf8").into()
     })
 }
 
