@@ -1,6 +1,6 @@
 //! The tables of a manifest.
 
-use super::reading;
+use super::reading_tables;
 use crate::keyed::spec::{Kind, TableSpec, optional, required, with_default};
 
 /// A manifest as a whole.
@@ -57,14 +57,14 @@ static READING: TableSpec = TableSpec {
     name: "recording",
     doc: "How the files are read. What is left out is found from each file.",
     keys: &[
-        reading::FORMAT,
-        reading::ENCODING,
-        reading::DELIMITER,
-        reading::DECIMAL,
-        reading::HEADER_LINE,
-        reading::FIRST_LINE,
-        reading::COMMENT,
-        reading::PART,
+        reading_tables::FORMAT,
+        reading_tables::ENCODING,
+        reading_tables::DELIMITER,
+        reading_tables::DECIMAL,
+        reading_tables::HEADER_LINE,
+        reading_tables::FIRST_LINE,
+        reading_tables::COMMENT,
+        reading_tables::PART,
         optional("layout", Kind::Text, "\"layout.toml\"", "Layout of the records of raw binary files."),
     ],
 };

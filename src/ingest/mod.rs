@@ -31,6 +31,7 @@ mod pump;
 pub mod raw;
 pub mod read_words;
 pub(crate) mod reading;
+pub(crate) mod reading_tables;
 mod recording;
 mod reduce;
 mod ros;

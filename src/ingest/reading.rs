@@ -1,65 +1,12 @@
-//! How a file is to be read, as a table of keys says: the keys that procedures and manifests share, and their reading.
+//! How a file is to be read, as the keys say that procedures and manifests share.
 
-use super::read_words::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding};
+use super::read_words::{decimal, delimiter, encoding};
 use super::{FORMATS, ReadOptions, TextOptions};
 use crate::keyed::reader::{Reader, shorten};
 use crate::keyed::section::Section;
-use crate::keyed::spec::{KeySpec, Kind, Range, optional};
 use crate::text::Note;
 
-pub(crate) const FORMAT: KeySpec =
-    optional("format", Kind::Text, "\"csv\"", "Id of the file format; left out: found by the content.");
-
-pub(crate) const ENCODING: KeySpec = optional(
-    "encoding",
-    Kind::Choice(ENCODINGS),
-    "\"windows-1251\"",
-    "Character encoding of a text file; left out: found from its bytes.",
-);
-
-pub(crate) const DELIMITER: KeySpec = optional(
-    "delimiter",
-    Kind::Choice(DELIMITERS),
-    "\"semicolon\"",
-    "Separator of the fields of a text file; left out: found from its lines.",
-);
-
-pub(crate) const DECIMAL: KeySpec = optional(
-    "decimal",
-    Kind::Choice(DECIMALS),
-    "\"comma\"",
-    "Decimal sign of a text file; left out: found from its numbers.",
-);
-
-pub(crate) const HEADER_LINE: KeySpec = optional(
-    "header_line",
-    Kind::Number(Range::between(0.0, 1e6)),
-    "4",
-    "Line that names the columns of a text file, counted from 1; 0: there is none; left out: found.",
-);
-
-pub(crate) const FIRST_LINE: KeySpec = optional(
-    "first_line",
-    Kind::Number(Range::between(1.0, 1e6)),
-    "6",
-    "First line of data of a text file, counted from 1; left out: found.",
-);
-
-pub(crate) const COMMENT: KeySpec = optional(
-    "comment",
-    Kind::Text,
-    "\"#\"",
-    "Beginning of comment lines of a text file; left out: `#`, `%`, `//`, and `;` where it does not separate.",
-);
-
-pub(crate) const PART: KeySpec = optional(
-    "part",
-    Kind::Text,
-    "\"/imu/gyro\"",
-    "Part of a container that holds the recording: a dataset, a variable, a topic.",
-);
-
-/// What those keys decide. The layout is left to the caller: each kind of file has its own rule where it may stand.
+/// What the keys of [`super::reading_tables`] decide. The layout is left to the caller: each kind of file has its own rule where it may stand.
 pub(crate) fn options(section: &Section, reader: &mut Reader<'_>) -> ReadOptions {
     let format = section.text("format");
     if let Some(unknown) = format.as_deref().filter(|id| !FORMATS.iter().any(|f| f.id() == *id)) {

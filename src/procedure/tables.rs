@@ -4,7 +4,7 @@ use super::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, wi
 use super::tables_conditions::{CONDITIONS, EXCLUDE};
 use super::tables_limits::{LIMIT, REFERENCE};
 use super::tables_site::{INSTRUMENT, SITE};
-use crate::ingest::reading;
+use crate::ingest::reading_tables;
 
 /// Roles a channel may have, with their meaning.
 pub const ROLES: &[Word] = &[
@@ -144,14 +144,14 @@ static RECORDING: TableSpec = TableSpec {
             "\"0.1 %\"",
             "Largest relative difference between the declared and the measured sample rate.",
         ),
-        reading::FORMAT,
-        reading::ENCODING,
-        reading::DELIMITER,
-        reading::DECIMAL,
-        reading::HEADER_LINE,
-        reading::FIRST_LINE,
-        reading::COMMENT,
-        reading::PART,
+        reading_tables::FORMAT,
+        reading_tables::ENCODING,
+        reading_tables::DELIMITER,
+        reading_tables::DECIMAL,
+        reading_tables::HEADER_LINE,
+        reading_tables::FIRST_LINE,
+        reading_tables::COMMENT,
+        reading_tables::PART,
         optional(
             "layout",
             Kind::Text,
