@@ -1,7 +1,9 @@
 //! Broken recordings in files, each with line, character, offending text and a piece of the message written by hand.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+mod support;
+
+use std::path::Path;
+use support::{corpus, result, sagnac};
 use tempfile::tempdir;
 
 /// `line:character: token: fragment`; `-` where there is no such place.
@@ -13,7 +15,7 @@ struct Expected {
 }
 
 fn expected(path: &Path) -> Expected {
-    let text = std::fs::read_to_string(path.with_extension("expect")).unwrap();
+    let text = corpus::expected(path);
     let (place, rest) = text.trim_end().split_once(": ").unwrap();
     let (token, fragment) = rest.rsplit_once(": ").unwrap();
     let (line, character) = place.split_once(':').unwrap();
@@ -28,33 +30,19 @@ fn expected(path: &Path) -> Expected {
 /// What `analyze` says of a file: its complaint, or the notes of its faults.
 fn said(path: &Path) -> Vec<String> {
     let folder = tempdir().unwrap();
-    let out = folder.path().join("o");
-    let run = Command::new(env!("CARGO_BIN_EXE_sagnac"))
-        .args(["--lang", "en", "analyze"])
-        .arg(path)
-        .arg("--out")
-        .arg(&out)
-        .output()
-        .unwrap();
-    if !run.status.success() {
-        assert_eq!(run.status.code(), Some(2), "{}", path.display());
-        return vec![String::from_utf8(run.stderr).unwrap()];
+    let run = sagnac(folder.path(), &["--lang", "en", "analyze", &path.to_string_lossy(), "--out", "o"]);
+    if run.code != 0 {
+        assert_eq!(run.code, 2, "{}", path.display());
+        return vec![run.err];
     }
-    let text = std::fs::read_to_string(out.join("result.json")).unwrap();
-    let result: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let result = result(&folder.path().join("o"));
     let faults = result["integrity"]["faults"].as_array().unwrap();
     faults.iter().map(|f| f["note"].as_str().unwrap().to_owned()).collect()
 }
 
 #[test]
 fn every_broken_recording_is_told_at_its_place() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad-input/recording");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
-        .unwrap()
-        .map(|e| e.unwrap().path())
-        .filter(|p| p.extension().is_some_and(|e| e == "csv"))
-        .collect();
-    files.sort();
+    let files = corpus::cases("recording", "csv");
     assert!(files.len() >= 19, "only {} files", files.len());
     let mut wrong = vec![];
     for path in &files {

@@ -3,6 +3,7 @@
 //! hand. `SAGNAC_WRITE_DRILL=1 cargo test --release --test drill` writes the table to docs/drill.md.
 
 mod drill_support;
+mod support;
 
 use drill_support::corruptions::corrupt;
 use drill_support::expected::{CASES, Expect};

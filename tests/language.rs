@@ -1,10 +1,13 @@
 //! The tables of words against one another, and what the program says in Russian.
 
-use sagnac::procedure::{Loaded, Problem, Problems, parse_limits, parse_procedure};
+mod support;
+
+use sagnac::procedure::{parse_limits, parse_procedure};
 use sagnac::text::{Lang, table};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
+use support::corpus::{cases, problems};
 
 /// Latin words that stand in Russian sentences: names of formats, options, units of files, keys of procedures, symbols
 /// and names of standards. What stands between backticks or double quotes, or in square brackets, is the user's or a
@@ -262,24 +265,11 @@ fn the_allow_lists_hold_nothing_idle() {
     assert!(idle.is_empty(), "in no Russian sentence: {idle:?}");
 }
 
-fn corpus(kind: &str) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad-input").join(kind);
-    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    files.filter(|p| p.extension().is_some_and(|e| e == "toml")).collect()
-}
-
-fn problems<T>(result: Result<Loaded<T>, Problems>) -> Vec<Problem> {
-    match result {
-        Ok(loaded) => loaded.warnings,
-        Err(problems) => problems.list,
-    }
-}
-
 #[test]
 fn every_broken_file_has_a_russian_diagnostic() {
     let mut seen = 0;
     for kind in ["procedure", "limits"] {
-        for file in corpus(kind) {
+        for file in cases(kind, "toml") {
             let bytes = std::fs::read(&file).unwrap();
             let name = file.display().to_string();
             let found = if kind == "limits" {

@@ -5,52 +5,15 @@ mod support;
 use sagnac::ingest::manifest;
 use sagnac::ingest::{ReadOptions, open_recording};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use support::synthetic::white;
-use support::{result, root, sagnac};
+use support::{corpus, result, root, sagnac};
 use tempfile::{TempDir, tempdir};
 
-/// `[warning ]line:column: offending text: fragment of message or help`, written by hand.
 #[test]
 fn broken_manifests_are_reported_at_their_place() {
-    let folder = root().join("tests/bad-input/manifest");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
-        .unwrap()
-        .map(|e| e.unwrap().path())
-        .filter(|p| p.extension().is_some_and(|e| e == "toml"))
-        .collect();
-    files.sort();
-    let mut wrong = String::new();
-    for file in &files {
-        let name = file.file_name().unwrap().to_string_lossy();
-        let expected = std::fs::read_to_string(file.with_extension("expect")).unwrap();
-        let problems = manifest::load(file).unwrap_err();
-        let mut found = problems.list;
-        for line in expected.lines() {
-            let mut parts = line.splitn(3, ": ");
-            let (place, token, fragment) =
-                (parts.next().unwrap(), parts.next().unwrap(), parts.next().expect("fragment"));
-            let at = found.iter().position(|p| {
-                place == format!("{}:{}", p.line, p.column)
-                    && p.token == token
-                    && format!(
-                        "{} {}",
-                        p.message,
-                        p.help.as_ref().map(ToString::to_string).unwrap_or_default()
-                    )
-                    .contains(fragment)
-            });
-            match at {
-                Some(i) => drop(found.remove(i)),
-                None => wrong.push_str(&format!("{name}: not reported: {line}\n")),
-            }
-        }
-        for problem in found {
-            wrong.push_str(&format!("{name}: not expected (token `{}`):\n{problem}\n", problem.token));
-        }
-    }
-    assert!(wrong.is_empty(), "\n{wrong}");
-    assert!(files.len() >= 30, "{} manifests", files.len());
+    let count = corpus::each_problem_at_its_place("manifest", |file| manifest::load(file).unwrap_err().list);
+    assert!(count >= 30, "{count} manifests");
 }
 
 /// A file of rows `from..to` of one recording of 1 Hz.

@@ -20,6 +20,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/lib.rs", "documentation"),
     ("src/ingest/read_words.rs", "words of keys: documentation, as of procedures"),
     ("src/ingest/manifest_tables.rs", "the key tables of manifests: documentation, as of procedures"),
+    ("src/ingest/reading_tables.rs", "keys of procedures and manifests: documentation, as of procedures"),
     ("src/ingest/raw/tables.rs", "the key tables of layouts: documentation, as of procedures"),
     ("src/ingest/matlab/tape.rs", "faults of the decoder, quoted as it says them"),
     ("src/ingest/matlab/v5.rs", "faults of the decoder, quoted as it says them"),

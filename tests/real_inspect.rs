@@ -1,15 +1,10 @@
 //! `sagnac inspect` on real recordings, where the folder named by SAGNAC_REAL_DATA holds them.
 
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+mod support;
 
 fn told(file: &str) -> Option<String> {
-    let Some(folder) = std::env::var_os("SAGNAC_REAL_DATA") else {
-        let _ =
-            writeln!(std::io::stderr(), "skipped: SAGNAC_REAL_DATA is not set, so {file} is not looked at");
-        return None;
-    };
-    let path: PathBuf = Path::new(&folder).join(file);
+    let (name, inner) = file.split_once('/').unwrap();
+    let path = support::real::set(name)?.join(inner);
     let text = sagnac::run::inspect::inspect(&path, None, sagnac::text::Lang::En, &mut |_, _| {}).unwrap();
     Some(text.split_whitespace().collect::<Vec<_>>().join(" "))
 }

@@ -1,6 +1,8 @@
 //! Every id that a run can write into a result has words, asked of what writes them: the conditions, the measurands and
 //! real runs over the samples.
 
+mod support;
+
 use sagnac::condition::temperature_track::{Extreme, TemperatureFacts};
 use sagnac::condition::{
     BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
@@ -9,14 +11,14 @@ use sagnac::measurand::ids::{MEASURANDS, Test};
 use sagnac::noise::model::TERMS;
 use sagnac::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
 use sagnac::procedure::{EffectiveLimits, effective, load, load_limits};
-use sagnac::record::{Integrity, RunRecord, UnitUnderTest};
-use sagnac::run::{Request, execute};
+use sagnac::record::{Integrity, RunRecord};
 use sagnac::text::{Lang, lookup};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use support::tested::tested;
 
 fn root(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+    support::root().join(path)
 }
 
 fn missing(keys: impl IntoIterator<Item = String>) -> BTreeSet<String> {
@@ -26,29 +28,12 @@ fn missing(keys: impl IntoIterator<Item = String>) -> BTreeSet<String> {
 /// A sample tested by the static procedure, with every measurand that this version gives.
 fn run(sample: &str) -> RunRecord {
     let mut procedure = load(&root("procedures/static-bias.toml")).unwrap();
-    let limits = load_limits(&root("procedures/limits/sample-unit.toml")).unwrap();
     procedure.value.measurands = MEASURANDS
         .iter()
         .filter(|m| m.available && m.test == Test::Static)
         .map(|id| MeasurandSpec { id, channel: None, earth_rate: EarthRate::Remove, span: 0..0 })
         .collect();
-    let effective = effective(&procedure, Some(&limits));
-    let source = sagnac::ingest::open(&root(sample)).unwrap();
-    let request = Request {
-        kind: "run",
-        procedure: &procedure.value,
-        procedure_record: Some(procedure.record(Some(&limits))),
-        limits: &effective,
-        source: &source,
-        use_stamps: true,
-        unit: UnitUnderTest { serial: Some("SN-1".into()), ..UnitUnderTest::default() },
-        operator: None,
-        station: None,
-        now: chrono::DateTime::from_timestamp(1_795_000_000, 0).unwrap(),
-        taus: None,
-        exact: false,
-    };
-    execute(&request, &mut |_, _| {}).unwrap().record
+    tested(&procedure, &root(sample)).unwrap()
 }
 
 #[test]

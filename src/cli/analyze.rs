@@ -39,9 +39,8 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let (source, manifest) = (recording.source, recording.manifest);
     let channels = channels(args, &source).map_err(say)?;
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
-    // What the file states serves where there are no stamps and the user says nothing.
-    let stated = source.stated_sample_rate_hz().filter(|_| !use_stamps);
-    let sample_rate = args.sample_rate.or(stated);
+    let declared = args.sample_rate;
+    let sample_rate = if use_stamps { declared } else { source.rate_without_stamps_hz(declared) };
     if !use_stamps && sample_rate.is_none() {
         return Err(say(about(args, "cli.no_time")));
     }

@@ -16,8 +16,7 @@ pub fn main(args: &InspectArgs, lang: Lang) -> u8 {
             return exit::ERROR;
         }
     };
-    let rate = args.sample_rate.or(recording.source.stated_sample_rate_hz());
-    let told = inspect_source(&recording.source, rate, lang, &mut |done, total| {
+    let told = inspect_source(&recording.source, args.sample_rate, lang, &mut |done, total| {
         progress.update(&reading, done, total);
     });
     progress.finish();

@@ -6,18 +6,18 @@ use super::compressed;
 use super::joined::PartSpec;
 use super::manifest_tables::MANIFEST_FILE;
 use super::options::{ReadOptions, TextOptions};
-use super::read_words::{decimal, delimiter, encoding};
+use super::reading;
 use super::recording::natural;
-use crate::keyed::diagnostics::{Problem, Problems, SourceText, Span};
-use crate::keyed::reader::{self, Reader};
+use crate::keyed::diagnostics::{Problems, Span};
+use crate::keyed::file::{self, Wording};
+use crate::keyed::reader::{Reader, checked};
 use crate::keyed::section::Section;
 use crate::text::Note;
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
-/// Most bytes that are read of a manifest: enough to know that it is too large.
-const MOST_BYTES: u64 = (1 << 20) + 1;
+/// What is said of a manifest that cannot be read at all.
+const WORDING: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
 
 /// A manifest.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,8 +81,7 @@ pub fn is_manifest(path: &Path) -> bool {
     if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
         return false;
     }
-    let Ok(bytes) = bytes_of(path) else { return false };
-    let text = String::from_utf8_lossy(&bytes);
+    let Some(text) = file::peek(path) else { return false };
     let said = text.lines().map(str::trim).find_map(|l| l.strip_prefix("format"));
     said.map_or_else(|| path.file_stem().is_some_and(|s| s == "manifest"), |rest| rest.contains("manifest/"))
 }
@@ -92,16 +91,8 @@ pub fn is_manifest(path: &Path) -> bool {
 /// # Errors
 /// Every problem, each with its place.
 pub fn load(path: &Path) -> Result<Manifest, Problems> {
-    let name = path.display().to_string();
-    let bytes = bytes_of(path).map_err(|e| {
-        Problems::from(Problem::of_file(
-            &name,
-            Note::new("manifest.unreadable").with("reason", e.to_string()),
-            None,
-        ))
-    })?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    parse(path, &name, &bytes, folder)
+    parse(path, &path.display().to_string(), &file::bytes(path, &WORDING)?, folder)
 }
 
 /// Reads a manifest from its bytes; its files are looked for in `folder`.
@@ -109,32 +100,15 @@ pub fn load(path: &Path) -> Result<Manifest, Problems> {
 /// # Errors
 /// As [`load`].
 pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Manifest, Problems> {
-    let body = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let text = match std::str::from_utf8(body) {
-        Ok(text) => text.to_owned(),
-        Err(e) => {
-            let sound = String::from_utf8_lossy(body.get(..e.valid_up_to()).unwrap_or(b"")).into_owned();
-            let at = sound.len();
-            let problem = SourceText::new(name, sound).error(&(at..at), Note::new("manifest.not_utf8"));
-            return Err(problem.into());
-        }
-    };
-    let source = SourceText::new(name, text);
-    let (root, problems) = reader::read(&source, &MANIFEST_FILE);
-    let Some(root) = root else { return Err(problems) };
-    let mut reader = Reader::resume(&source, &MANIFEST_FILE, problems);
-    let files = files(&root, folder, &mut reader);
-    let recording = root.table("recording");
-    let manifest = Manifest {
-        path: path.to_owned(),
-        serial: root.text("serial"),
-        contiguous: root.flag("contiguous"),
-        options: recording.map(|r| options(r, folder, &mut reader)).unwrap_or_default(),
-        files,
-    };
-    let mut problems = reader.problems;
-    problems.sort();
-    if problems.has_errors() { Err(problems) } else { Ok(manifest) }
+    let (manifest, problems) =
+        checked(&file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| Manifest {
+            path: path.to_owned(),
+            serial: root.text("serial"),
+            contiguous: root.flag("contiguous"),
+            options: root.table("recording").map(|r| options(r, folder, reader)).unwrap_or_default(),
+            files: files(root, folder, reader),
+        });
+    manifest.ok_or(problems)
 }
 
 fn complain(reader: &mut Reader<'_>, span: &Span, note: Note, help: Option<&'static str>) {
@@ -176,7 +150,7 @@ fn by_list(listed: &[Section], folder: &Path, reader: &mut Reader<'_>) -> Vec<Ma
     }
     for section in listed {
         let Some(text) = section.text("path") else { continue };
-        let at = inside(reader.source, &section.span_of("path"));
+        let at = reader.source.inside_quotes(&section.span_of("path"));
         let Some((path, canonical)) = safe(&text, folder, &at, reader) else { continue };
         if let Some(line) = real.get(&canonical) {
             let note = Note::new("manifest.twice").with("path", text.as_str()).with("line", *line);
@@ -184,14 +158,14 @@ fn by_list(listed: &[Section], folder: &Path, reader: &mut Reader<'_>) -> Vec<Ma
             continue;
         }
         real.insert(canonical, reader.source.error(&at, "").line);
-        let sha256 = section.text("sha256").filter(|stated| checked(stated, &path, section, reader));
+        let sha256 = section.text("sha256").filter(|stated| hash_holds(stated, &path, section, reader));
         let phase = section.text("phase");
         if let Some(other) = found.last().filter(|f| f.phase != phase) {
             let span = if phase.is_some() { section.span_of("phase") } else { section.span.clone() };
             let word = |p: &Option<String>| p.clone().unwrap_or_else(|| "-".to_owned());
             let note =
                 Note::new("manifest.phases").with("phase", word(&phase)).with("other", word(&other.phase));
-            complain(reader, &inside(reader.source, &span), note, Some("manifest.help.phases"));
+            complain(reader, &reader.source.inside_quotes(&span), note, Some("manifest.help.phases"));
         }
         found.push(ManifestFile { path, sha256, phase });
     }
@@ -199,8 +173,8 @@ fn by_list(listed: &[Section], folder: &Path, reader: &mut Reader<'_>) -> Vec<Ma
 }
 
 /// True when a stated hash is that of the file.
-fn checked(stated: &str, path: &Path, section: &Section, reader: &mut Reader<'_>) -> bool {
-    let at = inside(reader.source, &section.span_of("sha256"));
+fn hash_holds(stated: &str, path: &Path, section: &Section, reader: &mut Reader<'_>) -> bool {
+    let at = reader.source.inside_quotes(&section.span_of("sha256"));
     if stated.len() != 64 || !stated.chars().all(|c| c.is_ascii_hexdigit()) {
         complain(reader, &at, Note::new("manifest.no_hash"), Some("manifest.help.no_hash"));
         return false;
@@ -222,7 +196,7 @@ fn checked(stated: &str, path: &Path, section: &Section, reader: &mut Reader<'_>
 }
 
 fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
-    let at = inside(reader.source, span);
+    let at = reader.source.inside_quotes(span);
     if !stays_inside(pattern, &at, reader) {
         return vec![];
     }
@@ -310,54 +284,9 @@ fn safe(text: &str, folder: &Path, at: &Span, reader: &mut Reader<'_>) -> Option
 }
 
 fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOptions {
-    let whole = |key: &'static str, reader: &mut Reader<'_>| {
-        let value = section.number(key)?;
-        if value.fract() == 0.0 {
-            return Some(value as u64);
-        }
-        complain(reader, &section.span_of(key), Note::new("manifest.no_line").with("key", key), None);
-        None
-    };
     let layout = section.text("layout").and_then(|text| {
-        let at = inside(reader.source, &section.span_of("layout"));
+        let at = reader.source.inside_quotes(&section.span_of("layout"));
         safe(&text, folder, &at, reader).map(|(path, _)| path)
     });
-    let format = section.text("format").filter(|id| {
-        let known = super::FORMATS.iter().any(|f| f.id() == id);
-        if !known {
-            let at = inside(reader.source, &section.span_of("format"));
-            let ids: Vec<&str> = super::FORMATS.iter().map(|f| f.id()).collect();
-            let note = Note::new("manifest.no_format").with("id", id.as_str()).with("known", ids.join(", "));
-            complain(reader, &at, note, None);
-        }
-        known
-    });
-    ReadOptions {
-        format,
-        text: TextOptions {
-            encoding: section.word("encoding").and_then(encoding),
-            delimiter: section.word("delimiter").and_then(delimiter),
-            decimal: section.word("decimal").and_then(decimal),
-            header_line: whole("header_line", reader),
-            first_line: whole("first_line", reader),
-            comment: section.text("comment"),
-            stamps: Vec::new(),
-        },
-        part: section.text("part"),
-        layout,
-    }
-}
-
-/// The place of a text between its quotes.
-fn inside(source: &SourceText, span: &Span) -> Span {
-    let raw = source.text.get(span.clone()).unwrap_or("");
-    let quoted = raw.len() >= 2
-        && (raw.starts_with('"') && raw.ends_with('"') || raw.starts_with('\'') && raw.ends_with('\''));
-    if quoted && !raw.starts_with("\"\"\"") { span.start + 1..span.end - 1 } else { span.clone() }
-}
-
-fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    ReadOptions { layout, ..reading::options(section, reader) }
 }

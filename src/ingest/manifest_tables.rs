@@ -1,7 +1,7 @@
 //! The tables of a manifest.
 
-use super::read_words::{DECIMALS, DELIMITERS, ENCODINGS};
-use crate::keyed::spec::{Kind, Range, TableSpec, optional, required, with_default};
+use super::reading_tables;
+use crate::keyed::spec::{Kind, TableSpec, optional, required, with_default};
 
 /// A manifest as a whole.
 pub static MANIFEST_FILE: TableSpec = TableSpec {
@@ -57,34 +57,14 @@ static READING: TableSpec = TableSpec {
     name: "recording",
     doc: "How the files are read. What is left out is found from each file.",
     keys: &[
-        optional("format", Kind::Text, "\"csv\"", "Id of the file format."),
-        optional(
-            "encoding",
-            Kind::Choice(ENCODINGS),
-            "\"windows-1251\"",
-            "Character encoding of text files.",
-        ),
-        optional("delimiter", Kind::Choice(DELIMITERS), "\"semicolon\"", "Separator of fields."),
-        optional("decimal", Kind::Choice(DECIMALS), "\"comma\"", "Decimal sign."),
-        optional(
-            "header_line",
-            Kind::Number(Range::between(0.0, 1e6)),
-            "1",
-            "Line that holds the names of the columns, counted from 1; 0: there is none.",
-        ),
-        optional(
-            "first_line",
-            Kind::Number(Range::between(1.0, 1e6)),
-            "2",
-            "First line of data, counted from 1.",
-        ),
-        optional("comment", Kind::Text, "\"#\"", "Beginning of lines that are comments."),
-        optional(
-            "part",
-            Kind::Text,
-            "\"/imu/rate\"",
-            "Part of a container that holds the recording: a dataset, a variable, a topic.",
-        ),
+        reading_tables::FORMAT,
+        reading_tables::ENCODING,
+        reading_tables::DELIMITER,
+        reading_tables::DECIMAL,
+        reading_tables::HEADER_LINE,
+        reading_tables::FIRST_LINE,
+        reading_tables::COMMENT,
+        reading_tables::PART,
         optional("layout", Kind::Text, "\"layout.toml\"", "Layout of the records of raw binary files."),
     ],
 };

@@ -30,6 +30,8 @@ mod plan;
 mod pump;
 pub mod raw;
 pub mod read_words;
+pub(crate) mod reading;
+pub(crate) mod reading_tables;
 mod recording;
 mod reduce;
 mod ros;

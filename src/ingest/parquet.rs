@@ -1,10 +1,11 @@
-//! Apache Parquet: columns of numbers, read in batches of rows; the file is hashed beside.
+//! Apache Parquet: columns of numbers, read in batches of rows.
 
-use super::compressed::{Packing, digest, io_error};
+use super::compressed::{Packing, io_error};
 use super::error::{IngestError, IngestErrorKind};
 use super::guarded::guarded;
 use super::memory::non_finite;
 use super::number::usable;
+use super::pump::{Blocks, pump};
 use super::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
 use crate::text::Note;
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
@@ -15,7 +16,6 @@ use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::schema::types::ColumnDescriptor;
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 /// Rows in a block.
 const ROWS: usize = 1 << 15;
@@ -117,46 +117,17 @@ struct ParquetFile {
 
 impl Table for ParquetFile {
     fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError> {
-        let (block_out, block_in) = sync_channel::<Block>(3);
-        let (block_back, block_free) = sync_channel::<Block>(8);
-        std::thread::scope(|scope| {
-            let hash = scope.spawn(|| digest(&self.path));
-            let decode = move || self.decode(wanted, &block_out, &block_free);
-            let decoder = scope.spawn(|| guarded(&self.path, decode));
-            let mut stopped = false;
-            for mut block in block_in {
-                if on_block(&mut block).is_break() {
-                    stopped = true;
-                    break;
-                }
-                // A full return channel only means that the memory is not used again.
-                let _ = block_back.try_send(block);
-            }
-            let lost = |_| IngestError::new(IngestErrorKind::Io, &self.path, "ingest.thread_stopped");
-            let digested = hash.join().map_err(lost)?;
-            let rows = decoder.join().map_err(lost)??;
-            if stopped {
-                return Ok(None);
-            }
-            let digested = digested?;
-            Ok(Some(FileFacts { sha256: digested.sha256, bytes: digested.bytes, rows }))
-        })
+        pump(&self.path, wanted.len(), on_block, |blocks| guarded(&self.path, || self.decode(wanted, blocks)))
     }
 }
 
 impl ParquetFile {
-    /// Decodes every row group; returns the number of rows.
-    fn decode(
-        &self,
-        wanted: &[usize],
-        out: &SyncSender<Block>,
-        free: &Receiver<Block>,
-    ) -> Result<u64, IngestError> {
+    /// Decodes every row group.
+    fn decode(&self, wanted: &[usize], blocks: &mut Blocks) -> Result<(), IngestError> {
         let fail = |e: ParquetError| damaged(&self.path, &e);
         let reader = reader(&self.path)?;
         let size = std::fs::metadata(&self.path).map_err(|e| io_error(&self.path, &e))?.len();
         let total = u64::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0).max(1);
-        let mut done = 0u64;
         for group in 0..reader.num_row_groups() {
             let group = reader.get_row_group(group).map_err(fail)?;
             let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
@@ -167,21 +138,19 @@ impl ParquetFile {
             let mut left = rows;
             while left > 0 {
                 let n = left.min(ROWS);
-                let mut block = free.try_recv().unwrap_or_default();
-                block.reset(wanted.len());
-                block.first_row = done + 1;
+                let mut block = blocks.empty();
                 for (slot, column) in columns.iter_mut().enumerate() {
                     column.batch(n, slot, &mut block).map_err(fail)?;
                 }
                 left -= n;
-                done += n as u64;
+                let done = blocks.rows() + n as u64;
                 block.bytes_done = (size as f64 * (done as f64 / total as f64)) as u64;
-                if out.send(block).is_err() {
-                    return Ok(done);
+                if !blocks.pass_counted(block) {
+                    return Ok(());
                 }
             }
         }
-        Ok(done)
+        Ok(())
     }
 }
 

@@ -110,7 +110,7 @@ pub fn prepare<'a>(
             (clock.map_err(|e| no_clock(e, "ingest.hint.check_time"))?, start_s)
         }
         None => {
-            let rate = spec.declared_sample_rate_hz.or(source.stated_sample_rate_hz()).ok_or_else(|| {
+            let rate = source.rate_without_stamps_hz(spec.declared_sample_rate_hz).ok_or_else(|| {
                 IngestError::new(IngestErrorKind::TimeBase, source.path(), "ingest.no_time")
                     .hint("ingest.hint.declare_rate")
             })?;

@@ -37,9 +37,6 @@ impl Blocks {
     #[must_use]
     pub fn pass_without(&mut self, mut block: Block, counted: &BTreeSet<u64>) -> bool {
         let rows = block.rows();
-        if rows == 0 {
-            return true;
-        }
         let mut columns = std::mem::take(&mut block.columns);
         for (slot, column) in columns.iter_mut().enumerate() {
             column.resize(rows, f64::NAN);
@@ -53,6 +50,16 @@ impl Blocks {
             }
         }
         block.columns = columns;
+        self.pass_counted(block)
+    }
+
+    /// The same for a block whose faults the decoder has counted all, and marked as NaN.
+    #[must_use]
+    pub fn pass_counted(&mut self, block: Block) -> bool {
+        let rows = block.rows();
+        if rows == 0 {
+            return true;
+        }
         self.done += rows as u64;
         self.out.send(block).is_ok()
     }

@@ -186,9 +186,14 @@ impl Source {
         &self.opened.metadata
     }
 
-    /// Sample rate that the file states, Hz. It counts only where neither stamps nor the user tell the rate.
+    /// Sample rate that the file states, Hz.
     pub fn stated_sample_rate_hz(&self) -> Option<f64> {
         self.opened.stated_sample_rate_hz
+    }
+
+    /// Sample rate where no stamps tell it, Hz: as declared by the user, else as the file states it.
+    pub fn rate_without_stamps_hz(&self, declared_hz: Option<f64>) -> Option<f64> {
+        declared_hz.or(self.stated_sample_rate_hz())
     }
 
     /// Finds a column; the result is its position from 0.

@@ -184,6 +184,14 @@ impl SourceText {
         self.problem(Severity::Warning, span, message.into())
     }
 
+    /// The place of a text between its quotes; the place as given where there are none, or three.
+    pub(crate) fn inside_quotes(&self, span: &Span) -> Span {
+        let raw = self.text.get(span.clone()).unwrap_or("");
+        let within = |quote: char| raw.len() >= 2 && raw.starts_with(quote) && raw.ends_with(quote);
+        let quoted = within('"') && !raw.starts_with("\"\"\"") || within('\'');
+        if quoted { span.start + 1..span.end - 1 } else { span.clone() }
+    }
+
     fn problem(&self, severity: Severity, span: &Span, message: Note) -> Problem {
         let start = self.floor(span.start);
         let end = self.floor(span.end.max(start));

@@ -2,6 +2,7 @@
 //! guide that follow from the description. Knows no particular file.
 
 pub mod diagnostics;
+pub(crate) mod file;
 pub mod quantity;
 pub(crate) mod reader;
 pub(crate) mod section;

@@ -11,9 +11,6 @@ use crate::text::{Arg, Lang, Note, lookup};
 use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
 
-/// Largest file that is read, bytes. A procedure is a few kilobytes.
-const LARGEST_FILE: usize = 1 << 20;
-
 /// At most this many syntax errors are shown: a file that is no TOML at all has one in every line.
 const SYNTAX_ERRORS: usize = 5;
 
@@ -26,9 +23,9 @@ const DEEPEST: usize = 500;
 /// Reads a file by its description.
 ///
 /// The section is there whenever the text is TOML at all, with the values that are sound; the problems tell the rest.
-pub(crate) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Problems) {
+fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Problems) {
     let mut reader = Reader { source, root, problems: Problems::default() };
-    if let Some(problem) = unreadable(source) {
+    if let Some(problem) = too_deep(source) {
         return (None, problem.into());
     }
     let (table, errors) = DeTable::parse_recoverable(&source.text);
@@ -48,6 +45,22 @@ pub(crate) fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Sec
     (Some(section), reader.problems)
 }
 
+/// Reads by description, builds, and gives the value only when nothing forbids its use. The problems are all there
+/// are, warnings among them, in the order of the text.
+pub(crate) fn checked<T>(
+    source: &SourceText,
+    spec: &'static TableSpec,
+    build: impl FnOnce(&Section, &mut Reader<'_>) -> T,
+) -> (Option<T>, Problems) {
+    let (root, problems) = read(source, spec);
+    let Some(root) = root else { return (None, problems) };
+    let mut reader = Reader { source, root: spec, problems };
+    let value = build(&root, &mut reader);
+    let mut problems = reader.problems;
+    problems.sort();
+    ((!problems.has_errors()).then_some(value), problems)
+}
+
 /// A file of another kind or version: one problem says it, in place of one for every key in it.
 fn other_format(source: &SourceText, root: &TableSpec, table: &DeTable<'_>) -> Option<Problem> {
     let wanted = root.keys.iter().find_map(|k| match k.kind {
@@ -61,12 +74,8 @@ fn other_format(source: &SourceText, root: &TableSpec, table: &DeTable<'_>) -> O
     Some(source.error(&value.span(), message).help(help))
 }
 
-/// Refuses a text that is no procedure by its size or nesting, before the parser sees it.
-fn unreadable(source: &SourceText) -> Option<Problem> {
-    if source.text.len() > LARGEST_FILE {
-        let message = Note::new("keyed.too_large").with("bytes", LARGEST_FILE);
-        return Some(Problem::of_file(&source.name, message, None));
-    }
+/// Refuses a text by its nesting before the parser sees it; [`super::file::source`] has bounded its size.
+fn too_deep(source: &SourceText) -> Option<Problem> {
     let mut start = 0;
     for line in source.text.split('\n') {
         let depth = line.bytes().filter(|b| matches!(b, b'.' | b'[' | b'{')).count();
@@ -97,13 +106,6 @@ pub(crate) struct Reader<'s> {
     pub source: &'s SourceText,
     root: &'static TableSpec,
     pub problems: Problems,
-}
-
-impl<'s> Reader<'s> {
-    /// Goes on with the problems found so far, for the checks that need the whole file.
-    pub fn resume(source: &'s SourceText, root: &'static TableSpec, problems: Problems) -> Reader<'s> {
-        Reader { source, root, problems }
-    }
 }
 
 impl Reader<'_> {

@@ -307,7 +307,6 @@ fn no_value(given: &str, key: &KeySpec) -> Note {
 
 /// The place of a text between its quotes; the whole value where escapes make the two differ.
 fn inside_quotes(reader: &Reader<'_>, text: &str, span: &Span) -> Span {
-    let raw = reader.source.text.get(span.clone()).unwrap_or("");
-    let inner = raw.get(1..raw.len().saturating_sub(1)).unwrap_or("");
-    if raw.len() >= 2 && inner == text { span.start + 1..span.end - 1 } else { span.clone() }
+    let inner = reader.source.inside_quotes(span);
+    if reader.source.text.get(inner.clone()) == Some(text) { inner } else { span.clone() }
 }

@@ -6,6 +6,7 @@ use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
 use crate::ingest::manifest::{self, Manifest, is_manifest};
 use crate::ingest::raw::layout::{self, Layout};
+use crate::keyed::file;
 use crate::text::{Lang, Note};
 use std::path::Path;
 
@@ -132,6 +133,5 @@ fn is_limits(path: &Path) -> bool {
 
 /// True when a line of a file is as wanted. Nothing is reported here: reading does that.
 fn says(path: &Path, wanted: impl Fn(&str) -> bool) -> bool {
-    let Ok(bytes) = super::load::bytes_of(path) else { return false };
-    String::from_utf8_lossy(&bytes).lines().map(str::trim).any(wanted)
+    file::peek(path).is_some_and(|text| text.lines().map(str::trim).any(wanted))
 }

@@ -7,9 +7,8 @@ use super::model::{
     Orientation, Procedure, RecordingSpec, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition,
     UnitSpec, Waiver,
 };
-use super::reader::{self, Reader};
+use super::reader::{Reader, checked};
 use super::section::{Entry, Section};
-use super::spec::TableSpec;
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use super::{channel, reading, validate};
@@ -17,7 +16,7 @@ use crate::record::{ClauseRecord, WaiverRecord};
 
 /// Reads a procedure from its text. The second value holds every problem, warnings among them.
 pub(super) fn procedure(source: &SourceText) -> (Option<Procedure>, Problems) {
-    read(source, &PROCEDURE_FILE, |root, reader| {
+    checked(source, &PROCEDURE_FILE, |root, reader| {
         let procedure = build(root, reader);
         validate::procedure(&procedure, root, reader);
         let warnings = validate::warnings(&procedure, root, reader.source);
@@ -28,7 +27,7 @@ pub(super) fn procedure(source: &SourceText) -> (Option<Procedure>, Problems) {
 
 /// Reads a limits file from its text.
 pub(super) fn limits_file(source: &SourceText) -> (Option<LimitsFile>, Problems) {
-    read(source, &LIMITS_FILE, |root, reader| {
+    checked(source, &LIMITS_FILE, |root, reader| {
         let identity = root.table("limits");
         let text = |key| identity.and_then(|i| i.text(key));
         let set = limits::read_set(root, identity.and_then(|i| i.number("factor")), reader);
@@ -43,21 +42,6 @@ pub(super) fn limits_file(source: &SourceText) -> (Option<LimitsFile>, Problems)
             set,
         }
     })
-}
-
-/// Reads by description, builds, and gives the value only when nothing forbids its use.
-fn read<T>(
-    source: &SourceText,
-    spec: &'static TableSpec,
-    build: impl FnOnce(&Section, &mut Reader<'_>) -> T,
-) -> (Option<T>, Problems) {
-    let (root, problems) = reader::read(source, spec);
-    let Some(root) = root else { return (None, problems) };
-    let mut reader = Reader::resume(source, spec, problems);
-    let value = build(&root, &mut reader);
-    let mut problems = reader.problems;
-    problems.sort();
-    ((!problems.has_errors()).then_some(value), problems)
 }
 
 fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {

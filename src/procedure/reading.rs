@@ -2,8 +2,7 @@
 
 use super::reader::Reader;
 use super::section::{Entry, Section};
-use crate::ingest::read_words::{decimal, delimiter, encoding};
-use crate::ingest::{FORMATS, ReadOptions, StampOptions, StampWriting, TextOptions};
+use crate::ingest::{ReadOptions, StampOptions, StampWriting, reading};
 use crate::recording::{ColumnRef, Role};
 use crate::text::Note;
 use std::path::PathBuf;
@@ -14,51 +13,10 @@ pub(super) fn options(
     channels: &[Section],
     reader: &mut Reader<'_>,
 ) -> ReadOptions {
-    let stamps = channels.iter().filter_map(|c| stamps(c, reader)).collect();
-    let Some(section) = section else {
-        return ReadOptions {
-            text: TextOptions { stamps, ..TextOptions::default() },
-            ..ReadOptions::default()
-        };
-    };
-    let format = section.text("format");
-    if let Some(unknown) = format.as_deref().filter(|id| !FORMATS.iter().any(|f| f.id() == *id)) {
-        let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();
-        let message = Note::new("reading.no_format").with("format", super::reader::shorten(unknown));
-        let help = Note::new("reading.formats").with("formats", ids.join(", "));
-        reader.error(&section.span_of("format"), message, Some(help));
-    }
-    let mut line = |key: &str| {
-        let number = section.number(key)?;
-        if number.fract() != 0.0 {
-            reader.error(&section.span_of(key), Note::new("reading.whole").with("key", key), None);
-        }
-        Some(number as u64)
-    };
-    let (header_line, first_line) = (line("header_line"), line("first_line"));
-    if let Some((header, first)) = header_line.zip(first_line).filter(|(header, first)| header >= first) {
-        let message = Note::new("reading.lines").with("first", first).with("header", header);
-        reader.error(&section.span_of("first_line"), message, Some("reading.below".into()));
-    }
-    let text = TextOptions {
-        encoding: section.word("encoding").and_then(encoding),
-        delimiter: section.word("delimiter").and_then(delimiter),
-        decimal: section.word("decimal").and_then(decimal),
-        header_line,
-        first_line,
-        comment: section.text("comment"),
-        stamps,
-    };
-    if text.delimiter == Some(b',') && text.decimal == Some(b',') {
-        let help = Some("reading.comma_quotes".into());
-        reader.error(&section.span_of("decimal"), "reading.comma_twice", help);
-    }
-    ReadOptions {
-        format,
-        text,
-        part: section.text("part"),
-        layout: section.text("layout").map(PathBuf::from),
-    }
+    let mut options = section.map(|s| reading::options(s, reader)).unwrap_or_default();
+    options.layout = section.and_then(|s| s.text("layout")).map(PathBuf::from);
+    options.text.stamps = channels.iter().filter_map(|c| stamps(c, reader)).collect();
+    options
 }
 
 /// What a channel says of its stamps.

@@ -4,7 +4,7 @@ use super::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, wi
 use super::tables_conditions::{CONDITIONS, EXCLUDE};
 use super::tables_limits::{LIMIT, REFERENCE};
 use super::tables_site::{INSTRUMENT, SITE};
-use crate::ingest::read_words::{DECIMALS, DELIMITERS, ENCODINGS};
+use crate::ingest::reading_tables;
 
 /// Roles a channel may have, with their meaning.
 pub const ROLES: &[Word] = &[
@@ -144,49 +144,14 @@ static RECORDING: TableSpec = TableSpec {
             "\"0.1 %\"",
             "Largest relative difference between the declared and the measured sample rate.",
         ),
-        optional("format", Kind::Text, "\"csv\"", "Id of the file format; left out: found by the content."),
-        optional(
-            "encoding",
-            Kind::Choice(ENCODINGS),
-            "\"windows-1251\"",
-            "Character encoding of a text file; left out: found from its bytes.",
-        ),
-        optional(
-            "delimiter",
-            Kind::Choice(DELIMITERS),
-            "\"semicolon\"",
-            "Separator of the fields of a text file; left out: found from its lines.",
-        ),
-        optional(
-            "decimal",
-            Kind::Choice(DECIMALS),
-            "\"comma\"",
-            "Decimal sign of a text file; left out: found from its numbers.",
-        ),
-        optional(
-            "header_line",
-            Kind::Number(Range::between(0.0, 10_000.0)),
-            "4",
-            "Line that names the columns of a text file, counted from 1; 0: there is none; left out: found.",
-        ),
-        optional(
-            "first_line",
-            Kind::Number(Range::between(1.0, 10_000.0)),
-            "6",
-            "First line of data of a text file, counted from 1; left out: found.",
-        ),
-        optional(
-            "comment",
-            Kind::Text,
-            "\"#\"",
-            "Beginning of comment lines of a text file; left out: `#`, `%`, `//`, and `;` where it does not separate.",
-        ),
-        optional(
-            "part",
-            Kind::Text,
-            "\"/imu/gyro\"",
-            "Part of a container that holds the recording: a dataset, a variable, a topic.",
-        ),
+        reading_tables::FORMAT,
+        reading_tables::ENCODING,
+        reading_tables::DELIMITER,
+        reading_tables::DECIMAL,
+        reading_tables::HEADER_LINE,
+        reading_tables::FIRST_LINE,
+        reading_tables::COMMENT,
+        reading_tables::PART,
         optional(
             "layout",
             Kind::Text,

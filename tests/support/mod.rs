@@ -1,8 +1,11 @@
 //! Runs the program as a user does and reads what it leaves.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod corpus;
+pub mod real;
 pub mod schema;
 pub mod synthetic;
+pub mod tested;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

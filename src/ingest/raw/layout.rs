@@ -4,17 +4,17 @@ use super::checksum::{Checksum, Sum};
 use super::tables::LAYOUT_FILE;
 use crate::ingest::binary::number_type::{ByteOrder, Field, NumberType};
 use crate::ingest::binary::records::{LONGEST_RECORD, MOST_COLUMNS};
-use crate::keyed::diagnostics::{Problem, Problems, SourceText, Span};
-use crate::keyed::reader::{self, Reader};
+use crate::keyed::diagnostics::{Problems, Span};
+use crate::keyed::file::{self, Wording};
+use crate::keyed::reader::{Reader, checked};
 use crate::keyed::section::{Entry, Section};
 use crate::text::Note;
 use crate::units::Unit;
 use std::collections::BTreeSet;
-use std::io::Read;
 use std::path::Path;
 
-/// Largest layout file, bytes.
-const LARGEST: u64 = 1 << 20;
+/// What is said of a layout that cannot be read at all.
+const WORDING: Wording = Wording { unreadable: "layout.unreadable", folder: "layout.folder" };
 
 /// Longest sync word, bytes.
 const LONGEST_SYNC: usize = 16;
@@ -56,18 +56,7 @@ impl Layout {
 /// # Errors
 /// Every problem of the file, each with its place; a file that cannot be read is one problem without a place.
 pub fn load(path: &Path) -> Result<Layout, Problems> {
-    let name = path.display().to_string();
-    let failed = |e: std::io::Error| -> Problems {
-        let help = (e.kind() == std::io::ErrorKind::NotFound).then(|| "ingest.hint.check_path".into());
-        Problem::of_file(&name, Note::new("layout.unreadable").with("reason", e.to_string()), help).into()
-    };
-    if path.is_dir() {
-        return Err(Problem::of_file(&name, "layout.folder", None).into());
-    }
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(failed)?;
-    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(failed)?;
-    parse(&name, &bytes)
+    parse(&path.display().to_string(), &file::bytes(path, &WORDING)?)
 }
 
 /// Reads a layout from the bytes of a file; `name` stands in diagnostics.
@@ -75,28 +64,8 @@ pub fn load(path: &Path) -> Result<Layout, Problems> {
 /// # Errors
 /// Every problem of the text.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<Layout, Problems> {
-    let body = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let text = match std::str::from_utf8(body) {
-        Ok(text) => text.to_owned(),
-        Err(e) => {
-            let sound = String::from_utf8_lossy(body.get(..e.valid_up_to()).unwrap_or(b"")).into_owned();
-            let at = sound.len();
-            let source = SourceText::new(name, sound);
-            let help = "layout.save_utf8";
-            return Err(source.error(&(at..at), "layout.not_utf8").help(help).into());
-        }
-    };
-    let source = SourceText::new(name, text);
-    let (root, problems) = reader::read(&source, &LAYOUT_FILE);
-    let Some(root) = root else { return Err(problems) };
-    let mut reader = Reader::resume(&source, &LAYOUT_FILE, problems);
-    let layout = build(&root, &mut reader);
-    let mut problems = reader.problems;
-    problems.sort();
-    match layout {
-        Some(layout) if !problems.has_errors() => Ok(layout),
-        _ => Err(problems),
-    }
+    let (layout, problems) = checked(&file::source(name, bytes)?, &LAYOUT_FILE, build);
+    layout.flatten().ok_or(problems)
 }
 
 /// A whole number of a key.

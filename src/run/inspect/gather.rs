@@ -99,6 +99,7 @@ pub(super) fn gather(
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Seen, IngestError> {
     let listed = columns::list(source)?;
+    let sample_rate_hz = source.rate_without_stamps_hz(sample_rate_hz);
     let time = time_base(source, &listed, sample_rate_hz)?;
     let (channels, places) = columns::channels(&listed, time.is_known());
     let plan = prepare(source, &channels, spec(&time))?;

@@ -18,8 +18,8 @@ use crate::ingest::Source;
 use crate::text::Lang;
 use std::path::Path;
 
-/// Reads a recording and says what it holds. `sample_rate_hz` is used where no time column serves; `progress` is told
-/// bytes read and bytes in all.
+/// Reads a recording and says what it holds. `sample_rate_hz` is used where no time column serves, and
+/// before what the file states; `progress` is told bytes read and bytes in all.
 ///
 /// # Errors
 /// [`RunError::Ingest`] when the file cannot be read at all, or holds no column of numbers.
