@@ -138,6 +138,17 @@ fn group_harmonics(lines: &mut [SpectralLine]) {
     }
 }
 
+/// The lines that `keep` holds for, harmonics marked among them.
+pub fn retain(lines: &[SpectralLine], keep: impl Fn(&SpectralLine) -> bool) -> Vec<SpectralLine> {
+    let mut kept: Vec<SpectralLine> = lines
+        .iter()
+        .filter(|l| keep(l))
+        .map(|l| SpectralLine { harmonic_of: None, harmonic_order: 1, ..*l })
+        .collect();
+    group_harmonics(&mut kept);
+    kept
+}
+
 fn harmonic_order(base: &SpectralLine, line: &SpectralLine) -> u32 {
     let order = (line.frequency_hz / base.frequency_hz).round();
     let distance = (line.frequency_hz - order * base.frequency_hz).abs();

@@ -1,11 +1,16 @@
 //! The spectral statistics of a record, and what is identified from them.
+//!
+//! A narrow peak is a line when it stays coherent over the record, a quasi-periodic disturbance when it does not. The
+//! averaged periodogram, whose segments are short, cannot tell them apart; the modes of the whole record can.
 
-use super::composite::Sampling;
+use super::coherence::is_coherent;
+use super::composite::{Damped, Line, Sampling};
 use super::data::{BlockSeries, WelchSpectrum};
 use super::evidence::{Evidence, Mask};
 use super::fit_range::{RangedIdentification, identify_in_range};
 use super::joint::MaximumLikelihood;
-use super::lines::SpectralLine;
+use super::lines::{SpectralLine, retain};
+use std::f64::consts::PI;
 
 /// What one pass left of a channel, as identification needs it.
 #[derive(Debug, Clone, Copy)]
@@ -22,12 +27,25 @@ pub struct SpectralRecord<'a> {
     pub sampling: Sampling,
 }
 
+/// What a record says about its noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordNoise {
+    /// The noise, with the range it rests on.
+    pub ranged: RangedIdentification,
+    /// The lines that stay coherent over the record.
+    pub lines: Vec<SpectralLine>,
+}
+
+/// A disturbance that decays in more than this share of the record is a line as far as the record shows.
+const COHERENT: f64 = 1.0 / 3.0;
+/// Times that the lines are settled anew.
+const ROUNDS: usize = 3;
+
 impl SpectralRecord<'_> {
-    /// The evidence with the lines left out.
-    pub fn evidence(&self) -> Evidence {
+    /// The evidence with lines left out.
+    pub fn evidence(&self, lines: &[SpectralLine]) -> Evidence {
         // A line fills the main lobe of the window: two bins to each side.
-        let masks: Vec<Mask> = self
-            .lines
+        let masks: Vec<Mask> = lines
             .iter()
             .map(|l| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz })
             .collect();
@@ -35,8 +53,65 @@ impl SpectralRecord<'_> {
     }
 
     /// Identifies the noise.
-    pub fn identify(&self, channel: &str) -> RangedIdentification {
+    pub fn identify(&self, channel: &str) -> RecordNoise {
         let method = MaximumLikelihood { sampling: self.sampling, ..Default::default() };
-        identify_in_range(&method, channel, &self.evidence(), 0.5 / self.tau0_s)
+        let whole = self.evidence(&[]);
+        let mut lines = retain(self.lines, |l| is_coherent(&whole, l));
+        let mut noise = RecordNoise {
+            ranged: identify_in_range(&method, channel, &self.evidence(&lines), 0.5 / self.tau0_s),
+            lines: lines.clone(),
+        };
+        for _ in 0..ROUNDS {
+            let found = &noise.ranged.identification.described.model.quasi_periodic;
+            // A peak that is neither coherent nor explained is a line after all; so is a disturbance that hardly decays.
+            let left = retain(self.lines, |l| {
+                !lines.iter().any(|k| k.frequency_hz == l.frequency_hz)
+                    && !found.iter().any(|q| explains(q, l))
+            });
+            let steady: Vec<SpectralLine> = found
+                .iter()
+                .filter(|q| q.decay_time_s > COHERENT * whole.span_s)
+                .map(|q| as_line(q, &whole))
+                .collect();
+            if left.is_empty() && steady.is_empty() {
+                break;
+            }
+            lines = retain(&[lines, left, steady].concat(), |_| true);
+            lines.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+            lines = retain(&lines, |_| true);
+            noise = RecordNoise {
+                ranged: identify_in_range(&method, channel, &self.evidence(&lines), 0.5 / self.tau0_s),
+                lines: lines.clone(),
+            };
+        }
+        noise.ranged.identification.described.model.lines = noise
+            .lines
+            .iter()
+            .map(|l| Line { amplitude_deg_h: l.amplitude_deg_h, frequency_hz: l.frequency_hz })
+            .collect();
+        noise
+    }
+}
+
+/// Half width at half power, Hz.
+fn half_width_hz(q: &Damped) -> f64 {
+    1.0 / (2.0 * PI * q.decay_time_s)
+}
+
+fn explains(q: &Damped, line: &SpectralLine) -> bool {
+    (q.frequency_hz - line.frequency_hz).abs() <= 4.0 * half_width_hz(q) + 2.0 * line.resolution_hz
+}
+
+fn as_line(q: &Damped, evidence: &Evidence) -> SpectralLine {
+    let resolution_hz = evidence.resolution_hz(q.frequency_hz).min(0.25 * q.frequency_hz);
+    SpectralLine {
+        frequency_hz: q.frequency_hz,
+        resolution_hz,
+        amplitude_deg_h: q.rms_deg_h * 2f64.sqrt(),
+        excess: q.density(q.frequency_hz, evidence.tau0_s, Sampling::Averaging)
+            / evidence.power_near(q.frequency_hz).max(f64::MIN_POSITIVE),
+        false_alarm_probability: 0.0,
+        harmonic_of: None,
+        harmonic_order: 1,
     }
 }

@@ -184,7 +184,8 @@ mod tests {
         let model = NoiseModel { n: 0.002, k: 0.0008, q: 0.05, ..Default::default() };
         let (samples, tau0_s) = (600, 10.0);
         let stated =
-            BiasUncertainty::of_mean(&model.into(), samples as f64 * tau0_s, None, &[("table", 0.0)]).variance();
+            BiasUncertainty::of_mean(&model.into(), samples as f64 * tau0_s, None, &[("table", 0.0)])
+                .variance();
         let runs = 3000;
         let mut square = 0.0;
         let mut inside = 0;

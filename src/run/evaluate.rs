@@ -227,8 +227,8 @@ pub(super) fn spectral(
         lines: &lines,
         sampling: Sampling::Averaging,
     };
-    let identification = record.identify(channel).identification;
-    (lines, identification)
+    let noise = record.identify(channel);
+    (noise.lines, noise.ranged.identification)
 }
 
 fn evidence(

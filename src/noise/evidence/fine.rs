@@ -54,6 +54,12 @@ impl Evidence {
         Evidence { bands, ..self.clone() }
     }
 
+    /// Mean power of the band nearest to a frequency, (deg/h)²/Hz; 0 without any.
+    pub fn power_near(&self, frequency_hz: f64) -> f64 {
+        let distance = |b: &Band| (b.centre_hz() - frequency_hz).abs();
+        self.bands.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(0.0, |b| b.power)
+    }
+
     /// Frequency step of the transform that shows a frequency best, Hz.
     pub fn resolution_hz(&self, frequency_hz: f64) -> f64 {
         let nearest = self

@@ -20,7 +20,7 @@ pub struct ExtraThresholds {
 
 impl Default for ExtraThresholds {
     fn default() -> Self {
-        ExtraThresholds { filter: 11.0, markov: 13.0, quasi_periodic: 14.0 }
+        ExtraThresholds { filter: 14.0, markov: 13.0, quasi_periodic: 14.0 }
     }
 }
 
