@@ -6,10 +6,12 @@
 
 mod study_support;
 
-use study_support::mixes::{Mix, mixes};
-use study_support::run::study;
+use study_support::generator::Generator;
+use study_support::mixes::{Mix, TAU0_S, mixes};
+use study_support::run::{simulated, study};
 use study_support::table;
 use study_support::tally::Tally;
+use study_support::whittle::Layout;
 
 fn setting<T: std::str::FromStr>(name: &str, default: T) -> T {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
@@ -48,6 +50,52 @@ fn long_study() {
     println!();
     table::methods_head();
     let behind: usize = tallies.iter().map(table::print_methods).sum();
-    println!("\nFigures that clearly miss a criterion: {misses}. Quantities another method estimates better: {behind}.");
+    println!(
+        "\nFigures that clearly miss a criterion: {misses}. Quantities another method estimates better: {behind}."
+    );
     assert_eq!((misses, behind), (0, 0));
+}
+
+/// Power over its expectation, by bands, of records of a mix from one source.
+fn departures(
+    mix: &Mix,
+    samples: usize,
+    records: u64,
+    source: &dyn Fn(u64) -> Vec<f64>,
+) -> Vec<(usize, f64)> {
+    let layout = Layout::new(samples, &mix.truth);
+    let mut sums: Vec<(f64, f64)> = vec![];
+    for seed in 0..records {
+        let bands = layout.whitened(&layout.data(&source(seed)), &mix.truth, 30.0);
+        sums.resize(bands.len(), (0.0, 0.0));
+        for (sum, (ratio, dof)) in sums.iter_mut().zip(bands) {
+            *sum = (sum.0 + ratio * dof, sum.1 + dof);
+        }
+    }
+    // Normal scores: a mean of χ² of so many degrees of freedom.
+    sums.into_iter().map(|(sum, dof)| (sum / dof - 1.0) / (2.0 / dof).sqrt()).enumerate().collect()
+}
+
+#[test]
+fn both_sources_of_records_have_the_spectrum_of_the_mix() {
+    let samples = 12_000;
+    for mix in mixes() {
+        let generator = Generator::new(&mix, samples, TAU0_S);
+        let own = departures(&mix, samples, 24, &|seed| simulated(&mix, samples, 4_000 + seed));
+        let other = departures(&mix, samples, 24, &|seed| generator.record(4_000 + seed, 0.37));
+        for (source, scores) in [("simulator", own), ("generator", other)] {
+            let worst = scores.iter().copied().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).expect("bands");
+            assert!(
+                worst.1.abs() < 4.5,
+                "{} {source}: band {} of {} by {:.1} σ",
+                mix.name,
+                worst.0,
+                scores.len(),
+                worst.1
+            );
+            let square = scores.iter().map(|s| s.1 * s.1).sum::<f64>() / scores.len() as f64;
+            let slack = 4.5 * (2.0 / scores.len() as f64).sqrt();
+            assert!((square - 1.0).abs() < slack, "{} {source}: {square} ± {slack}", mix.name);
+        }
+    }
 }

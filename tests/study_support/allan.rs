@@ -24,8 +24,7 @@ pub fn octaves(y: &[f64], tau0_s: f64, longest: f64) -> Vec<Point> {
     let mut m = 1;
     while m as f64 <= longest * count as f64 && 2 * m < count {
         let terms = count - 2 * m + 1;
-        let squares: f64 =
-            (0..terms).map(|i| (sum[i + 2 * m] - 2.0 * sum[i + m] + sum[i]).powi(2)).sum();
+        let squares: f64 = (0..terms).map(|i| (sum[i + 2 * m] - 2.0 * sum[i + m] + sum[i]).powi(2)).sum();
         let variance = squares / (2.0 * (m as f64).powi(2) * terms as f64);
         out.push(Point { tau_s: m as f64 * tau0_s, variance, windows: count as f64 / m as f64 });
         m *= 2;

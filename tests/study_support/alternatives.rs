@@ -54,9 +54,8 @@ pub fn nonnegative_variances(points: &[Point]) -> Values {
 
 /// Least squares of ln σ, all points of equal weight.
 pub fn log_log(points: &[Point]) -> Values {
-    let cost = |v: &[f64]| -> f64 {
-        points.iter().map(|p| (p.variance / total(v, p.tau_s)).ln().powi(2)).sum()
-    };
+    let cost =
+        |v: &[f64]| -> f64 { points.iter().map(|p| (p.variance / total(v, p.tau_s)).ln().powi(2)).sum() };
     let mut squares = weighted(points);
     let mut best = cost(&squares);
     for _ in 0..100 {
@@ -116,8 +115,8 @@ pub fn slopes(points: &[Point]) -> Values {
             return None;
         }
         let read = &points[longest.start..=longest.end];
-        let mean: f64 =
-            read.iter().map(|p| 0.5 * (p.variance / unit(term, p.tau_s)).ln()).sum::<f64>() / read.len() as f64;
+        let mean: f64 = read.iter().map(|p| 0.5 * (p.variance / unit(term, p.tau_s)).ln()).sum::<f64>()
+            / read.len() as f64;
         Some(mean.exp())
     })
 }

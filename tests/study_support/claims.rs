@@ -28,13 +28,10 @@ pub fn estimate_of<'a>(
     truth: &Composite,
 ) -> Option<&'a Estimate> {
     let markov = || nearest(&found.markov, truth.markov.first()?.decay_time_s, |m| m.correlation_time.value);
-    let periodic = || {
-        nearest(&found.quasi_periodic, truth.quasi_periodic.first()?.frequency_hz, |p| p.frequency.value)
-    };
+    let periodic =
+        || nearest(&found.quasi_periodic, truth.quasi_periodic.first()?.frequency_hz, |p| p.frequency.value);
     match quantity.kind {
-        Kind::Coefficient(term) => {
-            ORDER.iter().position(|t| *t == term).map(|i| found.estimates()[i])
-        }
+        Kind::Coefficient(term) => ORDER.iter().position(|t| *t == term).map(|i| found.estimates()[i]),
         Kind::MarkovSigma => markov().map(|m| &m.sigma),
         Kind::MarkovTime => markov().map(|m| &m.correlation_time),
         Kind::PeriodicRms => periodic().map(|p| &p.amplitude),
@@ -73,8 +70,9 @@ pub fn swapped(found: &Identification, truth: &Composite) -> Option<(Composite, 
         other.markov.clear();
         other.terms.n = truth.terms.n.hypot(process.white_equivalent_deg_rt_h());
         let share = (process.white_equivalent_deg_rt_h() / other.terms.n).powi(2);
-        other.bandwidth =
-            Some(Bandwidth::FirstOrder { time_constant_s: (share * process.decay_time_s).max(0.05 * TAU0_S) });
+        other.bandwidth = Some(Bandwidth::FirstOrder {
+            time_constant_s: (share * process.decay_time_s).max(0.05 * TAU0_S),
+        });
     } else if let (Some(Bandwidth::FirstOrder { time_constant_s }), false, false) =
         (truth.bandwidth, filter, found.markov.is_empty())
     {

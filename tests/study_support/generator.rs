@@ -90,7 +90,8 @@ impl Embedding {
                 *c += process.rms_deg_h.powi(2) * unit;
             }
         }
-        let mut circle: Vec<f64> = covariance.iter().chain(covariance[1..length].iter().rev()).copied().collect();
+        let mut circle: Vec<f64> =
+            covariance.iter().chain(covariance[1..length].iter().rev()).copied().collect();
         let plan = RealFftPlanner::<f64>::new().plan_fft_forward(2 * length);
         let mut spectrum = plan.make_output_vec();
         plan.process(&mut circle, &mut spectrum).expect("lengths of the plan");
@@ -162,9 +163,7 @@ impl Generator {
         let drawn = self.noise.draw(&mut rng);
         let mut y = match self.truth.bandwidth {
             None => drawn,
-            Some(Bandwidth::FirstOrder { time_constant_s }) => {
-                filtered(&drawn, time_constant_s, self.tau0_s)
-            }
+            Some(Bandwidth::FirstOrder { time_constant_s }) => filtered(&drawn, time_constant_s, self.tau0_s),
             Some(Bandwidth::MovingAverage { samples: n }) => {
                 drawn.windows(n as usize).map(|w| w.iter().sum::<f64>() / f64::from(n)).collect()
             }

@@ -18,10 +18,7 @@ pub fn fit(points: &[Point], truth: &Composite, parameters: &[Parameter]) -> Vec
     let residuals = |model: &Composite| -> DVector<f64> {
         DVector::from_iterator(
             points.len(),
-            points
-                .iter()
-                .zip(&weight)
-                .map(|(p, w)| w * (p.variance - model.allan_variance(p.tau_s, TAU0_S))),
+            points.iter().zip(&weight).map(|(p, w)| w * (p.variance - model.allan_variance(p.tau_s, TAU0_S))),
         )
     };
     let mut model = truth.clone();
@@ -64,8 +61,5 @@ pub fn fit(points: &[Point], truth: &Composite, parameters: &[Parameter]) -> Vec
             break;
         }
     }
-    parameters
-        .iter()
-        .map(|p| Some(model.value(*p)).filter(|v| *v > VANISHED * truth.value(*p)))
-        .collect()
+    parameters.iter().map(|p| Some(model.value(*p)).filter(|v| *v > VANISHED * truth.value(*p))).collect()
 }

@@ -127,10 +127,7 @@ pub fn mixes() -> Vec<Mix> {
         ("N+R", terms(0.0023, 0.0, 0.0, 0.003, 0.0)),
         ("N+B+R", terms(0.002, 0.006, 0.0, 0.01, 0.0)),
         ("N+short Markov", Composite { markov: short.clone(), ..n() }),
-        (
-            "N+B+short Markov",
-            Composite { markov: short.clone(), ..terms(0.0023, 0.007, 0.0, 0.0, 0.0) },
-        ),
+        ("N+B+short Markov", Composite { markov: short.clone(), ..terms(0.0023, 0.007, 0.0, 0.0, 0.0) }),
         ("N+long Markov", Composite { markov: markov(0.01, 600.0), ..n() }),
         ("N+quasi-periodic", Composite { quasi_periodic: periodic(0.58 * noise), ..n() }),
         (

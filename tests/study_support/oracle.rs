@@ -84,7 +84,11 @@ impl Oracle<'_> {
         let value = best.model.value(parameter);
         let side = |direction: f64| {
             let at = |distance: f64| {
-                if parameter == RAMP { value + direction * distance } else { value * (direction * distance).exp() }
+                if parameter == RAMP {
+                    value + direction * distance
+                } else {
+                    value * (direction * distance).exp()
+                }
             };
             let mut distance = SCORE * sigma;
             for _ in 0..6 {

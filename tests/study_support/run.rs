@@ -23,6 +23,12 @@ const LONGEST: f64 = 0.2;
 const LONGEST_WAVELET: f64 = 0.5;
 const BIAS_DEG_H: f64 = 0.37;
 
+/// A record from the simulator of the program.
+pub fn simulated(mix: &Mix, samples: usize, seed: u64) -> Vec<f64> {
+    let setup = Setup { bias_deg_h: BIAS_DEG_H, ..Setup::for_record(seed, TAU0_S, samples as u64) };
+    Simulator::of(&mix.truth, &setup).take(samples)
+}
+
 struct Study<'a> {
     mix: &'a Mix,
     quantities: &'a [Quantity],
@@ -49,15 +55,8 @@ pub fn study(mix: &Mix, hours: f64, records: usize, seed: u64) -> Tally {
         })
         .collect();
     let generator = Generator::new(mix, samples, TAU0_S);
-    let study = Study {
-        mix,
-        quantities: &quantities,
-        parameters,
-        bounds: &bounds,
-        layout,
-        generator,
-        samples,
-    };
+    let study =
+        Study { mix, quantities: &quantities, parameters, bounds: &bounds, layout, generator, samples };
     let records = (0..records as u64)
         .into_par_iter()
         .map(|run| study.record(run, seed.wrapping_mul(1_000_003).wrapping_add(run)))
@@ -68,11 +67,10 @@ pub fn study(mix: &Mix, hours: f64, records: usize, seed: u64) -> Tally {
 impl Study<'_> {
     fn samples_of(&self, run: u64, seed: u64) -> Vec<f64> {
         if run % 2 == 1 {
-            return self.generator.record(seed, BIAS_DEG_H);
+            self.generator.record(seed, BIAS_DEG_H)
+        } else {
+            simulated(self.mix, self.samples, seed)
         }
-        let setup =
-            Setup { bias_deg_h: BIAS_DEG_H, ..Setup::for_record(seed, TAU0_S, self.samples as u64) };
-        Simulator::of(&self.mix.truth, &setup).take(self.samples)
     }
 
     fn record(&self, run: u64, seed: u64) -> Judged {
@@ -125,11 +123,18 @@ impl Study<'_> {
         outcome.interval = estimate
             .interval95()
             .map(|i| (i.low <= q.truth && q.truth <= i.high, (i.high - i.low) / q.truth.abs()));
-        outcome.limit = estimate.upper_limit.filter(|_| estimate.value.is_none()).map(|l| q.truth.abs() <= l.value);
+        outcome.limit =
+            estimate.upper_limit.filter(|_| estimate.value.is_none()).map(|l| q.truth.abs() <= l.value);
         outcome
     }
 
-    fn alternatives(&self, outcome: &mut Outcome, q: &Quantity, usual: &[Values; 4], wavelet: &[Option<f64>]) {
+    fn alternatives(
+        &self,
+        outcome: &mut Outcome,
+        q: &Quantity,
+        usual: &[Values; 4],
+        wavelet: &[Option<f64>],
+    ) {
         if let Kind::Coefficient(term) = q.kind
             && let Some(at) = TERMS.iter().position(|t| *t == term)
         {

@@ -63,7 +63,8 @@ fn lines(tally: &Tally) -> Vec<String> {
             let width = tally.width_ratio(i);
             let (limits, limited) = tally.limits(i);
             let plain = |text: String, missed: bool, clearly: bool| {
-                flagged(text, identifiable && missed, identifiable && clearly)
+                let judged = identifiable && !text.is_empty();
+                flagged(text, judged && missed, judged && clearly)
             };
             let found = if identifiable {
                 at_least(ours.found, records, 0.95, 3)
@@ -88,8 +89,7 @@ fn lines(tally: &Tally) -> Vec<String> {
             } else {
                 format!("{} of {limited}", at_least(limits, limited, 0.95, 3))
             };
-            let held = tally.holds(i);
-            let held = if identifiable { number(held, 3) } else { at_least(held, records, 0.95, 3) };
+            let held = number(tally.holds(i), 3);
             format!(
                 "| {} | {} | {records} | {} | {} | {found} | {rms} | {} | {covered} | {} | {} | {limit} | {held} |",
                 tally.name,
@@ -117,8 +117,7 @@ pub fn print_false(tally: &Tally) -> usize {
     let records = tally.records.len();
     let (any, beyond) = (tally.false_share(), tally.false_share_beyond_swaps());
     let slack = 2.0 * error(0.07, records);
-    let terms: Vec<String> =
-        tally.false_by_term().iter().map(|(t, s)| format!("{t} {s:.3}")).collect();
+    let terms: Vec<String> = tally.false_by_term().iter().map(|(t, s)| format!("{t} {s:.3}")).collect();
     println!(
         "| {} | {} | {records} | {} | {} | {} | {:.3} | {:.3} |",
         tally.name,
@@ -160,12 +159,12 @@ pub fn print_methods(tally: &Tally) -> usize {
                 }
             })
             .collect();
-        let best = (0..METHODS.len())
-            .min_by(|a, b| errors[*a].of_all.total_cmp(&errors[*b].of_all))
-            .unwrap_or(0);
+        let best =
+            (0..METHODS.len()).min_by(|a, b| errors[*a].of_all.total_cmp(&errors[*b].of_all)).unwrap_or(0);
         // Two root mean squares of so many records differ by chance by this much at most.
         let clear = errors[best].of_all < errors[0].of_all * (1.0 - 2.0 / records.sqrt());
-        let name = if best == 0 { METHODS[0].to_owned() } else { flagged(METHODS[best].to_owned(), true, clear) };
+        let name =
+            if best == 0 { METHODS[0].to_owned() } else { flagged(METHODS[best].to_owned(), true, clear) };
         behind += usize::from(best != 0 && clear);
         println!("| {} | {} | {} |{} {name} |", tally.name, tally.hours, q.label, cells.concat());
     }

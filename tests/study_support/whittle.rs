@@ -3,7 +3,7 @@
 
 use super::mixes::TAU0_S;
 use nalgebra::{DMatrix, DVector};
-use sagnac::noise::composite::{Composite, Damped, Parameter, Sampling};
+use sagnac::noise::composite::{Bandwidth, Composite, Damped, Parameter, Sampling};
 use sagnac::noise::data::NoiseType;
 use sagnac::noise::model::{Bin, Spectral, TERMS};
 use sagnac::numeric::cosine::dct2;
@@ -39,6 +39,21 @@ pub struct Layout {
 pub struct Data {
     pub power: Vec<f64>,
     pub cross: Vec<f64>,
+}
+
+/// Expected power of a cosine mode of white noise of unit variance behind a moving average of `n` samples. Exact: where
+/// the gain is zero the two ends of the record leave a little.
+fn moving_average_mode(mode: usize, samples: usize, n: usize) -> f64 {
+    let m = samples as f64;
+    let a = std::f64::consts::PI * mode as f64 / m;
+    let covariance = |d: usize| (n - d) as f64 / (n * n) as f64;
+    let sum: f64 = (1..n)
+        .map(|d| {
+            let x = a * d as f64;
+            covariance(d) * ((1.0 - d as f64 / m) * x.cos() - x.sin() / (m * a.sin()))
+        })
+        .sum();
+    covariance(0) + 2.0 * sum
 }
 
 impl Layout {
@@ -81,6 +96,10 @@ impl Layout {
                     })
                     .sum();
             }
+            if let Some(Bandwidth::MovingAverage { samples: n }) = truth.bandwidth {
+                let sum: f64 = (from..=to).map(|k| moving_average_mode(k, samples, n as usize)).sum();
+                unit[0] *= sum / dof;
+            }
             let square: f64 = ramp_modes[from..=to].iter().map(|r| r * r).sum();
             rows.push(Row {
                 from,
@@ -116,7 +135,8 @@ impl Layout {
             return 0.0;
         }
         match &model.bandwidth {
-            None => square * row.unit[term],
+            // A moving average has nothing to fit: its gain is in the unit powers.
+            None | Some(Bandwidth::MovingAverage { .. }) => square * row.unit[term],
             Some(filter) => {
                 let f = row.frequency_hz;
                 let plain = sagnac::noise::model::unit_density(TERMS[term], f, TAU0_S);
@@ -140,7 +160,12 @@ impl Layout {
             .iter()
             .map(|row| {
                 (0..SPECTRAL).map(|t| self.term(model, t, row)).sum::<f64>()
-                    + model.markov.iter().chain(&model.quasi_periodic).map(|d| self.damped(d, row)).sum::<f64>()
+                    + model
+                        .markov
+                        .iter()
+                        .chain(&model.quasi_periodic)
+                        .map(|d| self.damped(d, row))
+                        .sum::<f64>()
             })
             .collect()
     }
@@ -169,7 +194,8 @@ impl Layout {
 
     /// ∂ s / ∂ ln θ of every band.
     pub fn slope(&self, model: &Composite, parameter: Parameter) -> Vec<f64> {
-        if let Parameter::Coefficient(_) | Parameter::MarkovSigma(_) | Parameter::QuasiPeriodicRms(_) = parameter
+        if let Parameter::Coefficient(_) | Parameter::MarkovSigma(_) | Parameter::QuasiPeriodicRms(_) =
+            parameter
         {
             return self.touched(model, parameter).into_iter().map(|s| 2.0 * s).collect();
         }
@@ -177,6 +203,22 @@ impl Layout {
         let up = self.touched(&model.with(parameter, at * step.exp()), parameter);
         let down = self.touched(&model.with(parameter, at * (-step).exp()), parameter);
         up.iter().zip(down).map(|(u, d)| (u - d) / (2.0 * step)).collect()
+    }
+
+    /// Power over expected power in bands of at least `least` modes, with their degrees of freedom; the ramp known.
+    pub fn whitened(&self, data: &Data, truth: &Composite, least: f64) -> Vec<(f64, f64)> {
+        let (expected, r) = (self.expected(truth), truth.terms.r);
+        let mut out: Vec<(f64, f64)> = vec![];
+        for (i, (row, s)) in self.rows.iter().zip(&expected).enumerate() {
+            let power = data.power[i] - 2.0 * r * data.cross[i] + r * r * row.ramp;
+            match out.last_mut() {
+                Some((sum, dof)) if *dof < least => {
+                    (*sum, *dof) = (*sum + row.dof * power / s, *dof + row.dof)
+                }
+                _ => out.push((row.dof * power / s, row.dof)),
+            }
+        }
+        out.into_iter().map(|(sum, dof)| (sum / dof, dof)).collect()
     }
 
     /// −2 ln L up to a constant, for expected powers and a ramp.
@@ -215,9 +257,7 @@ impl Layout {
         let (mut information, mut gradient) = (DMatrix::zeros(count, count), DVector::zeros(count));
         for (k, (row, s)) in self.rows.iter().zip(expected).enumerate() {
             let weight = 0.5 * row.dof / (s * s);
-            let rest = data.map_or(0.0, |(d, r)| {
-                d.power[k] - 2.0 * r * d.cross[k] + r * r * row.ramp - s
-            });
+            let rest = data.map_or(0.0, |(d, r)| d.power[k] - 2.0 * r * d.cross[k] + r * r * row.ramp - s);
             for i in 0..count {
                 gradient[i] += weight * slopes[i][k] * rest;
                 for j in 0..=i {
@@ -242,8 +282,14 @@ impl Layout {
         let inverse = information.try_inverse();
         let mut of_spectral = (0..spectral.len())
             .map(|i| inverse.as_ref().map_or(f64::INFINITY, |m| m[(i, i)].max(0.0).sqrt()));
-        let ramp: f64 =
-            self.rows.iter().zip(&expected).map(|(row, s)| row.dof * row.ramp / s).sum::<f64>().sqrt().recip();
+        let ramp: f64 = self
+            .rows
+            .iter()
+            .zip(&expected)
+            .map(|(row, s)| row.dof * row.ramp / s)
+            .sum::<f64>()
+            .sqrt()
+            .recip();
         parameters
             .iter()
             .map(|p| {
