@@ -137,6 +137,12 @@ impl Layout {
         match &model.bandwidth {
             // A moving average has nothing to fit: its gain is in the unit powers.
             None | Some(Bandwidth::MovingAverage { .. }) => square * row.unit[term],
+            Some(Bandwidth::FirstOrder { time_constant_s }) if term == 0 => {
+                // White noise behind the filter is a Markov process.
+                let rms_deg_h = (square * 3600.0 / (2.0 * time_constant_s)).sqrt();
+                let process = Damped { rms_deg_h, frequency_hz: 0.0, decay_time_s: *time_constant_s };
+                self.damped(&process, row)
+            }
             Some(filter) => {
                 let f = row.frequency_hz;
                 let plain = sagnac::noise::model::unit_density(TERMS[term], f, TAU0_S);
@@ -147,11 +153,9 @@ impl Layout {
     }
 
     fn damped(&self, process: &Damped, row: &Row) -> f64 {
-        if row.from < SINGLE {
-            process.mode_power(row.from, self.samples, TAU0_S, Sampling::Averaging)
-        } else {
-            process.density(row.frequency_hz, TAU0_S, Sampling::Averaging)
-        }
+        // Exact up to the highest mode: where a density is low, the two ends of a record leave power from elsewhere.
+        let mode = |k: usize| process.mode_power(k, self.samples, TAU0_S, Sampling::Averaging);
+        mode((row.from + row.to) / 2)
     }
 
     /// Expected power of each band without the ramp.
