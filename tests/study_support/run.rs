@@ -6,7 +6,7 @@ use super::generator::Generator;
 use super::mixes::{Kind, Mix, Quantity, TAU0_S};
 use super::oracle::{Fit, Oracle};
 use super::record::{digest, identify};
-use super::tally::{Judged, Outcome, Tally};
+use super::tally::{Judged, METHODS, Outcome, Tally};
 use super::whittle::Layout;
 use super::{allan, gmwm};
 use rayon::prelude::*;
@@ -22,6 +22,8 @@ const LONGEST: f64 = 0.2;
 /// Longest of the wavelet variances.
 const LONGEST_WAVELET: f64 = 0.5;
 const BIAS_DEG_H: f64 = 0.37;
+/// Place of the first of the usual methods.
+const FIRST_USUAL: usize = 2;
 
 /// A record from the simulator of the program.
 pub fn simulated(mix: &Mix, samples: usize, seed: u64) -> Vec<f64> {
@@ -37,11 +39,22 @@ struct Study<'a> {
     layout: Layout,
     generator: Generator,
     samples: usize,
+    source: Source,
 }
 
-/// `records` records of a mix: every other one from the simulator of the program, the rest from the generator that
-/// shares nothing with it.
-pub fn study(mix: &Mix, hours: f64, records: usize, seed: u64) -> Tally {
+/// Where records come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// The simulator of the program.
+    Simulator,
+    /// The generator that shares nothing with it.
+    Generator,
+    /// Both, in turn.
+    Both,
+}
+
+/// `records` records of a mix.
+pub fn study(mix: &Mix, hours: f64, records: usize, seed: u64, source: Source) -> Tally {
     let samples = (hours * 3600.0 / TAU0_S).round() as usize;
     let layout = Layout::new(samples, &mix.truth);
     let quantities = mix.quantities();
@@ -55,8 +68,16 @@ pub fn study(mix: &Mix, hours: f64, records: usize, seed: u64) -> Tally {
         })
         .collect();
     let generator = Generator::new(mix, samples, TAU0_S);
-    let study =
-        Study { mix, quantities: &quantities, parameters, bounds: &bounds, layout, generator, samples };
+    let study = Study {
+        mix,
+        quantities: &quantities,
+        parameters,
+        bounds: &bounds,
+        layout,
+        generator,
+        samples,
+        source,
+    };
     let records = (0..records as u64)
         .into_par_iter()
         .map(|run| study.record(run, seed.wrapping_mul(1_000_003).wrapping_add(run)))
@@ -66,7 +87,7 @@ pub fn study(mix: &Mix, hours: f64, records: usize, seed: u64) -> Tally {
 
 impl Study<'_> {
     fn samples_of(&self, run: u64, seed: u64) -> Vec<f64> {
-        if run % 2 == 1 {
+        if self.source == Source::Generator || self.source == Source::Both && run % 2 == 1 {
             self.generator.record(seed, BIAS_DEG_H)
         } else {
             simulated(self.mix, self.samples, seed)
@@ -118,6 +139,8 @@ impl Study<'_> {
 
     fn ours(&self, found: &Identification, q: &Quantity) -> Outcome {
         let mut outcome = Outcome::default();
+        let described = q.parameter.map_or(0.0, |p| found.described.model.value(p));
+        outcome.values[1] = (described != 0.0).then(|| q.from_parameter(described) / q.truth);
         let Some(estimate) = estimate_of(found, q, &self.mix.truth) else { return outcome };
         outcome.values[0] = estimate.value.map(|v| v / q.truth);
         outcome.interval = estimate
@@ -138,12 +161,13 @@ impl Study<'_> {
         if let Kind::Coefficient(term) = q.kind
             && let Some(at) = TERMS.iter().position(|t| *t == term)
         {
-            for (slot, values) in outcome.values.iter_mut().skip(1).zip(usual) {
+            for (slot, values) in outcome.values.iter_mut().skip(FIRST_USUAL).zip(usual) {
                 *slot = values[at].map(|v| v / q.truth.abs());
             }
         }
         let place = q.parameter.and_then(|p| self.parameters.iter().position(|x| *x == p));
-        outcome.values[5] = place.and_then(|i| wavelet[i]).map(|v| q.from_parameter(v) / q.truth);
+        outcome.values[METHODS.len() - 1] =
+            place.and_then(|i| wavelet[i]).map(|v| q.from_parameter(v) / q.truth);
     }
 
     fn told(&self, outcome: &mut Outcome, q: &Quantity, bound: f64, oracle: &Oracle, best: &Fit) {
