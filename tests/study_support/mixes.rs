@@ -36,7 +36,7 @@ pub struct Quantity {
 
 impl Quantity {
     /// A value or bound of the parameter as a value or bound of this quantity.
-    pub fn from_parameter(&self, value: f64) -> f64 {
+    pub fn of_parameter(&self, value: f64) -> f64 {
         if self.kind == Kind::Cutoff { 1.0 / (2.0 * std::f64::consts::PI * value) } else { value }
     }
 }

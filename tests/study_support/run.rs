@@ -140,7 +140,7 @@ impl Study<'_> {
     fn ours(&self, found: &Identification, q: &Quantity) -> Outcome {
         let mut outcome = Outcome::default();
         let described = q.parameter.map_or(0.0, |p| found.described.model.value(p));
-        outcome.values[1] = (described != 0.0).then(|| q.from_parameter(described) / q.truth);
+        outcome.values[1] = (described != 0.0).then(|| q.of_parameter(described) / q.truth);
         let Some(estimate) = estimate_of(found, q, &self.mix.truth) else { return outcome };
         outcome.values[0] = estimate.value.map(|v| v / q.truth);
         outcome.interval = estimate
@@ -167,19 +167,19 @@ impl Study<'_> {
         }
         let place = q.parameter.and_then(|p| self.parameters.iter().position(|x| *x == p));
         outcome.values[METHODS.len() - 1] =
-            place.and_then(|i| wavelet[i]).map(|v| q.from_parameter(v) / q.truth);
+            place.and_then(|i| wavelet[i]).map(|v| q.of_parameter(v) / q.truth);
     }
 
     fn told(&self, outcome: &mut Outcome, q: &Quantity, bound: f64, oracle: &Oracle, best: &Fit) {
         outcome.oracle = f64::NAN;
         let Some(parameter) = q.parameter else { return };
-        outcome.oracle = q.from_parameter(best.model.value(parameter)) / q.truth;
+        outcome.oracle = q.of_parameter(best.model.value(parameter)) / q.truth;
         if bound > IDENTIFIABLE {
             return;
         }
         let sigma = if parameter == super::oracle::RAMP { bound * q.truth.abs() } else { bound };
         let (a, b) = oracle.interval(best, parameter, sigma);
-        let (a, b) = (q.from_parameter(a), q.from_parameter(b));
+        let (a, b) = (q.of_parameter(a), q.of_parameter(b));
         let (low, high) = (a.min(b), a.max(b));
         outcome.oracle_interval = Some((low <= q.truth && q.truth <= high, (high - low) / q.truth.abs()));
     }
