@@ -8,6 +8,7 @@ pub mod gmwm;
 pub mod mixes;
 pub mod oracle;
 pub mod record;
+pub mod rivals;
 pub mod run;
 pub mod table;
 pub mod tally;

@@ -8,7 +8,7 @@ use super::oracle::{Fit, Oracle};
 use super::record::{digest, identify};
 use super::tally::{Judged, METHODS, Outcome, Tally};
 use super::whittle::Layout;
-use super::{allan, gmwm};
+use super::{allan, gmwm, rivals};
 use rayon::prelude::*;
 use sagnac::noise::composite::Parameter;
 use sagnac::noise::identify::Identification;
@@ -121,6 +121,13 @@ impl Study<'_> {
                 let mut outcome = self.ours(found, q);
                 self.alternatives(&mut outcome, q, &usual, &wavelet);
                 self.told(&mut outcome, q, self.bounds[i], &oracle, &best);
+                if let Kind::Coefficient(term) = q.kind
+                    && self.bounds[i] <= IDENTIFIABLE
+                {
+                    let fit = (&self.layout, &data, &best);
+                    let record_s = self.samples as f64 * TAU0_S;
+                    outcome.rise = rivals::rise(term, truth, &self.parameters, fit, record_s);
+                }
                 outcome
             })
             .collect();

@@ -2,6 +2,7 @@
 //! small to tell.
 
 use super::mixes::Kind;
+use super::rivals::TELLING;
 use super::run::IDENTIFIABLE;
 use super::tally::{Error, METHODS, Tally, median, share};
 use sagnac::noise::data::NoiseType;
@@ -10,6 +11,8 @@ use sagnac::noise::data::NoiseType;
 const OURS: usize = 2;
 /// A method that finds a term in fewer records is not compared by those.
 const OFTEN: f64 = 0.5;
+/// Errors beyond this are not printed to the digit.
+const BEYOND: f64 = 10.0;
 
 /// Marks a value that misses a criterion: `missed` exactly, `clearly` beyond two standard errors.
 fn flagged(text: String, missed: bool, clearly: bool) -> String {
@@ -31,10 +34,10 @@ fn at_least(p: f64, n: usize, wanted: f64, digits: usize) -> String {
 
 pub fn head() {
     println!(
-        "| mix | h | records | quantity | bound, % | found | rms/bound | oracle rms/bound | holds (interval) | \
+        "| mix | h | records | quantity | bound, % | found | record tells (prefers) | rms/bound | oracle rms/bound | holds (interval) | \
          oracle holds | width/oracle | limit holds | interval or limit holds |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
 }
 
 /// One line a quantity. Returns the number of figures that clearly miss their criterion.
@@ -94,13 +97,20 @@ fn lines(tally: &Tally) -> Vec<String> {
             } else {
                 format!("{} of {limited}", at_least(limits, limited, 0.95, 3))
             };
+            let told = tally.told_apart(i, TELLING);
+            let told = if told.is_nan() {
+                String::new()
+            } else {
+                format!("{told:.3} ({:.3})", tally.told_apart(i, 0.0))
+            };
             let held = number(tally.holds(i), 3);
             format!(
-                "| {} | {} | {records} | {} | {} | {found} | {rms} | {} | {covered} | {} | {} | {limit} | {held} |",
+                "| {} | {} | {records} | {} | {} | {found} | {} | {rms} | {} | {covered} | {} | {} | {limit} | {held} |",
                 tally.name,
                 tally.hours,
                 q.label,
                 number(100.0 * bound, 2),
+                told,
                 number(tally.oracle_rms(i) / bound, 2),
                 if identifiable { number(tally.oracle_coverage(i), 3) } else { String::new() },
                 plain(number(width, 2), width > 1.2, width > 1.22),
@@ -157,6 +167,8 @@ pub fn print_methods(tally: &Tally) -> usize {
             .map(|e| {
                 if e.found == 0.0 {
                     " |".to_owned()
+                } else if e.of_found > BEYOND {
+                    " over 1000 |".to_owned()
                 } else if e.found == 1.0 {
                     format!(" {:.2} |", 100.0 * e.of_all)
                 } else {

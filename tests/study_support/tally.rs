@@ -23,6 +23,8 @@ pub struct Outcome {
     pub oracle: f64,
     /// Whether the interval of the oracle holds the truth, and its width over the truth.
     pub oracle_interval: Option<(bool, f64)>,
+    /// Rise of the deviance when other slow terms stand for this one.
+    pub rise: Option<f64>,
 }
 
 /// One record.
@@ -97,9 +99,16 @@ impl Tally {
         share(all.iter().filter(|c| **c).count(), all.len())
     }
 
+    /// Share of records in which other slow terms that could stand for this one describe the record worse by more than
+    /// `rise` of the deviance; NaN for other terms.
+    pub fn told_apart(&self, quantity: usize, rise: f64) -> f64 {
+        let all: Vec<f64> = self.outcomes(quantity).filter_map(|o| o.rise).collect();
+        share(all.iter().filter(|r| **r > rise).count(), all.len())
+    }
+
     /// Median over records of the width of our interval over that of the oracle.
     pub fn width_ratio(&self, quantity: usize) -> f64 {
-        let ratio = |o: &super::tally::Outcome| Some(o.interval?.1 / o.oracle_interval?.1);
+        let ratio = |o: &Outcome| Some(o.interval?.1 / o.oracle_interval?.1);
         median(self.outcomes(quantity).filter_map(ratio).collect())
     }
 
