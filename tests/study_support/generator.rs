@@ -1,6 +1,6 @@
 //! A second source of records, written from the formulas and sharing nothing with the simulator under test: one
 //! circulant embedding of the covariance of all stationary parts (Davies and Harte 1987), the generalised covariance
-//! of flicker and random walk included; filters by oversampling; quantisation by rounding the angle.
+//! of flicker and random walk included; slow noise behind a filter by oversampling; quantisation by rounding the angle.
 
 use super::mixes::Mix;
 use rand::SeedableRng;
@@ -8,7 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
-use sagnac::noise::composite::{Bandwidth, Composite};
+use sagnac::noise::composite::{Bandwidth, Composite, Damped};
 use std::f64::consts::PI;
 
 /// Steps a sample is cut into where a filter acts before sampling.
@@ -24,7 +24,7 @@ struct Embedding {
 /// The noise of one mix, ready to be drawn from.
 pub struct Generator {
     noise: Embedding,
-    /// Parts that the filter of the output does not act on, where there is one.
+    /// Parts with a covariance of their own where a filter acts.
     beside: Option<Embedding>,
     truth: Composite,
     samples: usize,
@@ -133,25 +133,34 @@ impl Embedding {
 impl Generator {
     pub fn new(mix: &Mix, samples: usize, tau0_s: f64) -> Generator {
         let truth = mix.truth.clone();
-        let damped = !truth.markov.is_empty() || !truth.quasi_periodic.is_empty();
-        let without = |mut model: Composite| {
-            (model.markov, model.quasi_periodic) = (vec![], vec![]);
-            model
-        };
-        let only_damped = Composite {
+        let slow = Composite { markov: vec![], quasi_periodic: vec![], ..truth.clone() };
+        let damped = Composite {
             markov: truth.markov.clone(),
             quasi_periodic: truth.quasi_periodic.clone(),
             ..Default::default()
         };
-        let beside = || damped.then(|| Embedding::new(&only_damped, samples, tau0_s));
+        let embedded = |model: &Composite| {
+            let any = !model.markov.is_empty() || !model.quasi_periodic.is_empty();
+            any.then(|| Embedding::new(model, samples, tau0_s))
+        };
         let (noise, beside) = match truth.bandwidth {
             None => (Embedding::new(&truth, samples, tau0_s), None),
-            Some(Bandwidth::FirstOrder { .. }) => {
+            Some(Bandwidth::FirstOrder { time_constant_s }) => {
+                // White noise behind the filter has the covariance N²/(2τ_f)·e^(−|t|/τ_f); steps, however fine, would
+                // be seen near the Nyquist frequency, where little power is left.
+                let mut beside = damped;
+                beside.markov.push(Damped {
+                    rms_deg_h: truth.terms.n * (3600.0 / (2.0 * time_constant_s)).sqrt(),
+                    frequency_hz: 0.0,
+                    decay_time_s: time_constant_s,
+                });
+                let mut slow = slow;
+                slow.terms.n = 0.0;
                 let fine = tau0_s / OVERSAMPLING as f64;
-                (Embedding::new(&without(truth.clone()), samples * OVERSAMPLING, fine), beside())
+                (Embedding::new(&slow, samples * OVERSAMPLING, fine), embedded(&beside))
             }
             Some(Bandwidth::MovingAverage { samples: n }) => {
-                (Embedding::new(&without(truth.clone()), samples + n as usize - 1, tau0_s), beside())
+                (Embedding::new(&slow, samples + n as usize - 1, tau0_s), embedded(&damped))
             }
         };
         Generator { noise, beside, truth, samples, tau0_s }
