@@ -1,18 +1,22 @@
 //! Up to which frequency a noise model describes a record.
 //!
-//! Real outputs are filtered, and noise near the Nyquist frequency can have a shape that none of N, B, K and Q has.
-//! Fitted over all frequencies, such a record gives a wrong N with a tiny interval. So the model is fitted up to the
-//! highest frequency, by octaves, at which it passes its own misfit test; what lies above is left out and said so.
-//! Where no range passes, the intervals are widened by the root of the misfit (Birge ratio), and that is said too.
+//! Real outputs are filtered, and noise near the Nyquist frequency can have a shape that no term has. Fitted over all
+//! frequencies, such a record gives a wrong N with a tiny interval. Where the model fails its misfit test it is fitted
+//! up to the highest frequency, by octaves, at which it passes and what lies above departs from it; that part is left
+//! out and said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
+//! root of the misfit (Birge ratio), and that is said too.
 
 use super::evidence::Evidence;
 use super::identify::{Identification, Identify};
+use super::joint::expected_power;
+use super::misfit::Misfit;
 use crate::estimate::{Estimate, Spread};
 use crate::text::Note;
 
-/// Probability of a larger misfit below which a range does not pass. Giving up an octave that was sound costs little
-/// (a factor of √2 in the uncertainty of N), keeping one that is not costs the truth of N.
-const LEAST_PROBABILITY: f64 = 0.02;
+/// Probability of a larger misfit below which a range does not pass.
+const LEAST_PROBABILITY: f64 = 1e-3;
+/// Probability below which what lies above a range departs from the model of it.
+const DEPARTS: f64 = 1e-5;
 /// Departure of the worst band that does no harm, whatever its significance: 2 % in power is 1 % in N.
 const HARMLESS: f64 = 0.02;
 /// Octaves that may be given up.
@@ -38,6 +42,16 @@ pub fn identify_in_range(
     evidence: &Evidence,
     nyquist_hz: f64,
 ) -> RangedIdentification {
+    identify_over(method, channel, evidence, &describe_in_range(method, channel, evidence, nyquist_hz))
+}
+
+/// The range and the model in it, without intervals.
+pub fn describe_in_range(
+    method: &dyn Identify,
+    channel: &str,
+    evidence: &Evidence,
+    nyquist_hz: f64,
+) -> RangedIdentification {
     let mut best: Option<RangedIdentification> = None;
     for octave in 0..=OCTAVES {
         let highest_hz = nyquist_hz / f64::from(1u32 << octave);
@@ -46,16 +60,17 @@ pub fn identify_in_range(
         if octave > 0 && used.dof() < LEAST_DOF {
             break;
         }
-        let identification = method.identify(channel, used);
+        let identification = method.describe(channel, used);
         let fits = identification.misfit.probability >= LEAST_PROBABILITY
             || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS;
-        let candidate = RangedIdentification {
-            identification,
-            highest_hz: (octave > 0).then_some(highest_hz),
-            widened: 1.0,
-        };
+        let justified = octave == 0 || departs_above(evidence, &identification, highest_hz);
+        let highest_hz = (octave > 0).then_some(highest_hz);
+        let candidate = RangedIdentification { identification, highest_hz, widened: 1.0 };
+        if !justified {
+            continue;
+        }
         if fits {
-            return annotated(candidate);
+            return candidate;
         }
         let misfit = |r: &RangedIdentification| r.identification.misfit.per_dof;
         if best.as_ref().is_none_or(|b| misfit(&candidate) < misfit(b)) {
@@ -63,12 +78,42 @@ pub fn identify_in_range(
         }
     }
     let mut best = best.unwrap_or_else(|| RangedIdentification {
-        identification: method.identify(channel, evidence),
+        identification: method.describe(channel, evidence),
         highest_hz: None,
         widened: 1.0,
     });
     best.widened = best.identification.misfit.per_dof.sqrt().max(1.0);
-    annotated(best)
+    best
+}
+
+/// Identifies over a range that was found, with intervals.
+pub fn identify_over(
+    method: &dyn Identify,
+    channel: &str,
+    evidence: &Evidence,
+    range: &RangedIdentification,
+) -> RangedIdentification {
+    let identification = match range.highest_hz {
+        Some(highest_hz) => method.identify(channel, &evidence.up_to(highest_hz)),
+        None => method.identify(channel, evidence),
+    };
+    annotated(RangedIdentification { identification, ..*range })
+}
+
+/// True when the part of an evidence above a frequency is not what the model found below expects.
+fn departs_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -> bool {
+    let expected = expected_power(evidence, &found.described.model);
+    let ramp = found.supported.r;
+    let (mut above, mut whitened) = (evidence.clone(), vec![]);
+    above.bands.clear();
+    for (band, power) in
+        evidence.bands.iter().zip(expected).filter(|(b, p)| b.high_hz > highest_hz && *p > 0.0)
+    {
+        whitened.push((band.power_without_ramp(ramp) / power, band.dof));
+        above.bands.push(band.clone());
+    }
+    let misfit = Misfit::of(&above, &whitened, 0);
+    misfit.probability < DEPARTS || misfit.worst_probability < DEPARTS
 }
 
 /// Puts the notes on the estimates, and the widening on their spreads.

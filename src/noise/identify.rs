@@ -14,6 +14,11 @@ use crate::text::Note;
 pub trait Identify {
     /// Identifies the terms of one channel.
     fn identify(&self, channel: &str, evidence: &Evidence) -> Identification;
+
+    /// The same without intervals and limits, which take most of the time: what is claimed, the models, the misfit.
+    fn describe(&self, channel: &str, evidence: &Evidence) -> Identification {
+        self.identify(channel, evidence)
+    }
 }
 
 /// Maximum Whittle likelihood with a structure test calibrated by simulation.
@@ -221,6 +226,16 @@ fn described(model: NoiseModel, covariance: &[[f64; 5]; 5]) -> Described {
 
 impl Identify for Whittle {
     fn identify(&self, channel: &str, evidence: &Evidence) -> Identification {
+        self.run(channel, evidence, true)
+    }
+
+    fn describe(&self, channel: &str, evidence: &Evidence) -> Identification {
+        self.run(channel, evidence, false)
+    }
+}
+
+impl Whittle {
+    fn run(&self, channel: &str, evidence: &Evidence, intervals: bool) -> Identification {
         let mut out = Identification::empty(channel);
         let Some(likelihood) = Likelihood::new(evidence) else { return out };
         let Some(search) = Search::run(&likelihood, self.thresholds[RAMP]) else { return out };
@@ -243,6 +258,9 @@ impl Identify for Whittle {
         out.described = described(out.supported, &out.covariance);
         out.misfit =
             Misfit::of(evidence, &likelihood.whitened(&best), supported.iter().filter(|s| **s).count());
+        if !intervals {
+            return out;
+        }
         let mut estimates: [Option<Estimate>; 5] = [const { None }; 5];
         for (term, slot) in estimates.iter_mut().enumerate() {
             *slot = Some(estimate(

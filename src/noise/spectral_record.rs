@@ -7,7 +7,7 @@ use super::coherence::is_coherent;
 use super::composite::{Damped, Line, Sampling};
 use super::data::{BlockSeries, WelchSpectrum};
 use super::evidence::{Evidence, Mask};
-use super::fit_range::{RangedIdentification, identify_in_range};
+use super::fit_range::{RangedIdentification, describe_in_range, identify_over};
 use super::joint::MaximumLikelihood;
 use super::lines::{SpectralLine, retain};
 use std::f64::consts::PI;
@@ -57,12 +57,10 @@ impl SpectralRecord<'_> {
         let method = MaximumLikelihood { sampling: self.sampling, ..Default::default() };
         let whole = self.evidence(&[]);
         let mut lines = retain(self.lines, |l| is_coherent(&whole, l));
-        let mut noise = RecordNoise {
-            ranged: identify_in_range(&method, channel, &self.evidence(&lines), 0.5 / self.tau0_s),
-            lines: lines.clone(),
-        };
+        let nyquist_hz = 0.5 / self.tau0_s;
+        let mut ranged = describe_in_range(&method, channel, &self.evidence(&lines), nyquist_hz);
         for _ in 0..ROUNDS {
-            let found = &noise.ranged.identification.described.model.quasi_periodic;
+            let found = &ranged.identification.described.model.quasi_periodic;
             // A peak that is neither coherent nor explained is a line after all; so is a disturbance that hardly decays.
             let left = retain(self.lines, |l| {
                 !lines.iter().any(|k| k.frequency_hz == l.frequency_hz)
@@ -71,7 +69,7 @@ impl SpectralRecord<'_> {
             let steady: Vec<SpectralLine> = found
                 .iter()
                 .filter(|q| q.decay_time_s > COHERENT * whole.span_s)
-                .map(|q| as_line(q, &whole))
+                .map(|q| self.as_line(q, &whole))
                 .collect();
             if left.is_empty() && steady.is_empty() {
                 break;
@@ -79,17 +77,35 @@ impl SpectralRecord<'_> {
             lines = retain(&[lines, left, steady].concat(), |_| true);
             lines.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
             lines = retain(&lines, |_| true);
-            noise = RecordNoise {
-                ranged: identify_in_range(&method, channel, &self.evidence(&lines), 0.5 / self.tau0_s),
-                lines: lines.clone(),
-            };
+            ranged = describe_in_range(&method, channel, &self.evidence(&lines), nyquist_hz);
         }
+        let evidence = self.evidence(&lines);
+        let mut noise = RecordNoise { ranged: identify_over(&method, channel, &evidence, &ranged), lines };
         noise.ranged.identification.described.model.lines = noise
             .lines
             .iter()
             .map(|l| Line { amplitude_deg_h: l.amplitude_deg_h, frequency_hz: l.frequency_hz })
             .collect();
         noise
+    }
+
+    /// A disturbance that hardly decays, as a line. What it fills is masked like any line of the periodogram: a line
+    /// that wanders a little is one line.
+    fn as_line(&self, q: &Damped, evidence: &Evidence) -> SpectralLine {
+        let resolution_hz = match self.welch.filter(|w| w.segment_len > 0) {
+            Some(welch) => 1.0 / (welch.segment_len as f64 * self.tau0_s),
+            None => 4.0 * evidence.resolution_hz(q.frequency_hz),
+        };
+        SpectralLine {
+            frequency_hz: q.frequency_hz,
+            resolution_hz: resolution_hz.min(0.25 * q.frequency_hz),
+            amplitude_deg_h: q.rms_deg_h * 2f64.sqrt(),
+            excess: q.density(q.frequency_hz, evidence.tau0_s, Sampling::Averaging)
+                / evidence.power_near(q.frequency_hz).max(f64::MIN_POSITIVE),
+            false_alarm_probability: 0.0,
+            harmonic_of: None,
+            harmonic_order: 1,
+        }
     }
 }
 
@@ -100,18 +116,4 @@ fn half_width_hz(q: &Damped) -> f64 {
 
 fn explains(q: &Damped, line: &SpectralLine) -> bool {
     (q.frequency_hz - line.frequency_hz).abs() <= 4.0 * half_width_hz(q) + 2.0 * line.resolution_hz
-}
-
-fn as_line(q: &Damped, evidence: &Evidence) -> SpectralLine {
-    let resolution_hz = evidence.resolution_hz(q.frequency_hz).min(0.25 * q.frequency_hz);
-    SpectralLine {
-        frequency_hz: q.frequency_hz,
-        resolution_hz,
-        amplitude_deg_h: q.rms_deg_h * 2f64.sqrt(),
-        excess: q.density(q.frequency_hz, evidence.tau0_s, Sampling::Averaging)
-            / evidence.power_near(q.frequency_hz).max(f64::MIN_POSITIVE),
-        false_alarm_probability: 0.0,
-        harmonic_of: None,
-        harmonic_order: 1,
-    }
 }

@@ -1,7 +1,7 @@
 //! Expected band powers of each part for a coefficient of 1.
 
 use super::{BASE, Shape};
-use crate::noise::composite::{Bandwidth, Damped, Modes, Sampling, sampled_density};
+use crate::noise::composite::{Bandwidth, Composite, Damped, Modes, Sampling, sampled_density};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 use crate::noise::model::{Bin, Spectral, bin_ratio};
@@ -110,4 +110,19 @@ impl Columns {
     pub(super) fn all(&self) -> impl Iterator<Item = &Vec<f64>> {
         self.base.iter().chain(&self.damped)
     }
+}
+
+/// Expected power of each band under a model, (deg/h)²/Hz, without its ramp and lines.
+pub fn expected_power(evidence: &Evidence, model: &Composite) -> Vec<f64> {
+    let coefficients = BASE.iter().map(|t| model.terms.coefficient(*t).powi(2));
+    let base = base(evidence, model.bandwidth, model.sampling).into_iter().zip(coefficients);
+    let damped = model.markov.iter().chain(&model.quasi_periodic);
+    let damped = damped.map(|d| (process(evidence, d, model.sampling), d.rms_deg_h.powi(2)));
+    let mut out = vec![0.0; evidence.bands.len()];
+    for (column, square) in base.chain(damped).filter(|(_, square)| *square > 0.0) {
+        for (o, c) in out.iter_mut().zip(column) {
+            *o += square * c;
+        }
+    }
+    out
 }

@@ -33,23 +33,36 @@ pub struct MaximumLikelihood {
 
 impl Identify for MaximumLikelihood {
     fn identify(&self, channel: &str, evidence: &Evidence) -> Identification {
-        let plain = self.base.identify(channel, evidence);
+        self.run(channel, evidence, true)
+    }
+
+    fn describe(&self, channel: &str, evidence: &Evidence) -> Identification {
+        self.run(channel, evidence, false)
+    }
+}
+
+impl MaximumLikelihood {
+    fn run(&self, channel: &str, evidence: &Evidence, intervals: bool) -> Identification {
+        let plain = self.base.describe(channel, evidence);
+        let without_extras = |plain: Identification| {
+            if intervals { self.base.identify(channel, evidence) } else { plain }
+        };
         let ramp = plain.claims(NoiseType::RateRamp);
         let mut extras = find_extras(evidence, self.sampling, ramp, &self.extras);
         if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
-            return plain;
+            return without_extras(plain);
         }
         // A part that became needless after a later one is taken out again.
         loop {
             let resolved = evidence.resolving(&extras.zones);
-            let Some(joint) = Joint::new(&resolved, self.sampling) else { return plain };
-            let Some(found) = Found::of(&joint, &extras.shape, self) else { return plain };
+            let Some(joint) = Joint::new(&resolved, self.sampling) else { return without_extras(plain) };
+            let Some(found) = Found::of(&joint, &extras.shape, self) else { return without_extras(plain) };
             match found.needless {
                 Some(part) => extras = without(&extras, part),
-                None => return found.report(channel, &joint, plain),
+                None => return found.report(channel, &joint, plain, intervals),
             }
             if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
-                return plain;
+                return without_extras(plain);
             }
         }
     }
@@ -125,7 +138,13 @@ impl Found {
         Some(Found { full, ratios, claimed, supported, free, needless })
     }
 
-    fn report(&self, channel: &str, joint: &Joint<'_>, plain: Identification) -> Identification {
+    fn report(
+        &self,
+        channel: &str,
+        joint: &Joint<'_>,
+        plain: Identification,
+        intervals: bool,
+    ) -> Identification {
         let mut out = plain;
         let point = &self.supported;
         out.likelihood_ratios = self.ratios;
@@ -144,15 +163,18 @@ impl Found {
         let (variables, covariance) = parameter_covariance(joint, point, &self.free);
         out.covariance = base_covariance(&variables, &covariance);
         out.misfit = Misfit::of(joint.evidence(), &joint.whitened(point), variables.len());
-        for (term, estimate) in out.estimates_mut_by_term().into_iter().enumerate() {
-            *estimate = self.base_estimate(channel, joint, term);
-        }
-        self.report_parts(channel, joint, &mut out);
         out.described = Described {
             model: point.composite(joint.sampling()),
             parameters: variables.iter().filter_map(|v| point.parameter(*v)).collect(),
             covariance,
         };
+        if !intervals {
+            return out;
+        }
+        for (term, estimate) in out.estimates_mut_by_term().into_iter().enumerate() {
+            *estimate = self.base_estimate(channel, joint, term);
+        }
+        self.report_parts(channel, joint, &mut out);
         out
     }
 

@@ -11,6 +11,8 @@ use nalgebra::{DMatrix, DVector};
 const DONE: f64 = 1e-3;
 /// Steps of a fit at most.
 const STEPS: usize = 80;
+/// Periods that an oscillation lasts at least.
+const LEAST_PERIODS: f64 = 2.0;
 /// Relative step of numeric derivatives.
 const EPSILON: f64 = 1e-3;
 
@@ -189,7 +191,10 @@ impl<'a> Joint<'a> {
             }
             Variable::DecayTime(i) => {
                 if let Some((_, d)) = out.damped.get_mut(i) {
-                    d.decay_time_s = (d.decay_time_s * step.exp()).clamp(0.05 * tau0, 100.0 * span);
+                    // What decays in less than a few periods is a bump and no oscillation.
+                    let least =
+                        if d.frequency_hz > 0.0 { LEAST_PERIODS / d.frequency_hz } else { 0.05 * tau0 };
+                    d.decay_time_s = (d.decay_time_s * step.exp()).max(least).min(100.0 * span);
                 }
             }
             Variable::Frequency(i) => {
@@ -197,6 +202,7 @@ impl<'a> Joint<'a> {
                     let width = 1.0 / (2.0 * std::f64::consts::PI * d.decay_time_s).max(0.3 / span);
                     let width = width.min(0.1 * d.frequency_hz).max(0.3 / span);
                     d.frequency_hz = (d.frequency_hz + step * width).clamp(1.0 / span, 0.5 / tau0);
+                    d.decay_time_s = d.decay_time_s.max(LEAST_PERIODS / d.frequency_hz);
                 }
             }
             Variable::Variance(_) | Variable::Ramp => {}

@@ -12,6 +12,7 @@ mod peaks;
 mod search;
 mod solve;
 
+pub use columns::expected_power;
 pub use identify::MaximumLikelihood;
 pub use interval::{JointProfile, parameter_covariance};
 pub use maximise::{Free, Joint};

@@ -2,7 +2,8 @@
 
 use super::peaks::strongest;
 use super::{BASE, Free, Joint, JointPoint, Kind, Shape};
-use crate::noise::composite::{Bandwidth, Sampling};
+use crate::noise::composite::{Bandwidth, Part, Sampling};
+use crate::noise::data::NoiseType;
 use crate::noise::evidence::{Evidence, Zone};
 use std::f64::consts::PI;
 
@@ -12,7 +13,8 @@ use std::f64::consts::PI;
 pub struct ExtraThresholds {
     /// A filter of the output.
     pub filter: f64,
-    /// A Markov process.
+    /// A Markov process. More than for a filter: white noise behind a filter is a Markov process as well, and is to be
+    /// called by its simpler name.
     pub markov: f64,
     /// A quasi-periodic disturbance, beside twice the logarithm of the resolved places searched.
     pub quasi_periodic: f64,
@@ -20,7 +22,7 @@ pub struct ExtraThresholds {
 
 impl Default for ExtraThresholds {
     fn default() -> Self {
-        ExtraThresholds { filter: 14.0, markov: 13.0, quasi_periodic: 14.0 }
+        ExtraThresholds { filter: 14.0, markov: 17.0, quasi_periodic: 14.0 }
     }
 }
 
@@ -44,8 +46,8 @@ const SCREEN: usize = 3;
 const FULL: usize = 40;
 /// Peaks of a scan that are fitted.
 const PEAKS: usize = 3;
-/// A disturbance that decays in less than this many periods is a bump and no oscillation.
-const LEAST_PERIODS: f64 = 1.0;
+/// Share of the density at its cut-off that white noise must have for a filter to be seen by it.
+const FILTERED_SHARE: f64 = 0.3;
 
 /// A candidate with the maximum it reaches.
 struct Candidate {
@@ -138,16 +140,39 @@ fn filters(
             tried.push(Bandwidth::MovingAverage { samples });
         }
     }
-    let best = tried
+    let reached: Vec<JointPoint> = tried
         .into_iter()
         .map(|filter| {
             let shape = Shape { filter: Some(filter), ..found.shape.clone() };
             at_shape(joint, &shape, current, ramp, SCREEN)
         })
-        .min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
-    let point = refined(joint, &best, ramp);
-    let excess = current.deviance - point.deviance - thresholds.filter;
-    Some(Candidate { point, zones: found.zones.clone(), excess })
+        .collect();
+    // The best of each kind: a screening cannot tell kinds apart.
+    let best_where = |first_order: bool| {
+        reached
+            .iter()
+            .filter(|p| matches!(p.shape.filter, Some(Bandwidth::FirstOrder { .. })) == first_order)
+            .min_by(|a, b| a.deviance.total_cmp(&b.deviance))
+    };
+    [true, false]
+        .into_iter()
+        .filter_map(best_where)
+        .map(|p| refined(joint, p, ramp))
+        .filter(|p| shows_filter(p, joint))
+        .map(|point| {
+            let excess = current.deviance - point.deviance - thresholds.filter;
+            Candidate { point, zones: found.zones.clone(), excess }
+        })
+        .max_by(|a, b| a.excess.total_cmp(&b.excess))
+}
+
+/// A filter is seen by what it does to white noise: what bends flicker and random walk alone is something else.
+fn shows_filter(point: &JointPoint, joint: &Joint<'_>) -> bool {
+    let (model, tau0_s) = (point.composite(joint.sampling()), joint.evidence().tau0_s);
+    let Some(filter) = model.bandwidth else { return false };
+    let cutoff_hz = filter.cutoff_hz(tau0_s).min(0.4 / tau0_s);
+    let white = model.part_density(Part::Term(NoiseType::AngleRandomWalk), cutoff_hz, tau0_s);
+    white >= FILTERED_SHARE * model.density(cutoff_hz, tau0_s)
 }
 
 fn markovs(
@@ -201,10 +226,6 @@ fn periodics(
         let time_s = 1.0 / (2.0 * PI * peak.zone.half_width_hz);
         let shape = found.shape.with(Kind::QuasiPeriodic, peak.zone.centre_hz, time_s);
         let point = refined(&fine, &at_shape(&fine, &shape, &before, ramp, FULL), ramp);
-        let Some((_, process)) = point.shape.damped.last() else { continue };
-        if process.frequency_hz * process.decay_time_s < LEAST_PERIODS {
-            continue;
-        }
         let excess = before.deviance - point.deviance - need;
         if best.as_ref().is_none_or(|b| excess > b.excess) {
             best = Some(Candidate { point, zones, excess });
