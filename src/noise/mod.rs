@@ -22,6 +22,7 @@ pub mod misfit;
 pub mod model;
 mod phase;
 pub mod profile;
+pub mod residual;
 pub mod russian;
 pub mod simulate;
 pub mod spectral_record;

@@ -23,15 +23,18 @@ pub struct SpectralRecord<'a> {
 }
 
 impl SpectralRecord<'_> {
+    /// The frequencies of the lines. A line fills the main lobe of the window: two bins to each side.
+    pub fn masks(&self) -> Vec<Mask> {
+        let mask = |l: &SpectralLine| Mask {
+            frequency_hz: l.frequency_hz,
+            half_width_hz: 2.0 * l.resolution_hz,
+        };
+        self.lines.iter().map(mask).collect()
+    }
+
     /// The evidence with the lines left out.
     pub fn evidence(&self) -> Evidence {
-        // A line fills the main lobe of the window: two bins to each side.
-        let masks: Vec<Mask> = self
-            .lines
-            .iter()
-            .map(|l| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz })
-            .collect();
-        Evidence::new(self.blocks, self.welch, self.tau0_s, &masks)
+        Evidence::new(self.blocks, self.welch, self.tau0_s, &self.masks())
     }
 
     /// Identifies the noise.

@@ -1,0 +1,166 @@
+//! Goodness of fit on simulated records: correct models are called wrong as often as stated, and departures are found
+//! and placed.
+
+use rayon::prelude::*;
+use sagnac::noise::allan::{AllanAccumulator, AllanPlan};
+use sagnac::noise::block_series::BlockSeriesAccumulator;
+use sagnac::noise::composite::{Composite, Damped, Described, Sampling};
+use sagnac::noise::data::{BlockSeries, DeviationPoint, WelchSpectrum};
+use sagnac::noise::family::Estimator;
+use sagnac::noise::model::NoiseModel;
+use sagnac::noise::residual::{GoodnessOfFit, View};
+use sagnac::noise::simulate::{Setup, Simulator};
+use sagnac::noise::spectral_record::SpectralRecord;
+use sagnac::noise::tau_grid::TauGrid;
+use sagnac::noise::welch::WelchAccumulator;
+
+/// What one pass leaves of a record at 1 Hz.
+struct Record {
+    blocks: BlockSeries,
+    welch: WelchSpectrum,
+    octaves: Vec<DeviationPoint>,
+}
+
+impl Record {
+    /// With at most `most` block means.
+    fn of(samples: &[f64], most: usize) -> Record {
+        let mut blocks = BlockSeriesAccumulator::with_most_blocks(most);
+        blocks.push(samples, 0);
+        let mut welch = WelchAccumulator::with_segment(1024);
+        welch.push(samples, false);
+        let mut allan = AllanAccumulator::new(AllanPlan {
+            tau0_s: 1.0,
+            grid: TauGrid::Octave,
+            exact: false,
+            estimators: vec![Estimator::Allan],
+        });
+        allan.push(samples, 0, false);
+        Record {
+            blocks: blocks.finish(),
+            welch: welch.finish().spectrum,
+            octaves: allan.finish().curve(Estimator::Allan).unwrap().points.clone(),
+        }
+    }
+
+    fn spectral(&self) -> SpectralRecord<'_> {
+        SpectralRecord {
+            blocks: &self.blocks,
+            welch: Some(&self.welch),
+            tau0_s: 1.0,
+            lines: &[],
+            sampling: Sampling::Averaging,
+        }
+    }
+
+    /// Judges what identification made of the record, or a description that is given.
+    fn judge(&self, given: Option<&Described>) -> GoodnessOfFit {
+        let record = self.spectral();
+        let found = given.map_or_else(|| record.identify("rate").identification.described, Clone::clone);
+        GoodnessOfFit::of(&record, &found, &self.octaves)
+    }
+}
+
+fn simulated(model: &Composite, seed: u64, samples: usize) -> Vec<f64> {
+    Simulator::of(model, &Setup::for_record(seed, 1.0, samples as u64)).take(samples)
+}
+
+fn p_value(fit: &GoodnessOfFit, view: View) -> Option<f64> {
+    fit.views.iter().find(|j| j.view == view).map(|j| j.p_value)
+}
+
+struct Mix {
+    name: &'static str,
+    model: Composite,
+    /// Judged with the true parameters and not with fitted ones.
+    told: bool,
+    samples: usize,
+    most_blocks: usize,
+}
+
+fn mixes() -> Vec<Mix> {
+    let terms = |n, b, k, r, q| Composite::from(NoiseModel { n, b, k, r, q });
+    let fitted = |name, model| Mix { name, model, told: false, samples: 16_384, most_blocks: 1 << 18 };
+    let markov = Composite {
+        markov: vec![Damped { rms_deg_h: 0.1, frequency_hz: 0.0, decay_time_s: 20.0 }],
+        ..terms(0.002, 0.0, 0.0, 0.0, 0.0)
+    };
+    let periodic = Composite {
+        quasi_periodic: vec![Damped { rms_deg_h: 0.06, frequency_hz: 0.02, decay_time_s: 300.0 }],
+        ..terms(0.002, 0.003, 0.0, 0.0, 0.0)
+    };
+    vec![
+        fitted("N", terms(0.002, 0.0, 0.0, 0.0, 0.0)),
+        fitted("N B", terms(0.002, 0.02, 0.0, 0.0, 0.0)),
+        fitted("N K", terms(0.002, 0.0, 0.02, 0.0, 0.0)),
+        fitted("N B K", terms(0.002, 0.02, 0.02, 0.0, 0.0)),
+        fitted("N Q", terms(0.002, 0.0, 0.0, 0.0, 0.1)),
+        fitted("N R", terms(0.002, 0.0, 0.0, 0.01, 0.0)),
+        Mix { most_blocks: 4096, samples: 65_536, ..fitted("N B, blocks of 16", terms(0.002, 0.02, 0.0, 0.0, 0.0)) },
+        Mix { most_blocks: 4096, samples: 65_536, ..fitted("N K Q, blocks of 16", terms(0.002, 0.0, 0.02, 0.0, 0.1)) },
+        Mix { told: true, ..fitted("N Markov, told", markov) },
+        Mix { told: true, ..fitted("N B quasi-periodic, told", periodic) },
+    ]
+}
+
+/// Share of records of correct models that each view calls wrong at a level, by mix.
+fn false_alarms<const LEVELS: usize>(
+    records: u64,
+    seed: u64,
+    levels: [f64; LEVELS],
+) -> Vec<(&'static str, [[f64; 4]; LEVELS])> {
+    mixes()
+        .iter()
+        .map(|mix| {
+            let given = Described { model: mix.model.clone(), ..Default::default() };
+            let counts = (0..records)
+                .into_par_iter()
+                .map(|i| {
+                    let samples = simulated(&mix.model, seed + i, mix.samples);
+                    let fit = Record::of(&samples, mix.most_blocks).judge(mix.told.then_some(&given));
+                    let found = View::ALL.map(|v| p_value(&fit, v).expect("long enough"));
+                    levels.map(|level| found.map(|p| u32::from(p < level)))
+                })
+                .reduce(
+                    || [[0; 4]; LEVELS],
+                    |a, b| std::array::from_fn(|l| std::array::from_fn(|v| a[l][v] + b[l][v])),
+                );
+            (mix.name, counts.map(|level| level.map(|c| f64::from(c) / records as f64)))
+        })
+        .collect()
+}
+
+#[test]
+fn correct_models_are_called_wrong_as_often_as_stated() {
+    // At 5 %: in 60 records of each mix, 11 or more come with a probability of 1e-4.
+    for (name, shares) in false_alarms(60, 4_000_000, [0.05]) {
+        for (view, share) in View::ALL.iter().zip(shares[0]) {
+            assert!(share < 11.0 / 60.0, "{name} {view:?}: {share}");
+        }
+    }
+}
+
+#[test]
+#[ignore = "long study"]
+fn study_of_false_alarms() {
+    let number = |name: &str, otherwise: u64| {
+        std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
+    };
+    let records = number("RECORDS", 2000);
+    let seed = number("SEED", 1);
+    let levels = [0.01, 0.05];
+    let found = false_alarms(records, seed, levels);
+    for (l, level) in levels.into_iter().enumerate() {
+        eprintln!("| mix, level {level} | frequency | lag | averaging time | amplitude |");
+        eprintln!("|---|--:|--:|--:|--:|");
+        let mut mean = [0.0; 4];
+        for (name, shares) in &found {
+            let cells: Vec<String> = shares[l].iter().map(|s| format!("{:.2} %", 100.0 * s)).collect();
+            eprintln!("| {name} | {} |", cells.join(" | "));
+            mean.iter_mut().zip(shares[l]).for_each(|(m, s)| *m += s / found.len() as f64);
+        }
+        for (view, share) in View::ALL.iter().zip(mean) {
+            eprintln!("mean of {view:?}: {:.2} %", 100.0 * share);
+            assert!((0.5 * level..=1.5 * level).contains(&share), "{view:?} at {level}: {share}");
+        }
+    }
+}
