@@ -1,6 +1,9 @@
 //! Goodness of fit on simulated records: correct models are called wrong as often as stated, and departures are found
 //! and placed.
 
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use sagnac::noise::allan::{AllanAccumulator, AllanPlan};
 use sagnac::noise::block_series::BlockSeriesAccumulator;
@@ -60,8 +63,23 @@ impl Record {
     }
 }
 
+/// A record of a model. Quantisation is white noise of the angle here: the simulator rounds, which is no white noise
+/// unless the steps are small.
 fn simulated(model: &Composite, seed: u64, samples: usize) -> Vec<f64> {
-    Simulator::of(model, &Setup::for_record(seed, 1.0, samples as u64)).take(samples)
+    let q = model.terms.q;
+    let mut rest = model.clone();
+    rest.terms.q = 0.0;
+    let mut record = Simulator::of(&rest, &Setup::for_record(seed, 1.0, samples as u64)).take(samples);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(!seed);
+    let mut angle = || q * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng);
+    let mut last = angle();
+    for y in &mut record {
+        let next = angle();
+        // Arcseconds a second are degrees an hour.
+        *y += next - last;
+        last = next;
+    }
+    record
 }
 
 fn p_value(fit: &GoodnessOfFit, view: View) -> Option<f64> {

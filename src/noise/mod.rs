@@ -25,6 +25,7 @@ pub mod profile;
 pub mod residual;
 pub mod russian;
 pub mod simulate;
+pub mod slope;
 pub mod spectral_record;
 pub mod static_bias;
 pub mod stretches;

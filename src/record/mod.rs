@@ -5,9 +5,11 @@
 //! template.
 
 mod beside;
+mod goodness;
 mod integrity;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
 
 use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
@@ -52,6 +54,8 @@ pub struct RunRecord {
     pub lines: Vec<LineRecord>,
     /// The noise model that was fitted, per channel.
     pub noise_models: Vec<NoiseModelRecord>,
+    /// How well each noise model fits, per channel and view.
+    pub goodness_of_fit: Vec<GoodnessOfFitRecord>,
     /// What this test can decide: power of each limit.
     pub power: Vec<PowerRecord>,
     /// Instruments that were used.

@@ -5,6 +5,7 @@
 pub mod analysis;
 mod evaluate;
 pub mod figures;
+mod goodness;
 mod gyro_facts;
 pub mod inspect;
 mod pass;

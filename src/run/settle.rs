@@ -1,7 +1,7 @@
 //! Puts everything that was found into the run record.
 
 use super::evaluate::Found;
-use super::{Request, RunError, session, verdict};
+use super::{Request, RunError, goodness, session, verdict};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::measurand::GyroEvidence;
@@ -32,6 +32,7 @@ pub(super) fn record(
         measurands: rows,
         lines: found.gyros.iter().flat_map(lines).collect(),
         noise_models: found.gyros.iter().map(noise_model).collect(),
+        goodness_of_fit: found.gyros.iter().flat_map(goodness::records).collect(),
         power,
         options: options(request, found),
         figures: figures
@@ -84,6 +85,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         measurands: vec![],
         lines: vec![],
         noise_models: vec![],
+        goodness_of_fit: vec![],
         power: vec![],
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure.waivers_for(serial),

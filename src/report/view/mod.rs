@@ -7,6 +7,7 @@ mod comparison;
 mod conditions;
 mod evidence;
 mod faults;
+mod goodness;
 mod matrix;
 mod rows;
 
@@ -14,6 +15,7 @@ pub use comparison::{Comparison, Pair, Side};
 pub use conditions::Condition;
 pub use evidence::{Clause, Evidence, Excluded, Instrument, Line, Model, ModelRemark, Power, Waiver};
 pub use faults::{Fault, FaultKind, Faults};
+pub use goodness::Goodness;
 pub use matrix::{Matrix, MatrixRow};
 pub use rows::Row;
 
