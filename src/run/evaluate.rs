@@ -335,9 +335,11 @@ fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
             ));
         }
         let optional = [
-            ("spectrum", figures::spectrum::figure as fn(&GyroEvidence) -> Option<Figure>),
+            ("allan_family", figures::allan_family::figure as fn(&GyroEvidence) -> Option<Figure>),
+            ("spectrum", figures::spectrum::figure),
             ("autocorrelation", figures::autocorrelation::figure),
             ("histogram", figures::histogram::figure),
+            ("residual", figures::residual::figure),
         ];
         drawn.extend(optional.into_iter().filter(|(id, _)| wanted(id)).filter_map(|(_, f)| f(gyro)));
     }
