@@ -5,10 +5,12 @@
 //! template.
 
 mod beside;
+mod deviation;
 mod goodness;
 mod integrity;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use deviation::DeviationRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
 
@@ -56,6 +58,8 @@ pub struct RunRecord {
     pub noise_models: Vec<NoiseModelRecord>,
     /// How well each noise model fits, per channel and view.
     pub goodness_of_fit: Vec<GoodnessOfFitRecord>,
+    /// The Allan family at octaves, per channel.
+    pub deviations: Vec<DeviationRecord>,
     /// What this test can decide: power of each limit.
     pub power: Vec<PowerRecord>,
     /// Instruments that were used.

@@ -1,7 +1,7 @@
 //! Puts everything that was found into the run record.
 
 use super::evaluate::Found;
-use super::{Request, RunError, goodness, session, verdict};
+use super::{Request, RunError, goodness, session, sigma_tau, verdict};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::measurand::GyroEvidence;
@@ -33,6 +33,7 @@ pub(super) fn record(
         lines: found.gyros.iter().flat_map(lines).collect(),
         noise_models: found.gyros.iter().map(noise_model).collect(),
         goodness_of_fit: found.gyros.iter().flat_map(goodness::records).collect(),
+        deviations: found.gyros.iter().flat_map(sigma_tau::records).collect(),
         power,
         options: options(request, found),
         figures: figures
@@ -86,6 +87,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         lines: vec![],
         noise_models: vec![],
         goodness_of_fit: vec![],
+        deviations: vec![],
         power: vec![],
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure.waivers_for(serial),

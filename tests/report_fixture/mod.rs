@@ -260,6 +260,7 @@ pub fn pass() -> RunRecord {
         }],
         noise_models: vec![model("rate", 1.0)],
         goodness_of_fit: vec![],
+        deviations: vec![],
         power: vec![PowerRecord {
             id: "bias_instability".into(),
             channel: "rate".into(),

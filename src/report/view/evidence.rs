@@ -2,6 +2,7 @@
 //! instruments, waivers, clauses.
 
 use super::conditions::{self, Condition};
+use super::deviations::{self, Deviations};
 use super::faults::Faults;
 use super::goodness::{self, Goodness};
 use super::{Field, Words};
@@ -35,6 +36,8 @@ pub struct Evidence {
     pub models: Vec<Model>,
     /// How well the models fit, by view.
     pub goodness: Vec<Goodness>,
+    /// The Allan family at octaves, a table for each channel.
+    pub deviations: Vec<Deviations>,
     /// What this test can decide.
     pub power: Vec<Power>,
     /// Instruments.
@@ -199,6 +202,7 @@ impl Evidence {
             lines_shown,
             models: record.noise_models.iter().map(|m| model(m, &record.measurands, words)).collect(),
             goodness: goodness::goodness(record, words),
+            deviations: deviations::deviations(record, words),
             power: record
                 .power
                 .iter()

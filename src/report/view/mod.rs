@@ -5,6 +5,7 @@
 
 mod comparison;
 mod conditions;
+mod deviations;
 mod evidence;
 mod faults;
 mod goodness;
@@ -13,6 +14,7 @@ mod rows;
 
 pub use comparison::{Comparison, Pair, Side};
 pub use conditions::Condition;
+pub use deviations::{DeviationCell, DeviationRow, Deviations};
 pub use evidence::{Clause, Evidence, Excluded, Instrument, Line, Model, ModelRemark, Power, Waiver};
 pub use faults::{Fault, FaultKind, Faults};
 pub use goodness::Goodness;
