@@ -63,7 +63,8 @@ impl Measurand for CorrelatedNoise {
         let strongest = (0..processes.len()).max_by(|a, b| processes[*a].1.total_cmp(&processes[*b].1));
         let Some(strongest) = strongest else {
             let none = Estimate::not_identifiable(id, &gyro.channel, None, unit, found.method);
-            let key = if id.starts_with("markov") { "correlated.no_markov" } else { "correlated.no_periodic" };
+            let key =
+                if id.starts_with("markov") { "correlated.no_markov" } else { "correlated.no_periodic" };
             return Some(none.note(Note::new(key)));
         };
         let mut estimate = processes[strongest].0.clone();

@@ -12,7 +12,12 @@ const METHOD: &str = "slope_readout";
 
 impl Measurand for SlopeReadOut {
     fn ids(&self) -> &'static [&'static str] {
-        &["angle_random_walk_readout", "rate_random_walk_readout", "quantization_readout", "rate_ramp_readout"]
+        &[
+            "angle_random_walk_readout",
+            "rate_random_walk_readout",
+            "quantization_readout",
+            "rate_ramp_readout",
+        ]
     }
 
     fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {

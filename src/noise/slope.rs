@@ -123,7 +123,11 @@ mod tests {
         for term in TERMS.into_iter().filter(|t| *t != NoiseType::Flicker) {
             let points: Vec<SlopePoint> = (0..12)
                 .map(|k| f64::from(1u32 << k))
-                .map(|tau_s| SlopePoint { tau_s, deviation: 0.3 * unit_allan_variance(term, tau_s).sqrt(), edf: 50.0 })
+                .map(|tau_s| SlopePoint {
+                    tau_s,
+                    deviation: 0.3 * unit_allan_variance(term, tau_s).sqrt(),
+                    edf: 50.0,
+                })
                 .collect();
             let found = read(&points, term).unwrap();
             assert!((found.value / 0.3 - 1.0).abs() < 1e-12 && found.points == 12, "{term:?} {found:?}");

@@ -25,10 +25,8 @@ pub struct SpectralRecord<'a> {
 impl SpectralRecord<'_> {
     /// The frequencies of the lines. A line fills the main lobe of the window: two bins to each side.
     pub fn masks(&self) -> Vec<Mask> {
-        let mask = |l: &SpectralLine| Mask {
-            frequency_hz: l.frequency_hz,
-            half_width_hz: 2.0 * l.resolution_hz,
-        };
+        let mask =
+            |l: &SpectralLine| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz };
         self.lines.iter().map(mask).collect()
     }
 

@@ -22,14 +22,10 @@ pub(super) fn records(gyro: &GyroEvidence) -> Vec<GoodnessOfFitRecord> {
                 from: judged.departure.from,
                 to: Some(judged.departure.to).filter(|v| v.is_finite()),
                 excess: judged.departure.excess,
-                message: if departs { departure(judged, fit) } else { passed(judged.view) },
+                message: if departs { departure(judged, fit) } else { Note::new("goodness.fits") },
             }
         })
         .collect()
-}
-
-fn passed(view: View) -> Note {
-    Note::new("goodness.fits").with("view", Arg::key("goodness.view", view.id()))
 }
 
 /// Where and by how much.
@@ -39,10 +35,12 @@ fn departure(judged: &Judged, fit: &GoodnessOfFit) -> Note {
     let percent = Arg::Figures { value: 100.0 * place.excess.abs(), digits: 2, zeros: false };
     let more = place.excess >= 0.0;
     match judged.view {
-        View::Frequency => Note::new(if more { "goodness.frequency_more" } else { "goodness.frequency_less" })
-            .with("from_hz", figure(place.from))
-            .with("to_hz", figure(place.to))
-            .with("percent", percent),
+        View::Frequency => {
+            Note::new(if more { "goodness.frequency_more" } else { "goodness.frequency_less" })
+                .with("from_hz", figure(place.from))
+                .with("to_hz", figure(place.to))
+                .with("percent", percent)
+        }
         View::Lag => {
             let two = Arg::Figures { value: place.excess, digits: 2, zeros: false };
             Note::new("goodness.lag").with("lag_s", figure(place.from)).with("correlation", two)

@@ -93,7 +93,11 @@ pub(super) fn judge(found: &Amplitude) -> Judged {
         view: View::Amplitude,
         statistic: found.excess_kurtosis,
         p_value: (3.0 * smallest).min(1.0),
-        departure: Departure { from: TAIL, to: f64::INFINITY, excess: found.beyond as f64 / found.expected_beyond - 1.0 },
+        departure: Departure {
+            from: TAIL,
+            to: f64::INFINITY,
+            excess: found.beyond as f64 / found.expected_beyond - 1.0,
+        },
     }
 }
 

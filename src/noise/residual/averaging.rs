@@ -24,6 +24,10 @@ const NEIGHBOUR: f64 = 2.0;
 const PER_TAU: f64 = 16.0;
 /// Averaging times up to which covariances are summed.
 const SPAN: f64 = 12.0;
+/// Decay times of the slowest process up to which they are.
+const DECAYS: f64 = 3.0;
+/// Most lags summed for such a process.
+const MOST_LAGS: f64 = 20_000.0;
 
 /// One octave.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,19 +46,25 @@ pub struct OctaveRatio {
 /// over the covariances r of its terms.
 pub fn degrees_of_freedom(model: &Composite, point: &DeviationPoint, tau0_s: f64) -> f64 {
     let tau_s = point.m as f64 * tau0_s;
-    let noise = Composite { terms: model.terms.with(crate::noise::data::NoiseType::RateRamp, 0.0), ..model.clone() };
+    let noise =
+        Composite { terms: model.terms.with(crate::noise::data::NoiseType::RateRamp, 0.0), ..model.clone() };
     // Minus half the variance of an increment of angle over t: the generalised autocovariance of the angle.
     let angle = |t: f64| {
         let t = t.abs();
-        if t == 0.0 { 0.0 } else { -0.5 * t * t * noise.mean_variance(t, tau0_s) }
+        if t < 0.5 * tau0_s { 0.0 } else { -0.5 * t * t * noise.mean_variance(t, tau0_s) }
     };
     let term = |t: f64| {
-        6.0 * angle(t) - 4.0 * (angle(t - tau_s) + angle(t + tau_s)) + angle(t - 2.0 * tau_s) + angle(t + 2.0 * tau_s)
+        6.0 * angle(t) - 4.0 * (angle(t - tau_s) + angle(t + tau_s))
+            + angle(t - 2.0 * tau_s)
+            + angle(t + 2.0 * tau_s)
     };
     let stride = (point.stride.max(1) as f64).max((point.m as f64 / PER_TAU).floor());
     let terms = (point.terms as f64 * point.stride.max(1) as f64 / stride).max(1.0);
     let first = term(0.0);
-    let most = (SPAN * point.m as f64 / stride).min(terms - 1.0) as u64;
+    let slowest_s =
+        noise.quasi_periodic.iter().chain(&noise.markov).map(|d| d.decay_time_s).fold(0.0, f64::max);
+    let span = (SPAN * point.m as f64).max((DECAYS * slowest_s / tau0_s).min(MOST_LAGS * stride));
+    let most = (span / stride).min(terms - 1.0).max(0.0) as u64;
     let mut sum = terms;
     for lag in 1..=most {
         let r = term(lag as f64 * stride * tau0_s) / first;
@@ -73,7 +83,9 @@ pub(super) fn octaves(
 ) -> Vec<(OctaveRatio, f64)> {
     let judged: Vec<(&DeviationPoint, f64)> = points
         .iter()
-        .filter(|p| p.m.is_power_of_two() && p.deviation > 0.0 && p.m as f64 * tau0_s <= LARGEST_SHARE * length_s)
+        .filter(|p| {
+            p.m.is_power_of_two() && p.deviation > 0.0 && p.m as f64 * tau0_s <= LARGEST_SHARE * length_s
+        })
         .map(|p| (p, degrees_of_freedom(&described.model, p, tau0_s)))
         .filter(|(_, edf)| *edf >= LEAST_EDF)
         .collect();
@@ -112,9 +124,8 @@ pub(super) fn judge(
     };
     // The diagonal is that of the terms really summed: ends of the record count less in them.
     let scale: Vec<f64> = (0..count).map(|i| (2.0 / ratios[i].edf / product(i, i)).sqrt()).collect();
-    let gradient = log_gradients(described, |model| {
-        taus.iter().map(|t| model.allan_variance(*t, tau0_s)).collect()
-    });
+    let gradient =
+        log_gradients(described, |model| taus.iter().map(|t| model.allan_variance(*t, tau0_s)).collect());
     let parameters = gradient.len();
     let explained = inverse(grid.information());
     let covariance = DMatrix::from_fn(count, count, |i, j| {
@@ -126,16 +137,16 @@ pub(super) fn judge(
         }
         scale[i] * scale[j] * product(i, j) - fit
     });
-    let deviation: Vec<f64> = (0..count)
-        .map(|i| covariance[(i, i)].max(LEAST_LEFT * 2.0 / ratios[i].edf).sqrt())
-        .collect();
+    let deviation: Vec<f64> =
+        (0..count).map(|i| covariance[(i, i)].max(LEAST_LEFT * 2.0 / ratios[i].edf).sqrt()).collect();
     for (o, deviation) in ratios.iter_mut().zip(&deviation) {
         o.score = normal_score(o.ratio * o.edf, o.edf) * (2.0 / o.edf).sqrt() / deviation;
     }
     let correlation = DMatrix::from_fn(count, count, |i, j| {
         if i == j { 1.0 } else { (covariance[(i, j)] / (deviation[i] * deviation[j])).clamp(-1.0, 1.0) }
     });
-    let Some(worst) = (0..count).max_by(|a, b| ratios[*a].score.abs().total_cmp(&ratios[*b].score.abs())) else {
+    let Some(worst) = (0..count).max_by(|a, b| ratios[*a].score.abs().total_cmp(&ratios[*b].score.abs()))
+    else {
         return (ratios, None);
     };
     let statistic = ratios[worst].score.abs();
@@ -169,8 +180,9 @@ fn inverse(information: DMatrix<f64>) -> DMatrix<f64> {
     if n == 0 || information.iter().any(|v| !v.is_finite()) {
         return DMatrix::zeros(n, n);
     }
-    let scale: Vec<f64> =
-        (0..n).map(|i| if information[(i, i)] > 0.0 { information[(i, i)].sqrt().recip() } else { 0.0 }).collect();
+    let scale: Vec<f64> = (0..n)
+        .map(|i| if information[(i, i)] > 0.0 { information[(i, i)].sqrt().recip() } else { 0.0 })
+        .collect();
     let scaled = DMatrix::from_fn(n, n, |i, j| {
         let v = information[(i, j)] * scale[i] * scale[j];
         if i == j && v == 0.0 { 1.0 } else { v }

@@ -43,8 +43,7 @@ pub(super) struct Bands {
 
 impl Bands {
     pub fn new(evidence: &Evidence, described: &Described, tau0_s: f64) -> Bands {
-        let expectation =
-            |model: &Composite| evidence.expectation(&ModelSpectrum { model, tau0_s });
+        let expectation = |model: &Composite| evidence.expectation(&ModelSpectrum { model, tau0_s });
         let expected = expectation(&described.model);
         let fine = log_gradients(described, expectation);
         let parameters = fine.len();
@@ -75,7 +74,12 @@ impl Bands {
                     }
                 }
                 _ => {
-                    bands.push(BandRatio { low_hz: band.low_hz, high_hz: band.high_hz, dof: band.dof, ratio });
+                    bands.push(BandRatio {
+                        low_hz: band.low_hz,
+                        high_hz: band.high_hz,
+                        dof: band.dof,
+                        ratio,
+                    });
                     gradient.iter_mut().zip(&fine).for_each(|(g, fine)| g.push(fine[i]));
                 }
             }

@@ -59,7 +59,11 @@ impl Grid {
                         let mode = ((frequency_hz / step).round() as usize).max(1);
                         spectrum.density(&Bin { frequency_hz, tau_s: tau0_s, filling: 1.0, mode, blocks })
                     };
-                    if e[1] - e[0] < 1.5 * step { at(0.5) } else { (at(0.125) + at(0.375) + at(0.625) + at(0.875)) / 4.0 }
+                    if e[1] - e[0] < 1.5 * step {
+                        at(0.5)
+                    } else {
+                        (at(0.125) + at(0.375) + at(0.625) + at(0.875)) / 4.0
+                    }
                 })
                 .collect()
         };

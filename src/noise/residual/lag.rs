@@ -62,7 +62,8 @@ fn judged(step_s: f64, coefficients: Vec<f64>, values: f64, grid: &Grid) -> Opti
     let (one, all) = (largest(&scores), squares(&scores));
     let of_one = at_most_bonferroni(fitted.probability(one, largest), one, lags);
     let of_all = fitted.probability(all, squares);
-    let worst = (0..lags).max_by(|a, b| shown(*a, scores[*a]).abs().total_cmp(&shown(*b, scores[*b]).abs()))?;
+    let worst =
+        (0..lags).max_by(|a, b| shown(*a, scores[*a]).abs().total_cmp(&shown(*b, scores[*b]).abs()))?;
     Some(ResidualCorrelation {
         step_s,
         deviation: variance.iter().map(|v| v.sqrt() / root).collect(),
@@ -133,7 +134,7 @@ pub(super) fn of_samples(
     let coefficients: Vec<f64> =
         time.iter().skip(1).take(lags).map(|c| c / welch.segment_len as f64).collect();
     // Each bin of a Hann window weighs as 0.947 of its samples.
-    let values = welch.effective_averages * used as f64 ;
+    let values = welch.effective_averages * used as f64;
     judged(tau0_s, coefficients, values, grid)
 }
 

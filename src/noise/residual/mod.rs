@@ -99,7 +99,11 @@ pub struct GoodnessOfFit {
 
 impl GoodnessOfFit {
     /// Judges a description of a record. `octaves`: its overlapping Allan deviations.
-    pub fn of(record: &SpectralRecord<'_>, described: &Described, octaves: &[DeviationPoint]) -> GoodnessOfFit {
+    pub fn of(
+        record: &SpectralRecord<'_>,
+        described: &Described,
+        octaves: &[DeviationPoint],
+    ) -> GoodnessOfFit {
         let tau0_s = record.tau0_s;
         let evidence = record.evidence();
         if described.model.parts().is_empty() || !(evidence.usable_s > 0.0 && tau0_s > 0.0) {
@@ -139,9 +143,7 @@ impl GoodnessOfFit {
         let mut sorted: Vec<&Judged> = self.views.iter().collect();
         sorted.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
         let count = sorted.len();
-        let passed = (0..count)
-            .find(|i| sorted[*i].p_value * (count - i) as f64 > LEVEL)
-            .unwrap_or(count);
+        let passed = (0..count).find(|i| sorted[*i].p_value * (count - i) as f64 > LEVEL).unwrap_or(count);
         sorted.truncate(passed);
         sorted.sort_by_key(|j| j.view);
         sorted

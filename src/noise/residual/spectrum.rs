@@ -21,7 +21,8 @@ pub(super) struct ModelSpectrum<'a> {
 impl ModelSpectrum<'_> {
     fn smooth(&self, bin: &Bin) -> f64 {
         let model = self.model;
-        let terms = TERMS.iter().filter(|t| model.terms.coefficient(**t) != 0.0 && **t != NoiseType::RateRamp);
+        let terms =
+            TERMS.iter().filter(|t| model.terms.coefficient(**t) != 0.0 && **t != NoiseType::RateRamp);
         terms
             .map(|term| {
                 let plain = term.density(bin);
@@ -29,12 +30,14 @@ impl ModelSpectrum<'_> {
                     None if model.sampling == Sampling::Averaging => plain,
                     // A moving average is counted in samples, whatever the blocks.
                     Some(filter @ Bandwidth::MovingAverage { .. }) => {
-                        let at = |b: Option<&Bandwidth>| sampled(*term, bin.frequency_hz, self.tau0_s, b, model);
+                        let at =
+                            |b: Option<&Bandwidth>| sampled(*term, bin.frequency_hz, self.tau0_s, b, model);
                         let bare = at(None);
                         if bare > 0.0 { plain * at(Some(filter)) / bare } else { plain }
                     }
                     filter => {
-                        let at = |b: Option<&Bandwidth>| sampled(*term, bin.frequency_hz, bin.tau_s, b, model);
+                        let at =
+                            |b: Option<&Bandwidth>| sampled(*term, bin.frequency_hz, bin.tau_s, b, model);
                         let bare = sampled_averaging(*term, bin);
                         if bare > 0.0 { plain * at(filter.as_ref()) / bare } else { plain }
                     }

@@ -73,8 +73,18 @@ fn table(channel: &str, points: &[&DeviationRecord], words: Words) -> Deviations
         .collect();
     Deviations {
         channel: channel.to_owned(),
-        estimators: estimators.into_iter().map(|e| words.name("goodness.estimator", e)).collect(),
+        estimators: estimators.into_iter().map(|e| words.t(estimator(e))).collect(),
         rows,
+    }
+}
+
+/// Key of the name of an estimator.
+fn estimator(id: &str) -> &'static str {
+    match id {
+        "mdev" => "goodness.estimator.mdev",
+        "hdev" => "goodness.estimator.hdev",
+        "totdev" => "goodness.estimator.totdev",
+        _ => "goodness.estimator.oadev",
     }
 }
 

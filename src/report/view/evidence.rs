@@ -334,6 +334,7 @@ fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model 
             remarks.push(remark);
         }
     }
+    remarks.extend(m.remarks.iter().map(|note| ModelRemark { text: words.say(note), misfit: false }));
     // The remark on the misfit names the band.
     let misfit_said = remarks.iter().any(|r| r.misfit);
     Model {

@@ -26,10 +26,20 @@ pub(super) fn goodness(record: &RunRecord, words: Words) -> Vec<Goodness> {
         .iter()
         .map(|g| Goodness {
             channel: g.channel.clone(),
-            view: words.name("goodness.view", &g.view),
+            view: words.t(view(&g.view)),
             departs: g.departs,
             probability: probability(g.p_value, words),
             message: words.say(&g.message),
         })
         .collect()
+}
+
+/// Key of the name of a view.
+fn view(id: &str) -> &'static str {
+    match id {
+        "frequency" => "goodness.view.frequency",
+        "lag" => "goodness.view.lag",
+        "averaging_time" => "goodness.view.averaging_time",
+        _ => "goodness.view.amplitude",
+    }
 }

@@ -39,9 +39,8 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
                 (t, bounded(curve.estimator, p, &curve.stretches, noise))
             })
             .collect();
-        let band = |(t, b): &(f64, crate::noise::intervals::BoundedPoint)| {
-            b.interval95.map(|i| (*t, i.low, i.high))
-        };
+        let band =
+            |(t, b): &(f64, crate::noise::intervals::BoundedPoint)| b.interval95.map(|i| (*t, i.low, i.high));
         bands.push(Layer::Band {
             points: shown.iter().filter_map(band).collect(),
             style,

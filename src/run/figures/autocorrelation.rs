@@ -62,7 +62,8 @@ fn residual(left: &ResidualCorrelation, lags: usize, lag: &'static str) -> Panel
     let points: Vec<(f64, f64)> =
         left.coefficients.iter().take(lags).enumerate().map(|(i, r)| (at(i), *r)).collect();
     let half = normal_quantile(0.975);
-    let band = left.deviation.iter().take(lags).enumerate().map(|(i, d)| (at(i), -half * d, half * d)).collect();
+    let band =
+        left.deviation.iter().take(lags).enumerate().map(|(i, d)| (at(i), -half * d, half * d)).collect();
     Panel {
         x: axis(lag, "s", Scale::Linear),
         y: axis("figure.fit.correlation_left", "", Scale::Linear),

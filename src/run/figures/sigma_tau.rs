@@ -120,7 +120,8 @@ fn model_curves(gyro: &GyroEvidence, from: f64, to: f64) -> Vec<Layer> {
         .iter()
         .map(|t| {
             let (variance, u) = described.propagate(|m| m.allan_variance(*t, tau0_s));
-            let half = if variance > 0.0 { 0.5 * normal_quantile(0.975) * (u / variance).min(WIDEST) } else { 0.0 };
+            let half =
+                if variance > 0.0 { 0.5 * normal_quantile(0.975) * (u / variance).min(WIDEST) } else { 0.0 };
             (*t, variance.max(0.0).sqrt(), half.exp())
         })
         .collect();
