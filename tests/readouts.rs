@@ -128,7 +128,7 @@ fn octaves_that_have_the_slope_are_found_and_others_are_not_read() {
         let by_hand = through(&octaves(axis, 6, 8), NoiseType::AngleRandomWalk).unwrap().value;
         assert!((n.value / by_hand - 1.0).abs() < 0.12, "{axis}: {n:?} {by_hand}");
         let q = read(&all, NoiseType::Quantization).unwrap();
-        assert_eq!(q.from_s, 0.008, "{axis}");
+        assert!(q.from_s <= 0.016 && q.to_s <= 0.064, "{axis}: {q:?}");
         let by_hand = through(&octaves(axis, 1, 4), NoiseType::Quantization).unwrap().value;
         assert!((q.value / by_hand - 1.0).abs() < 0.12, "{axis}: {q:?} {by_hand}");
         // The published K was read where the curve is flat: no octave there has the slope of a random walk.

@@ -17,7 +17,7 @@ const LEAST_EDF: f64 = 6.0;
 /// Largest averaging time judged, as a share of the record.
 const LARGEST_SHARE: f64 = 0.125;
 /// Share of its variance that the fit leaves an octave at least, for the covariance of the fit is an estimate.
-const LEAST_LEFT: f64 = 0.1;
+const LEAST_LEFT: f64 = 0.3;
 /// Score from which a neighbouring octave belongs to the same departure.
 const NEIGHBOUR: f64 = 2.0;
 /// Lags per averaging time in the sum of squared covariances.
