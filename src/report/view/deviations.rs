@@ -90,10 +90,12 @@ fn estimator(id: &str) -> &'static str {
 
 fn printed(p: &DeviationRecord, words: Words) -> DeviationCell {
     let range = p.low_deg_h.zip(p.high_deg_h);
-    let rounding = Rounding::of(p.deviation_deg_h, range);
+    // The lower side of the interval sets the digits: the upper one of few degrees of freedom would leave none.
+    let value = p.deviation_deg_h;
+    let rounding = Rounding::of(value, range.map(|(low, _)| (low, 2.0 * value - low)));
     let show = |v: f64| rounding.show(v, words.lang);
     DeviationCell {
-        value: show(p.deviation_deg_h),
+        value: show(value),
         interval: range.map_or_else(String::new, |(low, high)| {
             words.with("report.interval", &[("low", &show(low)), ("high", &show(high))])
         }),
