@@ -53,12 +53,15 @@ pub(super) fn remarks(gyro: &GyroEvidence) -> Vec<Note> {
             Some(Arg::Number(hz)) => Some(*hz),
             _ => None,
         });
-    notes.push(
-        Note::new("described.range")
+    let range = |key: &'static str| {
+        Note::new(key)
             .with("from_hz", number(0.5 / gyro.usable_s()))
             .with("to_hz", number(highest_hz.unwrap_or(nyquist_hz)))
-            .with("n", gyro.lines.len()),
-    );
+    };
+    notes.push(match gyro.lines.len() {
+        0 => range("described.range"),
+        n => range("described.range_without_lines").with("n", n),
+    });
     notes.push(Note::new("described.leaves_out"));
     if let Some(whitened) = gyro.goodness.whitened.as_ref().filter(|w| w.share < WHOLE) {
         let percent = Arg::Figures { value: 100.0 * whitened.share, digits: 3, zeros: false };
