@@ -49,7 +49,7 @@ pub fn inverse_dct2(coefficients: &[f64]) -> Vec<f64> {
     }
     spectrum[0].re *= std::f64::consts::SQRT_2;
     spectrum[0].im = 0.0;
-    if n % 2 == 0 {
+    if n.is_multiple_of(2) {
         // Real for a real series; what is left of it is rounding.
         spectrum[n / 2].im = 0.0;
     }
