@@ -132,7 +132,10 @@ fn the_strongest_process_is_the_value_and_the_others_stand_in_a_note() {
     }
 }
 
-fn lines(figure: &Figure, panel: usize) -> Vec<(Style, &str, &[(f64, f64)])> {
+/// Style, legend and points of a line.
+type Drawn<'a> = (Style, &'a str, &'a [(f64, f64)]);
+
+fn lines(figure: &Figure, panel: usize) -> Vec<Drawn<'_>> {
     let layers = figure.panels[panel].layers.iter();
     layers
         .filter_map(|l| match l {
