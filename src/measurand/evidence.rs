@@ -5,6 +5,7 @@ use crate::noise::digest::RateDigest;
 use crate::noise::identify::Identification;
 use crate::noise::intervals::BoundedPoint;
 use crate::noise::lines::SpectralLine;
+use crate::noise::residual::GoodnessOfFit;
 use crate::noise::windows::WindowStatistics;
 
 /// Earth rate along an input axis.
@@ -35,6 +36,8 @@ pub struct GyroEvidence {
     pub octaves: Vec<BoundedPoint>,
     /// The noise model.
     pub identification: Identification,
+    /// How well the model fits.
+    pub goodness: GoodnessOfFit,
     /// Spectral lines.
     pub lines: Vec<SpectralLine>,
     /// Earth rate along the axis, where the site is known.

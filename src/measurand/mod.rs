@@ -3,10 +3,12 @@
 //! A measurand is a pure function of what one pass over the recording left behind ([`GyroEvidence`]).
 
 mod allan_minimum;
+mod correlated_noise;
 pub mod earth_rate;
 pub mod evidence;
 mod noise_terms;
 mod russian;
+mod slope_readout;
 mod spectral_line;
 pub mod static_bias;
 
@@ -38,6 +40,8 @@ pub static MEASURANDS: &[&dyn Measurand] = &[
     &allan_minimum::AllanMinimum,
     &russian::Russian,
     &spectral_line::SpectralLine,
+    &correlated_noise::CorrelatedNoise,
+    &slope_readout::SlopeReadOut,
 ];
 
 /// Evaluates a measurand by id.

@@ -42,14 +42,14 @@ const COHERENT: f64 = 1.0 / 3.0;
 const ROUNDS: usize = 3;
 
 impl SpectralRecord<'_> {
+    /// The frequencies of the lines. A line fills the main lobe of the window: two bins to each side.
+    pub fn masks(&self) -> Vec<Mask> {
+        masks_of(self.lines)
+    }
+
     /// The evidence with lines left out.
     pub fn evidence(&self, lines: &[SpectralLine]) -> Evidence {
-        // A line fills the main lobe of the window: two bins to each side.
-        let masks: Vec<Mask> = lines
-            .iter()
-            .map(|l| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz })
-            .collect();
-        Evidence::new(self.blocks, self.welch, self.tau0_s, &masks)
+        Evidence::new(self.blocks, self.welch, self.tau0_s, &masks_of(lines))
     }
 
     /// Identifies the noise.
@@ -107,6 +107,11 @@ impl SpectralRecord<'_> {
             harmonic_order: 1,
         }
     }
+}
+
+fn masks_of(lines: &[SpectralLine]) -> Vec<Mask> {
+    let mask = |l: &SpectralLine| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz };
+    lines.iter().map(mask).collect()
 }
 
 /// Half width at half power, Hz.

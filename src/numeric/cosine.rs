@@ -32,9 +32,52 @@ pub fn dct2(values: &[f64]) -> Vec<f64> {
     out
 }
 
+/// The inverse of [`dct2`]: values with the given coefficients.
+pub fn inverse_dct2(coefficients: &[f64]) -> Vec<f64> {
+    let n = coefficients.len();
+    if n < 2 {
+        return coefficients.to_vec();
+    }
+    let plan = RealFftPlanner::<f64>::new().plan_fft_inverse(n);
+    let mut spectrum = plan.make_input_vec();
+    let scale = (n as f64 / 2.0).sqrt();
+    for (k, v) in spectrum.iter_mut().enumerate() {
+        let (sin, cos) = (std::f64::consts::PI * k as f64 / (2.0 * n as f64)).sin_cos();
+        let (here, mirrored) = (coefficients[k], if k > 0 { coefficients[n - k] } else { 0.0 });
+        v.re = scale * (here * cos + mirrored * sin);
+        v.im = scale * (here * sin - mirrored * cos);
+    }
+    spectrum[0].re *= std::f64::consts::SQRT_2;
+    spectrum[0].im = 0.0;
+    if n.is_multiple_of(2) {
+        // Real for a real series; what is left of it is rounding.
+        spectrum[n / 2].im = 0.0;
+    }
+    let mut ordered = plan.make_output_vec();
+    if plan.process(&mut spectrum, &mut ordered).is_err() {
+        return vec![f64::NAN; n];
+    }
+    (0..n)
+        .map(|j| {
+            let at = if j % 2 == 0 { j / 2 } else { n - 1 - j / 2 };
+            ordered[at] / n as f64
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_inverse_gives_the_values_back() {
+        for n in [1usize, 2, 3, 8, 17, 64, 101] {
+            let y: Vec<f64> = (0..n).map(|i| ((i * i + 3) as f64).sin()).collect();
+            for (a, b) in y.iter().zip(inverse_dct2(&dct2(&y))) {
+                assert!((a - b).abs() < 1e-13, "{n}");
+            }
+        }
+    }
 
     #[test]
     fn agrees_with_the_sum_that_defines_it() {

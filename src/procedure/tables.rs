@@ -27,8 +27,10 @@ pub const FIGURES: &[Word] = &[
     ("temperature", "temperature over time with its limits"),
     ("sigma_tau", "Allan deviation over averaging time with the fitted terms"),
     ("spectrum", "power spectral density with the lines found"),
-    ("autocorrelation", "autocorrelation with the band of white noise"),
+    ("allan_family", "modified Allan, Hadamard and total deviation beside the Allan deviation"),
+    ("autocorrelation", "autocorrelation of the record and of what the model leaves"),
     ("histogram", "distribution of the samples against the normal one"),
+    ("residual", "distribution of what the model leaves against the normal one"),
 ];
 
 /// The procedure file as a whole.

@@ -5,9 +5,13 @@
 //! template.
 
 mod beside;
+mod deviation;
+mod goodness;
 mod integrity;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use deviation::DeviationRecord;
+pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
 
 use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
@@ -52,6 +56,10 @@ pub struct RunRecord {
     pub lines: Vec<LineRecord>,
     /// The noise model that was fitted, per channel.
     pub noise_models: Vec<NoiseModelRecord>,
+    /// How well each noise model fits, per channel and view.
+    pub goodness_of_fit: Vec<GoodnessOfFitRecord>,
+    /// The Allan family at octaves, per channel.
+    pub deviations: Vec<DeviationRecord>,
     /// What this test can decide: power of each limit.
     pub power: Vec<PowerRecord>,
     /// Instruments that were used.
@@ -360,6 +368,15 @@ pub struct NoiseModelRecord {
     pub misfit_probability: f64,
     /// Frequency range with the largest misfit, Hz, when the model does not fit.
     pub misfit_band_hz: Option<[f64; 2]>,
+    /// Markov processes in the description: standard deviation in deg/h, correlation time in s.
+    pub markov: Vec<[f64; 2]>,
+    /// Quasi-periodic disturbances in it: rms in deg/h, centre frequency in Hz, coherence time in s.
+    pub quasi_periodic: Vec<[f64; 3]>,
+    /// Cut-off of the measurement at -3 dB, Hz, where the record shows one.
+    pub cutoff_hz: Option<f64>,
+    /// What the description holds, rests on and leaves out.
+    #[schemars(with = "Vec<NoteSchema>")]
+    pub remarks: Vec<Note>,
 }
 
 /// Power of one limit.

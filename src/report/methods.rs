@@ -70,6 +70,27 @@ pub const METHODS: &[Method] = &[
         applies: |r| fitted_by(r, "whittle"),
     },
     Method {
+        id: "damped",
+        formulas: &[
+            "γ(t) = σ²·exp(−|t|/T)·cos(2πf₀t)",
+            "V(t) = 2σ²·Re[(z − 1 + exp(−z))/z²],  z = (1/T − 2πi·f₀)·t;  σ²(τ) = 2[V(τ) − V(2τ)]",
+        ],
+        source: "IEEE Std 952, Annex C; Zhang 2008",
+        applies: |r| r.noise_models.iter().any(|m| !m.markov.is_empty() || !m.quasi_periodic.is_empty()),
+    },
+    Method {
+        id: "goodness",
+        formulas: &["wⱼ = Σₖ cₖ/√Pₖ · √(2/M)·cos[πk(j + ½)/M]", "ν = n²·r₀² / Σ (n − |l|)·rₗ²"],
+        source: "Greenhall and Riley 2003; D'Agostino 1970; Anscombe and Glynn 1983; Holm 1979",
+        applies: |r| !r.goodness_of_fit.is_empty(),
+    },
+    Method {
+        id: "slope",
+        formulas: &["N = σ(τ)·√τ", "K = σ(τ)·√(3/τ)", "R = σ(τ)·√2/τ", "Q = σ(τ)·τ/√3"],
+        source: "IEEE Std 952, Annex C",
+        applies: |r| fitted_by(r, "slope_readout"),
+    },
+    Method {
         id: "bias_instability",
         formulas: &["σ_BI = √(2 ln 2/π)·B = 0.664·B"],
         source: "IEEE Std 952, Annex C",

@@ -12,7 +12,9 @@ use crate::noise::digest::RateDigest;
 use crate::noise::envelope::Envelope;
 use crate::noise::family::Estimator;
 use crate::noise::identify::Identification;
+use crate::noise::intervals::BoundedPoint;
 use crate::noise::lines::{SpectralLine, find_lines};
+use crate::noise::residual::GoodnessOfFit;
 use crate::noise::spectral_record::SpectralRecord;
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
@@ -231,6 +233,25 @@ pub(super) fn spectral(
     (noise.lines, noise.ranged.identification)
 }
 
+/// How well the description of a channel fits it.
+fn goodness(
+    digest: &RateDigest,
+    lines: &[SpectralLine],
+    identification: &Identification,
+    octaves: &[BoundedPoint],
+    tau0_s: f64,
+) -> GoodnessOfFit {
+    let record = SpectralRecord {
+        blocks: &digest.blocks,
+        welch: Some(&digest.welch.spectrum),
+        tau0_s,
+        lines,
+        sampling: Sampling::Averaging,
+    };
+    let points: Vec<_> = octaves.iter().map(|p| p.point).collect();
+    GoodnessOfFit::of(&record, &identification.described, &points)
+}
+
 fn evidence(
     procedure: &Procedure,
     channel: String,
@@ -245,6 +266,7 @@ fn evidence(
         .octaves
         .as_ref()
         .map_or_else(|| sigma_tau.clone(), |set| sigma_tau::allan_points(set, model, tau0_s));
+    let goodness = goodness(&digest, &lines, &identification, &octaves, tau0_s);
     let longest_stretch_s = digest.deviations.stretches.longest() as f64 * tau0_s;
     let earth = procedure.site.as_ref().map(|site| {
         let o = site.orientation_of(&channel);
@@ -265,6 +287,7 @@ fn evidence(
         sigma_tau,
         octaves,
         identification,
+        goodness,
         lines,
         earth,
     }
@@ -312,9 +335,11 @@ fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
             ));
         }
         let optional = [
-            ("spectrum", figures::spectrum::figure as fn(&GyroEvidence) -> Option<Figure>),
+            ("allan_family", figures::allan_family::figure as fn(&GyroEvidence) -> Option<Figure>),
+            ("spectrum", figures::spectrum::figure),
             ("autocorrelation", figures::autocorrelation::figure),
             ("histogram", figures::histogram::figure),
+            ("residual", figures::residual::figure),
         ];
         drawn.extend(optional.into_iter().filter(|(id, _)| wanted(id)).filter_map(|(_, f)| f(gyro)));
     }

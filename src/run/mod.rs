@@ -3,8 +3,10 @@
 //! Clock, host and people are passed in; the outcome is a pure function of the inputs.
 
 pub mod analysis;
+mod described;
 mod evaluate;
 pub mod figures;
+mod goodness;
 mod gyro_facts;
 pub mod inspect;
 mod pass;

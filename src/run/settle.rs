@@ -1,7 +1,7 @@
 //! Puts everything that was found into the run record.
 
 use super::evaluate::Found;
-use super::{Request, RunError, session, verdict};
+use super::{Request, RunError, described, goodness, session, sigma_tau, verdict};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::measurand::GyroEvidence;
@@ -32,6 +32,8 @@ pub(super) fn record(
         measurands: rows,
         lines: found.gyros.iter().flat_map(lines).collect(),
         noise_models: found.gyros.iter().map(noise_model).collect(),
+        goodness_of_fit: found.gyros.iter().flat_map(goodness::records).collect(),
+        deviations: found.gyros.iter().flat_map(sigma_tau::records).collect(),
         power,
         options: options(request, found),
         figures: figures
@@ -84,6 +86,8 @@ fn blank(request: &Request<'_>) -> RunRecord {
         measurands: vec![],
         lines: vec![],
         noise_models: vec![],
+        goodness_of_fit: vec![],
+        deviations: vec![],
         power: vec![],
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure.waivers_for(serial),
@@ -178,6 +182,16 @@ fn noise_model(gyro: &GyroEvidence) -> NoiseModelRecord {
         misfit: id.misfit.per_dof,
         misfit_probability: id.misfit.probability,
         misfit_band_hz: id.misfit.worst_band_hz.filter(|_| id.misfit.worst_probability < 0.01),
+        markov: id.described.model.markov.iter().map(|d| [d.rms_deg_h, d.decay_time_s]).collect(),
+        quasi_periodic: id
+            .described
+            .model
+            .quasi_periodic
+            .iter()
+            .map(|d| [d.rms_deg_h, d.frequency_hz, d.decay_time_s])
+            .collect(),
+        cutoff_hz: id.cutoff.as_ref().and_then(|c| c.value),
+        remarks: described::remarks(gyro),
     }
 }
 

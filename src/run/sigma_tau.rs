@@ -3,6 +3,7 @@
 use crate::measurand::GyroEvidence;
 use crate::noise::family::Estimator;
 use crate::noise::intervals::bounded;
+use crate::record::DeviationRecord;
 use std::fmt::Write;
 
 /// The table of a channel, as the result contract fixes it.
@@ -30,6 +31,34 @@ pub fn csv(gyro: &GyroEvidence) -> String {
                 if b.edf > 0.0 { format!("{:.4}", b.edf) } else { String::new() },
                 noise.id(),
             );
+        }
+    }
+    out
+}
+
+/// Share of the record up to which points stand in the report.
+const SHOWN: f64 = 1.0 / 3.0;
+
+/// Octaves of every estimator, for the report.
+pub fn records(gyro: &GyroEvidence) -> Vec<DeviationRecord> {
+    let mut out = vec![];
+    for curve in &gyro.digest.deviations.curves {
+        for point in curve.points.iter().filter(|p| p.m.is_power_of_two()) {
+            let tau_s = point.m as f64 * gyro.tau0_s;
+            if tau_s > gyro.longest_stretch_s * SHOWN {
+                continue;
+            }
+            let noise = gyro.identification.supported.dominant(tau_s);
+            let b = bounded(curve.estimator, point, &curve.stretches, noise);
+            out.push(DeviationRecord {
+                channel: gyro.channel.clone(),
+                estimator: curve.estimator.id().to_owned(),
+                tau_s,
+                deviation_deg_h: b.point.deviation,
+                low_deg_h: b.interval95.map(|i| i.low),
+                high_deg_h: b.interval95.map(|i| i.high),
+                edf: b.edf,
+            });
         }
     }
     out

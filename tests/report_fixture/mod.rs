@@ -259,6 +259,21 @@ pub fn pass() -> RunRecord {
             false_alarm_probability: 3.1e-7,
         }],
         noise_models: vec![model("rate", 1.0)],
+        goodness_of_fit: vec![
+            goodness(
+                "frequency",
+                Note::new("goodness.frequency_more")
+                    .with("from_hz", 0.3)
+                    .with("to_hz", 0.5)
+                    .with("percent", 12.0),
+                true,
+            ),
+            goodness("lag", Note::new("goodness.fits"), false),
+        ],
+        deviations: ["oadev", "mdev"]
+            .into_iter()
+            .flat_map(|estimator| [1.0, 2.0].map(|tau_s| deviation(estimator, tau_s)))
+            .collect(),
         power: vec![PowerRecord {
             id: "bias_instability".into(),
             channel: "rate".into(),
@@ -315,6 +330,32 @@ pub fn pass() -> RunRecord {
     }
 }
 
+fn goodness(view: &str, message: Note, departs: bool) -> GoodnessOfFitRecord {
+    GoodnessOfFitRecord {
+        channel: "rate".into(),
+        view: view.into(),
+        statistic: 6.1,
+        p_value: if departs { 2.3e-8 } else { 0.41 },
+        departs,
+        from: 0.3,
+        to: Some(0.5),
+        excess: 0.12,
+        message,
+    }
+}
+
+fn deviation(estimator: &str, tau_s: f64) -> DeviationRecord {
+    DeviationRecord {
+        channel: "rate".into(),
+        estimator: estimator.into(),
+        tau_s,
+        deviation_deg_h: 0.139 / tau_s.sqrt(),
+        low_deg_h: Some(0.138 / tau_s.sqrt()),
+        high_deg_h: Some(0.140 / tau_s.sqrt()),
+        edf: 24_000.0 / tau_s,
+    }
+}
+
 fn model(channel: &str, scale: f64) -> NoiseModelRecord {
     NoiseModelRecord {
         channel: channel.into(),
@@ -328,6 +369,13 @@ fn model(channel: &str, scale: f64) -> NoiseModelRecord {
         misfit: 1.013,
         misfit_probability: 0.31,
         misfit_band_hz: None,
+        markov: vec![[0.0123, 456.0]],
+        quasi_periodic: vec![],
+        cutoff_hz: None,
+        remarks: vec![
+            Note::new("described.markov").with("sigma", 0.0123).with("time_s", 456.0),
+            Note::new("described.leaves_out"),
+        ],
     }
 }
 

@@ -24,4 +24,5 @@ pub fn identify(digest: &RateDigest) -> RangedIdentification {
         sampling: Sampling::Averaging,
     }
     .identify("rate")
+    .ranged
 }

@@ -91,6 +91,7 @@ impl Layout {
                             filling: 1.0,
                             mode: k.round() as usize,
                             blocks: samples,
+                            segment: 0,
                         };
                         weight * Spectral::density(&term, &bin)
                     })

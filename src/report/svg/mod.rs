@@ -33,7 +33,7 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     let panels: Vec<&Panel> = figure.panels.iter().collect();
     let height_of_plot = match panels.len() {
         0 | 1 => 330.0,
-        2 => 190.0,
+        2 => 212.0,
         _ => 150.0,
     };
 

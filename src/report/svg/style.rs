@@ -33,13 +33,15 @@ pub struct Look {
 }
 
 /// Colour and dash of the terms of a model, in the order of their numbers.
-const TERMS: [(&str, &str, Marker); 6] = [
+const TERMS: [(&str, &str, Marker); 8] = [
     ("#009e73", "2 2.5", Marker::Triangle),
     ("#cc79a7", "8 2.5 2 2.5", Marker::Square),
     ("#b87900", "11 3.5", Marker::Diamond),
     ("#2f8fc4", "1.2 2.6", Marker::Cross),
     ("#6b4c9a", "5 2 1.2 2 1.2 2", Marker::Disc),
     ("#5b5b5b", "4 4", Marker::Square),
+    ("#7a8b00", "9 2 1.2 2", Marker::Triangle),
+    ("#c1440e", "3 1.6 3 5", Marker::Diamond),
 ];
 
 /// The look of a part.
@@ -74,6 +76,6 @@ mod tests {
                 assert!(a.0 != b.0 && a.1 != b.1, "{a:?} {b:?}");
             }
         }
-        assert_eq!(look(Style::Term(0)), look(Style::Term(6)));
+        assert_eq!(look(Style::Term(0)), look(Style::Term(TERMS.len() as u8)));
     }
 }

@@ -2,7 +2,9 @@
 //! instruments, waivers, clauses.
 
 use super::conditions::{self, Condition};
+use super::deviations::{self, Deviations};
 use super::faults::Faults;
+use super::goodness::{self, Goodness};
 use super::{Field, Words};
 use crate::record::{ConditionStatus, LineRecord, MeasurandRecord, NoiseModelRecord, RunRecord};
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
@@ -32,6 +34,10 @@ pub struct Evidence {
     pub lines_shown: String,
     /// Noise models.
     pub models: Vec<Model>,
+    /// How well the models fit, by view.
+    pub goodness: Vec<Goodness>,
+    /// The Allan family at octaves, a table for each channel.
+    pub deviations: Vec<Deviations>,
     /// What this test can decide.
     pub power: Vec<Power>,
     /// Instruments.
@@ -195,6 +201,8 @@ impl Evidence {
             lines: lines.into_iter().map(|l| line(l, words)).collect(),
             lines_shown,
             models: record.noise_models.iter().map(|m| model(m, &record.measurands, words)).collect(),
+            goodness: goodness::goodness(record, words),
+            deviations: deviations::deviations(record, words),
             power: record
                 .power
                 .iter()
@@ -263,7 +271,7 @@ fn row_name(id: &str, words: Words) -> String {
         .map_or_else(|| id.to_owned(), str::to_owned)
 }
 
-fn probability(p: f64, words: Words) -> String {
+pub(super) fn probability(p: f64, words: Words) -> String {
     if p < 1e-6 {
         return format!("<\u{202f}{}", limit(1e-6, words.lang));
     }
@@ -326,6 +334,7 @@ fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model 
             remarks.push(remark);
         }
     }
+    remarks.extend(m.remarks.iter().map(|note| ModelRemark { text: words.say(note), misfit: false }));
     // The remark on the misfit names the band.
     let misfit_said = remarks.iter().any(|r| r.misfit);
     Model {

@@ -5,15 +5,19 @@
 
 mod comparison;
 mod conditions;
+mod deviations;
 mod evidence;
 mod faults;
+mod goodness;
 mod matrix;
 mod rows;
 
 pub use comparison::{Comparison, Pair, Side};
 pub use conditions::Condition;
+pub use deviations::{DeviationCell, DeviationRow, Deviations};
 pub use evidence::{Clause, Evidence, Excluded, Instrument, Line, Model, ModelRemark, Power, Waiver};
 pub use faults::{Fault, FaultKind, Faults};
+pub use goodness::Goodness;
 pub use matrix::{Matrix, MatrixRow};
 pub use rows::Row;
 

@@ -1,9 +1,12 @@
-//! Autocorrelation at short lags (full rate) and at long lags (block means).
+//! Autocorrelation of the record and, below each, of what the model leaves: at short lags (full rate) and at long lags
+//! (block means). Flicker, Markov noise and disturbances show here more clearly than in the Allan deviation.
 
 use super::{axis, line};
+use crate::estimate::normal_quantile;
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
 use crate::noise::autocorrelation::{Autocorrelation, of_series, of_spectrum};
+use crate::noise::residual::ResidualCorrelation;
 use crate::text::Note;
 
 /// Lags shown at the full rate.
@@ -25,6 +28,10 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     let (mut panels, mut remarks) = (Vec::new(), Vec::new());
     if let Some(acf) = full_rate.filter(|a| a.coefficients.len() > 4) {
         panels.push(panel(&acf, gyro.tau0_s, "axis.lag", true));
+        let fit = &gyro.goodness;
+        let left = if blocks.block_len == 1 { &fit.correlation } else { &fit.sample_correlation };
+        let lags = acf.coefficients.len() - 1;
+        panels.extend(left.as_ref().map(|left| residual(left, lags, "axis.lag")));
     }
     // The long panel spans about a quarter of the record in at most LONG_LAGS steps.
     let merge = (means.len() / (4 * LONG_LAGS)).max(1);
@@ -34,6 +41,10 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
             let block_s = gyro.tau0_s * blocks.block_len as f64 * merge as f64;
             panels.push(panel(&acf, block_s, "axis.lag_of_means", false));
             remarks.push(Note::new("figure.remark.autocorrelation_blocks").with("seconds", block_s));
+            if let (Some(left), true) = (&gyro.goodness.correlation, blocks.block_len > 1) {
+                panels.push(residual(left, left.coefficients.len(), "axis.lag_of_means"));
+                remarks.push(Note::new("figure.fit.residual_blocks").with("seconds", left.step_s));
+            }
         }
     }
     (!panels.is_empty()).then(|| Figure {
@@ -43,6 +54,25 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         panels,
         remarks,
     })
+}
+
+/// What the model leaves, with the band that a correct model keeps: narrower at lags that the fit follows.
+fn residual(left: &ResidualCorrelation, lags: usize, lag: &'static str) -> Panel {
+    let at = |i: usize| (i + 1) as f64 * left.step_s;
+    let points: Vec<(f64, f64)> =
+        left.coefficients.iter().take(lags).enumerate().map(|(i, r)| (at(i), *r)).collect();
+    let half = normal_quantile(0.975);
+    let band =
+        left.deviation.iter().take(lags).enumerate().map(|(i, d)| (at(i), -half * d, half * d)).collect();
+    Panel {
+        x: axis(lag, "s", Scale::Linear),
+        y: axis("figure.fit.correlation_left", "", Scale::Linear),
+        layers: vec![
+            Layer::Band { points: band, style: Style::Muted, legend: "figure.fit.correct_model".into() },
+            line(points.clone(), Style::SecondData, "figure.fit.whitened"),
+            Layer::Points { points, style: Style::SecondData, legend: "figure.fit.whitened".into() },
+        ],
+    }
 }
 
 fn mean_of_present(values: &[f64]) -> f64 {

@@ -1,7 +1,10 @@
 //! Figures of a static test, as data.
 
+pub mod allan_family;
 pub mod autocorrelation;
 pub mod histogram;
+mod parts;
+pub mod residual;
 pub mod sigma_tau;
 pub mod spectrum;
 pub mod time_series;

@@ -1,11 +1,11 @@
 //! σ(τ) with its band, the fitted terms, reading points, the limit and the Russian value.
 
-use super::{axis, line};
-use crate::estimate::Limit;
+use super::{axis, line, parts};
+use crate::estimate::{Limit, normal_quantile};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
+use crate::noise::composite::Part;
 use crate::noise::data::NoiseType;
-use crate::noise::model::{TERMS, unit_allan_variance};
 use crate::text::{Arg, Note};
 
 /// Points of a model curve.
@@ -84,8 +84,8 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
             shown.first().is_some_and(|p| p.0 <= 3600.0) && shown.last().is_some_and(|p| p.0 >= 3600.0);
         if within {
             let points = vec![(3600.0, n)];
-            let style = TERMS.iter().position(|t| *t == NoiseType::AngleRandomWalk).unwrap_or(0);
-            layers.push(Layer::Points { points, style: Style::Term(style as u8), legend: String::new() });
+            let style = parts::style(Part::Term(NoiseType::AngleRandomWalk));
+            layers.push(Layer::Points { points, style, legend: String::new() });
             layers.push(Layer::Label { at: (3600.0, n), text: label("figure_label.arw", n) });
         }
     }
@@ -107,36 +107,40 @@ fn label(key: &'static str, value: f64) -> Note {
     Note::new(key).with("value", Arg::figures(value, 3))
 }
 
+/// Largest relative uncertainty of a model curve that a band shows: beyond, the first order of it means nothing.
+const WIDEST: f64 = 2.0;
+
 fn model_curves(gyro: &GyroEvidence, from: f64, to: f64) -> Vec<Layer> {
-    let model = &gyro.identification.supported;
+    let described = &gyro.identification.described;
+    let (model, tau0_s) = (&described.model, gyro.tau0_s);
     let grid: Vec<f64> =
         (0..CURVE_POINTS).map(|i| from * (to / from).powf(i as f64 / (CURVE_POINTS - 1) as f64)).collect();
-    let mut layers = Vec::new();
-    let total: Vec<(f64, f64)> = grid.iter().map(|t| (*t, model.allan_variance(*t).sqrt())).collect();
-    // A term is drawn only where it would be seen, or the axis would stretch down to nothing.
-    let least = total.iter().map(|p| p.1).fold(f64::INFINITY, f64::min) / 8.0;
-    for (i, term) in TERMS.into_iter().enumerate() {
-        let coefficient = model.coefficient(term);
-        if coefficient == 0.0 {
-            continue;
-        }
+    // Variance and its standard uncertainty; the band is symmetric in the logarithm, as a variance is positive.
+    let curve: Vec<(f64, f64, f64)> = grid
+        .iter()
+        .map(|t| {
+            let (variance, u) = described.propagate(|m| m.allan_variance(*t, tau0_s));
+            let half =
+                if variance > 0.0 { 0.5 * normal_quantile(0.975) * (u / variance).min(WIDEST) } else { 0.0 };
+            (*t, variance.max(0.0).sqrt(), half.exp())
+        })
+        .collect();
+    // A part is drawn only where it would be seen, or the axis would stretch down to nothing.
+    let least = curve.iter().map(|p| p.1).fold(f64::INFINITY, f64::min) / 8.0;
+    let mut layers = vec![Layer::Band {
+        points: curve.iter().map(|(t, s, f)| (*t, s / f, s * f)).collect(),
+        style: Style::Model,
+        legend: "figure.fit.model_band".into(),
+    }];
+    for part in model.parts() {
         let points: Vec<(f64, f64)> = grid
             .iter()
-            .map(|t| (*t, coefficient.abs() * unit_allan_variance(term, *t).sqrt()))
+            .map(|t| (*t, model.part_allan_variance(part, *t, tau0_s).sqrt()))
             .map(|(t, s)| (t, if s >= least { s } else { f64::NAN }))
             .collect();
-        layers.push(line(points, Style::Term(i as u8), legend(term)));
+        layers.push(line(points, parts::style(part), parts::legend(part)));
     }
+    let total = curve.iter().map(|(t, s, _)| (*t, *s)).collect();
     layers.push(line(total, Style::Model, "figure.legend.model"));
     layers
-}
-
-fn legend(term: NoiseType) -> &'static str {
-    match term {
-        NoiseType::Quantization => "figure.legend.quantization",
-        NoiseType::AngleRandomWalk => "figure.legend.angle_random_walk",
-        NoiseType::Flicker => "figure.legend.bias_instability",
-        NoiseType::RateRandomWalk => "figure.legend.rate_random_walk",
-        NoiseType::RateRamp => "figure.legend.rate_ramp",
-    }
 }

@@ -1,12 +1,18 @@
-//! The averaged periodogram with the model and the lines.
+//! The averaged periodogram with the model, its parts and the lines; below, the record over the model.
 
-use super::{axis, line};
+use super::{axis, line, parts};
+use crate::estimate::chi_square_quantile;
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::measurand::GyroEvidence;
+use crate::noise::composite::Damped;
+use crate::noise::residual::BandRatio;
 use crate::text::{Arg, Note};
+use std::f64::consts::PI;
 
 /// Most points drawn: beyond, neighbouring bins are joined, evenly on the logarithmic axis.
 const POINTS: usize = 700;
+/// Points of a model curve.
+const CURVE_POINTS: usize = 240;
 /// Most lines that get a label.
 const LABELS: usize = 6;
 
@@ -27,16 +33,39 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         .collect();
     let (first, last) = (bins.first()?.0, bins.last()?.0);
     let (mean, range) = join(&bins);
-    let model = &gyro.identification.supported;
-    let curve = (0..160)
-        .map(|i| first * (last / first).powf(f64::from(i) / 159.0))
-        .map(|f| (f, model.density(f, gyro.tau0_s)))
+    let model = &gyro.identification.described.model;
+    let ratios: Vec<&BandRatio> = gyro.goodness.bands.iter().filter(|b| b.ratio > 0.0).collect();
+    let middle = |b: &BandRatio| (b.low_hz * b.high_hz).sqrt();
+    let lowest = ratios.iter().map(|b| middle(b)).fold(first, f64::min);
+    let mut grid: Vec<f64> = (0..CURVE_POINTS)
+        .map(|i| lowest * (last / lowest).powf(i as f64 / (CURVE_POINTS - 1) as f64))
+        .chain(model.quasi_periodic.iter().flat_map(|d| peak(d, lowest, last)))
+        .collect();
+    grid.sort_by(f64::total_cmp);
+    let curve: Vec<(f64, f64)> = grid.iter().map(|f| (*f, model.density(*f, gyro.tau0_s))).collect();
+    // Below the periodogram the cosine modes of block means go on.
+    let slow: Vec<(f64, f64)> = ratios
+        .iter()
+        .map(|b| (middle(b), b.ratio * model.density(middle(b), gyro.tau0_s)))
+        .filter(|(f, d)| *f < 2.0 * first && *d > 0.0)
         .collect();
     let mut layers = Vec::new();
     if range.len() < bins.len() {
         layers.push(Layer::Band { points: range, style: Style::Data, legend: "figure.legend.range".into() });
     }
     layers.push(line(mean, Style::Data, "figure.legend.spectrum"));
+    layers.push(line(slow, Style::SecondData, "figure.fit.slow_modes"));
+    let least = curve.iter().map(|p| p.1).fold(f64::INFINITY, f64::min) / 30.0;
+    for part in model.parts() {
+        let points: Vec<(f64, f64)> = grid
+            .iter()
+            .map(|f| (*f, model.part_density(part, *f, gyro.tau0_s)))
+            .map(|(f, d)| (f, if d >= least && d > 0.0 { d } else { f64::NAN }))
+            .collect();
+        if points.iter().any(|p| p.1.is_finite()) {
+            layers.push(line(points, parts::style(part), parts::legend(part)));
+        }
+    }
     layers.push(line(curve, Style::Model, "figure.legend.model"));
     let at = |f: f64| {
         let k = (f / step_hz).round() as usize;
@@ -55,17 +84,50 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
             layers.push(Layer::Label { at: place, text });
         }
     }
+    let mut panels = vec![Panel {
+        x: axis("axis.frequency", "Hz", Scale::Log),
+        y: axis("axis.density", "(deg/h)^2/Hz", Scale::Log),
+        layers,
+    }];
+    panels.extend((ratios.len() > 3).then(|| ratio(&ratios)));
     Some(Figure {
         id: gyro.figure_id("spectrum"),
         title: "figure.title.spectrum",
         channel: gyro.figure_channel(),
-        panels: vec![Panel {
-            x: axis("axis.frequency", "Hz", Scale::Log),
-            y: axis("axis.density", "(deg/h)^2/Hz", Scale::Log),
-            layers,
-        }],
+        panels,
         remarks: vec![Note::new("figure.remark.resolution").with("hz", step_hz)],
     })
+}
+
+/// Points at which a narrow disturbance is drawn.
+fn peak(d: &Damped, from: f64, to: f64) -> impl Iterator<Item = f64> {
+    let (centre, width) = (d.frequency_hz, 1.0 / (PI * d.decay_time_s));
+    (-30..=30)
+        .map(move |i| centre + width * f64::from(i) / 10.0 * (1.0 + f64::from(i).abs() / 10.0))
+        .filter(move |f| *f > from && *f < to)
+}
+
+/// Record over model, with the band that a correct model keeps in 95 of 100 bands.
+fn ratio(ratios: &[&BandRatio]) -> Panel {
+    let middle = |b: &BandRatio| (b.low_hz * b.high_hz).sqrt();
+    let band = ratios
+        .iter()
+        .map(|b| {
+            let at = |p: f64| chi_square_quantile(p, b.dof) / b.dof;
+            (middle(b), at(0.025), at(0.975))
+        })
+        .collect();
+    let points: Vec<(f64, f64)> = ratios.iter().map(|b| (middle(b), b.ratio)).collect();
+    Panel {
+        x: axis("axis.frequency", "Hz", Scale::Log),
+        y: axis("figure.fit.ratio", "", Scale::Log),
+        layers: vec![
+            Layer::Band { points: band, style: Style::Muted, legend: "figure.fit.correct_model".into() },
+            Layer::Horizontal { at: 1.0, style: Style::Model, legend: String::new() },
+            line(points.clone(), Style::Data, "figure.fit.ratio_of_bands"),
+            Layer::Points { points, style: Style::Data, legend: "figure.fit.ratio_of_bands".into() },
+        ],
+    }
 }
 
 type Curve = Vec<(f64, f64)>;

@@ -1,0 +1,151 @@
+//! Goodness of fit: the record with the model taken out of it, judged in frequency, lag, averaging time and amplitude.
+//!
+//! Every view gives a probability that counts the search within the view and what fitted parameters took, and says
+//! where and by how much the record departs most. Measured on simulated records (`tests/goodness_of_fit.rs`).
+
+mod amplitude;
+mod averaging;
+mod frequency;
+mod grid;
+mod lag;
+mod null;
+mod spectrum;
+mod whiten;
+
+pub use amplitude::{Amplitude, TAIL};
+pub use averaging::{OctaveRatio, degrees_of_freedom};
+pub use frequency::BandRatio;
+pub use lag::ResidualCorrelation;
+pub use whiten::{Whitened, whitened};
+
+use super::composite::{Described, Line};
+use super::data::DeviationPoint;
+use super::spectral_record::SpectralRecord;
+
+/// Probability, for all views together, below which a departure is called one.
+pub const LEVEL: f64 = 0.01;
+
+/// A way to look at a residual.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum View {
+    /// Power by frequency.
+    Frequency,
+    /// Autocorrelation by lag.
+    Lag,
+    /// Allan variance by averaging time.
+    AveragingTime,
+    /// Distribution of the values.
+    Amplitude,
+}
+
+impl View {
+    /// Every view, in the order of reports.
+    pub const ALL: [View; 4] = [View::Frequency, View::Lag, View::AveragingTime, View::Amplitude];
+
+    /// Id in results.
+    pub fn id(self) -> &'static str {
+        match self {
+            View::Frequency => "frequency",
+            View::Lag => "lag",
+            View::AveragingTime => "averaging_time",
+            View::Amplitude => "amplitude",
+        }
+    }
+}
+
+/// Where a record departs most from its model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Departure {
+    /// Begin: Hz, s, s, or standard deviations, by view.
+    pub from: f64,
+    /// End, same unit.
+    pub to: f64,
+    /// Size: power over model less 1; autocorrelation; deviation over model less 1; values beyond four standard
+    /// deviations over expected ones less 1.
+    pub excess: f64,
+}
+
+/// One view judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judged {
+    /// The view.
+    pub view: View,
+    /// Largest departure as a normal score; the excess kurtosis for amplitudes.
+    pub statistic: f64,
+    /// Probability of a larger one anywhere in this view if the model is right.
+    pub p_value: f64,
+    /// Where it is.
+    pub departure: Departure,
+}
+
+/// How well a description fits a record.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct GoodnessOfFit {
+    /// The views that the record is long enough for.
+    pub views: Vec<Judged>,
+    /// Power over model by frequency.
+    pub bands: Vec<BandRatio>,
+    /// Allan variance over model by octave.
+    pub octaves: Vec<OctaveRatio>,
+    /// Autocorrelation of the whitened block means.
+    pub correlation: Option<ResidualCorrelation>,
+    /// Autocorrelation of whitened single samples, where blocks hold several.
+    pub sample_correlation: Option<ResidualCorrelation>,
+    /// Distribution of the whitened block means.
+    pub amplitude: Option<Amplitude>,
+    /// The whitened block means.
+    pub whitened: Option<Whitened>,
+}
+
+impl GoodnessOfFit {
+    /// Judges a description of a record. `octaves`: its overlapping Allan deviations.
+    pub fn of(
+        record: &SpectralRecord<'_>,
+        described: &Described,
+        octaves: &[DeviationPoint],
+    ) -> GoodnessOfFit {
+        let tau0_s = record.tau0_s;
+        let evidence = record.evidence(record.lines);
+        if described.model.parts().is_empty() || !(evidence.usable_s > 0.0 && tau0_s > 0.0) {
+            return GoodnessOfFit::default();
+        }
+        let mut described = described.clone();
+        if described.model.lines.is_empty() {
+            // Lines are left out of the fit and are in the Allan deviation all the same.
+            described.model.lines = record
+                .lines
+                .iter()
+                .map(|l| Line { amplitude_deg_h: l.amplitude_deg_h, frequency_hz: l.frequency_hz })
+                .collect();
+        }
+        let grid = grid::Grid::new(&described, evidence.usable_s, tau0_s);
+        let bands = frequency::Bands::new(&evidence, &described, tau0_s);
+        let whitened = whitened(record, &described.model);
+        let correlation = whitened.as_ref().and_then(|w| lag::of_blocks(w, &grid));
+        let sample_correlation = lag::of_samples(record, &described, &grid);
+        let looks: Vec<&ResidualCorrelation> = sample_correlation.iter().chain(&correlation).collect();
+        let amplitude = whitened.as_ref().and_then(amplitude::of);
+        let (octaves, averaging) = averaging::judge(octaves, &described, &grid, tau0_s);
+        let views = [bands.judge(), lag::judge(&looks), averaging, amplitude.as_ref().map(amplitude::judge)];
+        GoodnessOfFit {
+            views: views.into_iter().flatten().collect(),
+            bands: bands.bands,
+            octaves,
+            correlation,
+            sample_correlation,
+            amplitude,
+            whitened,
+        }
+    }
+
+    /// The views in which the model fails: Holm's procedure over all views at [`LEVEL`].
+    pub fn failures(&self) -> Vec<&Judged> {
+        let mut sorted: Vec<&Judged> = self.views.iter().collect();
+        sorted.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+        let count = sorted.len();
+        let passed = (0..count).find(|i| sorted[*i].p_value * (count - i) as f64 > LEVEL).unwrap_or(count);
+        sorted.truncate(passed);
+        sorted.sort_by_key(|j| j.view);
+        sorted
+    }
+}
