@@ -21,6 +21,7 @@ pub mod lines;
 pub mod misfit;
 pub mod model;
 mod phase;
+pub mod prediction;
 pub mod profile;
 pub mod russian;
 pub mod simulate;
