@@ -2,11 +2,12 @@
 //!
 //! A measurand is a pure function of what one pass over the recording left behind ([`GyroEvidence`]).
 
-mod allan_minimum;
+pub mod allan_minimum;
 pub mod earth_rate;
 pub mod evidence;
 mod noise_terms;
-mod russian;
+pub mod russian;
+pub mod russian_prediction;
 mod spectral_line;
 pub mod static_bias;
 
@@ -37,6 +38,7 @@ pub static MEASURANDS: &[&dyn Measurand] = &[
     &noise_terms::NoiseTerms,
     &allan_minimum::AllanMinimum,
     &russian::Russian,
+    &russian_prediction::RussianPrediction,
     &spectral_line::SpectralLine,
 ];
 

@@ -15,6 +15,7 @@ pub mod family;
 pub mod fit;
 pub mod fit_range;
 pub mod histogram;
+pub mod identifiable;
 pub mod identify;
 pub mod intervals;
 pub mod lines;

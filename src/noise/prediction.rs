@@ -6,7 +6,7 @@
 //! 1978), hence Var\[s² − E\] = Var\[s²\] − Var\[E\]: what the fit took from the record it cannot be tested against.
 //! The ratio s²/E is read as χ² with the degrees of freedom of that variance.
 
-use super::composite::{Composite, Described, Part};
+use super::composite::{Composite, Described, Parameter, Part};
 use super::data::NoiseType;
 use super::windows::edf_of_window_std;
 use crate::estimate::{Interval, chi_square_quantile};
@@ -135,6 +135,25 @@ impl WindowPrediction {
     }
 }
 
+/// Covariance of a parameter with a quantity computed from the model, to first order; `None` when it was not fitted.
+pub fn covariance_with(
+    described: &Described,
+    parameter: Parameter,
+    quantity: impl Fn(&Composite) -> f64,
+) -> Option<f64> {
+    let row = described.covariance.get(described.parameters.iter().position(|p| *p == parameter)?)?;
+    let mut sum = 0.0;
+    for (p, c) in described.parameters.iter().zip(row) {
+        let at = described.model.value(*p);
+        let step = 1e-3 * at.abs();
+        if step > 0.0 {
+            let (up, down) = (described.model.with(*p, at + step), described.model.with(*p, at - step));
+            sum += c * (quantity(&up) - quantity(&down)) / (2.0 * step);
+        }
+    }
+    Some(sum)
+}
+
 /// What a term that was not shown would add to E\[s²\] at its upper limit, (deg/h)².
 pub fn unseen_variance(term: NoiseType, limit: f64, window_s: f64, windows: u64) -> f64 {
     limit * limit * super::russian::unit_expected_variance(term, window_s, windows).unwrap_or(0.0)
@@ -143,7 +162,6 @@ pub fn unseen_variance(term: NoiseType, limit: f64, window_s: f64, windows: u64)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::composite::Parameter;
     use crate::noise::model::NoiseModel;
 
     fn described(model: NoiseModel, parameters: Vec<Parameter>, variances: &[f64]) -> Described {

@@ -5,9 +5,14 @@
 //! template.
 
 mod beside;
+mod comparison;
 mod integrity;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use comparison::{
+    ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord, OctavesRecord, ParameterRecord,
+    ShareRecord, WindowRecord,
+};
 pub use integrity::{FaultRecord, Integrity};
 
 use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
@@ -52,6 +57,9 @@ pub struct RunRecord {
     pub lines: Vec<LineRecord>,
     /// The noise model that was fitted, per channel.
     pub noise_models: Vec<NoiseModelRecord>,
+    /// Russian against Allan values, per channel long enough for it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub comparison: Vec<ComparisonRecord>,
     /// What this test can decide: power of each limit.
     pub power: Vec<PowerRecord>,
     /// Instruments that were used.

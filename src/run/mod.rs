@@ -3,6 +3,7 @@
 //! Clock, host and people are passed in; the outcome is a pure function of the inputs.
 
 pub mod analysis;
+mod comparison;
 mod evaluate;
 pub mod figures;
 mod gyro_facts;

@@ -32,6 +32,7 @@ pub(super) fn record(
         measurands: rows,
         lines: found.gyros.iter().flat_map(lines).collect(),
         noise_models: found.gyros.iter().map(noise_model).collect(),
+        comparison: found.gyros.iter().filter_map(super::comparison::record).collect(),
         power,
         options: options(request, found),
         figures: figures
@@ -84,6 +85,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         measurands: vec![],
         lines: vec![],
         noise_models: vec![],
+        comparison: vec![],
         power: vec![],
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure.waivers_for(serial),
