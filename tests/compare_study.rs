@@ -48,7 +48,8 @@ fn study(model: &Composite, hours: f64, tau0_s: f64, records: u64, seed: u64) ->
                 continue;
             }
             let windows = unit.windows(window_s);
-            let p = WindowPrediction::of(&unit.found.described, window_s, windows.n, tau0_s).expect("a model");
+            let p =
+                WindowPrediction::of(&unit.found.described, window_s, windows.n, tau0_s).expect("a model");
             match p.agreement(windows.standard_deviation).expect("an interval") {
                 Agreement::Consistent => tally.consistent[i] += 1,
                 Agreement::Above => tally.above[i] += 1,

@@ -16,27 +16,28 @@ pub fn octaves(unit: &Unit, number: usize) -> Option<Figure> {
     let o = unit.detail.as_ref()?.octaves.as_ref()?;
     let half = 2f64.sqrt();
     let bars = o.octaves.iter().map(|o| (o.tau_s / half, o.tau_s * half, 100.0 * o.share)).collect();
-    let mut layers = vec![Layer::Bars { bars, style: Style::Data, legend: "figure.legend.octaves_data".into() }];
+    let mut layers =
+        vec![Layer::Bars { bars, style: Style::Data, legend: "compare.legend.octaves_data".into() }];
     let expected: Vec<(f64, f64)> =
         o.octaves.iter().filter_map(|o| Some((o.tau_s, 100.0 * o.expected_share?))).collect();
     if !expected.is_empty() {
         layers.push(Layer::Points {
             points: expected,
             style: Style::SecondData,
-            legend: "figure.legend.octaves_model".into(),
+            legend: "compare.legend.octaves_model".into(),
         });
     }
     Some(Figure {
         id: format!("octaves_{number}"),
-        title: "figure.title.octaves",
+        title: "compare.figure.octaves",
         channel: unit.label(),
         panels: vec![Panel {
             x: axis("axis.averaging_time", "s", Scale::Log),
-            y: axis("axis.share_of_variance", "%", Scale::Linear),
+            y: axis("compare.axis.share", "%", Scale::Linear),
             layers,
         }],
         remarks: vec![
-            Note::new("figure.remark.octaves")
+            Note::new("compare.figure.octaves_remark")
                 .with("windows", o.windows)
                 .with("of", o.of)
                 .with("sigma", o.sigma),
@@ -57,7 +58,7 @@ pub fn ratios(units: &[Unit]) -> Option<Figure> {
             layers.push(Layer::Line {
                 points: vec![(hours, low), (hours, high)],
                 style: Style::Muted,
-                legend: "figure.legend.null".into(),
+                legend: "compare.legend.null".into(),
             });
         }
         points.push((hours, ratio));
@@ -79,20 +80,20 @@ pub fn ratios(units: &[Unit]) -> Option<Figure> {
     layers.push(Layer::Points {
         points: medians,
         style: Style::Muted,
-        legend: "figure.legend.null_median".into(),
+        legend: "compare.legend.null_median".into(),
     });
-    layers.push(Layer::Points { points, style: Style::SecondData, legend: "figure.legend.ratio".into() });
+    layers.push(Layer::Points { points, style: Style::SecondData, legend: "compare.legend.ratio".into() });
     layers.extend(labels);
     Some(Figure {
         id: "ratios".into(),
-        title: "figure.title.ratios",
+        title: "compare.figure.ratios",
         channel: String::new(),
         panels: vec![Panel {
-            x: axis("axis.record_length", "h", Scale::Log),
-            y: axis("axis.ratio", "", Scale::Log),
+            x: axis("compare.axis.record_length", "h", Scale::Log),
+            y: axis("compare.axis.ratio", "", Scale::Log),
             layers,
         }],
-        remarks: vec![],
+        remarks: vec!["compare.figure.ratios_remark".into()],
     })
 }
 

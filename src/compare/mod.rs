@@ -12,6 +12,7 @@ mod says;
 mod unit;
 
 pub use rules::{RULES, RuleRow};
+pub use says::part_key;
 pub use unit::{Origin, Quantity, Unit, UnitError, units_of};
 
 use crate::record::Program;

@@ -111,11 +111,8 @@ fn row(printed: &Row2, tables: &Tables) -> Option<CheckedRow> {
     }
     if let Some(first) = n_table1.filter(|first| first.value != r.n.value) {
         let rounding = overlap(first.range(), r.n.range());
-        let key = if rounding {
-            "compare.published.n_differs_by_rounding"
-        } else {
-            "compare.published.n_differs"
-        };
+        let key =
+            if rounding { "compare.published.n_differs_by_rounding" } else { "compare.published.n_differs" };
         let note = Note::new(key)
             .with("first", Arg::Stated(first.value))
             .with("second", Arg::Stated(r.n.value))
@@ -145,10 +142,8 @@ fn row(printed: &Row2, tables: &Tables) -> Option<CheckedRow> {
     // σ10 as the paper's own formula gives it back.
     let per_arw = 1.0 / angle_random_walk_from_10s(1.0);
     let steep = per_arw * r.arw.value / r.sigma100.value;
-    let (least_steep, _) = quotients(
-        Printed { value: per_arw * r.arw.value, half: per_arw * r.arw.half },
-        r.sigma100,
-    );
+    let (least_steep, _) =
+        quotients(Printed { value: per_arw * r.arw.value, half: per_arw * r.arw.half }, r.sigma100);
     if least_steep > WHITE / low {
         let note = Note::new("compare.published.excess_at_10_s")
             .with("ratio", factor(steep))
@@ -188,7 +183,7 @@ fn remarks(tables: &Tables, rows: &[CheckedRow], null: &[NullRow]) -> Vec<Note> 
     {
         let note = Note::new("compare.published.slope_name")
             .with("called", Arg::Stated(called))
-            .with("term", Arg::key("compare.part", term.id()))
+            .with("term", Arg::Key(super::part_key(term.id()).into()))
             .with("ramp", Arg::Stated(slope(NoiseType::RateRamp)));
         out.push(note);
     }
@@ -254,7 +249,11 @@ mod tests {
             assert!((row.six_n - six_n).abs() < 5e-5, "{device} {}", row.six_n);
             assert!((row.over_six_n - over).abs() < 0.006, "{device} {}", row.over_six_n);
             assert!((row.crossover_h / crossover - 1.0).abs() < 0.1, "{device} {}", row.crossover_h);
-            assert!((row.sigma10_over_sigma100 - steep).abs() < 0.06, "{device} {}", row.sigma10_over_sigma100);
+            assert!(
+                (row.sigma10_over_sigma100 - steep).abs() < 0.06,
+                "{device} {}",
+                row.sigma10_over_sigma100
+            );
         }
     }
 
@@ -283,7 +282,9 @@ mod tests {
         }
         assert!(has("OIUS-200", "n_differs_by_rounding") && !has("OIUS-501", "n_differs"));
         let whole = ids(&checked.remarks);
-        for id in ["slope_name", "no_correlation_time", "bandwidth", "inverse_first", "order_of_magnitude", "null"] {
+        for id in
+            ["slope_name", "no_correlation_time", "bandwidth", "inverse_first", "order_of_magnitude", "null"]
+        {
             assert!(whole.contains(&id), "{id}");
         }
         let slope = checked.remarks.iter().find(|n| n.id.ends_with("slope_name")).unwrap();

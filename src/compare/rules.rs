@@ -49,9 +49,7 @@ pub(super) fn rules(unit: &Unit) -> Vec<RuleRow> {
             let ratio = sigma.zip(value.or(limit.map(|l| l.value))).map(|(s, v)| s / v);
             let ratio_interval = match rule {
                 "a" => of_minimum,
-                "b" => {
-                    of_minimum.map(|i| Interval { low: i.low * FLOOR, high: i.high * FLOOR, ..i })
-                }
+                "b" => of_minimum.map(|i| Interval { low: i.low * FLOOR, high: i.high * FLOOR, ..i }),
                 _ => drift.and_then(|d| quotient(d, q, 1.0 / factor)),
             };
             Some(RuleRow {

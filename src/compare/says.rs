@@ -28,9 +28,22 @@ pub(super) fn sentences(unit: &Unit) -> Vec<Note> {
     out
 }
 
-/// The name of a part.
+/// The name of a part of a model, by its id.
+pub fn part_key(id: &str) -> &'static str {
+    match id {
+        "angle_random_walk" => "compare.part.angle_random_walk",
+        "flicker" => "compare.part.flicker",
+        "rate_random_walk" => "compare.part.rate_random_walk",
+        "quantization" => "compare.part.quantization",
+        "rate_ramp" => "compare.part.rate_ramp",
+        "markov" => "compare.part.markov",
+        "quasi_periodic" => "compare.part.quasi_periodic",
+        _ => "compare.part.line",
+    }
+}
+
 fn part(share: &ShareRecord) -> Arg {
-    Arg::key("compare.part", &share.part)
+    Arg::Key(part_key(&share.part).into())
 }
 
 fn percent(share: f64) -> Arg {

@@ -48,14 +48,12 @@ pub fn predicted(gyro: &GyroEvidence, window_s: f64) -> Option<(WindowPrediction
     let found = &gyro.identification;
     let p = WindowPrediction::of(&found.described, exact_s, windows.n, gyro.tau0_s)?;
     let present = found.described.model.parts();
-    let unseen = [
-        (NoiseType::Flicker, &found.bias_instability),
-        (NoiseType::RateRandomWalk, &found.rate_random_walk),
-    ]
-    .into_iter()
-    .filter(|(term, _)| !present.contains(&Part::Term(*term)))
-    .filter_map(|(term, e)| Some(unseen_variance(term, e.upper_limit?.value, exact_s, windows.n)))
-    .fold(0.0, f64::max);
+    let unseen =
+        [(NoiseType::Flicker, &found.bias_instability), (NoiseType::RateRandomWalk, &found.rate_random_walk)]
+            .into_iter()
+            .filter(|(term, _)| !present.contains(&Part::Term(*term)))
+            .filter_map(|(term, e)| Some(unseen_variance(term, e.upper_limit?.value, exact_s, windows.n)))
+            .fold(0.0, f64::max);
     let (variance, dof) = (p.sigma * p.sigma, p.known_dof());
     let curve = scores().map(|z| {
         let known = if dof < 1e9 {
@@ -63,11 +61,8 @@ pub fn predicted(gyro: &GyroEvidence, window_s: f64) -> Option<(WindowPrediction
         } else {
             variance
         };
-        let raised = if z > 0.0 {
-            variance + (known - variance).hypot(unseen * z / LIMIT_SCORE)
-        } else {
-            known
-        };
+        let raised =
+            if z > 0.0 { variance + (known - variance).hypot(unseen * z / LIMIT_SCORE) } else { known };
         (z, raised.sqrt())
     });
     let spread = Spread::Curve(curve.collect());
@@ -75,7 +70,7 @@ pub fn predicted(gyro: &GyroEvidence, window_s: f64) -> Option<(WindowPrediction
 }
 
 fn drift_predicted(gyro: &GyroEvidence) -> Estimate {
-    let (id, method) = ("russian_drift_100s_predicted", "predicted_by_model");
+    let (id, method) = ("russian_drift_100s_predicted", "whittle");
     let Some((p, spread)) = predicted(gyro, DRIFT_WINDOW_S) else {
         let none = Estimate::not_identifiable(id, &gyro.channel, None, "deg/h", method);
         return none.note(Note::new("note.russian_too_short").with("window_s", DRIFT_WINDOW_S));
@@ -85,11 +80,11 @@ fn drift_predicted(gyro: &GyroEvidence) -> Estimate {
 
 /// σ over 100 s over the smallest Allan deviation, as a ratio of two deviations with their degrees of freedom.
 fn bias_ratio(gyro: &GyroEvidence) -> Estimate {
-    let (id, method) = ("ratio_russian_to_allan_bias", "ratio_of_deviations");
+    let (id, method) = ("ratio_russian_to_allan_bias", "overlapping_allan");
     let both = gyro.windows(DRIFT_WINDOW_S).filter(|w| w.standard_deviation > 0.0).zip(lowest(gyro));
     let Some((windows, minimum)) = both else {
         let none = Estimate::not_identifiable(id, &gyro.channel, None, "1", method);
-        return none.note(Note::new("note.ratio_lacks_a_side"));
+        return none.note(Note::new("compare.note.lacks_a_side"));
     };
     let value = windows.standard_deviation / minimum.point.deviation;
     let (above, below) = (degrees_of_freedom(gyro, windows), SELECTED * minimum.edf);
@@ -102,7 +97,7 @@ fn bias_ratio(gyro: &GyroEvidence) -> Estimate {
 
 /// The angle random walk from 10-s means over the fitted N. Both come from one record, so what they share cancels.
 fn random_walk_ratio(gyro: &GyroEvidence) -> Estimate {
-    let (id, method) = ("ratio_russian_to_allan_arw", "ratio_of_deviations");
+    let (id, method) = ("ratio_russian_to_allan_arw", "whittle");
     let found = &gyro.identification;
     let windows = gyro.windows(RANDOM_WALK_WINDOW_S).filter(|w| w.standard_deviation > 0.0);
     let ratio = windows.zip(found.angle_random_walk.value).and_then(|(windows, n)| {
@@ -123,6 +118,6 @@ fn random_walk_ratio(gyro: &GyroEvidence) -> Estimate {
     match ratio {
         Some((value, spread)) => Estimate::measured(id, &gyro.channel, value, "1", spread, method),
         None => Estimate::not_identifiable(id, &gyro.channel, None, "1", method)
-            .note(Note::new("note.ratio_lacks_a_side")),
+            .note(Note::new("compare.note.lacks_a_side")),
     }
 }

@@ -72,12 +72,7 @@ fn scattering(model: &Composite) -> Composite {
 impl WindowPrediction {
     /// The prediction for `windows` means over `window_s` of a record of samples over `tau0_s`; `None` below two
     /// windows or for an empty model.
-    pub fn of(
-        described: &Described,
-        window_s: f64,
-        windows: u64,
-        tau0_s: f64,
-    ) -> Option<WindowPrediction> {
+    pub fn of(described: &Described, window_s: f64, windows: u64, tau0_s: f64) -> Option<WindowPrediction> {
         let expected = |m: &Composite| m.expected_variance(window_s, windows, tau0_s).unwrap_or(f64::NAN);
         let (total, u_total) = described.propagate(expected);
         if !(total > 0.0 && total.is_finite()) {
