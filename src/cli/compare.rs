@@ -64,7 +64,12 @@ fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
 fn stem(path: &Path) -> String {
     let name = path.file_name().or_else(|| path.parent()?.file_name());
     let name = name.map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    if path.is_dir() { name } else { name.split('.').next().unwrap_or_default().to_owned() }
+    if path.is_dir() {
+        return name;
+    }
+    let packed = [".gz", ".zst", ".bz2", ".xz"];
+    let name = packed.iter().find_map(|e| name.strip_suffix(e)).unwrap_or(&name);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned()
 }
 
 /// The units of one argument: a result where it is one, else a recording that is analysed.

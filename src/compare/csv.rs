@@ -47,7 +47,7 @@ pub fn units(units: &[Unit]) -> String {
             quoted(&unit.name),
             quoted(&unit.channel),
             quoted(&unit.path),
-            number(detail.map(|d| d.length_s)),
+            number(unit.length_s),
             count(w100.map(|w| w.n)),
             detail.map(|d| d.detrend.clone()).unwrap_or_default(),
             value("russian_drift_100s"),

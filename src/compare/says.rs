@@ -7,6 +7,9 @@ use crate::text::{Arg, Note};
 /// Smallest share that is named.
 const NAMED: f64 = 0.005;
 
+/// Probability of a misfit below which a prediction is called indicative.
+const UNBELIEVABLE: f64 = 1e-3;
+
 /// The window of a length.
 fn window(detail: &ComparisonRecord, window_s: f64) -> Option<&WindowRecord> {
     detail.windows.iter().find(|w| w.window_s == window_s)
@@ -23,6 +26,7 @@ pub(super) fn sentences(unit: &Unit) -> Vec<Note> {
     if let Some(w) = window(detail, 10.0) {
         out.extend(agreement(w, "10"));
     }
+    out.extend(misfit(detail));
     out.extend(null(detail));
     out.extend(floor(detail));
     out
@@ -70,6 +74,9 @@ fn made_of(w: &WindowRecord) -> Option<Note> {
 
 fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {
     let (ratio, interval) = (w.ratio?, w.ratio_interval?);
+    // Two digits of the half-width, and not fewer than two of the value.
+    let half = 0.5 * (interval.high - interval.low) / ratio;
+    let figures = (1.0 - half.max(1e-6).log10().floor()).clamp(2.0, 6.0) as usize;
     let key = match w.agreement.as_deref()? {
         "consistent" => "compare.says.consistent",
         "missing_low_frequency_term" if window == "100" => "compare.says.above",
@@ -81,10 +88,16 @@ fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {
             .with("window", window)
             .with("observed", w.observed)
             .with("predicted", w.predicted?)
-            .with("ratio", Arg::figures(ratio, 3))
-            .with("low", Arg::figures(interval.low, 3))
-            .with("high", Arg::figures(interval.high, 3)),
+            .with("ratio", Arg::figures(ratio, figures))
+            .with("low", Arg::figures(interval.low, figures))
+            .with("high", Arg::figures(interval.high, figures)),
     )
+}
+
+/// Said when the model is no description of the record.
+fn misfit(detail: &ComparisonRecord) -> Option<Note> {
+    let (misfit, p) = (detail.model.misfit?, detail.model.misfit_probability?);
+    (p < UNBELIEVABLE).then(|| Note::new("compare.says.misfit").with("misfit", Arg::rounded(misfit, 2)))
 }
 
 fn null(detail: &ComparisonRecord) -> Option<Note> {

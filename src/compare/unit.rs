@@ -68,6 +68,8 @@ pub struct Unit {
     pub path: String,
     /// Where the values come from.
     pub origin: Origin,
+    /// Usable time of the record, s.
+    pub length_s: Option<f64>,
     /// The quantities of the comparison that the result holds.
     pub quantities: Vec<Quantity>,
     /// Allan bias instability under each read-out rule, with the ratios.
@@ -153,6 +155,7 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
             several: channels.len() > 1,
             path: path.to_owned(),
             origin,
+            length_s: result.pointer("/window/usable_s").and_then(Value::as_f64).filter(|t| *t > 0.0),
             quantities: quantities.iter().filter(|q| q.channel == *channel).cloned().collect(),
             rules: vec![],
             detail: details.iter().find(|d| d.channel == *channel).cloned(),

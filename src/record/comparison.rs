@@ -130,6 +130,12 @@ pub struct ModelRecord {
     pub parameters: Vec<ParameterRecord>,
     /// Their covariance, in their order and units.
     pub covariance: Vec<Vec<f64>>,
+    /// Misfit per degree of freedom of the spectrum about the model.
+    #[serde(default)]
+    pub misfit: Option<f64>,
+    /// Probability of a larger one if the model is right.
+    #[serde(default)]
+    pub misfit_probability: Option<f64>,
     /// Coherent lines: (amplitude in deg/h, frequency in Hz).
     pub lines: Vec<(f64, f64)>,
 }

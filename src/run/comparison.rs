@@ -1,5 +1,6 @@
 //! Russian and Allan values of each channel, for `compare` and for results that are compared later.
 
+use crate::estimate::chi_square_quantile;
 use crate::measurand::allan_minimum::{FLICKER_FLOOR, lowest, readable};
 use crate::measurand::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S};
 use crate::measurand::{GyroEvidence, russian_prediction};
@@ -93,15 +94,27 @@ fn minimum(gyro: &GyroEvidence) -> Option<MinimumRecord> {
     let largest_tau_s = readable(gyro).last()?.point.m as f64 * gyro.tau0_s;
     let w = gyro.windows(DRIFT_WINDOW_S)?;
     // The ratio of the null depends on the record and the rule alone: N cancels.
-    let null = null_minimum(1.0, gyro.usable_s(), largest_tau_s, w.samples as f64 * gyro.tau0_s);
+    let null = null_minimum(1.0, gyro.usable_s(), largest_tau_s, w.samples as f64 * gyro.tau0_s)
+        .map(|null| scattered(null.ratio, w.n.saturating_sub(1).max(1) as f64));
     Some(MinimumRecord {
         deviation_deg_h: low.point.deviation,
         tau_s: low.point.m as f64 * gyro.tau0_s,
         edf: low.edf,
         largest_tau_s,
         ratio: gyro.drift_100s().map(|s| s / low.point.deviation),
-        null_ratio: null.map(|n| n.ratio),
+        null_ratio: null,
     })
+}
+
+/// Quantiles of a ratio whose numerator is a standard deviation with so many degrees of freedom: its own scatter adds to
+/// that of the minimum, in the logarithm as squares.
+fn scattered([low, median, high]: [f64; 3], dof: f64) -> [f64; 3] {
+    let of = |p: f64| (0.5 * (chi_square_quantile(p, dof) / dof).ln()).abs();
+    [
+        median * (-((median / low).ln().hypot(of(0.05)))).exp(),
+        median,
+        median * (high / median).ln().hypot(of(0.95)).exp(),
+    ]
 }
 
 fn floor(gyro: &GyroEvidence) -> Option<FloorRecord> {
@@ -127,9 +140,17 @@ fn floor(gyro: &GyroEvidence) -> Option<FloorRecord> {
 
 fn model(gyro: &GyroEvidence) -> ModelRecord {
     let described = &gyro.identification.described;
+    let misfit = &gyro.identification.misfit;
+    let finite = |v: f64| Some(v).filter(|v| v.is_finite());
     ModelRecord {
         parameters: described.parameters.iter().map(|p| parameter(*p, &described.model)).collect(),
-        covariance: described.covariance.clone(),
+        covariance: if described.covariance.iter().flatten().all(|c| c.is_finite()) {
+            described.covariance.clone()
+        } else {
+            vec![]
+        },
+        misfit: finite(misfit.per_dof),
+        misfit_probability: finite(misfit.probability),
         lines: described.model.lines.iter().map(|l| (l.amplitude_deg_h, l.frequency_hz)).collect(),
     }
 }

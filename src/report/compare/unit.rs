@@ -188,7 +188,7 @@ impl UnitView {
                 Origin::Recording => "compare.origin.recording",
                 Origin::Result => "compare.origin.result",
             }),
-            length: detail.map(|d| duration(d.length_s, lang)).unwrap_or_default(),
+            length: unit.length_s.map(|t| duration(t, lang)).unwrap_or_default(),
             n: count(w100.map(|w| w.n)),
             n10: count(w10.map(|w| w.n)),
             sigma100: of("russian_drift_100s"),
