@@ -254,7 +254,11 @@ fn remove_abandoned(parent: &Path, prefix: &str) {
             .is_some_and(|rest| rest.len() == 6 && rest.chars().all(|c| c.is_ascii_alphanumeric()));
         let path = entry.path();
         let folder = entry.file_type().is_ok_and(|t| t.is_dir());
-        if ours && folder && old(&path) && [Kind::Result, Kind::Comparison].iter().any(|k| matches!(foreign(&path, *k), Ok(None))) {
+        if ours
+            && folder
+            && old(&path)
+            && [Kind::Result, Kind::Comparison].iter().any(|k| matches!(foreign(&path, *k), Ok(None)))
+        {
             let _ = fs::remove_dir_all(&path);
         }
     }
@@ -351,7 +355,7 @@ mod tests {
         let target = dir.path().join("result");
         for round in [FIRST, SECOND] {
             let path = staged(&target, round).staging.keep();
-            replace_in_two_steps(&path, &target).unwrap();
+            replace_in_two_steps(&path, &target, Kind::Result).unwrap();
             assert_eq!(fs::read_to_string(target.join("result.json")).unwrap(), round);
             assert_eq!(entries(dir.path()), ["result"]);
         }

@@ -113,6 +113,9 @@ const LATIN: &[&str] = &[
     "x",
     "analysis",
     "selftest",
+    "compare",
+    "comparison",
+    "published",
     "txt",
     "ru",
     "V",
@@ -176,6 +179,13 @@ const SAME: &[&str] = &[
     "dimension.power",
     "cli.of_option",
     "number.group",
+    "compare.label",
+    "compare.column.sigma100",
+    "compare.column.n_allan",
+    "compare.column.six_n",
+    "compare.column.over_six_n",
+    "compare.column.steep",
+    "compare.rule.d",
 ];
 
 fn places(text: &str) -> BTreeSet<String> {

@@ -33,6 +33,9 @@ fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
     if !(args.warm_up >= 0.0 && args.warm_up.is_finite()) {
         return Err(say(Note::new("cli.warm_up").with("given", args.warm_up.to_string())));
     }
+    if args.published && !args.recording.is_empty() {
+        return Err(say("compare.error.published_alone".into()));
+    }
     let renderer = run::renderer(args.templates.as_deref(), lang)?;
     let now = Utc::now();
     let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);

@@ -179,7 +179,7 @@ struct CompareArgs {
     #[arg(required_unless_present = "published")]
     recording: Vec<PathBuf>,
     /// Check the published tables of Russian and Allan figures
-    #[arg(long, conflicts_with = "recording")]
+    #[arg(long)]
     published: bool,
     /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]

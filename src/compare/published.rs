@@ -53,17 +53,27 @@ pub struct Row1 {
 }
 
 /// A row of Table 2, as printed.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub(super) struct Row2 {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row2 {
+    /// Device.
     pub device: String,
+    /// The same device in Table 1.
     pub in_table1: String,
+    /// Russian drift over 100 s, deg/h.
     pub sigma100: String,
+    /// Allan bias instability, deg/h.
     pub bias_instability: String,
+    /// Allan over Russian.
     pub bias_inverse: String,
+    /// Russian over Allan, in brackets there.
     pub bias_ratio: String,
+    /// Russian angle random walk, deg/√h.
     pub arw_russian: String,
+    /// Allan N, deg/√h.
     pub n: String,
+    /// Allan over Russian.
     pub arw_inverse: String,
+    /// Russian over Allan, in brackets there.
     pub arw_ratio: String,
 }
 
@@ -72,6 +82,8 @@ pub(super) struct Row2 {
 pub struct CheckedRow {
     /// Device.
     pub device: String,
+    /// The row as printed.
+    pub printed: Row2,
     /// Russian drift over 100 s as printed, deg/h.
     pub sigma100: f64,
     /// Allan bias instability as printed, deg/h.

@@ -152,6 +152,7 @@ fn row(printed: &Row2, tables: &Tables) -> Option<CheckedRow> {
     }
     Some(CheckedRow {
         device: printed.device.clone(),
+        printed: printed.clone(),
         sigma100: r.sigma100.value,
         bias_instability: r.bias.value,
         ratio_printed: r.bias_ratio.value,
@@ -207,7 +208,9 @@ fn remarks(tables: &Tables, rows: &[CheckedRow], null: &[NullRow]) -> Vec<Note> 
             .with("arw_low", a0)
             .with("arw_high", a1),
     );
-    if let (Some(first), Some(last)) = (null.first(), null.last()) {
+    if let (Some(first), Some(last)) = (null.first(), null.last())
+        && rows.iter().all(|r| (first.ratio[1]..=last.ratio[1]).contains(&r.ratio_printed))
+    {
         out.push(
             Note::new("compare.published.null")
                 .with("hours", Arg::Stated(tables.least_record_h))

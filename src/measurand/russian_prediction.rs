@@ -14,10 +14,10 @@ pub(super) struct RussianPrediction;
 
 /// Least share of the variance of σ over 10 s that a ratio to N of the same record keeps.
 const LEAST_LEFT: f64 = 0.12;
+/// Normal score of a two-sided 95 %.
+const NORMAL_95: f64 = 1.959_963_984_540_054;
 /// Normal score of the coverage of upper limits.
 const LIMIT_SCORE: f64 = 1.644_853_626_951_472_2;
-/// The selection of a minimum widens its lower tail: its degrees of freedom count this much.
-const SELECTED: f64 = 0.8;
 
 impl Measurand for RussianPrediction {
     fn ids(&self) -> &'static [&'static str] {
@@ -87,7 +87,7 @@ fn bias_ratio(gyro: &GyroEvidence) -> Estimate {
         return none.note(Note::new("compare.note.lacks_a_side"));
     };
     let value = windows.standard_deviation / minimum.point.deviation;
-    let (above, below) = (degrees_of_freedom(gyro, windows), SELECTED * minimum.edf);
+    let (above, below) = (degrees_of_freedom(gyro, windows), minimum.edf);
     let spread = FisherSnedecor::new(above, below).map_or(Spread::Unknown, |law| {
         let at = |z: f64| (z, value / law.inverse_cdf(normal_probability(-z)).sqrt());
         Spread::Curve(scores().map(at).filter(|p| p.1.is_finite()).collect())
@@ -109,9 +109,12 @@ fn random_walk_ratio(gyro: &GyroEvidence) -> Estimate {
         };
         let shared = covariance_with(&found.described, white, expected)?;
         let (_, u_n) = found.described.propagate(|m| m.terms.n);
+        // The interval of N may be wider: it allows for terms that the description lacks.
+        let own = found.angle_random_walk.interval95().map_or(0.0, |i| (i.high - i.low) / (2.0 * NORMAL_95));
+        let unshared = (own * own - u_n * u_n).max(0.0);
         let scatter = 2.0 / p.scatter_dof;
         let relative = scatter + (2.0 * u_n / n).powi(2) - 4.0 * shared / (n * p.sigma * p.sigma);
-        let dof = 2.0 / relative.max(LEAST_LEFT * scatter);
+        let dof = 2.0 / (relative.max(LEAST_LEFT * scatter) + 4.0 * unshared / (n * n));
         let value = 10f64.sqrt() * windows.standard_deviation / 60.0 / n;
         Some((value, Spread::ChiSquare { dof }))
     });

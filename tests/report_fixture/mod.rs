@@ -259,6 +259,7 @@ pub fn pass() -> RunRecord {
             false_alarm_probability: 3.1e-7,
         }],
         noise_models: vec![model("rate", 1.0)],
+        comparison: vec![],
         power: vec![PowerRecord {
             id: "bias_instability".into(),
             channel: "rate".into(),

@@ -86,17 +86,18 @@ impl PublishedView {
 }
 
 fn row(r: &CheckedRow, words: Words) -> RowView {
-    let printed = |v: f64| limit(v, words.lang);
+    let printed = |text: &str| decimal(text, words.lang);
+    let p = &r.printed;
     let computed = |v: f64| digits(v, 3, words.lang);
     RowView {
         device: r.device.clone(),
-        sigma100: printed(r.sigma100),
-        bias_instability: printed(r.bias_instability),
-        ratio_printed: printed(r.ratio_printed),
+        sigma100: printed(&p.sigma100),
+        bias_instability: printed(&p.bias_instability),
+        ratio_printed: printed(&p.bias_ratio),
         ratio: computed(r.ratio),
-        arw_russian: printed(r.arw_russian),
-        n: printed(r.n),
-        arw_ratio_printed: printed(r.arw_ratio_printed),
+        arw_russian: printed(&p.arw_russian),
+        n: printed(&p.n),
+        arw_ratio_printed: printed(&p.arw_ratio),
         arw_ratio: computed(r.arw_ratio),
         six_n: computed(r.six_n),
         over_six_n: computed(r.over_six_n),
