@@ -185,7 +185,6 @@ const SAME: &[&str] = &[
     "compare.column.six_n",
     "compare.column.over_six_n",
     "compare.column.steep",
-    "compare.rule.d",
 ];
 
 fn places(text: &str) -> BTreeSet<String> {

@@ -6,10 +6,11 @@
 //! 1978), hence Var\[s² − E\] = Var\[s²\] − Var\[E\]: what the fit took from the record it cannot be tested against.
 //! The ratio s²/E is read as χ² with the degrees of freedom of that variance.
 
-use super::composite::{Composite, Described, Parameter, Part};
+use super::composite::{Composite, Described, Line, Parameter, Part};
 use super::data::NoiseType;
 use super::windows::edf_of_window_std;
 use crate::estimate::{Interval, chi_square_quantile};
+use std::f64::consts::PI;
 
 /// Share of the scatter of s² that is left to be tested at the least: a fit of few modes knows its own errors only
 /// roughly.
@@ -75,6 +76,17 @@ fn scattering(model: &Composite) -> Composite {
     out
 }
 
+/// Variance of s² from the products of lines with noise that their amplitudes do not share, (deg/h)⁴: a window mean folds
+/// noise of other frequencies onto that of a line.
+fn crossed(model: &Composite, window_s: f64, windows: u64, noise_variance: f64) -> f64 {
+    let of = |line: &Line| {
+        let x = PI * line.frequency_hz * window_s;
+        let passed = if x.abs() < 1e-9 { 1.0 } else { (x.sin() / x).powi(2) };
+        4.0 * 0.5 * line.amplitude_deg_h.powi(2) * passed * (1.0 - passed) * noise_variance
+    };
+    model.lines.iter().map(of).sum::<f64>() / windows.max(1) as f64
+}
+
 impl WindowPrediction {
     /// The prediction for `windows` means over `window_s` of a record of samples over `tau0_s`; `None` below two
     /// windows or for an empty model.
@@ -98,6 +110,7 @@ impl WindowPrediction {
         let known = (u_noise / total).powi(2);
         let shifted = ((u_total * u_total - u_noise * u_noise) / (total * total)).max(0.0);
         let left = (scatter - known).max(LEAST_LEFT * scatter) + UNSHARED * shifted;
+        let left = left + crossed(&described.model, window_s, windows, noise_total) / (total * total);
         Some(WindowPrediction {
             sigma: total.sqrt(),
             shares,
