@@ -58,7 +58,6 @@ pub struct RunRecord {
     /// The noise model that was fitted, per channel.
     pub noise_models: Vec<NoiseModelRecord>,
     /// Russian against Allan values, per channel long enough for it.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub comparison: Vec<ComparisonRecord>,
     /// What this test can decide: power of each limit.
     pub power: Vec<PowerRecord>,
