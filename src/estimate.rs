@@ -8,7 +8,7 @@
 
 use crate::text::Note;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 mod student;
@@ -32,7 +32,7 @@ pub fn chi_square_quantile(probability: f64, dof: f64) -> f64 {
 }
 
 /// A two-sided interval with its coverage probability.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Interval {
     /// Lower end.
     pub low: f64,
@@ -43,7 +43,7 @@ pub struct Interval {
 }
 
 /// A one-sided bound for a quantity that the record cannot show.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct UpperLimit {
     /// The quantity is at most this much.
     pub value: f64,

@@ -64,7 +64,7 @@ const fn later(id: &'static str, unit: &'static str, test: Test, doc: &'static s
     MeasurandId { id, unit, test, available: false, signed: false, options: &[], doc }
 }
 
-use Test::{Influence, RateTable, Static, Temperature};
+use Test::{Influence, RateTable, Temperature};
 
 /// Every measurand, in the order of reports.
 #[rustfmt::skip]
@@ -93,9 +93,9 @@ pub const MEASURANDS: &[MeasurandId] = &[
     given("quasi_periodic_amplitude", "deg/h", &[], "rms of a narrow-band disturbance"),
     given("quasi_periodic_frequency", "Hz", &[], "its centre frequency"),
     given("quasi_periodic_coherence_time", "s", &[], "its coherence time"),
-    later("russian_drift_100s_predicted", "deg/h", Static, "what the identified noise predicts for 100-s means"),
-    later("ratio_russian_to_allan_bias", "1", Static, "Russian 100-s drift over the Allan minimum"),
-    later("ratio_russian_to_allan_arw", "1", Static, "Russian 10-s angle random walk over N"),
+    given("russian_drift_100s_predicted", "deg/h", &[], "what the identified noise predicts for 100-s means"),
+    given("ratio_russian_to_allan_bias", "1", &[], "Russian 100-s drift over the Allan minimum"),
+    given("ratio_russian_to_allan_arw", "1", &[], "Russian 10-s angle random walk over N"),
     signed(later("bias_temperature_sensitivity", "deg/h/degC", Temperature, "slope of bias over temperature")),
     signed(later("bias_temperature_sensitivity_max", "deg/h/degC", Temperature, "steepest local slope")),
     signed(later("bias_temperature_rate_sensitivity", "deg/h/(degC/min)", Temperature, "bias per rate of temperature (Shupe)")),

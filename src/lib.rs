@@ -7,11 +7,12 @@
 //!
 //! ```text
 //! numeric, units, text <- estimate, figure, output <- record, recording
-//!     <- keyed <- ingest, noise <- measurand <- procedure <- condition <- run <- report <- cli
+//!     <- keyed <- ingest, noise <- measurand <- procedure <- condition <- run <- compare <- report <- cli
 //! ```
 #![forbid(unsafe_code)]
 
 pub mod cli;
+pub mod compare;
 pub mod condition;
 pub mod estimate;
 pub mod figure;

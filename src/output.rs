@@ -84,6 +84,40 @@ const ATTEMPTS: usize = 100;
 pub struct StagedFolder {
     target: PathBuf,
     staging: tempfile::TempDir,
+    kind: Kind,
+}
+
+/// What a folder holds; one kind never takes the place of another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The result of a run or an analysis.
+    Result,
+    /// A comparison.
+    Comparison,
+}
+
+impl Kind {
+    /// The file that tells the folder, and how its format begins.
+    fn marks(self) -> (&'static str, &'static str) {
+        match self {
+            Kind::Result => ("result.json", "{\"format\":\"result/"),
+            Kind::Comparison => ("comparison.json", "{\"format\":\"comparison/"),
+        }
+    }
+
+    /// Names that stand in a folder of this kind.
+    fn owns(self, name: &str) -> bool {
+        name == "figures"
+            || match self {
+                Kind::Result => {
+                    matches!(name, "result.json" | "report.html" | "report.md")
+                        || (name.starts_with("sigma_tau") && name.ends_with(".csv"))
+                }
+                Kind::Comparison => name
+                    .strip_prefix("comparison.")
+                    .is_some_and(|ext| matches!(ext, "json" | "html" | "md" | "csv")),
+            }
+    }
 }
 
 impl StagedFolder {
@@ -94,11 +128,19 @@ impl StagedFolder {
     /// # Errors
     /// [`OutputError`] when the place cannot be written or is taken.
     pub fn begin(target: &Path) -> Result<StagedFolder, OutputError> {
+        StagedFolder::begin_kind(target, Kind::Result)
+    }
+
+    /// The same for a folder of a kind.
+    ///
+    /// # Errors
+    /// As [`StagedFolder::begin`].
+    pub fn begin_kind(target: &Path, kind: Kind) -> Result<StagedFolder, OutputError> {
         let Some(name) = target.file_name() else {
             return Err(OutputError::NoName(target.to_owned()));
         };
         if target.symlink_metadata().is_ok() {
-            replaceable(target)?;
+            replaceable(target, kind)?;
         }
         let parent = parent(target);
         fs::create_dir_all(parent).map_err(io("output_error.create_folder", parent))?;
@@ -110,7 +152,7 @@ impl StagedFolder {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
         let staging = builder.tempdir_in(parent).map_err(io("output_error.write_into", parent))?;
-        Ok(StagedFolder { target: target.to_owned(), staging })
+        Ok(StagedFolder { target: target.to_owned(), staging, kind })
     }
 
     /// Writes one file into the folder; `name` may hold sub-folders.
@@ -119,7 +161,7 @@ impl StagedFolder {
     /// [`OutputError::Io`] when it cannot be written, [`OutputError::Unforeseen`] for a name that a later run would
     /// not know as its own.
     pub fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
-        if !is_own(name.split('/').next().unwrap_or_default()) {
+        if !self.kind.owns(name.split('/').next().unwrap_or_default()) {
             return Err(OutputError::Unforeseen(name.to_owned()));
         }
         let path = self.staging.path().join(name);
@@ -142,7 +184,7 @@ impl StagedFolder {
         }
         sync_folder(self.staging.path())?;
         let staged = self.staging.keep();
-        let outcome = put_in_place(&staged, &self.target);
+        let outcome = put_in_place(&staged, &self.target, self.kind);
         if outcome.is_err() {
             // Best effort: what could not be published must not stay behind as clutter.
             let _ = fs::remove_dir_all(&staged);
@@ -158,17 +200,11 @@ fn parent(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Names that stand in a result folder.
-fn is_own(name: &str) -> bool {
-    matches!(name, "result.json" | "report.html" | "report.md" | "figures")
-        || (name.starts_with("sigma_tau") && name.ends_with(".csv"))
-}
-
 /// The first entry of a folder that no result folder holds.
-fn foreign(folder: &Path) -> std::io::Result<Option<String>> {
+fn foreign(folder: &Path, kind: Kind) -> std::io::Result<Option<String>> {
     for entry in fs::read_dir(folder)? {
         let name = entry?.file_name().to_string_lossy().into_owned();
-        if !is_own(&name) {
+        if !kind.owns(&name) {
             return Ok(Some(name));
         }
     }
@@ -176,30 +212,31 @@ fn foreign(folder: &Path) -> std::io::Result<Option<String>> {
 }
 
 /// Refuses whatever is neither an empty folder nor an earlier result and nothing else.
-fn replaceable(target: &Path) -> Result<(), OutputError> {
+fn replaceable(target: &Path, kind: Kind) -> Result<(), OutputError> {
     let in_the_way = |why: Note| Err(OutputError::InTheWay { path: target.to_owned(), why });
-    let kind = target.symlink_metadata().map_err(io("output_error.look_at", target))?.file_type();
-    if !kind.is_dir() {
-        let why = if kind.is_symlink() { "output_error.why.link" } else { "output_error.why.file" };
+    let found = target.symlink_metadata().map_err(io("output_error.look_at", target))?.file_type();
+    if !found.is_dir() {
+        let why = if found.is_symlink() { "output_error.why.link" } else { "output_error.why.file" };
         return in_the_way(why.into());
     }
     if fs::read_dir(target).map_err(io("output_error.look_into", target))?.next().is_none() {
         return Ok(());
     }
-    if !is_result(&target.join("result.json")) {
+    if !is_of(target, kind) {
         return in_the_way("output_error.why.foreign".into());
     }
-    match foreign(target).map_err(io("output_error.look_into", target))? {
+    match foreign(target, kind).map_err(io("output_error.look_into", target))? {
         Some(name) => in_the_way(Note::new("output_error.why.holds").with("name", name)),
         None => Ok(()),
     }
 }
 
-/// True when a file begins as a `result.json` does.
-fn is_result(path: &Path) -> bool {
+/// True when a folder holds the file that tells its kind.
+fn is_of(folder: &Path, kind: Kind) -> bool {
+    let (name, start) = kind.marks();
     let mut head = String::new();
-    let read = File::open(path).and_then(|f| f.take(64).read_to_string(&mut head));
-    read.is_ok() && head.split_whitespace().collect::<String>().starts_with("{\"format\":\"result/")
+    let read = File::open(folder.join(name)).and_then(|f| f.take(64).read_to_string(&mut head));
+    read.is_ok() && head.split_whitespace().collect::<String>().starts_with(start)
 }
 
 /// Removes what killed runs left beside a target long ago. Best effort: it is clutter and harms nobody.
@@ -217,7 +254,11 @@ fn remove_abandoned(parent: &Path, prefix: &str) {
             .is_some_and(|rest| rest.len() == 6 && rest.chars().all(|c| c.is_ascii_alphanumeric()));
         let path = entry.path();
         let folder = entry.file_type().is_ok_and(|t| t.is_dir());
-        if ours && folder && old(&path) && matches!(foreign(&path), Ok(None)) {
+        if ours
+            && folder
+            && old(&path)
+            && [Kind::Result, Kind::Comparison].iter().any(|k| matches!(foreign(&path, *k), Ok(None)))
+        {
             let _ = fs::remove_dir_all(&path);
         }
     }
@@ -228,7 +269,7 @@ fn sync_folder(path: &Path) -> Result<(), OutputError> {
 }
 
 #[cfg(target_os = "linux")]
-fn put_in_place(staged: &Path, target: &Path) -> Result<(), OutputError> {
+fn put_in_place(staged: &Path, target: &Path, kind: Kind) -> Result<(), OutputError> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
     use rustix::io::Errno;
     let rename = |flags| renameat_with(CWD, staged, CWD, target, flags);
@@ -238,7 +279,7 @@ fn put_in_place(staged: &Path, target: &Path) -> Result<(), OutputError> {
             Err(Errno::EXIST) => {}
             Err(_) => break,
         }
-        replaceable(target)?;
+        replaceable(target, kind)?;
         // An exchange is one step: at no moment is there neither the old folder nor the new one.
         match rename(RenameFlags::EXCHANGE) {
             Ok(()) => return fs::remove_dir_all(staged).map_err(io("output_error.remove", staged)),
@@ -247,20 +288,20 @@ fn put_in_place(staged: &Path, target: &Path) -> Result<(), OutputError> {
             Err(_) => break,
         }
     }
-    replace_in_two_steps(staged, target)
+    replace_in_two_steps(staged, target, kind)
 }
 
 #[cfg(not(target_os = "linux"))]
-fn put_in_place(staged: &Path, target: &Path) -> Result<(), OutputError> {
-    replace_in_two_steps(staged, target)
+fn put_in_place(staged: &Path, target: &Path, kind: Kind) -> Result<(), OutputError> {
+    replace_in_two_steps(staged, target, kind)
 }
 
 /// For file systems without an exchange: the old folder steps aside first.
-fn replace_in_two_steps(staged: &Path, target: &Path) -> Result<(), OutputError> {
+fn replace_in_two_steps(staged: &Path, target: &Path, kind: Kind) -> Result<(), OutputError> {
     if target.symlink_metadata().is_err() {
         return fs::rename(staged, target).map_err(io("output_error.put_in_place", target));
     }
-    replaceable(target)?;
+    replaceable(target, kind)?;
     let mut aside = staged.as_os_str().to_owned();
     aside.push(".replaced");
     let aside = PathBuf::from(aside);
@@ -314,7 +355,7 @@ mod tests {
         let target = dir.path().join("result");
         for round in [FIRST, SECOND] {
             let path = staged(&target, round).staging.keep();
-            replace_in_two_steps(&path, &target).unwrap();
+            replace_in_two_steps(&path, &target, Kind::Result).unwrap();
             assert_eq!(fs::read_to_string(target.join("result.json")).unwrap(), round);
             assert_eq!(entries(dir.path()), ["result"]);
         }

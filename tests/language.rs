@@ -116,6 +116,9 @@ const LATIN: &[&str] = &[
     "x",
     "analysis",
     "selftest",
+    "compare",
+    "comparison",
+    "published",
     "txt",
     "ru",
     "V",
@@ -179,6 +182,12 @@ const SAME: &[&str] = &[
     "dimension.power",
     "cli.of_option",
     "number.group",
+    "compare.label",
+    "compare.column.sigma100",
+    "compare.column.n_allan",
+    "compare.column.six_n",
+    "compare.column.over_six_n",
+    "compare.column.steep",
 ];
 
 fn places(text: &str) -> BTreeSet<String> {

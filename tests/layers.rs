@@ -15,6 +15,7 @@ const FLOORS: &[&[&str]] = &[
     &["procedure"],
     &["condition"],
     &["run", "selftest"],
+    &["compare"],
     &["report"],
     &["cli"],
 ];

@@ -74,7 +74,7 @@ fn named(args: &AnalyzeArgs) -> &Path {
 }
 
 /// The channels: as named, else as their names tell.
-fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
+pub(super) fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
     let unit = args.unit.as_deref().map(Unit::parse).transpose();
     let unit =
         unit.map_err(|e| Note::new("cli.of_option").with("option", "--unit").with("what", e.note()))?;

@@ -2,6 +2,7 @@
 
 mod analyze;
 mod check;
+mod compare;
 mod help;
 mod inspect;
 mod place;
@@ -63,6 +64,10 @@ enum Verb {
         after_help = "Example:\n  sagnac analyze unit-0042.csv --rate gyro_x --unit deg/s --out analysis-0042"
     )]
     Analyze(AnalyzeArgs),
+    /// Set Russian against Allan figures of any units, with what explains the ratio
+    #[command(after_help = "Examples:\n  sagnac compare unit-0042.csv unit-0043.csv reports/SN-0044 --out comparison\n  \
+        sagnac compare --published")]
+    Compare(CompareArgs),
     /// Print the JSON Schema of a file format, for completion in editors
     #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]
     Schema(SchemaArgs),
@@ -168,6 +173,48 @@ struct AnalyzeArgs {
     read: read::ReadArgs,
 }
 
+#[derive(Debug, Args)]
+struct CompareArgs {
+    /// Units: recordings of any kind that is read, each a unit; a result.json, or the folder that holds it
+    #[arg(required_unless_present = "published")]
+    recording: Vec<PathBuf>,
+    /// Check the published tables of Russian and Allan figures
+    #[arg(long)]
+    published: bool,
+    /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
+    #[arg(long, value_name = "COLUMN")]
+    rate: Vec<String>,
+    /// Column of an accumulated angle, by name or position, whose differences are the rate; may be repeated
+    #[arg(long, value_name = "COLUMN")]
+    angle: Vec<String>,
+    /// Unit of the rate columns [default: from their names]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<String>,
+    /// Sample counter by name or position: lost and repeated samples are told by it
+    #[arg(long, value_name = "COLUMN")]
+    counter: Option<String>,
+    /// Time column by name or position, or `none` to go by the sample rate alone [default: from the names]
+    #[arg(long, value_name = "COLUMN")]
+    time: Option<String>,
+    /// Sample rate, needed where there is no time column
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+    /// Time left out at the start, s
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    warm_up: f64,
+    /// Limits file: each limit is judged against the figure that it names; a result keeps the limits it has
+    #[arg(long, value_name = "FILE")]
+    limits: Option<PathBuf>,
+    /// Folder for the comparison [default: named after the first unit and UTC start]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Folder with templates that replace the built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
+    #[command(flatten)]
+    read: read::ReadArgs,
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum SchemaKind {
     /// A test procedure
@@ -204,6 +251,7 @@ pub fn main() -> ExitCode {
         Verb::Check(args) => check::main(&args, lang),
         Verb::Inspect(args) => inspect::main(&args, lang),
         Verb::Analyze(args) => analyze::main(&args, lang),
+        Verb::Compare(args) => compare::main(&args, lang),
         Verb::Schema(args) => schema::main(&args),
         Verb::Selftest => selftest::main(lang),
     };

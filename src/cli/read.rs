@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
 
 /// What the user decides about the file; the rest is found from it, and the finding is told.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "How the recording is read")]
 pub struct ReadArgs {
     /// File format [default: found by the content]

@@ -11,7 +11,7 @@ use crate::text::Note;
 pub(super) struct AllanMinimum;
 
 /// √(2 ln 2/π): the Allan deviation of flicker noise is this times B.
-const FLICKER_FLOOR: f64 = 0.664_282_470_3;
+pub const FLICKER_FLOOR: f64 = 0.664_282_470_3;
 
 /// Largest averaging time read, as a share of the record (result contract).
 const LARGEST_SHARE: f64 = 0.2;
@@ -29,11 +29,7 @@ impl Measurand for AllanMinimum {
             ("bias_instability_minimum", 1.0)
         };
         let readable = readable(gyro);
-        let Some(lowest) = readable
-            .iter()
-            .filter(|p| p.point.deviation > 0.0)
-            .min_by(|a, b| a.point.deviation.total_cmp(&b.point.deviation))
-        else {
+        let Some(lowest) = lowest(gyro) else {
             let none = Estimate::not_identifiable(id, &gyro.channel, None, "deg/h", "overlapping_allan");
             return Some(none.note(Note::new("note.minimum_none")));
         };
@@ -56,8 +52,14 @@ impl Measurand for AllanMinimum {
     }
 }
 
+/// The smallest deviation that is read.
+pub fn lowest(gyro: &GyroEvidence) -> Option<&BoundedPoint> {
+    let positive = readable(gyro).into_iter().filter(|p| p.point.deviation > 0.0);
+    positive.min_by(|a, b| a.point.deviation.total_cmp(&b.point.deviation))
+}
+
 /// Octaves up to a fifth of the record.
-fn readable(gyro: &GyroEvidence) -> Vec<&BoundedPoint> {
+pub fn readable(gyro: &GyroEvidence) -> Vec<&BoundedPoint> {
     let samples = gyro.digest.samples as f64;
     gyro.octaves.iter().filter(|p| p.point.m as f64 <= samples * LARGEST_SHARE).collect()
 }

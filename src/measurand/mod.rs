@@ -2,12 +2,13 @@
 //!
 //! A measurand is a pure function of what one pass over the recording left behind ([`GyroEvidence`]).
 
-mod allan_minimum;
+pub mod allan_minimum;
 mod correlated_noise;
 pub mod earth_rate;
 pub mod evidence;
 mod noise_terms;
-mod russian;
+pub mod russian;
+pub mod russian_prediction;
 mod slope_readout;
 mod spectral_line;
 pub mod static_bias;
@@ -39,6 +40,7 @@ pub static MEASURANDS: &[&dyn Measurand] = &[
     &noise_terms::NoiseTerms,
     &allan_minimum::AllanMinimum,
     &russian::Russian,
+    &russian_prediction::RussianPrediction,
     &spectral_line::SpectralLine,
     &correlated_noise::CorrelatedNoise,
     &slope_readout::SlopeReadOut,

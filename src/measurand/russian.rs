@@ -58,7 +58,7 @@ const UNSEEN_WALK: f64 = 0.6;
 
 /// Degrees of freedom of the variance of the means under the noise of this record: correlated noise leaves few, and
 /// it need not be certain to be there.
-fn degrees_of_freedom(gyro: &GyroEvidence, windows: &WindowStatistics) -> f64 {
+pub fn degrees_of_freedom(gyro: &GyroEvidence, windows: &WindowStatistics) -> f64 {
     let found = &gyro.identification;
     // A ramp is no noise: it shifts the value and does not scatter it.
     let mut model = found.allowed.without_ramp();

@@ -5,11 +5,16 @@
 //! template.
 
 mod beside;
+mod comparison;
 mod deviation;
 mod goodness;
 mod integrity;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use comparison::{
+    ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord, OctavesRecord, ParameterRecord,
+    ShareRecord, WindowRecord,
+};
 pub use deviation::DeviationRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
@@ -60,6 +65,8 @@ pub struct RunRecord {
     pub goodness_of_fit: Vec<GoodnessOfFitRecord>,
     /// The Allan family at octaves, per channel.
     pub deviations: Vec<DeviationRecord>,
+    /// Russian against Allan values, per channel long enough for it.
+    pub comparison: Vec<ComparisonRecord>,
     /// What this test can decide: power of each limit.
     pub power: Vec<PowerRecord>,
     /// Instruments that were used.

@@ -3,6 +3,7 @@
 //! The way through: [`view`] turns the record into words and printed numbers, [`render`] puts them through the
 //! templates, [`svg`] draws the figures. Nothing is measured or decided here, and no recording is needed.
 
+pub mod compare;
 pub mod methods;
 pub mod number;
 pub mod render;

@@ -21,6 +21,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("methods.html", include_str!("../../templates/methods.html")),
     ("signoff.html", include_str!("../../templates/signoff.html")),
     ("report.md", include_str!("../../templates/report.md")),
+    ("compare.html", include_str!("../../templates/compare.html")),
+    ("compare.md", include_str!("../../templates/compare.md")),
 ];
 
 /// Largest template file that is read.
@@ -201,6 +203,25 @@ impl Renderer {
             env.add_template(name, source).map_err(|e| wrong(&e, name))?;
         }
         Ok(env)
+    }
+
+    /// Renders a template that sees nothing but a view.
+    ///
+    /// # Errors
+    /// [`ReportError::Template`] when the template is wrong.
+    pub fn render_view(
+        &self,
+        name: &str,
+        view: &impl serde::Serialize,
+        lang: Lang,
+    ) -> Result<String, ReportError> {
+        let env = self.environment(lang)?;
+        let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
+        let context = minijinja::context! {
+            v => Value::from(Serde(view)),
+            locale => Value::from(Serde(table(lang))),
+        };
+        template.render(context).map_err(|e| wrong(&e, name))
     }
 
     fn render(

@@ -3,6 +3,7 @@
 //! Clock, host and people are passed in; the outcome is a pure function of the inputs.
 
 pub mod analysis;
+mod comparison;
 mod described;
 mod evaluate;
 pub mod figures;

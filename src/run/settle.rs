@@ -34,6 +34,7 @@ pub(super) fn record(
         noise_models: found.gyros.iter().map(noise_model).collect(),
         goodness_of_fit: found.gyros.iter().flat_map(goodness::records).collect(),
         deviations: found.gyros.iter().flat_map(sigma_tau::records).collect(),
+        comparison: found.gyros.iter().filter_map(super::comparison::record).collect(),
         power,
         options: options(request, found),
         figures: figures
@@ -88,6 +89,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         noise_models: vec![],
         goodness_of_fit: vec![],
         deviations: vec![],
+        comparison: vec![],
         power: vec![],
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure.waivers_for(serial),

@@ -397,7 +397,7 @@ fn drawn(record: &RunRecord, figures: &[Figure], words: Words) -> Vec<FigureView
 }
 
 /// What is to be seen, in a sentence, and the numbers that belong to it.
-fn caption(figure: &Figure, words: Words) -> String {
+pub(crate) fn caption(figure: &Figure, words: Words) -> String {
     let id = figure.title.strip_prefix("figure.title.").unwrap_or_default();
     let mut sentences: Vec<String> =
         lookup(words.lang, &format!("figure.caption.{id}")).map(str::to_owned).into_iter().collect();

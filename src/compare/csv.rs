@@ -1,0 +1,133 @@
+//! `comparison.csv`: one row a unit, plain numbers, empty where there is none.
+
+use super::Unit;
+use super::published::Checked;
+use std::fmt::Write;
+
+/// Columns of a comparison of units.
+const COLUMNS: &str = "unit,channel,path,length_s,n_100s,detrend,sigma100_deg_h,sigma100_low,sigma100_high,\
+sigma100_3sigma_deg_h,minimum_deg_h,minimum_low,minimum_high,minimum_tau_s,largest_tau_s,minimum_scaled_deg_h,\
+b_deg_h,b_low,b_high,b_upper_limit,floor_deg_h,ratio_minimum,ratio_minimum_low,ratio_minimum_high,\
+ratio_minimum_inverse,ratio_b,null_05,null_50,null_95,sigma10_deg_h,n_10s,arw10_deg_rt_h,arw10_low,arw10_high,\
+n_deg_rt_h,n_low,n_high,ratio_arw,ratio_arw_low,ratio_arw_high,predicted_deg_h,predicted_low,predicted_high,\
+observed_over_predicted,observed_over_predicted_low,observed_over_predicted_high,agreement,largest_part,\
+largest_share,crossover_s,identifiable_h\n";
+
+/// A field that holds a text.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+fn number(value: Option<f64>) -> String {
+    value.filter(|v| v.is_finite()).map(|v| format!("{v:e}")).unwrap_or_default()
+}
+
+/// The table of units.
+pub fn units(units: &[Unit]) -> String {
+    let mut out = COLUMNS.to_owned();
+    for unit in units {
+        let value = |id: &str| number(unit.value(id));
+        let low = |id: &str| number(unit.quantity(id).and_then(|q| Some(q.interval?.low)));
+        let high = |id: &str| number(unit.quantity(id).and_then(|q| Some(q.interval?.high)));
+        let detail = unit.detail.as_ref();
+        let minimum = detail.and_then(|d| d.minimum.as_ref());
+        let window = |s: f64| detail.and_then(|d| d.windows.iter().find(|w| w.window_s == s));
+        let (w100, w10) = (window(100.0), window(10.0));
+        let rule = |r: &str| unit.rules.iter().find(|row| row.rule == r);
+        let null = |i: usize| number(minimum.and_then(|m| m.null_ratio?.get(i).copied()));
+        let count = |n: Option<u64>| n.map(|n| n.to_string()).unwrap_or_default();
+        let share = w100.and_then(|w| w.shares.first());
+        let b = unit.quantity("bias_instability");
+        let floor = detail.and_then(|d| d.floor.as_ref());
+        let row = [
+            quoted(&unit.name),
+            quoted(&unit.channel),
+            quoted(&unit.path),
+            number(unit.length_s),
+            count(w100.map(|w| w.n)),
+            detail.map(|d| d.detrend.clone()).unwrap_or_default(),
+            value("russian_drift_100s"),
+            low("russian_drift_100s"),
+            high("russian_drift_100s"),
+            value("russian_drift_100s_3sigma"),
+            value("bias_instability_minimum"),
+            low("bias_instability_minimum"),
+            high("bias_instability_minimum"),
+            number(minimum.map(|m| m.tau_s)),
+            number(minimum.map(|m| m.largest_tau_s)),
+            value("bias_instability_minimum_scaled"),
+            value("bias_instability"),
+            low("bias_instability"),
+            high("bias_instability"),
+            number(b.filter(|b| b.value.is_none()).and_then(|b| Some(b.upper_limit?.value))),
+            number(rule("d").and_then(|r| r.value)),
+            number(rule("a").and_then(|r| r.ratio)),
+            number(rule("a").and_then(|r| Some(r.ratio_interval?.low))),
+            number(rule("a").and_then(|r| Some(r.ratio_interval?.high))),
+            number(rule("a").and_then(|r| r.inverse)),
+            number(rule("c").filter(|r| r.value.is_some()).and_then(|r| r.ratio)),
+            null(0),
+            null(1),
+            null(2),
+            value("russian_sigma_10s"),
+            count(w10.map(|w| w.n)),
+            value("russian_arw_10s"),
+            low("russian_arw_10s"),
+            high("russian_arw_10s"),
+            value("angle_random_walk"),
+            low("angle_random_walk"),
+            high("angle_random_walk"),
+            value("ratio_russian_to_allan_arw"),
+            low("ratio_russian_to_allan_arw"),
+            high("ratio_russian_to_allan_arw"),
+            number(w100.and_then(|w| w.predicted)),
+            number(w100.and_then(|w| Some(w.predicted_interval?.low))),
+            number(w100.and_then(|w| Some(w.predicted_interval?.high))),
+            number(w100.and_then(|w| w.ratio)),
+            number(w100.and_then(|w| Some(w.ratio_interval?.low))),
+            number(w100.and_then(|w| Some(w.ratio_interval?.high))),
+            w100.and_then(|w| w.agreement.clone()).unwrap_or_default(),
+            share.map(|s| s.part.clone()).unwrap_or_default(),
+            number(share.map(|s| s.share)),
+            number(floor.map(|f| f.crossover_s)),
+            number(floor.and_then(|f| f.identifiable_h)),
+        ];
+        let _ = writeln!(out, "{}", row.join(","));
+    }
+    out
+}
+
+/// The published tables with what was computed from each row.
+pub fn published(checked: &Checked) -> String {
+    let mut out = String::from(
+        "device,sigma100_deg_h,bias_instability_deg_h,ratio_printed,ratio_computed,arw_russian_deg_rt_h,\
+n_deg_rt_h,arw_ratio_printed,arw_ratio_computed,six_n_deg_h,sigma100_over_six_n,crossover_h,sigma10_over_sigma100,\
+n_table1_deg_rt_h,remarks\n",
+    );
+    for row in &checked.rows {
+        let ids: Vec<&str> = row.remarks.iter().map(|r| r.id).collect();
+        let fields = [
+            quoted(&row.device),
+            number(Some(row.sigma100)),
+            number(Some(row.bias_instability)),
+            number(Some(row.ratio_printed)),
+            number(Some(row.ratio)),
+            number(Some(row.arw_russian)),
+            number(Some(row.n)),
+            number(Some(row.arw_ratio_printed)),
+            number(Some(row.arw_ratio)),
+            number(Some(row.six_n)),
+            number(Some(row.over_six_n)),
+            number(Some(row.crossover_h)),
+            number(Some(row.sigma10_over_sigma100)),
+            number(row.n_table1),
+            ids.join(";"),
+        ];
+        let _ = writeln!(out, "{}", fields.join(","));
+    }
+    out
+}

@@ -1,0 +1,79 @@
+//! Allan bias instability under each read-out rule, with the ratio of the Russian drift to it.
+
+use super::unit::{Quantity, Unit};
+use crate::estimate::{Interval, UpperLimit};
+use serde::Serialize;
+
+/// √(2 ln 2/π): the Allan floor of flicker noise is this times B.
+const FLOOR: f64 = 0.664_282_470_3;
+
+/// The rules: letter, id of the measurand it is read from, factor on it.
+pub const RULES: [(&str, &str, f64); 4] = [
+    ("a", "bias_instability_minimum", 1.0),
+    ("b", "bias_instability_minimum_scaled", 1.0),
+    ("c", "bias_instability", 1.0),
+    ("d", "bias_instability", FLOOR),
+];
+
+/// Bias instability by one rule.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RuleRow {
+    /// `a` raw minimum, `b` minimum/0.664, `c` fitted B, `d` 0.664·B.
+    pub rule: &'static str,
+    /// Value, deg/h.
+    pub value: Option<f64>,
+    /// 95 % interval, deg/h.
+    pub interval: Option<Interval>,
+    /// Bound where there is no value, deg/h.
+    pub upper_limit: Option<UpperLimit>,
+    /// σ of 100-s means over it; where only a bound is known, the least that the ratio can be.
+    pub ratio: Option<f64>,
+    /// 95 % interval of the ratio.
+    pub ratio_interval: Option<Interval>,
+    /// The ratio the other way, as the founding paper prints it first.
+    pub inverse: Option<f64>,
+}
+
+/// The rows of a unit; a rule whose measurand the result lacks has no row.
+pub(super) fn rules(unit: &Unit) -> Vec<RuleRow> {
+    let drift = unit.quantity("russian_drift_100s");
+    RULES
+        .into_iter()
+        .filter_map(|(rule, id, factor)| {
+            let q = unit.quantity(id)?;
+            let scaled = |i: Interval| Interval { low: i.low * factor, high: i.high * factor, ..i };
+            let of_minimum = unit.quantity("ratio_russian_to_allan_bias").and_then(|r| r.interval);
+            let sigma = drift.and_then(|d| d.value);
+            let value = q.value.map(|v| v * factor);
+            let limit = q.upper_limit.map(|u| UpperLimit { value: u.value * factor, ..u });
+            let ratio = sigma.zip(value.or(limit.map(|l| l.value))).map(|(s, v)| s / v);
+            let ratio_interval = match rule {
+                "a" => of_minimum,
+                "b" => of_minimum.map(|i| Interval { low: i.low * FLOOR, high: i.high * FLOOR, ..i }),
+                _ => drift.and_then(|d| quotient(d, q, 1.0 / factor)),
+            };
+            Some(RuleRow {
+                rule,
+                value,
+                interval: q.interval.filter(|_| q.value.is_some()).map(scaled),
+                upper_limit: limit.filter(|_| q.value.is_none()),
+                ratio: ratio.filter(|r| r.is_finite()),
+                ratio_interval: ratio_interval.filter(|_| q.value.is_some()),
+                inverse: ratio.map(|r| 1.0 / r).filter(|r| r.is_finite() && q.value.is_some()),
+            })
+        })
+        .collect()
+}
+
+/// The interval of a quotient of two positive quantities: half-widths in the logarithm add as squares.
+fn quotient(above: &Quantity, below: &Quantity, factor: f64) -> Option<Interval> {
+    let (a, b) = (above.value?, below.value?);
+    let (ia, ib) = (above.interval?, below.interval?);
+    if [a, b, ia.low, ib.low].iter().any(|v| *v <= 0.0) {
+        return None;
+    }
+    let up = (ia.high / a).ln().hypot((b / ib.low).ln());
+    let down = (a / ia.low).ln().hypot((ib.high / b).ln());
+    let ratio = factor * a / b;
+    Some(Interval { low: ratio * (-down).exp(), high: ratio * up.exp(), coverage: ia.coverage })
+}

@@ -1,0 +1,173 @@
+//! What the figures of a unit say, as sentences.
+
+use super::unit::{Origin, Unit};
+use crate::record::{ComparisonRecord, ShareRecord, WindowRecord};
+use crate::text::{Arg, Note};
+
+/// Smallest share that is named.
+const NAMED: f64 = 0.005;
+
+/// Probability of a misfit below which a prediction is called indicative.
+const UNBELIEVABLE: f64 = 1e-3;
+
+/// The window of a length.
+fn window(detail: &ComparisonRecord, window_s: f64) -> Option<&WindowRecord> {
+    detail.windows.iter().find(|w| w.window_s == window_s)
+}
+
+/// The sentences of a unit, the most important first.
+pub(super) fn sentences(unit: &Unit) -> Vec<Note> {
+    let Some(detail) = &unit.detail else { return vec![] };
+    let mut out = vec![];
+    if let Some(w) = window(detail, 100.0) {
+        out.extend(made_of(w));
+        out.extend(agreement(w, "100"));
+    }
+    if let Some(w) = window(detail, 10.0) {
+        out.extend(agreement(w, "10"));
+    }
+    out.extend(misfit(detail));
+    out.extend(null(detail));
+    out.extend(floor(detail));
+    out
+}
+
+/// The name of a part of a model, by its id.
+pub fn part_key(id: &str) -> &'static str {
+    match id {
+        "angle_random_walk" => "compare.part.angle_random_walk",
+        "flicker" => "compare.part.flicker",
+        "rate_random_walk" => "compare.part.rate_random_walk",
+        "quantization" => "compare.part.quantization",
+        "rate_ramp" => "compare.part.rate_ramp",
+        "markov" => "compare.part.markov",
+        "quasi_periodic" => "compare.part.quasi_periodic",
+        _ => "compare.part.line",
+    }
+}
+
+fn part(share: &ShareRecord) -> Arg {
+    Arg::Key(part_key(&share.part).into())
+}
+
+fn percent(share: f64) -> Arg {
+    Arg::rounded(100.0 * share, if share > 0.995 { 3 } else { 2 })
+}
+
+fn made_of(w: &WindowRecord) -> Option<Note> {
+    let first = w.shares.first()?;
+    let others: Vec<Arg> = w
+        .shares
+        .iter()
+        .skip(1)
+        .filter(|s| s.share >= NAMED)
+        .map(|s| {
+            let share = Note::new("compare.says.share").with("part", part(s)).with("share", percent(s.share));
+            Arg::from(share)
+        })
+        .collect();
+    let note = Note::new(if others.is_empty() { "compare.says.made_of_one" } else { "compare.says.made_of" })
+        .with("part", part(first))
+        .with("share", percent(first.share));
+    Some(if others.is_empty() { note } else { note.with("others", Arg::Several(others, ", ")) })
+}
+
+fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {
+    let (ratio, interval) = (w.ratio?, w.ratio_interval?);
+    // Two digits of the half-width, and not fewer than two of the value.
+    let half = 0.5 * (interval.high - interval.low) / ratio;
+    let figures = (1.0 - half.max(1e-6).log10().floor()).clamp(2.0, 6.0) as usize;
+    let key = match w.agreement.as_deref()? {
+        "consistent" => "compare.says.consistent",
+        "missing_low_frequency_term" if window == "100" => "compare.says.above",
+        "missing_low_frequency_term" => "compare.says.above_10",
+        _ => "compare.says.below",
+    };
+    Some(
+        Note::new(key)
+            .with("window", window)
+            .with("observed", w.observed)
+            .with("predicted", w.predicted?)
+            .with("ratio", Arg::figures(ratio, figures))
+            .with("low", Arg::figures(interval.low, figures))
+            .with("high", Arg::figures(interval.high, figures)),
+    )
+}
+
+/// Said when the model is no description of the record.
+fn misfit(detail: &ComparisonRecord) -> Option<Note> {
+    let (misfit, p) = (detail.model.misfit?, detail.model.misfit_probability?);
+    (p < UNBELIEVABLE).then(|| Note::new("compare.says.misfit").with("misfit", Arg::rounded(misfit, 2)))
+}
+
+fn null(detail: &ComparisonRecord) -> Option<Note> {
+    let m = detail.minimum.as_ref()?;
+    let ([low, median, high], ratio) = (m.null_ratio?, m.ratio?);
+    let key = if ratio < low {
+        "compare.says.null_below"
+    } else if ratio > high {
+        "compare.says.null_above"
+    } else {
+        "compare.says.null_inside"
+    };
+    Some(
+        Note::new(key)
+            .with("hours", detail.length_s / 3600.0)
+            .with("tau_s", m.largest_tau_s)
+            .with("low", Arg::rounded(low, 2))
+            .with("median", Arg::rounded(median, 2))
+            .with("high", Arg::rounded(high, 2))
+            .with("ratio", Arg::figures(ratio, 3)),
+    )
+}
+
+fn floor(detail: &ComparisonRecord) -> Option<Note> {
+    let f = detail.floor.as_ref()?;
+    let key = match (f.is_limit, f.identifiable_h) {
+        (false, Some(h)) if h * 3600.0 <= detail.length_s => "compare.says.floor_shown",
+        (false, Some(_)) => "compare.says.floor_early",
+        (true, Some(_)) => "compare.says.floor_limit",
+        (_, None) => "compare.says.floor_never",
+    };
+    let note = Note::new(key)
+        .with("b", Arg::rounded(f.b_deg_h, 3))
+        .with("crossover", time(f.crossover_s))
+        .with("longest_h", crate::noise::identifiable::LONGEST_H);
+    Some(match f.identifiable_h {
+        Some(h) => note.with("needed", time(h * 3600.0)),
+        None => note,
+    })
+}
+
+/// A time in the unit that reads well.
+fn time(seconds: f64) -> Note {
+    let (key, value) = match seconds {
+        s if s < 120.0 => ("compare.time.s", s),
+        s if s < 7200.0 => ("compare.time.min", s / 60.0),
+        s => ("compare.time.h", s / 3600.0),
+    };
+    Note::new(key).with("value", Arg::rounded(value, 2))
+}
+
+/// What could not be compared.
+pub(super) fn missing(unit: &Unit) -> Vec<Note> {
+    let mut out = vec![];
+    let drift = unit.quantity("russian_drift_100s");
+    match (&unit.detail, drift.and_then(|d| d.value), unit.origin) {
+        (Some(detail), _, _) => {
+            if detail.octaves.is_none() {
+                out.push(Note::new("compare.missing.octaves"));
+            }
+            if detail.minimum.as_ref().is_none_or(|m| m.null_ratio.is_none()) {
+                out.push(Note::new("compare.missing.null"));
+            }
+        }
+        (None, None, _) => out.push(Note::new("compare.missing.short")),
+        (None, Some(_), Origin::Result) => out.push(Note::new("compare.missing.detail")),
+        (None, Some(_), Origin::Recording) => out.push(Note::new("compare.missing.model")),
+    }
+    if drift.is_none() {
+        out.push(Note::new("compare.missing.drift"));
+    }
+    out
+}

@@ -1,0 +1,71 @@
+//! The view of a comparison: words and printed numbers, ready for a template and for the terminal.
+
+mod published;
+mod terminal;
+mod unit;
+
+pub use published::PublishedView;
+pub use terminal::table;
+pub use unit::{Cell, LimitView, RuleCell, ShareView, UnitView};
+
+use super::number::date_time;
+use super::svg;
+use super::view::{FigureView, Words, caption};
+use crate::compare::Comparison;
+use crate::figure::Figure;
+use crate::text::Lang;
+use serde::Serialize;
+
+/// Everything that a comparison shows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CompareView {
+    /// The units.
+    pub units: Vec<UnitView>,
+    /// Limits with the figure each names.
+    pub limits: Vec<LimitView>,
+    /// The figure of the ratios, where there is one.
+    pub ratios: Option<FigureView>,
+    /// The published tables.
+    pub published: Option<PublishedView>,
+    /// Line at the foot of every page.
+    pub footer: String,
+    /// The program with its version.
+    pub generator: String,
+}
+
+impl CompareView {
+    /// Builds the view.
+    pub fn new(comparison: &Comparison, figures: &[Figure], lang: Lang) -> CompareView {
+        let words = Words { lang };
+        let drawn = |id: &str| {
+            let at = figures.iter().position(|f| f.id == id)?;
+            figures.get(at).map(|f| figure(f, at + 1, words))
+        };
+        let generator = format!("{} {}", comparison.program.name, comparison.program.version);
+        CompareView {
+            units: comparison
+                .units
+                .iter()
+                .enumerate()
+                .map(|(i, u)| UnitView::new(u, drawn(&format!("octaves_{}", i + 1)), words))
+                .collect(),
+            limits: comparison.units.iter().flat_map(|u| unit::limits(u, words)).collect(),
+            ratios: drawn("ratios"),
+            published: comparison.published.as_ref().map(|p| PublishedView::new(p, words)),
+            footer: format!("{} · {generator}", date_time(&comparison.compared_at)),
+            generator,
+        }
+    }
+}
+
+fn figure(figure: &Figure, number: usize, words: Words) -> FigureView {
+    let title = words.t(figure.title);
+    FigureView {
+        id: figure.id.clone(),
+        number,
+        title: if figure.channel.is_empty() { title } else { format!("{title} · {}", figure.channel) },
+        caption: caption(figure, words),
+        svg: svg::render(figure, words.lang),
+        href: format!("figures/{}.svg", figure.id),
+    }
+}

@@ -1,0 +1,266 @@
+//! One unit of a comparison, printed.
+
+use crate::compare::{Origin, Quantity, Unit, part_key};
+use crate::estimate::{Interval, UpperLimit};
+use crate::report::number::{Rounding, bound, digits, duration, limit, limit_digits, percent};
+use crate::report::view::{FigureView, Words};
+use serde::Serialize;
+
+/// A value and its interval, printed; empty where there is none.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Cell {
+    /// Value, or the bound.
+    pub value: String,
+    /// 95 % interval.
+    pub interval: String,
+}
+
+/// Bias instability by one rule with the ratio to it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RuleCell {
+    /// The rule in words.
+    pub name: String,
+    /// The figure.
+    pub figure: Cell,
+    /// σ of 100-s means over it.
+    pub ratio: Cell,
+    /// The ratio the other way.
+    pub inverse: String,
+}
+
+/// One part of the predicted variance.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ShareView {
+    /// Part, in words.
+    pub part: String,
+    /// Share, %.
+    pub share: String,
+    /// What it alone would give.
+    pub alone: String,
+}
+
+/// A limit and the figure it names.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LimitView {
+    /// Unit.
+    pub unit: String,
+    /// The quantity that the limit names.
+    pub quantity: String,
+    /// Its value with unit.
+    pub value: String,
+    /// The limit.
+    pub limit: String,
+    /// Id of the verdict.
+    pub verdict: String,
+    /// The verdict in words.
+    pub verdict_word: String,
+    /// File the limit stands in.
+    pub source: String,
+}
+
+/// One unit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnitView {
+    /// Name with channel.
+    pub label: String,
+    /// Where it comes from.
+    pub path: String,
+    /// Analysed now or read from a result.
+    pub origin: String,
+    /// Record length.
+    pub length: String,
+    /// 100-s windows.
+    pub n: String,
+    /// 10-s windows.
+    pub n10: String,
+    /// σ over 100 s, 1σ.
+    pub sigma100: Cell,
+    /// The same, 3σ.
+    pub sigma3: Cell,
+    /// σ over 10 s.
+    pub sigma10: Cell,
+    /// Bias instability by each rule, a to d.
+    pub rules: Vec<RuleCell>,
+    /// Where the minimum stands, and the longest averaging time read.
+    pub minimum_at: String,
+    /// Angle random walk from 10-s means.
+    pub arw: Cell,
+    /// N.
+    pub n_allan: Cell,
+    /// Ratio of the two.
+    pub arw_ratio: Cell,
+    /// The ratio the other way.
+    pub arw_inverse: String,
+    /// Predicted σ over 100 s.
+    pub predicted: Cell,
+    /// Observed over predicted.
+    pub over: Cell,
+    /// The verdict on it, in words.
+    pub agreement: String,
+    /// Its class for colours.
+    pub agreement_class: &'static str,
+    /// What angle random walk alone would give: 5 to 95 %.
+    pub null: String,
+    /// Its median.
+    pub null_median: String,
+    /// Parts of the prediction.
+    pub shares: Vec<ShareView>,
+    /// What it all says.
+    pub says: Vec<String>,
+    /// What could not be compared.
+    pub missing: Vec<String>,
+    /// The octave identity.
+    pub figure: Option<FigureView>,
+}
+
+fn between(i: Interval, rounding: Rounding, words: Words) -> String {
+    let show = |v: f64| rounding.show(v, words.lang);
+    words.with("report.interval", &[("low", &show(i.low)), ("high", &show(i.high))])
+}
+
+fn cell(value: Option<f64>, interval: Option<Interval>, upper: Option<UpperLimit>, words: Words) -> Cell {
+    match (value, upper) {
+        (Some(v), _) => {
+            let rounding = Rounding::of(v, interval.map(|i| (i.low, i.high)));
+            Cell {
+                value: rounding.show(v, words.lang),
+                interval: interval.map(|i| between(i, rounding, words)).unwrap_or_default(),
+            }
+        }
+        (None, Some(u)) => {
+            let coverage = limit_digits(100.0 * u.coverage, 3, words.lang);
+            let value = bound(u.value, true, words.lang);
+            Cell {
+                value: words.with("report.at_most", &[("value", &value), ("coverage", &coverage)]),
+                interval: String::new(),
+            }
+        }
+        (None, None) => Cell::default(),
+    }
+}
+
+fn quantity(q: Option<&Quantity>, words: Words) -> Cell {
+    q.map_or_else(Cell::default, |q| cell(q.value, q.interval, q.upper_limit, words))
+}
+
+const RULE_NAMES: [(&str, &str); 4] =
+    [("a", "compare.rule.a"), ("b", "compare.rule.b"), ("c", "compare.rule.c"), ("d", "compare.rule.d")];
+
+impl UnitView {
+    /// Prints a unit.
+    pub(super) fn new(unit: &Unit, figure: Option<FigureView>, words: Words) -> UnitView {
+        let lang = words.lang;
+        let of = |id: &str| quantity(unit.quantity(id), words);
+        let detail = unit.detail.as_ref();
+        let window = |s: f64| detail.and_then(|d| d.windows.iter().find(|w| w.window_s == s));
+        let (w100, w10) = (window(100.0), window(10.0));
+        let minimum = detail.and_then(|d| d.minimum.as_ref());
+        let count = |n: Option<u64>| n.map(|n| crate::report::number::count(n, lang)).unwrap_or_default();
+        let null = minimum.and_then(|m| m.null_ratio);
+        let three = |v: f64| limit_digits(v, 3, lang);
+        let rules = RULE_NAMES.iter().filter_map(|(rule, name)| {
+            let row = unit.rules.iter().find(|r| r.rule == *rule)?;
+            let mut ratio = cell(row.ratio, row.ratio_interval, None, words);
+            if row.ratio_interval.is_none() {
+                ratio.value = row.ratio.map(|r| digits(r, 3, lang)).unwrap_or_default();
+            }
+            if row.value.is_none() && !ratio.value.is_empty() {
+                ratio.value = format!("≥\u{202f}{}", ratio.value);
+            }
+            Some(RuleCell {
+                name: words.t(name),
+                figure: cell(row.value, row.interval, row.upper_limit, words),
+                ratio,
+                inverse: row.inverse.map(|v| digits(v, 3, lang)).unwrap_or_default(),
+            })
+        });
+        let (agreement, agreement_class) = match w100.and_then(|w| w.agreement.as_deref()) {
+            Some("consistent") => (words.t("compare.agreement.consistent"), "ok"),
+            Some("missing_low_frequency_term") => (words.t("compare.agreement.above"), "remark"),
+            Some(_) => (words.t("compare.agreement.below"), "remark"),
+            None => (String::new(), "none"),
+        };
+        let arw_ratio = unit.quantity("ratio_russian_to_allan_arw");
+        UnitView {
+            label: unit.label(),
+            path: unit.path.clone(),
+            origin: words.t(match unit.origin {
+                Origin::Recording => "compare.origin.recording",
+                Origin::Result => "compare.origin.result",
+            }),
+            length: unit.length_s.map(|t| duration(t, lang)).unwrap_or_default(),
+            n: count(w100.map(|w| w.n)),
+            n10: count(w10.map(|w| w.n)),
+            sigma100: of("russian_drift_100s"),
+            sigma3: of("russian_drift_100s_3sigma"),
+            sigma10: of("russian_sigma_10s"),
+            rules: rules.collect(),
+            minimum_at: minimum
+                .map(|m| {
+                    let (tau, largest) = (three(m.tau_s), three(m.largest_tau_s));
+                    words.with("compare.minimum_at", &[("tau", &tau), ("largest", &largest)])
+                })
+                .unwrap_or_default(),
+            arw: of("russian_arw_10s"),
+            n_allan: of("angle_random_walk"),
+            arw_ratio: quantity(arw_ratio, words),
+            arw_inverse: arw_ratio
+                .and_then(|q| q.value)
+                .map(|v| digits(1.0 / v, 3, lang))
+                .unwrap_or_default(),
+            predicted: w100.map(|w| cell(w.predicted, w.predicted_interval, None, words)).unwrap_or_default(),
+            over: w100.map(|w| cell(w.ratio, w.ratio_interval, None, words)).unwrap_or_default(),
+            agreement,
+            agreement_class,
+            null: null
+                .map(|[low, _, high]| {
+                    let (low, high) = (digits(low, 2, lang), digits(high, 2, lang));
+                    words.with("report.interval", &[("low", &low), ("high", &high)])
+                })
+                .unwrap_or_default(),
+            null_median: null.map(|n| digits(n[1], 2, lang)).unwrap_or_default(),
+            shares: w100
+                .map(|w| {
+                    let share = |s: &crate::record::ShareRecord| ShareView {
+                        part: words.t(part_key(&s.part)),
+                        share: percent(s.share, lang),
+                        alone: digits(s.deviation_deg_h, 3, lang),
+                    };
+                    w.shares.iter().map(share).collect()
+                })
+                .unwrap_or_default(),
+            says: unit.says.iter().map(|n| words.say(n)).collect(),
+            missing: unit.missing.iter().map(|n| words.say(n)).collect(),
+            figure,
+        }
+    }
+}
+
+/// The limits of a unit, each with the figure that it names.
+pub(super) fn limits(unit: &Unit, words: Words) -> Vec<LimitView> {
+    unit.quantities
+        .iter()
+        .filter_map(|q| {
+            let l = q.limit.as_ref()?;
+            let shown = |v: f64| limit(v, words.lang);
+            let text = match (l.min, l.max) {
+                (Some(a), Some(b)) => {
+                    words.with("report.interval", &[("low", &shown(a)), ("high", &shown(b))])
+                }
+                (Some(a), None) => format!("≥\u{202f}{}", shown(a)),
+                (None, Some(b)) => format!("≤\u{202f}{}", shown(b)),
+                (None, None) => String::new(),
+            };
+            let value = cell(q.value, q.interval, q.upper_limit, words).value;
+            Some(LimitView {
+                unit: unit.label(),
+                quantity: words.name("measurand", &q.id),
+                value: words.quantity(&value, &q.unit),
+                limit: words.quantity(&text, &l.unit),
+                verdict: q.verdict.clone(),
+                verdict_word: words.name("verdict", &q.verdict),
+                source: l.source.clone(),
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,203 @@
+//! The verb `compare`, as a user runs it.
+
+mod support;
+
+use serde_json::Value;
+use std::path::Path;
+use support::{result, root, sagnac, sample, shipped};
+use tempfile::tempdir;
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn compare(folder: &Path, args: &[&str]) -> (String, Value) {
+    let all = [&["compare"], args, &["--out", "c"]].concat();
+    let said = sagnac(folder, &all);
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{args:?}: {said:?}");
+    let mut names: Vec<String> = std::fs::read_dir(folder.join("c"))
+        .unwrap()
+        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+        .filter(|n| n != "figures")
+        .collect();
+    names.sort();
+    assert_eq!(names, ["comparison.csv", "comparison.html", "comparison.json", "comparison.md"]);
+    (said.out, json(&folder.join("c/comparison.json")))
+}
+
+/// A field of the first row of the table.
+fn field(folder: &Path, row: usize, name: &str) -> String {
+    let text = std::fs::read_to_string(folder.join("c/comparison.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
+    let at = lines[0].iter().position(|c| *c == name).unwrap_or_else(|| panic!("no column {name}"));
+    lines[row][at].to_owned()
+}
+
+fn number(folder: &Path, row: usize, name: &str) -> f64 {
+    field(folder, row, name).parse().unwrap_or_else(|_| panic!("{name}: {}", field(folder, row, name)))
+}
+
+#[test]
+fn a_recording_and_its_result_give_the_same_comparison() {
+    let dir = tempdir().unwrap();
+    let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
+    assert_eq!(said.code, 0);
+    let (table, all) = compare(dir.path(), &[&sample("pass"), "a", "a/result.json"]);
+    assert_eq!(all["format"], "comparison/1");
+    let units = all["units"].as_array().unwrap();
+    assert_eq!(units.len(), 3);
+    let origins: Vec<&str> = units.iter().map(|u| u["origin"].as_str().unwrap()).collect();
+    assert_eq!(origins, ["recording", "result", "result"]);
+    for key in ["quantities", "rules", "detail", "says"] {
+        assert_eq!(units[0][key], units[1][key], "{key}");
+    }
+    assert!(table.lines().next().unwrap().contains("σ100"), "{table}");
+    // The sample was made with N = 0.002 and B = 0.003 in 100.5 h of 3618 windows.
+    let n = 3618.0f64;
+    let white = 36.0 * 0.002f64.powi(2);
+    let flicker = 0.003f64.powi(2) / std::f64::consts::PI * n * n.ln() / (n - 1.0);
+    let truth = (white + flicker).sqrt();
+    let (low, high) = (number(dir.path(), 1, "predicted_low"), number(dir.path(), 1, "predicted_high"));
+    assert!(low <= truth && truth <= high, "{low} {truth} {high}");
+    assert_eq!(field(dir.path(), 1, "n_100s"), "3618");
+    assert_eq!(field(dir.path(), 1, "detrend"), "mean");
+    assert_eq!(field(dir.path(), 1, "largest_part"), "angle_random_walk");
+    assert!((number(dir.path(), 1, "largest_share") - white / (white + flicker)).abs() < 0.06);
+    assert_eq!(field(dir.path(), 1, "agreement"), "consistent");
+    // The ratio is that of the two figures, and its inverse is its inverse.
+    let ratio = number(dir.path(), 1, "sigma100_deg_h") / number(dir.path(), 1, "minimum_deg_h");
+    assert!((number(dir.path(), 1, "ratio_minimum") / ratio - 1.0).abs() < 1e-12);
+    assert!((number(dir.path(), 1, "ratio_minimum_inverse") * ratio - 1.0).abs() < 1e-12);
+    // A floor lowers the ratio below what angle random walk alone would give.
+    assert!(ratio < number(dir.path(), 1, "null_05"), "{ratio}");
+    // (N/0.664 B)² h.
+    let crossover = 3600.0 * (0.002f64 / (0.664_282_47 * 0.003)).powi(2);
+    assert!((number(dir.path(), 1, "crossover_s") / crossover - 1.0).abs() < 0.4);
+}
+
+#[test]
+fn the_octaves_add_up_to_the_drift() {
+    let dir = tempdir().unwrap();
+    let (_, all) = compare(dir.path(), &[&sample("pass")]);
+    let o = &all["units"][0]["detail"]["octaves"];
+    let windows = o["windows"].as_f64().unwrap();
+    let sum: f64 = o["octaves"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|o| 0.5 * o["deviation_deg_h"].as_f64().unwrap().powi(2))
+        .sum();
+    let sigma = o["sigma"].as_f64().unwrap();
+    assert_eq!(windows, 2048.0);
+    assert!((sum * windows / (windows - 1.0) / (sigma * sigma) - 1.0).abs() < 1e-9);
+    assert!(dir.path().join("c/figures/octaves_1.svg").is_file());
+    assert!(dir.path().join("c/figures/ratios.svg").is_file());
+}
+
+#[test]
+fn a_limit_is_judged_against_the_figure_it_names() {
+    let dir = tempdir().unwrap();
+    let limits = dir.path().join("l.toml");
+    let text = "format = \"limits/1\"\n[limits]\nid = \"x\"\ntitle = \"X\"\nrevision = \"A\"\n\
+        [[limit]]\nmeasurand = \"russian_drift_100s\"\nmax = \"0.01 deg/h\"\n\
+        [[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.01 deg/h\"\n";
+    std::fs::write(&limits, text).unwrap();
+    let (table, all) = compare(dir.path(), &[&sample("pass"), "--limits", "l.toml"]);
+    let verdict = |id: &str| {
+        let rows = all["units"][0]["quantities"].as_array().unwrap();
+        rows.iter().find(|q| q["id"] == id).unwrap()["verdict"].as_str().unwrap().to_owned()
+    };
+    // The same 0.01 deg/h: the Russian drift of 0.013 breaks it, the fitted B of 0.003 keeps it.
+    assert_eq!(verdict("russian_drift_100s"), "fail");
+    assert_eq!(verdict("bias_instability"), "pass");
+    assert_eq!(verdict("bias_instability_minimum"), "none");
+    assert!(table.contains("fail") && table.contains("pass"), "{table}");
+}
+
+#[test]
+fn an_older_result_says_what_is_missing() {
+    let dir = tempdir().unwrap();
+    sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
+    let mut old = result(&dir.path().join("a"));
+    old.as_object_mut().unwrap().remove("comparison");
+    std::fs::write(dir.path().join("old.json"), old.to_string()).unwrap();
+    let (table, all) = compare(dir.path(), &["old.json"]);
+    assert!(all["units"][0]["detail"].is_null());
+    assert!(table.contains("Compare the recording itself."), "{table}");
+    assert!(number(dir.path(), 1, "ratio_minimum") > 1.0);
+    assert_eq!(field(dir.path(), 1, "predicted_deg_h"), "");
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_with_code_2() {
+    let dir = tempdir().unwrap();
+    std::fs::write(dir.path().join("odd.json"), "{\"format\": \"other/1\"}").unwrap();
+    std::fs::write(dir.path().join("broken.json"), "{").unwrap();
+    std::fs::write(
+        dir.path().join("list.json"),
+        "{\"format\":\"result/1\",\"measurands\":[{\"id\":\"angle_random_walk\"}]}",
+    )
+    .unwrap();
+    std::fs::write(dir.path().join("empty.json"), "{\"format\":\"result/1\",\"measurands\":[]}").unwrap();
+    for name in ["odd.json", "broken.json", "list.json", "empty.json", "none.json", "none.csv"] {
+        let said = sagnac(dir.path(), &["compare", name, "--out", "c"]);
+        assert_eq!(said.code, 2, "{name}: {said:?}");
+        assert!(said.err.starts_with("error: ") && said.err.contains(name), "{name}: {}", said.err);
+        assert!(!dir.path().join("c").exists(), "{name} left a folder");
+    }
+    assert_eq!(sagnac(dir.path(), &["compare"]).code, 2);
+    assert_eq!(sagnac(dir.path(), &["compare", "--published", &sample("pass")]).code, 2);
+}
+
+#[test]
+fn a_result_is_never_replaced_by_a_comparison_nor_the_other_way() {
+    let dir = tempdir().unwrap();
+    sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
+    let said = sagnac(dir.path(), &["compare", "--published", "--out", "a"]);
+    assert_eq!(said.code, 2, "{said:?}");
+    assert!(dir.path().join("a/result.json").is_file());
+    compare(dir.path(), &["--published"]);
+    compare(dir.path(), &["--published"]);
+    let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "c"]);
+    assert_eq!(said.code, 2, "{said:?}");
+    assert!(dir.path().join("c/comparison.json").is_file());
+}
+
+#[test]
+fn the_published_tables_are_checked_in_both_languages() {
+    let dir = tempdir().unwrap();
+    let (said, all) = compare(dir.path(), &["--published"]);
+    let rows = all["published"]["rows"].as_array().unwrap();
+    let computed: Vec<f64> = rows.iter().map(|r| r["ratio"].as_f64().unwrap()).collect();
+    for (computed, expected) in computed.iter().zip([8.0, 12.8, 12.73, 5.0, 6.25]) {
+        assert!((computed - expected).abs() < 0.005, "{computed}");
+    }
+    assert!(said.contains("printed ratio 12 does not follow from the row: 5.00"), "{said}");
+    assert!(said.contains("printed ratio 8 does not follow from the row: 6.25"), "{said}");
+    let (russian, _) = compare(dir.path(), &["--published", "--lang", "ru"]);
+    assert!(russian.contains("не следует из строки: 5,00"), "{russian}");
+    let html = std::fs::read_to_string(dir.path().join("c/comparison.html")).unwrap();
+    assert!(html.contains("<html lang=\"ru\">") && !html.contains("compare."), "a key shows");
+}
+
+#[test]
+fn a_short_recording_has_no_drift_and_says_so() {
+    let dir = tempdir().unwrap();
+    let rows: String = (0..150).map(|i| format!("{i},{}\n", (i * 37 % 11) as f64 * 0.1)).collect();
+    std::fs::write(dir.path().join("short.csv"), format!("time_s,rate_deg_h\n{rows}")).unwrap();
+    let (said, all) = compare(dir.path(), &["short.csv"]);
+    assert!(said.contains("no two windows of 100 s"), "{said}");
+    assert_eq!(all["units"][0]["name"], "short");
+}
+
+#[test]
+fn the_guide_names_every_column_of_the_table() {
+    let guide = std::fs::read_to_string(shipped("docs/guide/compare.md")).unwrap();
+    let dir = tempdir().unwrap();
+    compare(dir.path(), &[&sample("pass")]);
+    let text = std::fs::read_to_string(dir.path().join("c/comparison.csv")).unwrap();
+    for column in text.lines().next().unwrap().split(',') {
+        assert!(guide.contains(&format!("`{column}`")), "{column} is not in the guide");
+    }
+    assert!(root().join("docs/methods-compare.md").is_file());
+}
