@@ -79,14 +79,15 @@ fn rows_of_a_bunch(starts: &[(f64, f64)]) -> Option<f64> {
     Some(sum / n)
 }
 
-/// Middle interval between bunches at a distance, so that single lost rows do not count.
+/// Middle interval between bunches at a distance, so that single lost rows do not count. It is not positive where the
+/// bunches do not advance on the whole.
 fn slope(starts: &[(f64, f64)], guess: f64) -> Option<f64> {
     let lag = (starts.len() / 4).clamp(1, 64);
     let mut slopes: Vec<f64> = starts
         .iter()
         .zip(starts.get(lag..)?)
         .map(|(a, b)| (b.1 - a.1) / (b.0 - a.0))
-        .filter(|s| s.is_normal())
+        .filter(|s| s.is_finite())
         .collect();
     if slopes.is_empty() {
         return Some(guess);

@@ -105,7 +105,7 @@ impl Clock {
     /// # Errors
     /// [`ClockError`] when the stamps cannot serve.
     pub fn probe(stamps: &[f64]) -> Result<Clock, ClockError> {
-        probe::probe(stamps, None)
+        Clock::probe_with(stamps, None)
     }
 
     /// Finds the clock from the first stamps. A declared rate decides only between readings that the stamps allow alike.
@@ -114,7 +114,7 @@ impl Clock {
     /// [`ClockError`] when the stamps cannot serve.
     pub fn probe_with(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, ClockError> {
         let clock = probe::probe(stamps, declared_hz)?;
-        // Bunches can grow from one to the next by their rows and yet fall on the whole: no clock does.
+        // Stamps can grow at nine rows in ten and yet fall or stay on the whole: no clock does.
         let runs = |v: f64| v.is_normal() && v > 0.0;
         if runs(clock.interval_s) && runs(clock.gap_limit_s) {
             Ok(clock)

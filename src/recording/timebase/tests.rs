@@ -168,6 +168,94 @@ fn lost_rows_do_not_stretch_a_clock_of_whole_seconds() {
     assert!(clock.ambiguous_with_s.is_some_and(|other| (other - 1.01).abs() < 1e-4), "{clock:?}");
 }
 
+/// Runs of equal stamps, as (stamp, how many).
+fn runs(of: &[(f64, usize)]) -> Vec<f64> {
+    of.iter().flat_map(|&(stamp, n)| std::iter::repeat_n(stamp, n)).collect()
+}
+
+#[test]
+fn bunches_that_do_not_advance_on_the_whole_are_refused() {
+    // Six rows at one stamp and six a second later, over and over: 1 stamp in 12 falls, too few to be refused for that.
+    // From one pair of bunches to the next the stamps fall by 10 ms, by 1 us, or stay.
+    for fall_s in [0.01, 1e-6, 0.0] {
+        let pairs: Vec<(f64, usize)> =
+            (0..40).flat_map(|i| [0.0, 1.0].map(|level| (level - fall_s * f64::from(i), 6))).collect();
+        let stamps = runs(&pairs);
+        assert_eq!(Clock::probe(&stamps), Err(ClockError::NotGrowing), "{fall_s}");
+        assert_eq!(Clock::probe_with(&stamps, Some(12.0)), Err(ClockError::NotGrowing), "{fall_s}");
+    }
+    // The same two bunches, advancing by 12 s from pair to pair, are a clock.
+    let pairs: Vec<(f64, usize)> =
+        (0..40).flat_map(|i| [0.0, 6.0].map(|level| (level + 12.0 * f64::from(i), 6))).collect();
+    assert!(Clock::probe(&runs(&pairs)).is_ok_and(|clock| (clock.interval_s - 1.0).abs() < 1e-9));
+}
+
+#[test]
+fn bunches_of_huge_stamps_that_fall_give_no_clock() {
+    // Found by fuzzing: each gave a clock with a negative interval.
+    let low = -1.3476555094338099e28;
+    let first = [
+        (low, 2),
+        (3.960403595484939e-11, 1),
+        (low, 5),
+        (0.0, 8),
+        (low, 6),
+        (0.0, 4),
+        (-3.349720106301617e27, 1),
+        (low, 1),
+        (-1.34765550942469e28, 1),
+        (0.0, 22),
+        (-1.3476555094237502e28, 1),
+        (-1.3476549265166972e28, 1),
+        (low, 4),
+        (0.0, 12),
+        (-5.76491684961329e24, 1),
+        (low, 1),
+        (-1.3476549265166972e28, 1),
+        (low, 4),
+        (0.0, 7),
+        (-1.3476550068432251e28, 1),
+        (0.0, 1),
+        (low, 4),
+        (-1.347654911759302e28, 1),
+        (0.0, 22),
+    ];
+    let second = [
+        (-5.964482303445587e-37, 1),
+        (0.0, 4),
+        (-1.3476005151612314e28, 1),
+        (0.0, 20),
+        (-1.3476552946124327e28, 1),
+        (low, 2),
+        (-1.3476555070991438e28, 1),
+        (0.0, 12),
+        (-1.3476555094337971e28, 1),
+        (0.0, 19),
+        (-1.3476005151612314e28, 1),
+        (low, 2),
+        (-1.347654911759302e28, 1),
+        (0.0, 17),
+        (-1.3476555094338114e28, 1),
+        (low, 1),
+        (-1.3475270610654758e28, 1),
+        (low, 3),
+        (0.0, 2),
+        (low, 2),
+        (0.0, 21),
+        (-1.347655509430532e28, 1),
+        (low, 2),
+        (0.0, 8),
+        (-1.3476555095346778e28, 1),
+        (low, 1),
+        (-3.5992803225546133e25, 1),
+        (low, 4),
+        (0.0, 5),
+    ];
+    for found in [&first[..], &second[..]] {
+        assert_eq!(Clock::probe(&runs(found)), Err(ClockError::NotGrowing));
+    }
+}
+
 proptest::proptest! {
     #[test]
     fn every_clock_runs_forward(
