@@ -70,7 +70,7 @@ fn wrong_decisions_are_pointed_at() {
         ("delimiter = \";\"", "delimiter = \"comma\"", "\"comma\"", "a comma cannot separate"),
         ("header_line = 2", "header_line = 2.5", "2.5", "must be a whole number"),
         ("first_line = 4", "first_line = 2", "2", "is not below `header_line` 2"),
-        ("comment = \"!\"", "format = \"docx\"", "\"docx\"", "is no file format"),
+        ("comment = \"!\"", "format = \"docx\"", "docx", "is no file format"),
         ("stamp = \"day_first\"", "week_column = 3", "3", "a date or a GPS week, not both"),
         ("column = \"Выход\"", "column = \"Выход\"\nstamp = \"clock\"", "\"clock\"", "has the role `rate`"),
     ] {

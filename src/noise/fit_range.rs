@@ -14,7 +14,7 @@ use crate::estimate::{Estimate, Spread};
 use crate::text::Note;
 
 /// Probability of a larger misfit below which a range does not pass.
-const LEAST_PROBABILITY: f64 = 1e-3;
+const LEAST_PROBABILITY: f64 = 0.02;
 /// Probability below which what lies above a range departs from the model of it.
 const DEPARTS: f64 = 1e-5;
 /// Departure of the worst band that does no harm, whatever its significance: 2 % in power is 1 % in N.
@@ -120,7 +120,10 @@ fn departs_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -
 fn annotated(mut ranged: RangedIdentification) -> RangedIdentification {
     let misfit = ranged.identification.misfit;
     let (highest_hz, widened) = (ranged.highest_hz, ranged.widened);
-    for estimate in ranged.identification.estimates_mut() {
+    for row in &mut ranged.identification.described.covariance {
+        row.iter_mut().for_each(|c| *c *= widened * widened);
+    }
+    for estimate in ranged.identification.every_estimate_mut() {
         if let Some(highest_hz) = highest_hz {
             estimate.notes.push(Note::new("note.fit_restricted").with("highest_hz", highest_hz));
         }

@@ -35,7 +35,7 @@ pub struct Whittle {
 
 impl Default for Whittle {
     fn default() -> Self {
-        Whittle { thresholds: [4.0, 4.5, 4.0, 8.5, 8.5] }
+        Whittle { thresholds: [4.0, 4.5, 4.0, 8.5, 7.2] }
     }
 }
 
@@ -169,6 +169,23 @@ impl Identification {
             &mut self.rate_ramp,
             &mut self.quantization,
         ]
+    }
+
+    /// Every estimate there is, those of Markov processes, quasi-periodic disturbances and the bandwidth too.
+    pub(super) fn every_estimate_mut(&mut self) -> Vec<&mut Estimate> {
+        let mut out = vec![
+            &mut self.angle_random_walk,
+            &mut self.bias_instability,
+            &mut self.rate_random_walk,
+            &mut self.rate_ramp,
+            &mut self.quantization,
+        ];
+        out.extend(self.markov.iter_mut().flat_map(|m| [&mut m.sigma, &mut m.correlation_time]));
+        for q in &mut self.quasi_periodic {
+            out.extend([&mut q.amplitude, &mut q.frequency, &mut q.coherence_time]);
+        }
+        out.extend(&mut self.cutoff);
+        out
     }
 
     /// The estimates in the order of [`TERMS`]: N, B, K, Q, R.

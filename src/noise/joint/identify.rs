@@ -321,9 +321,9 @@ fn supported(
     for set in 0..1usize << open.len() {
         let mut free = all_free(shape, ramp, true);
         let mut start = full.clone();
-        for i in 0..BASE.len() {
+        for (i, claimed) in claimed.iter().enumerate().take(BASE.len()) {
             let in_set = open.iter().position(|o| *o == i).is_some_and(|p| set >> p & 1 == 1);
-            if !claimed[i] && !in_set {
+            if !claimed && !in_set {
                 free.variance[i] = false;
                 start.variance[i] = 0.0;
             }
