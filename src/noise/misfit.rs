@@ -71,8 +71,7 @@ impl Misfit {
         let single = 2.0 * normal_probability(-scores[worst].abs());
         // Far out the tail is nothing at all, and its series takes long to say so.
         let hopeless = square > 1000.0 + 20.0 * free;
-        let survives =
-            if hopeless { 0.0 } else { ChiSquared::new(free).map_or(f64::NAN, |d| d.sf(square)) };
+        let survives = if hopeless { 0.0 } else { ChiSquared::new(free).map_or(f64::NAN, |d| d.sf(square)) };
         Misfit {
             per_dof: square / free,
             probability: survives,
