@@ -2,8 +2,8 @@
 //!
 //! Real outputs are filtered, and noise near the Nyquist frequency can have a shape that no term has. Fitted over all
 //! frequencies, such a record gives a wrong N with a tiny interval. Where the model fails its misfit test it is fitted
-//! up to the highest frequency, by octaves, at which it passes and what lies above departs from it; that part is left
-//! out and said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
+//! up to the highest frequency, by octaves, at which it passes, where the failure lies above; that part is left out and
+//! said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
 //! root of the misfit (Birge ratio), and that is said too.
 
 use super::evidence::Evidence;
@@ -15,8 +15,8 @@ use crate::text::Note;
 
 /// Probability of a larger misfit below which a range does not pass.
 const LEAST_PROBABILITY: f64 = 0.02;
-/// Probability below which what lies above a range departs from the model of it.
-const DEPARTS: f64 = 1e-5;
+/// Probability below which the model of all frequencies fails above a range.
+const FAILS: f64 = 1e-3;
 /// Departure of the worst band that does no harm, whatever its significance: 2 % in power is 1 % in N.
 const HARMLESS: f64 = 0.02;
 /// Octaves that may be given up.
@@ -53,6 +53,7 @@ pub fn describe_in_range(
     nyquist_hz: f64,
 ) -> RangedIdentification {
     let mut best: Option<RangedIdentification> = None;
+    let mut whole: Option<Identification> = None;
     for octave in 0..=OCTAVES {
         let highest_hz = nyquist_hz / f64::from(1u32 << octave);
         let restricted = (octave > 0).then(|| evidence.up_to(highest_hz));
@@ -60,15 +61,16 @@ pub fn describe_in_range(
         if octave > 0 && used.dof() < LEAST_DOF {
             break;
         }
-        let identification = method.describe(channel, used);
-        let fits = identification.misfit.probability >= LEAST_PROBABILITY
-            || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS;
-        let justified = octave == 0 || departs_above(evidence, &identification, highest_hz);
-        let highest_hz = (octave > 0).then_some(highest_hz);
-        let candidate = RangedIdentification { identification, highest_hz, widened: 1.0 };
+        let justified = whole.as_ref().is_none_or(|whole| fails_above(evidence, whole, highest_hz));
         if !justified {
             continue;
         }
+        let identification = method.describe(channel, used);
+        whole.get_or_insert_with(|| identification.clone());
+        let fits = identification.misfit.probability >= LEAST_PROBABILITY
+            || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS;
+        let highest_hz = (octave > 0).then_some(highest_hz);
+        let candidate = RangedIdentification { identification, highest_hz, widened: 1.0 };
         if fits {
             return candidate;
         }
@@ -100,8 +102,9 @@ pub fn identify_over(
     annotated(RangedIdentification { identification, ..*range })
 }
 
-/// True when the part of an evidence above a frequency is not what the model found below expects.
-fn departs_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -> bool {
+/// True when a model of the whole evidence fails above a frequency. A departure that chance made at low frequencies is
+/// no reason to give up the high ones.
+fn fails_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -> bool {
     let expected = expected_power(evidence, &found.described.model);
     let ramp = found.supported.r;
     let (mut above, mut whitened) = (evidence.clone(), vec![]);
@@ -113,7 +116,7 @@ fn departs_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -
         above.bands.push(band.clone());
     }
     let misfit = Misfit::of(&above, &whitened, 0);
-    misfit.probability < DEPARTS || misfit.worst_probability < DEPARTS
+    misfit.probability < FAILS || misfit.worst_probability < FAILS
 }
 
 /// Puts the notes on the estimates, and the widening on their spreads.
