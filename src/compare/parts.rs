@@ -57,7 +57,7 @@ pub fn part_name(share: &ShareRecord, model: &ModelRecord) -> Note {
     let name = Arg::Key(part_key(&share.part).into());
     match frequency {
         Some(hz) => Note::new("compare.more.part_at").with("part", name).with("hz", Arg::rounded(hz, 4)),
-        None => Note::new("compare.more.part").with("part", name),
+        None => Note::new("compare.label").with("name", name),
     }
 }
 
