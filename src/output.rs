@@ -223,7 +223,10 @@ fn replaceable(target: &Path, kind: Kind) -> Result<(), OutputError> {
         return Ok(());
     }
     if !is_of(target, kind) {
-        return in_the_way("output_error.why.foreign".into());
+        return in_the_way(match kind {
+            Kind::Result => "output_error.why.foreign".into(),
+            Kind::Comparison => "compare.more.foreign_folder".into(),
+        });
     }
     match foreign(target, kind).map_err(io("output_error.look_into", target))? {
         Some(name) => in_the_way(Note::new("output_error.why.holds").with("name", name)),

@@ -150,6 +150,45 @@ fn what_cannot_be_compared_is_refused_with_code_2() {
 }
 
 #[test]
+fn a_refusal_says_what_is_wrong_with_the_file() {
+    let dir = tempdir().unwrap();
+    sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
+    let whole = std::fs::read(dir.path().join("a/result.json")).unwrap();
+    std::fs::write(dir.path().join("cut.json"), &whole[..3000]).unwrap();
+    std::fs::write(dir.path().join("wrong.json"), "{\"format\": result}").unwrap();
+    std::fs::create_dir(dir.path().join("bare")).unwrap();
+    for (args, en, ru) in [
+        (["cut.json", "--out", "c"], "was it cut short?", "не обрезан ли он?"),
+        (["wrong.json", "--out", "c"], "no valid JSON at line 1", "неверный JSON в строке 1"),
+        (["bare", "--out", "c"], "a folder without result.json", "папка без `result.json`"),
+        (["a", "--out", "a"], "is no comparison folder", "не является папкой сопоставления"),
+    ] {
+        for (lang, words) in [("en", en), ("ru", ru)] {
+            let said = sagnac(dir.path(), &[&["compare"], &args[..], &["--lang", lang]].concat());
+            assert_eq!(said.code, 2, "{args:?}: {said:?}");
+            assert!(said.err.contains(words), "{args:?}: {}", said.err);
+            assert!(!said.err.contains("EOF") && !said.err.contains("expected"), "{}", said.err);
+        }
+    }
+    assert_eq!(std::fs::read(dir.path().join("a/result.json")).unwrap(), whole);
+}
+
+#[test]
+fn the_same_recording_twice_is_told() {
+    let dir = tempdir().unwrap();
+    sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
+    let (table, all) = compare(dir.path(), &["a", &sample("fail"), &sample("pass")]);
+    let told: Vec<bool> = all["units"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|u| u["missing"].to_string().contains("compare.more.repeated"))
+        .collect();
+    assert_eq!(told, [false, false, true]);
+    assert!(table.contains("the recording of a once more"), "{table}");
+}
+
+#[test]
 fn a_result_is_never_replaced_by_a_comparison_nor_the_other_way() {
     let dir = tempdir().unwrap();
     sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);

@@ -3,7 +3,7 @@
 use super::progress::Progress;
 use super::{AnalyzeArgs, CompareArgs, GridArgs, analyze, exit, place, run};
 use crate::compare::published::checked;
-use crate::compare::{Comparison, Origin, Unit, csv, figures, units_of};
+use crate::compare::{Comparison, Origin, Unit, csv, figures, tell_repeated, units_of};
 use crate::figure::Figure;
 use crate::ingest::open_recording;
 use crate::output::{Kind, StagedFolder};
@@ -58,6 +58,7 @@ fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
     for path in &args.recording {
         units.extend(read(args, path, &limits, now, lang)?);
     }
+    tell_repeated(&mut units);
     let drawn = figures::all(&units);
     let rows = csv::units(&units);
     finish(&Comparison::of_units(units, stamp), &rows, &drawn, folder, &renderer, lang)
@@ -87,17 +88,18 @@ fn read(
     let shown = path.display().to_string();
     let (value, name, origin) = match result_file(path) {
         Some(file) => {
-            let unreadable = |reason: String| {
-                say(Note::new("compare.error.unreadable")
-                    .with("path", file.display().to_string())
-                    .with("reason", reason))
-            };
             let bytes = std::fs::read(&file).map_err(|e| {
                 say(Note::new("compare.error.unreadable")
                     .with("path", file.display().to_string())
                     .with("reason", crate::text::io_reason(&e)))
             })?;
-            let value: Value = serde_json::from_slice(&bytes).map_err(|e| unreadable(e.to_string()))?;
+            let value: Value = serde_json::from_slice(&bytes).map_err(|e| {
+                let key = if e.is_eof() { "compare.more.cut_short" } else { "compare.more.no_json" };
+                say(Note::new(key)
+                    .with("path", file.display().to_string())
+                    .with("line", e.line() as u64)
+                    .with("column", e.column() as u64))
+            })?;
             // A result is named after its folder, for every one is called the same.
             let by = if file.file_name().is_some_and(|n| n == "result.json") {
                 file.parent().filter(|p| p.file_name().is_some()).map_or_else(|| stem(&file), stem)
@@ -105,6 +107,9 @@ fn read(
                 stem(&file)
             };
             (value, by, Origin::Result)
+        }
+        None if path.is_dir() => {
+            return Err(say(Note::new("compare.more.no_result_in").with("path", shown)));
         }
         None => {
             let (value, name) = analysed(args, path, limits, now, lang)?;

@@ -5,15 +5,16 @@
 
 pub mod csv;
 pub mod figures;
+mod parts;
 pub mod published;
 mod published_checks;
 mod rules;
 mod says;
 mod unit;
 
+pub use parts::{part_key, part_name};
 pub use rules::{RULES, RuleRow};
-pub use says::part_key;
-pub use unit::{Origin, Quantity, Unit, UnitError, units_of};
+pub use unit::{Origin, Quantity, Unit, UnitError, tell_repeated, units_of};
 
 use crate::record::Program;
 use serde::Serialize;

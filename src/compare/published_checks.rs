@@ -116,7 +116,7 @@ fn row(printed: &Row2, tables: &Tables) -> Option<CheckedRow> {
         let note = Note::new(key)
             .with("first", Arg::Stated(first.value))
             .with("second", Arg::Stated(r.n.value))
-            .with("factor", factor(first.value / r.n.value));
+            .with("factor", factor((first.value / r.n.value).max(r.n.value / first.value)));
         say(!rounding, note);
     }
     if let Some(first) = b_table1.filter(|first| first.value != r.bias.value) {

@@ -1,7 +1,8 @@
 //! What the figures of a unit say, as sentences.
 
+use super::parts::grouped;
 use super::unit::{Origin, Unit};
-use crate::record::{ComparisonRecord, ShareRecord, WindowRecord};
+use crate::record::{ComparisonRecord, WindowRecord};
 use crate::text::{Arg, Note};
 
 /// Smallest share that is named.
@@ -9,6 +10,13 @@ const NAMED: f64 = 0.005;
 
 /// Probability of a misfit below which a prediction is called indicative.
 const UNBELIEVABLE: f64 = 1e-3;
+
+/// How many half-widths of a 95 % interval off a verdict may still be chance: 3.3 standard deviations, one in a
+/// thousand.
+const NEAR: f64 = 1.7;
+
+/// Angle random walk, as a part of a model.
+const WHITE: &str = "angle_random_walk";
 
 /// The window of a length.
 fn window(detail: &ComparisonRecord, window_s: f64) -> Option<&WindowRecord> {
@@ -19,6 +27,7 @@ fn window(detail: &ComparisonRecord, window_s: f64) -> Option<&WindowRecord> {
 pub(super) fn sentences(unit: &Unit) -> Vec<Note> {
     let Some(detail) = &unit.detail else { return vec![] };
     let mut out = vec![];
+    out.extend(misfit(detail));
     if let Some(w) = window(detail, 100.0) {
         out.extend(made_of(w));
         out.extend(agreement(w, "100"));
@@ -26,28 +35,10 @@ pub(super) fn sentences(unit: &Unit) -> Vec<Note> {
     if let Some(w) = window(detail, 10.0) {
         out.extend(agreement(w, "10"));
     }
-    out.extend(misfit(detail));
+    out.extend(by_chance(detail));
     out.extend(null(detail));
     out.extend(floor(detail));
     out
-}
-
-/// The name of a part of a model, by its id.
-pub fn part_key(id: &str) -> &'static str {
-    match id {
-        "angle_random_walk" => "compare.part.angle_random_walk",
-        "flicker" => "compare.part.flicker",
-        "rate_random_walk" => "compare.part.rate_random_walk",
-        "quantization" => "compare.part.quantization",
-        "rate_ramp" => "compare.part.rate_ramp",
-        "markov" => "compare.part.markov",
-        "quasi_periodic" => "compare.part.quasi_periodic",
-        _ => "compare.part.line",
-    }
-}
-
-fn part(share: &ShareRecord) -> Arg {
-    Arg::Key(part_key(&share.part).into())
 }
 
 fn percent(share: f64) -> Arg {
@@ -55,20 +46,19 @@ fn percent(share: f64) -> Arg {
 }
 
 fn made_of(w: &WindowRecord) -> Option<Note> {
-    let first = w.shares.first()?;
-    let others: Vec<Arg> = w
-        .shares
+    let kinds = grouped(&w.shares);
+    let (first, rest) = kinds.split_first()?;
+    let others: Vec<Arg> = rest
         .iter()
-        .skip(1)
-        .filter(|s| s.share >= NAMED)
-        .map(|s| {
-            let share = Note::new("compare.says.share").with("part", part(s)).with("share", percent(s.share));
-            Arg::from(share)
+        .filter(|(_, share)| *share >= NAMED)
+        .map(|(key, share)| {
+            let part = Arg::Key((*key).into());
+            Arg::from(Note::new("compare.says.share").with("part", part).with("share", percent(*share)))
         })
         .collect();
     let note = Note::new(if others.is_empty() { "compare.says.made_of_one" } else { "compare.says.made_of" })
-        .with("part", part(first))
-        .with("share", percent(first.share));
+        .with("part", Arg::Key(first.0.into()))
+        .with("share", percent(first.1));
     Some(if others.is_empty() { note } else { note.with("others", Arg::Several(others, ", ")) })
 }
 
@@ -100,24 +90,45 @@ fn misfit(detail: &ComparisonRecord) -> Option<Note> {
     (p < UNBELIEVABLE).then(|| Note::new("compare.says.misfit").with("misfit", Arg::rounded(misfit, 2)))
 }
 
+/// Said when a verdict is so near that it may be chance.
+fn by_chance(detail: &ComparisonRecord) -> Option<Note> {
+    let near = |w: &WindowRecord| {
+        let (ratio, i) = (w.ratio?, w.ratio_interval?);
+        let to_one = if ratio > 1.0 { (ratio / i.low).ln() } else { (i.high / ratio).ln() };
+        let off = ratio.ln().abs() / to_one;
+        Some(off > 1.0 && off < NEAR)
+    };
+    detail.windows.iter().any(|w| near(w) == Some(true)).then(|| Note::new("compare.more.by_chance"))
+}
+
+/// Share of angle random walk in σ100 as predicted.
+fn white_share(detail: &ComparisonRecord) -> f64 {
+    let white = |w: &WindowRecord| w.shares.iter().find(|s| s.part == WHITE).map(|s| s.share);
+    window(detail, 100.0).and_then(white).unwrap_or(0.0)
+}
+
 fn null(detail: &ComparisonRecord) -> Option<Note> {
     let m = detail.minimum.as_ref()?;
     let ([low, median, high], ratio) = (m.null_ratio?, m.ratio?);
+    let white = white_share(detail);
     let key = if ratio < low {
         "compare.says.null_below"
     } else if ratio > high {
         "compare.says.null_above"
-    } else {
+    } else if white >= 0.5 {
         "compare.says.null_inside"
+    } else {
+        "compare.more.null_inside_of_other_noise"
     };
     Some(
         Note::new(key)
-            .with("hours", detail.length_s / 3600.0)
-            .with("tau_s", m.largest_tau_s)
+            .with("length", time(detail.length_s))
+            .with("tau", time(m.largest_tau_s))
             .with("low", Arg::rounded(low, 2))
             .with("median", Arg::rounded(median, 2))
             .with("high", Arg::rounded(high, 2))
-            .with("ratio", Arg::figures(ratio, 3)),
+            .with("ratio", Arg::figures(ratio, 3))
+            .with("share", percent(white)),
     )
 }
 

@@ -68,6 +68,8 @@ pub struct Unit {
     pub path: String,
     /// Where the values come from.
     pub origin: Origin,
+    /// SHA-256 of the files of the recording.
+    pub recording_sha256: Vec<String>,
     /// Usable time of the record, s.
     pub length_s: Option<f64>,
     /// The quantities of the comparison that the result holds.
@@ -142,6 +144,9 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
         None => vec![],
     };
     let serial = result.pointer("/unit_under_test/serial").and_then(Value::as_str);
+    let files = result.get("recording").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let digest = |f: &Value| Some(f.get("sha256")?.as_str()?.to_owned());
+    let recording_sha256: Vec<String> = files.iter().filter_map(digest).collect();
     let mut channels: Vec<&str> = vec![];
     for q in &quantities {
         if !channels.contains(&q.channel.as_str()) {
@@ -155,6 +160,7 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
             several: channels.len() > 1,
             path: path.to_owned(),
             origin,
+            recording_sha256: recording_sha256.clone(),
             length_s: result.pointer("/window/usable_s").and_then(Value::as_f64).filter(|t| *t > 0.0),
             quantities: quantities.iter().filter(|q| q.channel == *channel).cloned().collect(),
             rules: vec![],
@@ -168,4 +174,22 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
         unit
     };
     Ok(channels.iter().map(unit).collect())
+}
+
+/// Says of each unit that an earlier one comes from the same recording and channel: it is no second piece of evidence.
+pub fn tell_repeated(units: &mut [Unit]) {
+    let first: Vec<Option<String>> = units
+        .iter()
+        .enumerate()
+        .map(|(i, unit)| {
+            let same = |u: &&Unit| u.recording_sha256 == unit.recording_sha256 && u.channel == unit.channel;
+            let known = !unit.recording_sha256.is_empty();
+            known.then(|| units.iter().take(i).find(same).map(Unit::label)).flatten()
+        })
+        .collect();
+    for (unit, first) in units.iter_mut().zip(first) {
+        if let Some(name) = first {
+            unit.missing.insert(0, Note::new("compare.more.repeated").with("name", name));
+        }
+    }
 }

@@ -65,7 +65,7 @@ impl PublishedView {
                 r.device.clone(),
                 decimal(&r.bias_instability, lang),
                 decimal(&r.n, lang),
-                decimal(&r.coil, lang),
+                lengths(&r.coil, words),
             ]
         };
         PublishedView {
@@ -83,6 +83,15 @@ impl PublishedView {
             remarks: checked.remarks.iter().map(|n| words.say(n)).collect(),
         }
     }
+}
+
+/// Lengths as printed, their units in the language of the report.
+fn lengths(printed: &str, words: Words) -> String {
+    let named = |text: String, unit: &str, key: &str| {
+        text.replace(&format!(" {unit}"), &format!(" {}", words.t(key)))
+    };
+    let text = named(decimal(printed, words.lang), "km", "compare.more.km");
+    named(text, "mm", "compare.more.mm")
 }
 
 fn row(r: &CheckedRow, words: Words) -> RowView {

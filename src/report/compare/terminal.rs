@@ -79,6 +79,11 @@ pub fn table(view: &CompareView, lang: Lang) -> String {
         ),
     };
     let mut out = aligned(&head, &rows);
+    out.push_str(&format!("{}\n", t("compare.more.units")));
+    if view.published.as_ref().is_some_and(|p| p.rows.iter().any(|r| r.flagged)) {
+        out.push_str(&format!("{}\n", t("compare.more.flagged")));
+    }
+    out.push('\n');
     if let Some(p) = &view.published {
         for row in p.rows.iter().filter(|r| r.flagged) {
             for remark in &row.remarks {

@@ -1,7 +1,8 @@
 //! One unit of a comparison, printed.
 
-use crate::compare::{Origin, Quantity, Unit, part_key};
+use crate::compare::{Origin, Quantity, Unit, part_name};
 use crate::estimate::{Interval, UpperLimit};
+use crate::record::{ModelRecord, ShareRecord, WindowRecord};
 use crate::report::number::{Rounding, bound, digits, duration, limit, limit_digits, percent};
 use crate::report::view::{FigureView, Words};
 use serde::Serialize;
@@ -143,6 +144,9 @@ fn quantity(q: Option<&Quantity>, words: Words) -> Cell {
     q.map_or_else(Cell::default, |q| cell(q.value, q.interval, q.upper_limit, words))
 }
 
+/// Smallest share that has a row of its own.
+const LEAST_SHOWN: f64 = 0.001;
+
 const RULE_NAMES: [(&str, &str); 4] =
     [("a", "compare.rule.a"), ("b", "compare.rule.b"), ("c", "compare.rule.c"), ("d", "compare.rule.d")];
 
@@ -219,21 +223,31 @@ impl UnitView {
                 })
                 .unwrap_or_default(),
             null_median: null.map(|n| digits(n[1], 2, lang)).unwrap_or_default(),
-            shares: w100
-                .map(|w| {
-                    let share = |s: &crate::record::ShareRecord| ShareView {
-                        part: words.t(part_key(&s.part)),
-                        share: percent(s.share, lang),
-                        alone: digits(s.deviation_deg_h, 3, lang),
-                    };
-                    w.shares.iter().map(share).collect()
-                })
-                .unwrap_or_default(),
+            shares: detail.zip(w100).map(|(d, w)| shares(w, &d.model, words)).unwrap_or_default(),
             says: unit.says.iter().map(|n| words.say(n)).collect(),
             missing: unit.missing.iter().map(|n| words.say(n)).collect(),
             figure,
         }
     }
+}
+
+/// The parts of a prediction that are worth a row; the small ones stand together in the last.
+fn shares(window: &WindowRecord, model: &ModelRecord, words: Words) -> Vec<ShareView> {
+    let (shown, small): (Vec<&ShareRecord>, Vec<&ShareRecord>) =
+        window.shares.iter().partition(|s| s.share >= LEAST_SHOWN);
+    let row = |part: String, share: f64, alone: f64| ShareView {
+        part,
+        share: percent(share, words.lang),
+        alone: digits(alone, 3, words.lang),
+    };
+    let mut rows: Vec<ShareView> =
+        shown.iter().map(|s| row(words.say(&part_name(s, model)), s.share, s.deviation_deg_h)).collect();
+    if !small.is_empty() {
+        let share = small.iter().map(|s| s.share).sum();
+        let alone = small.iter().map(|s| s.deviation_deg_h.powi(2)).sum::<f64>().sqrt();
+        rows.push(row(words.t("compare.more.rest"), share, alone));
+    }
+    rows
 }
 
 /// The limits of a unit, each with the figure that it names.
