@@ -23,6 +23,11 @@ fn with_interval(value: f64, estimate: Option<&Estimate>) -> Arg {
     }
 }
 
+/// Whether an estimate speaks of a process of the description, which was polished once more.
+fn same(estimate: Option<f64>, described: f64) -> bool {
+    estimate.is_some_and(|v| (v - described).abs() < 5e-3 * described.abs())
+}
+
 /// The sentences of a channel.
 pub(super) fn remarks(gyro: &GyroEvidence) -> Vec<Note> {
     let found = &gyro.identification;
@@ -33,7 +38,7 @@ pub(super) fn remarks(gyro: &GyroEvidence) -> Vec<Note> {
     let number = |v: f64| Arg::Figures { value: v, digits: 3, zeros: false };
     let mut notes = vec![];
     for d in &model.markov {
-        let size = |m: &&MarkovFound| m.sigma.value == Some(d.rms_deg_h);
+        let size = |m: &&MarkovFound| same(m.sigma.value, d.rms_deg_h);
         let estimates = found.markov.iter().find(size);
         notes.push(
             Note::new("described.markov")
@@ -42,7 +47,7 @@ pub(super) fn remarks(gyro: &GyroEvidence) -> Vec<Note> {
         );
     }
     for d in &model.quasi_periodic {
-        let size = |q: &&QuasiPeriodicFound| q.amplitude.value == Some(d.rms_deg_h);
+        let size = |q: &&QuasiPeriodicFound| same(q.amplitude.value, d.rms_deg_h);
         let estimates = found.quasi_periodic.iter().find(size);
         notes.push(
             Note::new("described.quasi_periodic")

@@ -319,6 +319,9 @@ fn line(l: &LineRecord, words: Words) -> Line {
     }
 }
 
+/// Relative difference below which a row and the model speak of the same value.
+const SAME: f64 = 5e-3;
+
 fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model {
     let lang = words.lang;
     let coefficients = [
@@ -329,9 +332,13 @@ fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model 
         ("Q", "quantization", m.quantization, "arcsec"),
     ]
     .map(|(symbol, id, value, unit)| {
-        // Its row has the interval, when it speaks of the same value.
+        // Its row has the interval, when it speaks of the same value: the fit that is drawn was polished once more.
         let row = rows.iter().find(|r| {
-            r.id == id && r.channel == m.channel && r.unit == unit && r.value == Some(value) && value != 0.0
+            r.id == id
+                && r.channel == m.channel
+                && r.unit == unit
+                && value != 0.0
+                && r.value.is_some_and(|v| (v - value).abs() < SAME * value.abs())
         });
         let (value, interval) = match row {
             Some(row) => {
