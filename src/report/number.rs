@@ -95,6 +95,9 @@ fn directed(value: f64, count: i32, upwards: bool, lang: Lang) -> String {
     limit(whole / scale, lang)
 }
 
+/// Least side of a lopsided interval that sets the rounding, as a share of the value.
+const FINEST: f64 = 0.01;
+
 /// How the numbers of one row are rounded: all to the same place, set by the uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rounding {
@@ -107,11 +110,17 @@ pub struct Rounding {
 }
 
 impl Rounding {
-    /// Rounds to two significant digits of the half-width of the interval.
+    /// Rounds to two significant digits of the half-width of the interval, or of its shorter side where that is less
+    /// than half of it: a long tail on one side must not round the value away.
     ///
     /// Without a usable interval the value keeps four significant digits.
     pub fn of(value: f64, interval: Option<(f64, f64)>) -> Rounding {
         let half = interval.map(|(low, high)| 0.5 * (high - low)).filter(|h| h.is_finite() && *h > 0.0);
+        let shorter = interval.map(|(low, high)| (value - low).min(high - value));
+        let half = half.map(|h| match shorter.map(|s| s.max(FINEST * value.abs())) {
+            Some(s) if s > 0.0 && s < 0.5 * h => s,
+            _ => h,
+        });
         let size = value.abs().max(interval.map_or(0.0, |(l, h)| l.abs().max(h.abs())));
         let place = match half {
             // Rounding may carry (0.0996 to 0.10), so the exponent is read from the rounded text.
@@ -273,6 +282,15 @@ mod tests {
     fn a_carry_in_the_uncertainty_moves_the_place() {
         // The half-width 0.0996 is 0.10 in two digits, so the value has two decimals.
         assert_eq!(Rounding::of(1.0, Some((0.9004, 1.0996))).show(1.0, EN), "1.00");
+    }
+
+    #[test]
+    fn a_long_tail_does_not_round_the_value_away() {
+        let r = Rounding::of(0.448, Some((0.31, 3700.0)));
+        assert_eq!([0.448, 0.31, 3700.0].map(|v| r.show(v, EN)), ["0.45", "0.31", "3700.00"]);
+        // A value at the end of its interval keeps four digits.
+        let r = Rounding::of(7.5, Some((7.5, 250.0)));
+        assert_eq!(r.show(7.5, EN), "7.500");
     }
 
     #[test]

@@ -28,13 +28,21 @@ pub(super) fn records(gyro: &GyroEvidence) -> Vec<GoodnessOfFitRecord> {
         .collect()
 }
 
+/// Excess from which a ratio reads better than percent.
+const TIMES: f64 = 1.0;
+
 /// Where and by how much.
 fn departure(judged: &Judged, fit: &GoodnessOfFit) -> Note {
     let place = &judged.departure;
     let figure = |v: f64| Arg::Figures { value: v, digits: 3, zeros: false };
     let percent = Arg::Figures { value: 100.0 * place.excess.abs(), digits: 2, zeros: false };
+    let times = Arg::Figures { value: 1.0 + place.excess, digits: 2, zeros: true };
     let more = place.excess >= 0.0;
     match judged.view {
+        View::Frequency if place.excess >= TIMES => Note::new("goodness_times.frequency")
+            .with("from_hz", figure(place.from))
+            .with("to_hz", figure(place.to))
+            .with("times", times),
         View::Frequency => {
             Note::new(if more { "goodness.frequency_more" } else { "goodness.frequency_less" })
                 .with("from_hz", figure(place.from))
@@ -44,6 +52,12 @@ fn departure(judged: &Judged, fit: &GoodnessOfFit) -> Note {
         View::Lag => {
             let two = Arg::Figures { value: place.excess, digits: 2, zeros: false };
             Note::new("goodness.lag").with("lag_s", figure(place.from)).with("correlation", two)
+        }
+        View::AveragingTime if place.excess >= TIMES && place.from < place.to => {
+            Note::new("goodness_times.averaging")
+                .with("from_s", figure(place.from))
+                .with("to_s", figure(place.to))
+                .with("times", times)
         }
         View::AveragingTime => {
             let key = match (place.from < place.to, more) {

@@ -90,7 +90,7 @@ pub struct Model {
     /// Terms that were claimed, in words.
     pub terms: String,
     /// Coefficients with symbol and unit.
-    pub coefficients: Vec<Field>,
+    pub coefficients: Vec<Coefficient>,
     /// Misfit per degree of freedom.
     pub misfit: String,
     /// Probability of a larger misfit if the model is right.
@@ -99,6 +99,17 @@ pub struct Model {
     pub band: String,
     /// What limits the use of the model: the range of the fit, a misfit.
     pub remarks: Vec<ModelRemark>,
+}
+
+/// A coefficient of a noise model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Coefficient {
+    /// Symbol.
+    pub label: String,
+    /// Value with its unit.
+    pub value: String,
+    /// 95 % interval, in the same unit; empty where the record does not show the term.
+    pub interval: String,
 }
 
 /// A remark on a noise model.
@@ -308,22 +319,35 @@ fn line(l: &LineRecord, words: Words) -> Line {
     }
 }
 
+/// Relative difference below which a row and the model speak of the same value.
+const SAME: f64 = 5e-3;
+
 fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model {
     let lang = words.lang;
     let coefficients = [
-        ("N", m.angle_random_walk, "deg/sqrt(h)"),
-        ("B", m.bias_instability, "deg/h"),
-        ("K", m.rate_random_walk, "deg/h/sqrt(h)"),
-        ("R", m.rate_ramp, "deg/h/h"),
-        ("Q", m.quantization, "arcsec"),
+        ("N", "angle_random_walk", m.angle_random_walk, "deg/sqrt(h)"),
+        ("B", "bias_instability", m.bias_instability, "deg/h"),
+        ("K", "rate_random_walk", m.rate_random_walk, "deg/h/sqrt(h)"),
+        ("R", "rate_ramp", m.rate_ramp, "deg/h/h"),
+        ("Q", "quantization", m.quantization, "arcsec"),
     ]
-    .map(|(symbol, value, unit)| Field {
-        label: symbol.to_owned(),
-        value: if value == 0.0 {
-            NOTHING.to_owned()
-        } else {
-            words.quantity(&limit_digits(value, 4, lang), unit)
-        },
+    .map(|(symbol, id, value, unit)| {
+        // Its row has the interval, when it speaks of the same value: the fit that is drawn was polished once more.
+        let row = rows.iter().find(|r| {
+            r.id == id
+                && r.channel == m.channel
+                && r.unit == unit
+                && value != 0.0
+                && r.value.is_some_and(|v| (v - value).abs() < SAME * value.abs())
+        });
+        let (value, interval) = match row {
+            Some(row) => {
+                (words.quantity(&super::rows::value(row, words), unit), super::rows::interval(row, words))
+            }
+            None if value == 0.0 => (NOTHING.to_owned(), String::new()),
+            None => (words.quantity(&limit_digits(value, 4, lang), unit), String::new()),
+        };
+        Coefficient { label: symbol.to_owned(), value, interval }
     });
     let terms: Vec<String> = m.terms.iter().map(|t| words.name("term", t)).collect();
     let mut remarks: Vec<ModelRemark> = vec![];

@@ -78,6 +78,7 @@ mod tests {
             value: format!("{id} of {channel}"),
             interval: String::new(),
             identifiable: true,
+            hint: String::new(),
             limit: String::new(),
             acceptance: String::new(),
             rule: String::new(),

@@ -26,6 +26,8 @@ pub struct Row {
     pub interval: String,
     /// Whether the record can show the quantity.
     pub identifiable: bool,
+    /// Why there is no value; empty where there is one, or where the words in its place say why.
+    pub hint: String,
     /// Limit.
     pub limit: String,
     /// Acceptance limit.
@@ -64,6 +66,13 @@ pub fn rounding(m: &MeasurandRecord) -> Rounding {
     Rounding::of(m.value.unwrap_or(0.0), m.interval.map(|i| (i.low, i.high)))
 }
 
+/// Notes of a row whose quantity was searched for and not found: the search says so in place of a value.
+const SEARCHED: [&str; 3] = ["note.no_line", "correlated.no_markov", "correlated.no_periodic"];
+
+fn searched(m: &MeasurandRecord) -> bool {
+    m.value.is_none() && m.upper_limit.is_none() && m.notes.iter().any(|n| SEARCHED.contains(&n.id))
+}
+
 /// The value as printed: rounded by its uncertainty, or `≤ x (95 %)`, or that nothing can be said.
 pub fn value(m: &MeasurandRecord, words: Words) -> String {
     if let Some(value) = m.value {
@@ -77,6 +86,7 @@ pub fn value(m: &MeasurandRecord, words: Words) -> String {
                 ("coverage", &limit_digits(100.0 * u.coverage, 3, words.lang)),
             ],
         ),
+        None if searched(m) => words.t("row_hint.not_found"),
         None => words.t("report.not_identifiable"),
     }
 }
@@ -102,7 +112,7 @@ fn row(m: &MeasurandRecord, words: Words, footnotes: &mut Vec<String>) -> Row {
         // The model of a channel is remarked on once, where it is tabled.
         let sentence = match note.id {
             "note.model_misfit" => words.t("report.misfit_footnote"),
-            id if MODEL_NOTES.contains(&id) => continue,
+            id if MODEL_NOTES.contains(&id) || (SEARCHED.contains(&id) && searched(m)) => continue,
             _ => words.say(note),
         };
         let at = footnotes.iter().position(|f| *f == sentence).unwrap_or_else(|| {
@@ -123,6 +133,11 @@ fn row(m: &MeasurandRecord, words: Words, footnotes: &mut Vec<String>) -> Row {
         value: value(m, words),
         interval: interval(m, words),
         identifiable: m.identifiable,
+        hint: if m.identifiable || searched(m) {
+            String::new()
+        } else {
+            words.t("report.not_shown_by_record")
+        },
         limit: m.limit.as_ref().map_or_else(String::new, |l| limits(l, &m.unit, words)),
         acceptance: m.limit.as_ref().map_or_else(String::new, |l| accepted(l, words)),
         rule: m.limit.as_ref().map_or_else(String::new, |l| rule(l, words)),

@@ -26,6 +26,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     if curves.len() < 2 {
         return None;
     }
+    let scattering = crate::run::sigma_tau::scattering(&gyro.identification.described.model);
     let (mut bands, mut lines) = (vec![], vec![]);
     for curve in curves {
         let (style, legend) = look(curve.estimator);
@@ -35,7 +36,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
             .map(|p| (p.m as f64 * gyro.tau0_s, p))
             .filter(|(t, p)| p.deviation > 0.0 && *t <= gyro.longest_stretch_s * SHOWN)
             .map(|(t, p)| {
-                let noise = gyro.identification.supported.dominant(t);
+                let noise = scattering.dominant(t, gyro.tau0_s);
                 (t, bounded(curve.estimator, p, &curve.stretches, noise))
             })
             .collect();

@@ -16,6 +16,9 @@ const LONG_LAGS: usize = 200;
 /// Block means that the long lags are computed from at least.
 const LEAST_BLOCKS: usize = 64;
 
+/// Share of the axis of the record that the lags of the residual fill at least, to stand below it.
+const LEAST_SHARE: f64 = 0.4;
+
 /// Draws the autocorrelation; `None` when the record is too short or constant.
 pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     let blocks = gyro.blocks();
@@ -42,7 +45,12 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
             panels.push(panel(&acf, block_s, "axis.lag_of_means", false));
             remarks.push(Note::new("figure.remark.autocorrelation_blocks").with("seconds", block_s));
             if let (Some(left), true) = (&gyro.goodness.correlation, blocks.block_len > 1) {
-                panels.push(residual(left, left.coefficients.len(), "axis.lag_of_means"));
+                let lags = left.coefficients.len();
+                // Far shorter lags would be one stroke at the edge of the axis above.
+                let spans =
+                    lags as f64 * left.step_s >= LEAST_SHARE * (acf.coefficients.len() as f64 * block_s);
+                let lag = if spans { "axis.lag_of_means" } else { "lag_axis.of_residual" };
+                panels.push(residual(left, lags, lag));
                 remarks.push(Note::new("figure.fit.residual_blocks").with("seconds", left.step_s));
             }
         }

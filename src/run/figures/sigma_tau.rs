@@ -113,8 +113,16 @@ const WIDEST: f64 = 2.0;
 fn model_curves(gyro: &GyroEvidence, from: f64, to: f64) -> Vec<Layer> {
     let described = &gyro.identification.described;
     let (model, tau0_s) = (&described.model, gyro.tau0_s);
-    let grid: Vec<f64> =
-        (0..CURVE_POINTS).map(|i| from * (to / from).powf(i as f64 / (CURVE_POINTS - 1) as f64)).collect();
+    // The Allan variance of samples exists at whole multiples of their interval; the points of the record are among
+    // the drawn ones, for between two of them lines and filters make the curve swing.
+    let mut multiples: Vec<u64> = (0..CURVE_POINTS)
+        .map(|i| from * (to / from).powf(i as f64 / (CURVE_POINTS - 1) as f64) / tau0_s)
+        .map(|m| (m.round() as u64).max(1))
+        .chain(gyro.octaves.iter().map(|p| p.point.m).filter(|m| (from..=to).contains(&(*m as f64 * tau0_s))))
+        .collect();
+    multiples.sort_unstable();
+    multiples.dedup();
+    let grid: Vec<f64> = multiples.into_iter().map(|m| m as f64 * tau0_s).collect();
     // Variance and its standard uncertainty; the band is symmetric in the logarithm, as a variance is positive.
     let curve: Vec<(f64, f64, f64)> = grid
         .iter()
@@ -132,13 +140,20 @@ fn model_curves(gyro: &GyroEvidence, from: f64, to: f64) -> Vec<Layer> {
         style: Style::Model,
         legend: "figure.fit.model_band".into(),
     }];
-    for part in model.parts() {
-        let points: Vec<(f64, f64)> = grid
-            .iter()
-            .map(|t| (*t, model.part_allan_variance(part, *t, tau0_s).sqrt()))
+    let drawn = |of: &[Part]| -> Vec<(f64, f64)> {
+        grid.iter()
+            .map(|t| (*t, of.iter().map(|p| model.part_allan_variance(*p, *t, tau0_s)).sum::<f64>().sqrt()))
             .map(|(t, s)| (t, if s >= least { s } else { f64::NAN }))
-            .collect();
-        layers.push(line(points, parts::style(part), parts::legend(part)));
+            .collect()
+    };
+    // Lines swing from nought to nought, a curve each: many would hide the rest, so they are drawn as one.
+    let (tones, noises): (Vec<Part>, Vec<Part>) =
+        model.parts().into_iter().partition(|p| matches!(p, Part::Line(_)));
+    for part in noises {
+        layers.push(line(drawn(&[part]), parts::style(part), parts::legend(part)));
+    }
+    if let Some(first) = tones.first() {
+        layers.push(line(drawn(&tones), parts::style(*first), parts::legend(*first)));
     }
     let total = curve.iter().map(|(t, s, _)| (*t, *s)).collect();
     layers.push(line(total, Style::Model, "figure.legend.model"));
