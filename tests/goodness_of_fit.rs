@@ -58,7 +58,8 @@ impl Record {
     /// Judges what identification made of the record, or a description that is given.
     fn judge(&self, given: Option<&Described>) -> GoodnessOfFit {
         let record = self.spectral();
-        let found = given.map_or_else(|| record.identify("rate").ranged.identification.described, Clone::clone);
+        let found =
+            given.map_or_else(|| record.identify("rate").ranged.identification.described, Clone::clone);
         GoodnessOfFit::of(&record, &found, &self.octaves)
     }
 }

@@ -65,8 +65,10 @@ enum Verb {
     )]
     Analyze(AnalyzeArgs),
     /// Set Russian against Allan figures of any units, with what explains the ratio
-    #[command(after_help = "Examples:\n  sagnac compare unit-0042.csv unit-0043.csv reports/SN-0044 --out comparison\n  \
-        sagnac compare --published")]
+    #[command(
+        after_help = "Examples:\n  sagnac compare unit-0042.csv unit-0043.csv reports/SN-0044 --out comparison\n  \
+        sagnac compare --published"
+    )]
     Compare(CompareArgs),
     /// Print the JSON Schema of a file format, for completion in editors
     #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]

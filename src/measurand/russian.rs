@@ -66,5 +66,7 @@ pub fn degrees_of_freedom(gyro: &GyroEvidence, windows: &WindowStatistics) -> f6
         model.terms.k = model.terms.k.max(UNSEEN_WALK * limit.value);
     }
     let white = windows.n.saturating_sub(1) as f64;
-    edf_of_window_std(windows.n, windows.window_s, |t| model.mean_variance(t, gyro.tau0_s)).unwrap_or(white).max(1.0)
+    edf_of_window_std(windows.n, windows.window_s, |t| model.mean_variance(t, gyro.tau0_s))
+        .unwrap_or(white)
+        .max(1.0)
 }
