@@ -11,15 +11,18 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod claim;
 pub mod cli;
 pub mod compare;
 pub mod condition;
+pub mod effect;
 pub mod estimate;
 pub mod figure;
 pub mod ids;
 pub mod ingest;
 pub mod keyed;
 pub mod measurand;
+pub mod mismatch;
 pub mod noise;
 pub mod numeric;
 pub mod output;

@@ -1,4 +1,4 @@
-//! The magnitudes that figures are right for.
+//! The magnitudes that figures are right for, and the range of values.
 //!
 //! A figure rests on squares of values, and a fit on squares of those: between the two bounds none of them leaves the
 //! range of a double, over any length of record.
@@ -18,6 +18,11 @@ pub fn usable(value: f64) -> bool {
 /// The value with zero in place of magnitudes below [`SMALLEST`], and of −0.
 pub fn settled(value: f64) -> f64 {
     if value.abs() < SMALLEST { 0.0 } else { value }
+}
+
+/// The smallest and the largest value; infinities the wrong way round where there is none.
+pub fn ends(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
 }
 
 #[cfg(test)]

@@ -1,0 +1,172 @@
+//! What the gyro was exposed to: the columns of a recording on a uniform grid, and the mean that a claim expects of them.
+
+use crate::units::EARTH_RATE_DEG_H;
+
+/// A column beside time and rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Column {
+    /// `temp_degC`
+    Temperature,
+    /// `table_rate_deg_s`
+    TableRate,
+    /// `table_angle_deg`
+    TableAngle,
+    /// `outer_rate_deg_s`
+    OuterRate,
+    /// `supply_v`
+    Supply,
+}
+
+impl Column {
+    /// All of them.
+    pub const ALL: [Column; 5] =
+        [Column::Temperature, Column::TableRate, Column::TableAngle, Column::OuterRate, Column::Supply];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Column::Temperature => "temp_degC",
+            Column::TableRate => "table_rate_deg_s",
+            Column::TableAngle => "table_angle_deg",
+            Column::OuterRate => "outer_rate_deg_s",
+            Column::Supply => "supply_v",
+        }
+    }
+}
+
+/// Claimed dependence on temperature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Temperature {
+    /// deg/h/°C.
+    pub coefficient_deg_h_per_degc: f64,
+    /// °C.
+    pub reference_degc: f64,
+}
+
+/// Where the input axis points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Earth {
+    /// Geographic latitude, deg.
+    pub latitude_deg: f64,
+    /// Heading of the input axis at table angle 0, deg.
+    pub azimuth_deg: f64,
+}
+
+/// The mean of the rate as a claim states it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ClaimedMean {
+    /// deg/h.
+    pub bias_deg_h: f64,
+    /// Dependence on temperature.
+    pub temperature: Option<Temperature>,
+    /// Known error of the scale factor, ppm. `None` where the claim does not speak of a table.
+    pub scale_factor_ppm: Option<f64>,
+    /// Earth rate in the table plane.
+    pub earth: Option<Earth>,
+}
+
+/// The columns of a recording on a uniform grid.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drivers {
+    /// Sample interval, s.
+    pub dt_s: f64,
+    /// `time_s` of the first sample.
+    pub start_s: f64,
+    /// Samples of the grid.
+    pub samples: usize,
+    /// How many samples of the recording one sample of the grid averages.
+    pub averaged: usize,
+    /// °C.
+    pub temperature: Option<Vec<f64>>,
+    /// Temperature freed from the noise of its sensor as far as its spectrum tells them apart, °C.
+    pub smooth_temperature: Option<Vec<f64>>,
+    /// deg/s.
+    pub table_rate: Option<Vec<f64>>,
+    /// deg.
+    pub table_angle: Option<Vec<f64>>,
+    /// deg/s.
+    pub outer_rate: Option<Vec<f64>>,
+    /// V.
+    pub supply: Option<Vec<f64>>,
+    /// The mean that the claim expects.
+    pub claim: ClaimedMean,
+}
+
+impl Drivers {
+    /// `time_s` of a sample.
+    pub fn time_s(&self, i: usize) -> f64 {
+        self.start_s + i as f64 * self.dt_s
+    }
+
+    /// Length of the grid, s.
+    pub fn length_s(&self) -> f64 {
+        self.samples as f64 * self.dt_s
+    }
+
+    /// A column, if there.
+    pub fn column(&self, column: Column) -> Option<&[f64]> {
+        match column {
+            Column::Temperature => self.temperature.as_deref(),
+            Column::TableRate => self.table_rate.as_deref(),
+            Column::TableAngle => self.table_angle.as_deref(),
+            Column::OuterRate => self.outer_rate.as_deref(),
+            Column::Supply => self.supply.as_deref(),
+        }
+    }
+
+    /// A series for each sample from its time in seconds since the first.
+    pub fn of_time(&self, mut f: impl FnMut(f64) -> f64) -> Vec<f64> {
+        (0..self.samples).map(|i| f(i as f64 * self.dt_s)).collect()
+    }
+
+    /// What the claim expects of the rate without the bias, deg/h.
+    pub fn claimed_mean(&self) -> Vec<f64> {
+        let mut mean = vec![0.0; self.samples];
+        if let (Some(claimed), Some(temperature)) = (self.claim.temperature, &self.temperature) {
+            for (m, t) in mean.iter_mut().zip(temperature) {
+                *m += claimed.coefficient_deg_h_per_degc * (t - claimed.reference_degc);
+            }
+        }
+        if let Some(rate) = &self.table_rate {
+            let gain = 3600.0 * (1.0 + 1e-6 * self.claim.scale_factor_ppm.unwrap_or(0.0));
+            for (m, r) in mean.iter_mut().zip(rate) {
+                *m += gain * r;
+            }
+        }
+        if let (Some(earth), Some(angle)) = (self.claim.earth, &self.table_angle) {
+            let horizontal = EARTH_RATE_DEG_H * earth.latitude_deg.to_radians().cos();
+            for (m, a) in mean.iter_mut().zip(angle) {
+                *m += horizontal * (a + earth.azimuth_deg).to_radians().cos();
+            }
+        }
+        mean
+    }
+
+    /// The same on averages over `m` samples; a last incomplete group is left out. Angles are not averaged: their
+    /// column is left out.
+    #[must_use]
+    pub fn averages(&self, m: usize) -> Drivers {
+        if m <= 1 {
+            return self.clone();
+        }
+        let means = |column: &Option<Vec<f64>>| column.as_ref().map(|c| averages(c, m));
+        Drivers {
+            dt_s: self.dt_s * m as f64,
+            start_s: self.start_s + 0.5 * (m - 1) as f64 * self.dt_s,
+            samples: self.samples / m,
+            averaged: self.averaged * m,
+            temperature: means(&self.temperature),
+            smooth_temperature: means(&self.smooth_temperature),
+            table_rate: means(&self.table_rate),
+            table_angle: None,
+            outer_rate: means(&self.outer_rate),
+            supply: means(&self.supply),
+            claim: self.claim,
+        }
+    }
+}
+
+/// Means of groups of `m`; a last incomplete group is left out.
+pub fn averages(values: &[f64], m: usize) -> Vec<f64> {
+    values.chunks_exact(m.max(1)).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect()
+}

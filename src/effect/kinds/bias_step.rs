@@ -1,0 +1,133 @@
+//! One jump of the bias.
+
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Effect, Look, Model, Param, Parts, Place, Starts, Values, number,
+};
+
+pub struct BiasStep;
+
+static DOC: Doc = Doc {
+    title: Both { en: "bias step", ru: "скачок смещения нуля" },
+    mechanism: Both {
+        en: "A contact, a crack, a hop of the source's mode or a knock leaves the bias at another level.",
+        ru: "Контакт, трещина, перескок моды источника или удар оставляют смещение нуля на другом уровне.",
+    },
+    formula: "J·H(t − t₁)",
+    signature: Both {
+        en: "Two levels in time; the Allan deviation grows as τ to the power 1/2 like a rate random walk.",
+        ru: "Два уровня во времени; девиация Аллана растёт как τ в степени 1/2, как при случайном блуждании скорости.",
+    },
+    told_by: Both {
+        en: "A random walk has no instant at which everything happens: with the step taken out nothing may be left of it. At one heading a change of the Earth rate's projection is the same.",
+        ru: "У случайного блуждания нет момента, в который происходит всё: после вычитания скачка от него ничего не должно остаться. При одном курсе изменение проекции скорости Земли неотличимо.",
+    },
+    confirm: Both {
+        en: "Look at the event log, tilt meter and supply at that instant; turn to another heading and see whether the step changes.",
+        ru: "Проверить журнал событий, наклономер и питание в этот момент; повернуть на другой курс и посмотреть, изменится ли скачок.",
+    },
+    source: "IEEE Std 952, Annex C; detection of change points by generalised least squares",
+};
+
+static PARAMS: [Param; 2] =
+    [Param::reported("step_deg_h", "deg/h", -1e6, 1e6), Param::reported("time_s", "s", f64::MIN, f64::MAX)];
+
+impl Effect for BiasStep {
+    fn kind(&self) -> &'static str {
+        "bias_step"
+    }
+    fn doc(&self) -> &'static Doc {
+        &DOC
+    }
+    fn params(&self) -> &'static [Param] {
+        &PARAMS
+    }
+    fn domain(&self) -> Domain {
+        Domain::Time
+    }
+    fn confusers(&self) -> &'static [&'static str] {
+        &["heading_change", "random_telegraph", "excess_rrw"]
+    }
+    fn model(&self) -> Model {
+        Model::Course(&BiasStep)
+    }
+}
+
+/// A step at `at_s` seconds after the first sample, the sample that it falls into averaged.
+pub(super) fn step(drivers: &Drivers, at_s: f64) -> Vec<f64> {
+    let dt = drivers.dt_s;
+    drivers.of_time(|t| ((t - at_s) / dt + 0.5).clamp(0.0, 1.0))
+}
+
+/// Instants at which a step gains most, s after the first sample; the best first.
+pub(super) fn instants(drivers: &Drivers, look: &Look<'_>) -> Starts {
+    let n = drivers.samples;
+    if n < 8 {
+        return Starts { shapes: vec![], looked: 1.0 };
+    }
+    // The gain is (Σ_{i ≥ j} w_i)²/2 over z'C⁻¹z, and the latter varies slowly with the instant: it is computed at some
+    // and interpolated.
+    let points = 48.min(n / 4);
+    let at = |p: usize| 1.0 + (n as f64 - 2.0) * p as f64 / points as f64;
+    let weight = |j: f64| {
+        let modes = crate::numeric::cosine::dct2(&step(drivers, (j - 0.5) * drivers.dt_s));
+        modes.iter().zip(look.powers).skip(1).map(|(z, p)| z * z / p).sum::<f64>()
+    };
+    let weights: Vec<f64> = (0..=points).map(|p| weight(at(p))).collect();
+    let mut sum: f64 = 0.0;
+    let mut gains = vec![0.0; n];
+    for j in (1..n).rev() {
+        sum += look.score[j];
+        let x = (j as f64 - at(0)) / (at(1) - at(0));
+        let p = (x.max(0.0) as usize).min(points - 1);
+        let w = weights[p] + (weights[p + 1] - weights[p]) * (x - p as f64).clamp(0.0, 1.0);
+        gains[j] = if w > 0.0 { 0.5 * sum * sum / w } else { 0.0 };
+    }
+    let mut shapes = vec![];
+    let apart = (n / 50).max(1);
+    for _ in 0..3 {
+        let best = (1..n).max_by(|a, b| gains[*a].total_cmp(&gains[*b])).unwrap_or(1);
+        if gains[best] <= 0.0 {
+            break;
+        }
+        shapes.push(vec![(best as f64 - 0.5) * drivers.dt_s]);
+        gains[best.saturating_sub(apart)..(best + apart).min(n)].fill(0.0);
+    }
+    // Instants closer than the time in which the noise lets a step be placed are one; in white noise each counts.
+    Starts { shapes, looked: (n as f64).powf(0.75) }
+}
+
+impl Course for BiasStep {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.samples >= 8
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        instants(drivers, look)
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        Parts { free: shape.iter().map(|at| step(drivers, *at)).collect(), ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        match (shape, coefficients) {
+            ([at], [size]) => vec![*size, drivers.start_s + at],
+            _ => vec![f64::NAN; 2],
+        }
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let (size, at) = (number(values, "step_deg_h")?, number(values, "time_s")? - drivers.start_s);
+        Some(step(drivers, at).into_iter().map(|s| size * s).collect())
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(at) = shape.first().map(|at| drivers.start_s + at) else { return vec![] };
+        let half = (0.01 * drivers.length_s()).max(2.0 * drivers.dt_s);
+        vec![Place { domain: Domain::Time, from: at - half, to: at + half }]
+    }
+}

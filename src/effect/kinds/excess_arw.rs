@@ -1,0 +1,97 @@
+//! Angle random walk that differs from the claimed one.
+
+use crate::effect::{
+    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values,
+    number,
+};
+use crate::noise::composite::Composite;
+use crate::noise::data::NoiseType;
+
+pub struct ExcessArw;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "angle random walk other than claimed", ru: "случайное блуждание угла не по модели"
+    },
+    mechanism: Both {
+        en: "Shot noise, excess noise of the source, thermal noise of the receiver: white noise of the rate, stronger or weaker than the simulation has it.",
+        ru: "Дробовой шум, избыточный шум источника, тепловой шум приёмника: белый шум скорости, сильнее или слабее, чем в модели.",
+    },
+    formula: "S(f) = 3600 N²",
+    signature: Both {
+        en: "A flat excess of the spectrum up to the Nyquist frequency; the Allan deviation keeps its slope of −1/2 at another height.",
+        ru: "Плоское превышение спектра до частоты Найквиста; девиация Аллана сохраняет наклон −1/2 на другой высоте.",
+    },
+    told_by: Both {
+        en: "A short Markov process and a filter leave the flat shape near the Nyquist frequency; outliers and a changing level are not the same over time.",
+        ru: "Короткий марковский процесс и фильтр меняют плоскую форму у частоты Найквиста; выбросы и меняющийся уровень неодинаковы во времени.",
+    },
+    confirm: Both {
+        en: "Record at another optical power: shot noise and source noise scale differently with it.",
+        ru: "Записать при другой оптической мощности: дробовой шум и шум источника зависят от неё по-разному.",
+    },
+    source: "IEEE Std 952, Annex C",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("N_deg_rt_h", "deg/√h", 0.0, 1e3)];
+
+impl Effect for ExcessArw {
+    fn kind(&self) -> &'static str {
+        "excess_arw"
+    }
+    fn doc(&self) -> &'static Doc {
+        &DOC
+    }
+    fn params(&self) -> &'static [Param] {
+        &PARAMS
+    }
+    fn domain(&self) -> Domain {
+        Domain::Frequency
+    }
+    fn confusers(&self) -> &'static [&'static str] {
+        &["markov_short", "noise_variance_time", "outlier_bursts"]
+    }
+    fn model(&self) -> Model {
+        Model::Spectrum(&ExcessArw)
+    }
+}
+
+impl Spectrum for ExcessArw {
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Frees(NoiseType::AngleRandomWalk)
+    }
+
+    fn density(&self, _fitted: &[f64], _bin: &ModeBin) -> f64 {
+        0.0
+    }
+
+    fn starts(&self, _look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+        vec![vec![]]
+    }
+
+    fn bounds(&self, _look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+        vec![]
+    }
+
+    fn looked(&self, _look: &SpectralLook<'_>) -> f64 {
+        1.0
+    }
+
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+
+    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
+        number(values, PARAMS[0].name).map(|n| vec![n])
+    }
+
+    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
+        if let [n] = fitted {
+            noise.terms.n = *n;
+        }
+    }
+
+    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+        super::power_law_places(NoiseType::AngleRandomWalk, fitted, look)
+    }
+}

@@ -1,0 +1,156 @@
+//! Exponentially correlated noise whose correlation time is many samples.
+
+use crate::effect::{
+    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values,
+    number,
+};
+use crate::noise::composite::{Composite, Damped, Sampling};
+
+pub struct MarkovLong;
+
+static DOC: Doc = Doc {
+    title: Both { en: "long Markov process", ru: "длинный марковский процесс" },
+    mechanism: Both {
+        en: "Thermal regulators, wandering polarisation, a slow loop: something that forgets with one time constant.",
+        ru: "Терморегуляторы, блуждание поляризации, медленный контур: то, что забывает с одной постоянной времени.",
+    },
+    formula: "R(t) = σ² exp(−|t|/T_c)",
+    signature: Both {
+        en: "A plateau of the spectrum below 1/(2πT_c) and a fall as f⁻² above; a hump of the Allan deviation at 1.89 T_c; an autocorrelation that decays exponentially.",
+        ru: "Плато спектра ниже 1/(2πT_c) и спад f⁻² выше; горб девиации Аллана при 1,89 T_c; экспоненциальный спад автокорреляции.",
+    },
+    told_by: Both {
+        en: "Flicker has no plateau; a random walk does not level off within the record; a telegraph signal has the same spectrum and two levels.",
+        ru: "У фликкер-шума нет плато; случайное блуждание не выходит на полку за время записи; у телеграфного сигнала тот же спектр и два уровня.",
+    },
+    confirm: Both {
+        en: "A record of more than ten correlation times; other settings of the temperature control.",
+        ru: "Запись длиннее десяти времён корреляции; другие настройки термостатирования.",
+    },
+    source: "IEEE Std 952, Annex C",
+};
+
+static PARAMS: [Param; 2] = [
+    Param::reported("correlation_time_s", "s", 1e-6, 1e7),
+    Param::reported("sigma_deg_h", "deg/h", 0.0, 1e6),
+];
+
+impl Effect for MarkovLong {
+    fn kind(&self) -> &'static str {
+        "markov_long"
+    }
+    fn doc(&self) -> &'static Doc {
+        &DOC
+    }
+    fn params(&self) -> &'static [Param] {
+        &PARAMS
+    }
+    fn domain(&self) -> Domain {
+        Domain::Lag
+    }
+    fn confusers(&self) -> &'static [&'static str] {
+        &["excess_flicker", "excess_rrw", "random_telegraph"]
+    }
+    fn model(&self) -> Model {
+        Model::Spectrum(&MarkovLong)
+    }
+}
+
+/// Correlation time, in samples, that divides short from long.
+pub(super) const SHORT_SAMPLES: f64 = 10.0;
+
+/// The process of fitted parameters (correlation time s, standard deviation deg/h).
+pub(super) fn process(fitted: &[f64]) -> Damped {
+    let (time, sigma) = (fitted.first().copied().unwrap_or(1.0), fitted.get(1).copied().unwrap_or(0.0));
+    Damped { rms_deg_h: sigma, frequency_hz: 0.0, decay_time_s: time }
+}
+
+/// Density of a Markov process in a bin: exact in single modes, which a record shorter than some correlation times
+/// needs.
+pub(super) fn density(fitted: &[f64], bin: &ModeBin) -> f64 {
+    let process = process(fitted);
+    if bin.modes == 1 && bin.mode < 64 {
+        process.mode_power(bin.mode, bin.samples, bin.dt_s, Sampling::Averaging)
+    } else {
+        process.density(bin.frequency_hz, bin.dt_s, Sampling::Averaging)
+    }
+}
+
+/// Starts over correlation times from `low` to `high`, each with the level that the excess at its corner asks for.
+pub(super) fn starts_between(low: f64, high: f64, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+    let mut out = vec![];
+    let mut time = low;
+    while time <= high {
+        let corner = 1.0 / (2.0 * std::f64::consts::PI * time);
+        let below = look
+            .bins
+            .iter()
+            .enumerate()
+            .filter(|(_, b)| b.frequency_hz > corner / 4.0 && b.frequency_hz < corner * 2.0);
+        let (mut excess, mut count, mut level) = (0.0, 0.0, 0.0);
+        for (i, b) in below {
+            excess += b.modes as f64 * (look.observed[i] - look.expected[i]);
+            level += b.modes as f64 * look.expected[i];
+            count += b.modes as f64;
+        }
+        if count > 0.0 {
+            let density = (excess / count).max(0.1 * level / count);
+            // Of a plateau 2σ²T about a half is left around the corner.
+            out.push(vec![time, (density / time).sqrt()]);
+        }
+        time *= 4.0;
+    }
+    out
+}
+
+impl Spectrum for MarkovLong {
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Adds
+    }
+
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        density(fitted, bin)
+    }
+
+    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+        let (low, high) = self.bounds(look)[0];
+        starts_between(low * 1.5, high / 1.5, look)
+    }
+
+    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+        let (dt, n) = look.bins.first().map_or((1.0, 1), |b| (b.dt_s, b.samples));
+        vec![(SHORT_SAMPLES * dt, 0.5 * n as f64 * dt), (1e-9, 1e9)]
+    }
+
+    fn looked(&self, look: &SpectralLook<'_>) -> f64 {
+        let (low, high) = self.bounds(look)[0];
+        (high / low).ln().max(1.0)
+    }
+
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+
+    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
+        Some(vec![number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?])
+    }
+
+    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
+        noise.markov.push(process(fitted));
+    }
+
+    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+        let time = process(fitted).decay_time_s;
+        let (dt, n) = look.bins.first().map_or((1.0, 1), |b| (b.dt_s, b.samples));
+        let lowest = 0.5 / (n as f64 * dt);
+        let highest = (3.0 / (2.0 * std::f64::consts::PI * time)).min(0.5 / dt);
+        vec![
+            Place { domain: Domain::Lag, from: dt, to: (3.0 * time).min(n as f64 * dt) },
+            Place { domain: Domain::Frequency, from: lowest.min(highest), to: highest },
+        ]
+    }
+
+    fn has_course(&self) -> bool {
+        true
+    }
+}

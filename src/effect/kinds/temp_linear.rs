@@ -1,0 +1,107 @@
+//! A linear temperature coefficient that differs from the claimed one.
+
+use crate::effect::{
+    Both, Column, Course, Doc, Domain, Drivers, Effect, Look, Model, Nuisance, Param, Parts, Place, Starts,
+    Values, number,
+};
+
+pub struct TempLinear;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "linear temperature sensitivity", ru: "линейная температурная чувствительность"
+    },
+    mechanism: Both {
+        en: "Bias follows the temperature of the coil, the source or the electronics in proportion.",
+        ru: "Смещение нуля пропорционально температуре контура, источника излучения или электроники.",
+    },
+    formula: "a₁ (T − T_ref)",
+    signature: Both {
+        en: "A straight line in residual against temperature, the same on heating and on cooling; in time a copy of the temperature.",
+        ru: "Прямая в зависимости остатка от температуры, одинаковая при нагреве и охлаждении; во времени — копия температуры.",
+    },
+    told_by: Both {
+        en: "A delayed temperature and a sensitivity to its rate open a loop between heating and cooling; a polynomial bends the line; a drift does not come back with the temperature.",
+        ru: "Запаздывание и чувствительность к скорости изменения температуры раскрывают петлю между нагревом и охлаждением; полином изгибает прямую; дрейф не возвращается вместе с температурой.",
+    },
+    confirm: Both {
+        en: "Soak at two temperatures, long enough for each bias to be known; go back to the first.",
+        ru: "Выдержать при двух температурах до установления смещения нуля и вернуться к первой.",
+    },
+    source: "IEEE Std 952, model equation: D_T",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("coefficient_deg_h_per_degC", "deg/h/°C", -10.0, 10.0)];
+
+impl Effect for TempLinear {
+    fn kind(&self) -> &'static str {
+        "temp_linear"
+    }
+    fn doc(&self) -> &'static Doc {
+        &DOC
+    }
+    fn params(&self) -> &'static [Param] {
+        &PARAMS
+    }
+    fn needs(&self) -> &'static [Column] {
+        &[Column::Temperature]
+    }
+    fn domain(&self) -> Domain {
+        Domain::Temperature
+    }
+    fn confusers(&self) -> &'static [&'static str] {
+        &["temp_polynomial", "temp_rate", "thermal_lag"]
+    }
+    fn model(&self) -> Model {
+        Model::Course(&TempLinear)
+    }
+}
+
+/// The claimed coefficient; 0 where the claim states none.
+fn claimed(drivers: &Drivers) -> f64 {
+    drivers.claim.temperature.map_or(0.0, |t| t.coefficient_deg_h_per_degc)
+}
+
+fn reference(drivers: &Drivers) -> f64 {
+    drivers.claim.temperature.map_or(20.0, |t| t.reference_degc)
+}
+
+impl Course for TempLinear {
+    fn replaces(&self) -> Option<Nuisance> {
+        Some(Nuisance::TemperatureCoefficient)
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.temperature.is_some()
+    }
+
+    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+        Starts::linear()
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![]
+    }
+
+    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
+        let from = reference(drivers);
+        let free = drivers.temperature.iter().map(|c| c.iter().map(|t| t - from).collect()).collect();
+        Parts { free, ..Parts::default() }
+    }
+
+    fn parameters(&self, _shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        vec![coefficients.first().map_or(f64::NAN, |c| c + claimed(drivers))]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let extra = number(values, PARAMS[0].name)? - claimed(drivers);
+        let from = reference(drivers);
+        Some(drivers.temperature.as_ref()?.iter().map(|t| extra * (t - from)).collect())
+    }
+
+    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(t) = &drivers.temperature else { return vec![] };
+        let (from, to) = crate::numeric::range::ends(t);
+        vec![Place { domain: Domain::Temperature, from, to }]
+    }
+}

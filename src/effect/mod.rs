@@ -1,0 +1,286 @@
+//! The catalogue of physics that a simulation can leave out: one file an effect.
+//!
+//! An effect says what it is (mechanism, signature, confusers, the experiment that would confirm it, source), what its
+//! parameters are, and how it acts. There is one forward model of each: simulation, fitting and the stated effects of a
+//! claim all go through it.
+
+mod doc;
+mod drivers;
+mod kinds;
+mod spectral;
+
+pub use doc::{Both, Doc};
+pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature};
+pub use kinds::{EFFECTS, find};
+pub use spectral::{ModeBin, SpectralLook, Spectrum, SpectrumAct};
+
+use std::collections::BTreeMap;
+
+/// One parameter of an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Param {
+    /// Name, with its unit in it.
+    pub name: &'static str,
+    /// Unit as reports show it; empty for a pure number.
+    pub unit: &'static str,
+    /// Lowest plausible value.
+    pub lower: f64,
+    /// Highest plausible value.
+    pub upper: f64,
+    /// True when a report of an explanation gives it; others serve the forward model alone.
+    pub reported: bool,
+}
+
+impl Param {
+    /// A parameter that reports give.
+    pub const fn reported(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Param {
+        Param { name, unit, lower, upper, reported: true }
+    }
+
+    /// A parameter that the forward model needs beside them.
+    pub const fn inner(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Param {
+        Param { name, unit, lower, upper, reported: false }
+    }
+}
+
+/// What a mismatch is located in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Domain {
+    /// `time_s`, s.
+    Time,
+    /// Hz.
+    Frequency,
+    /// Autocorrelation lag, or delay between columns, s.
+    Lag,
+    /// °C.
+    Temperature,
+    /// °C/min.
+    TemperatureRate,
+    /// Rate of the table about the input axis, deg/s.
+    InputRate,
+    /// Rate of the table's other axis, deg/s.
+    OuterRate,
+    /// Table angle, or period of the sensed angle, deg.
+    Angle,
+    /// Size of the residual, deg/h.
+    Amplitude,
+    /// Where `time_s` itself is at fault, s.
+    Timestamps,
+    /// V.
+    Supply,
+}
+
+impl Domain {
+    /// Its id in files.
+    pub fn id(self) -> &'static str {
+        match self {
+            Domain::Time => "time",
+            Domain::Frequency => "frequency",
+            Domain::Lag => "lag",
+            Domain::Temperature => "temperature",
+            Domain::TemperatureRate => "temperature_rate",
+            Domain::InputRate => "input_rate",
+            Domain::OuterRate => "outer_rate",
+            Domain::Angle => "angle",
+            Domain::Amplitude => "amplitude",
+            Domain::Timestamps => "timestamps",
+            Domain::Supply => "supply",
+        }
+    }
+}
+
+/// An interval of a domain, in the domain's unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// The domain.
+    pub domain: Domain,
+    /// Lower end.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+}
+
+/// A stated value of a parameter: a number, or a list for courses without a short formula.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A list.
+    List(Vec<f64>),
+}
+
+/// Parameters by name.
+pub type Values = BTreeMap<String, Value>;
+
+/// The number of that name, if there.
+pub fn number(values: &Values, name: &str) -> Option<f64> {
+    match values.get(name) {
+        Some(Value::Number(x)) => Some(*x),
+        _ => None,
+    }
+}
+
+/// The list of that name; empty if not there.
+pub fn list<'a>(values: &'a Values, name: &str) -> &'a [f64] {
+    match values.get(name) {
+        Some(Value::List(x)) => x,
+        _ => &[],
+    }
+}
+
+/// One piece of physics.
+pub trait Effect: Sync {
+    /// Its kind in files.
+    fn kind(&self) -> &'static str;
+    /// What it is.
+    fn doc(&self) -> &'static Doc;
+    /// Its parameters.
+    fn params(&self) -> &'static [Param];
+    /// Columns without which it cannot be seen.
+    fn needs(&self) -> &'static [Column] {
+        &[]
+    }
+    /// The view where it shows first.
+    fn domain(&self) -> Domain;
+    /// Kinds it is most easily taken for, the nearest first.
+    fn confusers(&self) -> &'static [&'static str];
+    /// How it acts.
+    fn model(&self) -> Model;
+}
+
+/// How an effect acts on the output.
+#[derive(Clone, Copy)]
+pub enum Model {
+    /// Adds a course to the rate that its parameters and the columns determine.
+    Course(&'static dyn Course),
+    /// Changes the spectrum of the noise.
+    Spectrum(&'static dyn Spectrum),
+    /// Acts on single samples: rows, outliers, jumps, the level of the noise.
+    Samples(&'static dyn Samples),
+}
+
+/// A nuisance of the claim: a value that it states with an uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Nuisance {
+    /// Angle random walk N.
+    AngleRandomWalk,
+    /// Flicker B.
+    Flicker,
+    /// Rate random walk K.
+    RateRandomWalk,
+    /// Temperature coefficient.
+    TemperatureCoefficient,
+    /// Scale factor.
+    ScaleFactor,
+}
+
+/// Whether a course is seen at the sample rate, or whole in averages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pace {
+    /// Averages over many samples hold all of it.
+    Slow,
+    /// It has to be fitted to the samples themselves.
+    Fast,
+}
+
+/// A course for one shape: `fixed + Σ coefficient·free + Σ coefficient·beside`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Parts {
+    /// What the shape alone determines, deg/h.
+    pub fixed: Option<Vec<f64>>,
+    /// Columns of the effect, deg/h for a coefficient of 1.
+    pub free: Vec<Vec<f64>>,
+    /// Columns that must be free for the fit to be right and are no part of the effect, as an unknown initial state.
+    pub beside: Vec<Vec<f64>>,
+}
+
+/// What the search for a shape may look at. All series are on the grid of the drivers.
+pub struct Look<'a> {
+    /// C⁻¹r in the time domain: the residual weighted by the inverse covariance of the noise.
+    pub score: &'a [f64],
+    /// Orthonormal cosine modes of the residual, deg/h.
+    pub modes: &'a [f64],
+    /// Variance of each mode under the current noise, (deg/h)²; that of mode 0 is infinite.
+    pub powers: &'a [f64],
+}
+
+impl Look<'_> {
+    /// Log-likelihood gain of one column with a free coefficient, noise and everything else held.
+    pub fn gain(&self, column: &[f64]) -> f64 {
+        let modes = crate::numeric::cosine::dct2(column);
+        let (mut zr, mut zz) = (0.0, 0.0);
+        for ((z, x), p) in modes.iter().zip(self.modes).zip(self.powers).skip(1) {
+            zr += z * x / p;
+            zz += z * z / p;
+        }
+        if zz > 0.0 { 0.5 * zr * zr / zz } else { 0.0 }
+    }
+}
+
+/// Shapes to begin a fit from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Starts {
+    /// The shapes, the most promising first. One empty shape for a course that is linear in its coefficients.
+    pub shapes: Vec<Vec<f64>>,
+    /// How many independent places were looked at: what the p-value is multiplied by.
+    pub looked: f64,
+}
+
+impl Starts {
+    /// The only start of a course that has no shape.
+    pub fn linear() -> Starts {
+        Starts { shapes: vec![vec![]], looked: 1.0 }
+    }
+}
+
+/// An effect that adds a determined course to the rate.
+pub trait Course: Sync {
+    /// Whether averages hold all of it.
+    fn pace(&self) -> Pace {
+        Pace::Slow
+    }
+
+    /// The nuisance whose prior has to go when the effect is fitted, since both are the same column.
+    fn replaces(&self) -> Option<Nuisance> {
+        None
+    }
+
+    /// False where the columns, or the claim, leave nothing to fit (a constant temperature, a table at rest).
+    fn applies(&self, drivers: &Drivers) -> bool;
+
+    /// Where to begin the search of the shape.
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts;
+
+    /// Bounds of each number of the shape.
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)>;
+
+    /// The course for a shape.
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts;
+
+    /// The parameters in the order of [`Effect::params`], from a shape and the coefficients of `free`; NaN for one that
+    /// the fit does not determine.
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64>;
+
+    /// Lists that the forward model needs beside the numbers, by name.
+    fn lists(
+        &self,
+        _shape: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<(&'static str, Vec<f64>)> {
+        vec![]
+    }
+
+    /// The course that stated parameters give, deg/h. `None` where one that is needed is missing.
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>>;
+
+    /// Where it lives, principal first, at most three.
+    fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place>;
+}
+
+/// An effect on single samples. The engine knows how each is found; here is what it does.
+pub trait Samples: Sync {
+    /// Applies the effect to a simulated rate, deg/h, on the grid of the drivers; `seed` fixes every draw. Rows of which
+    /// `keep` becomes false are not written.
+    fn apply(&self, values: &Values, drivers: &Drivers, seed: u64, rate: &mut [f64], keep: &mut [bool]);
+}

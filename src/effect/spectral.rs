@@ -1,0 +1,79 @@
+//! Effects that change the spectrum of the noise.
+
+use super::{Place, Values};
+use crate::noise::composite::Composite;
+use crate::noise::data::NoiseType;
+
+/// One bin of the cosine modes of a record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeBin {
+    /// Mean frequency of its modes, Hz.
+    pub frequency_hz: f64,
+    /// Order of its first mode.
+    pub mode: usize,
+    /// How many modes it holds.
+    pub modes: usize,
+    /// Samples of the record.
+    pub samples: usize,
+    /// Sample interval, s.
+    pub dt_s: f64,
+}
+
+/// What a search for spectral effects may look at.
+pub struct SpectralLook<'a> {
+    /// The bins, by frequency.
+    pub bins: &'a [ModeBin],
+    /// Mean square of the modes of the residual in each, as a two-sided density, (deg/h)²/Hz.
+    pub observed: &'a [f64],
+    /// Density of the current noise, (deg/h)²/Hz.
+    pub expected: &'a [f64],
+    /// Steps of a lattice that the values were found to lie on, as an angle increment, arcsec.
+    pub lattice_arcsec: Option<f64>,
+}
+
+/// How an effect changes the spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpectrumAct {
+    /// Adds a density.
+    Adds,
+    /// Multiplies the density of everything else.
+    Filters,
+    /// Sets a stated coefficient free; its parameter is the whole coefficient.
+    Frees(NoiseType),
+}
+
+/// An effect that changes the spectrum. Its fitted parameters are positive and fitted by their logarithms.
+pub trait Spectrum: Sync {
+    /// How it acts.
+    fn act(&self) -> SpectrumAct;
+
+    /// Density of a bin, (deg/h)²/Hz, or the factor of a filter, for fitted parameters. Unused for
+    /// [`SpectrumAct::Frees`].
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64;
+
+    /// Fitted parameters to begin from, several.
+    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>>;
+
+    /// Bounds of the fitted parameters.
+    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)>;
+
+    /// How many independent places a search looks at.
+    fn looked(&self, look: &SpectralLook<'_>) -> f64;
+
+    /// The parameters in the order of [`super::Effect::params`]; NaN for one not determined.
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64>;
+
+    /// The fitted parameters of stated ones; `None` where one is missing.
+    fn stated(&self, values: &Values) -> Option<Vec<f64>>;
+
+    /// Adds the effect to a noise model for simulation.
+    fn compose(&self, fitted: &[f64], noise: &mut Composite);
+
+    /// Where it lives, principal first, at most three. `excess` is the density of the bins without it and with it.
+    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place>;
+
+    /// True when the course of the process can be estimated sample by sample (slow or narrow-band).
+    fn has_course(&self) -> bool {
+        false
+    }
+}
