@@ -10,7 +10,7 @@ mod kinds;
 mod spectral;
 
 pub use doc::{Both, Doc};
-pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature};
+pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature, averages};
 pub use kinds::{EFFECTS, find};
 pub use spectral::{ModeBin, SpectralLook, Spectrum, SpectrumAct};
 
