@@ -3,7 +3,9 @@
 pub mod candidates;
 pub mod columns;
 pub mod departures;
+pub mod estimates;
 pub mod finding;
+pub mod heldout;
 pub mod hypothesis;
 pub mod impute;
 pub mod lattice;

@@ -76,12 +76,25 @@ impl Problem {
         self.scenes = scenes(&self.drivers, &self.claim, &self.residual, self.scenes.lattice_arcsec, rows);
     }
 
+    /// Stated deviations of the nuisances that have a column.
+    pub fn deviations(&self) -> [(Nuisance, f64); 2] {
+        deviations(&self.claim)
+    }
+
     /// The claim alone, its nuisances fitted under their priors.
     pub fn baseline(&self) -> Tried {
         let mut hypothesis = Hypothesis { noise: Noise::of(&self.claim), courses: vec![] };
         let fit = fit(&mut hypothesis, &self.scenes.full);
         Tried { hypothesis, fit, parameters: 0 }
     }
+}
+
+fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
+    let u = &claim.uncertainty;
+    [
+        (Nuisance::TemperatureCoefficient, u.temperature_coefficient_deg_h_per_degc),
+        (Nuisance::ScaleFactor, u.scale_factor_ppm),
+    ]
 }
 
 fn scenes(
@@ -91,11 +104,7 @@ fn scenes(
     lattice_arcsec: Option<f64>,
     rows: usize,
 ) -> Scenes {
-    let u = &claim.uncertainty;
-    let deviations = [
-        (Nuisance::TemperatureCoefficient, u.temperature_coefficient_deg_h_per_degc),
-        (Nuisance::ScaleFactor, u.scale_factor_ppm),
-    ];
+    let deviations = deviations(claim);
     let full = Scene::new(drivers.clone(), residual, &deviations);
     let slow = (drivers.samples > WHOLE).then(|| {
         let m = drivers.samples.div_ceil(AVERAGES);
