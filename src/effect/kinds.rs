@@ -4,6 +4,38 @@ use super::{Domain, Effect, Place, SpectralLook};
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_density;
 
+/// What every effect says of itself.
+macro_rules! describe {
+    (
+        $name:ident, $kind:literal, $model:ident in $domain:ident,
+        needs [$($need:ident),*], confusers [$($confuser:literal),*]
+    ) => {
+        impl $crate::effect::Effect for $name {
+            fn kind(&self) -> &'static str {
+                $kind
+            }
+            fn doc(&self) -> &'static $crate::effect::Doc {
+                &DOC
+            }
+            fn params(&self) -> &'static [$crate::effect::Param] {
+                &PARAMS
+            }
+            fn needs(&self) -> &'static [$crate::effect::Column] {
+                &[$($crate::effect::Column::$need),*]
+            }
+            fn domain(&self) -> $crate::effect::Domain {
+                $crate::effect::Domain::$domain
+            }
+            fn confusers(&self) -> &'static [&'static str] {
+                &[$($confuser),*]
+            }
+            fn model(&self) -> $crate::effect::Model {
+                $crate::effect::Model::$model(&$name)
+            }
+        }
+    };
+}
+
 macro_rules! catalogue {
     ($($module:ident :: $name:ident),* $(,)?) => {
         $(mod $module;)*
@@ -12,9 +44,25 @@ macro_rules! catalogue {
     };
 }
 
+mod delay;
+mod reach;
+mod search;
+mod sinusoid;
+mod thermal;
+
 catalogue! {
     temp_linear::TempLinear,
+    temp_polynomial::TempPolynomial,
+    temp_rate::TempRate,
+    thermal_lag::ThermalLag,
+    warmup_exponential::WarmupExponential,
+    rate_ramp::RateRamp,
+    diurnal::Diurnal,
+    line::Line,
     bias_step::BiasStep,
+    supply_sensitivity::SupplySensitivity,
+    time_offset::TimeOffset,
+    clock_drift::ClockDrift,
     excess_arw::ExcessArw,
     markov_long::MarkovLong,
 }
