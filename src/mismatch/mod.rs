@@ -3,6 +3,7 @@
 pub mod candidates;
 pub mod columns;
 pub mod departures;
+pub mod engine;
 pub mod estimates;
 pub mod finding;
 pub mod heldout;
@@ -10,7 +11,13 @@ pub mod hypothesis;
 pub mod impute;
 pub mod lattice;
 pub mod noise_fit;
+pub mod options;
+pub mod outcome;
 pub mod problem;
 pub mod regular;
 pub mod scene;
 pub mod select;
+
+pub use engine::explain;
+pub use options::{Options, Progress};
+pub use outcome::Outcome;
