@@ -36,6 +36,50 @@ macro_rules! describe {
     };
 }
 
+/// A spectrum that is a stated coefficient set free.
+macro_rules! frees {
+    ($name:ident, $term:ident, $field:ident, course $course:literal) => {
+        impl $crate::effect::Spectrum for $name {
+            fn act(&self) -> $crate::effect::SpectrumAct {
+                $crate::effect::SpectrumAct::Frees($crate::noise::data::NoiseType::$term)
+            }
+            fn density(&self, _fitted: &[f64], _bin: &$crate::effect::ModeBin) -> f64 {
+                0.0
+            }
+            fn starts(&self, _look: &$crate::effect::SpectralLook<'_>) -> Vec<Vec<f64>> {
+                vec![vec![]]
+            }
+            fn bounds(&self, _look: &$crate::effect::SpectralLook<'_>) -> Vec<(f64, f64)> {
+                vec![]
+            }
+            fn looked(&self, _look: &$crate::effect::SpectralLook<'_>) -> f64 {
+                1.0
+            }
+            fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+                fitted.to_vec()
+            }
+            fn stated(&self, values: &$crate::effect::Values) -> Option<Vec<f64>> {
+                $crate::effect::number(values, PARAMS[0].name).map(|c| vec![c])
+            }
+            fn compose(&self, fitted: &[f64], noise: &mut $crate::noise::composite::Composite) {
+                if let [coefficient] = fitted {
+                    noise.terms.$field = *coefficient;
+                }
+            }
+            fn places(
+                &self,
+                fitted: &[f64],
+                look: &$crate::effect::SpectralLook<'_>,
+            ) -> Vec<$crate::effect::Place> {
+                super::power_law_places($crate::noise::data::NoiseType::$term, fitted, look)
+            }
+            fn has_course(&self) -> bool {
+                $course
+            }
+        }
+    };
+}
+
 macro_rules! catalogue {
     ($($module:ident :: $name:ident),* $(,)?) => {
         $(mod $module;)*
@@ -45,6 +89,7 @@ macro_rules! catalogue {
 }
 
 mod delay;
+mod knots;
 mod reach;
 mod search;
 mod sinusoid;
@@ -63,8 +108,15 @@ catalogue! {
     supply_sensitivity::SupplySensitivity,
     time_offset::TimeOffset,
     clock_drift::ClockDrift,
+    unobserved_driver::UnobservedDriver,
     excess_arw::ExcessArw,
+    excess_flicker::ExcessFlicker,
+    excess_rrw::ExcessRrw,
+    markov_short::MarkovShort,
     markov_long::MarkovLong,
+    quasi_periodic::QuasiPeriodic,
+    quantization::Quantization,
+    bandwidth_filter::BandwidthFilter,
 }
 
 /// The effect of a kind.
