@@ -90,6 +90,7 @@ macro_rules! catalogue {
 
 mod delay;
 mod knots;
+mod noise_level;
 mod reach;
 mod search;
 mod sinusoid;
@@ -117,6 +118,11 @@ catalogue! {
     quasi_periodic::QuasiPeriodic,
     quantization::Quantization,
     bandwidth_filter::BandwidthFilter,
+    noise_variance_time::NoiseVarianceTime,
+    noise_variance_rate::NoiseVarianceRate,
+    outlier_bursts::OutlierBursts,
+    random_telegraph::RandomTelegraph,
+    dropped_samples::DroppedSamples,
 }
 
 /// The effect of a kind.
