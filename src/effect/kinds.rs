@@ -80,6 +80,47 @@ macro_rules! frees {
     };
 }
 
+/// A course that is one column times its only parameter: `column(drivers)`, where `applies(drivers)`.
+macro_rules! linear {
+    ($name:ident, replaces $nuisance:expr, places $places:ident) => {
+        impl $crate::effect::Course for $name {
+            fn pace(&self) -> $crate::effect::Pace {
+                $crate::effect::Pace::Fast
+            }
+            fn replaces(&self) -> Option<$crate::effect::Nuisance> {
+                $nuisance
+            }
+            fn applies(&self, drivers: &Drivers) -> bool {
+                applies(drivers)
+            }
+            fn starts(&self, _drivers: &Drivers, _look: &$crate::effect::Look<'_>) -> $crate::effect::Starts {
+                $crate::effect::Starts::linear()
+            }
+            fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+                vec![]
+            }
+            fn parts(&self, _shape: &[f64], drivers: &Drivers) -> $crate::effect::Parts {
+                $crate::effect::Parts { free: column(drivers).into_iter().collect(), ..Default::default() }
+            }
+            fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+                vec![coefficients.first().copied().unwrap_or(f64::NAN)]
+            }
+            fn course(&self, values: &$crate::effect::Values, drivers: &Drivers) -> Option<Vec<f64>> {
+                let coefficient = $crate::effect::number(values, PARAMS[0].name)?;
+                Some(column(drivers)?.into_iter().map(|x| coefficient * x).collect())
+            }
+            fn places(
+                &self,
+                _shape: &[f64],
+                _coefficients: &[f64],
+                drivers: &Drivers,
+            ) -> Vec<$crate::effect::Place> {
+                $places(drivers)
+            }
+        }
+    };
+}
+
 macro_rules! catalogue {
     ($($module:ident :: $name:ident),* $(,)?) => {
         $(mod $module;)*
@@ -101,11 +142,22 @@ catalogue! {
     temp_polynomial::TempPolynomial,
     temp_rate::TempRate,
     thermal_lag::ThermalLag,
+    temp_hysteresis::TempHysteresis,
     warmup_exponential::WarmupExponential,
     rate_ramp::RateRamp,
     diurnal::Diurnal,
     line::Line,
     bias_step::BiasStep,
+    heading_change::HeadingChange,
+    earth_rate_projection::EarthRateProjection,
+    table_harmonic::TableHarmonic,
+    sf_error::SfError,
+    sf_asymmetry::SfAsymmetry,
+    sf_nonlinearity::SfNonlinearity,
+    sf_temperature::SfTemperature,
+    dead_zone::DeadZone,
+    saturation::Saturation,
+    cross_axis::CrossAxis,
     supply_sensitivity::SupplySensitivity,
     time_offset::TimeOffset,
     clock_drift::ClockDrift,
