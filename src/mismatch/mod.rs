@@ -1,3 +1,23 @@
 //! The mismatch of a claimed simulation and a recording: located, named, modelled, and the fit shown to improve.
 
+pub mod candidates;
+pub mod columns;
+pub mod departures;
+pub mod engine;
+pub mod estimates;
 pub mod finding;
+pub mod heldout;
+pub mod hypothesis;
+pub mod impute;
+pub mod lattice;
+pub mod noise_fit;
+pub mod options;
+pub mod outcome;
+pub mod problem;
+pub mod regular;
+pub mod scene;
+pub mod select;
+
+pub use engine::explain;
+pub use options::{Options, Progress};
+pub use outcome::Outcome;
