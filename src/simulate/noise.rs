@@ -3,8 +3,8 @@
 use super::SimulateError;
 use super::run::stream;
 use super::shape::{SIDE, filtered, taps};
-use crate::claim::Claim;
-use crate::effect::Model;
+use crate::claim::{Claim, Stated};
+use crate::effect::{Drivers, Model};
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
 use crate::noise::model::NoiseModel;
@@ -18,6 +18,8 @@ pub(super) fn composed(claim: &Claim) -> Result<Composite, SimulateError> {
         let Model::Spectrum(spectrum) = stated.effect.model() else { continue };
         match spectrum.stated(&stated.values) {
             Some(fitted) => spectrum.compose(&fitted, &mut noise),
+            // It is stated as a course.
+            None if course_of(stated) => {}
             None => {
                 let note = Note::new("simulate.no_parameters").with("kind", stated.effect.kind());
                 return Err(note.into());
@@ -25,6 +27,12 @@ pub(super) fn composed(claim: &Claim) -> Result<Composite, SimulateError> {
         }
     }
     Ok(noise)
+}
+
+/// True for an effect that changes the spectrum where it is fitted, and is a course where it is stated.
+fn course_of(stated: &Stated) -> bool {
+    let one = Drivers { samples: 1, dt_s: 1.0, ..Drivers::default() };
+    stated.effect.stated_course(&stated.values, &one).is_some()
 }
 
 /// A running noise, without the rounding of the angle.

@@ -179,10 +179,10 @@ impl<'a> Simulation<'a> {
         };
         let mut rate = self.noise.take(samples);
         let mut keep = vec![true; samples];
-        on_samples(claim, self.order.seed, &drivers, &mut rate, &mut keep);
         for (y, m) in rate.iter_mut().zip(drivers.claimed_mean()) {
             *y += claim.mean.bias_deg_h + m;
         }
+        on_samples(claim, self.order.seed, &drivers, &mut rate, &mut keep);
         for stated in &claim.effects {
             for (y, c) in rate.iter_mut().zip(course(stated, &drivers)?.into_iter().flatten()) {
                 *y += c;
@@ -245,15 +245,19 @@ fn needs(order: &Order<'_>) -> Result<(), SimulateError> {
 
 /// The course that a stated effect adds; `None` for one that has none.
 fn course(stated: &Stated, drivers: &Drivers) -> Result<Option<Vec<f64>>, SimulateError> {
-    let Model::Course(model) = stated.effect.model() else { return Ok(None) };
+    let model = match stated.effect.model() {
+        Model::Course(model) => model,
+        Model::Spectrum(_) => return Ok(stated.effect.stated_course(&stated.values, drivers)),
+        Model::Samples(_) => return Ok(None),
+    };
     match model.course(&stated.values, drivers) {
         Some(course) => Ok(Some(course)),
         None => Err(Note::new("simulate.no_parameters").with("kind", stated.effect.kind()).into()),
     }
 }
 
-/// Effects on single samples act on the noise, before the mean is added: what scales the noise must not scale the
-/// rate of a table. What scales comes before what adds.
+/// Effects on single samples act on the claimed mean with its noise, before other effects add to the mean: what scales
+/// the noise scales what departs from the claim. What scales comes before what adds.
 fn on_samples(claim: &Claim, seed: u64, drivers: &Drivers, rate: &mut [f64], keep: &mut [bool]) {
     let mut acting: Vec<(usize, &Stated, &dyn Samples)> = vec![];
     for (place, stated) in claim.effects.iter().enumerate() {
