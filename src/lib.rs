@@ -33,5 +33,6 @@ pub mod report;
 pub mod run;
 pub mod selftest;
 pub mod series;
+pub mod simulate;
 pub mod text;
 pub mod units;

@@ -1,5 +1,6 @@
 //! The shipped procedures and limits, the schema, the guide.
 
+use sagnac::claim::tables::MODEL_FILE;
 use sagnac::estimate::Rule;
 use sagnac::procedure::check::{check, check_report};
 use sagnac::procedure::model::{Allowance, EarthRate, Taus};
@@ -240,10 +241,10 @@ fn keys(root: &'static TableSpec) -> Vec<(String, &'static sagnac::procedure::sp
 
 #[test]
 fn every_key_is_described_and_its_example_and_default_are_toml() {
-    for root in [&PROCEDURE_FILE, &LIMITS_FILE] {
+    for root in [&PROCEDURE_FILE, &LIMITS_FILE, &MODEL_FILE] {
         for (path, key) in keys(root) {
             assert!(key.doc.ends_with('.') && key.doc.len() > 8, "{path}: {}", key.doc);
-            let nested = key.kind.table().is_some() || matches!(key.kind, Kind::QuantityMap);
+            let nested = key.kind.table().is_some() || matches!(key.kind, Kind::QuantityMap | Kind::Values);
             assert_eq!(key.example.is_empty(), nested, "{path}");
             for literal in [Some(key.example), if let Need::Default(d) = key.need { Some(d) } else { None }] {
                 let Some(literal) = literal.filter(|l| !l.is_empty()) else { continue };
@@ -286,11 +287,23 @@ fn every_example_is_accepted_by_its_own_key() {
     let mut text = String::new();
     written_out(&LIMITS_FILE, &mut text);
     parse_limits("examples", text.as_bytes()).unwrap();
+    let mut text = String::new();
+    written_out(&MODEL_FILE, &mut text);
+    if let Err(problems) = sagnac::claim::parse("examples", text.as_bytes()) {
+        for p in &problems.list {
+            // Of the example of a kind, its parameters are no example of their own.
+            assert!(p.token == "\"line\"" || p.token == "line", "{p}");
+        }
+    }
 }
 
 #[test]
 fn the_schema_holds_every_key_with_its_description() {
-    for (schema, root) in [(schema::procedure(), &PROCEDURE_FILE), (schema::limits(), &LIMITS_FILE)] {
+    for (schema, root) in [
+        (schema::procedure(), &PROCEDURE_FILE),
+        (schema::limits(), &LIMITS_FILE),
+        (schema::model(), &MODEL_FILE),
+    ] {
         assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
         let mut count = 0;
         count_described(&schema, &mut count);
@@ -338,6 +351,7 @@ fn the_guide_is_the_key_tables() {
         ("procedure.md", "measurands", guide::measurand_reference()),
         ("limits.md", "keys", guide::limits_reference()),
         ("layout.md", "keys", guide::layout_reference()),
+        ("model.md", "keys", guide::model_reference()),
     ] {
         let path = guide_folder.join(file);
         let page = std::fs::read_to_string(&path).unwrap();
@@ -369,4 +383,6 @@ fn the_files_shown_in_the_guide_are_sound() {
     let layout = sagnac::ingest::raw::layout::parse("layout.md", page("layout.md").as_bytes());
     let layout = layout.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((layout.record_bytes, layout.names().count()), (32, 11));
+    let model = sagnac::claim::parse("model.md", page("model.md").as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((model.claim.effects.len(), model.drivers.len()), (1, 1));
 }

@@ -51,6 +51,7 @@ const OPEN: &[&str] = &[
     "test",
     "table_doc",
     "option_value",
+    "effect_view",
 ];
 
 /// A table that the tests of the command line hold against the command itself.

@@ -72,3 +72,7 @@ pub struct ModelFile {
     /// Courses of columns.
     pub drivers: Vec<Profile>,
 }
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;

@@ -3,7 +3,9 @@
 use super::profile::{Profile, SimulationPlan};
 use super::tables::MODEL_FILE;
 use super::{Claim, ModelFile, Stated, Uncertainty};
-use crate::effect::{self, ClaimedMean, Column, EFFECTS, Earth, Effect, Param, Temperature, Value, Values};
+use crate::effect::{
+    self, ClaimedMean, Column, Drivers, EFFECTS, Earth, Effect, Param, Temperature, Value, Values,
+};
 use crate::keyed::diagnostics::{Problems, nearest};
 use crate::keyed::file::{self, Wording};
 use crate::keyed::reader::{Reader, checked, shorten};
@@ -114,10 +116,10 @@ fn stated(section: &Section, reader: &mut Reader<'_>) -> Option<Stated> {
     if let effect::Model::Spectrum(spectrum) = effect.model()
         && section.values("parameters").len() == values.len()
         && spectrum.stated(&values).is_none()
-        && effect.list_params().iter().all(|l| !values.contains_key(l.name))
+        && effect.stated_course(&values, &Drivers { samples: 1, dt_s: 1.0, ..Drivers::default() }).is_none()
     {
-        let missing: Vec<&str> =
-            effect.params().iter().map(|p| p.name).filter(|n| !values.contains_key(*n)).collect();
+        let all = effect.params().iter().chain(effect.list_params());
+        let missing: Vec<&str> = all.map(|p| p.name).filter(|n| !values.contains_key(*n)).collect();
         let message = Note::new("model_file.missing").with("kind", effect.kind());
         let help = Note::new("model_file.help.missing").with("names", missing.join(", "));
         reader.error(&section.span_of("kind"), message, Some(help));

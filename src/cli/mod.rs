@@ -3,6 +3,7 @@
 mod analyze;
 mod check;
 mod compare;
+mod effects;
 mod help;
 mod inspect;
 mod place;
@@ -11,6 +12,7 @@ mod read;
 mod run;
 mod schema;
 mod selftest;
+mod simulate;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
@@ -70,6 +72,15 @@ enum Verb {
         sagnac compare --published"
     )]
     Compare(CompareArgs),
+    /// Make a recording from a model: noise, mean, effects and columns, reproducible to the bit
+    #[command(
+        after_help = "Examples:\n  sagnac simulate samples/model-static.toml --out static.csv --duration 10h --seed 7\n  \
+        sagnac simulate model.toml --out simulated.parquet --like unit-0042.csv"
+    )]
+    Simulate(SimulateArgs),
+    /// List the effects that a model can state and an explanation can name, or explain one
+    #[command(after_help = "Examples:\n  sagnac effects\n  sagnac effects bias_step")]
+    Effects(EffectsArgs),
     /// Print the JSON Schema of a file format, for completion in editors
     #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]
     Schema(SchemaArgs),
@@ -217,6 +228,35 @@ struct CompareArgs {
     read: read::ReadArgs,
 }
 
+#[derive(Debug, Args)]
+struct SimulateArgs {
+    /// Model (TOML): what the recording is believed to hold
+    #[arg(value_name = "FILE")]
+    model: PathBuf,
+    /// File to write, .csv or .parquet
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Seed, a whole number: equal seeds give equal recordings [default: as in the model, else 1]
+    #[arg(long, value_name = "SEED")]
+    seed: Option<u64>,
+    /// Length with its unit, such as 10h, 600s or "2 d" [default: as in the model]
+    #[arg(long, value_name = "LENGTH")]
+    duration: Option<String>,
+    /// Recording whose rows and columns are taken: its time stamps, gaps, temperatures, table rates
+    #[arg(long, value_name = "RECORDING")]
+    like: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+struct EffectsArgs {
+    /// Effect to explain [default: list all]
+    #[arg(value_name = "NAME")]
+    effect: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum SchemaKind {
     /// A test procedure
@@ -229,6 +269,8 @@ enum SchemaKind {
     Result,
     /// A manifest: several files as one recording
     Manifest,
+    /// A model: what a recording is believed to hold
+    Model,
 }
 
 #[derive(Debug, Args)]
@@ -254,6 +296,8 @@ pub fn main() -> ExitCode {
         Verb::Inspect(args) => inspect::main(&args, lang),
         Verb::Analyze(args) => analyze::main(&args, lang),
         Verb::Compare(args) => compare::main(&args, lang),
+        Verb::Simulate(args) => simulate::main(&args, lang),
+        Verb::Effects(args) => effects::main(&args, lang),
         Verb::Schema(args) => schema::main(&args),
         Verb::Selftest => selftest::main(lang),
     };

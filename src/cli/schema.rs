@@ -9,6 +9,7 @@ pub fn main(args: &SchemaArgs) -> u8 {
         SchemaKind::Limits => crate::procedure::schema::limits(),
         SchemaKind::Manifest => crate::procedure::schema::manifest(),
         SchemaKind::Layout => crate::procedure::schema::layout(),
+        SchemaKind::Model => crate::procedure::schema::model(),
         SchemaKind::Result => serde_json::to_value(schemars::schema_for!(RunRecord)).unwrap_or_default(),
     };
     super::place::print(&format!("{schema:#}\n"));

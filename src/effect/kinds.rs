@@ -8,7 +8,7 @@ use crate::noise::model::unit_density;
 macro_rules! describe {
     (
         $name:ident, $kind:literal, $model:ident in $domain:ident,
-        needs [$($need:ident),*], confusers [$($confuser:literal),*]
+        needs [$($need:ident),*], confusers [$($confuser:literal),*] $(, lists [$($list:expr),*])?
     ) => {
         impl $crate::effect::Effect for $name {
             fn kind(&self) -> &'static str {
@@ -20,6 +20,12 @@ macro_rules! describe {
             fn params(&self) -> &'static [$crate::effect::Param] {
                 &PARAMS
             }
+            $(
+                fn list_params(&self) -> &'static [$crate::effect::Param] {
+                    const LISTS: &[$crate::effect::Param] = &[$($list),*];
+                    LISTS
+                }
+            )?
             fn needs(&self) -> &'static [$crate::effect::Column] {
                 &[$($crate::effect::Column::$need),*]
             }

@@ -3,6 +3,7 @@
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
+use crate::claim::tables::MODEL_FILE;
 use crate::ids::MEASURANDS;
 use crate::ingest::manifest_tables::MANIFEST_FILE;
 use crate::ingest::raw::tables::LAYOUT_FILE;
@@ -26,6 +27,11 @@ pub fn manifest_reference() -> String {
 /// Every key of a layout of raw binary records, as Markdown.
 pub fn layout_reference() -> String {
     reference(&LAYOUT_FILE)
+}
+
+/// Every key of a claim, as Markdown.
+pub fn model_reference() -> String {
+    reference(&MODEL_FILE)
 }
 
 /// Every measurand that may be asked for, as Markdown.

@@ -5,6 +5,8 @@
 use super::spec::{KeySpec, Kind, Need, Range, TableSpec, Word};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
+use crate::claim::tables::MODEL_FILE;
+use crate::effect::EFFECTS;
 use crate::ids::MEASURANDS;
 use crate::ingest::manifest_tables::MANIFEST_FILE;
 use crate::ingest::raw::tables::LAYOUT_FILE;
@@ -26,6 +28,24 @@ pub fn limits() -> Value {
 /// The schema of a manifest.
 pub fn manifest() -> Value {
     document(&MANIFEST_FILE, "Sagnac manifest")
+}
+
+/// The schema of a claim.
+pub fn model() -> Value {
+    let mut schema = document(&MODEL_FILE, "Sagnac model");
+    // Editors offer the kinds; the reader knows them from the catalogue.
+    let kinds: Vec<Value> = EFFECTS
+        .iter()
+        .map(|e| json!({"const": e.kind(), "description": e.doc().title.en}))
+        .collect();
+    if let Some(kind) = schema.pointer_mut("/properties/effect/items/properties/kind")
+        && let Some(object) = kind.as_object_mut()
+    {
+        object.remove("type");
+        object.remove("pattern");
+        object.insert("oneOf".into(), Value::Array(kinds));
+    }
+    schema
 }
 
 /// The schema of a layout of raw binary records.

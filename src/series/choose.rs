@@ -91,6 +91,7 @@ fn rate(source: &Source, options: &SeriesOptions, chosen: &mut Chosen) -> Result
             match (plain, gyros.as_slice()) {
                 (Some(i), _) => i,
                 (None, [one]) => *one,
+                (None, [first, ..]) if options.any_rate => *first,
                 (None, []) => {
                     return Err(unclear("series.no_rate", columns.iter().map(|c| c.name.as_str()).collect()));
                 }
@@ -105,6 +106,7 @@ fn rate(source: &Source, options: &SeriesOptions, chosen: &mut Chosen) -> Result
     let unit = match &options.unit {
         Some(unit) => parse(unit)?,
         None if guess.role.is_gyro() && guess.unit_is_named => guess.unit,
+        None if options.any_rate => parse("deg/h")?,
         None => return Err(unclear("series.no_unit", vec![columns[index].name.as_str()])),
     };
     let is_angle = parse("deg")?.same_dimension(&unit);

@@ -24,6 +24,9 @@ pub struct SeriesOptions {
     pub rate: Option<String>,
     /// Unit of that column; found from its name where it is left out.
     pub unit: Option<String>,
+    /// Take the first column that looks like an output, in whatever unit, where it is not told which is meant: for those
+    /// who need the rows and not the rate.
+    pub any_rate: bool,
     /// Sample rate, Hz: needed where there are no time stamps, and of help where their rounding leaves it open.
     pub sample_rate_hz: Option<f64>,
 }

@@ -37,7 +37,11 @@ const ROWS: &str = "gaps_rows";
 
 describe! {
     DroppedSamples, "dropped_samples", Samples in Timestamps, needs [],
-    confusers ["clock_drift", "time_offset"]
+    confusers ["clock_drift", "time_offset"],
+    lists [
+        Param::inner(TIMES, "s", f64::MIN, f64::MAX),
+        Param::inner(ROWS, "", 0.0, 1e7)
+    ]
 }
 
 impl Samples for DroppedSamples {

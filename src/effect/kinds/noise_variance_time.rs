@@ -37,7 +37,11 @@ const KNOT_RATIOS: &str = "knots_ratio";
 
 describe! {
     NoiseVarianceTime, "noise_variance_time", Samples in Time, needs [],
-    confusers ["outlier_bursts", "noise_variance_rate", "excess_arw"]
+    confusers ["outlier_bursts", "noise_variance_rate", "excess_arw"],
+    lists [
+        Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX),
+        Param::inner(KNOT_RATIOS, "", 0.0, 1e3)
+    ]
 }
 
 impl Samples for NoiseVarianceTime {

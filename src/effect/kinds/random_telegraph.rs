@@ -30,6 +30,8 @@ static DOC: Doc = Doc {
     source: "Telegraph process: R(t) = (Δ²/4)·exp(−2λ|t|)",
 };
 
+static LISTS: [Param; 1] = [Param::inner(SWITCHES, "s", f64::MIN, f64::MAX)];
+
 static PARAMS: [Param; 3] = [
     Param::reported("amplitude_deg_h", "deg/h", -1e6, 1e6),
     Param::reported("mean_dwell_s", "s", 1e-6, 1e8),
@@ -48,6 +50,9 @@ impl Effect for RandomTelegraph {
     }
     fn params(&self) -> &'static [Param] {
         &PARAMS
+    }
+    fn list_params(&self) -> &'static [Param] {
+        &LISTS
     }
     fn domain(&self) -> Domain {
         Domain::Time

@@ -41,7 +41,10 @@ const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
     TempPolynomial, "temp_polynomial", Course in Temperature, needs [Temperature],
-    confusers ["temp_linear", "temp_hysteresis", "temp_rate"]
+    confusers ["temp_linear", "temp_hysteresis", "temp_rate"],
+    lists [
+        Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
+    ]
 }
 
 /// Middle and half width of the temperatures.

@@ -32,6 +32,9 @@ static DOC: Doc = Doc {
     source: "Matérn process of order 3/2",
 };
 
+static LISTS: [Param; 2] =
+    [Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX), Param::inner(KNOT_VALUES, "deg/h", -1e6, 1e6)];
+
 static PARAMS: [Param; 2] =
     [Param::inner("driver_rms_deg_h", "deg/h", 0.0, 1e6), Param::inner("driver_time_s", "s", 1e-6, 1e8)];
 
@@ -47,6 +50,9 @@ impl Effect for UnobservedDriver {
     }
     fn params(&self) -> &'static [Param] {
         &PARAMS
+    }
+    fn list_params(&self) -> &'static [Param] {
+        &LISTS
     }
     fn domain(&self) -> Domain {
         Domain::Time

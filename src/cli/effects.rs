@@ -1,0 +1,195 @@
+//! `sagnac effects`: the catalogue, and the page of one effect.
+
+use super::{EffectsArgs, exit, place};
+use crate::effect::{EFFECTS, Effect, Param, find};
+use crate::keyed::diagnostics::nearest;
+use crate::report::unit::pretty;
+use crate::text::{Arg, Lang, Note, decimal};
+use serde_json::{Value, json};
+
+/// Width of the text of a page, characters.
+const WIDTH: usize = 76;
+
+pub fn main(args: &EffectsArgs, lang: Lang) -> u8 {
+    let told = match &args.effect {
+        None if args.json => {
+            Ok(format!("{:#}\n", Value::Array(EFFECTS.iter().map(|e| value(*e, lang)).collect())))
+        }
+        None => Ok(list(lang)),
+        Some(name) => match find(name) {
+            Some(effect) if args.json => Ok(format!("{:#}\n", value(effect, lang))),
+            Some(effect) => Ok(page(effect, lang)),
+            None => Err(unknown(name, lang)),
+        },
+    };
+    match told {
+        Ok(text) => {
+            place::print(&text);
+            exit::PASS
+        }
+        Err(message) => {
+            place::complain(&message);
+            exit::ERROR
+        }
+    }
+}
+
+fn unknown(name: &str, lang: Lang) -> String {
+    let shown: String = name.chars().take(60).collect();
+    let help = match nearest(name, EFFECTS.iter().map(|e| e.kind())) {
+        Some(near) => Note::new("keyed.help.did_you_mean").with("name", near),
+        None => Note::new("model_file.help.kinds"),
+    };
+    let said = place::error(&Note::new("model_file.no_kind").with("kind", shown), lang);
+    format!("{said}  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang))
+}
+
+fn view(effect: &dyn Effect, lang: Lang) -> String {
+    Arg::key("effect_view", effect.domain().id()).say(lang)
+}
+
+/// Columns that an effect needs.
+fn needs(effect: &dyn Effect) -> String {
+    effect.needs().iter().map(|c| c.name()).collect::<Vec<_>>().join(", ")
+}
+
+/// One line an effect, in columns.
+fn list(lang: Lang) -> String {
+    let head = |key: &'static str| Note::new(key).say(lang);
+    let mut rows =
+        vec![[head("effects.kind"), head("effects.title"), head("effects.shows_in"), head("effects.needs")]];
+    for effect in EFFECTS {
+        rows.push([
+            effect.kind().to_owned(),
+            effect.doc().title.of(lang).to_owned(),
+            view(*effect, lang),
+            needs(*effect),
+        ]);
+    }
+    let widths: Vec<usize> =
+        (0..3).map(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0)).collect();
+    let mut out = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for (cell, width) in row.iter().zip(&widths) {
+            line.push_str(cell);
+            line.extend(std::iter::repeat_n(' ', width + 2 - cell.chars().count()));
+        }
+        line.push_str(&row[3]);
+        out.push_str(line.trim_end());
+        out.push('\n');
+    }
+    out.push_str(&format!("\n{}\n", Note::new("effects.more").say(lang)));
+    out
+}
+
+/// Everything that is known of an effect.
+fn page(effect: &dyn Effect, lang: Lang) -> String {
+    let doc = effect.doc();
+    let mut out = format!("{} ({})\n", doc.title.of(lang), effect.kind());
+    let mut part = |key: &'static str, text: &str| {
+        if !text.is_empty() {
+            out.push_str(&format!("\n{}\n{}", Note::new(key).say(lang), wrapped(text)));
+        }
+    };
+    part("effects.mechanism", doc.mechanism.of(lang));
+    part("effects.formula", doc.formula);
+    let parameters: Vec<String> =
+        effect.params().iter().chain(effect.list_params()).map(|p| parameter(p, lang)).collect();
+    part("effects.parameters", &parameters.join("\n"));
+    part("effects.shows_in", &view(effect, lang));
+    part("effects.needs", &needs(effect));
+    part("effects.signature", doc.signature.of(lang));
+    part("effects.confusers", &confusers(effect, lang).join("\n"));
+    part("effects.told_by", doc.told_by.of(lang));
+    part("effects.confirm", doc.confirm.of(lang));
+    part("effects.source", doc.source);
+    out
+}
+
+fn confusers(effect: &dyn Effect, lang: Lang) -> Vec<String> {
+    let named = |kind: &&str| match find(kind) {
+        Some(other) => format!("{kind}: {}", other.doc().title.of(lang)),
+        None => (*kind).to_owned(),
+    };
+    effect.confusers().iter().map(named).collect()
+}
+
+/// A parameter with its unit and bounds.
+fn parameter(p: &Param, lang: Lang) -> String {
+    let unit = pretty(p.unit, lang);
+    let number = |v: f64| {
+        let plain =
+            if v != 0.0 && !(1e-3..1e5).contains(&v.abs()) { format!("{v:e}") } else { v.to_string() };
+        decimal(&plain, lang)
+    };
+    let bounds = match (bounded(p.lower), bounded(p.upper)) {
+        (Some(low), Some(high)) => {
+            Note::new("effects.between").with("low", number(low)).with("high", number(high))
+        }
+        (Some(low), None) => Note::new("effects.at_least").with("low", number(low)),
+        (None, Some(high)) => Note::new("effects.at_most").with("high", number(high)),
+        (None, None) => Note::new("effects.any"),
+    };
+    let name = if unit.is_empty() { p.name.to_owned() } else { format!("{}, {unit}", p.name) };
+    let inner =
+        if p.reported { String::new() } else { format!(" ({})", Note::new("effects.inner").say(lang)) };
+    format!("{name}: {}{inner}", bounds.say(lang))
+}
+
+fn bounded(value: f64) -> Option<f64> {
+    (value.abs() < 1e300).then_some(value)
+}
+
+/// Lines of at most [`WIDTH`] characters, set in.
+fn wrapped(text: &str) -> String {
+    let mut out = String::new();
+    for paragraph in text.lines() {
+        let mut line = String::new();
+        for word in paragraph.split_whitespace() {
+            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
+                out.push_str(&format!("  {line}\n"));
+                line.clear();
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+        out.push_str(&format!("  {line}\n"));
+    }
+    out
+}
+
+/// An effect for programs; words in a language.
+fn value(effect: &dyn Effect, lang: Lang) -> Value {
+    let doc = effect.doc();
+    let params = |list: &'static [Param]| -> Vec<Value> {
+        list.iter()
+            .map(|p| {
+                json!({
+                    "name": p.name,
+                    "unit": p.unit,
+                    "lower": bounded(p.lower),
+                    "upper": bounded(p.upper),
+                    "reported": p.reported,
+                })
+            })
+            .collect()
+    };
+    json!({
+        "kind": effect.kind(),
+        "title": doc.title.of(lang),
+        "domain": effect.domain().id(),
+        "needs": effect.needs().iter().map(|c| c.name()).collect::<Vec<_>>(),
+        "mechanism": doc.mechanism.of(lang),
+        "formula": doc.formula,
+        "parameters": params(effect.params()),
+        "lists": params(effect.list_params()),
+        "signature": doc.signature.of(lang),
+        "confusers": effect.confusers(),
+        "told_by": doc.told_by.of(lang),
+        "confirm": doc.confirm.of(lang),
+        "source": doc.source,
+    })
+}

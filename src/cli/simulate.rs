@@ -1,0 +1,158 @@
+//! `sagnac simulate`: a recording from a model.
+
+use super::progress::Progress;
+use super::{SimulateArgs, exit, place};
+use crate::claim::{ModelFile, load_model};
+use crate::keyed::quantity;
+use crate::series::{Series, SeriesOptions, load_series};
+use crate::simulate::{Format, Order, Over, Simulation, Written, write};
+use crate::text::{Arg, Lang, Note};
+use std::path::Path;
+
+/// Seed where neither the command line nor the model says one.
+const SEED: u64 = 1;
+
+pub fn main(args: &SimulateArgs, lang: Lang) -> u8 {
+    match attempt(args, lang) {
+        Ok(text) => {
+            place::print(&text);
+            exit::PASS
+        }
+        Err(message) => {
+            place::complain(&message);
+            exit::ERROR
+        }
+    }
+}
+
+fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
+    let say = |note: &Note| place::error(note, lang);
+    Format::of(&args.out).map_err(|e| say(e.note()))?;
+    for input in [Some(args.model.as_path()), args.like.as_deref()].into_iter().flatten() {
+        if same(input, &args.out) {
+            let note = Note::new("simulate.onto_itself").with("path", args.out.display().to_string());
+            return Err(say(&note));
+        }
+    }
+    let asked_s = args.duration.as_deref().map(|d| duration(d, lang)).transpose()?;
+    if asked_s.is_some() && args.like.is_some() {
+        return Err(say(&Note::new("simulate.both")));
+    }
+    let model = load_model(&args.model).map_err(|problems| problems.say(lang))?;
+    let mut progress = Progress::new();
+    let mut series = None;
+    if let Some(path) = &args.like {
+        let reading = Note::new("cli.reading").say(lang);
+        let options = SeriesOptions {
+            sample_rate_hz: Some(model.claim.sample_rate_hz),
+            any_rate: true,
+            ..SeriesOptions::default()
+        };
+        let read = load_series(std::slice::from_ref(path), &options, &mut |done, total| {
+            progress.update(&reading, done, total);
+        });
+        progress.finish();
+        progress = Progress::new();
+        series = Some(read.map_err(|e| e.say(lang))?);
+    }
+    let seed = args.seed.or(model.simulation.seed).unwrap_or(SEED);
+    let over = match (&series, asked_s.or(model.simulation.duration_s)) {
+        (Some(series), _) => Over::Like(series),
+        (None, Some(duration_s)) => {
+            Over::Duration { duration_s, start_s: model.simulation.start_s, drivers: &model.drivers }
+        }
+        (None, None) => return Err(say(&Note::new("simulate.no_duration"))),
+    };
+    let simulation =
+        Simulation::begin(Order { claim: &model.claim, seed, over }).map_err(|e| say(e.note()))?;
+    let writing = Note::new("simulate.writing").say(lang);
+    let written = write(simulation, &args.out, &mut |done, total| progress.update(&writing, done, total));
+    progress.finish();
+    let written = written.map_err(|e| say(&e.note()))?;
+    Ok(summary(args, &model, series.as_ref(), &written, seed, lang))
+}
+
+/// True when both paths are one file.
+fn same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}
+
+/// A length in seconds.
+fn duration(text: &str, lang: Lang) -> Result<f64, String> {
+    let refused = |what: Note| {
+        let note = Note::new("cli.of_option").with("option", "--duration").with("what", what);
+        let help = Note::new("simulate.help.duration");
+        let help = format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang));
+        format!("{}{help}", place::error(&note, lang))
+    };
+    let seconds = quantity::parse(text, "s", true, false).map_err(|e| refused(e.message))?;
+    if seconds > 0.0 { Ok(seconds) } else { Err(refused(Note::new("simulate.not_positive"))) }
+}
+
+/// What was made, in a few lines.
+fn summary(
+    args: &SimulateArgs,
+    model: &ModelFile,
+    series: Option<&Series>,
+    written: &Written,
+    seed: u64,
+    lang: Lang,
+) -> String {
+    let mut lines = vec![
+        Note::new("simulate.written")
+            .with("path", args.out.display().to_string())
+            .with("rows", written.rows)
+            .with("length", length(written.length_s))
+            .with("rate", Arg::rounded(model.claim.sample_rate_hz, 6))
+            .with("columns", written.columns.join(", ")),
+        Note::new("simulate.seed").with("seed", seed),
+    ];
+    if !model.claim.effects.is_empty() {
+        let kinds: Vec<&str> = model.claim.effects.iter().map(|e| e.effect.kind()).collect();
+        lines.push(Note::new("simulate.effects").with("kinds", kinds.join(", ")));
+    }
+    let idle: Vec<&str> = model
+        .claim
+        .columns
+        .iter()
+        .flatten()
+        .map(|c| c.name())
+        .filter(|name| !written.columns.contains(name))
+        .collect();
+    if !idle.is_empty() {
+        let key = if series.is_some() { "simulate.not_recorded" } else { "simulate.not_driven" };
+        lines.push(Note::new(key).with("columns", idle.join(", ")));
+    }
+    if let Some(series) = series {
+        let faults = &series.faults;
+        if !model.drivers.is_empty() {
+            lines.push(Note::new("simulate.drivers_idle"));
+        }
+        if faults.without_time + faults.without_rate > 0 {
+            let left = Note::new("simulate.left_out").with("rows", faults.rows);
+            lines.push(left.with("time", faults.without_time).with("rate", faults.without_rate));
+        }
+        if faults.missing > 0 {
+            lines.push(Note::new("simulate.gaps").with("missing", faults.missing));
+        }
+        for (column, count) in &faults.interpolated {
+            let note = Note::new("simulate.interpolated").with("column", column.name());
+            lines.push(note.with("count", *count));
+        }
+    }
+    lines.iter().map(|line| line.say(lang) + "\n").collect()
+}
+
+/// A length in the unit that reads best.
+fn length(seconds: f64) -> Note {
+    let (key, value) = match seconds {
+        s if s >= 2.0 * 86_400.0 => ("simulate.length_d", s / 86_400.0),
+        s if s >= 3600.0 => ("simulate.length_h", s / 3600.0),
+        s if s >= 300.0 => ("simulate.length_min", s / 60.0),
+        s => ("simulate.length_s", s),
+    };
+    Note::new(key).with("value", Arg::rounded(value, 6))
+}

@@ -1,0 +1,206 @@
+//! A simulated recording as a file: text with commas, or Parquet.
+
+use super::{Rows, SimulateError, Simulation};
+use crate::effect::Column;
+use crate::output::{OutputError, StagedFile};
+use crate::text::Note;
+use parquet::basic::{Compression, ZstdLevel};
+use parquet::data_type::DoubleType;
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Format of a recording that is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Text, a header and fields with commas between. Every number reads back as the same number.
+    Csv,
+    /// Parquet, columns of doubles.
+    Parquet,
+}
+
+impl Format {
+    /// By the ending of a file name.
+    ///
+    /// # Errors
+    /// Another ending.
+    pub fn of(path: &Path) -> Result<Format, SimulateError> {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("csv") => Ok(Format::Csv),
+            Some("parquet") => Ok(Format::Parquet),
+            _ => Err(Note::new("simulate.ending").with("path", path.display().to_string()).into()),
+        }
+    }
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Written {
+    /// Rows.
+    pub rows: u64,
+    /// Columns, in the order of the file.
+    pub columns: Vec<&'static str>,
+    /// Length of the grid, s.
+    pub length_s: f64,
+}
+
+/// Why nothing was written.
+#[derive(Debug)]
+pub enum WriteError {
+    /// The simulation.
+    Simulate(SimulateError),
+    /// The file.
+    Output(OutputError),
+}
+
+impl WriteError {
+    /// The reason.
+    pub fn note(&self) -> Note {
+        match self {
+            WriteError::Simulate(e) => e.note().clone(),
+            WriteError::Output(e) => e.note(),
+        }
+    }
+}
+
+impl From<SimulateError> for WriteError {
+    fn from(e: SimulateError) -> Self {
+        WriteError::Simulate(e)
+    }
+}
+
+impl From<OutputError> for WriteError {
+    fn from(e: OutputError) -> Self {
+        WriteError::Output(e)
+    }
+}
+
+/// Runs a simulation to its end and writes it; the file appears whole or not at all. `progress` is told samples done
+/// and samples in all.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write(
+    mut simulation: Simulation<'_>,
+    path: &Path,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Written, WriteError> {
+    let format = Format::of(path)?;
+    let staged = StagedFile::begin(path)?;
+    let beside = simulation.columns();
+    let columns: Vec<&'static str> =
+        ["time_s", "rate_deg_h"].into_iter().chain(beside.iter().map(|c| c.name())).collect();
+    let refused = |e: std::io::Error| WriteError::Output(staged.refused(e));
+    let mut sink = Sink::begin(format, staged.file()?, &columns).map_err(refused)?;
+    let (mut rows, samples) = (0, simulation.samples());
+    while let Some(block) = simulation.next_rows()? {
+        rows += block.time_s.len() as u64;
+        sink.rows(&block, &beside).map_err(refused)?;
+        progress(simulation.done(), samples);
+    }
+    sink.end().map_err(refused)?;
+    let length_s = simulation.length_s();
+    staged.publish()?;
+    Ok(Written { rows, columns, length_s })
+}
+
+/// A file being written.
+enum Sink {
+    Csv(BufWriter<File>),
+    Parquet(Box<SerializedFileWriter<File>>),
+}
+
+fn as_io(e: ParquetError) -> std::io::Error {
+    match e {
+        ParquetError::External(inner) => match inner.downcast::<std::io::Error>() {
+            Ok(own) => *own,
+            Err(other) => std::io::Error::other(other),
+        },
+        other => std::io::Error::other(other),
+    }
+}
+
+impl Sink {
+    fn begin(format: Format, mut file: File, columns: &[&str]) -> std::io::Result<Sink> {
+        match format {
+            Format::Csv => {
+                writeln!(file, "{}", columns.join(","))?;
+                Ok(Sink::Csv(BufWriter::with_capacity(1 << 20, file)))
+            }
+            Format::Parquet => {
+                let fields: String = columns.iter().map(|c| format!("required double {c}; ")).collect();
+                let schema =
+                    parquet::schema::parser::parse_message_type(&format!("message recording {{ {fields}}}"));
+                let schema = schema.map_err(as_io)?;
+                let level = ZstdLevel::try_new(3).map_err(as_io)?;
+                let properties =
+                    WriterProperties::builder().set_compression(Compression::ZSTD(level)).build();
+                let writer = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties));
+                writer.map(|w| Sink::Parquet(Box::new(w))).map_err(as_io)
+            }
+        }
+    }
+
+    fn rows(&mut self, rows: &Rows, beside: &[Column]) -> std::io::Result<()> {
+        let mut columns: Vec<&[f64]> = vec![&rows.time_s, &rows.rate_deg_h];
+        columns.extend(beside.iter().map(|c| rows.columns.get(c).map_or(&[][..], Vec::as_slice)));
+        match self {
+            Sink::Csv(out) => {
+                let mut line = String::new();
+                for i in 0..rows.time_s.len() {
+                    line.clear();
+                    for (place, column) in columns.iter().enumerate() {
+                        if place > 0 {
+                            line.push(',');
+                        }
+                        if let Some(value) = column.get(i) {
+                            number(*value, &mut line);
+                        }
+                    }
+                    line.push('\n');
+                    out.write_all(line.as_bytes())?;
+                }
+                Ok(())
+            }
+            Sink::Parquet(writer) => {
+                // Groups of bounded size, so that a reader need not hold more.
+                let rows = rows.time_s.len();
+                for from in (0..rows).step_by(1 << 20) {
+                    let to = (from + (1 << 20)).min(rows);
+                    let mut group = writer.next_row_group().map_err(as_io)?;
+                    for column in &columns {
+                        let Some(mut own) = group.next_column().map_err(as_io)? else { break };
+                        let part = column.get(from..to).unwrap_or_default();
+                        own.typed::<DoubleType>().write_batch(part, None, None).map_err(as_io)?;
+                        own.close().map_err(as_io)?;
+                    }
+                    group.close().map_err(as_io)?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn end(self) -> std::io::Result<()> {
+        match self {
+            Sink::Csv(mut out) => out.flush(),
+            Sink::Parquet(writer) => writer.close().map(|_| ()).map_err(as_io),
+        }
+    }
+}
+
+/// The shortest text that reads as the same number, with an exponent where that is shorter.
+fn number(value: f64, out: &mut String) {
+    let size = value.abs();
+    let _ = if size != 0.0 && !(1e-4..1e15).contains(&size) {
+        write!(out, "{value:e}")
+    } else {
+        write!(out, "{value}")
+    };
+}
