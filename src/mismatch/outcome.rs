@@ -1,0 +1,18 @@
+//! Everything that an explanation leaves behind.
+
+use super::finding::Explanation;
+use crate::claim::Claim;
+use crate::figure::Figure;
+
+/// What explaining a recording gives.
+pub struct Outcome {
+    /// `explain.json`.
+    pub explanation: Explanation,
+    /// The contribution that the claim left out, as (`time_s`, deg/h). `None` where it cannot be predicted sample by
+    /// sample.
+    pub correction: Option<Vec<(f64, f64)>>,
+    /// The claim with re-estimated nuisances and the effects found.
+    pub augmented: Claim,
+    /// What there is to see, the located view first.
+    pub figures: Vec<Figure>,
+}
