@@ -66,14 +66,14 @@ pub fn against(a: &Against<'_>) -> Option<Figure> {
     }
     Some(Figure {
         id: format!("residual_against_{}", a.domain.id()),
-        title: "figure.title.explain_against",
+        title: "figure.explain.title_against",
         channel: String::new(),
         panels: vec![Panel {
             x: axis(label, unit, Scale::Linear),
             y: axis("figure.explain.residual", "deg/h", Scale::Linear),
             layers,
         }],
-        remarks: vec![],
+        remarks: vec!["figure.explain.means".into()],
     })
 }
 

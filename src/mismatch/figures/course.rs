@@ -46,7 +46,7 @@ pub fn time_course(course: &Course<'_>) -> Figure {
     }
     Figure {
         id: "residual_over_time".into(),
-        title: "figure.title.explain_time",
+        title: "figure.explain.title_time",
         channel: String::new(),
         panels,
         remarks,
@@ -94,14 +94,14 @@ pub fn local_level(
     }
     Figure {
         id: "level_over_time".into(),
-        title: "figure.title.explain_level",
+        title: "figure.explain.title_level",
         channel: String::new(),
         panels: vec![Panel {
             x: axis("axis.time", "s", Scale::Linear),
             y: axis("figure.explain.level", "", Scale::Log),
             layers,
         }],
-        remarks: vec![],
+        remarks: vec!["figure.explain.whitened".into()],
     }
 }
 
