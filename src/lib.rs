@@ -32,5 +32,6 @@ pub mod recording;
 pub mod report;
 pub mod run;
 pub mod selftest;
+pub mod series;
 pub mod text;
 pub mod units;

@@ -12,7 +12,7 @@ const FLOORS: &[&[&str]] = &[
     &["keyed"],
     &["ingest", "noise"],
     &["effect"],
-    &["claim"],
+    &["claim", "series"],
     &["mismatch", "simulate"],
     &["measurand"],
     &["procedure"],

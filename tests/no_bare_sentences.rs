@@ -22,6 +22,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/ingest/manifest_tables.rs", "the key tables of manifests: documentation, as of procedures"),
     ("src/ingest/reading_tables.rs", "keys of procedures and manifests: documentation, as of procedures"),
     ("src/ingest/raw/tables.rs", "the key tables of layouts: documentation, as of procedures"),
+    ("src/claim/tables.rs", "the key tables of claims: documentation, as of procedures"),
     ("src/ingest/matlab/tape.rs", "faults of the decoder, quoted as it says them"),
     ("src/ingest/matlab/v5.rs", "faults of the decoder, quoted as it says them"),
     ("src/ingest/binary/lanes.rs", "faults of the decoder, quoted as it says them"),

@@ -1,6 +1,15 @@
 //! A claimed simulation: the noise, mean, sensitivities and effects that an engineer believes a recording to hold, each
 //! with the uncertainty that he gives it.
 
+mod profile;
+mod read;
+pub mod tables;
+mod write;
+
+pub use profile::{Profile, SimulationPlan};
+pub use read::{load, load_model, parse};
+pub use write::write;
+
 use crate::effect::{ClaimedMean, Column, Effect, Values};
 use crate::noise::model::NoiseModel;
 
@@ -51,4 +60,15 @@ pub struct Stated {
     pub effect: &'static dyn Effect,
     /// Its parameters by name.
     pub values: Values,
+}
+
+/// A model file: a claim, and what `simulate` needs beside it.
+#[derive(Clone)]
+pub struct ModelFile {
+    /// The claim.
+    pub claim: Claim,
+    /// What is made when the command line does not say.
+    pub simulation: SimulationPlan,
+    /// Courses of columns.
+    pub drivers: Vec<Profile>,
 }

@@ -136,6 +136,10 @@ pub trait Effect: Sync {
     fn doc(&self) -> &'static Doc;
     /// Its parameters.
     fn params(&self) -> &'static [Param];
+    /// Lists that its stated form may carry beside the numbers, by name; the bounds are those of every value.
+    fn list_params(&self) -> &'static [Param] {
+        &[]
+    }
     /// Columns without which it cannot be seen.
     fn needs(&self) -> &'static [Column] {
         &[]

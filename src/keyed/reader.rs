@@ -87,19 +87,32 @@ fn too_deep(source: &SourceText) -> Option<Problem> {
     None
 }
 
-/// True when the dots and brackets of a line outside quotes exceed the bound.
+/// True when the dots and brackets of a line outside quotes exceed the bound. Decimal points in a list nest nothing.
 fn nests(line: &str) -> bool {
     let (mut quote, mut count) = (None, 0);
-    for c in line.chars() {
+    for (i, c) in line.char_indices() {
         match (quote, c) {
             (None, '"' | '\'') => quote = Some(c),
             (Some(q), c) if c == q => quote = None,
+            (None, '.') if is_decimal_point(line, i) => {}
             (None, '.' | '[' | '{') => count += 1,
             (None, '#') => break,
             _ => {}
         }
     }
     count > DEEPEST
+}
+
+/// True for the dot of a number that a comma or a closing bracket follows, as no dotted key is.
+fn is_decimal_point(line: &str, at: usize) -> bool {
+    let bytes = line.as_bytes();
+    let digits_before = bytes[..at].iter().rev().take_while(|b| b.is_ascii_digit()).count();
+    let before = at.checked_sub(digits_before + 1).and_then(|i| bytes.get(i));
+    let begins = matches!(before, Some(b'[' | b',' | b' ' | b'-' | b'+'));
+    let after = bytes.get(at + 1..).unwrap_or_default();
+    let number = |b: &&u8| b.is_ascii_digit() || matches!(b, b'e' | b'E' | b'-' | b'+');
+    let end = after.iter().find(|b| !number(b));
+    digits_before > 0 && begins && matches!(end, Some(b',' | b']'))
 }
 
 pub(crate) struct Reader<'s> {

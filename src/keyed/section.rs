@@ -13,6 +13,8 @@ pub(crate) enum Entry {
     Text(String),
     Flag(bool),
     Number(f64),
+    Numbers(Vec<f64>),
+    Values(Vec<Named>),
     Date(NaiveDate),
     Word(&'static str),
     Words(Vec<&'static str>),
@@ -24,6 +26,24 @@ pub(crate) enum Entry {
     Quantities(Vec<(&'static MeasurandId, f64, Span)>),
     Table(Section),
     Tables(Vec<Section>),
+}
+
+/// A number or a list of numbers under a name that the reader does not know.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Named {
+    pub name: String,
+    /// Where the name stands.
+    pub at: Span,
+    pub given: Given,
+    /// Where the value stands.
+    pub span: Span,
+}
+
+/// What stands under such a name.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Given {
+    Number(f64),
+    List(Vec<f64>),
 }
 
 /// Averaging times asked for.
@@ -101,6 +121,28 @@ impl Section {
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.entry(key) {
             Some(Entry::Number(number)) => Some(*number),
+            _ => None,
+        }
+    }
+
+    pub fn numbers(&self, key: &str) -> Option<&[f64]> {
+        match self.entry(key) {
+            Some(Entry::Numbers(numbers)) => Some(numbers),
+            _ => None,
+        }
+    }
+
+    /// The names and values of a table of such.
+    pub fn values(&self, key: &str) -> &[Named] {
+        match self.entry(key) {
+            Some(Entry::Values(values)) => values,
+            _ => &[],
+        }
+    }
+
+    pub fn words(&self, key: &str) -> Option<&[&'static str]> {
+        match self.entry(key) {
+            Some(Entry::Words(words)) => Some(words),
             _ => None,
         }
     }

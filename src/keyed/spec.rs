@@ -118,6 +118,12 @@ pub enum Kind {
     Flag,
     /// A number without unit.
     Number(Range),
+    /// A list of numbers without unit.
+    Numbers(Range),
+    /// A table of names that no list here holds, each with a number or a list of numbers.
+    Values,
+    /// A text that may be empty.
+    Remark,
     /// A date such as `2027-03-01`.
     Date,
     /// One of these words.
@@ -172,6 +178,9 @@ impl Kind {
             Kind::Id => Note::new("keyed.kind.id"),
             Kind::Flag => Note::new("keyed.kind.flag"),
             Kind::Number(range) => Note::new("keyed.kind.number").with("range", range.describe("")),
+            Kind::Numbers(range) => Note::new("keyed_more.numbers").with("range", range.describe("")),
+            Kind::Values => Note::new("keyed_more.values"),
+            Kind::Remark => Note::new("keyed.kind.text"),
             Kind::Date => Note::new("keyed.kind.date"),
             Kind::Choice(words) => one_of(words),
             Kind::Choices(words) => Note::new("keyed.kind.list_of").with("words", in_quotes(words)),

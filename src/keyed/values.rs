@@ -3,7 +3,7 @@
 use super::diagnostics::{Span, nearest};
 use super::quantity::{self, QuantityError};
 use super::reader::{Reader, for_example, shorten};
-use super::section::{Allowance, Entry, Taus};
+use super::section::{Allowance, Entry, Given, Named, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
 use crate::recording::ColumnRef;
 use crate::text::Note;
@@ -16,6 +16,12 @@ const LONGEST_TEXT: usize = 2000;
 
 /// Most averaging times in a list.
 const MOST_TAUS: usize = 1000;
+
+/// Most numbers in a list.
+const MOST_NUMBERS: usize = 100_000;
+
+/// Most names in a table of values.
+const MOST_NAMES: usize = 100;
 
 /// Reads a value that is no table.
 pub(crate) fn scalar(
@@ -36,6 +42,12 @@ pub(crate) fn scalar(
             let Some(given) = number(value) else { return reader.wrong(key, value, span) };
             in_range(reader, key, given, range, "", span).then_some(Entry::Number(given))
         }
+        Kind::Numbers(range) => numbers(reader, key, range, value, span).map(Entry::Numbers),
+        Kind::Values => named(reader, key, value, span).map(Entry::Values),
+        Kind::Remark => match value {
+            DeValue::String(given) if given.trim().is_empty() => Some(Entry::Text(String::new())),
+            _ => text(reader, key, value, span).map(Entry::Text),
+        },
         Kind::Date => date(reader, key, value, span).map(Entry::Date),
         Kind::Choice(words) => word(reader, key, words, value, span).map(Entry::Word),
         Kind::Choices(words) => {
@@ -98,6 +110,51 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
         _ => None,
     };
     parsed.filter(|v| v.is_finite())
+}
+
+/// The numbers of a list; `None` where it is none, is empty or too long, or holds anything else.
+fn list(value: &DeValue<'_>) -> Option<Vec<f64>> {
+    match value {
+        DeValue::Array(items) if !items.is_empty() && items.len() <= MOST_NUMBERS => {
+            items.iter().map(|v| number(v.get_ref())).collect()
+        }
+        _ => None,
+    }
+}
+
+fn numbers(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    range: Range,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Vec<f64>> {
+    let Some(found) = list(value) else { return reader.wrong(key, value, span) };
+    found.iter().all(|v| in_range(reader, key, *v, range, "", span)).then_some(found)
+}
+
+/// A table of names with numbers or lists of numbers. What the names mean is not known here.
+fn named(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Vec<Named>> {
+    let DeValue::Table(table) = value else { return reader.wrong(key, value, span) };
+    let mut found = vec![];
+    for (name, value) in table.iter().take(MOST_NAMES) {
+        let given = match number(value.get_ref()) {
+            Some(number) => Some(Given::Number(number)),
+            None => list(value.get_ref()).map(Given::List),
+        };
+        let Some(given) = given else {
+            let message = Note::new("keyed_more.no_value").with("name", shorten(name.get_ref()));
+            reader.error(&value.span(), message, Some("keyed_more.help.value".into()));
+            continue;
+        };
+        found.push(Named { name: name.get_ref().to_string(), at: name.span(), given, span: value.span() });
+    }
+    Some(found)
 }
 
 fn in_range(

@@ -94,6 +94,15 @@ fn value(kind: Kind) -> Value {
         Kind::Id => json!({"type": "string", "pattern": "^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"}),
         Kind::Flag => json!({"type": "boolean"}),
         Kind::Number(range) => number(range),
+        Kind::Numbers(range) => json!({"type": "array", "items": number(range), "minItems": 1}),
+        Kind::Values => json!({
+            "type": "object",
+            "additionalProperties": {"oneOf": [
+                {"type": "number"},
+                {"type": "array", "items": {"type": "number"}, "minItems": 1},
+            ]},
+        }),
+        Kind::Remark => json!({"type": "string"}),
         Kind::Date => json!({"type": "string", "format": "date"}),
         Kind::Choice(words) => one_of(words),
         Kind::Choices(words) => json!({"type": "array", "items": one_of(words)}),

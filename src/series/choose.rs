@@ -1,0 +1,129 @@
+//! Which column of a recording is what: by the names of the contract first, else as names and units tell.
+
+use super::{ReadFrom, SeriesError, SeriesOptions};
+use crate::effect::Column;
+use crate::ingest::Source;
+use crate::recording::{Channel, ColumnRef, Role};
+use crate::text::Note;
+use crate::units::Unit;
+
+/// The channels that are read, and what each is.
+pub(super) struct Chosen {
+    pub channels: Vec<Channel>,
+    /// Where the time is among them.
+    pub time: Option<usize>,
+    /// Where the rate is among them.
+    pub rate: usize,
+    /// The columns beside: which, where, and factor and offset to the unit of the contract.
+    pub beside: Vec<(Column, usize, (f64, f64))>,
+    pub read_from: Vec<ReadFrom>,
+}
+
+fn role(column: Column) -> Role {
+    match column {
+        Column::Temperature => Role::Temperature,
+        Column::TableRate => Role::TableRate,
+        Column::TableAngle => Role::TableAngle,
+        Column::OuterRate => Role::OuterRate,
+        Column::Supply => Role::Supply,
+    }
+}
+
+fn unit(column: Column) -> &'static str {
+    match column {
+        Column::Temperature => "degC",
+        Column::TableRate | Column::OuterRate => "deg/s",
+        Column::TableAngle => "deg",
+        Column::Supply => "V",
+    }
+}
+
+/// Finds the columns.
+pub(super) fn choose(source: &Source, options: &SeriesOptions) -> Result<Chosen, SeriesError> {
+    let mut chosen = Chosen { channels: vec![], time: None, rate: 0, beside: vec![], read_from: vec![] };
+    let named = |name: &str| source.columns().iter().position(|c| c.numeric && c.name == name);
+    if let Some(i) = named("time_s").or_else(|| source.time_column()) {
+        let guess = source.columns()[i].guess();
+        let unit = if guess.role == Role::Time { guess.unit } else { parse("s")? };
+        chosen.time = Some(chosen.take("time_s", i, source, Role::Time, unit));
+    }
+    rate(source, options, &mut chosen)?;
+    for column in Column::ALL {
+        let fits = |i: &usize| {
+            source.columns().get(*i).is_some_and(|c| {
+                let guess = c.guess();
+                c.numeric && guess.role == role(column) && guess.unit_is_named
+            })
+        };
+        let found = named(column.name())
+            .or_else(|| (0..source.columns().len()).filter(fits).find(|i| !chosen.has(*i)));
+        let Some(i) = found else { continue };
+        let own = source.columns()[i].guess().unit;
+        // What the unit says of the column is no such quantity: it is left alone.
+        let Ok(map) = own.affine_to(&parse(unit(column))?) else { continue };
+        let slot = chosen.take(column.name(), i, source, Role::Auxiliary, own);
+        chosen.beside.push((column, slot, map));
+    }
+    Ok(chosen)
+}
+
+fn parse(unit: &str) -> Result<Unit, SeriesError> {
+    Unit::parse(unit).map_err(|e| SeriesError::Unclear(e.note()))
+}
+
+/// The column of the rate.
+fn rate(source: &Source, options: &SeriesOptions, chosen: &mut Chosen) -> Result<(), SeriesError> {
+    let unclear = |key: &'static str, names: Vec<&str>| {
+        let note = Note::new(key).with("path", source.path().display().to_string());
+        SeriesError::Unclear(note.with("columns", names.join(", ")))
+    };
+    let columns = source.columns();
+    let index = match &options.rate {
+        Some(name) => {
+            let column = name.parse().map_or_else(|_| ColumnRef::Name(name.clone()), ColumnRef::Position);
+            source.resolve(&column)?
+        }
+        None => {
+            let gyros: Vec<usize> = (0..columns.len())
+                .filter(|i| columns.get(*i).is_some_and(|c| c.numeric && c.guess().role.is_gyro()))
+                .collect();
+            let plain = columns.iter().position(|c| c.numeric && c.name == "rate_deg_h");
+            match (plain, gyros.as_slice()) {
+                (Some(i), _) => i,
+                (None, [one]) => *one,
+                (None, []) => {
+                    return Err(unclear("series.no_rate", columns.iter().map(|c| c.name.as_str()).collect()));
+                }
+                (None, several) => {
+                    let names = several.iter().map(|i| columns[*i].name.as_str()).collect();
+                    return Err(unclear("series.several_rates", names));
+                }
+            }
+        }
+    };
+    let guess = columns[index].guess();
+    let unit = match &options.unit {
+        Some(unit) => parse(unit)?,
+        None if guess.role.is_gyro() && guess.unit_is_named => guess.unit,
+        None => return Err(unclear("series.no_unit", vec![columns[index].name.as_str()])),
+    };
+    let is_angle = parse("deg")?.same_dimension(&unit);
+    let role = if is_angle { Role::AngleIncrement } else { Role::Rate };
+    chosen.rate = chosen.take("rate_deg_h", index, source, role, unit);
+    Ok(())
+}
+
+impl Chosen {
+    fn has(&self, index: usize) -> bool {
+        self.channels.iter().any(|c| c.column == ColumnRef::Position(index + 1))
+    }
+
+    /// Adds a channel; gives its place.
+    fn take(&mut self, name: &'static str, index: usize, source: &Source, role: Role, unit: Unit) -> usize {
+        let column = source.columns().get(index).map(|c| c.name.clone()).unwrap_or_default();
+        self.read_from.push(ReadFrom { name, column, unit: unit.text().to_owned() });
+        let column = ColumnRef::Position(index + 1);
+        self.channels.push(Channel { id: name.to_owned(), column, role, unit, scale: 1.0 });
+        self.channels.len() - 1
+    }
+}
