@@ -113,7 +113,7 @@ fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang)
         sample_rate_hz: args.sample_rate,
     };
     let series = load_series(paths, &options, &mut |done, total| {
-        progress.of(mismatch::Progress { doing: "explain.doing.reading", done, total });
+        progress.of(mismatch::Progress { doing: "explain.progress.reading", done, total });
     });
     series.map_err(|e| {
         progress.finish();

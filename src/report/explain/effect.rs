@@ -69,7 +69,7 @@ pub struct EffectView {
     pub parameters: Vec<ParameterRow>,
     /// Where it shows.
     pub places: Vec<String>,
-    /// What it is worth.
+    /// What it is worth; empty for a cause without a name, which has no model.
     pub delta_bic: String,
     /// Probability under its absence.
     pub p: String,
@@ -103,7 +103,7 @@ impl EffectView {
             source: said(|d| d.source),
             parameters: parameters(f, all, words),
             places: f.places.iter().map(|p| place(p, all.recording.length_s, words)).collect(),
-            delta_bic: difference(f.delta_bic, words),
+            delta_bic: if f.kind == "unknown" { String::new() } else { difference(f.delta_bic, words) },
             p: chance(f.p_value, words),
             heldout_gain: f.heldout_gain.map(|v| difference(v, words)).unwrap_or_default(),
             removed: f

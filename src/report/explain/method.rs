@@ -39,7 +39,7 @@ const METHODS: &[Method] = &[
         formulas: &["BIC = −2·ln L + k·ln n"],
         source: "Schwarz 1978",
     },
-    Method { text: "explain.method.family", formulas: &[], source: "Westfall, Young 1993" },
+    Method { text: "explain.method.family", formulas: &[], source: "Bonferroni 1936" },
 ];
 
 /// All paragraphs.

@@ -71,31 +71,32 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Words) -> Ve
 }
 
 /// What remains when everything found has been added.
-fn rest(explanation: &Explanation, words: Words) -> Option<String> {
-    let named: Vec<&Finding> = explanation.effects.iter().filter(|f| f.kind != "unknown").collect();
-    if named.is_empty() {
-        return None;
-    }
-    let p = chance(explanation.family_p_value_after, words);
-    let ordinary = explanation.family_p_value_after >= explanation.alpha;
+fn rest(all: &Explanation, words: Words) -> Vec<String> {
+    let named: Vec<&Finding> = all.effects.iter().filter(|f| f.kind != "unknown").collect();
+    let after = all.family_p_value_after;
+    let p = chance(after, words);
     let share = match named.as_slice() {
-        [only] => only.removed_share.filter(|s| s.is_finite() && *s > 0.0),
+        [] => return vec![],
+        [only] => only.removed_share.filter(|s| s.is_finite() && *s > 0.0).map(|s| percent(s, words.lang)),
         _ => None,
     };
-    let single = named.len() == 1;
-    Some(match (share, ordinary) {
-        (Some(share), true) => {
-            let share = percent(share, words.lang);
-            words.with("explain.sentence.removes_all", &[("share", &share), ("p", &p)])
-        }
-        (Some(share), false) => {
-            let share = percent(share, words.lang);
-            words.with("explain.sentence.removes_part", &[("share", &share), ("p", &p)])
-        }
-        (None, true) if single => words.with("explain.sentence.rest_ordinary", &[("p", &p)]),
-        (None, true) => words.with("explain.sentence.rest_ordinary_of_several", &[("p", &p)]),
-        (None, false) => words.with("explain.sentence.rest_unexplained", &[("p", &p)]),
-    })
+    let unnamed = all.effects.len() > named.len();
+    if let (Some(share), true) = (&share, after >= all.alpha && !unnamed) {
+        return vec![words.with("explain.sentence.removes_all", &[("share", share), ("p", &p)])];
+    }
+    let mut out = vec![];
+    out.extend(share.map(|s| words.with("explain.sentence.removes", &[("share", &s)])));
+    let key = if unnamed {
+        "explain.sentence.rest_unexplained"
+    } else if after < all.alpha {
+        "explain.sentence.rest_faint"
+    } else if named.len() > 1 {
+        "explain.sentence.rest_ordinary_of_several"
+    } else {
+        "explain.sentence.rest_ordinary"
+    };
+    out.push(words.with(key, &[("p", &p)]));
+    out
 }
 
 /// The verdict, a sentence after the other.

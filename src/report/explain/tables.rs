@@ -30,8 +30,6 @@ pub struct TestRow {
 pub(super) fn tests(all: &Explanation, words: Words) -> Vec<TestRow> {
     let mut sorted: Vec<_> = all.tests.iter().collect();
     sorted.sort_by(|a, b| a.p_before.total_cmp(&b.p_before));
-    // The family holds as many statistics as tests: each is compared with its share of the risk.
-    let level = all.alpha / all.tests.len().max(1) as f64;
     sorted
         .into_iter()
         .map(|t| {
@@ -42,8 +40,8 @@ pub(super) fn tests(all: &Explanation, words: Words) -> Vec<TestRow> {
                 place: ends(&place, words),
                 before: chance(t.p_before, words),
                 after: chance(t.p_after, words),
-                departs_before: t.p_before < level,
-                departs_after: t.p_after < level,
+                departs_before: t.p_before < all.alpha,
+                departs_after: t.p_after < all.alpha,
             }
         })
         .collect()
