@@ -237,13 +237,13 @@ struct ExplainArgs {
     #[arg(long, value_name = "FILE")]
     simulation: Option<PathBuf>,
     /// Probability at which a correct claim may be called a mismatch [default: 0.01]
-    #[arg(long, value_name = "P")]
+    #[arg(long, value_name = "PROBABILITY")]
     alpha: Option<f64>,
     /// Column that is treated as not recorded, by its name in the contract (temp_degC); may be repeated
     #[arg(long, value_name = "COLUMN")]
     hide: Vec<String>,
     /// Most effects that are added to the claim [default: 3]
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "COUNT")]
     max_effects: Option<usize>,
     /// Rate column by name or position [default: the only column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]

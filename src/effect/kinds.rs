@@ -4,6 +4,123 @@ use super::{Domain, Effect, Place, SpectralLook};
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_density;
 
+/// What every effect says of itself.
+macro_rules! describe {
+    (
+        $name:ident, $kind:literal, $model:ident in $domain:ident,
+        needs [$($need:ident),*], confusers [$($confuser:literal),*]
+    ) => {
+        impl $crate::effect::Effect for $name {
+            fn kind(&self) -> &'static str {
+                $kind
+            }
+            fn doc(&self) -> &'static $crate::effect::Doc {
+                &DOC
+            }
+            fn params(&self) -> &'static [$crate::effect::Param] {
+                &PARAMS
+            }
+            fn needs(&self) -> &'static [$crate::effect::Column] {
+                &[$($crate::effect::Column::$need),*]
+            }
+            fn domain(&self) -> $crate::effect::Domain {
+                $crate::effect::Domain::$domain
+            }
+            fn confusers(&self) -> &'static [&'static str] {
+                &[$($confuser),*]
+            }
+            fn model(&self) -> $crate::effect::Model {
+                $crate::effect::Model::$model(&$name)
+            }
+        }
+    };
+}
+
+/// A spectrum that is a stated coefficient set free.
+macro_rules! frees {
+    ($name:ident, $term:ident, $field:ident, course $course:literal) => {
+        impl $crate::effect::Spectrum for $name {
+            fn act(&self) -> $crate::effect::SpectrumAct {
+                $crate::effect::SpectrumAct::Frees($crate::noise::data::NoiseType::$term)
+            }
+            fn density(&self, _fitted: &[f64], _bin: &$crate::effect::ModeBin) -> f64 {
+                0.0
+            }
+            fn starts(&self, _look: &$crate::effect::SpectralLook<'_>) -> Vec<Vec<f64>> {
+                vec![vec![]]
+            }
+            fn bounds(&self, _look: &$crate::effect::SpectralLook<'_>) -> Vec<(f64, f64)> {
+                vec![]
+            }
+            fn looked(&self, _look: &$crate::effect::SpectralLook<'_>) -> f64 {
+                1.0
+            }
+            fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+                fitted.to_vec()
+            }
+            fn stated(&self, values: &$crate::effect::Values) -> Option<Vec<f64>> {
+                $crate::effect::number(values, PARAMS[0].name).map(|c| vec![c])
+            }
+            fn compose(&self, fitted: &[f64], noise: &mut $crate::noise::composite::Composite) {
+                if let [coefficient] = fitted {
+                    noise.terms.$field = *coefficient;
+                }
+            }
+            fn places(
+                &self,
+                fitted: &[f64],
+                look: &$crate::effect::SpectralLook<'_>,
+            ) -> Vec<$crate::effect::Place> {
+                super::power_law_places($crate::noise::data::NoiseType::$term, fitted, look)
+            }
+            fn has_course(&self) -> bool {
+                $course
+            }
+        }
+    };
+}
+
+/// A course that is one column times its only parameter: `column(drivers)`, where `applies(drivers)`.
+macro_rules! linear {
+    ($name:ident, replaces $nuisance:expr, places $places:ident) => {
+        impl $crate::effect::Course for $name {
+            fn pace(&self) -> $crate::effect::Pace {
+                $crate::effect::Pace::Fast
+            }
+            fn replaces(&self) -> Option<$crate::effect::Nuisance> {
+                $nuisance
+            }
+            fn applies(&self, drivers: &Drivers) -> bool {
+                applies(drivers)
+            }
+            fn starts(&self, _drivers: &Drivers, _look: &$crate::effect::Look<'_>) -> $crate::effect::Starts {
+                $crate::effect::Starts::linear()
+            }
+            fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+                vec![]
+            }
+            fn parts(&self, _shape: &[f64], drivers: &Drivers) -> $crate::effect::Parts {
+                $crate::effect::Parts { free: column(drivers).into_iter().collect(), ..Default::default() }
+            }
+            fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+                vec![coefficients.first().copied().unwrap_or(f64::NAN)]
+            }
+            fn course(&self, values: &$crate::effect::Values, drivers: &Drivers) -> Option<Vec<f64>> {
+                let coefficient = $crate::effect::number(values, PARAMS[0].name)?;
+                Some(column(drivers)?.into_iter().map(|x| coefficient * x).collect())
+            }
+            fn places(
+                &self,
+                _shape: &[f64],
+                _coefficients: &[f64],
+                drivers: &Drivers,
+            ) -> Vec<$crate::effect::Place> {
+                $places(drivers)
+            }
+        }
+    };
+}
+
 macro_rules! catalogue {
     ($($module:ident :: $name:ident),* $(,)?) => {
         $(mod $module;)*
@@ -12,11 +129,52 @@ macro_rules! catalogue {
     };
 }
 
+mod delay;
+mod knots;
+mod noise_level;
+mod reach;
+mod search;
+mod sinusoid;
+mod thermal;
+
 catalogue! {
     temp_linear::TempLinear,
+    temp_polynomial::TempPolynomial,
+    temp_rate::TempRate,
+    thermal_lag::ThermalLag,
+    temp_hysteresis::TempHysteresis,
+    warmup_exponential::WarmupExponential,
+    rate_ramp::RateRamp,
+    diurnal::Diurnal,
+    line::Line,
     bias_step::BiasStep,
+    heading_change::HeadingChange,
+    earth_rate_projection::EarthRateProjection,
+    table_harmonic::TableHarmonic,
+    sf_error::SfError,
+    sf_asymmetry::SfAsymmetry,
+    sf_nonlinearity::SfNonlinearity,
+    sf_temperature::SfTemperature,
+    dead_zone::DeadZone,
+    saturation::Saturation,
+    cross_axis::CrossAxis,
+    supply_sensitivity::SupplySensitivity,
+    time_offset::TimeOffset,
+    clock_drift::ClockDrift,
+    unobserved_driver::UnobservedDriver,
     excess_arw::ExcessArw,
+    excess_flicker::ExcessFlicker,
+    excess_rrw::ExcessRrw,
+    markov_short::MarkovShort,
     markov_long::MarkovLong,
+    quasi_periodic::QuasiPeriodic,
+    quantization::Quantization,
+    bandwidth_filter::BandwidthFilter,
+    noise_variance_time::NoiseVarianceTime,
+    noise_variance_rate::NoiseVarianceRate,
+    outlier_bursts::OutlierBursts,
+    random_telegraph::RandomTelegraph,
+    dropped_samples::DroppedSamples,
 }
 
 /// The effect of a kind.

@@ -10,7 +10,7 @@ mod kinds;
 mod spectral;
 
 pub use doc::{Both, Doc};
-pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature};
+pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature, averages};
 pub use kinds::{EFFECTS, find};
 pub use spectral::{ModeBin, SpectralLook, Spectrum, SpectrumAct};
 
@@ -150,6 +150,11 @@ pub trait Effect: Sync {
     fn confusers(&self) -> &'static [&'static str];
     /// How it acts.
     fn model(&self) -> Model;
+    /// The course that stated parameters give where the effect is no [`Course`] for fitting, deg/h; `None` where they
+    /// give none.
+    fn stated_course(&self, _values: &Values, _drivers: &Drivers) -> Option<Vec<f64>> {
+        None
+    }
 }
 
 /// How an effect acts on the output.
@@ -280,6 +285,27 @@ pub trait Course: Sync {
 
     /// Where it lives, principal first, at most three.
     fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place>;
+
+    /// First step of a local search in each number of the shape, where the likelihood has a peak much narrower than the
+    /// bounds; empty: by the bounds.
+    fn steps(&self, _drivers: &Drivers) -> Vec<f64> {
+        vec![]
+    }
+
+    /// Positions of numbers of the shape that are whole: tried by [`Course::starts`] and not refined.
+    fn whole(&self) -> &'static [usize] {
+        &[]
+    }
+
+    /// Columns that stay free when a claim states the effect: a state before the record that no claim can know.
+    fn beside(&self, _values: &Values, _drivers: &Drivers) -> Vec<Vec<f64>> {
+        vec![]
+    }
+
+    /// Natural logarithm of the odds against kinds with the same course, from what else the columns show at that place.
+    fn odds(&self, _shape: &[f64], _drivers: &Drivers) -> f64 {
+        0.0
+    }
 }
 
 /// An effect on single samples. The engine knows how each is found; here is what it does.

@@ -27,7 +27,8 @@ pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<C
     if rows < FEWEST {
         return Err(Note::new("explain.error.short").with("rows", rows).with("needed", FEWEST));
     }
-    let mut step = |done| progress(Progress { doing: "explain.progress.identifying", done, total: 2 * ROUNDS });
+    let mut step =
+        |done| progress(Progress { doing: "explain.progress.identifying", done, total: 2 * ROUNDS });
     step(0);
     let columns = mean::Columns::new(series);
     let mut fitted = columns.fit(series, None);

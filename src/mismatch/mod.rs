@@ -1,28 +1,26 @@
 //! The mismatch of a claimed simulation and a recording: located, named, modelled, and the fit shown to improve.
 
+pub mod candidates;
+pub mod columns;
+pub mod departures;
+pub mod engine;
+pub mod estimates;
 pub mod figures;
 pub mod finding;
+pub mod heldout;
+pub mod hypothesis;
 mod identify;
+pub mod impute;
+pub mod lattice;
+pub mod noise_fit;
 pub mod options;
 pub mod outcome;
+pub mod problem;
+pub mod regular;
+pub mod scene;
+pub mod select;
 
+pub use engine::explain;
 pub use identify::identify;
 pub use options::{Options, Progress};
 pub use outcome::Outcome;
-
-use crate::claim::Claim;
-use crate::series::Series;
-use crate::text::Note;
-
-/// Explains a recording against a claim.
-///
-/// # Errors
-/// What keeps the two from being compared.
-pub fn explain(
-    _recording: &Series,
-    _claim: &Claim,
-    _options: &Options,
-    _progress: &mut dyn FnMut(Progress),
-) -> Result<Outcome, Note> {
-    Err("explain.error.engine".into())
-}

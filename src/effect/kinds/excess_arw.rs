@@ -1,11 +1,6 @@
 //! Angle random walk that differs from the claimed one.
 
-use crate::effect::{
-    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values,
-    number,
-};
-use crate::noise::composite::Composite;
-use crate::noise::data::NoiseType;
+use crate::effect::{Both, Doc, Param};
 
 pub struct ExcessArw;
 
@@ -35,63 +30,9 @@ static DOC: Doc = Doc {
 
 static PARAMS: [Param; 1] = [Param::reported("N_deg_rt_h", "deg/√h", 0.0, 1e3)];
 
-impl Effect for ExcessArw {
-    fn kind(&self) -> &'static str {
-        "excess_arw"
-    }
-    fn doc(&self) -> &'static Doc {
-        &DOC
-    }
-    fn params(&self) -> &'static [Param] {
-        &PARAMS
-    }
-    fn domain(&self) -> Domain {
-        Domain::Frequency
-    }
-    fn confusers(&self) -> &'static [&'static str] {
-        &["markov_short", "noise_variance_time", "outlier_bursts"]
-    }
-    fn model(&self) -> Model {
-        Model::Spectrum(&ExcessArw)
-    }
+describe! {
+    ExcessArw, "excess_arw", Spectrum in Frequency, needs [],
+    confusers ["markov_short", "noise_variance_time", "outlier_bursts"]
 }
 
-impl Spectrum for ExcessArw {
-    fn act(&self) -> SpectrumAct {
-        SpectrumAct::Frees(NoiseType::AngleRandomWalk)
-    }
-
-    fn density(&self, _fitted: &[f64], _bin: &ModeBin) -> f64 {
-        0.0
-    }
-
-    fn starts(&self, _look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
-        vec![vec![]]
-    }
-
-    fn bounds(&self, _look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
-        vec![]
-    }
-
-    fn looked(&self, _look: &SpectralLook<'_>) -> f64 {
-        1.0
-    }
-
-    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
-        fitted.to_vec()
-    }
-
-    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
-        number(values, PARAMS[0].name).map(|n| vec![n])
-    }
-
-    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
-        if let [n] = fitted {
-            noise.terms.n = *n;
-        }
-    }
-
-    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
-        super::power_law_places(NoiseType::AngleRandomWalk, fitted, look)
-    }
-}
+frees! { ExcessArw, AngleRandomWalk, n, course false }

@@ -72,7 +72,7 @@ impl Course for TempLinear {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        drivers.temperature.is_some()
+        super::reach::varies(drivers.temperature.as_deref())
     }
 
     fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {

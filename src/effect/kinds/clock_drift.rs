@@ -1,0 +1,117 @@
+//! A delay between the gyro and the columns beside it that grows.
+
+use super::delay::{follow, moves, parts, shifted};
+use super::search::best_of;
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+};
+use crate::numeric::cosine::inverse_dct2;
+
+pub struct ClockDrift;
+
+static DOC: Doc = Doc {
+    title: Both { en: "clock drift", ru: "уход часов" },
+    mechanism: Both {
+        en: "Gyro and table count time by clocks of different rates.",
+        ru: "Время гироскопа и стола отсчитывают часы с разным ходом.",
+    },
+    formula: "m(t − d·(t − t₀)) − m(t), m the claimed mean, t₀ the beginning of the record",
+    signature: Both {
+        en: "Spikes of the residual wherever the table's rate changes, larger towards the end of the record.",
+        ru: "Импульсы остатка при каждом изменении скорости стола, растущие к концу записи.",
+    },
+    told_by: Both {
+        en: "A constant offset gives equal spikes from the beginning; an error of the scale factor stays while the rate is constant.",
+        ru: "Постоянный сдвиг даёт одинаковые импульсы с самого начала; ошибка масштабного коэффициента остаётся при постоянной скорости.",
+    },
+    confirm: Both {
+        en: "Trigger pulses at the beginning and the end, recorded by both systems.",
+        ru: "Общие импульсы синхронизации в начале и в конце, записанные обеими системами.",
+    },
+    source: "Cross-correlation of gyro and table along the record",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("drift_ppm", "ppm", -1e5, 1e5)];
+
+describe! {
+    ClockDrift, "clock_drift", Course in Lag, needs [],
+    confusers ["time_offset", "sf_error", "dropped_samples"]
+}
+
+/// Lag of a sample in samples, for 1 ppm.
+fn per_ppm(i: usize, drivers: &Drivers) -> f64 {
+    1e-6 * (drivers.time_s(i) - super::reach::beginning_s(drivers)) / drivers.dt_s
+}
+
+impl Course for ClockDrift {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        moves(drivers)
+    }
+
+    /// A drift is found by following it: from a stretch at the beginning, where the delay is still small, to the whole
+    /// record.
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let n = drivers.samples;
+        if !moves(drivers) || look.modes.len() != n || look.powers.len() != n {
+            return Starts { shapes: vec![], looked: 1.0 };
+        }
+        let mean = drivers.claimed_mean();
+        let residual = inverse_dct2(look.modes);
+        let (low, high) = self.bounds(drivers)[0];
+        let track = |from: usize| {
+            let (mut drift, mut until) = (0.0f64, from);
+            loop {
+                until = until.min(n);
+                let step = 0.05 / per_ppm(until - 1, drivers).max(1e-12);
+                let next = follow(&residual, &mean, until, drift, |i| per_ppm(i, drivers), step);
+                if next.is_finite() && (low..=high).contains(&next) {
+                    drift = next;
+                }
+                if until == n {
+                    return drift;
+                }
+                until = until * 3 / 2 + 1;
+            }
+        };
+        let begun = [1usize, 4, 16, 64, 256].map(|part| (n / part).clamp(32, n));
+        let shapes = begun.into_iter().map(track).filter(|d| *d != 0.0).map(|d| vec![d]);
+        let looked = (1e-6 * (high - low) * n as f64).max(1.0);
+        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked }
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![(-1e5, 1e5)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let Some(drift) = shape.first() else { return Parts::default() };
+        parts(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers))
+    }
+
+    fn parameters(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        vec![shape.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let drift = number(values, PARAMS[0].name)?;
+        Some(shifted(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers)).0)
+    }
+
+    fn beside(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        number(values, PARAMS[0].name).map_or_else(Vec::new, |d| self.parts(&[d], drivers).beside)
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(last) = shape.first().map(|d| 1e-6 * d * drivers.length_s()) else { return vec![] };
+        let lag = Place { domain: Domain::Lag, from: last.min(0.0), to: last.max(0.0) };
+        [vec![lag], super::reach::record(drivers)].concat()
+    }
+
+    fn steps(&self, drivers: &Drivers) -> Vec<f64> {
+        vec![0.05 / per_ppm(drivers.samples.max(2) - 1, drivers).max(1e-12)]
+    }
+}

@@ -1,0 +1,88 @@
+//! A period of one day.
+
+use super::search::{best_of, log_grid};
+use super::sinusoid::{polar, wave};
+use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+
+pub struct Diurnal;
+
+static DOC: Doc = Doc {
+    title: Both { en: "daily variation", ru: "суточный ход" },
+    mechanism: Both {
+        en: "Tilt of the foundation, weather and the building's heating repeat with the day.",
+        ru: "Наклон фундамента, погода и отопление здания повторяются с периодом суток.",
+    },
+    formula: "A·cos(2πt/24 h + φ)",
+    signature: Both {
+        en: "A wave of 24 hours, in step with the solar time.",
+        ru: "Волна с периодом 24 часа, привязанная к солнечному времени.",
+    },
+    told_by: Both {
+        en: "A temperature effect follows the thermometer more closely than the clock; a drift does not return after a day. Below two days the period itself cannot be told.",
+        ru: "Температурный эффект следует за термометром точнее, чем за часами; дрейф через сутки не возвращается. По записи короче двух суток сам период не определить.",
+    },
+    confirm: Both {
+        en: "Record for three days or more with a tilt meter and the room temperature beside.",
+        ru: "Записать не менее трёх суток вместе с наклономером и температурой помещения.",
+    },
+    source: "Ω_E cos φ for each radian of tilt",
+};
+
+static PARAMS: [Param; 3] = [
+    Param::reported("amplitude_deg_h", "deg/h", 0.0, 1e5),
+    Param::reported("period_s", "s", 80_000.0, 93_000.0),
+    Param::inner("phase_deg", "deg", -360.0, 360.0),
+];
+
+describe! {
+    Diurnal, "diurnal", Course in Frequency, needs [],
+    confusers ["line", "temp_linear", "unobserved_driver", "rate_ramp"]
+}
+
+const DAY_S: f64 = 86_400.0;
+
+impl Course for Diurnal {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.samples >= 16 && drivers.length_s() > 0.5 * DAY_S
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let (low, high) = self.bounds(drivers)[0];
+        if low == high {
+            return Starts { shapes: vec![vec![DAY_S]], looked: 1.0 };
+        }
+        let grid = log_grid(low, high, 5);
+        Starts { shapes: best_of(self, grid.into_iter().map(|p| vec![p]), 2, drivers, look), looked: 1.0 }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        if drivers.length_s() > 2.0 * DAY_S { vec![(82_800.0, 90_000.0)] } else { vec![(DAY_S, DAY_S)] }
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let free = shape.first().map_or_else(Vec::new, |p| super::line::columns(1.0 / p, drivers));
+        Parts { free, ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        let (amplitude, phase) = polar(coefficients);
+        vec![amplitude, shape.first().copied().unwrap_or(f64::NAN), phase]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let period = number(values, PARAMS[1].name).unwrap_or(DAY_S);
+        let phase = number(values, PARAMS[2].name).unwrap_or(0.0);
+        if period.is_nan() || period <= 0.0 {
+            return None;
+        }
+        let columns = super::line::columns(1.0 / period, drivers);
+        Some(wave(number(values, PARAMS[0].name)?, phase, &columns))
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(f) = shape.first().map(|p| 1.0 / p) else { return vec![] };
+        let half = 0.5 / drivers.length_s();
+        let frequency = Place { domain: Domain::Frequency, from: (f - half).max(0.0), to: f + half };
+        [vec![frequency], super::reach::record(drivers)].concat()
+    }
+}

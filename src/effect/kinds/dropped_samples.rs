@@ -1,0 +1,115 @@
+//! Rows are missing.
+
+use crate::effect::{Both, Doc, Drivers, Param, Samples, Values, list, number};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+pub struct DroppedSamples;
+
+static DOC: Doc = Doc {
+    title: Both { en: "dropped samples", ru: "пропуски отсчётов" },
+    mechanism: Both {
+        en: "A buffer overflows, a link breaks: rows never reach the file.",
+        ru: "Переполняется буфер, рвётся связь: строки не попадают в файл.",
+    },
+    formula: "rows left out",
+    signature: Both {
+        en: "Gaps of the time stamps by whole sample intervals.",
+        ru: "Разрывы меток времени на целое число интервалов.",
+    },
+    told_by: Both {
+        en: "Jitter of stamps does not add up to missing rows; a clock drift spreads over the record.",
+        ru: "Дрожание меток не накапливается в пропущенные строки; уход часов распределён по всей записи.",
+    },
+    confirm: Both {
+        en: "A counter of samples in the instrument's own message.",
+        ru: "Счётчик отсчётов в посылке самого прибора.",
+    },
+    source: "Time stamps against the nominal rate",
+};
+
+static PARAMS: [Param; 2] =
+    [Param::reported("missing_rows", "", 1.0, 1e7), Param::inner("gaps", "", 1.0, 1e6)];
+
+/// Last instant before each gap is later than this; rows that the gap swallows.
+const TIMES: &str = "gaps_time_s";
+const ROWS: &str = "gaps_rows";
+
+describe! {
+    DroppedSamples, "dropped_samples", Samples in Timestamps, needs [],
+    confusers ["clock_drift", "time_offset"]
+}
+
+impl Samples for DroppedSamples {
+    /// Gaps that begin at the listed instants, else `gaps` of about equal length anywhere inside; neither the first nor
+    /// the last row is lost.
+    fn apply(&self, values: &Values, drivers: &Drivers, seed: u64, _rate: &mut [f64], keep: &mut [bool]) {
+        let n = keep.len().min(drivers.samples);
+        if n < 3 {
+            return;
+        }
+        let times = list(values, TIMES);
+        if !times.is_empty() {
+            for (time, rows) in times.iter().zip(list(values, ROWS)) {
+                let first =
+                    ((time - drivers.start_s) / drivers.dt_s).round().clamp(1.0, n as f64 - 1.0) as usize;
+                let rows = rows.clamp(0.0, n as f64) as usize;
+                keep[first..(first + rows).min(n - 1).max(first)].fill(false);
+            }
+            return;
+        }
+        let Some(missing) = number(values, PARAMS[0].name) else { return };
+        let mut left = (missing.clamp(0.0, 0.5 * n as f64)) as usize;
+        let gaps = number(values, PARAMS[1].name).unwrap_or(1.0).clamp(1.0, left.max(1) as f64) as usize;
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let length = left.div_ceil(gaps);
+        // A gap begins at a row that is still there and runs on over those that are; it ends when its length is used up.
+        while left > 0 {
+            let mut at = rng.random_range(1..n - 1);
+            let mut rows = length.min(left);
+            while rows > 0 && at < n - 1 {
+                if keep[at] {
+                    keep[at] = false;
+                    rows -= 1;
+                    left -= 1;
+                }
+                at += 1;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    fn lost(values: &Values, n: usize, seed: u64) -> Vec<usize> {
+        let drivers = Drivers { dt_s: 0.1, start_s: 5.0, samples: n, ..Drivers::default() };
+        let mut keep = vec![true; n];
+        DroppedSamples.apply(values, &drivers, seed, &mut vec![0.0; n], &mut keep);
+        (0..n).filter(|i| !keep[*i]).collect()
+    }
+
+    #[test]
+    fn listed_gaps_are_where_they_are_said_to_be() {
+        let values = Values::from([
+            (TIMES.to_owned(), Value::List(vec![5.3, 6.0, 99.0])),
+            (ROWS.to_owned(), Value::List(vec![2.0, 1.0, 5.0])),
+        ]);
+        assert_eq!(lost(&values, 20, 0), [3, 4, 10]);
+    }
+
+    #[test]
+    fn as_many_rows_are_lost_as_asked_for() {
+        for (missing, gaps) in [(1.0, 1.0), (37.0, 5.0), (400.0, 400.0)] {
+            let values = Values::from([
+                ("missing_rows".to_owned(), Value::Number(missing)),
+                ("gaps".to_owned(), Value::Number(gaps)),
+            ]);
+            let lost = lost(&values, 1000, 4);
+            assert_eq!(lost.len(), missing as usize);
+            assert!(!lost.contains(&0) && !lost.contains(&999));
+        }
+    }
+}

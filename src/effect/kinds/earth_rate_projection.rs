@@ -1,0 +1,75 @@
+//! The Earth rate as a function of heading is wrong or missing.
+
+use super::reach::varies;
+use super::sinusoid::{polar, wave};
+use super::table_harmonic::{columns, visited};
+use crate::effect::{Both, Course, Doc, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number};
+
+pub struct EarthRateProjection;
+
+static DOC: Doc = Doc {
+    title: Both { en: "projection of the Earth rate", ru: "проекция скорости Земли" },
+    mechanism: Both {
+        en: "The simulation leaves the Earth rate out, or has another latitude, azimuth or sign of the table.",
+        ru: "В модели нет скорости Земли либо иные широта, азимут или знак угла стола.",
+    },
+    formula: "A·cos(ψ + φ), ψ the table angle",
+    signature: Both {
+        en: "One wave for each turn of the table, at most 15 deg/h high, fixed to the north.",
+        ru: "Одна волна на оборот стола, не выше 15 град/ч, привязанная к северу.",
+    },
+    told_by: Both {
+        en: "Other orders of the table belong to its bearing; a tilted axis makes a wave too, but smaller than 0.01 deg/h; a magnetic field points to its own north.",
+        ru: "Другие гармоники стола идут от подшипника; наклон оси тоже даёт волну, но менее 0,01 град/ч; магнитное поле направлено на свой север.",
+    },
+    confirm: Both {
+        en: "Two headings half a turn apart: half the difference is the projection.",
+        ru: "Два курса через пол-оборота: полуразность равна проекции.",
+    },
+    source: "15.041067 deg/h · cos φ · cos(ψ + A)",
+};
+
+static PARAMS: [Param; 2] =
+    [Param::reported("amplitude_deg_h", "deg/h", 0.0, 31.0), Param::inner("phase_deg", "deg", -360.0, 360.0)];
+
+describe! {
+    EarthRateProjection, "earth_rate_projection", Course in Angle, needs [TableAngle],
+    confusers ["table_harmonic", "heading_change", "line"]
+}
+
+impl Course for EarthRateProjection {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        varies(drivers.table_angle.as_deref())
+    }
+
+    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+        Starts::linear()
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![]
+    }
+
+    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
+        Parts { free: columns(1.0, drivers), ..Parts::default() }
+    }
+
+    fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        let (amplitude, phase) = polar(coefficients);
+        vec![amplitude, phase]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        drivers.table_angle.as_ref()?;
+        let phase = number(values, PARAMS[1].name).unwrap_or(0.0);
+        Some(wave(number(values, PARAMS[0].name)?, phase, &columns(1.0, drivers)))
+    }
+
+    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        visited(drivers)
+    }
+}

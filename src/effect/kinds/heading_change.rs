@@ -1,0 +1,113 @@
+//! The gyro moved: another projection of the Earth rate from some time on.
+
+use super::bias_step::{instants, step};
+use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+
+pub struct HeadingChange;
+
+static DOC: Doc = Doc {
+    title: Both { en: "change of heading", ru: "изменение курса" },
+    mechanism: Both {
+        en: "The table crept, a mount gave way or a cable pulled: the input axis sees another part of the Earth's rate.",
+        ru: "Стол сместился, крепление поддалось или потянул кабель: ось чувствительности видит иную часть скорости Земли.",
+    },
+    formula: "J·H(t − t₁), J = Ω_E cosφ·(cos A₂ − cos A₁)",
+    signature: Both {
+        en: "Two levels in time, often with the disturbance of the move between them.",
+        ru: "Два уровня во времени, часто с возмущением от самого поворота между ними.",
+    },
+    told_by: Both {
+        en: "At one heading a jump of the bias is the same; a tilt meter, the table's angle or the other gyros of a triad tell them apart.",
+        ru: "При одном курсе скачок смещения нуля неотличим; различают наклономер, угол стола или другие гироскопы триады.",
+    },
+    confirm: Both {
+        en: "Turn to another heading: a jump of the bias stays, that of the projection changes.",
+        ru: "Повернуть на другой курс: скачок смещения нуля останется, а проекции — изменится.",
+    },
+    source: "Ω_E (cosφ cosE cosA + sinφ sinE)",
+};
+
+static PARAMS: [Param; 2] =
+    [Param::reported("step_deg_h", "deg/h", -1e3, 1e3), Param::reported("time_s", "s", f64::MIN, f64::MAX)];
+
+describe! {
+    HeadingChange, "heading_change", Course in Time, needs [],
+    confusers ["bias_step", "earth_rate_projection", "random_telegraph"]
+}
+
+/// How far the table's angle changes at an instant, deg, against how far it moves in as long a time elsewhere.
+fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
+    let angle = drivers.table_angle.as_ref()?;
+    let n = angle.len();
+    let wide = (n / 100).max(2);
+    let at = ((at_s / drivers.dt_s) as usize).min(n.saturating_sub(1));
+    let (a, b) = (angle.get(at.saturating_sub(wide))?, angle.get((at + wide).min(n - 1))?);
+    let apart = |a: f64, b: f64| ((b - a + 180.0).rem_euclid(360.0) - 180.0).abs();
+    let mut usual: Vec<f64> =
+        angle.windows(2 * wide + 1).step_by(wide).map(|w| apart(w[0], w[2 * wide])).collect();
+    usual.sort_by(f64::total_cmp);
+    Some((apart(*a, *b), usual.get(usual.len() / 2).copied().unwrap_or(0.0)))
+}
+
+impl Course for HeadingChange {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.samples >= 8
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        instants(drivers, look)
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        Parts { free: shape.iter().map(|at| step(drivers, *at)).collect(), ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        match (shape, coefficients) {
+            ([at], [size]) => vec![*size, drivers.start_s + at],
+            _ => vec![f64::NAN; 2],
+        }
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let size = number(values, PARAMS[0].name)?;
+        let at = number(values, PARAMS[1].name)? - drivers.start_s;
+        Some(step(drivers, at).into_iter().map(|s| size * s).collect())
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(at) = shape.first().map(|at| drivers.start_s + at) else { return vec![] };
+        let half = (0.01 * drivers.length_s()).max(2.0 * drivers.dt_s);
+        vec![Place { domain: Domain::Time, from: at - half, to: at + half }]
+    }
+
+    /// For it where the table's angle changes then and seldom else, or where the claim speaks of the heading; against it
+    /// where neither is so.
+    fn odds(&self, shape: &[f64], drivers: &Drivers) -> f64 {
+        let Some(at) = shape.first() else { return 0.0 };
+        match turned(*at, drivers) {
+            Some((here, usual)) if here > 0.01 && here > 5.0 * usual => 6.0,
+            _ if drivers.claim.earth.is_some() => 1.0,
+            _ => -1.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_of_the_table_at_that_instant_speaks_for_it() {
+        let angle = |at: usize| (0..1000).map(|i| if i < at { 10.0 } else { 25.0 }).collect::<Vec<f64>>();
+        let mut drivers = Drivers { dt_s: 1.0, samples: 1000, ..Drivers::default() };
+        assert!(HeadingChange.odds(&[500.0], &drivers) < 0.0);
+        drivers.table_angle = Some(angle(500));
+        assert!(HeadingChange.odds(&[500.0], &drivers) > 0.0);
+        assert!(HeadingChange.odds(&[200.0], &drivers) < 0.0);
+    }
+}

@@ -1,0 +1,162 @@
+//! A coherent sinusoid.
+
+use super::search::{peaks, summit};
+use super::sinusoid::{averaged, pair, polar, wave};
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+};
+use realfft::RealFftPlanner;
+
+pub struct Line;
+
+static DOC: Doc = Doc {
+    title: Both { en: "spectral line", ru: "спектральная линия" },
+    mechanism: Both {
+        en: "Mains, a fan, a thermostat or a drive adds a sinusoid that keeps its phase over the record.",
+        ru: "Сеть, вентилятор, термостат или привод добавляет синусоиду, сохраняющую фазу в течение всей записи.",
+    },
+    formula: "A·cos(2πft + φ), averaged over each sample",
+    signature: Both {
+        en: "A peak of the spectrum no wider than 1/T; the Allan deviation has a bump at 0.371/f of 0.725 A.",
+        ru: "Пик спектра не шире 1/T; на девиации Аллана бугор 0,725 A при τ = 0,371/f.",
+    },
+    told_by: Both {
+        en: "A quasi-periodic disturbance is wider than 1/T; a table harmonic follows the table angle, a reset ripple the rate.",
+        ru: "Квазипериодическое возмущение шире 1/T; гармоника стола следует за углом стола, пульсация сброса — за скоростью.",
+    },
+    confirm: Both {
+        en: "Switch suspected sources off one by one; change the sample rate by one percent and see whether the line moves.",
+        ru: "Поочерёдно выключать возможные источники; изменить частоту опроса на один процент и посмотреть, сместится ли линия.",
+    },
+    source: "IEEE Std 952, Annex C: sinusoidal noise",
+};
+
+static PARAMS: [Param; 3] = [
+    Param::reported("frequency_hz", "Hz", 0.0, 1e6),
+    Param::reported("amplitude_deg_h", "deg/h", 0.0, 1e6),
+    Param::inner("phase_deg", "deg", -360.0, 360.0),
+];
+
+describe! {
+    Line, "line", Course in Frequency, needs [],
+    confusers ["quasi_periodic", "diurnal", "table_harmonic", "reset_ripple"]
+}
+
+/// Cosine and sine of a frequency; the phase counts from `time_s` = 0.
+pub(super) fn columns(frequency_hz: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
+    let left = averaged(frequency_hz * drivers.dt_s);
+    pair(drivers.samples, |i| (frequency_hz * drivers.time_s(i), left))
+}
+
+/// Twice-padded power of the score at the frequencies j/(2n·dt) of a length that transforms fast, as gains of a line,
+/// and the step of the frequencies, Hz.
+fn periodogram(drivers: &Drivers, look: &Look<'_>) -> (Vec<f64>, f64) {
+    let n = look.score.len();
+    let padded = (2 * n).next_power_of_two();
+    let mut input = look.score.to_vec();
+    input.resize(padded, 0.0);
+    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
+    let mut spectrum = plan.make_output_vec();
+    if plan.process(&mut input, &mut spectrum).is_err() {
+        return (vec![], 1.0);
+    }
+    let step = 1.0 / (padded as f64 * drivers.dt_s);
+    // Mode k lies at k/(2n·dt). Weighted by the inverse covariance a sinusoid of amplitude 1 has n/2 over the power there.
+    let power = |j: usize| {
+        let mode = (2.0 * n as f64 * j as f64 / padded as f64).round() as usize;
+        look.powers.get(mode.clamp(1, n - 1)).copied().unwrap_or(0.0)
+    };
+    let gains = spectrum.iter().enumerate().map(|(j, w)| w.norm_sqr() * power(j) / n as f64).collect();
+    (gains, step)
+}
+
+impl Course for Line {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.samples >= 32
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let n = drivers.samples;
+        if n < 32 || look.score.len() != n || look.powers.len() != n {
+            return Starts { shapes: vec![], looked: 1.0 };
+        }
+        let (mut gains, step) = periodogram(drivers, look);
+        let (low, high) = self.bounds(drivers)[0];
+        for (j, gain) in gains.iter_mut().enumerate() {
+            if !(low..=high).contains(&(j as f64 * step)) {
+                *gain = 0.0;
+            }
+        }
+        let apart = (3.0 / (drivers.length_s() * step)).ceil() as usize;
+        let at = |j: usize| vec![((j as f64 + summit(&gains, j)) * step).clamp(low, high)];
+        Starts { shapes: peaks(&gains, 3, apart).into_iter().map(at).collect(), looked: n as f64 }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        let resolution = 1.0 / drivers.length_s();
+        vec![(resolution, (0.5 / drivers.dt_s - 0.5 * resolution).max(resolution))]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let free = shape.first().map_or_else(Vec::new, |f| columns(*f, drivers));
+        Parts { free, ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        let (amplitude, phase) = polar(coefficients);
+        vec![shape.first().copied().unwrap_or(f64::NAN), amplitude, phase]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let frequency = number(values, PARAMS[0].name)?;
+        let phase = number(values, PARAMS[2].name).unwrap_or(0.0);
+        Some(wave(number(values, PARAMS[1].name)?, phase, &columns(frequency, drivers)))
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let half = 0.5 / drivers.length_s();
+        let at = |f: &f64| Place { domain: Domain::Frequency, from: (f - half).max(0.0), to: f + half };
+        shape.first().map(at).into_iter().collect()
+    }
+
+    fn steps(&self, drivers: &Drivers) -> Vec<f64> {
+        vec![0.2 / drivers.length_s()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::cosine::dct2;
+
+    #[test]
+    fn the_search_finds_the_strongest_lines_and_their_gain() {
+        let n = 3000;
+        let drivers = Drivers { dt_s: 0.1, samples: n, averaged: 1, ..Drivers::default() };
+        let (f, g) = (1.234_56, 4.011);
+        let mut residual: Vec<f64> =
+            (0..n).map(|i| (((i as u64 * 2_654_435_761) % 1_000_003) as f64 / 1e6 - 0.5) * 0.3).collect();
+        for (size, f) in [(1.0, f), (0.5, g)] {
+            for (r, x) in residual.iter_mut().zip(wave(size, 30.0, &columns(f, &drivers))) {
+                *r += x;
+            }
+        }
+        let power = 0.09 / 12.0;
+        let score: Vec<f64> = residual.iter().map(|r| r / power).collect();
+        let (modes, powers) = (dct2(&residual), vec![power; n]);
+        let look = Look { score: &score, modes: &modes, powers: &powers };
+        let starts = Line.starts(&drivers, &look);
+        assert!((starts.shapes[0][0] - f).abs() < 0.2 / 300.0, "{:?}", starts.shapes);
+        assert!((starts.shapes[1][0] - g).abs() < 0.2 / 300.0, "{:?}", starts.shapes);
+        // Half the square of amplitude over deviation, n/2 samples' worth.
+        let left = averaged(f * 0.1);
+        let expected = 0.5 * (n as f64 / 2.0) * left * left / power;
+        let (gains, step) = periodogram(&drivers, &look);
+        let top = gains[(f / step) as usize..][..2].iter().copied().fold(0.0, f64::max);
+        assert!((top / expected - 1.0).abs() < 0.25, "{top} {expected}");
+    }
+}

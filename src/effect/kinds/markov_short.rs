@@ -1,0 +1,92 @@
+//! Exponentially correlated noise whose correlation time is a few samples.
+
+use super::markov_long::{SHORT_SAMPLES, density, process, starts_between};
+use crate::effect::{
+    Both, Doc, Domain, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+};
+use crate::noise::composite::Composite;
+
+pub struct MarkovShort;
+
+static DOC: Doc = Doc {
+    title: Both { en: "short Markov process", ru: "короткий марковский процесс" },
+    mechanism: Both {
+        en: "Dynamics of the loop, smoothing inside the instrument, bandwidth of the detector: noise that remembers a few samples.",
+        ru: "Динамика контура обратной связи, внутреннее сглаживание, полоса приёмника: шум с памятью в несколько отсчётов.",
+    },
+    formula: "R(t) = σ² exp(−|t|/T_c), T_c below ten samples",
+    signature: Both {
+        en: "Positive autocorrelation over the first lags; an excess of the spectrum that falls towards the Nyquist frequency.",
+        ru: "Положительная автокорреляция на первых сдвигах; превышение спектра, спадающее к частоте Найквиста.",
+    },
+    told_by: Both {
+        en: "More white noise leaves no correlation; a filter takes power away and adds none; quantisation correlates neighbours negatively.",
+        ru: "Избыток белого шума не даёт корреляции; фильтр мощность только отнимает; квантование коррелирует соседей отрицательно.",
+    },
+    confirm: Both {
+        en: "Another output rate: the correlation time stays in seconds and changes in samples.",
+        ru: "Другая частота выдачи: время корреляции сохраняется в секундах и меняется в отсчётах.",
+    },
+    source: "IEEE Std 952, Annex C; N. F. Zhang, Metrologia 2008",
+};
+
+static PARAMS: [Param; 2] = [
+    Param::reported("correlation_time_s", "s", 1e-6, 1e7),
+    Param::reported("sigma_deg_h", "deg/h", 0.0, 1e6),
+];
+
+describe! {
+    MarkovShort, "markov_short", Spectrum in Lag, needs [],
+    confusers ["excess_arw", "bandwidth_filter", "markov_long"]
+}
+
+impl Spectrum for MarkovShort {
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Adds
+    }
+
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        density(fitted, bin)
+    }
+
+    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+        let (low, high) = self.bounds(look)[0];
+        starts_between(2.0 * low, high, look)
+    }
+
+    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+        let dt = look.bins.first().map_or(1.0, |b| b.dt_s);
+        vec![(0.25 * dt, SHORT_SAMPLES * dt), (1e-9, 1e9)]
+    }
+
+    fn looked(&self, _look: &SpectralLook<'_>) -> f64 {
+        2.0
+    }
+
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+
+    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
+        Some(vec![number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?])
+    }
+
+    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
+        noise.markov.push(process(fitted));
+    }
+
+    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+        let time = process(fitted).decay_time_s;
+        let dt = look.bins.first().map_or(1.0, |b| b.dt_s);
+        let corner = 1.0 / (2.0 * std::f64::consts::PI * time);
+        let nyquist = 0.5 / dt;
+        vec![
+            Place { domain: Domain::Lag, from: dt, to: (3.0 * time).max(2.0 * dt) },
+            Place {
+                domain: Domain::Frequency,
+                from: (0.1 * corner).min(0.5 * nyquist),
+                to: (3.0 * corner).min(nyquist),
+            },
+        ]
+    }
+}

@@ -1,0 +1,73 @@
+//! The level of the noise depends on the input rate.
+
+use crate::effect::{Both, Doc, Drivers, Param, Samples, Values, number};
+
+pub struct NoiseVarianceRate;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "noise level that depends on the rate", ru: "уровень шума, зависящий от скорости"
+    },
+    mechanism: Both {
+        en: "Jitter of the time stamps, unsteady drive of the table or the loop's own errors grow with the rate.",
+        ru: "Дрожание меток времени, неравномерность привода стола или погрешности контура растут со скоростью.",
+    },
+    formula: "σ² = σ₀² (1 + (r² − 1)(Ω/Ω_max)²)",
+    signature: Both {
+        en: "The scatter of the residual grows with the size of the rate, the same for both signs.",
+        ru: "Разброс остатка растёт с модулем скорости, одинаково для обоих знаков.",
+    },
+    told_by: Both {
+        en: "A level that changes with time does not come back when the rate does; an error of the scale factor moves the mean.",
+        ru: "Уровень, меняющийся во времени, не возвращается вместе со скоростью; ошибка масштабного коэффициента сдвигает среднее.",
+    },
+    confirm: Both {
+        en: "Another order of the same rates; the table's own encoder as reference.",
+        ru: "Те же скорости в другом порядке; датчик угла стола как опора.",
+    },
+    source: "Jitter of time stamps: white angle noise proportional to the rate",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("ratio", "", 1e-3, 1e3)];
+
+describe! {
+    NoiseVarianceRate, "noise_variance_rate", Samples in InputRate, needs [TableRate],
+    confusers ["noise_variance_time", "sf_nonlinearity", "reset_ripple"]
+}
+
+impl Samples for NoiseVarianceRate {
+    fn apply(&self, values: &Values, drivers: &Drivers, _seed: u64, rate: &mut [f64], _keep: &mut [bool]) {
+        let (Some(ratio), Some(table)) = (number(values, PARAMS[0].name), &drivers.table_rate) else {
+            return;
+        };
+        let largest = table.iter().map(|r| r.abs()).fold(0.0, f64::max);
+        if largest <= 0.0 {
+            return;
+        }
+        let gain = |i: usize| {
+            let share = table.get(i).map_or(0.0, |r| (r / largest).powi(2));
+            (1.0 + (ratio * ratio - 1.0) * share).max(0.0).sqrt()
+        };
+        super::noise_level::scale(drivers, rate, gain);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn the_level_is_the_claimed_one_at_rest_and_the_ratio_at_the_largest_rate() {
+        let table = vec![0.0, 5.0, -10.0, 10.0];
+        let drivers =
+            Drivers { dt_s: 1.0, samples: 4, table_rate: Some(table.clone()), ..Drivers::default() };
+        let mut rate: Vec<f64> = table.iter().map(|r| 3600.0 * r + 1.0).collect();
+        let values = Values::from([("ratio".to_owned(), Value::Number(2.0))]);
+        NoiseVarianceRate.apply(&values, &drivers, 1, &mut rate, &mut [true; 4]);
+        let left: Vec<f64> = rate.iter().zip(&table).map(|(y, r)| y - 3600.0 * r).collect();
+        for (got, expected) in left.iter().zip([1.0, 1.75f64.sqrt(), 2.0, 2.0]) {
+            assert!((got - expected).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The level of the noise changes during the record.
+
+use super::knots::Knots;
+use crate::effect::{Both, Doc, Drivers, Param, Samples, Values, list, number};
+
+pub struct NoiseVarianceTime;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "noise level that changes with time", ru: "уровень шума, меняющийся во времени"
+    },
+    mechanism: Both {
+        en: "Power of the source, losses of the coil with temperature or traffic in the building change the noise and not the mean.",
+        ru: "Мощность источника, потери контура при изменении температуры или движение в здании меняют шум, но не среднее.",
+    },
+    formula: "y = m + s(t)·(y₀ − m), s by straight lines between knots",
+    signature: Both {
+        en: "The scatter drifts while the mean stays; the spectrum is white on average; the amplitudes have heavy tails.",
+        ru: "Разброс меняется при неизменном среднем; спектр в среднем белый; у распределения тяжёлые хвосты.",
+    },
+    told_by: Both {
+        en: "Bursts are short and far out; a level that follows the input rate repeats with the rate.",
+        ru: "Всплески коротки и велики; уровень, зависящий от скорости, повторяется вместе со скоростью.",
+    },
+    confirm: Both {
+        en: "Log of the optical power beside the rate; a record at night.",
+        ru: "Записать рядом оптическую мощность; повторить ночью.",
+    },
+    source: "Scale of the noise as a function of time",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("ratio", "", 1.0, 1e3)];
+
+/// Scale at instants, against the claimed level.
+const KNOT_TIMES: &str = "knots_time_s";
+const KNOT_RATIOS: &str = "knots_ratio";
+
+describe! {
+    NoiseVarianceTime, "noise_variance_time", Samples in Time, needs [],
+    confusers ["outlier_bursts", "noise_variance_rate", "excess_arw"]
+}
+
+impl Samples for NoiseVarianceTime {
+    /// Without knots the level rises from the claimed one to `ratio` times that over the record.
+    fn apply(&self, values: &Values, drivers: &Drivers, _seed: u64, rate: &mut [f64], _keep: &mut [bool]) {
+        if let Some(knots) = Knots::new(list(values, KNOT_TIMES), list(values, KNOT_RATIOS)) {
+            super::noise_level::scale(drivers, rate, |i| knots.at(drivers.time_s(i)).max(0.0));
+        } else if let Some(ratio) = number(values, PARAMS[0].name) {
+            let last = drivers.samples.max(2) as f64 - 1.0;
+            super::noise_level::scale(drivers, rate, |i| 1.0 + (ratio - 1.0) * i as f64 / last);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{ClaimedMean, Value};
+
+    #[test]
+    fn deviations_are_scaled_about_the_claimed_mean() {
+        let claim = ClaimedMean { bias_deg_h: 5.0, ..ClaimedMean::default() };
+        let drivers = Drivers { dt_s: 1.0, start_s: 100.0, samples: 5, claim, ..Drivers::default() };
+        let mut rate = vec![6.0, 4.0, 6.0, 4.0, 6.0];
+        let list = |x: &[f64]| Value::List(x.to_vec());
+        let values = Values::from([
+            (KNOT_TIMES.to_owned(), list(&[100.0, 104.0])),
+            (KNOT_RATIOS.to_owned(), list(&[1.0, 3.0])),
+        ]);
+        NoiseVarianceTime.apply(&values, &drivers, 1, &mut rate, &mut [true; 5]);
+        assert_eq!(rate, [6.0, 3.5, 7.0, 2.5, 8.0]);
+        let mut rate = vec![6.0; 5];
+        let values = Values::from([("ratio".to_owned(), Value::Number(2.0))]);
+        NoiseVarianceTime.apply(&values, &drivers, 1, &mut rate, &mut [true; 5]);
+        assert_eq!(rate, [6.0, 6.25, 6.5, 6.75, 7.0]);
+    }
+}

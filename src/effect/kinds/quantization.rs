@@ -1,0 +1,99 @@
+//! The output is quantised in angle.
+
+use crate::effect::{
+    Both, Doc, Domain, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+};
+use crate::noise::composite::Composite;
+use crate::noise::data::NoiseType;
+use crate::noise::model::unit_density;
+
+pub struct Quantization;
+
+static DOC: Doc = Doc {
+    title: Both { en: "quantisation", ru: "квантование" },
+    mechanism: Both {
+        en: "The output counts whole angle increments; what is left over stays for the next sample.",
+        ru: "Выход считает целые приращения угла; остаток переходит в следующий отсчёт.",
+    },
+    formula: "S(f) = (4Q²/τ₀)·sin²(πfτ₀), Q = Δθ/√12",
+    signature: Both {
+        en: "Values lie on a lattice; the spectrum rises towards the Nyquist frequency; the Allan deviation starts with slope −1.",
+        ru: "Значения лежат на решётке; спектр растёт к частоте Найквиста; девиация Аллана начинается с наклона −1.",
+    },
+    told_by: Both {
+        en: "Neighbouring samples correlate negatively, which white noise and Markov noise do not; the lattice decides.",
+        ru: "Соседние отсчёты коррелируют отрицательно, чего нет у белого и марковского шума; решает наличие решётки.",
+    },
+    confirm: Both {
+        en: "A finer format of the output.", ru: "Более мелкий шаг выходного формата."
+    },
+    source: "IEEE Std 952, Annex C: quantization noise",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("lsb_arcsec", "arcsec", 0.0, 1e6)];
+
+describe! {
+    Quantization, "quantization", Spectrum in Amplitude, needs [],
+    confusers ["excess_arw", "dead_zone"]
+}
+
+impl Spectrum for Quantization {
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Adds
+    }
+
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        let lsb = fitted.first().copied().unwrap_or(0.0);
+        lsb * lsb / 12.0 * unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s)
+    }
+
+    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+        if let Some(lattice) = look.lattice_arcsec.filter(|l| *l > 0.0) {
+            return vec![vec![lattice]];
+        }
+        // Least squares of the excess on the shape, weighted by the expected scatter.
+        let (mut both, mut square, mut level) = (0.0, 0.0, f64::INFINITY);
+        for (i, bin) in look.bins.iter().enumerate() {
+            let unit = unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s);
+            let weight = bin.modes as f64 / look.expected[i].powi(2);
+            both += weight * unit * (look.observed[i] - look.expected[i]);
+            square += weight * unit * unit;
+            if bin.frequency_hz * bin.dt_s > 0.25 {
+                level = level.min(look.expected[i] / unit);
+            }
+        }
+        if square <= 0.0 || !level.is_finite() {
+            return vec![];
+        }
+        vec![vec![(12.0 * (both / square).max(0.01 * level)).sqrt()]]
+    }
+
+    fn bounds(&self, _look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+        vec![(1e-9, 1e6)]
+    }
+
+    fn looked(&self, _look: &SpectralLook<'_>) -> f64 {
+        1.0
+    }
+
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+
+    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
+        number(values, PARAMS[0].name).map(|lsb| vec![lsb])
+    }
+
+    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
+        let q = fitted.first().copied().unwrap_or(0.0) / 12f64.sqrt();
+        noise.terms.q = noise.terms.q.hypot(q);
+    }
+
+    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+        let (Some(lsb), Some(bin)) = (fitted.first(), look.bins.first()) else { return vec![] };
+        vec![
+            Place { domain: Domain::Amplitude, from: 0.0, to: lsb / bin.dt_s },
+            Place { domain: Domain::Frequency, from: 0.25 / bin.dt_s, to: 0.5 / bin.dt_s },
+        ]
+    }
+}

@@ -1,0 +1,158 @@
+//! A narrow-band disturbance of finite coherence.
+
+use super::search::peaks;
+use crate::effect::{
+    Both, Doc, Domain, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+};
+use crate::noise::composite::{Composite, Damped, Sampling};
+use std::f64::consts::PI;
+
+pub struct QuasiPeriodic;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "quasi-periodic disturbance", ru: "квазипериодическое возмущение"
+    },
+    mechanism: Both {
+        en: "A thermostat, a fan or a limit cycle of the loop oscillates and loses its phase after a while.",
+        ru: "Термостат, вентилятор или предельный цикл контура колеблется и со временем теряет фазу.",
+    },
+    formula: "R(t) = σ² exp(−|t|/T)·cos(2πf₀t), full width at half power 1/(πT)",
+    signature: Both {
+        en: "A resonance of the spectrum wider than 1/T of the record; a damped cosine in the autocorrelation; a bump of the Allan deviation at 0.371/f₀.",
+        ru: "Резонанс спектра шире обратной длины записи; затухающий косинус в автокорреляции; бугор девиации Аллана при 0,371/f₀.",
+    },
+    told_by: Both {
+        en: "A line keeps its phase over the whole record and is no wider than the record allows; a Markov process has its largest density at zero frequency.",
+        ru: "Линия сохраняет фазу всю запись и не шире, чем позволяет длина записи; у марковского процесса наибольшая плотность на нулевой частоте.",
+    },
+    confirm: Both {
+        en: "Switch off fan and thermostat one by one.",
+        ru: "Поочерёдно выключить вентилятор и термостат.",
+    },
+    source: "Damped-cosine process; IEEE Std 952, Annex C for its coherent limit",
+};
+
+static PARAMS: [Param; 3] = [
+    Param::reported("frequency_hz", "Hz", 0.0, 1e6),
+    Param::reported("amplitude_rms_deg_h", "deg/h", 0.0, 1e6),
+    Param::reported("coherence_time_s", "s", 1e-6, 1e8),
+];
+
+describe! {
+    QuasiPeriodic, "quasi_periodic", Spectrum in Frequency, needs [],
+    confusers ["line", "markov_long", "table_harmonic"]
+}
+
+fn process(fitted: &[f64]) -> Damped {
+    match fitted {
+        [frequency, rms, time] => {
+            Damped { rms_deg_h: *rms, frequency_hz: *frequency, decay_time_s: time.max(1e-12) }
+        }
+        _ => Damped { rms_deg_h: 0.0, frequency_hz: 0.0, decay_time_s: 1.0 },
+    }
+}
+
+/// Lower and upper edge of a bin, Hz.
+fn edges(bin: &ModeBin) -> (f64, f64) {
+    let spacing = 0.5 / (bin.samples as f64 * bin.dt_s);
+    let low = (bin.mode as f64 - 0.5) * spacing;
+    (low, low + bin.modes as f64 * spacing)
+}
+
+impl Spectrum for QuasiPeriodic {
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Adds
+    }
+
+    /// Exact in single modes. A wide bin has the mean over it, which a resonance inside it needs.
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        let process = process(fitted);
+        if bin.modes == 1 {
+            return process.mode_power(bin.mode, bin.samples, bin.dt_s, Sampling::Averaging);
+        }
+        let half_width = 0.5 / (PI * process.decay_time_s);
+        let (low, high) = edges(bin);
+        // One resonance on each side of zero; each falls off as 1/(1 + (Δf/h)²).
+        let lorentz = |f: f64| 1.0 / (1.0 + (f / half_width).powi(2));
+        let primitive = |f: f64| half_width * (f / half_width).atan();
+        let (mut point, mut mean) = (0.0, 0.0);
+        for center in [process.frequency_hz, -process.frequency_hz] {
+            point += lorentz(bin.frequency_hz - center);
+            mean += (primitive(high - center) - primitive(low - center)) / (high - low);
+        }
+        let exact = process.density(bin.frequency_hz, bin.dt_s, Sampling::Averaging);
+        if point > 0.0 { exact * mean / point } else { exact }
+    }
+
+    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+        let Some(first) = look.bins.first() else { return vec![] };
+        let length = first.samples as f64 * first.dt_s;
+        let bounds = self.bounds(look);
+        let weight = |b: &ModeBin, i: usize| b.modes as f64 * (look.observed[i] / look.expected[i] - 1.0);
+        let excess: Vec<f64> = look.bins.iter().enumerate().map(|(i, b)| weight(b, i)).collect();
+        let mut found: Vec<(f64, Vec<f64>)> = vec![];
+        for width in [1usize, 3, 7, 15] {
+            let window = |i: usize| i.saturating_sub(width / 2)..(i + width / 2 + 1).min(look.bins.len());
+            let sure: Vec<f64> = (0..look.bins.len())
+                .map(|i| {
+                    let modes: usize = look.bins[window(i)].iter().map(|b| b.modes).sum();
+                    let inside = look.bins[i].frequency_hz >= bounds[0].0;
+                    if inside {
+                        excess[window(i)].iter().sum::<f64>() / (2.0 * modes as f64).sqrt()
+                    } else {
+                        0.0
+                    }
+                })
+                .collect();
+            for i in peaks(&sure, 2, 2 * width) {
+                let bins = window(i);
+                // Power of both sides in the window, two-sided density times twice its width.
+                let power: f64 = bins
+                    .clone()
+                    .map(|j| (look.observed[j] - look.expected[j]) * look.bins[j].modes as f64 / length)
+                    .sum();
+                let (low, high) = (edges(&look.bins[bins.start]).0, edges(&look.bins[bins.end - 1]).1);
+                let center = look.bins[i].frequency_hz;
+                let time = (2.0 / (PI * (high - low))).clamp(bounds[2].0, bounds[2].1);
+                found.push((sure[i], vec![center, power.max(1e-18).sqrt(), time]));
+            }
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().take(4).map(|(_, start)| start).collect()
+    }
+
+    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+        let (dt, n) = look.bins.first().map_or((1.0, 16), |b| (b.dt_s, b.samples));
+        let length = n as f64 * dt;
+        vec![((3.0 / length).min(0.25 / dt), 0.5 / dt), (1e-9, 1e9), (3.0 * dt, 2.0 * length)]
+    }
+
+    fn looked(&self, look: &SpectralLook<'_>) -> f64 {
+        look.bins.first().map_or(1.0, |b| b.samples as f64)
+    }
+
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+
+    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
+        PARAMS.iter().map(|p| number(values, p.name)).collect()
+    }
+
+    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
+        noise.quasi_periodic.push(process(fitted));
+    }
+
+    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+        let process = process(fitted);
+        let length = look.bins.first().map_or(1.0, |b| b.samples as f64 * b.dt_s);
+        let half = (1.0 / (PI * process.decay_time_s)).max(0.5 / length);
+        let f = process.frequency_hz;
+        vec![Place { domain: Domain::Frequency, from: (f - half).max(0.0), to: f + half }]
+    }
+
+    fn has_course(&self) -> bool {
+        true
+    }
+}

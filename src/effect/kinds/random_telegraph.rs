@@ -1,0 +1,156 @@
+//! Jumps back and forth between two levels.
+
+use crate::effect::{Both, Doc, Domain, Drivers, Effect, Model, Param, Samples, Values, list, number};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+pub struct RandomTelegraph;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "random telegraph signal", ru: "случайный телеграфный сигнал"
+    },
+    mechanism: Both {
+        en: "A mode of the source, a contact or a charge trap hops between two states.",
+        ru: "Мода источника, контакт или зарядовая ловушка переключается между двумя состояниями.",
+    },
+    formula: "±Δ/2, each level held for an exponential time of mean 1/λ",
+    signature: Both {
+        en: "Two levels in time; the spectrum of a Markov process with T_c = 1/(2λ) and σ = Δ/2; two humps of the distribution after averaging.",
+        ru: "Два уровня во времени; спектр марковского процесса с T_c = 1/(2λ) и σ = Δ/2; после осреднения распределение двугорбое.",
+    },
+    told_by: Both {
+        en: "A Markov process has the same spectrum and any level; a single step does not come back.",
+        ru: "У марковского процесса тот же спектр, но любые уровни; одиночный скачок не возвращается.",
+    },
+    confirm: Both {
+        en: "Another current of the source; tapping on contacts; a longer record for more jumps.",
+        ru: "Другой ток источника; простукивание контактов; более длинная запись с большим числом переключений.",
+    },
+    source: "Telegraph process: R(t) = (Δ²/4)·exp(−2λ|t|)",
+};
+
+static PARAMS: [Param; 3] = [
+    Param::reported("amplitude_deg_h", "deg/h", -1e6, 1e6),
+    Param::reported("mean_dwell_s", "s", 1e-6, 1e8),
+    Param::inner("first_level", "", -1.0, 1.0),
+];
+
+/// Instants of the jumps, where they are known.
+const SWITCHES: &str = "switches_time_s";
+
+impl Effect for RandomTelegraph {
+    fn kind(&self) -> &'static str {
+        "random_telegraph"
+    }
+    fn doc(&self) -> &'static Doc {
+        &DOC
+    }
+    fn params(&self) -> &'static [Param] {
+        &PARAMS
+    }
+    fn domain(&self) -> Domain {
+        Domain::Time
+    }
+    fn confusers(&self) -> &'static [&'static str] {
+        &["bias_step", "markov_long", "unobserved_driver"]
+    }
+    fn model(&self) -> Model {
+        Model::Samples(&RandomTelegraph)
+    }
+    /// The course of known jumps.
+    fn stated_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let switches = list(values, SWITCHES);
+        if switches.is_empty() || switches.iter().any(|t| !t.is_finite()) {
+            return None;
+        }
+        let amplitude = number(values, PARAMS[0].name)?;
+        let first = if number(values, PARAMS[2].name).unwrap_or(-1.0) < 0.0 { -0.5 } else { 0.5 };
+        Some(course(amplitude * first, switches, drivers))
+    }
+}
+
+/// A level that changes its sign at instants; each sample is the mean over its interval.
+fn course(first_level: f64, switches: &[f64], drivers: &Drivers) -> Vec<f64> {
+    let mut out = vec![first_level; drivers.samples];
+    let mut change = -2.0 * first_level;
+    for at in switches {
+        let place = (at - drivers.start_s) / drivers.dt_s + 0.5;
+        let from = place.floor().clamp(0.0, drivers.samples as f64) as usize;
+        for (i, y) in out.iter_mut().enumerate().skip(from) {
+            *y += change * (i as f64 + 1.0 - place).clamp(0.0, 1.0);
+        }
+        change = -change;
+    }
+    out
+}
+
+/// The same for many jumps, in one pass.
+fn simulated(amplitude: f64, dwell_s: f64, drivers: &Drivers, rng: &mut Xoshiro256PlusPlus) -> Vec<f64> {
+    let mut level = if rng.random::<bool>() { 0.5 * amplitude } else { -0.5 * amplitude };
+    let mut next = -dwell_s * (1.0 - rng.random::<f64>()).ln();
+    let dt = drivers.dt_s;
+    (0..drivers.samples)
+        .map(|i| {
+            let (begin, end) = (i as f64 * dt, (i + 1) as f64 * dt);
+            let (mut at, mut sum) = (begin, 0.0);
+            while next < end {
+                sum += level * (next - at);
+                (at, level) = (next, -level);
+                // A thousandth of a sample at least: shorter stays average out whatever their number.
+                next += (-dwell_s * (1.0 - rng.random::<f64>()).ln()).max(1e-3 * dt);
+            }
+            (sum + level * (end - at)) / dt
+        })
+        .collect()
+}
+
+impl Samples for RandomTelegraph {
+    fn apply(&self, values: &Values, drivers: &Drivers, seed: u64, rate: &mut [f64], _keep: &mut [bool]) {
+        let drawn = || {
+            let (amplitude, dwell) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
+            let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+            (dwell > 0.0).then(|| simulated(amplitude, dwell, drivers, &mut rng))
+        };
+        if let Some(course) = self.stated_course(values, drivers).or_else(drawn) {
+            rate.iter_mut().zip(course).for_each(|(y, c)| *y += c);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn the_autocovariance_is_that_of_the_telegraph_process() {
+        let drivers = Drivers { dt_s: 1.0, samples: 400_000, ..Drivers::default() };
+        let (amplitude, dwell) = (2.0, 50.0);
+        let mut rate = vec![0.0; drivers.samples];
+        let values = Values::from([
+            ("amplitude_deg_h".to_owned(), Value::Number(amplitude)),
+            ("mean_dwell_s".to_owned(), Value::Number(dwell)),
+        ]);
+        RandomTelegraph.apply(&values, &drivers, 7, &mut rate, &mut []);
+        for lag in [10usize, 25, 50] {
+            let got =
+                rate.iter().zip(&rate[lag..]).map(|(a, b)| a * b).sum::<f64>() / (rate.len() - lag) as f64;
+            let expected = (-2.0 * lag as f64 / dwell).exp();
+            // 4000 correlation times of 25 s each: about 0.012 of scatter.
+            assert!((got - expected).abs() < 0.05, "{lag}: {got} {expected}");
+        }
+        assert!(rate.iter().all(|y| y.abs() <= 1.0 + 1e-12));
+    }
+
+    #[test]
+    fn known_jumps_are_averaged_in_the_sample_that_they_fall_into() {
+        let drivers = Drivers { dt_s: 1.0, start_s: 100.0, samples: 6, ..Drivers::default() };
+        let values = Values::from([
+            ("amplitude_deg_h".to_owned(), Value::Number(2.0)),
+            (SWITCHES.to_owned(), Value::List(vec![101.75, 104.0])),
+        ]);
+        let course = RandomTelegraph.stated_course(&values, &drivers).unwrap();
+        assert_eq!(course, [-1.0, -1.0, 0.5, 1.0, 0.0, -1.0]);
+    }
+}

@@ -1,0 +1,71 @@
+//! A linear drift.
+
+use crate::effect::{Both, Course, Doc, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+
+pub struct RateRamp;
+
+static DOC: Doc = Doc {
+    title: Both { en: "rate ramp", ru: "линейный дрейф" },
+    mechanism: Both {
+        en: "Ageing of the source, relaxing stress in the coil, slow drift of the electronics.",
+        ru: "Старение источника, релаксация напряжений в контуре, медленный уход электроники.",
+    },
+    formula: "R·t",
+    signature: Both {
+        en: "A straight line in time; the Allan deviation rises as τ, the Hadamard deviation does not see it.",
+        ru: "Прямая во времени; девиация Аллана растёт как τ, девиация Адамара её не видит.",
+    },
+    told_by: Both {
+        en: "A random walk changes its direction and keeps another sign in another record; a warm-up bends; a temperature effect turns when the temperature turns.",
+        ru: "Случайное блуждание меняет направление и в другой записи идёт в другую сторону; прогрев изгибается; температурный эффект поворачивает вместе с температурой.",
+    },
+    confirm: Both {
+        en: "Repeat on another day after a power cycle: a ramp keeps its sign and size.",
+        ru: "Повторить в другой день после выключения: знак и величина дрейфа сохраняются.",
+    },
+    source: "IEEE Std 952, Annex C: rate ramp",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("slope_deg_h_per_h", "deg/h/h", -1e4, 1e4)];
+
+describe! {
+    RateRamp, "rate_ramp", Course in Time, needs [],
+    confusers ["excess_rrw", "warmup_exponential", "unobserved_driver"]
+}
+
+/// Hours from the middle of the record.
+fn hours(drivers: &Drivers) -> Vec<f64> {
+    let middle = 0.5 * drivers.length_s();
+    drivers.of_time(|t| (t - middle) / 3600.0)
+}
+
+impl Course for RateRamp {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.samples >= 8
+    }
+
+    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+        Starts::linear()
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![]
+    }
+
+    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
+        Parts { free: vec![hours(drivers)], ..Parts::default() }
+    }
+
+    fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        vec![coefficients.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let slope = number(values, PARAMS[0].name)?;
+        Some(hours(drivers).into_iter().map(|h| slope * h).collect())
+    }
+
+    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        super::reach::record(drivers)
+    }
+}

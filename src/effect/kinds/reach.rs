@@ -1,0 +1,59 @@
+//! Where along a column an effect acts, and whether the column says anything.
+
+use crate::effect::{Domain, Drivers, Place};
+use crate::numeric::range::ends;
+
+/// The values of a column at which a contribution departs from its mean by half of its largest departure or more.
+pub(super) fn reach(domain: Domain, column: &[f64], contribution: &[f64]) -> Vec<Place> {
+    if column.is_empty() || contribution.is_empty() {
+        return vec![];
+    }
+    let mean = contribution.iter().sum::<f64>() / contribution.len() as f64;
+    let largest = contribution.iter().map(|c| (c - mean).abs()).fold(0.0, f64::max);
+    let acts = column.iter().zip(contribution).filter(|(_, c)| (**c - mean).abs() >= 0.5 * largest);
+    let (from, to) = acts.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (x, _)| (a.min(*x), b.max(*x)));
+    if from <= to { vec![Place { domain, from, to }] } else { vec![] }
+}
+
+/// True for a column that changes by more than the rounding of its numbers.
+pub(super) fn varies(column: Option<&[f64]>) -> bool {
+    let Some(column) = column else { return false };
+    let (low, high) = ends(column);
+    column.len() >= 8 && column.iter().all(|x| x.is_finite()) && high - low > 1e-9 * low.abs().max(high.abs())
+}
+
+/// The time before the first sample's own interval: where the record begins, whatever the samples average.
+pub(super) fn beginning_s(drivers: &Drivers) -> f64 {
+    let m = drivers.averaged.max(1) as f64;
+    drivers.start_s - 0.5 * (m - 1.0) / m * drivers.dt_s
+}
+
+/// The whole record in time.
+pub(super) fn record(drivers: &Drivers) -> Vec<Place> {
+    let last = drivers.samples.saturating_sub(1);
+    vec![Place { domain: Domain::Time, from: drivers.time_s(0), to: drivers.time_s(last) }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_column_says_nothing() {
+        let constant = vec![20.0; 50];
+        let rounded: Vec<f64> = (0..50).map(|i| 20.0 + 1e-12 * f64::from(i % 3)).collect();
+        let levels: Vec<f64> = (0..50).map(|i| if i < 20 { 4.9 } else { 5.1 }).collect();
+        assert!(!varies(None) && !varies(Some(&constant)) && !varies(Some(&rounded)));
+        assert!(varies(Some(&levels)));
+        assert!(!varies(Some(&[f64::NAN; 20])));
+    }
+
+    #[test]
+    fn an_effect_lives_where_its_contribution_is_large() {
+        let column: Vec<f64> = (0..=100).map(f64::from).collect();
+        let contribution: Vec<f64> = column.iter().map(|x| if *x > 80.0 { 1.0 } else { 0.0 }).collect();
+        let places = reach(Domain::Temperature, &column, &contribution);
+        assert_eq!((places[0].from, places[0].to), (81.0, 100.0));
+        assert!(reach(Domain::Temperature, &[], &[]).is_empty());
+    }
+}

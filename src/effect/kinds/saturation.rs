@@ -1,0 +1,101 @@
+//! A response that is limited at large rates.
+
+use super::reach::varies;
+use super::search::best_of;
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+};
+use crate::numeric::range::ends;
+
+pub struct Saturation;
+
+static DOC: Doc = Doc {
+    title: Both { en: "saturation", ru: "насыщение" },
+    mechanism: Both {
+        en: "The loop, a converter or the format of the output reaches its limit.",
+        ru: "Контур, преобразователь или формат выхода достигает своего предела.",
+    },
+    formula: "−sgn(Ω)·(|Ω| − L) for |Ω| > L",
+    signature: Both {
+        en: "A flat top of the output; beyond the limit the residual falls as fast as the rate grows.",
+        ru: "Плоская вершина выходного сигнала; за пределом остаток падает так же быстро, как растёт скорость.",
+    },
+    told_by: Both {
+        en: "Nonlinearity bends everywhere; saturation does nothing below its limit.",
+        ru: "Нелинейность изгибает всюду; насыщение ниже предела не проявляется.",
+    },
+    confirm: Both {
+        en: "Reduce the rate or the gain; look for a largest value that repeats exactly.",
+        ru: "Уменьшить скорость или усиление; искать точно повторяющееся наибольшее значение.",
+    },
+    source: "IEEE Std 952, 12.10: maximum input rate",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("limit_deg_s", "deg/s", 1e-9, 1e6)];
+
+describe! {
+    Saturation, "saturation", Course in InputRate, needs [TableRate],
+    confusers ["sf_nonlinearity", "sf_error"]
+}
+
+fn beyond(limit: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    let rate = drivers.table_rate.as_ref()?;
+    (limit > 0.0).then(|| rate.iter().map(|r| -3600.0 * r.signum() * (r.abs() - limit).max(0.0)).collect())
+}
+
+fn largest(drivers: &Drivers) -> f64 {
+    drivers.table_rate.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max)
+}
+
+impl Course for Saturation {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        varies(drivers.table_rate.as_deref()) && largest(drivers) > 0.0
+    }
+
+    /// Limits that fall short of the largest rate by shares from a millionth to three quarters.
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let most = largest(drivers);
+        let shares = super::search::log_grid(1e-6, 0.75, 40);
+        let shapes = best_of(self, shares.into_iter().map(|s| vec![most * (1.0 - s)]), 3, drivers, look);
+        Starts { shapes, looked: 10.0 }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        let most = largest(drivers).max(1e-12);
+        vec![(0.2 * most, most)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        Parts { fixed: shape.first().and_then(|l| beyond(*l, drivers)), ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        vec![shape.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        beyond(number(values, PARAMS[0].name)?, drivers)
+    }
+
+    /// The rates beyond the limit, those of the sign that is there.
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let (Some(limit), Some(rate)) = (shape.first(), &drivers.table_rate) else { return vec![] };
+        let (low, high) = ends(rate);
+        let up = Place { domain: Domain::InputRate, from: *limit, to: high };
+        let down = Place { domain: Domain::InputRate, from: low, to: -limit };
+        match (high > *limit, low < -*limit) {
+            (true, true) => vec![Place { domain: Domain::InputRate, from: low, to: high }],
+            (true, false) => vec![up],
+            (false, true) => vec![down],
+            (false, false) => vec![],
+        }
+    }
+
+    fn steps(&self, drivers: &Drivers) -> Vec<f64> {
+        vec![1e-3 * largest(drivers)]
+    }
+}

@@ -1,0 +1,137 @@
+//! Cheap global searches for the shape of a course.
+
+use crate::effect::{Course, Drivers, Look, Parts};
+use crate::numeric::cosine::dct2;
+use nalgebra::{DMatrix, DVector};
+
+/// `count` values from `low` to `high` in equal ratios.
+pub(super) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
+    if !(low > 0.0 && high >= low) || count == 0 {
+        return vec![];
+    }
+    let step = (high / low).ln() / (count.max(2) - 1) as f64;
+    (0..count).map(|i| low * (step * i as f64).exp()).collect()
+}
+
+/// Log-likelihood gain of a course for one shape: everything of it fitted, less what the columns beside it gain alone.
+pub(super) fn gain_of(parts: &Parts, look: &Look<'_>) -> f64 {
+    if parts.fixed.is_none() && parts.free.is_empty() {
+        return 0.0;
+    }
+    let mut residual = look.modes.to_vec();
+    let mut gain = 0.0;
+    if let Some(fixed) = &parts.fixed {
+        for ((r, f), p) in residual.iter_mut().zip(dct2(fixed)).zip(look.powers).skip(1) {
+            gain += (*r * f - 0.5 * f * f) / p;
+            *r -= f;
+        }
+    }
+    let modes = |columns: &[Vec<f64>]| columns.iter().map(|c| dct2(c)).collect::<Vec<_>>();
+    let (mut all, beside) = (modes(&parts.free), modes(&parts.beside));
+    let alone = explained(&beside, look.modes, look.powers);
+    all.extend(beside);
+    gain + explained(&all, &residual, look.powers) - alone
+}
+
+/// ½ b'A⁻¹b of columns with free coefficients.
+fn explained(columns: &[Vec<f64>], residual: &[f64], powers: &[f64]) -> f64 {
+    let k = columns.len();
+    if k == 0 {
+        return 0.0;
+    }
+    let product =
+        |x: &[f64], y: &[f64]| x.iter().zip(y).zip(powers).skip(1).map(|((x, y), p)| x * y / p).sum::<f64>();
+    let mut normal = DMatrix::zeros(k, k);
+    let mut right = DVector::zeros(k);
+    for (i, column) in columns.iter().enumerate() {
+        right[i] = product(column, residual);
+        for (j, other) in columns.iter().enumerate().take(i + 1) {
+            normal[(i, j)] = product(column, other);
+            normal[(j, i)] = normal[(i, j)];
+        }
+    }
+    for i in 0..k {
+        normal[(i, i)] *= 1.0 + 1e-10;
+        if normal[(i, i)] <= 0.0 {
+            normal[(i, i)] = 1.0;
+        }
+    }
+    normal.cholesky().map_or(0.0, |c| 0.5 * right.dot(&c.solve(&right)))
+}
+
+/// The shapes that gain most, the best first, at most `keep`; those that gain nothing are left out.
+pub(super) fn best_of(
+    course: &dyn Course,
+    shapes: impl IntoIterator<Item = Vec<f64>>,
+    keep: usize,
+    drivers: &Drivers,
+    look: &Look<'_>,
+) -> Vec<Vec<f64>> {
+    let mut rated: Vec<(f64, Vec<f64>)> = shapes
+        .into_iter()
+        .map(|s| (gain_of(&course.parts(&s, drivers), look), s))
+        .filter(|(g, _)| *g > 0.0)
+        .collect();
+    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    rated.into_iter().take(keep).map(|(_, s)| s).collect()
+}
+
+/// Positions of the largest of `gains`, the best first, each at least `apart` from those before it.
+pub(super) fn peaks(gains: &[f64], keep: usize, apart: usize) -> Vec<usize> {
+    let mut left = gains.to_vec();
+    let mut out = vec![];
+    for _ in 0..keep {
+        let Some(best) = (0..left.len()).max_by(|a, b| left[*a].total_cmp(&left[*b])) else { break };
+        if left[best].is_nan() || left[best] <= 0.0 {
+            break;
+        }
+        out.push(best);
+        let end = (best + apart.max(1)).min(left.len());
+        left[best.saturating_sub(apart.saturating_sub(1))..end].fill(0.0);
+    }
+    out
+}
+
+/// Where the top of the parabola through a point of a grid and its neighbours lies, in steps from the point.
+pub(super) fn summit(gains: &[f64], at: usize) -> f64 {
+    let (Some(here), Some(after)) = (gains.get(at), gains.get(at + 1)) else { return 0.0 };
+    let Some(before) = at.checked_sub(1).and_then(|i| gains.get(i)) else { return 0.0 };
+    let curve = before + after - 2.0 * here;
+    if curve < 0.0 { (0.5 * (before - after) / curve).clamp(-0.5, 0.5) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gain_of_a_free_column_is_that_of_the_look() {
+        let n = 64;
+        let column: Vec<f64> = (0..n).map(|i| (0.2 * i as f64).sin()).collect();
+        let residual: Vec<f64> = (0..n).map(|i| 0.7 * column[i] + ((i * i * 31) % 17) as f64 * 0.1).collect();
+        let (modes, powers) = (dct2(&residual), vec![0.25; n]);
+        let look = Look { score: &residual, modes: &modes, powers: &powers };
+        let free = Parts { free: vec![column.clone()], ..Parts::default() };
+        assert!((gain_of(&free, &look) / look.gain(&column) - 1.0).abs() < 1e-8);
+        // The same column fixed at its best coefficient gains the same; a column beside it takes all of it.
+        let (mut zr, mut zz) = (0.0, 0.0);
+        for (z, r) in dct2(&column).iter().zip(&modes).skip(1) {
+            zr += z * r;
+            zz += z * z;
+        }
+        let fixed = Some(column.iter().map(|x| x * zr / zz).collect());
+        let gain = gain_of(&Parts { fixed, ..Parts::default() }, &look);
+        assert!((gain / look.gain(&column) - 1.0).abs() < 1e-9);
+        let both = Parts { free: vec![column.clone()], beside: vec![column], ..Parts::default() };
+        assert!(gain_of(&both, &look).abs() < 1e-5);
+    }
+
+    #[test]
+    fn peaks_stand_apart_and_are_placed_between_points() {
+        assert_eq!(peaks(&[0.0, 5.0, 4.9, 0.0, 3.0, 0.0], 3, 2), [1, 4]);
+        assert_eq!(peaks(&[0.0, 0.0], 2, 1), Vec::<usize>::new());
+        // A parabola with its top at 2.3.
+        let values: Vec<f64> = (0..5).map(|i| 10.0 - (f64::from(i) - 2.3).powi(2)).collect();
+        assert!((summit(&values, 2) - 0.3).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,88 @@
+//! A scale factor that depends on the size of the rate.
+
+use super::reach::varies;
+use crate::effect::{Both, Course, Doc, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number};
+
+pub struct SfNonlinearity;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "scale-factor nonlinearity", ru: "нелинейность масштабного коэффициента"
+    },
+    mechanism: Both {
+        en: "The sine response of the interferometer and a finite gain of the loop leave a cubic term.",
+        ru: "Синусный отклик интерферометра и конечное усиление контура оставляют кубический член.",
+    },
+    formula: "10⁻⁶·c·Ω·(Ω/Ω_max)²",
+    signature: Both {
+        en: "An odd curve in residual against rate that steepens towards large rates.",
+        ru: "Нечётная кривая остатка по скорости, круче при больших скоростях.",
+    },
+    told_by: Both {
+        en: "An error of the scale factor is straight; saturation is straight up to its limit and then breaks.",
+        ru: "Ошибка масштабного коэффициента — прямая; насыщение — прямая до предела и затем излом.",
+    },
+    confirm: Both {
+        en: "More rates of both signs up to the largest, in another order.",
+        ru: "Больше скоростей обоих знаков до наибольшей, в другом порядке.",
+    },
+    source: "IEEE Std 952, 12.9: scale-factor nonlinearity",
+};
+
+static PARAMS: [Param; 2] = [
+    Param::reported("cubic_ppm_at_max", "ppm", -1e5, 1e5),
+    Param::inner("largest_rate_deg_s", "deg/s", 1e-12, 1e6),
+];
+
+describe! {
+    SfNonlinearity, "sf_nonlinearity", Course in InputRate, needs [TableRate],
+    confusers ["sf_error", "saturation", "sf_asymmetry"]
+}
+
+fn largest(drivers: &Drivers) -> f64 {
+    drivers.table_rate.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max)
+}
+
+fn column(largest: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    let rate = drivers.table_rate.as_ref()?;
+    (largest > 0.0).then(|| rate.iter().map(|r| 3600e-6 * r * (r / largest).powi(2)).collect())
+}
+
+impl Course for SfNonlinearity {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    /// With a single size of rate the cubic term is a scale factor.
+    fn applies(&self, drivers: &Drivers) -> bool {
+        let most = largest(drivers);
+        let between = |r: &f64| r.abs() > 0.1 * most && r.abs() < 0.9 * most;
+        varies(drivers.table_rate.as_deref()) && drivers.table_rate.iter().flatten().any(between)
+    }
+
+    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+        Starts::linear()
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![]
+    }
+
+    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
+        Parts { free: column(largest(drivers), drivers).into_iter().collect(), ..Parts::default() }
+    }
+
+    fn parameters(&self, _shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        vec![coefficients.first().copied().unwrap_or(f64::NAN), largest(drivers)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let coefficient = number(values, PARAMS[0].name)?;
+        let at = number(values, PARAMS[1].name).unwrap_or_else(|| largest(drivers));
+        Some(column(at, drivers)?.into_iter().map(|x| coefficient * x).collect())
+    }
+
+    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        super::sf_error::large_rates(drivers)
+    }
+}

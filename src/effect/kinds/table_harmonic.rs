@@ -1,0 +1,116 @@
+//! A contribution that is periodic in the table angle.
+
+use super::reach::varies;
+use super::search::best_of;
+use super::sinusoid::{averaged, pair, polar, wave};
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+};
+use crate::numeric::range::ends;
+
+pub struct TableHarmonic;
+
+static DOC: Doc = Doc {
+    title: Both { en: "table harmonic", ru: "гармоника стола" },
+    mechanism: Both {
+        en: "Wobble of the axis, poles of the motor or the encoder modulate the rate in step with the table angle.",
+        ru: "Биение оси, полюса двигателя или датчик угла модулируют скорость синхронно с углом стола.",
+    },
+    formula: "A·cos(kψ + φ), ψ the table angle, k a whole number",
+    signature: Both {
+        en: "A line at k times the rotation rate that follows the rate of the table.",
+        ru: "Линия на частоте k оборотов, следующая за скоростью стола.",
+    },
+    told_by: Both {
+        en: "A line keeps its frequency when the table changes its rate; the reset ripple repeats after seconds of arc, not after parts of a turn.",
+        ru: "Линия не меняет частоты вместе со скоростью стола; пульсация сброса повторяется через угловые секунды, а не через доли оборота.",
+    },
+    confirm: Both {
+        en: "Clamp the table; repeat with another gyro on it.",
+        ru: "Затормозить стол; повторить с другим гироскопом.",
+    },
+    source: "Order tracking: phase locked to the table angle",
+};
+
+static PARAMS: [Param; 3] = [
+    Param::reported("order", "", 1.0, 8.0),
+    Param::reported("amplitude_deg_h", "deg/h", 0.0, 1e5),
+    Param::inner("phase_deg", "deg", -360.0, 360.0),
+];
+
+describe! {
+    TableHarmonic, "table_harmonic", Course in Angle, needs [TableAngle],
+    confusers ["earth_rate_projection", "line", "reset_ripple"]
+}
+
+/// Turn of the table within a sample, in turns: from the rate where it is there, else from the neighbouring angles.
+fn turn(i: usize, angle: &[f64], drivers: &Drivers) -> f64 {
+    if let Some(rate) = drivers.table_rate.as_ref().and_then(|r| r.get(i)) {
+        return rate * drivers.dt_s / 360.0;
+    }
+    let (a, b) = (i.saturating_sub(1), (i + 1).min(angle.len() - 1));
+    let apart = (angle[b] - angle[a] + 180.0).rem_euclid(360.0) - 180.0;
+    if b > a { apart / (b - a) as f64 / 360.0 } else { 0.0 }
+}
+
+/// Cosine and sine of an order of the table angle, averaged over each sample.
+pub(super) fn columns(order: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
+    let Some(angle) = &drivers.table_angle else { return vec![] };
+    pair(angle.len(), |i| (order * angle[i] / 360.0, averaged(order * turn(i, angle, drivers))))
+}
+
+/// The angles that the table went through.
+pub(super) fn visited(drivers: &Drivers) -> Vec<Place> {
+    let Some(angle) = &drivers.table_angle else { return vec![] };
+    let (low, high) = ends(angle);
+    if low > high {
+        return vec![];
+    }
+    let whole = high - low > 300.0;
+    let (from, to) = if whole { (0.0, 360.0) } else { (low, high) };
+    vec![Place { domain: Domain::Angle, from, to }]
+}
+
+impl Course for TableHarmonic {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        varies(drivers.table_angle.as_deref())
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let orders = (1..=8).map(|k| vec![f64::from(k)]);
+        Starts { shapes: best_of(self, orders, 3, drivers, look), looked: 8.0 }
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![(1.0, 8.0)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let free = shape.first().map_or_else(Vec::new, |k| columns(k.round(), drivers));
+        Parts { free, ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        let (amplitude, phase) = polar(coefficients);
+        vec![shape.first().map_or(f64::NAN, |k| k.round()), amplitude, phase]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        drivers.table_angle.as_ref()?;
+        let (order, amplitude) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
+        let phase = number(values, PARAMS[2].name).unwrap_or(0.0);
+        Some(wave(amplitude, phase, &columns(order, drivers)))
+    }
+
+    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        visited(drivers)
+    }
+
+    fn whole(&self) -> &'static [usize] {
+        &[0]
+    }
+}

@@ -1,0 +1,129 @@
+//! A bias that depends on the direction from which a temperature was reached.
+
+use super::reach::{reach, varies};
+use super::search::{best_of, log_grid};
+use super::thermal::smooth;
+use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+use crate::numeric::range::ends;
+
+pub struct TempHysteresis;
+
+static DOC: Doc = Doc {
+    title: Both { en: "thermal hysteresis", ru: "температурный гистерезис" },
+    mechanism: Both {
+        en: "Potting and spool creep and stick: the strain of the fibre remembers where the temperature came from.",
+        ru: "Компаунд и каркас ползут и залипают: деформация волокна помнит, откуда пришла температура.",
+    },
+    formula: "(W/2)·(T − p)/r, p the play of half width r that follows T",
+    signature: Both {
+        en: "A loop of residual against temperature whose width does not depend on the rate of heating.",
+        ru: "Петля остатка по температуре, ширина которой не зависит от скорости нагрева.",
+    },
+    told_by: Both {
+        en: "The loops of a delay and of a sensitivity to dT/dt close when the heating is slow, and decay in a soak; this one stays.",
+        ru: "Петли запаздывания и чувствительности к dT/dt закрываются при медленном нагреве и исчезают при выдержке; эта остаётся.",
+    },
+    confirm: Both {
+        en: "The same cycle at a tenth of the rate, with soaks on both branches.",
+        ru: "Тот же цикл в десять раз медленнее с выдержками на обеих ветвях.",
+    },
+    source: "Preisach play operator; IEEE Std 528: hysteresis error",
+};
+
+static PARAMS: [Param; 3] = [
+    Param::reported("loop_width_deg_h", "deg/h", -1e4, 1e4),
+    Param::inner("play_degC", "°C", 1e-6, 300.0),
+    Param::inner("first_state", "", -1.0, 1.0),
+];
+
+describe! {
+    TempHysteresis, "temp_hysteresis", Course in Temperature, needs [Temperature],
+    confusers ["temp_rate", "thermal_lag", "temp_polynomial"]
+}
+
+/// Half the play's state, −1/2 on a cooling branch to 1/2 on a heating one: multiplied by the width of the loop.
+fn column(play: f64, first: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    let t = smooth(drivers)?;
+    if !(play > 0.0 && first.is_finite()) {
+        return None;
+    }
+    let mut at = t.first()? - first.clamp(-1.0, 1.0) * play;
+    let follow = |t: &f64| {
+        at = at.max(t - play).min(t + play);
+        0.5 * (t - at) / play
+    };
+    Some(t.iter().map(follow).collect())
+}
+
+impl Course for TempHysteresis {
+    /// A temperature that never turns has no second branch.
+    fn applies(&self, drivers: &Drivers) -> bool {
+        let Some(t) = smooth(drivers) else { return false };
+        if !varies(Some(t)) {
+            return false;
+        }
+        let (low, high) = ends(t);
+        let play = 0.05 * (high - low);
+        let branches = column(play, 0.0, drivers).unwrap_or_default();
+        branches.iter().any(|b| *b > 0.49) && branches.iter().any(|b| *b < -0.49)
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let (low, high) = self.bounds(drivers)[0];
+        let grid = log_grid(low, high, 12);
+        let shapes = grid.into_iter().flat_map(|r| [-1.0, 0.0, 1.0].map(|first| vec![r, first]));
+        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked: (high / low).ln().max(1.0) }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        let (low, high) = smooth(drivers).map_or((0.0, 1.0), ends);
+        let range = (high - low).max(1e-6);
+        vec![(0.005 * range, 0.5 * range), (-1.0, 1.0)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let [play, first] = shape else { return Parts::default() };
+        Parts { free: column(*play, *first, drivers).into_iter().collect(), ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        match (shape, coefficients) {
+            ([play, first], [width]) => vec![*width, *play, *first],
+            _ => vec![f64::NAN; 3],
+        }
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let width = number(values, PARAMS[0].name)?;
+        let (low, high) = ends(smooth(drivers)?);
+        let play = number(values, PARAMS[1].name).unwrap_or(0.1 * (high - low));
+        let first = number(values, PARAMS[2].name).unwrap_or(0.0);
+        Some(column(play, first, drivers)?.into_iter().map(|x| width * x).collect())
+    }
+
+    fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let ([play, first], [_]) = (shape, coefficients) else { return vec![] };
+        let course = column(*play, *first, drivers).unwrap_or_default();
+        reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &course)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_branches_of_a_cycle_are_apart_by_the_width_of_the_loop_whatever_the_rate() {
+        for samples in [200usize, 2000] {
+            let t: Vec<f64> = (0..samples)
+                .map(|i| 20.0 - 10.0 * (4.0 * std::f64::consts::PI * i as f64 / samples as f64).cos())
+                .collect();
+            let drivers = Drivers { dt_s: 1.0, samples, temperature: Some(t.clone()), ..Drivers::default() };
+            let state = column(1.0, 0.0, &drivers).unwrap();
+            // The middle of the first heating and of the first cooling: the same temperature, opposite states.
+            let (up, down) = (samples / 8, samples * 3 / 8);
+            assert!((t[up] - t[down]).abs() < 1e-9);
+            assert!((state[up] - state[down] - 1.0).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Static nonlinear dependence of the bias on temperature.
+
+use super::reach::{reach, varies};
+use super::search::gain_of;
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Nuisance, Param, Parts, Place, Starts, Values, list, number,
+};
+use crate::numeric::range::ends;
+
+pub struct TempPolynomial;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "nonlinear temperature dependence", ru: "нелинейная температурная зависимость"
+    },
+    mechanism: Both {
+        en: "Several parts with their own temperature laws add up to a bent curve of bias against temperature.",
+        ru: "Узлы с разными температурными законами дают в сумме изогнутую зависимость смещения нуля от температуры.",
+    },
+    formula: "Σ cₖ uᵏ, u = (T − T_c)/T_h, k = 1 … 2, 3 or 4",
+    signature: Both {
+        en: "A single-valued curve in residual against temperature, the same on heating and on cooling.",
+        ru: "Однозначная кривая остатка от температуры, одинаковая при нагреве и охлаждении.",
+    },
+    told_by: Both {
+        en: "A straight line needs no bend; hysteresis, a delay and a sensitivity to the rate of change open the curve into a loop.",
+        ru: "Прямой изгиб не нужен; гистерезис, запаздывание и чувствительность к скорости изменения раскрывают кривую в петлю.",
+    },
+    confirm: Both {
+        en: "Soak at five temperatures or more and compare the settled biases with the curve.",
+        ru: "Выдержать при пяти и более температурах и сравнить установившиеся смещения нуля с кривой.",
+    },
+    source: "IEEE Std 952, model equation: temperature terms",
+};
+
+static PARAMS: [Param; 2] =
+    [Param::inner("center_degC", "°C", -200.0, 300.0), Param::inner("half_range_degC", "°C", 1e-9, 500.0)];
+
+/// The list of c₁, c₂, ..., deg/h.
+const COEFFICIENTS: &str = "coefficients_deg_h";
+
+describe! {
+    TempPolynomial, "temp_polynomial", Course in Temperature, needs [Temperature],
+    confusers ["temp_linear", "temp_hysteresis", "temp_rate"]
+}
+
+/// Middle and half width of the temperatures.
+fn scale(drivers: &Drivers) -> Option<(f64, f64)> {
+    let (low, high) = ends(drivers.temperature.as_ref()?);
+    (high > low).then_some((0.5 * (low + high), 0.5 * (high - low)))
+}
+
+/// The order that a shape stands for.
+fn order(shape: &[f64]) -> i32 {
+    shape.first().map_or(2, |o| o.round().clamp(2.0, 4.0) as i32)
+}
+
+fn powers(order: i32, center: f64, half: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
+    let Some(t) = &drivers.temperature else { return vec![] };
+    (1..=order).map(|k| t.iter().map(|t| ((t - center) / half).powi(k)).collect()).collect()
+}
+
+fn sum(coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
+    let mut out = vec![0.0; columns.first().map_or(0, Vec::len)];
+    for (c, column) in coefficients.iter().zip(columns) {
+        out.iter_mut().zip(column).for_each(|(o, x)| *o += c * x);
+    }
+    out
+}
+
+impl Course for TempPolynomial {
+    fn replaces(&self) -> Option<Nuisance> {
+        Some(Nuisance::TemperatureCoefficient)
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        varies(drivers.temperature.as_deref())
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        // Each further order has to be worth its parameter.
+        let price = 0.5 * (drivers.samples.max(2) as f64).ln();
+        let worth = |o: i32| {
+            let shape = vec![f64::from(o)];
+            (gain_of(&self.parts(&shape, drivers), look) - price * f64::from(o), shape)
+        };
+        let best = (2..=4).map(worth).max_by(|a, b| a.0.total_cmp(&b.0));
+        Starts { shapes: best.map(|(_, s)| s).into_iter().collect(), looked: 3.0 }
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![(2.0, 4.0)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let free = scale(drivers)
+            .map_or_else(Vec::new, |(center, half)| powers(order(shape), center, half, drivers));
+        Parts { free, ..Parts::default() }
+    }
+
+    fn parameters(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let (center, half) = scale(drivers).unwrap_or((f64::NAN, f64::NAN));
+        vec![center, half]
+    }
+
+    fn lists(
+        &self,
+        _shape: &[f64],
+        coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<(&'static str, Vec<f64>)> {
+        vec![(COEFFICIENTS, coefficients.to_vec())]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let (center, half) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
+        let coefficients = list(values, COEFFICIENTS);
+        if coefficients.is_empty() || drivers.temperature.is_none() || half.is_nan() || half <= 0.0 {
+            return None;
+        }
+        let order = i32::try_from(coefficients.len().min(12)).unwrap_or(12);
+        Some(sum(coefficients, &powers(order, center, half, drivers)))
+    }
+
+    fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let contribution = sum(coefficients, &self.parts(shape, drivers).free);
+        reach(Domain::Temperature, drivers.temperature.as_deref().unwrap_or(&[]), &contribution)
+    }
+
+    fn whole(&self) -> &'static [usize] {
+        &[0]
+    }
+}

@@ -1,0 +1,96 @@
+//! The claimed temperature dependence acts through a delayed temperature.
+
+use super::reach::varies;
+use super::search::{best_of, log_grid};
+use super::thermal::{delayed, smooth};
+use super::warmup_exponential::decay;
+use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+
+pub struct ThermalLag;
+
+static DOC: Doc = Doc {
+    title: Both { en: "thermal lag", ru: "тепловое запаздывание" },
+    mechanism: Both {
+        en: "The sensor on the housing feels the temperature before the coil does: the bias follows a delayed temperature.",
+        ru: "Датчик на корпусе чувствует температуру раньше контура: смещение нуля следует за запаздывающей температурой.",
+    },
+    formula: "a₁ (T_d − T), τ dT_d/dt = T − T_d, a₁ as claimed",
+    signature: Both {
+        en: "A loop of residual against temperature that opens with the rate of heating; an exponential settling after each turn of the temperature.",
+        ru: "Петля остатка по температуре, раскрывающаяся со скоростью нагрева; экспоненциальное установление после каждого изменения температуры.",
+    },
+    told_by: Both {
+        en: "A sensitivity to dT/dt answers at once where the temperature turns; the lag settles with its time constant, and its size follows from the claimed coefficient.",
+        ru: "Чувствительность к dT/dt проявляется сразу при изменении хода температуры; запаздывание устанавливается со своей постоянной времени, а его величина следует из заявленного коэффициента.",
+    },
+    confirm: Both {
+        en: "A second sensor on the coil; a soak after a ramp.",
+        ru: "Второй датчик на контуре; выдержка после изменения температуры.",
+    },
+    source: "First-order thermal delay in the temperature terms of the IEEE Std 952 model equation",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("time_constant_s", "s", 1e-6, 1e6)];
+
+describe! {
+    ThermalLag, "thermal_lag", Course in Lag, needs [Temperature],
+    confusers ["temp_rate", "temp_hysteresis", "warmup_exponential", "time_offset"]
+}
+
+/// What the claimed coefficient makes of the difference between delayed and present temperature.
+fn difference(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    let coefficient = drivers.claim.temperature?.coefficient_deg_h_per_degc;
+    let t = smooth(drivers)?;
+    if !(time_constant_s > 0.0 && time_constant_s.is_finite()) {
+        return None;
+    }
+    let late = delayed(t, time_constant_s, drivers.dt_s);
+    Some(late.iter().zip(t).map(|(d, t)| coefficient * (d - t)).collect())
+}
+
+impl Course for ThermalLag {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.claim.temperature.is_some_and(|t| t.coefficient_deg_h_per_degc != 0.0)
+            && varies(drivers.temperature.as_deref())
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let (low, high) = self.bounds(drivers)[0];
+        let grid = log_grid(low, high, 32);
+        let shapes = best_of(self, grid.into_iter().map(|t| vec![t]), 3, drivers, look);
+        Starts { shapes, looked: (high / low).ln().max(1.0) }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        let low = drivers.dt_s;
+        vec![(low, (0.5 * drivers.length_s()).max(4.0 * low))]
+    }
+
+    /// The state at the beginning is not known: what is left of it decays beside the effect.
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let Some(time) = shape.first().filter(|t| **t > 0.0) else { return Parts::default() };
+        Parts { fixed: difference(*time, drivers), free: vec![], beside: vec![decay(*time, drivers)] }
+    }
+
+    fn parameters(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        vec![shape.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        difference(number(values, PARAMS[0].name)?, drivers)
+    }
+
+    fn beside(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        let time = number(values, PARAMS[0].name).filter(|t| *t > 0.0);
+        time.map(|t| decay(t, drivers)).into_iter().collect()
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(time) = shape.first() else { return vec![] };
+        let (from, to) = (0.5 * time, (1.5 * time).min(drivers.length_s()));
+        let rates = super::thermal::rate(drivers).unwrap_or_default();
+        let mut places = vec![Place { domain: Domain::Lag, from: from.min(to), to }];
+        places.extend(super::reach::reach(Domain::TemperatureRate, &rates, &rates));
+        places
+    }
+}

@@ -1,0 +1,165 @@
+//! A constant delay between the gyro and the columns beside it.
+
+use super::delay::{follow, moves, parts, shifted};
+use super::search::{best_of, peaks};
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+};
+use crate::numeric::cosine::inverse_dct2;
+use realfft::RealFftPlanner;
+
+pub struct TimeOffset;
+
+static DOC: Doc = Doc {
+    title: Both { en: "time offset", ru: "сдвиг времени" },
+    mechanism: Both {
+        en: "Gyro and table are stamped by different clocks, buffers or filters: one of them is late.",
+        ru: "Метки времени гироскопа и стола проходят через разные часы, буферы или фильтры: один из них запаздывает.",
+    },
+    formula: "m(t − L) − m(t), m the claimed mean",
+    signature: Both {
+        en: "Spikes of the residual wherever the table's rate changes, of the sign of its acceleration.",
+        ru: "Импульсы остатка при каждом изменении скорости стола, со знаком её ускорения.",
+    },
+    told_by: Both {
+        en: "A clock drift grows along the record; a filter delays and smooths; an error of the scale factor stays while the rate is constant.",
+        ru: "Уход часов растёт вдоль записи; фильтр не только задерживает, но и сглаживает; ошибка масштабного коэффициента остаётся при постоянной скорости.",
+    },
+    confirm: Both {
+        en: "One trigger pulse recorded by both systems.",
+        ru: "Общий импульс синхронизации, записанный обеими системами.",
+    },
+    source: "Cross-correlation of gyro and table",
+};
+
+static PARAMS: [Param; 1] = [Param::reported("lag_s", "s", -1e4, 1e4)];
+
+describe! {
+    TimeOffset, "time_offset", Course in Lag, needs [],
+    confusers ["clock_drift", "sf_error", "bandwidth_filter", "thermal_lag"]
+}
+
+/// Σ a(i) b(i − L) for every L from 0 up and from −1 down, by Fourier transforms.
+fn correlation(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let size = (2 * a.len().max(b.len())).next_power_of_two();
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (forward, back) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
+    let transform = |x: &[f64]| {
+        let mut input = x.to_vec();
+        input.resize(size, 0.0);
+        let mut output = forward.make_output_vec();
+        forward.process(&mut input, &mut output).ok().map(|()| output)
+    };
+    let (Some(mut x), Some(y)) = (transform(a), transform(b)) else { return vec![0.0; size] };
+    x.iter_mut().zip(&y).for_each(|(x, y)| *x = *x * y.conj() / size as f64);
+    if let Some(first) = x.first_mut() {
+        first.im = 0.0;
+    }
+    if let Some(last) = x.last_mut() {
+        last.im = 0.0;
+    }
+    let mut out = back.make_output_vec();
+    match back.process(&mut x, &mut out) {
+        Ok(()) => out,
+        Err(_) => vec![0.0; size],
+    }
+}
+
+/// Whole lags, in samples, that gain most.
+fn whole_lags(mean: &[f64], look: &Look<'_>, most: usize) -> Vec<f64> {
+    let n = mean.len();
+    let average = mean.iter().sum::<f64>() / n as f64;
+    let mean: Vec<f64> = mean.iter().map(|m| m - average).collect();
+    let mut weighted = crate::numeric::cosine::dct2(&mean);
+    weighted.iter_mut().zip(look.powers).for_each(|(m, p)| *m /= p);
+    if let Some(first) = weighted.first_mut() {
+        *first = 0.0;
+    }
+    let weighted = inverse_dct2(&weighted);
+    let with_score = correlation(look.score, &mean);
+    let with_mean = correlation(&weighted, &mean);
+    let size = with_score.len();
+    // Sums of the products without a delay over the samples that a lag loses.
+    let sums = |a: &[f64]| {
+        let mut sum = vec![0.0; n + 1];
+        for i in 0..n {
+            sum[i + 1] = sum[i] + a[i] * mean[i];
+        }
+        sum
+    };
+    let (score_sums, mean_sums) = (sums(look.score), sums(&weighted));
+    let gain = |lag: isize| {
+        let lost = lag.unsigned_abs();
+        let at = if lag >= 0 { lost } else { size - lost };
+        let kept = |s: &[f64]| if lag >= 0 { s[n] - s[lost] } else { s[n - lost] };
+        let linear = with_score[at] - kept(&score_sums);
+        let square = 2.0 * (kept(&mean_sums) - with_mean[at]);
+        linear - 0.5 * square.max(0.0)
+    };
+    let most = most.min(n / 2) as isize;
+    let lags: Vec<isize> = (-most..=most).filter(|l| *l != 0).collect();
+    let gains: Vec<f64> = lags.iter().map(|l| gain(*l).max(0.0)).collect();
+    peaks(&gains, 3, 2).into_iter().map(|i| lags[i] as f64).collect()
+}
+
+impl Course for TimeOffset {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        moves(drivers)
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let n = drivers.samples;
+        if !moves(drivers) || look.score.len() != n || look.modes.len() != n || look.powers.len() != n {
+            return Starts { shapes: vec![], looked: 1.0 };
+        }
+        let (low, high) = self.bounds(drivers)[0];
+        let mean = drivers.claimed_mean();
+        let residual = inverse_dct2(look.modes);
+        let dt = drivers.dt_s;
+        let mut lags = whole_lags(&mean, look, (high / dt) as usize);
+        lags.push(0.0);
+        let fine: Vec<f64> = lags.iter().map(|l| follow(&residual, &mean, n, *l, |_| 1.0, 0.05)).collect();
+        lags.extend(fine);
+        let inside = lags.into_iter().filter(|l| l.is_finite() && *l != 0.0);
+        let shapes = inside.map(|l| vec![(l * dt).clamp(low, high)]);
+        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked: (2.0 * high / dt).max(1.0) }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        let most = (20.0 * drivers.dt_s).max(60.0).min(0.25 * drivers.length_s());
+        vec![(-most, most)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let Some(lag) = shape.first() else { return Parts::default() };
+        let samples = lag / drivers.dt_s;
+        parts(&drivers.claimed_mean(), |_| samples)
+    }
+
+    fn parameters(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        vec![shape.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let samples = number(values, PARAMS[0].name)? / drivers.dt_s;
+        Some(shifted(&drivers.claimed_mean(), |_| samples).0)
+    }
+
+    fn beside(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        number(values, PARAMS[0].name).map_or_else(Vec::new, |lag| self.parts(&[lag], drivers).beside)
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let half = 0.5 * drivers.dt_s;
+        let at = |lag: &f64| Place { domain: Domain::Lag, from: lag - half, to: lag + half };
+        shape.first().map(at).into_iter().collect()
+    }
+
+    fn steps(&self, drivers: &Drivers) -> Vec<f64> {
+        vec![0.05 * drivers.dt_s]
+    }
+}

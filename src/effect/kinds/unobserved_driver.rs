@@ -1,0 +1,181 @@
+//! A smooth contribution that follows a quantity which was not recorded.
+
+use super::markov_long::starts_between;
+use crate::effect::{
+    Both, Doc, Domain, Drivers, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct,
+    Values, list,
+};
+use crate::noise::composite::{Composite, Damped, Sampling};
+use std::f64::consts::PI;
+
+pub struct UnobservedDriver;
+
+static DOC: Doc = Doc {
+    title: Both { en: "unrecorded driver", ru: "незаписанное воздействие" },
+    mechanism: Both {
+        en: "Temperature of another part, tilt, a magnetic field, vibration: something moved smoothly and nobody recorded it.",
+        ru: "Температура другого узла, наклон, магнитное поле, вибрация: нечто плавно менялось, и это не записали.",
+    },
+    formula: "R(t) = σ² (1 + |t|/T)·exp(−|t|/T); stated: straight lines between knots",
+    signature: Both {
+        en: "A smooth course in time; the spectrum falls as f⁻⁴ above a corner.",
+        ru: "Плавный ход во времени; спектр спадает как f⁻⁴ выше излома.",
+    },
+    told_by: Both {
+        en: "A random walk and a Markov process are rough on every scale (f⁻²); a recorded column would explain it by one coefficient.",
+        ru: "Случайное блуждание и марковский процесс шероховаты на всех масштабах (f⁻²); записанный канал объяснил бы ход одним коэффициентом.",
+    },
+    confirm: Both {
+        en: "Record temperature, tilt, field and vibration beside the gyro and repeat.",
+        ru: "Повторить, записывая рядом температуру, наклон, магнитное поле и вибрацию.",
+    },
+    source: "Matérn process of order 3/2",
+};
+
+static PARAMS: [Param; 2] =
+    [Param::inner("driver_rms_deg_h", "deg/h", 0.0, 1e6), Param::inner("driver_time_s", "s", 1e-6, 1e8)];
+
+const KNOT_TIMES: &str = "knots_time_s";
+const KNOT_VALUES: &str = "knots_deg_h";
+
+impl Effect for UnobservedDriver {
+    fn kind(&self) -> &'static str {
+        "unobserved_driver"
+    }
+    fn doc(&self) -> &'static Doc {
+        &DOC
+    }
+    fn params(&self) -> &'static [Param] {
+        &PARAMS
+    }
+    fn domain(&self) -> Domain {
+        Domain::Time
+    }
+    fn confusers(&self) -> &'static [&'static str] {
+        &["excess_rrw", "markov_long", "rate_ramp", "warmup_exponential"]
+    }
+    fn model(&self) -> Model {
+        Model::Spectrum(&UnobservedDriver)
+    }
+    /// Straight lines between knots, the first and last values held outside.
+    fn stated_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let knots = super::knots::Knots::new(list(values, KNOT_TIMES), list(values, KNOT_VALUES))?;
+        Some((0..drivers.samples).map(|i| knots.at(drivers.time_s(i))).collect())
+    }
+}
+
+fn split(fitted: &[f64]) -> (f64, f64) {
+    (fitted.first().copied().unwrap_or(0.0), fitted.get(1).copied().unwrap_or(1.0).max(1e-12))
+}
+
+/// Power of a cosine mode as a density. With a = 1/T the covariance is (1 − a d/da) e^(−a|t|): the same of the power of
+/// a Markov process.
+fn mode_power(rms: f64, time: f64, bin: &ModeBin) -> f64 {
+    let markov = |factor: f64| {
+        Damped { rms_deg_h: rms, frequency_hz: 0.0, decay_time_s: time / factor }.mode_power(
+            bin.mode,
+            bin.samples,
+            bin.dt_s,
+            Sampling::Averaging,
+        )
+    };
+    let h = 1e-3f64;
+    let slope = (markov(h.exp()) - markov((-h).exp())) / (2.0 * h);
+    (markov(1.0) - slope).max(0.0)
+}
+
+impl Spectrum for UnobservedDriver {
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Adds
+    }
+
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        let (rms, time) = split(fitted);
+        let corner = 1.0 / (2.0 * PI * time);
+        let x = (bin.frequency_hz / corner).powi(2);
+        if bin.modes == 1 && x < 1e3 {
+            return mode_power(rms, time, bin);
+        }
+        let averaged = super::sinusoid::averaged(bin.frequency_hz * bin.dt_s).powi(2);
+        // The ends of the record, at which a mode has no slope and the process has one, add their own k⁻⁴.
+        let ends = 1.0 + if x > 1.0 { time / (bin.samples as f64 * bin.dt_s) } else { 0.0 };
+        2.0 * rms * rms / (PI * corner) / (1.0 + x).powi(2) * averaged * ends
+    }
+
+    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+        let (low, high) = self.bounds(look)[1];
+        let markov = starts_between(1.5 * low, high / 1.5, look);
+        markov.into_iter().map(|s| s.into_iter().rev().collect()).collect()
+    }
+
+    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+        let (dt, n) = look.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
+        let length = n as f64 * dt;
+        vec![(1e-9, 1e9), ((20.0 * dt).max(0.002 * length), 2.0 * length)]
+    }
+
+    fn looked(&self, look: &SpectralLook<'_>) -> f64 {
+        let (low, high) = self.bounds(look)[1];
+        (high / low).ln().max(1.0)
+    }
+
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+
+    /// A stated driver is a course through its knots and no noise.
+    fn stated(&self, _values: &Values) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// Its course is simulated from knots: see [`Effect::stated_course`].
+    fn compose(&self, _fitted: &[f64], _noise: &mut Composite) {}
+
+    /// Times count from the first sample.
+    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+        let Some(bin) = look.bins.first() else { return vec![] };
+        let length = bin.samples as f64 * bin.dt_s;
+        let (_, time) = split(fitted);
+        let from = 0.5 / length;
+        let to = (3.0 / (2.0 * PI * time)).clamp(from, 0.5 / bin.dt_s);
+        vec![
+            Place { domain: Domain::Time, from: 0.0, to: length },
+            Place { domain: Domain::Frequency, from, to },
+        ]
+    }
+
+    fn has_course(&self) -> bool {
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modes_agree_with_the_covariance_summed_over_all_pairs() {
+        let n = 200;
+        for time in [25.0, 120.0, 300.0] {
+            let covariance = |lag: f64| (1.0 + lag / time) * (-lag / time).exp();
+            for k in [1usize, 2, 5, 12, 30] {
+                let phase = |i: usize| (PI * k as f64 * (i as f64 + 0.5) / n as f64).cos();
+                let mut sum = 0.0;
+                for i in 0..n {
+                    for j in 0..n {
+                        sum += 2.0 / n as f64 * phase(i) * phase(j) * covariance(i.abs_diff(j) as f64);
+                    }
+                }
+                let frequency_hz = k as f64 / (2.0 * n as f64);
+                let bin = |modes| ModeBin { frequency_hz, mode: k, modes, samples: n, dt_s: 1.0 };
+                let exact = mode_power(1.0, time, &bin(1));
+                assert!((exact / sum - 1.0).abs() < 0.03, "{time} {k}: {exact} {sum}");
+                // Far above the corner the closed form with its ends is right too.
+                if k >= 30 {
+                    let closed = UnobservedDriver.density(&[1.0, time], &bin(2));
+                    assert!((closed / sum - 1.0).abs() < 0.05, "{time} {k}: {closed} {sum}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! A transient that decays from the beginning of the record.
+
+use super::reach::beginning_s;
+use super::search::{best_of, log_grid};
+use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+
+pub struct WarmupExponential;
+
+static DOC: Doc = Doc {
+    title: Both { en: "warm-up transient", ru: "переходный процесс прогрева" },
+    mechanism: Both {
+        en: "After power-on source, electronics and coil warm up, and the bias settles with their time constants.",
+        ru: "После включения источник, электроника и контур прогреваются, и смещение нуля устанавливается с их постоянными времени.",
+    },
+    formula: "A·exp(−t/t₁), t from the beginning of the record",
+    signature: Both {
+        en: "Largest at the start and gone after a few time constants; the Allan deviation rises at long τ.",
+        ru: "Наибольший в начале и исчезает через несколько постоянных времени; девиация Аллана растёт при больших τ.",
+    },
+    told_by: Both {
+        en: "A ramp does not level off; a random walk has no preferred beginning; a delayed temperature effect follows the temperature wherever it turns.",
+        ru: "Линейный дрейф не выходит на полку; у случайного блуждания нет выделенного начала; запаздывающий температурный эффект повторяет любые повороты температуры.",
+    },
+    confirm: Both {
+        en: "Repeat a cold start, and start a record long after power-on.",
+        ru: "Повторить холодный пуск и начать запись спустя долгое время после включения.",
+    },
+    source: "IEEE Std 952, 12.6: warm-up time",
+};
+
+static PARAMS: [Param; 2] = [
+    Param::reported("amplitude_deg_h", "deg/h", -1e5, 1e5),
+    Param::reported("time_constant_s", "s", 1e-6, 1e8),
+];
+
+describe! {
+    WarmupExponential, "warmup_exponential", Course in Time, needs [],
+    confusers ["rate_ramp", "excess_rrw", "thermal_lag", "unobserved_driver"]
+}
+
+/// Decay from 1 at the beginning of the record, averaged over each sample.
+pub(super) fn decay(time_constant_s: f64, drivers: &Drivers) -> Vec<f64> {
+    let before = drivers.start_s - beginning_s(drivers);
+    let half = 0.5 * drivers.dt_s / time_constant_s;
+    let averaged = if half < 1e-4 { 1.0 + half * half / 6.0 } else { half.min(600.0).sinh() / half };
+    drivers.of_time(|t| averaged * (-(t + before) / time_constant_s).exp())
+}
+
+impl Course for WarmupExponential {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.samples >= 16
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let (low, high) = self.bounds(drivers)[0];
+        let grid = log_grid(1.2 * low, high / 1.2, 32);
+        let shapes = best_of(self, grid.into_iter().map(|t| vec![t]), 3, drivers, look);
+        Starts { shapes, looked: (high / low).ln().max(1.0) }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![(2.0 * drivers.dt_s, drivers.length_s().max(4.0 * drivers.dt_s))]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        Parts { free: shape.iter().map(|t| decay(*t, drivers)).collect(), ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        match (shape, coefficients) {
+            ([time], [amplitude]) => vec![*amplitude, *time],
+            _ => vec![f64::NAN; 2],
+        }
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let (amplitude, time) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
+        if time.is_nan() || time <= 0.0 {
+            return None;
+        }
+        Some(decay(time, drivers).into_iter().map(|x| amplitude * x).collect())
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(time) = shape.first() else { return vec![] };
+        let from = beginning_s(drivers);
+        vec![Place { domain: Domain::Time, from, to: from + (3.0 * time).min(drivers.length_s()) }]
+    }
+}

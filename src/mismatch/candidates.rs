@@ -1,0 +1,399 @@
+//! Every effect of the catalogue, tried as an addition to a hypothesis.
+
+use super::hypothesis::{CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, part_modes};
+use super::noise_fit::{SpectrumIn, base_index};
+use super::scene::Scene;
+use crate::effect::{Course, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct};
+use crate::estimate::chi_square_tail;
+use crate::numeric::cosine::inverse_dct2;
+use rayon::prelude::*;
+
+/// The two resolutions a problem is looked at.
+pub struct Scenes {
+    /// At the sample rate.
+    pub full: Scene,
+    /// Averages, for courses that they hold; `None` where the record is short enough as it is.
+    pub slow: Option<Scene>,
+    /// Angle increment of a lattice that the values lie on, arcsec.
+    pub lattice_arcsec: Option<f64>,
+    /// Rows of the recording.
+    pub rows: usize,
+}
+
+impl Scenes {
+    /// The scene that a course of some pace is looked for on.
+    pub fn of(&self, pace: Pace) -> &Scene {
+        match (pace, &self.slow) {
+            (Pace::Slow, Some(slow)) => slow,
+            _ => &self.full,
+        }
+    }
+}
+
+/// A hypothesis with its fit.
+#[derive(Clone)]
+pub struct Tried {
+    /// The hypothesis, fitted.
+    pub hypothesis: Hypothesis,
+    /// Its fit on the full scene.
+    pub fit: Fit,
+    /// Parameters that it has beyond the claim.
+    pub parameters: usize,
+}
+
+impl Tried {
+    /// −2 ln L + parameters · ln rows.
+    pub fn bic(&self, rows: usize) -> f64 {
+        -2.0 * self.fit.log_likelihood + self.parameters as f64 * (rows as f64).ln()
+    }
+}
+
+/// An addition that was fitted.
+#[derive(Clone)]
+pub struct Candidate {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// The hypothesis with it.
+    pub tried: Tried,
+    /// Gain of log-likelihood over the hypothesis without it.
+    pub gain: f64,
+    /// Parameters that it adds.
+    pub parameters: usize,
+    /// BIC without it less BIC with it.
+    pub delta_bic: f64,
+    /// Probability of such a gain without it, its own search counted.
+    pub p_value: f64,
+}
+
+fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, looked: f64, rows: usize) -> Candidate {
+    let gain = tried.fit.log_likelihood - before.fit.log_likelihood;
+    let parameters = tried.parameters - before.parameters;
+    let p_value = (looked.max(1.0) * chi_square_tail(2.0 * gain.max(0.0), parameters as f64)).min(1.0);
+    let delta_bic = before.bic(rows) - tried.bic(rows);
+    Candidate { effect, tried, gain, parameters, delta_bic, p_value }
+}
+
+/// Fits every effect that is not in the hypothesis yet as an addition to it; those that gain something, the largest
+/// ΔBIC first.
+pub fn all(before: &Tried, scenes: &Scenes) -> Vec<Candidate> {
+    let grounds = Grounds::new(before, scenes);
+    let fits: Vec<Option<Candidate>> = EFFECTS
+        .par_iter()
+        .map(|effect| match effect.model() {
+            Model::Course(course) => try_course(*effect, course, before, scenes, &grounds),
+            Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, scenes),
+            Model::Samples(_) => None,
+        })
+        .collect();
+    let mut found: Vec<Candidate> = fits.into_iter().flatten().collect();
+    found.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    found
+}
+
+/// What is the same for every course tried on a hypothesis.
+struct Grounds<'a> {
+    full: Ground<'a>,
+    slow: Option<Ground<'a>>,
+}
+
+impl<'a> Grounds<'a> {
+    fn new(before: &'a Tried, scenes: &'a Scenes) -> Grounds<'a> {
+        let slow = scenes.slow.as_ref().map(|s| Ground::new(before, s));
+        Grounds { full: Ground::new(before, &scenes.full), slow }
+    }
+
+    fn of(&self, pace: Pace) -> &Ground<'a> {
+        match (pace, &self.slow) {
+            (Pace::Slow, Some(slow)) => slow,
+            _ => &self.full,
+        }
+    }
+}
+
+/// A hypothesis on a scene, ready for columns to be added to it.
+struct Ground<'a> {
+    scene: &'a Scene,
+    before: &'a Tried,
+    parts: Vec<PartModes>,
+    powers: Vec<f64>,
+    inverse: Vec<f64>,
+    /// The modes that are to be explained: everything fixed taken out.
+    data: Vec<f64>,
+    residual: Vec<f64>,
+    score: Vec<f64>,
+    left: f64,
+}
+
+impl<'a> Ground<'a> {
+    fn new(before: &'a Tried, scene: &'a Scene) -> Ground<'a> {
+        let parts = part_modes(scene, &before.hypothesis.courses);
+        let powers = scene.powers(&before.hypothesis.noise.densities(scene));
+        let inverse: Vec<f64> = powers.iter().map(|p| 1.0 / p).collect();
+        let mut data = scene.modes.clone();
+        for fixed in parts.iter().filter_map(|p| p.fixed.as_ref()) {
+            data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+        }
+        let mut out = Ground {
+            scene,
+            before,
+            parts,
+            powers,
+            inverse,
+            data,
+            residual: vec![],
+            score: vec![],
+            left: 0.0,
+        };
+        let columns = out.columns(None);
+        let normal = Normal::new(&columns, &out.data, &out.inverse);
+        let (coefficients, _, left) = normal.solve();
+        let mut residual = out.data.clone();
+        for ((column, _), c) in columns.iter().zip(&coefficients) {
+            residual.iter_mut().zip(*column).for_each(|(r, x)| *r -= c * x);
+        }
+        let weighted: Vec<f64> = residual.iter().zip(&out.inverse).map(|(r, w)| r * w).collect();
+        out.score = inverse_dct2(&weighted);
+        out.residual = residual;
+        out.left = left;
+        out
+    }
+
+    /// The columns of the hypothesis with their priors, less the nuisance that a new course replaces.
+    fn columns(&self, course: Option<&dyn Course>) -> Vec<(&[f64], f64)> {
+        let replaced = course.and_then(|c| c.replaces());
+        let mut columns: Vec<(&[f64], f64)> = kept(self.scene, &self.before.hypothesis.courses)
+            .into_iter()
+            .filter(|n| Some(n.nuisance) != replaced)
+            .map(|n| (n.modes.as_slice(), n.deviation))
+            .collect();
+        for part in &self.parts {
+            columns.extend(part.free.iter().chain(&part.beside).map(|c| (c.as_slice(), f64::INFINITY)));
+        }
+        columns
+    }
+
+    fn look(&self) -> Look<'_> {
+        Look { score: &self.score, modes: &self.residual, powers: &self.powers }
+    }
+}
+
+/// Gains of a course for its shapes, the noise held.
+struct ShapeSearch<'a> {
+    course: &'a dyn Course,
+    ground: &'a Ground<'a>,
+    columns: Vec<(&'a [f64], f64)>,
+    normal: Normal,
+}
+
+impl ShapeSearch<'_> {
+    fn gain(&self, shape: &[f64]) -> f64 {
+        let ground = self.ground;
+        let parts = PartModes::of(&self.course.parts(shape, &ground.scene.drivers), ground.scene);
+        if parts.fixed.is_none() && parts.free.is_empty() {
+            return f64::NEG_INFINITY;
+        }
+        let mut data = ground.data.clone();
+        if let Some(fixed) = &parts.fixed {
+            data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+        }
+        let new: Vec<&[f64]> = parts.free.iter().chain(&parts.beside).map(Vec::as_slice).collect();
+        let normal = self.normal.with(&self.columns, &new, &data, parts.fixed.is_some(), &ground.inverse);
+        0.5 * (ground.left - normal.solve().2)
+    }
+}
+
+/// Improves a shape by steps along each of its numbers, on a logarithmic scale where its bounds are positive and far
+/// apart, halving the steps.
+pub fn refine(
+    start: &[f64],
+    bounds: &[(f64, f64)],
+    evaluations: usize,
+    gain: impl Fn(&[f64]) -> f64,
+) -> (Vec<f64>, f64) {
+    let logarithmic: Vec<bool> = bounds.iter().map(|(low, high)| *low > 0.0 && high / low > 20.0).collect();
+    let to = |i: usize, x: f64| if logarithmic[i] { x.max(1e-300).ln() } else { x };
+    let from = |i: usize, u: f64| if logarithmic[i] { u.exp() } else { u };
+    let mut at = start.to_vec();
+    for (x, (low, high)) in at.iter_mut().zip(bounds) {
+        *x = x.clamp(*low, *high);
+    }
+    let mut best = gain(&at);
+    let mut used = 1;
+    let mut steps: Vec<f64> = (0..at.len())
+        .map(|i| {
+            let width = to(i, bounds[i].1) - to(i, bounds[i].0);
+            if logarithmic[i] { 0.35f64.min(width) } else { (0.01 * width).max(0.0) }
+        })
+        .collect();
+    let finest: Vec<f64> = steps.iter().map(|s| s * 1e-5).collect();
+    while used < evaluations && steps.iter().zip(&finest).any(|(s, f)| *s > *f) {
+        let mut moved = false;
+        for i in 0..at.len() {
+            if steps[i] <= 0.0 {
+                continue;
+            }
+            let here = to(i, at[i]);
+            let mut sides = [f64::NEG_INFINITY; 2];
+            for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
+                let mut next = at.clone();
+                next[i] = from(i, here + sign * steps[i]).clamp(bounds[i].0, bounds[i].1);
+                if next[i] == at[i] {
+                    continue;
+                }
+                let got = gain(&next);
+                used += 1;
+                sides[side] = got;
+                if got > best {
+                    (best, at) = (got, next);
+                    moved = true;
+                    break;
+                }
+            }
+            if !moved && sides.iter().all(|s| s.is_finite()) {
+                // Three points around the best: the top of their parabola.
+                let curve = sides[0] + sides[1] - 2.0 * best;
+                if curve < 0.0 {
+                    let mut next = at.clone();
+                    let shift = 0.5 * steps[i] * (sides[1] - sides[0]) / curve;
+                    next[i] = from(i, here + shift).clamp(bounds[i].0, bounds[i].1);
+                    let got = gain(&next);
+                    used += 1;
+                    if got > best {
+                        (best, at) = (got, next);
+                    }
+                }
+            }
+        }
+        if !moved {
+            steps.iter_mut().for_each(|s| *s *= 0.3);
+        }
+    }
+    (at, best)
+}
+
+fn try_course(
+    effect: &'static dyn Effect,
+    course: &'static dyn Course,
+    before: &Tried,
+    scenes: &Scenes,
+    grounds: &Grounds<'_>,
+) -> Option<Candidate> {
+    let repeated = before.hypothesis.courses.iter().filter(|c| c.effect.kind() == effect.kind()).count();
+    let ground = grounds.of(course.pace());
+    let scene = ground.scene;
+    if !course.applies(&scene.drivers) || effect.needs().iter().any(|c| scene.drivers.column(*c).is_none()) {
+        return None;
+    }
+    let starts = course.starts(&scene.drivers, &ground.look());
+    // A linear course twice is the same column twice.
+    if repeated > 0 && starts.shapes.iter().all(Vec::is_empty) {
+        return None;
+    }
+    let bounds = course.bounds(&scene.drivers);
+    let columns = ground.columns(Some(course));
+    let normal = Normal::new(&columns, &ground.data, &ground.inverse);
+    let search = ShapeSearch { course, ground, columns, normal };
+    let mut rough: Vec<(Vec<f64>, f64)> = starts.shapes.iter().map(|s| (s.clone(), search.gain(s))).collect();
+    rough.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let leader = rough.first()?.1;
+    let promising = rough.into_iter().filter(|(_, g)| *g > 0.5 * leader).take(3);
+    let (shape, gain) = promising
+        .map(|(s, g)| if s.is_empty() { (s, g) } else { refine(&s, &bounds, 80, |x| search.gain(x)) })
+        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    if gain.is_nan() || gain < 0.5 {
+        return None;
+    }
+    let parts = course.parts(&shape, &scene.drivers);
+    let free_shape = bounds.iter().filter(|(low, high)| high > low).count();
+    let parameters = before.parameters + parts.free.len() + parts.beside.len() + free_shape;
+    let mut hypothesis = before.hypothesis.clone();
+    hypothesis.courses.push(CourseIn { effect, shape, coefficients: vec![] });
+    let fit = fit(&mut hypothesis, &scenes.full);
+    Some(rated(effect, Tried { hypothesis, fit, parameters }, before, starts.looked, scenes.rows))
+}
+
+fn try_spectrum(
+    effect: &'static dyn Effect,
+    spectrum: &'static dyn Spectrum,
+    before: &Tried,
+    scenes: &Scenes,
+) -> Option<Candidate> {
+    let scene = &scenes.full;
+    let act = spectrum.act();
+    let observed = scene.observed(&before.fit.mean.residual);
+    let look = SpectralLook {
+        bins: &scene.bins,
+        observed: &observed,
+        expected: &before.fit.densities,
+        lattice_arcsec: scenes.lattice_arcsec,
+    };
+    if let SpectrumAct::Frees(term) = act {
+        let i = base_index(term)?;
+        if before.hypothesis.noise.freed[i] {
+            return None;
+        }
+        return free_base(effect, i, before, scenes, &observed);
+    }
+    let repeated =
+        before.hypothesis.noise.spectra.iter().any(|s| !s.stated && s.effect.kind() == effect.kind());
+    if repeated && effect.kind() != "quasi_periodic" {
+        return None;
+    }
+    let starts = spectrum.starts(&look);
+    let bounds = spectrum.bounds(&look);
+    let fits = starts.iter().map(|start| {
+        let mut noise = before.hypothesis.noise.clone();
+        let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
+        noise.spectra.push(SpectrumIn { effect, fitted, stated: false });
+        let fit = super::noise_fit::fit(&mut noise, scene, &observed);
+        (noise, fit.log_likelihood)
+    });
+    let (noise, _) = fits.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let parameters = before.parameters + noise.spectra.last().map_or(0, |s| s.fitted.len());
+    finish_spectrum(effect, noise, parameters, spectrum.looked(&look), before, scenes)
+}
+
+/// N, B or K set free, begun at the claim and well above it: a strong prior traps a fit that begins beside it.
+fn free_base(
+    effect: &'static dyn Effect,
+    i: usize,
+    before: &Tried,
+    scenes: &Scenes,
+    observed: &[f64],
+) -> Option<Candidate> {
+    let scene = &scenes.full;
+    let noise = &before.hypothesis.noise;
+    // A coefficient claimed to be zero begins where it would be a tenth of the spectrum somewhere.
+    let smallest = scene
+        .units
+        .iter()
+        .zip(&before.fit.densities)
+        .map(|(u, s)| (0.1 * s / u[i]).sqrt())
+        .fold(f64::INFINITY, f64::min);
+    let begin = if noise.base[i] > 0.0 { noise.base[i] } else { smallest };
+    let fits = [1.0, 5.75, 33.0, 0.2].map(|factor| {
+        let mut noise = noise.clone();
+        noise.freed[i] = true;
+        noise.base[i] = begin * factor;
+        noise.spectra.push(SpectrumIn { effect, fitted: vec![begin * factor], stated: false });
+        let fit = super::noise_fit::fit(&mut noise, scene, observed);
+        (noise, fit.log_likelihood)
+    });
+    let (noise, _) = fits.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    finish_spectrum(effect, noise, before.parameters + 1, 1.0, before, scenes)
+}
+
+fn finish_spectrum(
+    effect: &'static dyn Effect,
+    noise: super::noise_fit::Noise,
+    parameters: usize,
+    looked: f64,
+    before: &Tried,
+    scenes: &Scenes,
+) -> Option<Candidate> {
+    let mut hypothesis = before.hypothesis.clone();
+    hypothesis.noise = noise;
+    let fit = fit(&mut hypothesis, &scenes.full);
+    let candidate = rated(effect, Tried { hypothesis, fit, parameters }, before, looked, scenes.rows);
+    (candidate.gain > 0.5).then_some(candidate)
+}

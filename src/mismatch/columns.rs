@@ -1,0 +1,187 @@
+//! Tests of the residual against the recorded columns: any smooth function of one, its rate of change, or a product of
+//! two; and the size of the residual over each.
+
+use super::departures::{Departure, White, f_normal};
+use super::scene::{Scene, smoothed};
+use crate::effect::{Column, Domain, Place};
+use crate::estimate::{chi_square_tail, normal_two_sided};
+use crate::numeric::cosine::dct2;
+use nalgebra::{DMatrix, DVector};
+
+/// Order of the polynomials of a column.
+const ORDER: usize = 6;
+/// Groups by value of a column for the size of the residual.
+const GROUPS: usize = 8;
+
+fn domain(column: Column) -> Domain {
+    match column {
+        Column::Temperature => Domain::Temperature,
+        Column::TableRate => Domain::InputRate,
+        Column::TableAngle => Domain::Angle,
+        Column::OuterRate => Domain::OuterRate,
+        Column::Supply => Domain::Supply,
+    }
+}
+
+/// Every test against columns.
+pub fn all(scene: &Scene, white: &White) -> Vec<Departure> {
+    let mut named: Vec<(Domain, Vec<f64>)> = vec![];
+    for column in Column::ALL {
+        let Some(values) = scene.drivers.column(column) else { continue };
+        let values = if column == Column::Temperature { smoothed(values) } else { values.to_vec() };
+        if column == Column::Temperature {
+            let per_minute = 60.0 / scene.drivers.dt_s;
+            let rate = derivative(&values).iter().map(|d| d * per_minute).collect();
+            named.push((Domain::TemperatureRate, rate));
+        }
+        named.push((domain(column), values));
+    }
+    let mut out: Vec<Departure> = vec![];
+    for (place, values) in &named {
+        out.extend(function_of(white, "column_mean", *place, values));
+        out.extend(size_over(white, *place, values));
+    }
+    for i in 0..named.len() {
+        for j in 0..i {
+            let (a, b) = (centred(&named[i].1), centred(&named[j].1));
+            let product: Vec<f64> = a.iter().zip(&b).map(|(x, y)| x * y).collect();
+            let columns = [product];
+            if let Some(p_value) = gain_of(white, &columns) {
+                let (from, to) = crate::numeric::range::ends(&named[j].1);
+                let place = Place { domain: named[j].0, from, to };
+                out.push(Departure { test: "product", place, p_value });
+            }
+        }
+    }
+    out
+}
+
+fn derivative(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    (0..n)
+        .map(|i| {
+            let (a, b) = (i.saturating_sub(1), (i + 1).min(n - 1));
+            (values[b] - values[a]) / (b - a).max(1) as f64
+        })
+        .collect()
+}
+
+fn centred(values: &[f64]) -> Vec<f64> {
+    let (low, high) = crate::numeric::range::ends(values);
+    let (middle, half) = (0.5 * (low + high), (0.5 * (high - low)).max(1e-300));
+    values.iter().map(|v| (v - middle) / half).collect()
+}
+
+/// p-value of the power of the whitened residual in the span of some columns.
+fn gain_of(white: &White, columns: &[Vec<f64>]) -> Option<f64> {
+    let modes: Vec<Vec<f64>> = columns
+        .iter()
+        .map(|c| dct2(c).iter().zip(&white.roots).map(|(z, r)| z / r).collect::<Vec<f64>>())
+        .collect();
+    let p = modes.len();
+    let mut matrix = DMatrix::zeros(p, p);
+    let mut right = DVector::zeros(p);
+    for i in 0..p {
+        for j in 0..=i {
+            let v: f64 = modes[i].iter().zip(&modes[j]).skip(1).map(|(a, b)| a * b).sum();
+            matrix[(i, j)] = v;
+            matrix[(j, i)] = v;
+        }
+        right[i] = modes[i].iter().zip(&white.modes).skip(1).map(|(a, u)| a * u).sum();
+    }
+    let scale: Vec<f64> = (0..p).map(|i| matrix[(i, i)].sqrt()).collect();
+    if scale.iter().any(|s| !s.is_finite() || *s <= 0.0) {
+        return None;
+    }
+    for i in 0..p {
+        for j in 0..p {
+            matrix[(i, j)] /= scale[i] * scale[j];
+        }
+        right[i] /= scale[i];
+        matrix[(i, i)] += 1e-9;
+    }
+    let solution = matrix.cholesky()?.solve(&right);
+    Some(chi_square_tail(right.dot(&solution), p as f64))
+}
+
+/// Whether the residual follows a smooth function of a column, and at which of its values most.
+fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]) -> Option<Departure> {
+    let (low, high) = crate::numeric::range::ends(values);
+    if high - low <= 1e-9 * low.abs().max(high.abs()) {
+        return None;
+    }
+    let x = centred(values);
+    let columns: Vec<Vec<f64>> = if domain == Domain::Angle {
+        (1..=ORDER / 2)
+            .flat_map(|k| {
+                let turn = |f: fn(f64) -> f64| {
+                    values.iter().map(|a| f(k as f64 * a.to_radians())).collect::<Vec<f64>>()
+                };
+                [turn(f64::cos), turn(f64::sin)]
+            })
+            .collect()
+    } else {
+        (1..=ORDER).map(|k| x.iter().map(|v| legendre(k, *v)).collect()).collect()
+    };
+    let p_value = gain_of(white, &columns)?;
+    let (from, to) = extreme(white, values, low, high);
+    Some(Departure { test, place: Place { domain, from, to }, p_value })
+}
+
+fn legendre(order: usize, x: f64) -> f64 {
+    let (mut last, mut here) = (1.0, x);
+    for k in 1..order {
+        let k = k as f64;
+        (last, here) = (here, ((2.0 * k + 1.0) * x * here - k * last) / (k + 1.0));
+    }
+    here
+}
+
+/// The tenth of the range of a column in which the weighted residual is farthest from zero.
+fn extreme(white: &White, values: &[f64], low: f64, high: f64) -> (f64, f64) {
+    const PARTS: usize = 10;
+    let mut sums = [(0.0, 0.0); PARTS];
+    for (e, v) in white.series.iter().zip(values) {
+        let i = (((v - low) / (high - low) * PARTS as f64) as usize).min(PARTS - 1);
+        sums[i].0 += e;
+        sums[i].1 += 1.0;
+    }
+    let z = |i: usize| if sums[i].1 > 0.0 { (sums[i].0 / f64::sqrt(sums[i].1)).abs() } else { 0.0 };
+    let best = (0..PARTS).max_by(|a, b| z(*a).total_cmp(&z(*b))).unwrap_or(0);
+    let step = (high - low) / PARTS as f64;
+    (low + best as f64 * step, low + (best + 1) as f64 * step)
+}
+
+/// Whether the size of the whitened residual depends on a column.
+fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure> {
+    let n = values.len();
+    if n < 64 * GROUPS || domain == Domain::Angle {
+        return None;
+    }
+    let (low, high) = crate::numeric::range::ends(values);
+    if high - low <= 1e-9 * low.abs().max(high.abs()) {
+        return None;
+    }
+    let by = |i: usize| if domain == Domain::InputRate { values[i].abs() } else { values[i] };
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|a, b| by(*a).total_cmp(&by(*b)));
+    let whole: f64 = white.series.iter().map(|e| e * e).sum();
+    let mut best = (1.0, 0.0, 0.0);
+    let mut looks = 0.0;
+    for group in order.chunks(n / GROUPS) {
+        if group.len() < 32 {
+            continue;
+        }
+        let inside: f64 = group.iter().map(|i| white.series[*i].powi(2)).sum();
+        let (length, rest) = (group.len() as f64, (n - group.len()) as f64);
+        let z = f_normal((inside / length) / ((whole - inside) / rest), length, rest);
+        let p = normal_two_sided(z);
+        looks += 1.0;
+        if p < best.0 {
+            let (a, b) = (by(group[0]), by(group[group.len() - 1]));
+            best = (p, a.min(b), a.max(b));
+        }
+    }
+    let place = Place { domain, from: best.1, to: best.2 };
+    Some(Departure { test: "size", place, p_value: (best.0 * looks).min(1.0) })
+}

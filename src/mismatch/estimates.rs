@@ -1,0 +1,406 @@
+//! Parameters of the chosen effects with their 95 % intervals, and what each adds to the rate.
+
+use super::candidates::{Scenes, Tried};
+use super::finding::ParameterValue;
+use super::hypothesis::{CourseIn, Normal, PartModes, kept, part_modes};
+use super::noise_fit::Which;
+use super::scene::Scene;
+use super::select::Slot;
+use crate::effect::{Course, Effect, Model, Param, SpectrumAct, Value, Values};
+use crate::numeric::cosine::inverse_dct2;
+use nalgebra::DMatrix;
+use std::collections::BTreeMap;
+
+/// Half width of a 95 % interval in standard deviations.
+const TWO_SIDED_95: f64 = 1.959_964;
+/// Drop of the log-likelihood at the ends of a 95 % profile interval.
+const DROP_95: f64 = 1.920_729;
+
+/// An effect's parameters.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Estimated {
+    /// As reports give them.
+    pub reported: BTreeMap<String, ParameterValue>,
+    /// As the augmented claim states them.
+    pub stated: Values,
+}
+
+fn interval(param: &Param, value: f64, deviation: f64) -> [f64; 2] {
+    if value > 0.0 && param.lower >= 0.0 {
+        let factor = (TWO_SIDED_95 * deviation / value).min(30.0).exp();
+        return [value / factor, value * factor];
+    }
+    [value - TWO_SIDED_95 * deviation, value + TWO_SIDED_95 * deviation]
+}
+
+/// The parameters of one effect of a fitted hypothesis.
+pub fn of(effect: &'static dyn Effect, slot: Slot, best: &Tried, scenes: &Scenes) -> Estimated {
+    match (slot, effect.model()) {
+        (Slot::Course(i), Model::Course(course)) => of_course(effect, course, i, best, scenes),
+        (Slot::Spectrum(i), Model::Spectrum(_)) => of_spectrum(effect, i, best, &scenes.full),
+        _ => Estimated::default(),
+    }
+}
+
+/// One course among the columns of its hypothesis.
+struct Placed<'a> {
+    scene: &'a Scene,
+    course: &'static dyn Course,
+    inside: &'a CourseIn,
+    columns: Vec<(Vec<f64>, f64)>,
+    data: Vec<f64>,
+    inverse: Vec<f64>,
+}
+
+impl<'a> Placed<'a> {
+    fn new(course: &'static dyn Course, index: usize, best: &'a Tried, scenes: &'a Scenes) -> Placed<'a> {
+        let scene = scenes.of(course.pace());
+        let powers = scene.powers(&best.hypothesis.noise.densities(scene));
+        let parts = part_modes(scene, &best.hypothesis.courses);
+        let mut data = scene.modes.clone();
+        let mut columns: Vec<(Vec<f64>, f64)> =
+            kept(scene, &best.hypothesis.courses).iter().map(|n| (n.modes.clone(), n.deviation)).collect();
+        for (j, part) in parts.into_iter().enumerate() {
+            if j == index {
+                continue;
+            }
+            if let Some(fixed) = &part.fixed {
+                data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+            }
+            columns.extend(part.free.into_iter().chain(part.beside).map(|c| (c, f64::INFINITY)));
+        }
+        let inverse = powers.iter().map(|p| 1.0 / p).collect();
+        Placed { scene, course, inside: &best.hypothesis.courses[index], columns, data, inverse }
+    }
+
+    fn parts(&self, shape: &[f64]) -> PartModes {
+        PartModes::of(&self.course.parts(shape, &self.scene.drivers), self.scene)
+    }
+
+    /// Penalised sum of squares over −2 for a shape: the log-likelihood with the noise held.
+    fn log_likelihood(&self, shape: &[f64]) -> (f64, Vec<f64>) {
+        let parts = self.parts(shape);
+        let mut data = self.data.clone();
+        if let Some(fixed) = &parts.fixed {
+            data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+        }
+        let mut columns: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, s)| (c.as_slice(), *s)).collect();
+        let others = columns.len();
+        columns.extend(parts.free.iter().chain(&parts.beside).map(|c| (c.as_slice(), f64::INFINITY)));
+        let (coefficients, _, left) = Normal::new(&columns, &data, &self.inverse).solve();
+        (-0.5 * left, coefficients[others..others + parts.free.len()].to_vec())
+    }
+
+    /// Covariance of shape and coefficients of the free columns, everything else free beside.
+    fn covariance(&self, coefficients: &[f64]) -> DMatrix<f64> {
+        let shape = &self.inside.shape;
+        let parts = self.parts(shape);
+        let bounds = self.course.bounds(&self.scene.drivers);
+        let slopes: Vec<Vec<f64>> = (0..shape.len()).map(|i| self.slope(i, &bounds, coefficients)).collect();
+        let columns: Vec<(&[f64], f64)> = slopes
+            .iter()
+            .chain(&parts.free)
+            .chain(&parts.beside)
+            .map(|c| (c.as_slice(), f64::INFINITY))
+            .chain(self.columns.iter().map(|(c, s)| (c.as_slice(), *s)))
+            .collect();
+        let (_, covariance, _) = Normal::new(&columns, &self.data, &self.inverse).solve();
+        let wanted = shape.len() + parts.free.len();
+        covariance.view((0, 0), (wanted, wanted)).into_owned()
+    }
+
+    /// Derivative of the course by a number of its shape, in modes.
+    fn slope(&self, i: usize, bounds: &[(f64, f64)], coefficients: &[f64]) -> Vec<f64> {
+        let (low, high) = bounds.get(i).copied().unwrap_or((f64::MIN, f64::MAX));
+        let shape = &self.inside.shape;
+        let step = (1e-3 * shape[i].abs()).max(1e-6 * (high - low).min(1e12)).max(1e-12);
+        let at = |x: f64| {
+            let mut moved = shape.clone();
+            moved[i] = x.clamp(low, high);
+            let parts = self.parts(&moved);
+            let mut sum = parts.fixed.unwrap_or_else(|| vec![0.0; self.data.len()]);
+            for (column, c) in parts.free.iter().zip(coefficients) {
+                sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
+            }
+            (sum, moved[i])
+        };
+        let ((up, a), (down, b)) = (at(shape[i] + step), at(shape[i] - step));
+        if a <= b {
+            return vec![0.0; up.len()];
+        }
+        up.iter().zip(&down).map(|(u, d)| (u - d) / (a - b)).collect()
+    }
+
+    /// Ends of the interval of the only number of a shape, at which the profile log-likelihood has dropped.
+    fn profile(&self, deviation: f64) -> Option<[f64; 2]> {
+        let [at] = self.inside.shape[..] else { return None };
+        let (low, high) = *self.course.bounds(&self.scene.drivers).first()?;
+        if high <= low {
+            return None;
+        }
+        let top = self.log_likelihood(&[at]).0;
+        let drop = |x: f64| top - self.log_likelihood(&[x]).0;
+        let first = if deviation.is_finite() && deviation > 0.0 { deviation } else { 0.01 * (high - low) };
+        let side = |sign: f64| {
+            let (mut inside, mut step) = (at, first);
+            let mut outside = None;
+            for _ in 0..24 {
+                let x = (at + sign * step).clamp(low, high);
+                if drop(x) >= DROP_95 {
+                    outside = Some(x);
+                    break;
+                }
+                inside = x;
+                if x == low || x == high {
+                    break;
+                }
+                step *= 1.7;
+            }
+            let Some(mut outside) = outside else { return inside };
+            for _ in 0..10 {
+                let middle = 0.5 * (inside + outside);
+                if drop(middle) >= DROP_95 { outside = middle } else { inside = middle }
+            }
+            0.5 * (inside + outside)
+        };
+        Some([side(-1.0), side(1.0)])
+    }
+}
+
+fn rms(columns: &[Vec<f64>], coefficients: &[f64], fixed: Option<&Vec<f64>>, samples: usize) -> f64 {
+    let mut sum = fixed.cloned().unwrap_or_else(|| vec![0.0; samples]);
+    for (column, c) in columns.iter().zip(coefficients) {
+        sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
+    }
+    let n = sum.len().max(1) as f64;
+    let mean = sum.iter().sum::<f64>() / n;
+    (sum.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
+fn of_course(
+    effect: &'static dyn Effect,
+    course: &'static dyn Course,
+    index: usize,
+    best: &Tried,
+    scenes: &Scenes,
+) -> Estimated {
+    let placed = Placed::new(course, index, best, scenes);
+    let drivers = &placed.scene.drivers;
+    let shape = &placed.inside.shape;
+    let (_, coefficients) = placed.log_likelihood(shape);
+    let covariance = placed.covariance(&coefficients);
+    let deviation_of_shape = if shape.len() == 1 { covariance[(0, 0)].sqrt() } else { f64::NAN };
+    let profile = placed.profile(deviation_of_shape);
+    let values = course.parameters(shape, &coefficients, drivers);
+    let parts = course.parts(shape, drivers);
+    let spread = rms(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
+    // Everything that is a function of shape and coefficients, with the rms last.
+    let all = |shape: &[f64], coefficients: &[f64]| {
+        let mut out = course.parameters(shape, coefficients, drivers);
+        let parts = course.parts(shape, drivers);
+        out.push(rms(&parts.free, coefficients, parts.fixed.as_ref(), drivers.samples));
+        out
+    };
+    let deviations = propagate(shape, &coefficients, &covariance, &all);
+    let mut out = Estimated::default();
+    for (i, (param, value)) in effect.params().iter().zip(&values).enumerate() {
+        if !value.is_finite() {
+            continue;
+        }
+        out.stated.insert(param.name.to_owned(), Value::Number(*value));
+        if !param.reported {
+            continue;
+        }
+        // A parameter that the shape alone determines takes the interval of the shape.
+        let by_shape = profile.and_then(|ends| {
+            let moved = ends.map(|x| course.parameters(&[x], &coefficients, drivers).get(i).copied());
+            let (Some(a), Some(b)) = (moved[0], moved[1]) else { return None };
+            let still =
+                course.parameters(shape, &coefficients.iter().map(|c| 1.01 * c).collect::<Vec<_>>(), drivers);
+            (still.get(i) == Some(value) && a != b).then_some([a.min(b), a.max(b)])
+        });
+        let ci95 = by_shape.unwrap_or_else(|| interval(param, *value, deviations[i]));
+        let unit = param.unit.to_owned();
+        out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
+    }
+    for (name, list) in course.lists(shape, &coefficients, drivers) {
+        out.stated.insert(name.to_owned(), Value::List(list));
+    }
+    let deviation = deviations.last().copied().unwrap_or(f64::NAN);
+    if spread.is_finite() && deviation.is_finite() && spread > 0.0 {
+        let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();
+        let ci95 = [spread / factor, spread * factor];
+        out.reported
+            .insert("rms_deg_h".to_owned(), ParameterValue { value: spread, unit: "deg/h".to_owned(), ci95 });
+    }
+    out
+}
+
+/// Standard deviations of functions of shape and coefficients by their numerical derivatives.
+fn propagate(
+    shape: &[f64],
+    coefficients: &[f64],
+    covariance: &DMatrix<f64>,
+    functions: &dyn Fn(&[f64], &[f64]) -> Vec<f64>,
+) -> Vec<f64> {
+    let (d, p) = (shape.len(), shape.len() + coefficients.len());
+    let mut slopes: Vec<Vec<f64>> = vec![];
+    for i in 0..p {
+        let deviation = covariance[(i, i)].max(0.0).sqrt();
+        let value = if i < d { shape[i] } else { coefficients[i - d] };
+        let step = if deviation > 0.0 { 0.05 * deviation } else { 1e-6 * value.abs().max(1e-9) };
+        let moved = |sign: f64| {
+            let (mut s, mut c) = (shape.to_vec(), coefficients.to_vec());
+            if i < d {
+                s[i] += sign * step
+            } else {
+                c[i - d] += sign * step
+            }
+            functions(&s, &c)
+        };
+        let (up, down) = (moved(1.0), moved(-1.0));
+        slopes.push(up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * step)).collect());
+    }
+    let count = slopes.first().map_or_else(|| functions(shape, coefficients).len(), Vec::len);
+    (0..count)
+        .map(|k| {
+            let mut sum = 0.0;
+            for i in 0..p {
+                for j in 0..p {
+                    sum += slopes[i][k] * covariance[(i, j)] * slopes[j][k];
+                }
+            }
+            sum.max(0.0).sqrt()
+        })
+        .collect()
+}
+
+fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scene: &Scene) -> Estimated {
+    let Model::Spectrum(spectrum) = effect.model() else { return Estimated::default() };
+    let noise = &best.hypothesis.noise;
+    let part = &noise.spectra[index];
+    let which: Vec<Option<usize>> = (0..part.fitted.len())
+        .map(|p| {
+            let wanted = match spectrum.act() {
+                SpectrumAct::Frees(term) => Which::Base(super::noise_fit::base_index(term).unwrap_or(0)),
+                _ => Which::Effect(index, p),
+            };
+            best.fit.noise.which.iter().position(|w| *w == wanted)
+        })
+        .collect();
+    let covariance = |i: usize, j: usize| match (which[i], which[j]) {
+        (Some(a), Some(b)) => best.fit.noise.covariance[(a, b)],
+        _ => 0.0,
+    };
+    let all = |fitted: &[f64]| {
+        let mut out = spectrum.parameters(fitted);
+        out.push(added_rms(noise, index, fitted, scene));
+        out
+    };
+    let values = all(&part.fitted);
+    let p = part.fitted.len();
+    let slopes: Vec<Vec<f64>> = (0..p)
+        .map(|i| {
+            let moved = |step: f64| {
+                let mut fitted = part.fitted.clone();
+                fitted[i] *= step.exp();
+                all(&fitted)
+            };
+            moved(1e-3).iter().zip(&moved(-1e-3)).map(|(a, b)| (a - b) / 2e-3).collect()
+        })
+        .collect();
+    let deviation = |k: usize| {
+        let mut sum = 0.0;
+        for i in 0..p {
+            for j in 0..p {
+                sum += slopes[i][k] * covariance(i, j) * slopes[j][k];
+            }
+        }
+        f64::max(sum, 0.0).sqrt()
+    };
+    let mut out = Estimated::default();
+    for (i, (param, value)) in effect.params().iter().zip(&values).enumerate() {
+        if !value.is_finite() {
+            continue;
+        }
+        out.stated.insert(param.name.to_owned(), Value::Number(*value));
+        if param.reported {
+            let ci95 = interval(param, *value, deviation(i));
+            let unit = param.unit.to_owned();
+            out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
+        }
+    }
+    let (spread, last) = (values[values.len() - 1], deviation(values.len() - 1));
+    if spread > 0.0 && spread.is_finite() {
+        let factor = (TWO_SIDED_95 * last / spread).min(30.0).exp();
+        let ci95 = [spread / factor, spread * factor];
+        out.reported
+            .insert("rms_deg_h".to_owned(), ParameterValue { value: spread, unit: "deg/h".to_owned(), ci95 });
+    }
+    out
+}
+
+/// Root of the variance that a spectral effect adds over the record; 0 for one that takes away, or filters.
+fn added_rms(noise: &super::noise_fit::Noise, index: usize, fitted: &[f64], scene: &Scene) -> f64 {
+    let mut noise = noise.clone();
+    let claimed = noise.claimed;
+    let mut base = None;
+    if let Some(part) = noise.spectra.get_mut(index) {
+        part.fitted = fitted.to_vec();
+        if let Model::Spectrum(s) = part.effect.model()
+            && let SpectrumAct::Frees(term) = s.act()
+        {
+            base = super::noise_fit::base_index(term);
+        }
+    }
+    if let (Some(i), Some(value)) = (base, fitted.first()) {
+        noise.base[i] = *value;
+    }
+    let mut densities = noise.part_densities(index, scene);
+    if let Some(i) = base {
+        for (d, u) in densities.iter_mut().zip(&scene.units) {
+            *d -= claimed[i].powi(2) * u[i];
+        }
+    }
+    let n = scene.drivers.samples as f64;
+    let sum: f64 = scene.bins.iter().zip(&densities).map(|(b, d)| b.modes as f64 * d / b.dt_s).sum();
+    (sum / n).max(0.0).sqrt()
+}
+
+/// What everything that a hypothesis adds to the claim contributes to the rate, deg/h on the grid: courses, and the best
+/// linear estimate of processes that are slow or narrow-band. `None` where nothing can be predicted sample by sample.
+pub fn correction(best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
+    let scene = &scenes.full;
+    let mut out = vec![0.0; scene.drivers.samples];
+    let mut any = false;
+    for inside in &best.hypothesis.courses {
+        let Some(course) = inside.course() else { continue };
+        let parts = course.parts(&inside.shape, &scene.drivers);
+        any = true;
+        if let Some(fixed) = &parts.fixed {
+            out.iter_mut().zip(fixed).for_each(|(o, f)| *o += f);
+        }
+        for (column, c) in parts.free.iter().zip(&inside.coefficients) {
+            out.iter_mut().zip(column).for_each(|(o, z)| *o += c * z);
+        }
+    }
+    for (i, part) in best.hypothesis.noise.spectra.iter().enumerate() {
+        let Model::Spectrum(spectrum) = part.effect.model() else { continue };
+        if part.stated || !spectrum.has_course() {
+            continue;
+        }
+        any = true;
+        let densities = best.hypothesis.noise.part_densities(i, scene);
+        let own = scene.powers(&densities);
+        let modes: Vec<f64> = best
+            .fit
+            .mean
+            .residual
+            .iter()
+            .zip(own.iter().zip(&best.fit.powers))
+            .map(|(x, (s, p))| if s.is_finite() && p.is_finite() { x * s / p } else { 0.0 })
+            .collect();
+        out.iter_mut().zip(inverse_dct2(&modes)).for_each(|(o, c)| *o += c);
+    }
+    any.then_some(out)
+}

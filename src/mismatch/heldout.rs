@@ -1,0 +1,119 @@
+//! Held-out figures: ten blocks of equal time, the parameters from blocks 1, 3, 5, 7, 9, judged on 2, 4, 6, 8, 10. Each
+//! block is looked at about its own mean.
+
+use super::candidates::{Tried, refine};
+use super::hypothesis::{Hypothesis, Normal, PartModes, fit, kept, part_modes};
+use super::noise_fit::whittle;
+use super::problem::Problem;
+use super::scene::Scene;
+use crate::numeric::cosine::inverse_dct2;
+
+/// Blocks.
+const BLOCKS: usize = 10;
+/// Bins of the held-out residual in a block.
+const BINS: usize = 200;
+
+/// Figures of one hypothesis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldOut {
+    /// Log-likelihood of the held-out blocks.
+    pub log_likelihood: f64,
+    /// Rms of the held-out residual in bins, deg/h.
+    pub rms_deg_h: f64,
+}
+
+/// The two halves of a problem.
+pub struct Halves {
+    train: Scene,
+    test: Scene,
+    bin: usize,
+}
+
+impl Halves {
+    /// Cuts a problem.
+    pub fn new(problem: &Problem) -> Halves {
+        let length = problem.drivers.samples / BLOCKS;
+        let scene = |odd: usize| {
+            let blocks = (0..BLOCKS).filter(|b| b % 2 == odd).map(|b| b * length).collect();
+            Scene::of_blocks(
+                problem.drivers.clone(),
+                &problem.residual,
+                &problem.deviations(),
+                blocks,
+                length,
+            )
+        };
+        Halves { train: scene(0), test: scene(1), bin: (length / BINS).max(1) }
+    }
+
+    /// Length of the bins, s.
+    pub fn bin_s(&self) -> f64 {
+        self.bin as f64 * self.train.drivers.dt_s
+    }
+
+    /// Fits a hypothesis to one half, beginning from its fit to everything, and judges it on the other.
+    pub fn judge(&self, tried: &Tried) -> HeldOut {
+        let mut hypothesis = tried.hypothesis.clone();
+        refine_shapes(&mut hypothesis, &self.train);
+        let trained = fit(&mut hypothesis, &self.train);
+        let mut residual = self.test.modes.clone();
+        let mut coefficients = trained.mean.coefficients.iter();
+        let mut subtract = |column: &[f64], c: f64| {
+            residual.iter_mut().zip(column).for_each(|(r, z)| *r -= c * z);
+        };
+        for nuisance in kept(&self.test, &hypothesis.courses) {
+            subtract(&nuisance.modes, coefficients.next().copied().unwrap_or(0.0));
+        }
+        for part in part_modes(&self.test, &hypothesis.courses) {
+            if let Some(fixed) = &part.fixed {
+                subtract(fixed, 1.0);
+            }
+            for column in part.free.iter().chain(&part.beside) {
+                subtract(column, coefficients.next().copied().unwrap_or(0.0));
+            }
+        }
+        let densities = hypothesis.noise.densities(&self.test);
+        let log_likelihood = whittle(&self.test, &self.test.observed(&residual), &densities);
+        HeldOut { log_likelihood, rms_deg_h: self.rms(&residual) }
+    }
+
+    fn rms(&self, residual: &[f64]) -> f64 {
+        let bins: Vec<f64> = residual
+            .chunks_exact(self.test.length)
+            .flat_map(|block| crate::effect::averages(&inverse_dct2(block), self.bin))
+            .collect();
+        let n = bins.len().max(1) as f64;
+        let mean = bins.iter().sum::<f64>() / n;
+        (bins.iter().map(|b| (b - mean).powi(2)).sum::<f64>() / n).sqrt()
+    }
+}
+
+/// Moves each shape to where the training half has it.
+fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
+    let powers = scene.powers(&hypothesis.noise.densities(scene));
+    let inverse: Vec<f64> = powers.iter().map(|p| 1.0 / p).collect();
+    for i in 0..hypothesis.courses.len() {
+        let Some(course) = hypothesis.courses[i].course() else { continue };
+        if hypothesis.courses[i].shape.is_empty() {
+            continue;
+        }
+        let bounds = course.bounds(&scene.drivers);
+        let others = part_modes(scene, &hypothesis.courses);
+        let nuisances = kept(scene, &hypothesis.courses);
+        let gain = |shape: &[f64]| {
+            let own = PartModes::of(&course.parts(shape, &scene.drivers), scene);
+            let mut data = scene.modes.clone();
+            let mut columns: Vec<(&[f64], f64)> =
+                nuisances.iter().map(|n| (n.modes.as_slice(), n.deviation)).collect();
+            for part in others.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| p).chain([&own]) {
+                if let Some(fixed) = &part.fixed {
+                    data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+                }
+                columns.extend(part.free.iter().chain(&part.beside).map(|c| (c.as_slice(), f64::INFINITY)));
+            }
+            -0.5 * Normal::new(&columns, &data, &inverse).solve().2
+        };
+        let (shape, _) = refine(&hypothesis.courses[i].shape, &bounds, 40, gain);
+        hypothesis.courses[i].shape = shape;
+    }
+}

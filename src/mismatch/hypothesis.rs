@@ -1,0 +1,267 @@
+//! A hypothesis, the claim plus effects, and its fit to a scene: noise by Whittle, courses by generalised least squares,
+//! in turns until neither moves.
+
+use super::noise_fit::{self, Noise, NoiseFit};
+use super::scene::{NuisanceColumn, Scene};
+use crate::effect::{Course, Effect, Model, Parts};
+use nalgebra::{DMatrix, DVector};
+
+/// A course in a hypothesis.
+#[derive(Clone)]
+pub struct CourseIn {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Its shape.
+    pub shape: Vec<f64>,
+    /// Coefficients of its free columns, from the last fit.
+    pub coefficients: Vec<f64>,
+}
+
+impl CourseIn {
+    /// The forward model.
+    pub fn course(&self) -> Option<&'static dyn Course> {
+        match self.effect.model() {
+            Model::Course(c) => Some(c),
+            _ => None,
+        }
+    }
+}
+
+/// The claim plus effects.
+#[derive(Clone)]
+pub struct Hypothesis {
+    /// Noise.
+    pub noise: Noise,
+    /// Courses.
+    pub courses: Vec<CourseIn>,
+}
+
+/// Cosine modes of the parts of a course.
+#[derive(Debug, Clone, Default)]
+pub struct PartModes {
+    /// Modes of the fixed part.
+    pub fixed: Option<Vec<f64>>,
+    /// Modes of the free columns.
+    pub free: Vec<Vec<f64>>,
+    /// Modes of the columns beside.
+    pub beside: Vec<Vec<f64>>,
+}
+
+impl PartModes {
+    /// Transforms the parts.
+    pub fn of(parts: &Parts, scene: &Scene) -> PartModes {
+        let modes = |column: &Vec<f64>| scene.transform(column);
+        PartModes {
+            fixed: parts.fixed.as_ref().map(modes),
+            free: parts.free.iter().map(modes).collect(),
+            beside: parts.beside.iter().map(modes).collect(),
+        }
+    }
+}
+
+/// What generalised least squares gave.
+#[derive(Debug, Clone)]
+pub struct LeastSquares {
+    /// Coefficients: nuisances, then of each course its free and its beside columns.
+    pub coefficients: Vec<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// Modes of the residual.
+    pub residual: Vec<f64>,
+    /// −½ Σ c²/σ² of the nuisances.
+    pub prior: f64,
+}
+
+/// A fit of a hypothesis to a scene.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// Penalised log-likelihood.
+    pub log_likelihood: f64,
+    /// Of the noise.
+    pub noise: NoiseFit,
+    /// Of the mean.
+    pub mean: LeastSquares,
+    /// Density of each bin, (deg/h)²/Hz.
+    pub densities: Vec<f64>,
+    /// Variance of each mode, (deg/h)².
+    pub powers: Vec<f64>,
+}
+
+/// Nuisance columns that keep their prior under the courses of a hypothesis.
+pub fn kept<'a>(scene: &'a Scene, courses: &[CourseIn]) -> Vec<&'a NuisanceColumn> {
+    let replaced: Vec<_> = courses.iter().filter_map(|c| c.course()?.replaces()).collect();
+    scene.nuisances.iter().filter(|n| !replaced.contains(&n.nuisance)).collect()
+}
+
+/// Weighted normal equations of some columns.
+pub struct Normal {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+    total: f64,
+}
+
+fn inner(a: &[f64], b: &[f64], inverse: &[f64]) -> f64 {
+    a.iter().zip(b).zip(inverse).map(|((x, y), w)| x * y * w).sum()
+}
+
+impl Normal {
+    /// The equations for `columns` with prior deviations (infinite for none).
+    pub fn new(columns: &[(&[f64], f64)], data: &[f64], inverse: &[f64]) -> Normal {
+        let p = columns.len();
+        let mut matrix = DMatrix::zeros(p, p);
+        let mut right = DVector::zeros(p);
+        for (i, (a, deviation)) in columns.iter().enumerate() {
+            for (j, (b, _)) in columns.iter().enumerate().take(i + 1) {
+                let value = inner(a, b, inverse);
+                matrix[(i, j)] = value;
+                matrix[(j, i)] = value;
+            }
+            matrix[(i, i)] += deviation.powi(-2);
+            right[i] = inner(a, data, inverse);
+        }
+        Normal { matrix, right, total: inner(data, data, inverse) }
+    }
+
+    /// The equations with more columns, against the same data less a fixed part.
+    pub fn with(
+        &self,
+        old: &[(&[f64], f64)],
+        new: &[&[f64]],
+        data: &[f64],
+        fixed: bool,
+        inverse: &[f64],
+    ) -> Normal {
+        let (p, q) = (old.len(), new.len());
+        let mut matrix = DMatrix::zeros(p + q, p + q);
+        matrix.view_mut((0, 0), (p, p)).copy_from(&self.matrix);
+        let mut right = DVector::zeros(p + q);
+        for (i, (a, _)) in old.iter().enumerate() {
+            right[i] = if fixed { inner(a, data, inverse) } else { self.right[i] };
+        }
+        for (i, a) in new.iter().enumerate() {
+            for (j, (b, _)) in old.iter().enumerate() {
+                let value = inner(a, b, inverse);
+                matrix[(p + i, j)] = value;
+                matrix[(j, p + i)] = value;
+            }
+            for (j, b) in new.iter().enumerate().take(i + 1) {
+                let value = inner(a, b, inverse);
+                matrix[(p + i, p + j)] = value;
+                matrix[(p + j, p + i)] = value;
+            }
+            right[p + i] = inner(a, data, inverse);
+        }
+        let total = if fixed { inner(data, data, inverse) } else { self.total };
+        Normal { matrix, right, total }
+    }
+
+    /// Coefficients, covariance, and the penalised sum of squares that is left. Columns that others hold already get
+    /// no coefficient.
+    pub fn solve(&self) -> (Vec<f64>, DMatrix<f64>, f64) {
+        let p = self.right.len();
+        if p == 0 {
+            return (vec![], DMatrix::zeros(0, 0), self.total);
+        }
+        // Scaled to a unit diagonal; a ridge far below any information keeps collinear columns finite.
+        let scale: Vec<f64> = (0..p).map(|i| self.matrix[(i, i)].max(1e-300).sqrt()).collect();
+        let mut scaled = self.matrix.clone();
+        for i in 0..p {
+            for j in 0..p {
+                scaled[(i, j)] /= scale[i] * scale[j];
+            }
+            scaled[(i, i)] += 1e-9;
+        }
+        let Some(factor) = scaled.cholesky() else {
+            return (vec![0.0; p], DMatrix::zeros(p, p), self.total);
+        };
+        let right = DVector::from_fn(p, |i, _| self.right[i] / scale[i]);
+        let solution = factor.solve(&right);
+        let left = self.total - right.dot(&solution);
+        let mut covariance = factor.inverse();
+        for i in 0..p {
+            for j in 0..p {
+                covariance[(i, j)] /= scale[i] * scale[j];
+            }
+        }
+        ((0..p).map(|i| solution[i] / scale[i]).collect(), covariance, left)
+    }
+}
+
+/// Generalised least squares of everything in `parts` (one entry a course) and the kept nuisances.
+pub fn least_squares(
+    scene: &Scene,
+    hypothesis: &Hypothesis,
+    parts: &[PartModes],
+    powers: &[f64],
+) -> LeastSquares {
+    let inverse: Vec<f64> = powers.iter().map(|p| 1.0 / p).collect();
+    let mut data = scene.modes.clone();
+    for fixed in parts.iter().filter_map(|p| p.fixed.as_ref()) {
+        subtract(&mut data, fixed, 1.0);
+    }
+    let nuisances = kept(scene, &hypothesis.courses);
+    let mut columns: Vec<(&[f64], f64)> =
+        nuisances.iter().map(|n| (n.modes.as_slice(), n.deviation)).collect();
+    for part in parts {
+        columns.extend(part.free.iter().chain(&part.beside).map(|c| (c.as_slice(), f64::INFINITY)));
+    }
+    let (coefficients, covariance, _) = Normal::new(&columns, &data, &inverse).solve();
+    for ((column, _), c) in columns.iter().zip(&coefficients) {
+        subtract(&mut data, column, *c);
+    }
+    let priors = nuisances.iter().zip(&coefficients);
+    let prior = -0.5 * priors.map(|(n, c)| (c / n.deviation).powi(2)).sum::<f64>();
+    LeastSquares { coefficients, covariance, residual: data, prior }
+}
+
+fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
+    if coefficient != 0.0 {
+        data.iter_mut().zip(column).for_each(|(d, c)| *d -= coefficient * c);
+    }
+}
+
+/// Modes of every course of a hypothesis on a scene.
+pub fn part_modes(scene: &Scene, courses: &[CourseIn]) -> Vec<PartModes> {
+    let one = |c: &CourseIn| {
+        c.course().map(|x| PartModes::of(&x.parts(&c.shape, &scene.drivers), scene)).unwrap_or_default()
+    };
+    courses.iter().map(one).collect()
+}
+
+/// Fits a hypothesis: its noise parameters and the coefficients of its courses are changed to the best.
+pub fn fit(hypothesis: &mut Hypothesis, scene: &Scene) -> Fit {
+    let parts = part_modes(scene, &hypothesis.courses);
+    fit_with(hypothesis, scene, &parts)
+}
+
+/// As [`fit`], with the modes of the courses at hand.
+pub fn fit_with(hypothesis: &mut Hypothesis, scene: &Scene, parts: &[PartModes]) -> Fit {
+    let columns = parts.iter().map(|p| p.free.len() + p.beside.len()).sum::<usize>() + scene.nuisances.len();
+    let mut fit = turn(hypothesis, scene, parts);
+    for _ in 0..if columns == 0 { 0 } else { 5 } {
+        let next = turn(hypothesis, scene, parts);
+        let settled = (next.log_likelihood - fit.log_likelihood).abs() < 1e-3;
+        fit = next;
+        if settled {
+            break;
+        }
+    }
+    let mut at = kept(scene, &hypothesis.courses).len();
+    for (course, part) in hypothesis.courses.iter_mut().zip(parts) {
+        course.coefficients =
+            fit.mean.coefficients.get(at..at + part.free.len()).unwrap_or_default().to_vec();
+        at += part.free.len() + part.beside.len();
+    }
+    fit
+}
+
+/// Mean for the noise at hand, then noise for that mean.
+fn turn(hypothesis: &mut Hypothesis, scene: &Scene, parts: &[PartModes]) -> Fit {
+    let densities = hypothesis.noise.densities(scene);
+    let mean = least_squares(scene, hypothesis, parts, &scene.powers(&densities));
+    let observed = scene.observed(&mean.residual);
+    let noise = noise_fit::fit(&mut hypothesis.noise, scene, &observed);
+    let densities = hypothesis.noise.densities(scene);
+    let powers = scene.powers(&densities);
+    Fit { log_likelihood: noise.log_likelihood + mean.prior, noise, mean, densities, powers }
+}

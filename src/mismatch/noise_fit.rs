@@ -1,0 +1,341 @@
+//! The noise of a hypothesis and its fit: penalised Whittle likelihood over the bins of a scene.
+//!
+//! −ln L = ½ Σ n_b (ln S_b + I_b/S_b) + ½ Σ (ln c − ln c₀)²/σ²: stated coefficients move within their stated
+//! uncertainty and no further. Fisher scoring on logarithms of the parameters, with backtracking.
+
+use super::scene::Scene;
+use crate::claim::Claim;
+use crate::effect::{Effect, ModeBin, Model, SpectralLook, Spectrum, SpectrumAct};
+use crate::noise::data::NoiseType;
+use nalgebra::{DMatrix, DVector};
+
+/// Index of a base coefficient in arrays.
+pub fn base_index(term: NoiseType) -> Option<usize> {
+    super::scene::BASE.iter().position(|t| *t == term)
+}
+
+/// A spectral effect with its fitted parameters.
+#[derive(Clone)]
+pub struct SpectrumIn {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Fitted parameters; the whole coefficient for one that frees.
+    pub fitted: Vec<f64>,
+    /// True when the claim states it: its parameters stay.
+    pub stated: bool,
+}
+
+impl SpectrumIn {
+    fn spectrum(&self) -> Option<&'static dyn Spectrum> {
+        match self.effect.model() {
+            Model::Spectrum(s) => Some(s),
+            _ => None,
+        }
+    }
+}
+
+/// The noise of a hypothesis.
+#[derive(Clone)]
+pub struct Noise {
+    /// N deg/√h, B deg/h, K deg/h/√h.
+    pub base: [f64; 3],
+    /// As claimed.
+    pub claimed: [f64; 3],
+    /// Stated relative deviations; 0 is exact.
+    pub deviation: [f64; 3],
+    /// Set free by an effect.
+    pub freed: [bool; 3],
+    /// Density of the claimed quantisation for Q = 1 times Q², by bin: Q, arcsec.
+    pub quantization_arcsec: f64,
+    /// Spectral effects, stated and found.
+    pub spectra: Vec<SpectrumIn>,
+}
+
+/// Which parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Which {
+    /// N, B, K by index.
+    Base(usize),
+    /// Parameter of a spectral effect.
+    Effect(usize, usize),
+}
+
+/// A fit of the noise.
+#[derive(Debug, Clone)]
+pub struct NoiseFit {
+    /// Penalised log-likelihood without constants that are the same for all hypotheses.
+    pub log_likelihood: f64,
+    /// What was fitted.
+    pub which: Vec<Which>,
+    /// Covariance of the logarithms of those.
+    pub covariance: DMatrix<f64>,
+}
+
+impl Noise {
+    /// The noise as claimed.
+    pub fn of(claim: &Claim) -> Noise {
+        let terms = &claim.noise;
+        let base = [terms.n, terms.b, terms.k];
+        let u = &claim.uncertainty;
+        let spectra = claim.effects.iter().filter_map(|stated| match stated.effect.model() {
+            Model::Spectrum(s) => {
+                Some(SpectrumIn { effect: stated.effect, fitted: s.stated(&stated.values)?, stated: true })
+            }
+            _ => None,
+        });
+        let mut out = Noise {
+            base,
+            claimed: base,
+            deviation: [u.n_rel, u.b_rel, u.k_rel],
+            freed: [false; 3],
+            quantization_arcsec: claim.quantization_lsb_arcsec / 12f64.sqrt(),
+            spectra: vec![],
+        };
+        for stated in spectra {
+            let frees = stated.spectrum().map(|s| s.act());
+            match (frees, stated.fitted.first()) {
+                (Some(SpectrumAct::Frees(term)), Some(value)) => {
+                    if let Some(i) = base_index(term) {
+                        out.base[i] = *value;
+                        out.claimed[i] = *value;
+                    }
+                }
+                _ => out.spectra.push(stated),
+            }
+        }
+        out
+    }
+
+    /// Density of each bin, (deg/h)²/Hz.
+    pub fn densities(&self, scene: &Scene) -> Vec<f64> {
+        let q2 = self.quantization_arcsec.powi(2);
+        let one = |(bin, units): (&ModeBin, &[f64; 3])| {
+            let mut sum: f64 = self.base.iter().zip(units).map(|(c, u)| c * c * u).sum();
+            if q2 > 0.0 {
+                sum += q2
+                    * crate::noise::model::unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s);
+            }
+            let mut factor = 1.0;
+            for part in &self.spectra {
+                match part.spectrum().map(|s| (s, s.act())) {
+                    Some((s, SpectrumAct::Adds)) => sum += s.density(&part.fitted, bin),
+                    Some((s, SpectrumAct::Filters)) => factor *= s.density(&part.fitted, bin),
+                    _ => {}
+                }
+            }
+            (sum * factor).max(f64::MIN_POSITIVE * 1e60)
+        };
+        scene.bins.iter().zip(&scene.units).map(one).collect()
+    }
+
+    /// Density of one found effect alone, filters of others included, (deg/h)²/Hz.
+    pub fn part_densities(&self, index: usize, scene: &Scene) -> Vec<f64> {
+        let Some(part) = self.spectra.get(index) else { return vec![0.0; scene.bins.len()] };
+        let Some(spectrum) = part.spectrum() else { return vec![0.0; scene.bins.len()] };
+        match spectrum.act() {
+            SpectrumAct::Adds => scene.bins.iter().map(|b| spectrum.density(&part.fitted, b)).collect(),
+            SpectrumAct::Frees(term) => {
+                let i = base_index(term).unwrap_or(0);
+                scene.units.iter().map(|u| self.base[i].powi(2) * u[i]).collect()
+            }
+            SpectrumAct::Filters => vec![0.0; scene.bins.len()],
+        }
+    }
+
+    /// The parameters that a fit moves.
+    pub fn which(&self) -> Vec<Which> {
+        let base = (0..3)
+            .filter(|i| self.freed[*i] || (self.base[*i] > 0.0 && self.deviation[*i] > 0.0))
+            .map(Which::Base);
+        let effects = self.spectra.iter().enumerate().filter(|(_, s)| !s.stated).flat_map(|(e, s)| {
+            let adds = s.spectrum().is_some_and(|x| !matches!(x.act(), SpectrumAct::Frees(_)));
+            (0..if adds { s.fitted.len() } else { 0 }).map(move |p| Which::Effect(e, p))
+        });
+        base.chain(effects).collect()
+    }
+
+    /// Value of a parameter.
+    pub fn value(&self, which: Which) -> f64 {
+        match which {
+            Which::Base(i) => self.base[i],
+            Which::Effect(e, p) => self.spectra[e].fitted[p],
+        }
+    }
+
+    /// Changes a parameter.
+    pub fn set(&mut self, which: Which, value: f64) {
+        match which {
+            Which::Base(i) => {
+                self.base[i] = value;
+                for part in &mut self.spectra {
+                    if let Some(SpectrumAct::Frees(term)) = part.spectrum().map(|s| s.act())
+                        && base_index(term) == Some(i)
+                    {
+                        part.fitted = vec![value];
+                    }
+                }
+            }
+            Which::Effect(e, p) => self.spectra[e].fitted[p] = value,
+        }
+    }
+
+    /// −½ Σ (ln c − ln c₀)²/σ² of the stated coefficients.
+    pub fn prior(&self) -> f64 {
+        let one = |i: usize| {
+            if self.freed[i] || self.deviation[i] <= 0.0 || self.claimed[i] <= 0.0 {
+                return 0.0;
+            }
+            -0.5 * ((self.base[i] / self.claimed[i]).ln() / self.deviation[i]).powi(2)
+        };
+        (0..3).map(one).sum()
+    }
+
+    /// Bounds of the logarithm of a parameter.
+    fn log_bounds(&self, which: Which, look: &SpectralLook<'_>) -> (f64, f64) {
+        match which {
+            Which::Base(i) => {
+                let c = if self.claimed[i] > 0.0 { self.claimed[i] } else { self.base[i].max(1e-30) };
+                ((c * 1e-4).ln(), (c * 1e4).ln())
+            }
+            Which::Effect(e, p) => {
+                let bounds = self.spectra[e].spectrum().map(|s| s.bounds(look)).unwrap_or_default();
+                let (low, high) = bounds.get(p).copied().unwrap_or((1e-30, 1e30));
+                (low.max(1e-300).ln(), high.max(1e-300).ln())
+            }
+        }
+    }
+}
+
+/// Log-likelihood of mean squares `observed` under densities, constants left out.
+pub fn whittle(scene: &Scene, observed: &[f64], densities: &[f64]) -> f64 {
+    let terms = scene.bins.iter().zip(observed).zip(densities);
+    -0.5 * terms.map(|((bin, i), s)| scene.weight(bin) * (s.ln() + i / s)).sum::<f64>()
+}
+
+/// Fits the noise to mean squares of modes, by bin.
+pub fn fit(noise: &mut Noise, scene: &Scene, observed: &[f64]) -> NoiseFit {
+    let which = noise.which();
+    let expected = noise.densities(scene);
+    let look = SpectralLook { bins: &scene.bins, observed, expected: &expected, lattice_arcsec: None };
+    let bounds: Vec<(f64, f64)> = which.iter().map(|w| noise.log_bounds(*w, &look)).collect();
+    let value = |noise: &Noise, densities: &[f64]| whittle(scene, observed, densities) + noise.prior();
+    let mut densities = expected.clone();
+    let mut best = value(noise, &densities);
+    let p = which.len();
+    let mut information = DMatrix::zeros(p, p);
+    let mut damping = 1e-3;
+    for _ in 0..60 {
+        let (gradient, fisher) = derivatives(noise, &which, scene, observed, &densities);
+        information = fisher;
+        if p == 0 {
+            break;
+        }
+        let mut moved = false;
+        for _ in 0..12 {
+            let mut damped = information.clone();
+            for i in 0..p {
+                damped[(i, i)] += damping * information[(i, i)].max(1e-12) + 1e-12;
+            }
+            let Some(step) = damped.cholesky().map(|c| c.solve(&gradient)) else {
+                damping = (damping * 10.0).max(1e-6);
+                continue;
+            };
+            let mut next = noise.clone();
+            for (i, w) in which.iter().enumerate() {
+                let x = (noise.value(*w).max(1e-300).ln() + step[i].clamp(-2.0, 2.0))
+                    .clamp(bounds[i].0, bounds[i].1);
+                next.set(*w, x.exp());
+            }
+            let tried = next.densities(scene);
+            let got = value(&next, &tried);
+            if got > best {
+                moved = got - best > 1e-7;
+                *noise = next;
+                densities = tried;
+                best = got;
+                damping = (damping * 0.2).max(1e-9);
+                break;
+            }
+            damping = (damping * 6.0).max(1e-6);
+        }
+        if !moved {
+            break;
+        }
+    }
+    let mut inverse = information;
+    for i in 0..p {
+        inverse[(i, i)] += 1e-9;
+    }
+    let covariance = inverse.try_inverse().unwrap_or_else(|| DMatrix::zeros(p, p));
+    NoiseFit { log_likelihood: best, which, covariance }
+}
+
+/// Gradient of the penalised log-likelihood and the expected information, in logarithms of the parameters.
+fn derivatives(
+    noise: &Noise,
+    which: &[Which],
+    scene: &Scene,
+    observed: &[f64],
+    densities: &[f64],
+) -> (DVector<f64>, DMatrix<f64>) {
+    let p = which.len();
+    let (mut gradient, mut fisher) = (DVector::zeros(p), DMatrix::zeros(p, p));
+    let slopes: Vec<Vec<f64>> = which.iter().map(|w| log_slope(noise, *w, scene, densities)).collect();
+    for (b, bin) in scene.bins.iter().enumerate() {
+        let n = scene.weight(bin);
+        let excess = observed[b] / densities[b] - 1.0;
+        for i in 0..p {
+            gradient[i] += 0.5 * n * excess * slopes[i][b];
+            for j in 0..=i {
+                fisher[(i, j)] += 0.5 * n * slopes[i][b] * slopes[j][b];
+            }
+        }
+    }
+    for (i, w) in which.iter().enumerate() {
+        if let Which::Base(c) = *w
+            && !noise.freed[c]
+            && noise.deviation[c] > 0.0
+        {
+            let weight = noise.deviation[c].powi(-2);
+            gradient[i] -= (noise.base[c] / noise.claimed[c]).ln() * weight;
+            fisher[(i, i)] += weight;
+        }
+    }
+    for i in 0..p {
+        for j in 0..i {
+            fisher[(j, i)] = fisher[(i, j)];
+        }
+    }
+    (gradient, fisher)
+}
+
+/// d ln S/d ln parameter in each bin.
+fn log_slope(noise: &Noise, which: Which, scene: &Scene, densities: &[f64]) -> Vec<f64> {
+    const STEP: f64 = 1e-3;
+    let filters = noise.spectra.iter().any(|s| s.spectrum().is_some_and(|x| x.act() == SpectrumAct::Filters));
+    if let (Which::Base(i), false) = (which, filters) {
+        let c2 = 2.0 * noise.base[i].powi(2);
+        return scene.units.iter().zip(densities).map(|(u, s)| c2 * u[i] / s).collect();
+    }
+    if let (Which::Effect(e, _), false) = (which, filters)
+        && let Some(spectrum) = noise.spectra[e].spectrum()
+    {
+        // The part alone: differences of the whole would lose it in rounding where it is small.
+        let mut up = noise.spectra[e].fitted.clone();
+        let mut down = up.clone();
+        if let Which::Effect(_, p) = which {
+            up[p] *= STEP.exp();
+            down[p] *= (-STEP).exp();
+        }
+        let slope = |(b, s): (&ModeBin, &f64)| {
+            (spectrum.density(&up, b) - spectrum.density(&down, b)) / (2.0 * STEP * s)
+        };
+        return scene.bins.iter().zip(densities).map(slope).collect();
+    }
+    let mut up = noise.clone();
+    up.set(which, noise.value(which) * STEP.exp());
+    let mut down = noise.clone();
+    down.set(which, noise.value(which) * (-STEP).exp());
+    let (up, down) = (up.densities(scene), down.densities(scene));
+    up.iter().zip(&down).map(|(a, b)| (a / b).ln() / (2.0 * STEP)).collect()
+}

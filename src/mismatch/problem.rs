@@ -1,0 +1,132 @@
+//! Recording and claim brought together: residual, scenes, and the claim's own fit.
+
+use super::candidates::{Scenes, Tried};
+use super::hypothesis::{Hypothesis, fit};
+use super::impute;
+use super::lattice;
+use super::noise_fit::Noise;
+use super::regular::Regular;
+use super::scene::{Scene, smoothed};
+use crate::claim::Claim;
+use crate::effect::{Column, Drivers, Model, Nuisance};
+use crate::numeric::cosine::inverse_dct2;
+
+/// Samples up to which a record is looked at in one resolution.
+const WHOLE: usize = 65_536;
+/// Samples of the averages of a longer one.
+const AVERAGES: usize = 32_768;
+/// Seed of imputed places: a report is a function of recording and claim alone.
+const SEED: u64 = 0x5a67_6e61_6320_0005;
+
+/// Recording and claim.
+pub struct Problem {
+    /// The recording on the grid.
+    pub regular: Regular,
+    /// The claim.
+    pub claim: Claim,
+    /// Columns on the grid.
+    pub drivers: Drivers,
+    /// Rate less claimed mean and stated courses, deg/h; places without a usable sample hold a draw.
+    pub residual: Vec<f64>,
+    /// True where the residual is that of a row that counts.
+    pub usable: Vec<bool>,
+    /// Both resolutions.
+    pub scenes: Scenes,
+}
+
+impl Problem {
+    /// Brings a recording and a claim together.
+    pub fn new(regular: Regular, claim: &Claim) -> Problem {
+        let drivers = drivers(&regular, claim);
+        let mean = drivers.claimed_mean();
+        let mut residual: Vec<f64> = regular.rate.iter().zip(&mean).map(|(y, m)| y - m).collect();
+        for stated in &claim.effects {
+            let course = match stated.effect.model() {
+                Model::Course(c) => c.course(&stated.values, &drivers),
+                _ => None,
+            };
+            if let Some(course) = course {
+                residual.iter_mut().zip(&course).for_each(|(r, c)| *r -= c);
+            }
+        }
+        let usable = regular.present.clone();
+        let lattice_arcsec = lattice::increment_arcsec(&regular);
+        let rows = usable.iter().filter(|u| **u).count();
+        let empty = Scene::new(drivers.clone(), &residual, &[]);
+        let noise = Noise::of(claim);
+        let powers = empty.powers(&noise.densities(&empty));
+        impute::fill(&mut residual, &usable, &powers, SEED);
+        let scenes = scenes(&drivers, claim, &residual, lattice_arcsec, rows);
+        Problem { regular, claim: claim.clone(), drivers, residual, usable, scenes }
+    }
+
+    /// The same with more samples set aside and the noise of a hypothesis for what is filled in.
+    pub fn without(&mut self, aside: &[usize], tried: &Tried) {
+        aside.iter().for_each(|i| self.usable[*i] = false);
+        // The mean of the hypothesis is taken out while filling, or the draw would not hold it.
+        let rest = inverse_dct2(&tried.fit.mean.residual);
+        let mut filled = rest.clone();
+        impute::fill(&mut filled, &self.usable, &tried.fit.powers, SEED);
+        for i in 0..filled.len() {
+            if !self.usable[i] {
+                self.residual[i] += filled[i] - rest[i];
+            }
+        }
+        let rows = self.scenes.rows;
+        self.scenes = scenes(&self.drivers, &self.claim, &self.residual, self.scenes.lattice_arcsec, rows);
+    }
+
+    /// Stated deviations of the nuisances that have a column.
+    pub fn deviations(&self) -> [(Nuisance, f64); 2] {
+        deviations(&self.claim)
+    }
+
+    /// The claim alone, its nuisances fitted under their priors.
+    pub fn baseline(&self) -> Tried {
+        let mut hypothesis = Hypothesis { noise: Noise::of(&self.claim), courses: vec![] };
+        let fit = fit(&mut hypothesis, &self.scenes.full);
+        Tried { hypothesis, fit, parameters: 0 }
+    }
+}
+
+fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
+    let u = &claim.uncertainty;
+    [
+        (Nuisance::TemperatureCoefficient, u.temperature_coefficient_deg_h_per_degc),
+        (Nuisance::ScaleFactor, u.scale_factor_ppm),
+    ]
+}
+
+fn scenes(
+    drivers: &Drivers,
+    claim: &Claim,
+    residual: &[f64],
+    lattice_arcsec: Option<f64>,
+    rows: usize,
+) -> Scenes {
+    let deviations = deviations(claim);
+    let full = Scene::new(drivers.clone(), residual, &deviations);
+    let slow = (drivers.samples > WHOLE).then(|| {
+        let m = drivers.samples.div_ceil(AVERAGES);
+        Scene::new(drivers.averages(m), &crate::effect::averages(residual, m), &deviations)
+    });
+    Scenes { full, slow, lattice_arcsec, rows }
+}
+
+fn drivers(regular: &Regular, claim: &Claim) -> Drivers {
+    let column = |c: Column| regular.columns.get(&c).cloned();
+    let temperature = column(Column::Temperature);
+    Drivers {
+        dt_s: regular.dt_s,
+        start_s: regular.start_s,
+        samples: regular.rate.len(),
+        averaged: 1,
+        smooth_temperature: temperature.as_deref().map(smoothed),
+        temperature,
+        table_rate: column(Column::TableRate),
+        table_angle: column(Column::TableAngle),
+        outer_rate: column(Column::OuterRate),
+        supply: column(Column::Supply),
+        claim: claim.mean,
+    }
+}

@@ -1,0 +1,200 @@
+//! A recording at one resolution, in cosine modes: what every fit works on.
+//!
+//! The residual of the claimed mean is transformed by the orthonormal DCT-II, in which white noise and random walk are
+//! diagonal exactly and flicker nearly; the coefficients are then independent with variance S(f_k)/Δt. A scene may be
+//! cut into blocks of equal length, each transformed by itself and about its own mean.
+
+use crate::effect::{Drivers, ModeBin, Nuisance};
+use crate::noise::data::NoiseType;
+use crate::noise::model::{Bin, Spectral};
+use crate::numeric::cosine::dct2;
+
+/// Modes that have a bin each.
+const SINGLE: usize = 128;
+/// Width of the bins above, relative.
+const WIDTH: f64 = 0.004;
+
+/// A column whose coefficient the claim knows to within a stated deviation.
+#[derive(Debug, Clone)]
+pub struct NuisanceColumn {
+    /// Which.
+    pub nuisance: Nuisance,
+    /// Its modes, deg/h for a coefficient of 1.
+    pub modes: Vec<f64>,
+    /// Stated standard deviation of the coefficient.
+    pub deviation: f64,
+}
+
+/// A recording at one resolution.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Columns and claim on this grid.
+    pub drivers: Drivers,
+    /// Cosine modes of what was observed less the claimed mean, deg/h, block after block. Mode 0 of each, which the
+    /// bias takes, is 0.
+    pub modes: Vec<f64>,
+    /// Samples that each block begins with; all have the length of a bin's `samples`.
+    pub blocks: Vec<usize>,
+    /// Samples of a block.
+    pub length: usize,
+    /// Bins of modes.
+    pub bins: Vec<ModeBin>,
+    /// Densities of N, B, K for a coefficient of 1 in each bin, (deg/h)²/Hz.
+    pub units: Vec<[f64; 3]>,
+    /// Columns with stated coefficients.
+    pub nuisances: Vec<NuisanceColumn>,
+}
+
+/// N, B, K in the order of arrays.
+pub const BASE: [NoiseType; 3] = [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
+
+fn bins(samples: usize, dt_s: f64) -> Vec<ModeBin> {
+    let mut out = vec![];
+    let mut mode = 1;
+    while mode < samples {
+        let modes = if mode < SINGLE { 1 } else { ((mode as f64 * WIDTH) as usize).max(1) };
+        let modes = modes.min(samples - mode);
+        let middle = mode as f64 + 0.5 * (modes - 1) as f64;
+        let frequency_hz = middle / (2.0 * samples as f64 * dt_s);
+        out.push(ModeBin { frequency_hz, mode, modes, samples, dt_s });
+        mode += modes;
+    }
+    out
+}
+
+fn unit_densities(bin: &ModeBin) -> [f64; 3] {
+    let at = Bin {
+        frequency_hz: bin.frequency_hz,
+        tau_s: bin.dt_s,
+        filling: 1.0,
+        mode: bin.mode,
+        blocks: bin.samples,
+        segment: 0,
+    };
+    BASE.map(|term| term.density(&at))
+}
+
+impl Scene {
+    /// The scene of a whole residual, deg/h, on the grid of the drivers. `deviations` are those of the nuisances with a
+    /// column.
+    pub fn new(drivers: Drivers, residual: &[f64], deviations: &[(Nuisance, f64)]) -> Scene {
+        let length = drivers.samples;
+        Scene::of_blocks(drivers, residual, deviations, vec![0], length)
+    }
+
+    /// The scene of blocks of `length` samples.
+    pub fn of_blocks(
+        drivers: Drivers,
+        residual: &[f64],
+        deviations: &[(Nuisance, f64)],
+        blocks: Vec<usize>,
+        length: usize,
+    ) -> Scene {
+        let modes = transform(residual, &blocks, length);
+        let bins = bins(length, drivers.dt_s);
+        let units = bins.iter().map(unit_densities).collect();
+        let nuisances = deviations
+            .iter()
+            .filter(|(_, deviation)| *deviation > 0.0)
+            .filter_map(|(nuisance, deviation)| {
+                let column = nuisance_column(*nuisance, &drivers)?;
+                let modes = transform(&column, &blocks, length);
+                Some(NuisanceColumn { nuisance: *nuisance, modes, deviation: *deviation })
+            })
+            .collect();
+        Scene { drivers, modes, blocks, length, bins, units, nuisances }
+    }
+
+    /// Cosine modes of a series on the grid of the drivers, block after block.
+    pub fn transform(&self, series: &[f64]) -> Vec<f64> {
+        transform(series, &self.blocks, self.length)
+    }
+
+    /// Mean square of modes in each bin as a density, (deg/h)²/Hz.
+    pub fn observed(&self, modes: &[f64]) -> Vec<f64> {
+        let square = |bin: &ModeBin| {
+            let in_block = |b: usize| {
+                let at = b * self.length + bin.mode;
+                modes.get(at..at + bin.modes).unwrap_or_default().iter().map(|x| x * x).sum::<f64>()
+            };
+            let sum: f64 = (0..self.blocks.len()).map(in_block).sum();
+            sum / (bin.modes * self.blocks.len()) as f64 * bin.dt_s
+        };
+        self.bins.iter().map(square).collect()
+    }
+
+    /// Modes that each bin holds in all blocks.
+    pub fn weight(&self, bin: &ModeBin) -> f64 {
+        (bin.modes * self.blocks.len()) as f64
+    }
+
+    /// Variance of each mode, (deg/h)², from the densities of the bins; infinite for mode 0.
+    pub fn powers(&self, densities: &[f64]) -> Vec<f64> {
+        let mut out = vec![f64::INFINITY; self.length * self.blocks.len()];
+        for block in out.chunks_exact_mut(self.length) {
+            for (bin, density) in self.bins.iter().zip(densities) {
+                block[bin.mode..bin.mode + bin.modes].fill(density / bin.dt_s);
+            }
+        }
+        out
+    }
+
+    /// Frequency of a mode, Hz.
+    pub fn frequency_hz(&self, mode: f64) -> f64 {
+        mode / (2.0 * self.length as f64 * self.drivers.dt_s)
+    }
+}
+
+/// Cosine modes of each block, mode 0 of each set to 0.
+fn transform(series: &[f64], blocks: &[usize], length: usize) -> Vec<f64> {
+    let mut out = Vec::with_capacity(blocks.len() * length);
+    for first in blocks {
+        let mut modes = dct2(series.get(*first..first + length).unwrap_or_default());
+        modes.resize(length, 0.0);
+        if let Some(first) = modes.first_mut() {
+            *first = 0.0;
+        }
+        out.extend(modes);
+    }
+    out
+}
+
+/// The column that a nuisance multiplies, deg/h for a coefficient of 1.
+fn nuisance_column(nuisance: Nuisance, drivers: &Drivers) -> Option<Vec<f64>> {
+    match nuisance {
+        Nuisance::TemperatureCoefficient => drivers.temperature.clone(),
+        Nuisance::ScaleFactor => drivers.table_rate.as_ref().map(|c| c.iter().map(|r| 3600e-6 * r).collect()),
+        _ => None,
+    }
+}
+
+/// The part of a series that its spectrum tells from the white noise of a sensor: each cosine mode is weighted by the
+/// share of its neighbourhood's power that lies above the floor.
+pub fn smoothed(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    if n < 32 {
+        return values.to_vec();
+    }
+    // A line from end to end is taken out first, or its jump at the edges would pass for noise.
+    let (first, last) = (edge(&values[..n / 64 + 1]), edge(&values[n - n / 64 - 1..]));
+    let line = |i: usize| first + (last - first) * i as f64 / (n - 1) as f64;
+    let rest: Vec<f64> = values.iter().enumerate().map(|(i, v)| v - line(i)).collect();
+    let mut modes = dct2(&rest);
+    let mut high: Vec<f64> = modes[n / 2..].iter().map(|x| x * x).collect();
+    high.sort_by(f64::total_cmp);
+    // The median of χ²₁ is 0.455.
+    let floor = high[high.len() / 2] / 0.455;
+    let mut from = 1;
+    while from < n {
+        let to = (from + (from / 8).max(1)).min(n);
+        let power = modes[from..to].iter().map(|x| x * x).sum::<f64>() / (to - from) as f64;
+        let gain = if power > 3.0 * floor { 1.0 - floor / power } else { 0.0 };
+        modes[from..to].iter_mut().for_each(|x| *x *= gain);
+        from = to;
+    }
+    crate::numeric::cosine::inverse_dct2(&modes).iter().enumerate().map(|(i, v)| v + line(i)).collect()
+}
+
+fn edge(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}

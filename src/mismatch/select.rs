@@ -1,0 +1,184 @@
+//! The fewest effects that make the recording an ordinary draw: a beam of hypotheses grown by ΔBIC behind gates, then
+//! pruned, then asked what else would have served as well.
+
+use super::candidates::{Candidate, Scenes, Tried, all};
+use super::hypothesis::{CourseIn, Hypothesis, fit};
+use super::noise_fit::{Noise, SpectrumIn, base_index};
+use crate::effect::{Effect, Model, SpectrumAct};
+
+/// ΔBIC that an effect must bring, and within which two are equivalent.
+pub const ENOUGH: f64 = 6.0;
+/// Hypotheses kept at each depth.
+const WIDTH: usize = 3;
+
+/// Where an effect sits in a hypothesis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slot {
+    /// Among the courses.
+    Course(usize),
+    /// Among the spectral effects.
+    Spectrum(usize),
+}
+
+/// An effect that was chosen.
+#[derive(Clone)]
+pub struct Chosen {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Where it sits.
+    pub slot: Slot,
+    /// BIC without it less BIC with it.
+    pub delta_bic: f64,
+    /// Probability of its gain without it, its search and the catalogue counted.
+    pub p_value: f64,
+    /// What would have served as well, the best first.
+    pub equivalents: Vec<&'static dyn Effect>,
+    /// The hypothesis without it, fitted.
+    pub without: Tried,
+}
+
+/// What was selected.
+pub struct Selection {
+    /// The hypothesis.
+    pub best: Tried,
+    /// Its effects, the largest ΔBIC first.
+    pub chosen: Vec<Chosen>,
+    /// What was tried on the claim alone.
+    pub first: Vec<Candidate>,
+}
+
+/// Whether an addition may be made.
+fn passes(candidate: &Candidate, family: f64, alpha: f64) -> bool {
+    candidate.delta_bic >= ENOUGH && candidate.p_value * family < alpha
+}
+
+/// The slots that a hypothesis has beyond its claim.
+fn slots(hypothesis: &Hypothesis) -> Vec<(Slot, &'static dyn Effect)> {
+    let courses = hypothesis.courses.iter().enumerate().map(|(i, c)| (Slot::Course(i), c.effect));
+    let spectra = hypothesis.noise.spectra.iter().enumerate().filter(|(_, s)| !s.stated);
+    courses.chain(spectra.map(|(i, s)| (Slot::Spectrum(i), s.effect))).collect()
+}
+
+/// The hypothesis without one effect, fitted.
+fn without(tried: &Tried, slot: Slot, scenes: &Scenes) -> Tried {
+    let mut hypothesis = tried.hypothesis.clone();
+    let removed = match slot {
+        Slot::Course(i) => {
+            let course = hypothesis.courses.remove(i);
+            course_parameters(&course, scenes)
+        }
+        Slot::Spectrum(i) => {
+            let part = hypothesis.noise.spectra.remove(i);
+            restore(&mut hypothesis.noise, &part)
+        }
+    };
+    let fit = fit(&mut hypothesis, &scenes.full);
+    Tried { hypothesis, fit, parameters: tried.parameters.saturating_sub(removed) }
+}
+
+fn course_parameters(course: &CourseIn, scenes: &Scenes) -> usize {
+    let Some(c) = course.course() else { return 0 };
+    let scene = scenes.of(c.pace());
+    let parts = c.parts(&course.shape, &scene.drivers);
+    let shape = c.bounds(&scene.drivers).iter().filter(|(low, high)| high > low).count();
+    parts.free.len() + parts.beside.len() + shape
+}
+
+/// Puts a freed coefficient back under its prior; the number of parameters that go.
+fn restore(noise: &mut Noise, part: &SpectrumIn) -> usize {
+    if let Model::Spectrum(s) = part.effect.model()
+        && let SpectrumAct::Frees(term) = s.act()
+        && let Some(i) = base_index(term)
+    {
+        noise.freed[i] = false;
+        noise.base[i] = noise.claimed[i];
+        return 1;
+    }
+    part.fitted.len()
+}
+
+/// A name for a set of effects, to tell equal sets.
+fn set(tried: &Tried) -> Vec<&'static str> {
+    let mut kinds: Vec<&'static str> = slots(&tried.hypothesis).iter().map(|(_, e)| e.kind()).collect();
+    kinds.sort_unstable();
+    kinds
+}
+
+/// Grows a hypothesis on `base`, which is the claim with what was found in single samples before.
+pub fn select(base: &Tried, scenes: &Scenes, alpha: f64, most: usize) -> Selection {
+    let rows = scenes.rows;
+    let first = all(base, scenes);
+    let family = first.len().max(1) as f64 + 8.0;
+    let mut best = base.clone();
+    let mut beam: Vec<(Tried, Vec<Candidate>)> = vec![(base.clone(), first.clone())];
+    for depth in 0..most {
+        let mut next: Vec<Tried> = vec![];
+        for (_, candidates) in &beam {
+            let passing = candidates.iter().filter(|c| passes(c, family, alpha)).take(WIDTH + 1);
+            for candidate in passing {
+                if !next.iter().any(|t| set(t) == set(&candidate.tried)) {
+                    next.push(candidate.tried.clone());
+                }
+            }
+        }
+        next.sort_by(|a, b| a.bic(rows).total_cmp(&b.bic(rows)));
+        next.truncate(WIDTH);
+        let Some(leader) = next.first() else { break };
+        if leader.bic(rows) < best.bic(rows) - ENOUGH {
+            best = leader.clone();
+        } else if depth > 0 {
+            // One more effect did not pay on any path.
+            break;
+        }
+        beam = next
+            .into_iter()
+            .map(|t| {
+                let c = all(&t, scenes);
+                (t, c)
+            })
+            .collect();
+    }
+    best = pruned(best, scenes, rows);
+    let chosen = chosen(&best, base, scenes, family);
+    Selection { best, chosen, first }
+}
+
+/// Drops effects that became needless.
+fn pruned(mut best: Tried, scenes: &Scenes, rows: usize) -> Tried {
+    loop {
+        let weakest = slots(&best.hypothesis)
+            .into_iter()
+            .map(|(slot, _)| without(&best, slot, scenes))
+            .min_by(|a, b| a.bic(rows).total_cmp(&b.bic(rows)));
+        match weakest {
+            Some(less) if less.bic(rows) < best.bic(rows) + ENOUGH => best = less,
+            _ => return best,
+        }
+    }
+}
+
+fn chosen(best: &Tried, base: &Tried, scenes: &Scenes, family: f64) -> Vec<Chosen> {
+    let rows = scenes.rows;
+    let all_slots = slots(&best.hypothesis);
+    let single = all_slots.len() == 1;
+    let mut out: Vec<Chosen> = all_slots
+        .into_iter()
+        .map(|(slot, effect)| {
+            let without = if single { base.clone() } else { without(best, slot, scenes) };
+            let rivals = all(&without, scenes);
+            let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
+            let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
+            let equivalents = rivals
+                .iter()
+                .filter(|c| c.effect.kind() != effect.kind())
+                .filter(|c| c.tried.bic(rows) < best.bic(rows) + ENOUGH)
+                .map(|c| c.effect)
+                .take(3)
+                .collect();
+            let delta_bic = without.bic(rows) - best.bic(rows);
+            Chosen { effect, slot, delta_bic, p_value, equivalents, without }
+        })
+        .collect();
+    out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    out
+}
