@@ -3,6 +3,7 @@
 pub mod candidates;
 pub mod columns;
 pub mod departures;
+pub mod drawing;
 pub mod engine;
 pub mod estimates;
 pub mod figures;

@@ -14,12 +14,15 @@ pub struct Mean {
     pub spread: f64,
 }
 
-/// Means over groups of equally many neighbours, at most [`POINTS`] of them. A value that is no number ends its curve
-/// there: the group is left out as (x, NaN).
+/// Means over groups of equally many neighbours, at most [`POINTS`] of them. Values that are no numbers are left out; a
+/// group without any other breaks the curve.
 pub fn over_time(x: &[f64], y: &[f64]) -> (Vec<(f64, f64)>, usize) {
     let n = x.len().min(y.len());
     let group = n.div_ceil(POINTS).max(1);
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let mean = |v: &[f64]| {
+        let (sum, count) = v.iter().filter(|v| v.is_finite()).fold((0.0, 0.0), |(s, c), v| (s + v, c + 1.0));
+        sum / count
+    };
     let points = x[..n].chunks(group).zip(y[..n].chunks(group)).map(|(a, b)| (mean(a), mean(b))).collect();
     (points, group)
 }
@@ -55,6 +58,8 @@ mod tests {
         // The means of a straight line lie on it.
         assert!(points.iter().all(|(t, v)| (v - 3.0 - 0.5 * t).abs() < 1e-9));
         assert_eq!(over_time(&[], &[]).0, vec![]);
+        let gaps = over_time(&x[..4], &[1.0, f64::NAN, 3.0, 4.0]).0;
+        assert!(gaps[1].1.is_nan() && gaps[2].1 == 3.0);
     }
 
     #[test]

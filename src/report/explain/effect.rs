@@ -67,6 +67,8 @@ pub struct EffectView {
     pub source: String,
     /// Parameters.
     pub parameters: Vec<ParameterRow>,
+    /// True when the claim states one of them.
+    pub has_claimed: bool,
     /// Where it shows.
     pub places: Vec<String>,
     /// What it is worth; empty for a cause without a name, which has no model.
@@ -89,6 +91,7 @@ impl EffectView {
         let both = |of: fn(&Doc) -> crate::effect::Both| {
             doc.map(|d| of(d).of(words.lang)).unwrap_or_default().to_owned()
         };
+        let parameters = parameters(f, all, words);
         EffectView {
             number,
             title: capital(&title(&f.kind, words)),
@@ -101,7 +104,8 @@ impl EffectView {
             confirm: both(|d| d.confirm),
             formula: words.formula(&said(|d| d.formula)),
             source: said(|d| d.source),
-            parameters: parameters(f, all, words),
+            has_claimed: parameters.iter().any(|p| !p.claimed.is_empty()),
+            parameters,
             places: f.places.iter().map(|p| place(p, all.recording.length_s, words)).collect(),
             delta_bic: if f.kind == "unknown" { String::new() } else { difference(f.delta_bic, words) },
             p: chance(f.p_value, words),

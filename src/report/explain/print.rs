@@ -8,6 +8,8 @@ use crate::report::view::Words;
 
 /// Ratio of the sides of an interval from which it is printed by its ends.
 const LOPSIDED: f64 = 1.5;
+/// Log-likelihoods beyond are printed with a power of ten.
+const LARGE: f64 = 1e9;
 /// Parameters that are whole numbers.
 const COUNTS: &[&str] = &["order", "missing_rows", "count"];
 /// Share of the recording that counts as the whole of it.
@@ -95,10 +97,16 @@ pub fn ends(place: &PlaceRecord, words: Words) -> String {
         limit_digits(from, 6, words.lang)
     } else {
         // Ends far apart keep digits of their own: those of the upper one would round the lower one away.
-        let apart = from > 0.0 && to > 2.0 * from;
+        let apart = from >= 0.0 && to > 2.0 * from;
         let rounding = Rounding::of(0.5 * (from + to), Some((from, to)));
         let shown = |v: f64| {
-            if apart { limit_digits(v, 3, words.lang) } else { rounding.show(v, words.lang) }
+            if !apart {
+                rounding.show(v, words.lang)
+            } else if v != 0.0 && v < 1e-3 {
+                typographic(&format!("{v:.2e}"), words.lang)
+            } else {
+                limit_digits(v, 3, words.lang)
+            }
         };
         between(&shown(from), &shown(to), words)
     };
@@ -132,6 +140,9 @@ pub fn difference(v: f64, words: Words) -> String {
     if !v.is_finite() {
         return crate::report::number::NOTHING.to_owned();
     }
+    if v.abs() >= LARGE {
+        return digits(v, 3, words.lang);
+    }
     let decimals = usize::from(v.abs() < 1000.0);
     let text = format!("{v:+.decimals$}");
     let nil = text.trim_start_matches(['+', '-']).chars().all(|c| matches!(c, '0' | '.'));
@@ -140,7 +151,7 @@ pub fn difference(v: f64, words: Words) -> String {
 
 /// A log-likelihood or BIC: one decimal.
 pub fn plain(v: f64, words: Words) -> String {
-    if v.is_finite() { typographic(&format!("{v:.1}"), words.lang) } else { digits(v, 1, words.lang) }
+    if v.abs() < LARGE { typographic(&format!("{v:.1}"), words.lang) } else { digits(v, 3, words.lang) }
 }
 
 #[cfg(test)]
@@ -172,7 +183,8 @@ mod tests {
         let at =
             |domain: &str, from: f64, to: f64| ends(&PlaceRecord { domain: domain.into(), from, to }, EN);
         assert_eq!(at("frequency", 0.4118, 0.4124), "0.41180 … 0.41240\u{202f}Hz");
-        assert_eq!(at("frequency", 1.234e-4, 5.0), "0.000123 … 5\u{202f}Hz");
+        assert_eq!(at("frequency", 1.234e-4, 5.0), "1.23×10⁻⁴ … 5\u{202f}Hz");
+        assert_eq!(at("frequency", 0.0, 5.6e-5), "0 … 5.60×10⁻⁵\u{202f}Hz");
         assert_eq!(at("temperature", -12.0, 41.0), "−12 … 41\u{202f}°C");
         assert_eq!(at("time", 5100.0, 5300.0), "5100 … 5300\u{202f}s");
         let whole = PlaceRecord { domain: "time".into(), from: 0.0, to: 35_999.0 };
@@ -187,5 +199,6 @@ mod tests {
         assert_eq!(difference(212.44, EN), "+212.4");
         assert_eq!(difference(-0.001, EN), "0.0");
         assert_eq!(difference(-1234.5, EN), "−1234");
+        assert_eq!(difference(-5e29, EN), "−5.00×10²⁹");
     }
 }

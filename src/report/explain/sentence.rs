@@ -19,7 +19,7 @@ pub fn phrase(finding: &Finding, explanation: &Explanation, words: Words) -> Str
             .nuisances
             .iter()
             .find(|n| n.name.rsplit('.').next() == Some(name))
-            .map_or_else(|| "0".to_owned(), |n| digits_of(n.claimed, words));
+            .map_or_else(|| "0".to_owned(), |n| words.quantity(&digits_of(n.claimed, words), &n.unit));
         given.push(("claimed", claimed));
     }
     let pattern = words.t(saying.key);

@@ -140,6 +140,9 @@ fn relative(before: f64, after: f64, words: Words) -> String {
     if change.is_finite() { format!("{}\u{202f}%", difference(change, words)) } else { String::new() }
 }
 
+/// Change of log-likelihood that is worth calling one.
+const NOTICEABLE: f64 = 0.5;
+
 /// What the fit says.
 pub(super) fn fit_says(all: &Explanation, words: Words) -> String {
     if all.effects.iter().all(|f| f.kind == "unknown") {
@@ -149,6 +152,8 @@ pub(super) fn fit_says(all: &Explanation, words: Words) -> String {
     let shown = difference(gain, words);
     if !gain.is_finite() {
         String::new()
+    } else if gain.abs() < NOTICEABLE {
+        words.with("explain.fit.heldout_same", &[("gain", &shown)])
     } else if gain > 0.0 {
         words.with("explain.fit.heldout_gains", &[("gain", &shown)])
     } else {
