@@ -28,9 +28,9 @@ pub fn outlier_bursts(draw: &mut Draw, s: &Setting, a: f64) -> Effect {
             continue;
         }
         begun.push(at);
-        let length = 1 + draw.below(6);
+        let length = 1 + draw.below(3);
         for row in course.iter_mut().skip(at).take(length) {
-            *row = draw.sign() * sigma * draw.uniform(5.0, 10.0);
+            *row = draw.sign() * sigma * draw.uniform(4.5, 8.0);
             outlying += 1;
         }
         let (from, to) = (s.time_s[at], s.time_s[at + length - 1]);
@@ -39,7 +39,7 @@ pub fn outlier_bursts(draw: &mut Draw, s: &Setting, a: f64) -> Effect {
     }
     // Where they are must be searched for, and how large each is.
     effect.cost = groups as f64 * (s.rows as f64 / groups as f64).ln() + outlying as f64 * 2.0;
-    effect.found("amplitude", 4.0 * sigma, 14.0 * sigma).adding(course)
+    effect.found("amplitude", 3.0 * sigma, 12.0 * sigma).adding(course)
 }
 
 /// Rows missing.

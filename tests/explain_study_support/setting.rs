@@ -101,8 +101,10 @@ fn noise(draw: &mut Draw, claim: &mut Claim, duration_s: f64) {
     // Where flicker and walk would meet the white floor: some beyond the record, some well inside it.
     let flicker_hz = draw.log_uniform(0.02 / duration_s, 0.02 * claim.rate_hz);
     let walk_hz = draw.log_uniform(0.02 / duration_s, 20.0 / duration_s);
-    claim.b = rounded(white * (std::f64::consts::TAU * flicker_hz).sqrt(), 3);
-    claim.k = rounded(white * 60.0 * std::f64::consts::TAU * walk_hz, 3);
+    // No gyro of the trade has more than some tens of its N as B or K: a short record shows neither.
+    let most = 30.0 * claim.n;
+    claim.b = rounded((white * (std::f64::consts::TAU * flicker_hz).sqrt()).min(most), 3);
+    claim.k = rounded((white * 60.0 * std::f64::consts::TAU * walk_hz).min(most), 3);
 }
 
 impl Setting {
