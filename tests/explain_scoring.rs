@@ -147,11 +147,11 @@ fn the_fit_told_the_truth_has_the_published_errors() {
     let sinc = |x: f64| (std::f64::consts::PI * x).sin() / (std::f64::consts::PI * x);
     let seen = sinc(value("frequency_hz") * s.interval_s());
     let amplitude = two_sided * (2.0 / n).sqrt() * sigma / seen;
-    assert!((width("amplitude_deg_h") / amplitude - 1.0).abs() < 0.02);
+    assert!((width("amplitude_deg_h") / amplitude - 1.0).abs() < 0.02, "{amplitude}: {:?}", told_line.widths);
     let size = value("amplitude_deg_h") * seen;
     let omega = (24.0 / n).sqrt() * sigma / (size * s.duration_s());
     let expected = two_sided * omega / std::f64::consts::TAU;
-    assert!((width("frequency_hz") / expected - 1.0).abs() < 0.02);
+    assert!((width("frequency_hz") / expected - 1.0).abs() < 0.02, "{expected}: {:?}", told_line.widths);
     // N from n samples: relative deviation 1/√(2n).
     let case = white_case("excess_arw", 1.0);
     let told_n = told(&case, &case.realise(1));

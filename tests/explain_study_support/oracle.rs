@@ -119,7 +119,7 @@ fn spectral(case: &Case, left: &Left, lambda: &[f64]) -> Vec<(&'static str, f64,
     for (j, (claimed, rel, prior)) in stated.into_iter().enumerate() {
         let total = parameter(left, own[j]);
         let value = total.unwrap_or(claimed * (1.0 + rel));
-        let share = (value / claimed).powi(2);
+        let share = if claimed > 0.0 { (value / claimed).powi(2) } else { 0.0 };
         let slope = lambda.iter().enumerate().map(|(i, l)| 2.0 * c.parts(f(i))[j] * share / l).collect();
         let name = if total.is_some() { own[j] } else { "" };
         out.push((name, value, slope, if total.is_some() { 0.0 } else { prior.powi(-2) }));
