@@ -1,7 +1,7 @@
 //! Every effect of the catalogue, tried as an addition to a hypothesis.
 
 use super::hypothesis::{CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, part_modes};
-use super::noise_fit::{SpectrumIn, base_index};
+use super::noise_fit::{self, Noise, SpectrumIn, base_index};
 use super::scene::Scene;
 use crate::effect::{Course, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct};
 use crate::estimate::chi_square_tail;
@@ -343,16 +343,33 @@ fn try_spectrum(
     }
     let starts = spectrum.starts(&look);
     let bounds = spectrum.bounds(&look);
-    let fits = starts.iter().map(|start| {
+    let begun = starts.iter().map(|start| {
         let mut noise = before.hypothesis.noise.clone();
         let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
         noise.spectra.push(SpectrumIn { effect, fitted, stated: false });
-        let fit = super::noise_fit::fit(&mut noise, scene, &observed);
-        (noise, fit.log_likelihood)
+        noise
     });
-    let (noise, _) = fits.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let noise = best_of(begun.collect(), scene, &observed)?;
     let parameters = before.parameters + noise.spectra.last().map_or(0, |s| s.fitted.len());
     finish_spectrum(effect, noise, parameters, spectrum.looked(&look), before, scenes)
+}
+
+/// The best fit of several beginnings: all for a few steps, then the leading two to the end.
+fn best_of(begun: Vec<Noise>, scene: &Scene, observed: &[f64]) -> Option<Noise> {
+    const FEW: usize = 5;
+    let mut fits: Vec<(Noise, f64)> = begun
+        .into_iter()
+        .map(|mut noise| {
+            let value = noise_fit::fit_in(&mut noise, scene, observed, FEW).log_likelihood;
+            (noise, value)
+        })
+        .collect();
+    fits.sort_by(|a, b| b.1.total_cmp(&a.1));
+    fits.truncate(2);
+    for (noise, value) in &mut fits {
+        *value = noise_fit::fit(noise, scene, observed).log_likelihood;
+    }
+    fits.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(noise, _)| noise)
 }
 
 /// N, B or K set free, begun at the claim and well above it: a strong prior traps a fit that begins beside it.
@@ -378,16 +395,15 @@ fn free_base(
         noise.freed[i] = true;
         noise.base[i] = begin * factor;
         noise.spectra.push(SpectrumIn { effect, fitted: vec![begin * factor], stated: false });
-        let fit = super::noise_fit::fit(&mut noise, scene, observed);
-        (noise, fit.log_likelihood)
+        noise
     });
-    let (noise, _) = fits.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let noise = best_of(fits.to_vec(), scene, observed)?;
     finish_spectrum(effect, noise, before.parameters + 1, 1.0, before, scenes)
 }
 
 fn finish_spectrum(
     effect: &'static dyn Effect,
-    noise: super::noise_fit::Noise,
+    noise: Noise,
     parameters: usize,
     looked: f64,
     before: &Tried,

@@ -214,8 +214,16 @@ pub fn whittle(scene: &Scene, observed: &[f64], densities: &[f64]) -> f64 {
     -0.5 * terms.map(|((bin, i), s)| scene.weight(bin) * (s.ln() + i / s)).sum::<f64>()
 }
 
+/// Steps of a whole fit.
+const STEPS: usize = 40;
+
 /// Fits the noise to mean squares of modes, by bin.
 pub fn fit(noise: &mut Noise, scene: &Scene, observed: &[f64]) -> NoiseFit {
+    fit_in(noise, scene, observed, STEPS)
+}
+
+/// As [`fit`], in so many steps at most: enough to tell which of several beginnings is worth more.
+pub fn fit_in(noise: &mut Noise, scene: &Scene, observed: &[f64], steps: usize) -> NoiseFit {
     let which = noise.which();
     let expected = noise.densities(scene);
     let look = SpectralLook { bins: &scene.bins, observed, expected: &expected, lattice_arcsec: None };
@@ -226,7 +234,7 @@ pub fn fit(noise: &mut Noise, scene: &Scene, observed: &[f64]) -> NoiseFit {
     let p = which.len();
     let mut information = DMatrix::zeros(p, p);
     let mut damping = 1e-3;
-    for _ in 0..60 {
+    for _ in 0..steps {
         let (gradient, fisher) = derivatives(noise, &which, scene, observed, &densities);
         information = fisher;
         if p == 0 {
@@ -251,7 +259,7 @@ pub fn fit(noise: &mut Noise, scene: &Scene, observed: &[f64]) -> NoiseFit {
             let tried = next.densities(scene);
             let got = value(&next, &tried);
             if got > best {
-                moved = got - best > 1e-7;
+                moved = got - best > 1e-5;
                 *noise = next;
                 densities = tried;
                 best = got;

@@ -74,21 +74,8 @@ fn split(fitted: &[f64]) -> (f64, f64) {
     (fitted.first().copied().unwrap_or(0.0), fitted.get(1).copied().unwrap_or(1.0).max(1e-12))
 }
 
-/// Power of a cosine mode as a density. With a = 1/T the covariance is (1 − a d/da) e^(−a|t|): the same of the power of
-/// a Markov process.
-fn mode_power(rms: f64, time: f64, bin: &ModeBin) -> f64 {
-    let markov = |factor: f64| {
-        Damped { rms_deg_h: rms, frequency_hz: 0.0, decay_time_s: time / factor }.mode_power(
-            bin.mode,
-            bin.samples,
-            bin.dt_s,
-            Sampling::Averaging,
-        )
-    };
-    let h = 1e-3f64;
-    let slope = (markov(h.exp()) - markov((-h).exp())) / (2.0 * h);
-    (markov(1.0) - slope).max(0.0)
-}
+/// Step of the derivative by the logarithm of the time.
+const LOG_STEP: f64 = 1e-3;
 
 impl Spectrum for UnobservedDriver {
     fn act(&self) -> SpectrumAct {
@@ -96,16 +83,33 @@ impl Spectrum for UnobservedDriver {
     }
 
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        self.densities(fitted, &[*bin])[0]
+    }
+
+    /// Exact in single modes: with a = 1/T the covariance is (1 − a d/da) e^(−a|t|), and the power of a mode is the same
+    /// of that of a Markov process.
+    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
+        let Some(first) = bins.first() else { return vec![] };
         let (rms, time) = split(fitted);
         let corner = 1.0 / (2.0 * PI * time);
-        let x = (bin.frequency_hz / corner).powi(2);
-        if bin.modes == 1 && x < 3e4 {
-            return mode_power(rms, time, bin);
-        }
-        let averaged = super::sinusoid::averaged(bin.frequency_hz * bin.dt_s).powi(2);
+        let markov = |factor: f64| {
+            let process = Damped { rms_deg_h: rms, frequency_hz: 0.0, decay_time_s: time / factor };
+            process.modes(first.samples, first.dt_s, Sampling::Averaging)
+        };
+        let (at, faster, slower) = (markov(1.0), markov(LOG_STEP.exp()), markov((-LOG_STEP).exp()));
         // The ends of the record, at which a mode has no slope and the process has one, add their own k⁻⁴.
-        let ends = 1.0 + if x > 1.0 { time / (bin.samples as f64 * bin.dt_s) } else { 0.0 };
-        2.0 * rms * rms / (PI * corner) / (1.0 + x).powi(2) * averaged * ends
+        let ends = time / (first.samples as f64 * first.dt_s);
+        let one = |bin: &ModeBin| {
+            let x = (bin.frequency_hz / corner).powi(2);
+            if bin.modes == 1 && x < 3e4 {
+                let slope = (faster.power(bin.mode) - slower.power(bin.mode)) / (2.0 * LOG_STEP);
+                return (at.power(bin.mode) - slope).max(0.0);
+            }
+            let averaged = super::sinusoid::averaged(bin.frequency_hz * bin.dt_s).powi(2);
+            let ends = 1.0 + if x > 1.0 { ends } else { 0.0 };
+            2.0 * rms * rms / (PI * corner) / (1.0 + x).powi(2) * averaged * ends
+        };
+        bins.iter().map(one).collect()
     }
 
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
