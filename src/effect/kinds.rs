@@ -207,4 +207,6 @@ fn power_law_places(term: NoiseType, fitted: &[f64], look: &SpectralLook<'_>) ->
 }
 
 #[cfg(test)]
+mod spectral_tests;
+#[cfg(test)]
 mod tests;

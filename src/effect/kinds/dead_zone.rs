@@ -1,6 +1,6 @@
 //! No or reduced response around zero input rate.
 
-use super::search::{best_of, log_grid};
+use super::search::{best_of, log_grid, shortlist};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
@@ -71,7 +71,8 @@ impl Course for DeadZone {
         if let (Some(low), Some(high), true) = (sizes.first(), sizes.last(), sizes.len() > 32) {
             widths.extend(log_grid(*low, *high, 32));
         }
-        let shapes = best_of(self, widths.into_iter().map(|w| vec![w]), 3, drivers, look);
+        let widths = shortlist(self, widths.into_iter().map(|w| vec![w]), 6, drivers, look);
+        let shapes = best_of(self, widths, 3, drivers, look);
         Starts { shapes, looked: sizes.len().max(1) as f64 }
     }
 

@@ -1,6 +1,6 @@
 //! A contribution that is periodic in the sensed angle.
 
-use super::search::{best_of, peaks, summit};
+use super::search::{best_of, fast_level, peaks, summit};
 use super::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
@@ -101,9 +101,7 @@ fn octave(period: f64, angle: &[f64], step: &[f64], look: &Look<'_>) -> Option<(
     let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
     let mut spectrum = plan.make_output_vec();
     plan.process(&mut grid, &mut spectrum).ok()?;
-    let mut upper: Vec<f64> = look.powers.iter().skip(look.powers.len() / 2).copied().collect();
-    let middle = upper.len() / 2;
-    let level = *upper.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let level = fast_level(look);
     let frequency_step = 1.0 / (size as f64 * cell);
     let inside = |j: usize| {
         let f = j as f64 * frequency_step;

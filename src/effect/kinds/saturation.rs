@@ -1,7 +1,7 @@
 //! A response that is limited at large rates.
 
 use super::reach::varies;
-use super::search::best_of;
+use super::search::{best_of, shortlist};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
@@ -60,7 +60,9 @@ impl Course for Saturation {
     fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
         let most = largest(drivers);
         let shares = super::search::log_grid(1e-6, 0.75, 40);
-        let shapes = best_of(self, shares.into_iter().map(|s| vec![most * (1.0 - s)]), 3, drivers, look);
+        let limits = shares.into_iter().map(|s| vec![most * (1.0 - s)]);
+        let limits = shortlist(self, limits, 6, drivers, look);
+        let shapes = best_of(self, limits, 3, drivers, look);
         Starts { shapes, looked: 10.0 }
     }
 

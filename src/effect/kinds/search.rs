@@ -76,6 +76,53 @@ pub(super) fn best_of(
     rated.into_iter().take(keep).map(|(_, s)| s).collect()
 }
 
+/// Level of the fast half of the noise, (deg/h)²; 0 where there is none.
+pub(super) fn fast_level(look: &Look<'_>) -> f64 {
+    let mut upper: Vec<f64> = look.powers.iter().skip(look.powers.len() / 2).copied().collect();
+    if upper.is_empty() {
+        return 0.0;
+    }
+    let middle = upper.len() / 2;
+    *upper.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// The shapes that would gain most if the noise were white at the level of its fast half: one pass over the samples each
+/// instead of a transform. For courses of one column or of a fixed part alone.
+pub(super) fn shortlist(
+    course: &dyn Course,
+    shapes: impl IntoIterator<Item = Vec<f64>>,
+    keep: usize,
+    drivers: &Drivers,
+    look: &Look<'_>,
+) -> Vec<Vec<f64>> {
+    let level = fast_level(look);
+    if level.is_nan() || level <= 0.0 {
+        return vec![];
+    }
+    let rough = |column: &[f64]| {
+        let mean = column.iter().sum::<f64>() / column.len().max(1) as f64;
+        let both = column.iter().zip(look.score).map(|(z, w)| (z - mean) * w).sum::<f64>();
+        (both, column.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / level)
+    };
+    let gain = |shape: &Vec<f64>| {
+        let parts = course.parts(shape, drivers);
+        match (&parts.fixed, parts.free.first()) {
+            (Some(fixed), _) => {
+                let (both, square) = rough(fixed);
+                both - 0.5 * square
+            }
+            (None, Some(column)) => {
+                let (both, square) = rough(column);
+                if square > 0.0 { 0.5 * both * both / square } else { 0.0 }
+            }
+            (None, None) => 0.0,
+        }
+    };
+    let mut rated: Vec<(f64, Vec<f64>)> = shapes.into_iter().map(|s| (gain(&s), s)).collect();
+    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    rated.into_iter().take(keep).map(|(_, s)| s).collect()
+}
+
 /// Positions of the largest of `gains`, the best first, each at least `apart` from those before it.
 pub(super) fn peaks(gains: &[f64], keep: usize, apart: usize) -> Vec<usize> {
     let mut left = gains.to_vec();
@@ -113,6 +160,10 @@ mod tests {
         let look = Look { score: &residual, modes: &modes, powers: &powers };
         let free = Parts { free: vec![column.clone()], ..Parts::default() };
         assert!((gain_of(&free, &look) / look.gain(&column) - 1.0).abs() < 1e-8);
+        assert!(
+            (fast_level(&look) - 0.25).abs() < 1e-12
+                && fast_level(&Look { score: &[], modes: &[], powers: &[] }) == 0.0
+        );
         // The same column fixed at its best coefficient gains the same; a column beside it takes all of it.
         let (mut zr, mut zz) = (0.0, 0.0);
         for (z, r) in dct2(&column).iter().zip(&modes).skip(1) {
