@@ -7,6 +7,7 @@ pub mod finding;
 pub mod hypothesis;
 pub mod impute;
 pub mod lattice;
+pub mod local;
 pub mod noise_fit;
 pub mod problem;
 pub mod regular;
