@@ -13,6 +13,7 @@ pub mod hypothesis;
 mod identify;
 pub mod impute;
 pub mod lattice;
+pub mod local;
 pub mod noise_fit;
 pub mod options;
 pub mod outcome;

@@ -1,0 +1,295 @@
+//! Isolated groups of outlying samples.
+//!
+//! Windows of 1 to 512 samples are compared with the level of the noise on both sides of them; a level that changes, a
+//! wrong level of the claim and steps of the output make no burst.
+
+use super::{Flat, cumulated, lattice_step, median, varies};
+use crate::mismatch::candidates::Tried;
+use crate::mismatch::problem::Problem;
+use statrs::distribution::{Binomial, DiscreteCDF, Poisson};
+use statrs::function::beta::checked_beta_reg;
+
+/// Longest window, samples.
+const LONGEST: usize = 512;
+/// Share of the record beyond which outliers are no bursts.
+const COVER: f64 = 0.1;
+/// Share of false groups among those set aside (Benjamini and Hochberg 1995).
+const FALSE_SHARE: f64 = 0.02;
+/// Groups by size of the table rate.
+const RATES: usize = 8;
+/// Efficiency of the median of absolute values as an estimate of a deviation.
+const EFFICIENCY: f64 = 0.367_5;
+
+/// Groups of outlying samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bursts {
+    /// First sample and length of each, by time.
+    pub groups: Vec<(usize, usize)>,
+    /// Samples to set aside.
+    pub samples: Vec<usize>,
+    /// Deviation of the whitened samples set aside; 1 where the noise is as the hypothesis says.
+    pub deviation: f64,
+    /// Gain of log-likelihood by a deviation of their own, against the level of their neighbourhood.
+    pub gain: f64,
+    /// Two a group, and the deviation.
+    pub parameters: usize,
+    /// Probability of as much under no bursts, everything scanned counted.
+    pub p_value: f64,
+}
+
+/// Squares over the local level, ready for windows.
+struct Scan {
+    sums: Vec<f64>,
+    others: f64,
+    looks: f64,
+}
+
+impl Scan {
+    fn ratio(&self, first: usize, length: usize) -> f64 {
+        (self.sums[first + length] - self.sums[first]) / length as f64
+    }
+
+    /// Gain of log-likelihood by a level of its own.
+    fn gain(&self, first: usize, length: usize) -> f64 {
+        let ratio = self.ratio(first, length);
+        if ratio <= 1.0 { 0.0 } else { 0.5 * length as f64 * (ratio - 1.0 - ratio.ln()) }
+    }
+
+    /// Probability of so large a ratio in one window.
+    fn p_value(&self, length: usize, ratio: f64) -> f64 {
+        let dof = length as f64;
+        let share = self.others / (self.others + dof * ratio);
+        checked_beta_reg(0.5 * self.others, 0.5 * dof, share).map_or(1.0, |p| p.clamp(1e-300, 1.0))
+    }
+
+    /// The ratio that a window of some length reaches with probability `p`.
+    fn bound(&self, length: usize, p: f64) -> f64 {
+        let (mut low, mut high) = (0.0f64, 12.0f64);
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if self.p_value(length, middle.exp()) > p { low = middle } else { high = middle }
+        }
+        high.exp()
+    }
+}
+
+/// Looks for bursts in the residual of a hypothesis.
+pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Bursts> {
+    let flat = Flat::of(tried);
+    let n = flat.flat.len();
+    let longest = LONGEST.min(n / 20);
+    if longest < 2 {
+        return None;
+    }
+    let (squares, others) = squares(problem, &flat);
+    let lengths = lengths(longest);
+    let looks = lengths.iter().map(|m| ((n - m) / (m / 4).max(1) + 1) as f64).sum();
+    let scan = Scan { sums: cumulated(squares.iter().copied()), others, looks };
+    let mut windows: Vec<(f64, usize, usize)> = vec![];
+    for &m in &lengths {
+        let bound = scan.bound(m, 0.5 / looks);
+        let mut first = 0;
+        while first + m <= n {
+            if scan.ratio(first, m) > bound {
+                windows.push((scan.gain(first, m), first, m));
+            }
+            first += (m / 4).max(1);
+        }
+    }
+    windows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut taken = vec![false; n];
+    let mut groups: Vec<(usize, usize)> = vec![];
+    for (_, first, m) in windows {
+        if taken[first..first + m].iter().any(|t| *t) {
+            continue;
+        }
+        let (first, m) = trimmed(&scan, first, m, &taken);
+        taken[first..first + m].fill(true);
+        groups.push((first, m));
+    }
+    let groups = isolated(merged(&scan, groups, n), longest, n)?;
+    let groups = unmoved(problem, groups);
+    let (groups, p_value) = admitted(&scan, groups);
+    if groups.is_empty() {
+        return None;
+    }
+    let samples: Vec<usize> = groups
+        .iter()
+        .flat_map(|(first, m)| *first..first + m)
+        .filter(|i| problem.usable.get(*i).copied().unwrap_or(false))
+        .collect();
+    let k = samples.len() as f64;
+    let excess = samples.iter().map(|i| squares[*i]).sum::<f64>() / k;
+    let gain = 0.5 * k * (excess - 1.0 - excess.ln());
+    let deviation = (samples.iter().map(|i| flat.white[*i].powi(2)).sum::<f64>() / k).sqrt();
+    let parameters = 2 * groups.len() + 1;
+    Some(Bursts { groups, samples, deviation, gain, parameters, p_value })
+}
+
+fn lengths(longest: usize) -> Vec<usize> {
+    let mut out = vec![1, 2];
+    let mut m = 4;
+    while m <= 2 * longest {
+        out.push(3 * m / 4);
+        out.push(m);
+        m *= 2;
+    }
+    out.retain(|m| *m <= longest);
+    out
+}
+
+/// Squares of the flat residual over the local level, and the degrees of freedom that the level has.
+fn squares(problem: &Problem, flat: &Flat) -> (Vec<f64>, f64) {
+    let n = flat.flat.len();
+    let mut sizes: Vec<f64> = flat.flat.iter().map(|e| e.abs()).collect();
+    let mut spent = 0.0;
+    if let Some(rate) = problem.drivers.table_rate.as_deref().filter(|r| varies(r)) {
+        // Noise that grows with the rate of the table is no burst each time it turns.
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by(|a, b| rate[*a].abs().total_cmp(&rate[*b].abs()));
+        for group in order.chunks(n.div_ceil(RATES)) {
+            let level = median(&mut group.iter().map(|i| sizes[*i]).collect::<Vec<f64>>()) / super::MEDIAN;
+            group.iter().for_each(|i| sizes[*i] /= level.max(1e-12));
+        }
+        spent = RATES as f64 / (EFFICIENCY * n as f64);
+    }
+    // Values on a lattice differ by whole steps even where nothing happens.
+    let least = 0.5 * lattice_step(problem, flat);
+    let guard = (LONGEST / 2).min(n / 40);
+    let width = (n / 6).clamp(24, 4096);
+    let stride = (width / 16).max(1);
+    let side = |from: usize, to: usize| {
+        (to >= from + width / 2).then(|| median(&mut sizes[from..to].to_vec()) / super::MEDIAN)
+    };
+    let levels: Vec<f64> = (0..n.div_ceil(stride))
+        .map(|s| {
+            let at = s * stride + stride / 2;
+            let left = at.saturating_sub(guard);
+            let right = (at + guard).min(n);
+            let before = side(left.saturating_sub(width), left);
+            let after = side(right, (right + width).min(n));
+            before.unwrap_or(0.0).max(after.unwrap_or(0.0))
+        })
+        .collect();
+    let squares = (0..n)
+        .map(|i| {
+            let level = levels[i / stride].max(1e-12);
+            let usable = problem.usable.get(i).copied().unwrap_or(false);
+            if usable { sizes[i] * sizes[i] / (level * level + least * least) } else { 1.0 }
+        })
+        .collect();
+    let dof = 1.0 / (spent + 1.0 / (EFFICIENCY * width as f64));
+    (squares, dof)
+}
+
+/// Moves the ends of a window while it gains.
+fn trimmed(scan: &Scan, mut first: usize, mut m: usize, taken: &[bool]) -> (usize, usize) {
+    let n = taken.len();
+    let mut best = scan.gain(first, m);
+    for _ in 0..2 * LONGEST {
+        let mut options = vec![];
+        for step in [1, 2, 4] {
+            if m > step {
+                options.extend([(first + step, m - step), (first, m - step)]);
+            }
+            if first >= step && !taken[first - step..first].iter().any(|t| *t) {
+                options.push((first - step, m + step));
+            }
+            if first + m + step <= n && !taken[first + m..first + m + step].iter().any(|t| *t) {
+                options.push((first, m + step));
+            }
+        }
+        let Some(next) = options
+            .into_iter()
+            .map(|(f, l)| (scan.gain(f, l), f, l))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|o| o.0 > best)
+        else {
+            break;
+        };
+        (best, first, m) = next;
+    }
+    (first, m)
+}
+
+/// Neighbours that one group describes as well as two.
+fn merged(scan: &Scan, mut groups: Vec<(usize, usize)>, n: usize) -> Vec<(usize, usize)> {
+    groups.sort_unstable();
+    let cost = (n as f64).ln();
+    let mut out: Vec<(usize, usize)> = vec![];
+    for next in groups {
+        let mut here = next;
+        while let Some(last) = out.last().copied() {
+            let whole = (last.0, here.0 + here.1 - last.0);
+            let apart = scan.gain(last.0, last.1) + scan.gain(here.0, here.1);
+            if whole.1 > 4 * LONGEST || scan.gain(whole.0, whole.1) < apart - cost {
+                break;
+            }
+            out.pop();
+            here = whole;
+        }
+        out.push(here);
+    }
+    out
+}
+
+/// The groups that stand alone: not part of a longer stretch, and not everywhere.
+fn isolated(groups: Vec<(usize, usize)>, longest: usize, n: usize) -> Option<Vec<(usize, usize)>> {
+    let covered: usize = groups.iter().map(|g| g.1).sum();
+    if covered as f64 > COVER * n as f64 {
+        return None;
+    }
+    let stretches: Vec<(usize, usize)> = groups.iter().copied().filter(|g| g.1 > longest).collect();
+    let near = |g: &(usize, usize)| stretches.iter().any(|s| g.0 < s.0 + 2 * s.1 && g.0 + g.1 + s.1 > s.0);
+    Some(groups.into_iter().filter(|g| !near(g)).collect())
+}
+
+/// The groups without those at changes of the table's motion, if that is where groups are.
+fn unmoved(problem: &Problem, mut groups: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
+    let drivers = &problem.drivers;
+    for rate in [drivers.table_rate.as_deref(), drivers.outer_rate.as_deref()].into_iter().flatten() {
+        let n = rate.len();
+        if !varies(rate) || n < 3 {
+            continue;
+        }
+        let mut steps: Vec<f64> = rate.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
+        let largest = steps.iter().copied().fold(0.0, f64::max);
+        let moving: Vec<bool> = steps.iter().map(|s| *s > 0.1 * largest).collect();
+        if median(&mut steps) > 0.1 * largest {
+            continue;
+        }
+        let sums = cumulated(moving.iter().map(|m| f64::from(u8::from(*m))));
+        let met = |g: &(usize, usize)| {
+            let (from, to) = (g.0.saturating_sub(3), (g.0 + g.1 + 3).min(n - 1));
+            sums[to] > sums[from]
+        };
+        let hits = groups.iter().filter(|g| met(g)).count();
+        let typical = groups.iter().map(|g| g.1 + 6).sum::<usize>() / groups.len().max(1);
+        let places = (0..n - 1).step_by(typical.max(1));
+        let total = places.clone().count() as f64;
+        let share = places.filter(|i| met(&(*i, typical.saturating_sub(6)))).count() as f64 / total;
+        let Ok(law) = Binomial::new(share.clamp(0.0, 1.0), groups.len() as u64) else { continue };
+        if hits > 0 && law.sf(hits as u64 - 1) < 1e-3 {
+            groups.retain(|g| !met(g));
+        }
+    }
+    groups
+}
+
+/// The groups of which few are false, by time, and the probability of as many as good.
+fn admitted(scan: &Scan, groups: Vec<(usize, usize)>) -> (Vec<(usize, usize)>, f64) {
+    let p_of = |g: &(usize, usize)| (scan.p_value(g.1, scan.ratio(g.0, g.1)) * scan.looks, *g);
+    let mut rated: Vec<(f64, (usize, usize))> = groups.iter().map(p_of).collect();
+    rated.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let count = (1..=rated.len()).rev().find(|j| rated[j - 1].0 <= FALSE_SHARE * *j as f64).unwrap_or(0);
+    let mut p_value: f64 = 1.0;
+    for (j, (expected, _)) in rated.iter().take(count).enumerate() {
+        // Weights 1/(j(j + 1)) over the number of groups sum to 1.
+        let weight = (j + 1) as f64 * (j + 2) as f64;
+        let as_many = Poisson::new(expected.max(1e-290)).map_or(1.0, |law| law.sf(j as u64));
+        p_value = p_value.min(weight * as_many.max(1e-300));
+    }
+    let mut out: Vec<(usize, usize)> = rated.into_iter().take(count).map(|r| r.1).collect();
+    out.sort_unstable();
+    (out, p_value.min(1.0))
+}

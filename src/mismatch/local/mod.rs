@@ -1,0 +1,154 @@
+//! What shows in single samples: groups of outliers, a noise level that changes, jumps between two levels.
+//!
+//! Bursts and the level are judged on a flat residual: the whitened residual of a hypothesis without its slow course
+//! and with its own spectrum levelled, so that what a wrong spectrum or a missing course leaves is not taken for them.
+
+pub mod bursts;
+mod gamma;
+pub mod level;
+mod rate_law;
+pub mod telegraph;
+mod time_level;
+mod two_level;
+
+pub use bursts::{Bursts, bursts};
+pub use level::{Law, Level, level};
+pub use telegraph::{Telegraph, telegraph};
+
+use super::candidates::Tried;
+use super::departures::White;
+use super::problem::Problem;
+use crate::numeric::cosine::{dct2, inverse_dct2};
+
+/// Samples on either side of a running median: courses slower than this are none of a burst.
+const SLOW: usize = 64;
+/// Modes on either side over which the own spectrum is averaged.
+const SPECTRUM: usize = 12;
+/// A median of absolute values over the deviation of a normal law.
+const MEDIAN: f64 = 0.674_489_750_196_082;
+
+/// The residual of a hypothesis in single samples.
+pub struct Flat {
+    /// Whitened by the hypothesis.
+    pub white: Vec<f64>,
+    /// Without the slow course, its own spectrum levelled.
+    pub flat: Vec<f64>,
+    /// What a deviation of 1 deg/h of one sample is in `flat`.
+    pub per_deg_h: f64,
+}
+
+impl Flat {
+    /// Of the fit of a hypothesis.
+    pub fn of(tried: &Tried) -> Flat {
+        let white = White::of(&tried.fit);
+        let slow = running_median(&white.series, SLOW);
+        let fast: Vec<f64> = white.series.iter().zip(&slow).map(|(e, s)| e - s).collect();
+        // Few large values must not be what the spectrum is levelled by.
+        let bound = 4.0 * deviation(&fast);
+        let clipped: Vec<f64> = fast.iter().map(|e| e.clamp(-bound, bound)).collect();
+        let powers = smooth(&dct2(&clipped).iter().map(|u| u * u).collect::<Vec<f64>>());
+        let modes: Vec<f64> = dct2(&fast).iter().zip(&powers).map(|(u, p)| u / p.max(1e-12).sqrt()).collect();
+        let n = modes.len().max(2);
+        let gains = white.roots.iter().zip(&powers).skip(1).map(|(r, p)| 1.0 / (r * p.max(1e-12).sqrt()));
+        let per_deg_h = gains.sum::<f64>() / (n - 1) as f64;
+        Flat { white: white.series, flat: inverse_dct2(&modes), per_deg_h }
+    }
+}
+
+/// Standard deviation by the median of the absolute values.
+fn deviation(values: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
+    median(&mut sizes) / MEDIAN
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Running mean of the powers of modes; mode 0 stays out.
+fn smooth(powers: &[f64]) -> Vec<f64> {
+    let n = powers.len();
+    let mut sums = vec![0.0];
+    let mut sum = 0.0;
+    for (k, p) in powers.iter().enumerate() {
+        sum += if k == 0 { 0.0 } else { *p };
+        sums.push(sum);
+    }
+    (0..n)
+        .map(|k| {
+            let (from, to) = (k.saturating_sub(SPECTRUM).max(1), (k + SPECTRUM + 1).min(n));
+            if to > from { (sums[to] - sums[from]) / (to - from) as f64 } else { 1.0 }
+        })
+        .collect()
+}
+
+/// Median of each value with `half` neighbours on either side, fewer at the ends.
+fn running_median(values: &[f64], half: usize) -> Vec<f64> {
+    let n = values.len();
+    let mut window: Vec<f64> = values.iter().take(half).copied().collect();
+    window.sort_by(f64::total_cmp);
+    let mut out = Vec::with_capacity(n);
+    for i in 0..n {
+        if i + half < n {
+            let new = values[i + half];
+            let at = window.partition_point(|w| w.total_cmp(&new).is_lt());
+            window.insert(at, new);
+        }
+        if i > half {
+            let old = values[i - half - 1];
+            let at = window.partition_point(|w| w.total_cmp(&old).is_lt());
+            window.remove(at.min(window.len() - 1));
+        }
+        let middle = window.len() / 2;
+        out.push(if window.len() % 2 == 1 {
+            window[middle]
+        } else {
+            0.5 * (window[middle - 1] + window[middle])
+        });
+    }
+    out
+}
+
+/// Running sums, beginning with 0.
+fn cumulated(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sum = 0.0;
+    std::iter::once(0.0)
+        .chain(values.map(|v| {
+            sum += v;
+            sum
+        }))
+        .collect()
+}
+
+/// True where a problem's column changes at all.
+fn varies(values: &[f64]) -> bool {
+    let (low, high) = crate::numeric::range::ends(values);
+    high - low > 1e-9 * low.abs().max(high.abs())
+}
+
+/// Step of the lattice of the values in the unit of the flat residual; 0 where there is none.
+fn lattice_step(problem: &Problem, flat: &Flat) -> f64 {
+    problem.scenes.lattice_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s * flat.per_deg_h)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_running_median_is_the_median_of_its_window() {
+        let values: Vec<f64> = (0..50).map(|i| f64::from(i * 37 % 50)).collect();
+        let got = running_median(&values, 5);
+        for (i, g) in got.iter().enumerate() {
+            let mut window = values[i.saturating_sub(5)..(i + 6).min(50)].to_vec();
+            window.sort_by(f64::total_cmp);
+            let m = window.len();
+            let expected = if m % 2 == 1 { window[m / 2] } else { 0.5 * (window[m / 2 - 1] + window[m / 2]) };
+            assert_eq!(*g, expected, "{i}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Records for the tests of what shows in single samples: simulated noise, a claim of it, and a hand that changes it.
+
+use rand::RngExt as _;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use sagnac::claim::{Claim, Uncertainty};
+use sagnac::effect::{ClaimedMean, Column};
+use sagnac::mismatch::candidates::Tried;
+use sagnac::mismatch::problem::Problem;
+use sagnac::mismatch::regular::Regular;
+use sagnac::noise::model::NoiseModel;
+use sagnac::noise::simulate::{Setup, Simulator};
+use std::collections::BTreeMap;
+
+/// Noise at 10 Hz.
+#[derive(Debug, Clone, Copy)]
+pub struct Model {
+    /// deg/√h.
+    pub n: f64,
+    /// deg/h.
+    pub b: f64,
+    /// deg/h/√h.
+    pub k: f64,
+}
+
+/// White noise of 0.57 deg/h a sample.
+pub const WHITE: Model = Model { n: 0.003, b: 0.0, k: 0.0 };
+/// With flicker.
+pub const FLICKER: Model = Model { n: 0.003, b: 0.05, k: 0.0 };
+/// With a random walk.
+pub const WALK: Model = Model { n: 0.003, b: 0.0, k: 0.3 };
+
+/// Sample rate, Hz.
+pub const RATE_HZ: f64 = 10.0;
+
+impl Model {
+    /// Deviation of the white noise of a sample, deg/h.
+    pub fn sigma(self) -> f64 {
+        60.0 * self.n * RATE_HZ.sqrt()
+    }
+
+    /// Its own claim.
+    pub fn claim(self) -> Claim {
+        Claim {
+            case: String::new(),
+            description: String::new(),
+            sample_rate_hz: RATE_HZ,
+            columns: None,
+            noise: NoiseModel { n: self.n, b: self.b, k: self.k, ..NoiseModel::default() },
+            quantization_lsb_arcsec: 0.0,
+            mean: ClaimedMean::default(),
+            uncertainty: Uncertainty { n_rel: 0.015, b_rel: 0.12, k_rel: 0.15, ..Uncertainty::default() },
+            effects: vec![],
+        }
+    }
+
+    /// A draw of it, deg/h.
+    pub fn draw(self, samples: usize, seed: u64) -> Vec<f64> {
+        let noise = NoiseModel { n: self.n, b: self.b, k: self.k, ..NoiseModel::default() };
+        let setup = Setup::for_record(seed, 1.0 / RATE_HZ, samples as u64);
+        Simulator::new(&noise, &setup).take(samples)
+    }
+
+    /// A draw that `change` changed, against the claim of the noise alone.
+    pub fn problem(self, samples: usize, seed: u64, change: impl Fn(&mut [f64])) -> (Problem, Tried) {
+        self.with_columns(samples, seed, &BTreeMap::new(), change)
+    }
+
+    /// The same with columns.
+    pub fn with_columns(
+        self,
+        samples: usize,
+        seed: u64,
+        columns: &BTreeMap<Column, Vec<f64>>,
+        change: impl Fn(&mut [f64]),
+    ) -> (Problem, Tried) {
+        let mut rate = self.draw(samples, seed);
+        change(&mut rate);
+        against(&self.claim(), &rate, columns)
+    }
+}
+
+/// A record against a claim.
+pub fn against(claim: &Claim, rate: &[f64], columns: &BTreeMap<Column, Vec<f64>>) -> (Problem, Tried) {
+    let time: Vec<f64> = (0..rate.len()).map(|i| i as f64 / RATE_HZ).collect();
+    let regular = Regular::new(&time, rate, columns, RATE_HZ).unwrap();
+    let problem = Problem::new(regular, claim);
+    let tried = problem.baseline();
+    (problem, tried)
+}
+
+/// A generator of its own for what is put in.
+pub fn random(seed: u64) -> Xoshiro256PlusPlus {
+    Xoshiro256PlusPlus::seed_from_u64(seed ^ 0x7e57)
+}
+
+/// A standard normal number.
+pub fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+/// A path of 0 and 1 with exponential dwells of mean `dwell` samples, averaged over each sample.
+pub fn telegraph_path(samples: usize, dwell: f64, seed: u64) -> Vec<f64> {
+    let mut rng = random(seed);
+    let mut up = rng.random::<f64>() < 0.5;
+    let mut left = -dwell * (1.0 - rng.random::<f64>()).ln();
+    (0..samples)
+        .map(|_| {
+            let (mut rest, mut mean) = (1.0, 0.0);
+            while left < rest {
+                mean += if up { left } else { 0.0 };
+                rest -= left;
+                up = !up;
+                left = -dwell * (1.0 - rng.random::<f64>()).ln();
+            }
+            left -= rest;
+            mean + if up { rest } else { 0.0 }
+        })
+        .collect()
+}
