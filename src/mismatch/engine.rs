@@ -2,16 +2,19 @@
 
 use super::candidates::{Candidate as Fitted, Tried};
 use super::departures::{self, Departure};
-use super::estimates::{self, Estimated};
+use super::estimates;
 use super::finding::{
-    Candidate, Explanation, Finding, Fit, FitFigures, NuisanceValue, ParameterValue, PlaceRecord, RecordingFacts, Test,
+    Candidate, Explanation, Finding, Fit, FitFigures, NuisanceValue, ParameterValue, PlaceRecord,
+    RecordingFacts, Test,
 };
 use super::heldout::{Halves, HeldOut};
 use super::hypothesis::kept;
+use super::local;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::regular::{Irregular, Regular};
+use super::samples::{self, Named};
 use super::select::{self, Chosen, Selection, Slot};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Domain, Effect, Model, Nuisance, Place, SpectralLook, Value};
@@ -38,16 +41,114 @@ pub fn explain(
         .filter(|(c, _)| !options.hide.contains(c))
         .map(|(c, v)| (*c, v.clone()))
         .collect();
-    let regular = Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)?;
+    let regular =
+        Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
-    let problem = Problem::new(regular, claim);
+    let mut problem = Problem::new(regular, claim);
+    let rows = problem.scenes.rows;
     let base = problem.baseline();
-    let before = departures::all(&problem.scenes.full, &base.fit, None, &problem.usable);
+    let before = departures::all(&problem.scenes.full, &base.fit, problem.level.as_deref(), &problem.usable);
+    let held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
-    let selection = select::select(&base, &problem.scenes, options.alpha, options.max_effects);
-    let after = departures::all(&problem.scenes.full, &selection.best.fit, None, &problem.usable);
+    let mut found = Found::default();
+    let mut start = take_bursts(&mut problem, &base, &mut found, options.alpha);
+    if problem.level.is_none() {
+        let levels = local::level(&problem, &start);
+        let passing =
+            levels.first().and_then(|l| samples::worth(l.gain, l.parameters, l.p_value, rows, options.alpha));
+        if let Some(delta_bic) = passing {
+            found.named.extend(samples::level(&levels, delta_bic, rows, &problem));
+            found.level = levels.into_iter().next().map(|l| l.profile);
+            start = samples::with_free_level(&start, &problem);
+        }
+    }
+    let mut selection = select::select(&start, &problem.scenes, options.alpha, options.max_effects);
+    take_telegraph(&mut problem, &start, &mut selection, &mut found, options);
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
-    Ok(assemble(&problem, &base, &selection, &before, &after, series, options))
+    let level = found.level.clone().or_else(|| problem.level.clone());
+    let after = departures::all(&problem.scenes.full, &selection.best.fit, level.as_deref(), &problem.usable);
+    Ok(assemble(&problem, &base, &held_base, &selection, found, &before, &after, series, options))
+}
+
+/// What was found in single samples.
+#[derive(Default)]
+struct Found {
+    named: Vec<Named>,
+    /// Deviation of the noise of each sample over that of the record.
+    level: Option<Vec<f64>>,
+    /// What was taken out of the residual, deg/h.
+    taken: Option<Vec<f64>>,
+}
+
+impl Found {
+    fn take(&mut self, course: Vec<f64>) {
+        match &mut self.taken {
+            Some(sum) => sum.iter_mut().zip(course).for_each(|(s, c)| *s += c),
+            None => self.taken = Some(course),
+        }
+    }
+
+    fn local_gain(&self) -> f64 {
+        self.named.iter().map(|n| n.local_gain).sum()
+    }
+}
+
+/// Sets bursts aside; the claim's fit without them.
+fn take_bursts(problem: &mut Problem, base: &Tried, found: &mut Found, alpha: f64) -> Tried {
+    let rows = problem.scenes.rows;
+    let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "outlier_bursts");
+    let Some(bursts) = local::bursts(problem, base) else { return base.clone() };
+    let Some(delta_bic) = samples::worth(bursts.gain, bursts.parameters, bursts.p_value, rows, alpha) else {
+        return base.clone();
+    };
+    let whole = problem.residual.clone();
+    problem.without(&bursts.samples, base);
+    if !stated {
+        let removed: Vec<f64> = whole.iter().zip(&problem.residual).map(|(w, r)| w - r).collect();
+        found.named.extend(samples::bursts(&bursts, delta_bic, &removed, problem));
+        found.take(removed);
+    }
+    problem.baseline()
+}
+
+/// Takes out jumps between two levels where they explain more than anything else does.
+fn take_telegraph(
+    problem: &mut Problem,
+    start: &Tried,
+    selection: &mut Selection,
+    found: &mut Found,
+    options: &Options,
+) {
+    let rows = problem.scenes.rows;
+    let stated = problem.stated_telegraph();
+    if selection.chosen.is_empty() && !stated {
+        return;
+    }
+    let Some(telegraph) = local::telegraph(problem, start) else { return };
+    let worth = samples::worth(telegraph.gain, telegraph.parameters, telegraph.p_value, rows, options.alpha);
+    let Some(delta_bic) = worth else { return };
+    let rival = start.bic(rows) - selection.best.bic(rows);
+    if delta_bic < rival && !stated {
+        return;
+    }
+    let course: Vec<f64> = telegraph.path.iter().map(|p| telegraph.amplitude_deg_h * p).collect();
+    problem.take(&course);
+    let mut base = problem.baseline();
+    if start.hypothesis.noise.freed[0] {
+        base = samples::with_free_level(&base, problem);
+    }
+    let near: Vec<&'static str> = selection
+        .chosen
+        .iter()
+        .filter(|_| selection.chosen.len() == 1 && delta_bic < rival + select::ENOUGH)
+        .map(|c| c.effect.kind())
+        .collect();
+    if !stated && let Some(mut named) = samples::telegraph(&telegraph, delta_bic, problem) {
+        named.equivalents = near;
+        found.named.push(named);
+        found.take(course);
+    }
+    *selection = select::select(&base, &problem.scenes, options.alpha, options.max_effects);
 }
 
 fn note(why: Irregular) -> Note {
@@ -58,29 +159,33 @@ fn note(why: Irregular) -> Note {
         Irregular::OtherRate(observed, claimed) => Note::new("explain.error.other_rate")
             .with("observed", format!("{observed:.6}"))
             .with("claimed", format!("{claimed:.6}")),
-        Irregular::Sparse(rows, places) => Note::new("explain.error.sparse")
-            .with("rows", rows as u64)
-            .with("places", format!("{places:.0}")),
+        Irregular::Sparse(rows, places) => {
+            Note::new("explain.error.sparse").with("rows", rows as u64).with("places", format!("{places:.0}"))
+        }
     }
 }
 
+#[allow(clippy::too_many_arguments)]
 fn assemble(
     problem: &Problem,
     base: &Tried,
+    held_base: &HeldOut,
     selection: &Selection,
+    mut found: Found,
     before: &[Departure],
     after: &[Departure],
     series: &Series,
     options: &Options,
 ) -> Outcome {
     let scenes = &problem.scenes;
-    let (mut findings, mut stated) = (vec![], vec![]);
+    let local_gain = found.local_gain();
     for chosen in &selection.chosen {
-        let estimated = estimates::of(chosen.effect, chosen.slot, &selection.best, scenes);
-        findings.push(finding(chosen, &estimated, &selection.best, problem));
-        stated.push(Stated { effect: chosen.effect, values: estimated.stated });
+        found.named.push(named(chosen, &selection.best, problem));
     }
-    findings.extend(unknown(before, after, findings.is_empty(), options.alpha));
+    found.named.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    let something = !found.named.is_empty();
+    let mut findings: Vec<Finding> = found.named.iter().map(finding).collect();
+    findings.extend(unknown(after, !something, options.alpha));
     findings.extend(dropped(problem));
     let verdict = if findings.iter().any(|f| f.kind == "unknown") {
         "unknown-mismatch"
@@ -89,16 +194,23 @@ fn assemble(
     } else {
         "mismatch"
     };
-    let augmented = augmented(problem, &selection.best, stated);
-    let correction = estimates::correction(&selection.best, scenes);
+    let mut correction = estimates::correction(&selection.best, scenes);
+    if let Some(taken) = &found.taken {
+        let sum = correction.get_or_insert_with(|| vec![0.0; taken.len()]);
+        sum.iter_mut().zip(taken).for_each(|(s, t)| *s += t);
+    }
+    let stated = found.named.into_iter().map(|n| Stated { effect: n.effect, values: n.estimated.stated });
+    let augmented = augmented(problem, &selection.best, stated.collect());
     let halves = Halves::new(problem);
-    let (held_base, held_best) = if selection.chosen.is_empty() {
-        let held = halves.judge(base);
-        (held, held)
-    } else {
-        (halves.judge(base), halves.judge(&selection.best))
-    };
+    let held_best = if something { halves.judge(&selection.best) } else { *held_base };
     let family = smallest_p(&selection.first, before);
+    let figures_after = FitFigures {
+        log_likelihood: selection.best.fit.log_likelihood + local_gain,
+        heldout_log_likelihood: held_best.log_likelihood + 0.5 * local_gain,
+        heldout_rms_deg_h: held_best.rms_deg_h,
+        bic: selection.best.bic(scenes.rows) - 2.0 * local_gain,
+    };
+    let baseline = figures(base, held_base, scenes.rows);
     let explanation = Explanation {
         format: "explain/1".to_owned(),
         case: problem.claim.case.clone(),
@@ -106,11 +218,11 @@ fn assemble(
         effects: findings,
         fit: Fit {
             heldout_tau_s: halves.bin_s(),
-            baseline: figures(base, &held_base, scenes.rows),
-            augmented: figures(&selection.best, &held_best, scenes.rows),
+            augmented: if something { figures_after } else { baseline.clone() },
+            baseline,
         },
         family_p_value: family,
-        family_p_value_after: if selection.chosen.is_empty() { family } else { departures::family(after) },
+        family_p_value_after: if something { departures::family(after) } else { family },
         alpha: options.alpha,
         candidates: selection.first.iter().map(candidate).collect(),
         tests: tests(before, after),
@@ -122,8 +234,26 @@ fn assemble(
         let on_rows = c.iter().zip(&problem.regular.present).enumerate().filter(|(_, (_, p))| **p);
         on_rows.map(|(i, (v, _))| (problem.drivers.time_s(i), *v)).collect()
     });
-    let figures = super::drawing::all(problem, base, &selection.best, &explanation.effects);
-    Outcome { explanation, correction, augmented, figures }
+    Outcome { explanation, correction, augmented, figures: vec![] }
+}
+
+/// A chosen effect with its parameters and places.
+fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
+    let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.scenes);
+    if chosen.effect.kind() == "unobserved_driver"
+        && let Slot::Spectrum(i) = chosen.slot
+    {
+        estimated.stated = super::driver::knots(best, i, problem);
+    }
+    Named {
+        effect: chosen.effect,
+        estimated,
+        equivalents: chosen.equivalents.iter().map(|e| e.kind()).collect(),
+        places: places(chosen.effect, chosen.slot, best, chosen, problem),
+        delta_bic: chosen.delta_bic,
+        p_value: chosen.p_value,
+        local_gain: 0.0,
+    }
 }
 
 fn smallest_p(first: &[Fitted], before: &[Departure]) -> f64 {
@@ -153,15 +283,14 @@ fn record(place: &Place) -> PlaceRecord {
     PlaceRecord { domain: place.domain.id().to_owned(), from: place.from, to: place.to }
 }
 
-fn finding(chosen: &Chosen, estimated: &Estimated, best: &Tried, problem: &Problem) -> Finding {
-    let places = places(chosen.effect, chosen.slot, best, chosen, problem);
+fn finding(named: &Named) -> Finding {
     Finding {
-        kind: chosen.effect.kind().to_owned(),
-        equivalents: chosen.equivalents.iter().map(|e| e.kind().to_owned()).collect(),
-        parameters: estimated.reported.clone(),
-        places: places.iter().map(record).take(3).collect(),
-        delta_bic: chosen.delta_bic,
-        p_value: chosen.p_value,
+        kind: named.effect.kind().to_owned(),
+        equivalents: named.equivalents.iter().map(|e| (*e).to_owned()).collect(),
+        parameters: named.estimated.reported.clone(),
+        places: named.places.iter().map(record).take(3).collect(),
+        delta_bic: named.delta_bic,
+        p_value: named.p_value,
         heldout_gain: None,
         removed_share: None,
     }
@@ -196,7 +325,7 @@ fn places(
 }
 
 /// What departs from the hypothesis and has no name.
-fn unknown(before: &[Departure], after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Finding> {
+fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Finding> {
     let tests = after.len().max(1) as f64;
     let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTED };
     let mut departed: Vec<&Departure> = after.iter().filter(|d| d.p_value * tests < bound).collect();
@@ -211,7 +340,6 @@ fn unknown(before: &[Departure], after: &[Departure], nothing_found: bool, alpha
     }
     places.truncate(3);
     let p_value = (worst.p_value * tests).min(1.0);
-    let _ = before;
     Some(Finding {
         kind: "unknown".to_owned(),
         equivalents: vec![],

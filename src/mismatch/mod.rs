@@ -4,6 +4,7 @@ pub mod candidates;
 pub mod columns;
 pub mod departures;
 pub mod drawing;
+pub mod driver;
 pub mod engine;
 pub mod estimates;
 pub mod figures;
@@ -19,6 +20,7 @@ pub mod options;
 pub mod outcome;
 pub mod problem;
 pub mod regular;
+pub mod samples;
 pub mod scene;
 pub mod select;
 

@@ -7,7 +7,7 @@ use super::lattice;
 use super::noise_fit::Noise;
 use super::regular::Regular;
 use super::scene::{Scene, smoothed};
-use crate::claim::Claim;
+use crate::claim::{Claim, Stated};
 use crate::effect::{Column, Drivers, Model, Nuisance};
 use crate::numeric::cosine::inverse_dct2;
 
@@ -30,6 +30,8 @@ pub struct Problem {
     pub residual: Vec<f64>,
     /// True where the residual is that of a row that counts.
     pub usable: Vec<bool>,
+    /// Level of the noise that the claim states, of each sample over that of the record.
+    pub level: Option<Vec<f64>>,
     /// Both resolutions.
     pub scenes: Scenes,
 }
@@ -43,7 +45,7 @@ impl Problem {
         for stated in &claim.effects {
             let course = match stated.effect.model() {
                 Model::Course(c) => c.course(&stated.values, &drivers),
-                _ => None,
+                _ => stated.effect.stated_course(&stated.values, &drivers),
             };
             if let Some(course) = course {
                 residual.iter_mut().zip(&course).for_each(|(r, c)| *r -= c);
@@ -57,7 +59,22 @@ impl Problem {
         let powers = empty.powers(&noise.densities(&empty));
         impute::fill(&mut residual, &usable, &powers, SEED);
         let scenes = scenes(&drivers, claim, &residual, lattice_arcsec, rows);
-        Problem { regular, claim: claim.clone(), drivers, residual, usable, scenes }
+        let level = level(claim, &drivers);
+        Problem { regular, claim: claim.clone(), drivers, residual, usable, level, scenes }
+    }
+
+    /// True when the claim states jumps between two levels without saying when.
+    pub fn stated_telegraph(&self) -> bool {
+        let telegraph = |e: &&Stated| e.effect.kind() == "random_telegraph";
+        let unknown = |e: &Stated| e.effect.stated_course(&e.values, &self.drivers).is_none();
+        self.claim.effects.iter().find(telegraph).is_some_and(unknown)
+    }
+
+    /// Takes a course out of the residual.
+    pub fn take(&mut self, course: &[f64]) {
+        self.residual.iter_mut().zip(course).for_each(|(r, c)| *r -= c);
+        let rows = self.scenes.rows;
+        self.scenes = scenes(&self.drivers, &self.claim, &self.residual, self.scenes.lattice_arcsec, rows);
     }
 
     /// The same with more samples set aside and the noise of a hypothesis for what is filled in.
@@ -87,6 +104,29 @@ impl Problem {
         let fit = fit(&mut hypothesis, &self.scenes.full);
         Tried { hypothesis, fit, parameters: 0 }
     }
+}
+
+/// The level of the noise that stated effects give each sample, scaled to a mean square of 1.
+fn level(claim: &Claim, drivers: &Drivers) -> Option<Vec<f64>> {
+    let kinds = ["noise_variance_time", "noise_variance_rate"];
+    let stated: Vec<&Stated> = claim.effects.iter().filter(|e| kinds.contains(&e.effect.kind())).collect();
+    if stated.is_empty() {
+        return None;
+    }
+    // A rate one above its mean shows by what the effect multiplies deviations.
+    let mean = drivers.claimed_mean();
+    let mut rate: Vec<f64> = mean.iter().map(|m| m + drivers.claim.bias_deg_h + 1.0).collect();
+    let mut keep = vec![true; rate.len()];
+    for effect in stated {
+        if let Model::Samples(s) = effect.effect.model() {
+            s.apply(&effect.values, drivers, 0, &mut rate, &mut keep);
+        }
+    }
+    let mut level: Vec<f64> =
+        rate.iter().zip(&mean).map(|(y, m)| (y - m - drivers.claim.bias_deg_h).abs().max(1e-6)).collect();
+    let root = (level.iter().map(|g| g * g).sum::<f64>() / level.len().max(1) as f64).sqrt();
+    level.iter_mut().for_each(|g| *g /= root);
+    Some(level)
 }
 
 /// Samples to average and how many averages to keep: a number without large factors, at which transforms are fast, that

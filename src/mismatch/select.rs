@@ -176,13 +176,7 @@ fn pruned(mut best: Tried, scenes: &Scenes, rows: usize) -> Tried {
     }
 }
 
-fn chosen(
-    best: &Tried,
-    base: &Tried,
-    first: &[Candidate],
-    scenes: &Scenes,
-    family: f64,
-) -> Vec<Chosen> {
+fn chosen(best: &Tried, base: &Tried, first: &[Candidate], scenes: &Scenes, family: f64) -> Vec<Chosen> {
     let rows = scenes.rows;
     let all_slots = slots(&best.hypothesis);
     let single = all_slots.len() == 1;
