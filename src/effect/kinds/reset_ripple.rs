@@ -45,8 +45,8 @@ describe! {
 
 /// Shortest period that is looked for, arcsec.
 const SHORTEST: f64 = 0.5;
-/// Longest transform of the search.
-const LONGEST: usize = 1 << 22;
+/// Most cells of angle in a search.
+const LONGEST: usize = 1 << 20;
 
 /// Sensed angle at the middle of each sample since the first began, and its change over the sample, arcsec.
 fn sensed(bias: f64, drivers: &Drivers) -> Option<(Vec<f64>, Vec<f64>)> {
@@ -146,7 +146,11 @@ impl Course for ResetRipple {
         let level = fast_level(look);
         let (mut period, mut found, mut looked) = (SHORTEST, vec![], 1.0);
         while period < (high - low) / 3.0 {
-            let turns = if (high - low) / period > 3e5 { 2 } else { 6 };
+            let turns = match (high - low) / period {
+                few if few < 3e4 => 6,
+                many if many < 3e5 => 2,
+                _ => 1,
+            };
             for k in -turns..=turns {
                 let other = 0.5 * f64::from(k) * period / drivers.length_s();
                 let Some((gains, frequency)) = octave(period, &angles, other * drivers.dt_s, level, look)
