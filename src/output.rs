@@ -98,6 +98,8 @@ pub enum Kind {
     Result,
     /// A comparison.
     Comparison,
+    /// The explanation of a mismatch.
+    Explanation,
 }
 
 impl Kind {
@@ -106,6 +108,7 @@ impl Kind {
         match self {
             Kind::Result => ("result.json", "{\"format\":\"result/"),
             Kind::Comparison => ("comparison.json", "{\"format\":\"comparison/"),
+            Kind::Explanation => ("explain.json", "{\"format\":\"explain/"),
         }
     }
 
@@ -120,6 +123,10 @@ impl Kind {
                 Kind::Comparison => name
                     .strip_prefix("comparison.")
                     .is_some_and(|ext| matches!(ext, "json" | "html" | "md" | "csv")),
+                Kind::Explanation => matches!(
+                    name,
+                    "explain.json" | "correction.csv" | "augmented.toml" | "report.html" | "report.md"
+                ),
             }
     }
 }
@@ -230,6 +237,7 @@ fn replaceable(target: &Path, kind: Kind) -> Result<(), OutputError> {
         return in_the_way(match kind {
             Kind::Result => "output_error.why.foreign".into(),
             Kind::Comparison => "compare.more.foreign_folder".into(),
+            Kind::Explanation => "explain.error.foreign_folder".into(),
         });
     }
     match foreign(target, kind).map_err(io("output_error.look_into", target))? {
@@ -264,7 +272,7 @@ fn remove_abandoned(parent: &Path, prefix: &str) {
         if ours
             && folder
             && old(&path)
-            && [Kind::Result, Kind::Comparison].iter().any(|k| matches!(foreign(&path, *k), Ok(None)))
+            && [Kind::Result, Kind::Comparison, Kind::Explanation].iter().any(|k| matches!(foreign(&path, *k), Ok(None)))
         {
             let _ = fs::remove_dir_all(&path);
         }

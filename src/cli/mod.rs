@@ -4,6 +4,7 @@ mod analyze;
 mod check;
 mod compare;
 mod effects;
+mod explain;
 mod help;
 mod inspect;
 mod place;
@@ -81,6 +82,13 @@ enum Verb {
     /// List the effects that a model can state and an explanation can name, or explain one
     #[command(after_help = "Examples:\n  sagnac effects\n  sagnac effects bias_step")]
     Effects(EffectsArgs),
+    /// Say where, and because of what, a recording differs from its simulation
+    #[command(
+        after_help = "Exit codes: 0 consistent, 1 mismatch explained, 2 could not run, 3 unknown mismatch.\n\n\
+        Examples:\n  sagnac explain recording.csv --model model.toml --out explained\n  \
+        sagnac explain recording.csv --simulation simulated.csv --hide temp_degC"
+    )]
+    Explain(ExplainArgs),
     /// Print the JSON Schema of a file format, for completion in editors
     #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]
     Schema(SchemaArgs),
@@ -257,6 +265,45 @@ struct EffectsArgs {
     json: bool,
 }
 
+#[derive(Debug, Args)]
+struct ExplainArgs {
+    /// Recording: a file of any kind that is read; several files in sequence, a pattern in quotes, or a manifest
+    #[arg(required = true)]
+    recording: Vec<PathBuf>,
+    /// The claimed simulation (TOML)
+    #[arg(long, value_name = "FILE", required_unless_present = "simulation", conflicts_with = "simulation")]
+    model: Option<PathBuf>,
+    /// A simulated recording from which the claim is identified, in place of a model
+    #[arg(long, value_name = "FILE")]
+    simulation: Option<PathBuf>,
+    /// Probability at which a correct claim may be called a mismatch [default: 0.01]
+    #[arg(long, value_name = "PROBABILITY")]
+    alpha: Option<f64>,
+    /// Column that is treated as not recorded, by its name in the contract (temp_degC); may be repeated
+    #[arg(long, value_name = "COLUMN")]
+    hide: Vec<String>,
+    /// Most effects that are added to the claim [default: 3]
+    #[arg(long, value_name = "COUNT")]
+    max_effects: Option<usize>,
+    /// Rate column by name or position [default: the only column that looks like a gyro output]
+    #[arg(long, value_name = "COLUMN")]
+    rate: Option<String>,
+    /// Unit of the rate column [default: from its name]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<String>,
+    /// Sample rate, needed where there is no time column
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+    /// Folder for the explanation [default: named after the recording and UTC start]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Folder with templates that replace the built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
+    #[command(flatten)]
+    read: read::ReadArgs,
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum SchemaKind {
     /// A test procedure
@@ -298,6 +345,7 @@ pub fn main() -> ExitCode {
         Verb::Compare(args) => compare::main(&args, lang),
         Verb::Simulate(args) => simulate::main(&args, lang),
         Verb::Effects(args) => effects::main(&args, lang),
+        Verb::Explain(args) => explain::main(&args, lang),
         Verb::Schema(args) => schema::main(&args),
         Verb::Selftest => selftest::main(lang),
     };

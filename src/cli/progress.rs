@@ -22,6 +22,21 @@ impl Progress {
         Progress { bar, began: Instant::now(), shown: false }
     }
 
+    /// The same for work that is counted in steps, and not in bytes.
+    pub fn of_steps() -> Progress {
+        let progress = Progress::new();
+        if let Ok(style) = ProgressStyle::with_template("{msg:28} {bar:32} {percent:>3} % {eta}") {
+            progress.bar.set_style(style);
+        }
+        progress
+    }
+
+    /// Another piece of work begins.
+    pub fn name(&mut self, message: &str) {
+        self.bar.set_message(message.to_owned());
+        self.bar.reset_eta();
+    }
+
     /// Says how far the work is.
     pub fn update(&mut self, message: &str, done: u64, total: u64) {
         if !self.shown && self.began.elapsed() > Duration::from_secs(1) {

@@ -142,6 +142,20 @@ impl Drivers {
         mean
     }
 
+    /// Leaves out what follows the first `samples`.
+    pub fn truncate(&mut self, samples: usize) {
+        self.samples = self.samples.min(samples);
+        let columns = [
+            &mut self.temperature,
+            &mut self.smooth_temperature,
+            &mut self.table_rate,
+            &mut self.table_angle,
+            &mut self.outer_rate,
+            &mut self.supply,
+        ];
+        columns.into_iter().flatten().for_each(|c| c.truncate(samples));
+    }
+
     /// The same on averages over `m` samples; a last incomplete group is left out. Angles are not averaged: their
     /// column is left out.
     #[must_use]

@@ -157,6 +157,7 @@ catalogue! {
     heading_change::HeadingChange,
     earth_rate_projection::EarthRateProjection,
     table_harmonic::TableHarmonic,
+    reset_ripple::ResetRipple,
     sf_error::SfError,
     sf_asymmetry::SfAsymmetry,
     sf_nonlinearity::SfNonlinearity,
@@ -204,3 +205,6 @@ fn power_law_places(term: NoiseType, fitted: &[f64], look: &SpectralLook<'_>) ->
     let (from, to) = (among().fold(f64::INFINITY, f64::min), among().fold(0.0, f64::max));
     if from <= to { vec![Place { domain: Domain::Frequency, from, to }] } else { vec![] }
 }
+
+#[cfg(test)]
+mod tests;

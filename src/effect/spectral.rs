@@ -51,6 +51,11 @@ pub trait Spectrum: Sync {
     /// [`SpectrumAct::Frees`].
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64;
 
+    /// [`Spectrum::density`] of many bins.
+    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
+        bins.iter().map(|b| self.density(fitted, b)).collect()
+    }
+
     /// Fitted parameters to begin from, several.
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>>;
 

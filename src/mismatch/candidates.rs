@@ -308,7 +308,9 @@ fn try_course(
     let parameters = before.parameters + parts.free.len() + parts.beside.len() + free_shape;
     let mut hypothesis = before.hypothesis.clone();
     hypothesis.courses.push(CourseIn { effect, shape, coefficients: vec![] });
-    let fit = fit(&mut hypothesis, &scenes.full);
+    // The noise, fitted anew, can give at most about as much again.
+    let worth = 4.0 * gain - (parameters - before.parameters) as f64 * (scenes.rows as f64).ln();
+    let fit = if worth > 0.0 { fit(&mut hypothesis, &scenes.full) } else { before.fit.raised(gain) };
     Some(rated(effect, Tried { hypothesis, fit, parameters }, before, starts.looked, scenes.rows))
 }
 

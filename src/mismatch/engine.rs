@@ -122,7 +122,8 @@ fn assemble(
         let on_rows = c.iter().zip(&problem.regular.present).enumerate().filter(|(_, (_, p))| **p);
         on_rows.map(|(i, (v, _))| (problem.drivers.time_s(i), *v)).collect()
     });
-    Outcome { explanation, correction, augmented, figures: vec![] }
+    let figures = super::drawing::all(problem, base, &selection.best, &explanation.effects);
+    Outcome { explanation, correction, augmented, figures }
 }
 
 fn smallest_p(first: &[Fitted], before: &[Departure]) -> f64 {

@@ -87,6 +87,13 @@ pub struct Fit {
     pub powers: Vec<f64>,
 }
 
+impl Fit {
+    /// The same with so much more log-likelihood: stands for a fit that is not worth making.
+    pub fn raised(&self, gain: f64) -> Fit {
+        Fit { log_likelihood: self.log_likelihood + gain, ..self.clone() }
+    }
+}
+
 /// Nuisance columns that keep their prior under the courses of a hypothesis.
 pub fn kept<'a>(scene: &'a Scene, courses: &[CourseIn]) -> Vec<&'a NuisanceColumn> {
     let replaced: Vec<_> = courses.iter().filter_map(|c| c.course()?.replaces()).collect();

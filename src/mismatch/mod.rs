@@ -3,11 +3,14 @@
 pub mod candidates;
 pub mod columns;
 pub mod departures;
+pub mod drawing;
 pub mod engine;
 pub mod estimates;
+pub mod figures;
 pub mod finding;
 pub mod heldout;
 pub mod hypothesis;
+mod identify;
 pub mod impute;
 pub mod lattice;
 pub mod noise_fit;
@@ -19,5 +22,6 @@ pub mod scene;
 pub mod select;
 
 pub use engine::explain;
+pub use identify::identify;
 pub use options::{Options, Progress};
 pub use outcome::Outcome;

@@ -110,22 +110,24 @@ impl Noise {
     pub fn densities(&self, scene: &Scene) -> Vec<f64> {
         let q2 = self.quantization_arcsec.powi(2);
         let one = |(bin, units): (&ModeBin, &[f64; 3])| {
-            let mut sum: f64 = self.base.iter().zip(units).map(|(c, u)| c * c * u).sum();
-            if q2 > 0.0 {
-                sum += q2
-                    * crate::noise::model::unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s);
-            }
-            let mut factor = 1.0;
-            for part in &self.spectra {
-                match part.spectrum().map(|s| (s, s.act())) {
-                    Some((s, SpectrumAct::Adds)) => sum += s.density(&part.fitted, bin),
-                    Some((s, SpectrumAct::Filters)) => factor *= s.density(&part.fitted, bin),
-                    _ => {}
-                }
-            }
-            (sum * factor).max(f64::MIN_POSITIVE * 1e60)
+            let sum: f64 = self.base.iter().zip(units).map(|(c, u)| c * c * u).sum();
+            let unit = |b: &ModeBin| {
+                crate::noise::model::unit_density(NoiseType::Quantization, b.frequency_hz, b.dt_s)
+            };
+            if q2 > 0.0 { sum + q2 * unit(bin) } else { sum }
         };
-        scene.bins.iter().zip(&scene.units).map(one).collect()
+        let mut out: Vec<f64> = scene.bins.iter().zip(&scene.units).map(one).collect();
+        let parts = || self.spectra.iter().filter_map(|part| Some((part, part.spectrum()?)));
+        for (part, spectrum) in parts().filter(|(_, s)| s.act() == SpectrumAct::Adds) {
+            let added = spectrum.densities(&part.fitted, &scene.bins);
+            out.iter_mut().zip(added).for_each(|(s, a)| *s += a);
+        }
+        for (part, spectrum) in parts().filter(|(_, s)| s.act() == SpectrumAct::Filters) {
+            let factors = spectrum.densities(&part.fitted, &scene.bins);
+            out.iter_mut().zip(factors).for_each(|(s, f)| *s *= f);
+        }
+        out.iter_mut().for_each(|s| *s = s.max(f64::MIN_POSITIVE * 1e60));
+        out
     }
 
     /// Density of one found effect alone, filters of others included, (deg/h)²/Hz.
@@ -133,7 +135,7 @@ impl Noise {
         let Some(part) = self.spectra.get(index) else { return vec![0.0; scene.bins.len()] };
         let Some(spectrum) = part.spectrum() else { return vec![0.0; scene.bins.len()] };
         match spectrum.act() {
-            SpectrumAct::Adds => scene.bins.iter().map(|b| spectrum.density(&part.fitted, b)).collect(),
+            SpectrumAct::Adds => spectrum.densities(&part.fitted, &scene.bins),
             SpectrumAct::Frees(term) => {
                 let i = base_index(term).unwrap_or(0);
                 scene.units.iter().map(|u| self.base[i].powi(2) * u[i]).collect()
@@ -327,10 +329,9 @@ fn log_slope(noise: &Noise, which: Which, scene: &Scene, densities: &[f64]) -> V
             up[p] *= STEP.exp();
             down[p] *= (-STEP).exp();
         }
-        let slope = |(b, s): (&ModeBin, &f64)| {
-            (spectrum.density(&up, b) - spectrum.density(&down, b)) / (2.0 * STEP * s)
-        };
-        return scene.bins.iter().zip(densities).map(slope).collect();
+        let (up, down) = (spectrum.densities(&up, &scene.bins), spectrum.densities(&down, &scene.bins));
+        let slope = |((a, b), s): ((f64, f64), &f64)| (a - b) / (2.0 * STEP * s);
+        return up.into_iter().zip(down).zip(densities).map(slope).collect();
     }
     let mut up = noise.clone();
     up.set(which, noise.value(which) * STEP.exp());

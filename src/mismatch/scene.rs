@@ -10,9 +10,9 @@ use crate::noise::model::{Bin, Spectral};
 use crate::numeric::cosine::dct2;
 
 /// Modes that have a bin each.
-const SINGLE: usize = 128;
+const SINGLE: usize = 64;
 /// Width of the bins above, relative.
-const WIDTH: f64 = 0.004;
+const WIDTH: f64 = 0.006;
 
 /// A column whose coefficient the claim knows to within a stated deviation.
 #[derive(Debug, Clone)]

@@ -114,8 +114,8 @@ pub fn select(base: &Tried, scenes: &Scenes, alpha: f64, most: usize) -> Selecti
     for depth in 0..most {
         let mut next: Vec<Tried> = vec![];
         for (_, candidates) in &beam {
-            let passing = candidates.iter().filter(|c| passes(c, family, alpha)).take(WIDTH + 1);
-            for candidate in passing {
+            let passing: Vec<&Candidate> = candidates.iter().filter(|c| passes(c, family, alpha)).collect();
+            for candidate in worth_following(&passing) {
                 if !next.iter().any(|t| set(t) == set(&candidate.tried)) {
                     next.push(candidate.tried.clone());
                 }
@@ -130,17 +130,36 @@ pub fn select(base: &Tried, scenes: &Scenes, alpha: f64, most: usize) -> Selecti
             // One more effect did not pay on any path.
             break;
         }
+        if depth + 1 == most {
+            break;
+        }
         beam = next
             .into_iter()
             .map(|t| {
-                let c = all(&t, scenes);
-                (t, c)
+                let candidates = all(&t, scenes);
+                (t, candidates)
             })
             .collect();
     }
     best = pruned(best, scenes, rows);
-    let chosen = chosen(&best, base, scenes, family);
+    let chosen = chosen(&best, base, &first, scenes, family);
     Selection { best, chosen, first }
+}
+
+/// The candidates that a second effect is looked for beside: the leader, and those near enough to it for a pair with
+/// them to come out ahead. The best course goes along with a leading process, which can swallow courses.
+fn worth_following<'a>(passing: &[&'a Candidate]) -> Vec<&'a Candidate> {
+    let Some(leader) = passing.first() else { return vec![] };
+    let mut out: Vec<&Candidate> =
+        passing.iter().filter(|c| c.delta_bic > 0.6 * leader.delta_bic).take(WIDTH).copied().collect();
+    let is_course = |c: &Candidate| matches!(c.effect.model(), Model::Course(_));
+    if !out.iter().any(|c| is_course(c))
+        && let Some(course) = passing.iter().find(|c| is_course(c))
+    {
+        out.truncate(WIDTH - 1);
+        out.push(course);
+    }
+    out
 }
 
 /// Drops effects that became needless.
@@ -157,7 +176,13 @@ fn pruned(mut best: Tried, scenes: &Scenes, rows: usize) -> Tried {
     }
 }
 
-fn chosen(best: &Tried, base: &Tried, scenes: &Scenes, family: f64) -> Vec<Chosen> {
+fn chosen(
+    best: &Tried,
+    base: &Tried,
+    first: &[Candidate],
+    scenes: &Scenes,
+    family: f64,
+) -> Vec<Chosen> {
     let rows = scenes.rows;
     let all_slots = slots(&best.hypothesis);
     let single = all_slots.len() == 1;
@@ -165,7 +190,7 @@ fn chosen(best: &Tried, base: &Tried, scenes: &Scenes, family: f64) -> Vec<Chose
         .into_iter()
         .map(|(slot, effect)| {
             let without = if single { base.clone() } else { without(best, slot, scenes) };
-            let rivals = all(&without, scenes);
+            let rivals = if single { first.to_vec() } else { all(&without, scenes) };
             let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
             let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
             let equivalents = rivals

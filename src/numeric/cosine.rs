@@ -1,6 +1,47 @@
 //! Orthonormal discrete cosine transform of type II.
 
-use realfft::RealFftPlanner;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// Lengths whose plans are kept, by each thread.
+const KEPT: usize = 6;
+
+/// What transforms of one length share.
+#[derive(Clone)]
+struct Plan {
+    n: usize,
+    forward: Arc<dyn RealToComplex<f64>>,
+    inverse: Arc<dyn ComplexToReal<f64>>,
+    /// sin and cos of πk/2n for k up to n/2.
+    turns: Arc<Vec<(f64, f64)>>,
+}
+
+fn plan(n: usize) -> Plan {
+    thread_local! {
+        static PLANS: RefCell<Vec<Plan>> = const { RefCell::new(vec![]) };
+    }
+    PLANS.with_borrow_mut(|plans| {
+        if let Some(at) = plans.iter().position(|p| p.n == n) {
+            let found = plans.remove(at);
+            plans.push(found.clone());
+            return found;
+        }
+        let mut planner = RealFftPlanner::<f64>::new();
+        let angle = std::f64::consts::PI / (2.0 * n as f64);
+        let made = Plan {
+            n,
+            forward: planner.plan_fft_forward(n),
+            inverse: planner.plan_fft_inverse(n),
+            turns: Arc::new((0..=n / 2).map(|k| (angle * k as f64).sin_cos()).collect()),
+        };
+        if plans.len() == KEPT {
+            plans.remove(0);
+        }
+        plans.push(made.clone());
+        made
+    })
+}
 
 /// The orthonormal DCT-II: c_k = √(2/M) Σ_j y_j cos(πk(j+½)/M), c_0 = Σ y / √M.
 ///
@@ -13,15 +54,14 @@ pub fn dct2(values: &[f64]) -> Vec<f64> {
     }
     let mut ordered: Vec<f64> = values.iter().step_by(2).copied().collect();
     ordered.extend(values.iter().skip(1).step_by(2).rev());
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(n);
-    let mut spectrum = plan.make_output_vec();
-    if plan.process(&mut ordered, &mut spectrum).is_err() {
+    let plan = plan(n);
+    let mut spectrum = plan.forward.make_output_vec();
+    if plan.forward.process(&mut ordered, &mut spectrum).is_err() {
         return vec![f64::NAN; n];
     }
     let scale = (2.0 / n as f64).sqrt();
     let mut out = vec![0.0; n];
-    for (k, v) in spectrum.iter().enumerate() {
-        let (sin, cos) = (std::f64::consts::PI * k as f64 / (2.0 * n as f64)).sin_cos();
+    for (k, (v, (sin, cos))) in spectrum.iter().zip(plan.turns.iter()).enumerate() {
         // V_k e^{-iπk/2n}: the real part is c_k, minus the imaginary part is c_{n−k}.
         out[k] = scale * (v.re * cos + v.im * sin);
         if k > 0 && n - k > k {
@@ -38,11 +78,10 @@ pub fn inverse_dct2(coefficients: &[f64]) -> Vec<f64> {
     if n < 2 {
         return coefficients.to_vec();
     }
-    let plan = RealFftPlanner::<f64>::new().plan_fft_inverse(n);
-    let mut spectrum = plan.make_input_vec();
+    let plan = plan(n);
+    let mut spectrum = plan.inverse.make_input_vec();
     let scale = (n as f64 / 2.0).sqrt();
-    for (k, v) in spectrum.iter_mut().enumerate() {
-        let (sin, cos) = (std::f64::consts::PI * k as f64 / (2.0 * n as f64)).sin_cos();
+    for (k, (v, (sin, cos))) in spectrum.iter_mut().zip(plan.turns.iter()).enumerate() {
         let (here, mirrored) = (coefficients[k], if k > 0 { coefficients[n - k] } else { 0.0 });
         v.re = scale * (here * cos + mirrored * sin);
         v.im = scale * (here * sin - mirrored * cos);
@@ -53,8 +92,8 @@ pub fn inverse_dct2(coefficients: &[f64]) -> Vec<f64> {
         // Real for a real series; what is left of it is rounding.
         spectrum[n / 2].im = 0.0;
     }
-    let mut ordered = plan.make_output_vec();
-    if plan.process(&mut spectrum, &mut ordered).is_err() {
+    let mut ordered = plan.inverse.make_output_vec();
+    if plan.inverse.process(&mut spectrum, &mut ordered).is_err() {
         return vec![f64::NAN; n];
     }
     (0..n)

@@ -23,6 +23,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("report.md", include_str!("../../templates/report.md")),
     ("compare.html", include_str!("../../templates/compare.html")),
     ("compare.md", include_str!("../../templates/compare.md")),
+    ("explain.html", include_str!("../../templates/explain.html")),
+    ("explain.md", include_str!("../../templates/explain.md")),
 ];
 
 /// Largest template file that is read.

@@ -1,6 +1,6 @@
 //! No or reduced response around zero input rate.
 
-use super::search::best_of;
+use super::search::{best_of, log_grid};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
@@ -66,8 +66,12 @@ impl Course for DeadZone {
     /// Between neighbouring sizes of the rate every width is the same: their middles are looked at.
     fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
         let sizes = sizes(drivers);
-        let middles = sizes.windows(2).map(|w| vec![(w[0] * w[1]).sqrt()]);
-        let shapes = best_of(self, middles, 3, drivers, look);
+        let mut widths: Vec<f64> = sizes.windows(2).map(|w| (w[0] * w[1]).sqrt()).collect();
+        // Rates that pass through zero have few samples close to it.
+        if let (Some(low), Some(high), true) = (sizes.first(), sizes.last(), sizes.len() > 32) {
+            widths.extend(log_grid(*low, *high, 32));
+        }
+        let shapes = best_of(self, widths.into_iter().map(|w| vec![w]), 3, drivers, look);
         Starts { shapes, looked: sizes.len().max(1) as f64 }
     }
 

@@ -65,15 +65,15 @@ pub(super) fn process(fitted: &[f64]) -> Damped {
     Damped { rms_deg_h: sigma, frequency_hz: 0.0, decay_time_s: time }
 }
 
-/// Density of a Markov process in a bin: exact in single modes, which a record shorter than some correlation times
-/// needs.
-pub(super) fn density(fitted: &[f64], bin: &ModeBin) -> f64 {
-    let process = process(fitted);
-    if bin.modes == 1 && bin.mode < 64 {
-        process.mode_power(bin.mode, bin.samples, bin.dt_s, Sampling::Averaging)
-    } else {
-        process.density(bin.frequency_hz, bin.dt_s, Sampling::Averaging)
-    }
+/// Densities of a Markov process or an oscillation: exact in single modes, which a record shorter than some correlation
+/// times needs.
+pub(super) fn densities(process: &Damped, bins: &[ModeBin]) -> Vec<f64> {
+    let Some(first) = bins.first() else { return vec![] };
+    let modes = process.modes(first.samples, first.dt_s, Sampling::Averaging);
+    let far = process.densities(first.dt_s, Sampling::Averaging);
+    // Far above 1/(record length) the modes hold what the density says.
+    let exact = |b: &ModeBin| b.modes == 1 && b.mode < 64;
+    bins.iter().map(|b| if exact(b) { modes.power(b.mode) } else { far(b.frequency_hz) }).collect()
 }
 
 /// Starts over correlation times from `low` to `high`, each with the level that the excess at its corner asks for.
@@ -109,7 +109,11 @@ impl Spectrum for MarkovLong {
     }
 
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
-        density(fitted, bin)
+        self.densities(fitted, &[*bin])[0]
+    }
+
+    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
+        densities(&process(fitted), bins)
     }
 
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {

@@ -1,6 +1,6 @@
 //! Exponentially correlated noise whose correlation time is a few samples.
 
-use super::markov_long::{SHORT_SAMPLES, density, process, starts_between};
+use super::markov_long::{SHORT_SAMPLES, densities, process, starts_between};
 use crate::effect::{
     Both, Doc, Domain, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
 };
@@ -46,7 +46,11 @@ impl Spectrum for MarkovShort {
     }
 
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
-        density(fitted, bin)
+        self.densities(fitted, &[*bin])[0]
+    }
+
+    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
+        densities(&process(fitted), bins)
     }
 
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {

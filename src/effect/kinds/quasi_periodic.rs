@@ -65,24 +65,34 @@ impl Spectrum for QuasiPeriodic {
         SpectrumAct::Adds
     }
 
-    /// Exact in single modes. A wide bin has the mean over it, which a resonance inside it needs.
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        self.densities(fitted, &[*bin])[0]
+    }
+
+    /// Exact in single modes. A wide bin has the mean over it, which a resonance inside it needs.
+    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
+        let Some(first) = bins.first() else { return vec![] };
         let process = process(fitted);
-        if bin.modes == 1 {
-            return process.mode_power(bin.mode, bin.samples, bin.dt_s, Sampling::Averaging);
-        }
+        let modes = process.modes(first.samples, first.dt_s, Sampling::Averaging);
+        let exact = process.densities(first.dt_s, Sampling::Averaging);
         let half_width = 0.5 / (PI * process.decay_time_s);
-        let (low, high) = edges(bin);
         // One resonance on each side of zero; each falls off as 1/(1 + (Δf/h)²).
         let lorentz = |f: f64| 1.0 / (1.0 + (f / half_width).powi(2));
         let primitive = |f: f64| half_width * (f / half_width).atan();
-        let (mut point, mut mean) = (0.0, 0.0);
-        for center in [process.frequency_hz, -process.frequency_hz] {
-            point += lorentz(bin.frequency_hz - center);
-            mean += (primitive(high - center) - primitive(low - center)) / (high - low);
-        }
-        let exact = process.density(bin.frequency_hz, bin.dt_s, Sampling::Averaging);
-        if point > 0.0 { exact * mean / point } else { exact }
+        let one = |bin: &ModeBin| {
+            if bin.modes == 1 {
+                return modes.power(bin.mode);
+            }
+            let (low, high) = edges(bin);
+            let (mut point, mut mean) = (0.0, 0.0);
+            for center in [process.frequency_hz, -process.frequency_hz] {
+                point += lorentz(bin.frequency_hz - center);
+                mean += (primitive(high - center) - primitive(low - center)) / (high - low);
+            }
+            let exact = exact(bin.frequency_hz);
+            if point > 0.0 { exact * mean / point } else { exact }
+        };
+        bins.iter().map(one).collect()
     }
 
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {

@@ -111,11 +111,19 @@ impl Damped {
 
     /// Two-sided density of samples over `tau_s` at `frequency_hz`, aliases included, (deg/h)²/Hz.
     pub fn density(&self, frequency_hz: f64, tau_s: f64, sampling: Sampling) -> f64 {
+        self.densities(tau_s, sampling)(frequency_hz)
+    }
+
+    /// The density as a function of frequency.
+    pub fn densities(&self, tau_s: f64, sampling: Sampling) -> impl Fn(f64) -> f64 + use<> {
         let (gamma0, first, rho) = self.covariance(tau_s, sampling);
-        let cos = (2.0 * PI * frequency_hz * tau_s).cos();
-        // γ_d = Re[first·ρ^(d−1)]; Σ_{d≥1} ρ^(d−1) cos(θd) = (cosθ − ρ)/(1 − 2ρcosθ + ρ²).
-        let sum = first * (Complex::new(cos, 0.0) - rho) / (1.0 - 2.0 * cos * rho + rho * rho);
-        (self.rms_deg_h.powi(2) * tau_s * (gamma0 + 2.0 * sum.re)).max(0.0)
+        let scale = self.rms_deg_h.powi(2) * tau_s;
+        move |frequency_hz| {
+            let cos = (2.0 * PI * frequency_hz * tau_s).cos();
+            // γ_d = Re[first·ρ^(d−1)]; Σ_{d≥1} ρ^(d−1) cos(θd) = (cosθ − ρ)/(1 − 2ρcosθ + ρ²).
+            let sum = first * (Complex::new(cos, 0.0) - rho) / (1.0 - 2.0 * cos * rho + rho * rho);
+            (scale * (gamma0 + 2.0 * sum.re)).max(0.0)
+        }
     }
 
     /// E\[c_k²\]·τ of the orthonormal cosine mode k of `blocks` samples over `tau_s`: what the density becomes in a

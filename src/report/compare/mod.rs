@@ -58,7 +58,7 @@ impl CompareView {
     }
 }
 
-fn figure(figure: &Figure, number: usize, words: Words) -> FigureView {
+pub(super) fn figure(figure: &Figure, number: usize, words: Words) -> FigureView {
     let title = words.t(figure.title);
     FigureView {
         id: figure.id.clone(),

@@ -1,0 +1,203 @@
+//! A contribution that is periodic in the sensed angle.
+
+use super::search::{best_of, peaks, summit};
+use super::sinusoid::{averaged, pair, polar, wave};
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+};
+use realfft::RealFftPlanner;
+
+pub struct ResetRipple;
+
+static DOC: Doc = Doc {
+    title: Both { en: "ripple of the 2π reset", ru: "пульсация сброса 2π" },
+    mechanism: Both {
+        en: "The digital phase ramp of the closed loop is reset by a step other than 2π: each reset disturbs the output.",
+        ru: "Цифровая фазовая пила замкнутого контура сбрасывается на величину, отличную от 2π: каждый сброс возмущает выход.",
+    },
+    formula: "A·cos(2πθ/P + φ), θ = ∫(Ω + b) dt, P = λn/D",
+    signature: Both {
+        en: "A ripple whose frequency is proportional to the rate; it averages out once a sample covers a period.",
+        ru: "Пульсация, частота которой пропорциональна скорости; исчезает, когда за отсчёт проходит целый период.",
+    },
+    told_by: Both {
+        en: "A line keeps its frequency; a table harmonic repeats with the turn of the table, not with seconds of arc.",
+        ru: "Линия не меняет частоты; гармоника стола повторяется с оборотом стола, а не через угловые секунды.",
+    },
+    confirm: Both {
+        en: "Change the heading: the ripple moves with the sensed rate; adjust the 2π loop.",
+        ru: "Изменить курс: пульсация сместится вместе с измеряемой скоростью; подстроить контур 2π.",
+    },
+    source: "H. Lefèvre, The Fiber-Optic Gyroscope: reset frequency D·Ω/(λ·n)",
+};
+
+static PARAMS: [Param; 4] = [
+    Param::reported("period_arcsec", "arcsec", 1e-3, 1e7),
+    Param::inner("amplitude_deg_h", "deg/h", 0.0, 1e5),
+    Param::inner("phase_deg", "deg", -360.0, 360.0),
+    Param::inner("sensed_bias_deg_h", "deg/h", -1e5, 1e5),
+];
+
+describe! {
+    ResetRipple, "reset_ripple", Course in Angle, needs [TableRate],
+    confusers ["line", "table_harmonic", "noise_variance_rate"]
+}
+
+/// Shortest period that is looked for, arcsec.
+const SHORTEST: f64 = 0.5;
+/// Longest transform of the search.
+const LONGEST: usize = 1 << 22;
+
+/// Sensed angle at the middle of each sample since the first began, and its change over the sample, arcsec.
+fn sensed(bias: f64, drivers: &Drivers) -> Option<(Vec<f64>, Vec<f64>)> {
+    let rate = drivers.table_rate.as_ref()?;
+    let mut angle = 0.0;
+    let steps: Vec<f64> = rate.iter().map(|r| (3600.0 * r + bias) * drivers.dt_s).collect();
+    let middles = steps.iter().map(|step| {
+        angle += step;
+        angle - 0.5 * step
+    });
+    let middles = middles.collect();
+    Some((middles, steps))
+}
+
+/// How far the sensed angle goes, arcsec.
+fn extent(bias: f64, drivers: &Drivers) -> f64 {
+    sensed(bias, drivers).map_or(1.0, |(angle, _)| {
+        let (low, high) = crate::numeric::range::ends(&angle);
+        (high - low).max(1e-9)
+    })
+}
+
+fn columns(period: f64, bias: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
+    match sensed(bias, drivers) {
+        Some((angle, step)) if period > 0.0 => {
+            pair(angle.len(), |i| (angle[i] / period, averaged(step[i] / period)))
+        }
+        _ => vec![],
+    }
+}
+
+/// Gains of the periods between `period` and twice that for one bias: the score put on a grid of angles and
+/// transformed. Only samples that cover less than a period count.
+fn octave(period: f64, angle: &[f64], step: &[f64], look: &Look<'_>) -> Option<(Vec<f64>, f64)> {
+    let used = || (0..angle.len()).filter(|i| step[*i].abs() < period);
+    let (low, high, count) = used().fold((f64::INFINITY, f64::NEG_INFINITY, 0usize), |(a, b, n), i| {
+        (a.min(angle[i]), b.max(angle[i]), n + 1)
+    });
+    let cell = 0.25 * period;
+    let cells = (high - low) / cell;
+    if count < 32 || !cells.is_finite() || cells >= LONGEST as f64 {
+        return None;
+    }
+    // Twice the range, so that periods between the cycles of the range are seen too.
+    let size = (2 * (cells as usize + 1)).next_power_of_two();
+    let mut grid = vec![0.0; size];
+    for i in used() {
+        if let Some(cell) = grid.get_mut(((angle[i] - low) / cell) as usize) {
+            *cell += look.score[i];
+        }
+    }
+    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
+    let mut spectrum = plan.make_output_vec();
+    plan.process(&mut grid, &mut spectrum).ok()?;
+    let mut upper: Vec<f64> = look.powers.iter().skip(look.powers.len() / 2).copied().collect();
+    let middle = upper.len() / 2;
+    let level = *upper.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let frequency_step = 1.0 / (size as f64 * cell);
+    let inside = |j: usize| {
+        let f = j as f64 * frequency_step;
+        f > 0.5 / period && f <= 1.0 / period && f * (high - low) >= 3.0
+    };
+    let gains = spectrum
+        .iter()
+        .enumerate()
+        .map(|(j, w)| if inside(j) { w.norm_sqr() * level / count as f64 } else { 0.0 })
+        .collect();
+    Some((gains, frequency_step))
+}
+
+impl Course for ResetRipple {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        let slow = |r: &&f64| (3600.0 * **r * drivers.dt_s).abs() < 3600.0;
+        super::reach::varies(drivers.table_rate.as_deref())
+            && drivers.table_rate.iter().flatten().filter(slow).count() >= 64
+    }
+
+    /// An error of the bias turns the phase along the record: biases within a few turns of the fitted one are tried.
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let n = drivers.samples;
+        let none = Starts { shapes: vec![], looked: 1.0 };
+        if n < 64 || look.score.len() != n || look.powers.len() != n || look.modes.len() != n {
+            return none;
+        }
+        let fitted = drivers.claim.bias_deg_h + look.modes[0] / (n as f64).sqrt();
+        let Some((angle, _)) = sensed(fitted, drivers) else { return none };
+        let (low, high) = crate::numeric::range::ends(&angle);
+        let (mut period, mut found, mut looked) = (SHORTEST, vec![], 1.0);
+        while period < (high - low) / 3.0 {
+            let turns = if (high - low) / period > 3e5 { 2 } else { 6 };
+            for k in -turns..=turns {
+                let bias = fitted + 0.5 * f64::from(k) * period / drivers.length_s();
+                let Some((angle, step)) = sensed(bias, drivers) else { continue };
+                let Some((gains, frequency)) = octave(period, &angle, &step, look) else { continue };
+                looked += (high - low) / period * 0.5;
+                for j in peaks(&gains, 2, 6) {
+                    let f = (j as f64 + summit(&gains, j)) * frequency;
+                    found.push((gains[j], vec![1.0 / f, bias]));
+                }
+            }
+            period *= 2.0;
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let shapes = found.into_iter().take(6).map(|(_, s)| s);
+        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        let bias = drivers.claim.bias_deg_h;
+        let range = extent(bias, drivers);
+        vec![(0.5 * SHORTEST, (0.5 * range).max(SHORTEST)), (bias - 0.5, bias + 0.5)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let [period, bias] = shape else { return Parts::default() };
+        Parts { free: columns(*period, *bias, drivers), ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        let [period, bias] = shape else { return vec![f64::NAN; 4] };
+        let (amplitude, phase) = polar(coefficients);
+        vec![*period, amplitude, phase, *bias]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let (period, amplitude) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
+        let phase = number(values, PARAMS[2].name).unwrap_or(0.0);
+        let bias = number(values, PARAMS[3].name).unwrap_or(drivers.claim.bias_deg_h);
+        let columns = columns(period, bias, drivers);
+        (columns.len() == 2).then(|| wave(amplitude, phase, &columns))
+    }
+
+    /// The period of the sensed angle, and the rates at which a sample covers less than one.
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let [period, bias] = shape else { return vec![] };
+        let range = extent(*bias, drivers);
+        let half = (0.5 * period * period / range).min(0.25 * period);
+        let fastest = period / drivers.dt_s / 3600.0;
+        vec![
+            Place { domain: Domain::Angle, from: (period - half) / 3600.0, to: (period + half) / 3600.0 },
+            Place { domain: Domain::InputRate, from: -fastest, to: fastest },
+        ]
+    }
+
+    fn steps(&self, drivers: &Drivers) -> Vec<f64> {
+        let range = extent(drivers.claim.bias_deg_h, drivers);
+        // A tenth of a cycle over the range for a period of some seconds of arc.
+        vec![0.1 * 9.0 / range, 0.1 * 3.0 / drivers.length_s()]
+    }
+}

@@ -1,0 +1,473 @@
+//! The catalogue held against the contract, and every effect against itself: what a fit finds must come back from its
+//! parameters, searches must find what is there, spectra must be what simulation makes.
+
+use super::*;
+use crate::effect::{ClaimedMean, Column, Drivers, Earth, Look, ModeBin, Model, Temperature, Value, Values};
+use crate::noise::composite::Composite;
+use crate::noise::model::NoiseModel;
+use crate::noise::simulate::{Setup, Simulator};
+use crate::numeric::cosine::dct2;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use std::collections::BTreeSet;
+use std::f64::consts::PI;
+
+/// Kinds of the contract, section 3, without `unknown`.
+const KINDS: [&str; 38] = [
+    "temp_linear",
+    "temp_polynomial",
+    "temp_rate",
+    "thermal_lag",
+    "temp_hysteresis",
+    "warmup_exponential",
+    "rate_ramp",
+    "diurnal",
+    "unobserved_driver",
+    "excess_arw",
+    "excess_flicker",
+    "excess_rrw",
+    "markov_short",
+    "markov_long",
+    "quasi_periodic",
+    "line",
+    "quantization",
+    "bandwidth_filter",
+    "noise_variance_time",
+    "noise_variance_rate",
+    "outlier_bursts",
+    "random_telegraph",
+    "bias_step",
+    "heading_change",
+    "earth_rate_projection",
+    "table_harmonic",
+    "reset_ripple",
+    "sf_error",
+    "sf_asymmetry",
+    "sf_nonlinearity",
+    "sf_temperature",
+    "dead_zone",
+    "saturation",
+    "cross_axis",
+    "supply_sensitivity",
+    "dropped_samples",
+    "time_offset",
+    "clock_drift",
+];
+
+#[test]
+fn the_registry_holds_every_kind_of_the_contract_once() {
+    let held: Vec<&str> = EFFECTS.iter().map(|e| e.kind()).collect();
+    assert_eq!(held.len(), held.iter().collect::<BTreeSet<_>>().len(), "a kind stands there twice");
+    for kind in KINDS {
+        assert_eq!(find(kind).map(|e| e.kind()), Some(kind));
+    }
+    assert!(find("unknown").is_none());
+}
+
+#[test]
+fn every_effect_says_what_it_is_in_both_languages() {
+    let cyrillic = |text: &str| text.chars().any(|c| ('а'..='я').contains(&c));
+    for effect in EFFECTS {
+        let (kind, doc) = (effect.kind(), effect.doc());
+        for both in [doc.title, doc.mechanism, doc.signature, doc.told_by, doc.confirm] {
+            assert!(both.en.len() > 5 && !cyrillic(both.en), "{kind}: {}", both.en);
+            assert!(cyrillic(both.ru), "{kind}: {}", both.ru);
+        }
+        assert!(!doc.title.en.ends_with('.') && doc.mechanism.en.ends_with('.'), "{kind}");
+        assert!(!doc.formula.is_empty() && !doc.source.is_empty(), "{kind}");
+        assert!((1..=4).contains(&effect.confusers().len()), "{kind}");
+        for confuser in effect.confusers() {
+            assert!(*confuser != kind && find(confuser).is_some(), "{kind}: {confuser}");
+        }
+        let names: BTreeSet<&str> = effect.params().iter().map(|p| p.name).collect();
+        assert_eq!(names.len(), effect.params().len(), "{kind}");
+        assert!(effect.params().iter().all(|p| p.lower < p.upper), "{kind}");
+    }
+}
+
+fn noise(seed: u64, n: usize, sigma: f64) -> Vec<f64> {
+    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+    (0..n)
+        .map(|_| {
+            let e: f64 = StandardNormal.sample(&mut rng);
+            sigma * e
+        })
+        .collect()
+}
+
+/// Plateaus, sweeps and reversals of a table.
+fn profile(t: f64) -> f64 {
+    let sweep = 2.0 * (2.0 * PI * t / 170.0).sin() * (2.0 * PI * t / 1900.0).cos();
+    match (t / 250.0) as usize % 4 {
+        0 => 0.0,
+        1 => 6.0,
+        2 => sweep,
+        _ => -9.0 * (2.0 * PI * t / 83.0).sin(),
+    }
+}
+
+/// A record of 50 minutes with every column moving.
+fn drivers() -> Drivers {
+    let (n, dt) = (6000usize, 0.5);
+    let time = |i: usize| i as f64 * dt;
+    let series = |f: &dyn Fn(f64) -> f64| Some((0..n).map(|i| f(time(i))).collect::<Vec<f64>>());
+    let mut angle = 0.0;
+    let table_angle = (0..n)
+        .map(|i| {
+            angle += profile(time(i)) * dt;
+            f64::rem_euclid(angle - 0.5 * profile(time(i)) * dt, 360.0)
+        })
+        .collect();
+    Drivers {
+        dt_s: dt,
+        start_s: 1000.0,
+        samples: n,
+        averaged: 1,
+        temperature: series(&|t| 25.0 + 15.0 * (2.0 * PI * t / 2100.0).sin() + 3.0 * (t / 300.0).cos()),
+        smooth_temperature: None,
+        table_rate: series(&profile),
+        table_angle: Some(table_angle),
+        outer_rate: series(&|t| if t % 700.0 < 300.0 { 3.0 } else { -1.0 }),
+        supply: series(&|t| 27.0 + 0.5 * (t / 41.0).sin()),
+        claim: ClaimedMean {
+            bias_deg_h: -3.0,
+            temperature: Some(Temperature { coefficient_deg_h_per_degc: 0.02, reference_degc: 20.0 }),
+            scale_factor_ppm: Some(12.0),
+            earth: None,
+        },
+    }
+}
+
+/// The same length in days, for what needs days; at rest.
+fn days() -> Drivers {
+    let n = 6000;
+    let temperature = Some((0..n).map(|i| 20.0 + (f64::from(i) / 500.0).sin()).collect());
+    Drivers { dt_s: 60.0, samples: n as usize, averaged: 1, temperature, ..Drivers::default() }
+}
+
+/// A table at headings, with the Earth rate in the claim.
+fn headings() -> Drivers {
+    let all = drivers();
+    let earth = Some(Earth { latitude_deg: 56.0, azimuth_deg: 12.0 });
+    Drivers { table_rate: None, claim: ClaimedMean { scale_factor_ppm: None, earth, ..all.claim }, ..all }
+}
+
+/// Parameters of a truth for each course: drivers, numbers in the order of its parameters, list if any. White noise of
+/// 0.05 deg/h is added to it.
+fn truth(kind: &str) -> (Drivers, Vec<f64>) {
+    match kind {
+        "temp_linear" => (drivers(), vec![0.023]),
+        "temp_polynomial" => (drivers(), vec![25.0, 15.0]),
+        "temp_rate" => (drivers(), vec![0.02]),
+        "thermal_lag" => (drivers(), vec![130.0]),
+        "temp_hysteresis" => (drivers(), vec![0.05, 2.0, 0.0]),
+        "warmup_exponential" => (drivers(), vec![0.2, 210.0]),
+        "rate_ramp" => (drivers(), vec![0.1]),
+        "diurnal" => (days(), vec![0.02, 86_400.0, 40.0]),
+        "line" => (drivers(), vec![0.2345, 0.01, 117.0]),
+        "bias_step" | "heading_change" => (drivers(), vec![0.05, 2111.3]),
+        "earth_rate_projection" => (headings(), vec![0.02, -20.0]),
+        "table_harmonic" => (headings(), vec![3.0, 0.02, 77.0]),
+        "reset_ripple" => (drivers(), vec![911.0, 0.05, 33.0, -2.95]),
+        "sf_error" => (drivers(), vec![-4.0]),
+        "sf_asymmetry" => (drivers(), vec![5.0]),
+        "sf_nonlinearity" => (drivers(), vec![6.0, 9.0]),
+        "sf_temperature" => (drivers(), vec![0.4]),
+        "dead_zone" => (drivers(), vec![150.0, 0.8]),
+        "saturation" => (drivers(), vec![8.99]),
+        "cross_axis" => (drivers(), vec![0.02]),
+        "supply_sensitivity" => (drivers(), vec![0.05]),
+        "time_offset" => (drivers(), vec![3.21]),
+        "clock_drift" => (drivers(), vec![-870.0]),
+        _ => panic!("no truth for {kind}"),
+    }
+}
+
+fn values(effect: &dyn Effect, numbers: &[f64], lists: Vec<(&'static str, Vec<f64>)>) -> Values {
+    let numbers = effect.params().iter().zip(numbers).filter(|(_, x)| x.is_finite());
+    let numbers = numbers.map(|(p, x)| (p.name.to_owned(), Value::Number(*x)));
+    numbers.chain(lists.into_iter().map(|(name, x)| (name.to_owned(), Value::List(x)))).collect()
+}
+
+fn true_values(effect: &dyn Effect, numbers: &[f64]) -> Values {
+    let lists = match effect.kind() {
+        "temp_polynomial" => vec![("coefficients_deg_h", vec![0.01, 0.05, -0.03])],
+        _ => vec![],
+    };
+    values(effect, numbers, lists)
+}
+
+/// Gain that the truth itself would have.
+fn own_gain(course: &[f64], look: &Look<'_>) -> f64 {
+    let modes = dct2(course);
+    let sum = modes.iter().zip(look.modes).zip(look.powers).skip(1);
+    sum.map(|((f, r), p)| (r * f - 0.5 * f * f) / p).sum()
+}
+
+#[test]
+fn courses_come_back_from_their_parameters_and_searches_find_them() {
+    let sigma = 0.05;
+    for effect in EFFECTS {
+        let Model::Course(course) = effect.model() else { continue };
+        let kind = effect.kind();
+        let (drivers, numbers) = truth(kind);
+        assert!(course.applies(&drivers), "{kind}");
+        assert!(effect.needs().iter().all(|c| drivers.column(*c).is_some()), "{kind}");
+        let truth = course.course(&true_values(*effect, &numbers), &drivers).unwrap();
+        let n = drivers.samples;
+        let mut residual = noise(11, n, sigma);
+        residual.iter_mut().zip(&truth).for_each(|(r, t)| *r += t);
+        let power = sigma * sigma;
+        let modes = dct2(&residual);
+        let mean = residual.iter().sum::<f64>() / n as f64;
+        let score: Vec<f64> = residual.iter().map(|r| (r - mean) / power).collect();
+        let mut powers = vec![power; n];
+        powers[0] = f64::INFINITY;
+        let look = Look { score: &score, modes: &modes, powers: &powers };
+        let best = own_gain(&truth, &look);
+        assert!(best > 10.0, "{kind}: the truth itself gains {best}");
+
+        let starts = course.starts(&drivers, &look);
+        assert!(starts.looked >= 1.0 && (1..=4).contains(&starts.shapes.len()), "{kind}: {starts:?}");
+        let bounds = course.bounds(&drivers);
+        let mut found = f64::NEG_INFINITY;
+        for shape in &starts.shapes {
+            assert_eq!(shape.len(), bounds.len(), "{kind}");
+            for (x, (low, high)) in shape.iter().zip(&bounds) {
+                assert!(low <= x && x <= high, "{kind}: {x} outside {low} to {high}");
+            }
+            let parts = course.parts(shape, &drivers);
+            found = found.max(search::gain_of(&parts, &look));
+            let columns = parts.free.iter().chain(&parts.beside).chain(&parts.fixed);
+            assert!(columns.flatten().all(|x| x.is_finite()), "{kind}");
+
+            // The fitted course and that of its parameters are one.
+            let coefficients: Vec<f64> = (0..parts.free.len()).map(|k| 0.7 - 0.4 * k as f64).collect();
+            let mut fitted = parts.fixed.clone().unwrap_or_else(|| vec![0.0; n]);
+            for (column, c) in parts.free.iter().zip(&coefficients) {
+                fitted.iter_mut().zip(column).for_each(|(f, x)| *f += c * x);
+            }
+            let numbers = course.parameters(shape, &coefficients, &drivers);
+            assert_eq!(numbers.len(), effect.params().len(), "{kind}");
+            let lists = course.lists(shape, &coefficients, &drivers);
+            let again = course.course(&values(*effect, &numbers, lists), &drivers).unwrap();
+            let size = fitted.iter().map(|x| x.abs()).fold(1e-12, f64::max);
+            let apart = fitted.iter().zip(&again).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-9 * size, "{kind}: {apart} of {size}");
+            assert_eq!(again.len(), n, "{kind}");
+
+            let places = course.places(shape, &coefficients, &drivers);
+            assert!((1..=3).contains(&places.len()), "{kind}");
+            assert_eq!(places[0].domain, effect.domain(), "{kind}");
+            assert!(places.iter().all(|p| p.from <= p.to), "{kind}: {places:?}");
+            assert!(
+                course.steps(&drivers).len() == bounds.len() || course.steps(&drivers).is_empty(),
+                "{kind}"
+            );
+        }
+        // Half of it is enough for a local search to go on from.
+        assert!(found > 0.5 * best, "{kind}: found {found} of {best}, {starts:?}");
+    }
+}
+
+#[test]
+fn nothing_applies_without_its_columns_and_nothing_breaks() {
+    let resting = Drivers {
+        temperature: Some(vec![20.0; 6000]),
+        table_rate: Some(vec![0.0; 6000]),
+        table_angle: Some(vec![30.0; 6000]),
+        outer_rate: Some(vec![0.0; 6000]),
+        supply: Some(vec![27.0; 6000]),
+        ..drivers()
+    };
+    let nothing = Drivers { dt_s: 1.0, ..Drivers::default() };
+    let short = Drivers { dt_s: 1.0, samples: 3, averaged: 1, ..Drivers::default() };
+    for effect in EFFECTS {
+        let Model::Course(course) = effect.model() else { continue };
+        let moved_by_a_column =
+            !effect.needs().is_empty() || ["time_offset", "clock_drift"].contains(&effect.kind());
+        if moved_by_a_column {
+            assert!(!course.applies(&resting), "{}", effect.kind());
+        }
+        for drivers in [&resting, &nothing, &short] {
+            let zeros = vec![0.0; drivers.samples];
+            let ones = vec![1.0; drivers.samples];
+            let look = Look { score: &zeros, modes: &zeros, powers: &ones };
+            for shape in course.starts(drivers, &look).shapes {
+                course.parts(&shape, drivers);
+            }
+            course.bounds(drivers);
+            course.parts(&[], drivers);
+            course.parameters(&[], &[], drivers);
+            course.places(&[], &[], drivers);
+            assert!(course.course(&Values::new(), drivers).is_none(), "{}", effect.kind());
+        }
+    }
+}
+
+#[test]
+fn averages_see_the_course_that_the_samples_see() {
+    // Slow courses are fitted to averages, where the means of the samples must be the same course.
+    for effect in EFFECTS {
+        let Model::Course(course) = effect.model() else { continue };
+        let (drivers, numbers) = truth(effect.kind());
+        if course.pace() != crate::effect::Pace::Slow {
+            continue;
+        }
+        let values = true_values(*effect, &numbers);
+        let fine = crate::effect::averages(&course.course(&values, &drivers).unwrap(), 8);
+        let coarse = course.course(&values, &drivers.averages(8)).unwrap();
+        let about = |x: &[f64]| {
+            let mean = x.iter().sum::<f64>() / x.len() as f64;
+            x.iter().map(|v| v - mean).collect::<Vec<f64>>()
+        };
+        let (fine, coarse) = (about(&fine), about(&coarse));
+        let rms = |x: &[f64]| (x.iter().map(|v| v * v).sum::<f64>() / x.len() as f64).sqrt();
+        let apart: Vec<f64> = fine.iter().zip(&coarse).map(|(a, b)| a - b).collect();
+        assert!(rms(&apart) < 0.01 * rms(&fine), "{}: {} of {}", effect.kind(), rms(&apart), rms(&fine));
+    }
+}
+
+#[test]
+fn simulated_spectra_have_the_density_that_fits_use() {
+    let (n, runs) = (2048usize, 200u64);
+    let white = NoiseModel { n: 0.01, ..NoiseModel::default() };
+    let cases: [(&str, Vec<f64>); 6] = [
+        ("markov_short", vec![2.0, 0.5]),
+        ("markov_long", vec![400.0, 0.5]),
+        ("quasi_periodic", vec![0.07, 0.4, 600.0]),
+        ("quantization", vec![0.5]),
+        ("bandwidth_filter", vec![0.06]),
+        ("excess_flicker", vec![0.3]),
+    ];
+    for (kind, fitted) in cases {
+        let effect = find(kind).unwrap();
+        let Model::Spectrum(spectrum) = effect.model() else { panic!("{kind}") };
+        let mut model = Composite::from(white);
+        spectrum.compose(&fitted, &mut model);
+        let mut power = vec![0.0; n];
+        for run in 0..runs {
+            let setup = Setup::for_record(run * 7 + 3, 1.0, n as u64);
+            let modes = dct2(&Simulator::of(&model, &setup).take(n));
+            power.iter_mut().zip(modes).for_each(|(p, c)| *p += c * c / runs as f64);
+        }
+        let density = |bin: &ModeBin| {
+            let part = |term| unit_density(term, bin.frequency_hz, bin.dt_s);
+            let white = 3600.0 * 0.01f64.powi(2);
+            match spectrum.act() {
+                crate::effect::SpectrumAct::Adds => white + spectrum.density(&fitted, bin),
+                crate::effect::SpectrumAct::Filters => white * spectrum.density(&fitted, bin),
+                crate::effect::SpectrumAct::Frees(term) => white + fitted[0].powi(2) * part(term),
+            }
+        };
+        let (mut low, mut bins) = (1usize, 0);
+        while low < n {
+            let high = (low + low / 6 + 1).min(n);
+            let modes = high - low;
+            let frequency_hz = (low as f64 + 0.5 * (modes as f64 - 1.0)) / (2.0 * n as f64);
+            let expected = density(&ModeBin { frequency_hz, mode: low, modes, samples: n, dt_s: 1.0 });
+            let got = power[low..high].iter().sum::<f64>() / modes as f64;
+            let single = |k: usize| {
+                let frequency_hz = k as f64 / (2.0 * n as f64);
+                density(&ModeBin { frequency_hz, mode: k, modes: 1, samples: n, dt_s: 1.0 })
+            };
+            // A resonance inside a bin makes the scatter that of few modes.
+            let square = (low..high).map(|k| single(k).powi(2)).sum::<f64>();
+            let scatter = (2.0 * square / runs as f64).sqrt() / (modes as f64 * expected);
+            assert!(
+                (got / expected - 1.0).abs() < 4.5 * scatter + 0.03,
+                "{kind}, modes {low} to {high}: {}",
+                got / expected
+            );
+            low = high;
+            bins += 1;
+        }
+        assert!(bins > 20);
+    }
+}
+
+#[test]
+fn spectral_searches_begin_near_the_truth() {
+    // Bins with the density of white noise and the effect, seen without scatter.
+    let (n, dt) = (16_384usize, 0.1);
+    let mut bins = vec![];
+    let mut low = 1usize;
+    while low < n {
+        let modes = (low / 12).max(1).min(n - low);
+        let frequency_hz = (low as f64 + 0.5 * (modes as f64 - 1.0)) / (2.0 * n as f64 * dt);
+        bins.push(ModeBin { frequency_hz, mode: low, modes, samples: n, dt_s: dt });
+        low += modes;
+    }
+    let cases: [(&str, Vec<f64>); 6] = [
+        ("markov_short", vec![0.4, 0.3]),
+        ("markov_long", vec![40.0, 0.2]),
+        ("quasi_periodic", vec![0.9, 0.2, 30.0]),
+        ("quantization", vec![0.1]),
+        ("bandwidth_filter", vec![1.5]),
+        ("unobserved_driver", vec![0.3, 200.0]),
+    ];
+    let white = 3600.0 * 0.003f64.powi(2);
+    for (kind, fitted) in cases {
+        let effect = find(kind).unwrap();
+        let Model::Spectrum(spectrum) = effect.model() else { panic!("{kind}") };
+        let total = |fitted: &[f64], bin: &ModeBin| match spectrum.act() {
+            crate::effect::SpectrumAct::Filters => white * spectrum.density(fitted, bin),
+            _ => white + spectrum.density(fitted, bin),
+        };
+        let expected = vec![white; bins.len()];
+        let observed: Vec<f64> = bins.iter().map(|b| total(&fitted, b)).collect();
+        let look =
+            SpectralLook { bins: &bins, observed: &observed, expected: &expected, lattice_arcsec: None };
+        let likelihood = |density: &dyn Fn(&ModeBin) -> f64| {
+            let terms = bins.iter().zip(&observed).map(|(b, i)| {
+                let s = density(b);
+                b.modes as f64 * (s.ln() + i / s)
+            });
+            -0.5 * terms.sum::<f64>()
+        };
+        let (at_truth, before) = (likelihood(&|b| total(&fitted, b)), likelihood(&|_| white));
+        let starts = spectrum.starts(&look);
+        let bounds = spectrum.bounds(&look);
+        assert!((1..=12).contains(&starts.len()) && spectrum.looked(&look) >= 1.0, "{kind}");
+        let mut best = f64::NEG_INFINITY;
+        for start in &starts {
+            assert_eq!(start.len(), bounds.len(), "{kind}");
+            best = best.max(likelihood(&|b| total(start, b)));
+        }
+        for (x, (low, high)) in fitted.iter().zip(&bounds) {
+            assert!(low < x && x < high, "{kind}: {x} outside {low} to {high}");
+        }
+        let share = (best - before) / (at_truth - before);
+        assert!(share > 0.3, "{kind}: {share} of {} from {starts:?}", at_truth - before);
+        let places = spectrum.places(&fitted, &look);
+        assert!((1..=3).contains(&places.len()) && places.iter().all(|p| p.from <= p.to), "{kind}");
+        assert_eq!(places[0].domain, effect.domain(), "{kind}");
+    }
+}
+
+#[test]
+fn stated_spectra_give_their_fitted_parameters_back() {
+    for effect in EFFECTS {
+        let Model::Spectrum(spectrum) = effect.model() else { continue };
+        let numbers: Vec<f64> = (0..effect.params().len()).map(|i| 0.5 + i as f64).collect();
+        let stated = spectrum.stated(&values(*effect, &numbers, vec![]));
+        if effect.kind() == "unobserved_driver" {
+            assert!(stated.is_none());
+            let knots = vec![("knots_time_s", vec![0.0, 10.0]), ("knots_deg_h", vec![1.0, 2.0])];
+            let drivers = Drivers { dt_s: 5.0, samples: 3, averaged: 1, ..Drivers::default() };
+            let course = effect.stated_course(&values(*effect, &[], knots), &drivers);
+            assert_eq!(course, Some(vec![1.0, 1.5, 2.0]));
+            continue;
+        }
+        assert_eq!(spectrum.parameters(&stated.unwrap()), numbers, "{}", effect.kind());
+        assert!(spectrum.stated(&Values::new()).is_none(), "{}", effect.kind());
+    }
+}
+
+#[test]
+fn columns_of_needs_are_those_of_the_contract() {
+    let needs = |kind: &str| find(kind).map(|e| e.needs().to_vec());
+    assert_eq!(needs("sf_temperature"), Some(vec![Column::TableRate, Column::Temperature]));
+    assert_eq!(needs("cross_axis"), Some(vec![Column::OuterRate]));
+    assert_eq!(needs("rate_ramp"), Some(vec![]));
+}

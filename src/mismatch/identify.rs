@@ -1,0 +1,71 @@
+//! A claim identified from a simulated recording: what `explain --simulation` holds a recording against.
+//!
+//! The mean is fitted by generalised least squares on the columns, the noise is identified from what it leaves, and both
+//! once more. How well each value is known becomes the uncertainty of the claim.
+
+mod mean;
+mod noise;
+
+use super::Progress;
+use crate::claim::{Claim, Uncertainty};
+use crate::effect::Column;
+use crate::noise::model::NoiseModel;
+use crate::series::Series;
+use crate::text::Note;
+
+/// Fewest rows from which a claim is identified.
+const FEWEST: usize = 256;
+/// Rounds of mean and noise.
+const ROUNDS: u64 = 2;
+
+/// Identifies a claim.
+///
+/// # Errors
+/// A recording that is too short.
+pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<Claim, Note> {
+    let rows = series.rate_deg_h.len();
+    if rows < FEWEST {
+        return Err(Note::new("explain.error.short").with("rows", rows).with("needed", FEWEST));
+    }
+    let mut step =
+        |done| progress(Progress { doing: "explain.progress.identifying", done, total: 2 * ROUNDS });
+    step(0);
+    let columns = mean::Columns::new(series);
+    let mut fitted = columns.fit(series, None);
+    step(1);
+    let mut found = noise::identify(series, &fitted.residual);
+    for round in 1..ROUNDS {
+        step(2 * round);
+        fitted = columns.fit(series, Some(&found.composite));
+        step(2 * round + 1);
+        found = noise::identify(series, &fitted.residual);
+    }
+    step(2 * ROUNDS);
+    Ok(claim(series, &fitted, &found))
+}
+
+fn claim(series: &Series, mean: &mean::Fitted, noise: &noise::Found) -> Claim {
+    let [n, b, k, q] = [noise.n, noise.b, noise.k, noise.q];
+    Claim {
+        case: String::new(),
+        description: String::new(),
+        sample_rate_hz: 1.0 / series.sample_interval_s,
+        columns: Some(series.columns.keys().copied().collect::<Vec<Column>>()),
+        noise: NoiseModel { n: n.value, b: b.value, k: k.value, r: 0.0, q: q.value },
+        quantization_lsb_arcsec: q.value * 12f64.sqrt(),
+        mean: mean.claimed,
+        uncertainty: Uncertainty {
+            n_rel: n.relative,
+            b_rel: b.relative,
+            k_rel: k.relative,
+            bias_deg_h: mean.bias_sd,
+            temperature_coefficient_deg_h_per_degc: mean.temperature_sd,
+            scale_factor_ppm: mean.scale_factor_sd,
+        },
+        effects: noise.effects.clone(),
+    }
+}
+
+#[cfg(test)]
+#[path = "identify/tests.rs"]
+mod tests;

@@ -1,0 +1,102 @@
+//! The noise of a simulated recording, as a claim states it.
+
+use crate::claim::Stated;
+use crate::effect::{Value, Values, find};
+use crate::estimate::Estimate;
+use crate::noise::composite::{Composite, Sampling};
+use crate::noise::digest::{DigestPlan, RateAccumulator};
+use crate::noise::lines::{FALSE_ALARM_RATE, find_lines};
+use crate::noise::spectral_record::SpectralRecord;
+use crate::series::Series;
+
+/// Width of a 95 % interval in standard deviations.
+const INTERVAL_WIDTH: f64 = 2.0 * 1.96;
+/// Correlation time, in samples, that divides short from long.
+const SHORT_SAMPLES: f64 = 10.0;
+
+/// A coefficient.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Coefficient {
+    /// Value; 0 where the record does not show it.
+    pub value: f64,
+    /// Relative standard deviation.
+    pub relative: f64,
+}
+
+/// The noise found.
+pub struct Found {
+    /// N, deg/√h.
+    pub n: Coefficient,
+    /// B, deg/h.
+    pub b: Coefficient,
+    /// K, deg/h/√h.
+    pub k: Coefficient,
+    /// Q, arcsec.
+    pub q: Coefficient,
+    /// Everything found, as a spectrum.
+    pub composite: Composite,
+    /// Processes beyond N, B, K and Q that the catalogue can state.
+    pub effects: Vec<Stated>,
+}
+
+fn coefficient(estimate: &Estimate) -> Coefficient {
+    let Some(value) = estimate.value.filter(|v| *v > 0.0) else { return Coefficient::default() };
+    let relative = estimate.interval95().map_or(0.0, |i| (i.high - i.low) / INTERVAL_WIDTH / value);
+    Coefficient { value, relative: if relative.is_finite() { relative } else { 0.0 } }
+}
+
+/// Identifies the noise of a residual, row by row.
+pub fn identify(series: &Series, residual: &[f64]) -> Found {
+    let tau0_s = series.sample_interval_s;
+    let mut digest = RateAccumulator::new(DigestPlan::new(tau0_s));
+    let mut from = 0;
+    // A stretch without a gap is pushed at once.
+    for i in 1..=residual.len() {
+        let broken = i == residual.len() || series.index[i] != series.index[i - 1] + 1;
+        if broken {
+            digest.push(&residual[from..i], series.index[from], from > 0);
+            from = i;
+        }
+    }
+    let digest = digest.finish();
+    let lines = find_lines(&digest.welch.spectrum, tau0_s, FALSE_ALARM_RATE).lines;
+    let record = SpectralRecord {
+        blocks: &digest.blocks,
+        welch: Some(&digest.welch.spectrum),
+        tau0_s,
+        lines: &lines,
+        sampling: Sampling::Averaging,
+    };
+    let noise = record.identify("rate");
+    let identification = noise.ranged.identification;
+    let composite = identification.described.model.clone();
+    let mut effects = vec![];
+    for m in &composite.markov {
+        let short = m.decay_time_s < SHORT_SAMPLES * tau0_s;
+        let kind = if short { "markov_short" } else { "markov_long" };
+        let values = [("correlation_time_s", m.decay_time_s), ("sigma_deg_h", m.rms_deg_h)];
+        effects.extend(stated(kind, &values));
+    }
+    for q in &composite.quasi_periodic {
+        let values = [
+            ("frequency_hz", q.frequency_hz),
+            ("amplitude_rms_deg_h", q.rms_deg_h),
+            ("coherence_time_s", q.decay_time_s),
+        ];
+        effects.extend(stated("quasi_periodic", &values));
+    }
+    Found {
+        n: coefficient(&identification.angle_random_walk),
+        b: coefficient(&identification.bias_instability),
+        k: coefficient(&identification.rate_random_walk),
+        q: coefficient(&identification.quantization),
+        composite,
+        effects,
+    }
+}
+
+/// An effect with its parameters; `None` where the catalogue lacks it.
+fn stated(kind: &str, values: &[(&str, f64)]) -> Option<Stated> {
+    let values: Values = values.iter().map(|(name, v)| ((*name).to_owned(), Value::Number(*v))).collect();
+    Some(Stated { effect: find(kind)?, values })
+}

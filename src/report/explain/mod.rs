@@ -1,0 +1,183 @@
+//! The view of an explanation: words and printed numbers, ready for the templates and for the terminal.
+
+mod effect;
+mod kinds;
+mod method;
+mod print;
+mod sentence;
+mod tables;
+
+pub use effect::{EffectView, EquivalentView, ParameterRow, StatedRow};
+pub use method::MethodView;
+pub use tables::{CandidateRow, FitRow, TestRow};
+
+use super::compare::figure;
+use super::number::{count, date_time, digits, duration};
+use super::view::{Field, FigureView, Words};
+use crate::figure::Figure;
+use crate::mismatch::finding::Explanation;
+use crate::text::{Lang, Note};
+use serde::Serialize;
+
+/// Where an explanation comes from and goes to.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Context {
+    /// The recording, as named by the user.
+    pub recording: String,
+    /// The claim, as named by the user.
+    pub claim: String,
+    /// True when the claim was identified from a simulated recording.
+    pub identified: bool,
+    /// What the claim says of itself.
+    pub description: String,
+    /// RFC 3339.
+    pub explained_at: String,
+    /// True when `correction.csv` is written.
+    pub correction: bool,
+    /// What must be known of the recording.
+    pub notes: Vec<Note>,
+}
+
+/// A file of the folder.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FileView {
+    /// Name.
+    pub name: String,
+    /// What it is.
+    pub what: String,
+}
+
+/// Everything that an explanation shows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainView {
+    /// Id of the verdict.
+    pub verdict: String,
+    /// Class of the verdict, for colours.
+    pub verdict_class: &'static str,
+    /// The verdict in a word.
+    pub verdict_word: String,
+    /// Case and description.
+    pub title: String,
+    /// The verdict in sentences.
+    pub says: Vec<String>,
+    /// Recording and claim.
+    pub identity: Vec<Field>,
+    /// What must be known of the recording.
+    pub remarks: Vec<String>,
+    /// Family-wise probability, before and after.
+    pub family: [String; 2],
+    /// Significance asked for.
+    pub alpha: String,
+    /// Tests of the residual, the most significant first.
+    pub tests: Vec<TestRow>,
+    /// What was tried.
+    pub candidates: Vec<CandidateRow>,
+    /// Causes.
+    pub effects: Vec<EffectView>,
+    /// The fit before and after.
+    pub fit: Vec<FitRow>,
+    /// What the fit says, in a sentence.
+    pub fit_says: String,
+    /// True when nothing was added.
+    pub unchanged: bool,
+    /// What the claim states.
+    pub stated: Vec<StatedRow>,
+    /// How it was found.
+    pub methods: Vec<MethodView>,
+    /// Figures.
+    pub figures: Vec<FigureView>,
+    /// Files of the folder.
+    pub files: Vec<FileView>,
+    /// Line at the foot of every page.
+    pub footer: String,
+    /// The program with its version.
+    pub generator: String,
+}
+
+impl ExplainView {
+    /// Builds the view.
+    pub fn new(all: &Explanation, figures: &[Figure], context: &Context, lang: Lang) -> ExplainView {
+        let words = Words { lang };
+        let (verdict_class, verdict_word) = match all.verdict.as_str() {
+            "consistent" => ("pass", words.t("explain.verdict.consistent")),
+            "mismatch" => ("indeterminate", words.t("explain.verdict.mismatch")),
+            _ => ("fail", words.t("explain.verdict.unknown")),
+        };
+        let generator = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
+        let title = if all.case.is_empty() { context.recording.clone() } else { all.case.clone() };
+        let effects = all.effects.iter().enumerate();
+        let footer = [date_time(&context.explained_at), generator.clone()];
+        ExplainView {
+            verdict: all.verdict.clone(),
+            verdict_class,
+            verdict_word,
+            title,
+            says: sentence::verdict(all, words),
+            identity: identity(all, context, words),
+            remarks: context.notes.iter().map(|n| words.say(n)).collect(),
+            family: [all.family_p_value, all.family_p_value_after].map(|p| print::chance(p, words)),
+            alpha: digits(all.alpha, 1, lang),
+            tests: tables::tests(all, words),
+            candidates: tables::candidates(all, words),
+            effects: effects.map(|(i, f)| EffectView::new(i + 1, f, all, words)).collect(),
+            fit: tables::fit(all, words),
+            fit_says: tables::fit_says(all, words),
+            unchanged: all.effects.iter().all(|f| f.kind == "unknown"),
+            stated: effect::stated_rows(all, words),
+            methods: method::all(words),
+            figures: figures.iter().enumerate().map(|(i, f)| figure(f, i + 1, words)).collect(),
+            files: files(context, words),
+            footer: footer.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" · "),
+            generator,
+        }
+    }
+
+    /// The outcome in a few lines for the terminal.
+    pub fn summary(&self) -> String {
+        let mut out = format!("{}\n", self.verdict_word.to_uppercase());
+        for sentence in &self.says {
+            out.push_str(&format!("  {sentence}\n"));
+        }
+        if !self.fit_says.is_empty() && !self.unchanged {
+            out.push_str(&format!("  {}\n", self.fit_says));
+        }
+        out
+    }
+}
+
+fn identity(all: &Explanation, context: &Context, words: Words) -> Vec<Field> {
+    let r = &all.recording;
+    let mut out = vec![];
+    let mut put = |key: &str, value: String| {
+        if !value.trim().is_empty() {
+            out.push(Field { label: words.t(key), value });
+        }
+    };
+    put("explain.fact.recording", context.recording.clone());
+    let claim = if context.identified { "explain.fact.simulation" } else { "explain.fact.claim" };
+    put(claim, context.claim.clone());
+    put("explain.fact.case", all.case.clone());
+    put("explain.fact.description", context.description.clone());
+    put("explain.fact.rows", count(r.rows as u64, words.lang));
+    put("explain.fact.missing", count(r.missing as u64, words.lang));
+    put("explain.fact.interval", duration(r.sample_interval_s, words.lang));
+    put("explain.fact.length", duration(r.length_s, words.lang));
+    let list = |names: &[String]| names.join(&words.t("number.list"));
+    put("explain.fact.columns", list(&r.columns));
+    put("explain.fact.hidden", list(&r.hidden));
+    put("explain.fact.alpha", digits(all.alpha, 1, words.lang));
+    out
+}
+
+fn files(context: &Context, words: Words) -> Vec<FileView> {
+    let mut names = vec![("explain.json", "explain.wrote.json")];
+    if context.correction {
+        names.push(("correction.csv", "explain.wrote.correction"));
+    }
+    names.push(("augmented.toml", "explain.wrote.augmented"));
+    names.push(("report.html", "explain.wrote.html"));
+    names.push(("report.md", "explain.wrote.markdown"));
+    names.push(("figures/*.svg", "explain.wrote.figures"));
+    let row = |(name, key): (&str, &str)| FileView { name: name.to_owned(), what: words.t(key) };
+    names.into_iter().map(row).collect()
+}

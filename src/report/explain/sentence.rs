@@ -1,0 +1,125 @@
+//! The verdict in sentences.
+
+use super::kinds::SAYINGS;
+use super::print::{chance, place, title, value};
+use crate::mismatch::finding::{Explanation, Finding};
+use crate::report::number::{count, digits, duration, percent};
+use crate::report::view::Words;
+
+/// What one finding adds to the claim, or corrects in it, as a phrase.
+pub fn phrase(finding: &Finding, explanation: &Explanation, words: Words) -> String {
+    let Some(saying) = SAYINGS.iter().find(|s| s.kind == finding.kind) else {
+        return title(&finding.kind, words);
+    };
+    let mut given: Vec<(&str, String)> =
+        finding.parameters.iter().map(|(name, p)| (name.as_str(), value(name, p, words).whole)).collect();
+    if let Some(name) = saying.states {
+        // What a claim does not state, it states to be nil.
+        let claimed = explanation
+            .nuisances
+            .iter()
+            .find(|n| n.name.rsplit('.').next() == Some(name))
+            .map_or_else(|| "0".to_owned(), |n| words.quantity(&digits_of(n.claimed, words), &n.unit));
+        given.push(("claimed", claimed));
+    }
+    let pattern = words.t(saying.key);
+    let known = places(&pattern).all(|name| given.iter().any(|g| g.0 == name));
+    if !known {
+        return title(&finding.kind, words);
+    }
+    let given: Vec<(&str, &str)> = given.iter().map(|(a, b)| (*a, b.as_str())).collect();
+    words.with(saying.key, &given)
+}
+
+/// A claimed value as it was stated, but for the dust of arithmetic.
+fn digits_of(v: f64, words: Words) -> String {
+    crate::report::number::limit_digits(v, 6, words.lang)
+}
+
+/// Names in braces.
+fn places(pattern: &str) -> impl Iterator<Item = &str> {
+    pattern.split('{').skip(1).filter_map(|p| p.split_once('}')).map(|p| p.0)
+}
+
+/// The sentences on one finding: what it is, where it shows, what it cannot be told from.
+pub fn finding(finding: &Finding, explanation: &Explanation, words: Words) -> Vec<String> {
+    let shown: Vec<String> =
+        finding.places.iter().map(|p| place(p, explanation.recording.length_s, words)).collect();
+    let shown = shown.join(&words.t("explain.and"));
+    let mut out = vec![];
+    if finding.kind == "unknown" {
+        out.push(words.t("explain.sentence.unknown"));
+        if let Some(rms) = finding.parameters.get("rms_deg_h") {
+            let rms = value("rms_deg_h", rms, words).whole;
+            out.push(words.with("explain.sentence.size", &[("rms", &rms)]));
+        }
+    } else {
+        let what = phrase(finding, explanation, words);
+        let corrects = SAYINGS.iter().any(|s| s.kind == finding.kind && s.states.is_some());
+        let key = if corrects { "explain.sentence.misstates" } else { "explain.sentence.leaves_out" };
+        out.push(words.with(key, &[("what", &what)]));
+    }
+    if !shown.is_empty() {
+        out.push(words.with("explain.sentence.shows", &[("where", &shown)]));
+    }
+    if !finding.equivalents.is_empty() {
+        let list: Vec<String> = finding.equivalents.iter().map(|k| title(k, words)).collect();
+        let list = list.join(&words.t("number.list"));
+        out.push(words.with("explain.sentence.equivalents", &[("list", &list)]));
+    }
+    out
+}
+
+/// What remains when everything found has been added.
+fn rest(all: &Explanation, words: Words) -> Vec<String> {
+    let named: Vec<&Finding> = all.effects.iter().filter(|f| f.kind != "unknown").collect();
+    let after = all.family_p_value_after;
+    let p = chance(after, words);
+    let share = match named.as_slice() {
+        [] => return vec![],
+        [only] => only.removed_share.filter(|s| s.is_finite() && *s > 0.0).map(|s| percent(s, words.lang)),
+        _ => None,
+    };
+    let unnamed = all.effects.len() > named.len();
+    if let (Some(share), true) = (&share, after >= all.alpha && !unnamed) {
+        return vec![words.with("explain.sentence.removes_all", &[("share", share), ("p", &p)])];
+    }
+    let mut out = vec![];
+    out.extend(share.map(|s| words.with("explain.sentence.removes", &[("share", &s)])));
+    let key = if unnamed {
+        "explain.sentence.rest_unexplained"
+    } else if after < all.alpha {
+        "explain.sentence.rest_faint"
+    } else if named.len() > 1 {
+        "explain.sentence.rest_ordinary_of_several"
+    } else {
+        "explain.sentence.rest_ordinary"
+    };
+    out.push(words.with(key, &[("p", &p)]));
+    out
+}
+
+/// The verdict, a sentence after the other.
+pub fn verdict(explanation: &Explanation, words: Words) -> Vec<String> {
+    let p = chance(explanation.family_p_value, words);
+    if explanation.effects.is_empty() {
+        let r = &explanation.recording;
+        let alpha = digits(explanation.alpha, 1, words.lang);
+        let (rows, length) = (count(r.rows as u64, words.lang), duration(r.length_s, words.lang));
+        let given = [("rows", rows.as_str()), ("length", &length), ("p", &p), ("alpha", &alpha)];
+        let key = if explanation.verdict == "consistent" {
+            "explain.sentence.consistent"
+        } else {
+            "explain.sentence.unlocated"
+        };
+        return vec![words.with(key, &given)];
+    }
+    let several = explanation.effects.len() > 1;
+    let mut out = vec![];
+    for (i, f) in explanation.effects.iter().enumerate() {
+        let text = finding(f, explanation, words).join(" ");
+        out.push(if several { format!("{}) {text}", i + 1) } else { text });
+    }
+    out.extend(rest(explanation, words));
+    out
+}

@@ -1,0 +1,162 @@
+//! The tables of an explanation: tests, candidates, the fit before and after.
+
+use super::effect::capital;
+use super::print::{chance, difference, ends, plain, test, title, view};
+use crate::mismatch::finding::{Explanation, FitFigures, PlaceRecord};
+use crate::report::number::digits;
+use crate::report::view::Words;
+use serde::Serialize;
+
+/// A test of one view.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TestRow {
+    /// In words.
+    pub name: String,
+    /// The view of the largest departure.
+    pub view: String,
+    /// Where in it.
+    pub place: String,
+    /// Probability with the claim.
+    pub before: String,
+    /// Probability with the augmented claim.
+    pub after: String,
+    /// Whether it departs, with the claim.
+    pub departs_before: bool,
+    /// The same with the augmented claim.
+    pub departs_after: bool,
+}
+
+/// The tests, the most significant first.
+pub(super) fn tests(all: &Explanation, words: Words) -> Vec<TestRow> {
+    let mut sorted: Vec<_> = all.tests.iter().collect();
+    sorted.sort_by(|a, b| a.p_before.total_cmp(&b.p_before));
+    sorted
+        .into_iter()
+        .map(|t| {
+            let place = PlaceRecord { domain: t.domain.clone(), from: t.from, to: t.to };
+            TestRow {
+                name: test(&t.id, words),
+                view: view(&t.domain, words),
+                place: ends(&place, words),
+                before: chance(t.p_before, words),
+                after: chance(t.p_after, words),
+                departs_before: t.p_before < all.alpha,
+                departs_after: t.p_after < all.alpha,
+            }
+        })
+        .collect()
+}
+
+/// An effect that was tried.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CandidateRow {
+    /// Title.
+    pub title: String,
+    /// Kind as the files have it.
+    pub kind: String,
+    /// What it is worth alone.
+    pub delta_bic: String,
+    /// Gain of log-likelihood.
+    pub gain: String,
+    /// Probability under its absence.
+    pub p: String,
+    /// `chosen`, `equivalent` or nothing, in words.
+    pub role: String,
+    /// Whether it was chosen.
+    pub chosen: bool,
+}
+
+/// Candidates in their order.
+pub(super) fn candidates(all: &Explanation, words: Words) -> Vec<CandidateRow> {
+    all.candidates
+        .iter()
+        .map(|c| {
+            let chosen = all.effects.iter().any(|f| f.kind == c.kind);
+            let equivalent = all.effects.iter().any(|f| f.equivalents.contains(&c.kind));
+            let role = match (chosen, equivalent) {
+                (true, _) => words.t("explain.role.chosen"),
+                (_, true) => words.t("explain.role.equivalent"),
+                _ => String::new(),
+            };
+            CandidateRow {
+                title: capital(&title(&c.kind, words)),
+                kind: c.kind.clone(),
+                delta_bic: difference(c.delta_bic, words),
+                gain: difference(c.log_likelihood_gain, words),
+                p: chance(c.p_value, words),
+                role,
+                chosen,
+            }
+        })
+        .collect()
+}
+
+/// One figure of the fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FitRow {
+    /// What it is.
+    pub name: String,
+    /// With the claim.
+    pub baseline: String,
+    /// With the augmented claim.
+    pub augmented: String,
+    /// Augmented less baseline.
+    pub change: String,
+}
+
+/// The fit before and after.
+pub(super) fn fit(all: &Explanation, words: Words) -> Vec<FitRow> {
+    let (a, b) = (&all.fit.baseline, &all.fit.augmented);
+    let row = |key: &str, of: fn(&FitFigures) -> f64| FitRow {
+        name: words.t(key),
+        baseline: plain(of(a), words),
+        augmented: plain(of(b), words),
+        change: difference(of(b) - of(a), words),
+    };
+    let rms = |v: f64| digits(v, 4, words.lang);
+    let tau = crate::report::number::duration(all.fit.heldout_tau_s, words.lang);
+    vec![
+        row("explain.fit.log_likelihood", |f| f.log_likelihood),
+        row("explain.fit.bic", |f| f.bic),
+        row("explain.fit.heldout_log_likelihood", |f| f.heldout_log_likelihood),
+        FitRow {
+            name: words.with("explain.fit.heldout_rms", &[("tau", &tau)]),
+            baseline: rms(a.heldout_rms_deg_h),
+            augmented: rms(b.heldout_rms_deg_h),
+            change: relative(a.heldout_rms_deg_h, b.heldout_rms_deg_h, words),
+        },
+        FitRow {
+            name: words.t("explain.fit.family_p"),
+            baseline: chance(all.family_p_value, words),
+            augmented: chance(all.family_p_value_after, words),
+            change: String::new(),
+        },
+    ]
+}
+
+/// The change of a size in percent of what it was.
+fn relative(before: f64, after: f64, words: Words) -> String {
+    let change = 100.0 * (after / before - 1.0);
+    if change.is_finite() { format!("{}\u{202f}%", difference(change, words)) } else { String::new() }
+}
+
+/// Change of log-likelihood that is worth calling one.
+const NOTICEABLE: f64 = 0.5;
+
+/// What the fit says.
+pub(super) fn fit_says(all: &Explanation, words: Words) -> String {
+    if all.effects.iter().all(|f| f.kind == "unknown") {
+        return words.t("explain.fit.unchanged");
+    }
+    let gain = all.fit.augmented.heldout_log_likelihood - all.fit.baseline.heldout_log_likelihood;
+    let shown = difference(gain, words);
+    if !gain.is_finite() {
+        String::new()
+    } else if gain.abs() < NOTICEABLE {
+        words.with("explain.fit.heldout_same", &[("gain", &shown)])
+    } else if gain > 0.0 {
+        words.with("explain.fit.heldout_gains", &[("gain", &shown)])
+    } else {
+        words.with("explain.fit.heldout_does_not", &[("gain", &shown)])
+    }
+}

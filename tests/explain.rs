@@ -1,0 +1,161 @@
+//! The verb `explain`, as a user runs it.
+
+mod support;
+
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::Path;
+use support::synthetic::white;
+use support::{root, sagnac, shipped};
+use tempfile::tempdir;
+
+/// N of the recordings, deg/√h; at 1 Hz a sample has 60·N.
+const N: f64 = 0.01;
+/// Where the step is, s.
+const AT: usize = 1700;
+
+const MODEL: &str = "[recording]\ncase = \"t\"\nsample_rate_hz = 1\n\
+    [noise]\nN_deg_rt_h = 0.01\n[bias]\nvalue_deg_h = 5.0\n[uncertainty]\nN_rel = 0.02\nbias_deg_h = 0.1\n";
+
+/// A recording of white noise with a step, and its model, in a folder.
+fn case(folder: &Path, name: &str, seed: u64, step: f64) {
+    let mut text = String::from("time_s,rate_deg_h,temp_degC\n");
+    for i in 0..4000usize {
+        let rate = 5.0 + 60.0 * N * white(seed, i as u64) + if i >= AT { step } else { 0.0 };
+        let temperature = 20.0 + (i as f64 / 900.0).sin() + 0.01 * white(seed + 1, i as u64);
+        let _ = writeln!(text, "{i},{rate:.6},{temperature:.4}");
+    }
+    std::fs::write(folder.join(name), text).unwrap();
+    std::fs::write(folder.join("model.toml"), MODEL).unwrap();
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_step_is_found_and_the_loop_closes() {
+    let dir = tempdir().unwrap();
+    case(dir.path(), "r.csv", 11, 0.2);
+    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
+    assert!(said.out.starts_with("MISMATCH EXPLAINED\n") && said.out.contains("bias step"), "{}", said.out);
+    let e = dir.path().join("e");
+    let files = ["augmented.toml", "correction.csv", "explain.json", "figures", "report.html", "report.md"];
+    assert_eq!(names(&e), files);
+    let all = json(&e.join("explain.json"));
+    assert_eq!((all["format"].as_str(), all["verdict"].as_str()), (Some("explain/1"), Some("mismatch")));
+    let first = &all["effects"][0];
+    assert_eq!(first["kind"], "bias_step");
+    let inside = |name: &str, truth: f64, slack: f64| {
+        let ci = &first["parameters"][name]["ci95"];
+        let (low, high) = (ci[0].as_f64().unwrap() - slack, ci[1].as_f64().unwrap() + slack);
+        assert!(low <= truth && truth <= high, "{name}: {ci}");
+    };
+    // Wider than 95 %, for this is one recording.
+    inside("step_deg_h", 0.2, 0.02);
+    inside("time_s", AT as f64, 20.0);
+    // The correction has a row for each row and jumps by the step.
+    let correction = std::fs::read_to_string(e.join("correction.csv")).unwrap();
+    let rows: Vec<f64> =
+        correction.lines().skip(1).map(|l| l.split_once(',').unwrap().1.parse().unwrap()).collect();
+    assert_eq!(rows.len(), 4000);
+    assert!((rows[3999] - rows[0] - 0.2).abs() < 0.06);
+    let page = std::fs::read_to_string(e.join("report.md")).unwrap();
+    assert!(
+        page.contains("](figures/residual_over_time.svg)")
+            && e.join("figures/residual_over_time.svg").is_file()
+    );
+
+    let again = sagnac(
+        dir.path(),
+        &["explain", "r.csv", "--model", "e/augmented.toml", "--out", "f", "--lang", "ru"],
+    );
+    assert_eq!((again.code, again.err.as_str()), (0, ""), "{again:?}");
+    assert!(again.out.starts_with("СОГЛАСУЕТСЯ\n"), "{}", again.out);
+}
+
+#[test]
+fn a_correct_claim_is_consistent_and_changes_nothing() {
+    let dir = tempdir().unwrap();
+    case(dir.path(), "r.csv", 21, 0.0);
+    let args = ["explain", "r.csv", "--model", "model.toml", "--hide", "temp_degC", "--out", "e"];
+    let said = sagnac(dir.path(), &args);
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+    let e = dir.path().join("e");
+    assert!(!e.join("correction.csv").exists(), "nothing was left out");
+    let all = json(&e.join("explain.json"));
+    assert_eq!(all["fit"]["baseline"], all["fit"]["augmented"]);
+    assert_eq!(all["recording"]["hidden"][0], "temp_degC");
+    assert_eq!(all["recording"]["columns"].as_array().unwrap().len(), 0);
+}
+
+#[test]
+fn a_simulated_recording_stands_for_its_claim() {
+    let dir = tempdir().unwrap();
+    case(dir.path(), "sim.csv", 31, 0.0);
+    case(dir.path(), "same.csv", 41, 0.0);
+    case(dir.path(), "step.csv", 51, 0.2);
+    for (name, code) in [("same.csv", 0), ("step.csv", 1)] {
+        let said = sagnac(dir.path(), &["explain", name, "--simulation", "sim.csv", "--out", "e"]);
+        assert_eq!((said.code, said.err.as_str()), (code, ""), "{name}: {said:?}");
+    }
+    let page = std::fs::read_to_string(dir.path().join("e/report.md")).unwrap();
+    assert!(page.contains("identified from: sim.csv"), "{page}");
+}
+
+#[test]
+fn what_cannot_be_run_says_why() {
+    let dir = tempdir().unwrap();
+    case(dir.path(), "r.csv", 61, 0.0);
+    let mine = dir.path().join("mine");
+    std::fs::create_dir(&mine).unwrap();
+    std::fs::write(mine.join("thesis.txt"), "do not touch").unwrap();
+    let refused = |args: &[&str], why: &str| {
+        let said = sagnac(dir.path(), &[&["explain"], args].concat());
+        assert_eq!(said.code, 2, "{args:?}");
+        assert!(said.err.contains(why), "{args:?}: {}", said.err);
+    };
+    refused(&["r.csv"], "--model");
+    refused(&["r.csv", "--model", "model.toml", "--simulation", "r.csv"], "--simulation");
+    refused(&["none.csv", "--model", "model.toml", "--out", "e"], "none.csv");
+    refused(&["r.csv", "--model", "none.toml", "--out", "e"], "none.toml");
+    refused(&["r.csv", "--model", "model.toml", "--alpha", "0", "--out", "e"], "--alpha");
+    refused(&["r.csv", "--model", "model.toml", "--max-effects", "0", "--out", "e"], "--max-effects");
+    refused(
+        &["r.csv", "--model", "model.toml", "--hide", "temp", "--out", "e"],
+        "temp_degC, table_rate_deg_s",
+    );
+    refused(&["r.csv", "--model", "model.toml", "--out", "mine"], "no explanation folder");
+    let other = MODEL.replace("sample_rate_hz = 1", "sample_rate_hz = 10");
+    std::fs::write(dir.path().join("other.toml"), other).unwrap();
+    refused(&["r.csv", "--model", "other.toml", "--out", "e"], "10");
+    assert!(!dir.path().join("e").exists(), "a run that failed leaves nothing");
+    assert!(mine.join("thesis.txt").is_file());
+}
+
+#[test]
+fn the_guide_names_every_option() {
+    let guide = std::fs::read_to_string(shipped("docs/guide/explain.md")).unwrap();
+    let help = sagnac(root(), &["explain", "--help", "--lang", "en"]).out;
+    let own = help.split("How the recording is read").next().unwrap();
+    let options: Vec<&str> = own
+        .split_whitespace()
+        .filter(|w| w.starts_with("--") && w.len() > 4)
+        .map(|w| w.trim_end_matches([',', ')']))
+        .filter(|w| !["--lang", "--help"].contains(w))
+        .collect();
+    assert!(options.len() >= 9, "{options:?}");
+    for option in options {
+        assert!(guide.contains(option), "{option} is not in the guide");
+    }
+}

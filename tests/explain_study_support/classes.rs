@@ -1,0 +1,65 @@
+//! Kinds that no data of a record can tell apart (section 10.1 of the domain reference), fixed before any result.
+//!
+//! Members of a class count as one name. What an effect outside the catalogue may be called besides `unknown` stands
+//! here as well.
+
+use super::setting::Scenario;
+
+/// When a class holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    Always,
+    /// The gyro keeps one heading.
+    OneHeading,
+    /// Heading is all that varies.
+    Headings,
+}
+
+/// Class of section 10.1, members, when.
+pub const CLASSES: &[(&str, &[&str], When)] = &[
+    ("E1", &["markov_long", "random_telegraph"], When::Always),
+    ("E2", &["temp_rate", "thermal_lag"], When::Always),
+    ("E8", &["heading_change", "bias_step"], When::OneHeading),
+    ("E8", &["earth_rate_projection", "table_harmonic"], When::Headings),
+    ("E9", &["noise_variance_time", "outlier_bursts"], When::Always),
+    ("E10", &["markov_short", "bandwidth_filter"], When::Always),
+];
+
+/// What an effect of no catalogue may be called besides `unknown`: a kind whose definition covers it.
+pub const SUBSTITUTES: &[(&str, &[&str])] = &[
+    ("am_line", &["quasi_periodic"]),
+    ("chirp", &["quasi_periodic"]),
+    ("glitch_train", &[]),
+    ("heavy_tails", &["outlier_bursts"]),
+    ("half_power_noise", &["excess_flicker"]),
+    ("band_modulated_noise", &["quasi_periodic"]),
+    ("temperature_supply_product", &["unobserved_driver"]),
+    ("staircase_drift", &["unobserved_driver"]),
+    ("drifting_sawtooth", &["unobserved_driver"]),
+    ("one_sided_spikes", &["outlier_bursts"]),
+    ("burst_in_band", &[]),
+    ("echo", &[]),
+    ("rectified_walk", &["excess_rrw", "unobserved_driver"]),
+    ("intermittent_line", &["quasi_periodic"]),
+    ("skewed_noise", &[]),
+    ("reversing_line", &["quasi_periodic"]),
+];
+
+/// Kinds that count as `kind` in a scenario, itself among them.
+pub fn same_class(kind: &str, scenario: Scenario) -> Vec<&'static str> {
+    let holds = |when: When| match when {
+        When::Always => true,
+        When::OneHeading => scenario != Scenario::Headings,
+        When::Headings => scenario == Scenario::Headings,
+    };
+    let mut out: Vec<&'static str> = CLASSES
+        .iter()
+        .filter(|(_, members, when)| members.contains(&kind) && holds(*when))
+        .flat_map(|(_, members, _)| members.iter().copied())
+        .filter(|member| *member != kind)
+        .collect();
+    if let Some((_, allowed)) = SUBSTITUTES.iter().find(|(name, _)| *name == kind) {
+        out.extend(*allowed);
+    }
+    out
+}

@@ -1,0 +1,117 @@
+//! The program run on cases, two at a time.
+
+use super::case::{Case, Realisation};
+use super::files;
+use super::oracle::told;
+use super::plan::{Wish, made};
+use super::score::score;
+use super::table::Row;
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Runs `explain` and returns its exit code; nothing is hidden from it and nothing told but claim and recording.
+pub fn explain(program: &str, recording: &Path, model: &Path, out: &Path, more: &[&str]) -> Option<i32> {
+    let mut command = Command::new(program);
+    command.arg("explain").arg(recording).arg("--model").arg(model).arg("--out").arg(out).args(more);
+    command.stdout(Stdio::null()).stderr(Stdio::null()).status().ok()?.code()
+}
+
+/// `explain.json` of a folder.
+pub fn report(folder: &Path) -> Value {
+    let text = std::fs::read_to_string(folder.join("explain.json")).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or(Value::Null)
+}
+
+/// Columns one and two of a table with a heading.
+pub fn columns(path: &Path) -> Option<(Vec<f64>, Vec<f64>)> {
+    let text = std::fs::read_to_string(path).ok()?;
+    let pair = |line: &str| {
+        let (t, y) = line.split_once(',')?;
+        Some((t.trim().parse().ok()?, y.trim().parse().ok()?))
+    };
+    let rows: Vec<(f64, f64)> = text.lines().skip(1).filter_map(pair).collect();
+    (!rows.is_empty()).then(|| rows.into_iter().unzip())
+}
+
+fn consistent(program: &str, folder: &Path, recording: &Path, tag: &str) -> bool {
+    let out = folder.join(tag);
+    let code = explain(program, recording, &folder.join("out/augmented.toml"), &out, &[]);
+    code == Some(0) && report(&out)["verdict"] == "consistent"
+}
+
+/// The recording against the augmented claim; a fresh day with the same effects; a day without them.
+fn closed_loop(program: &str, case: &Case, folder: &Path) -> [bool; 3] {
+    let fresh_seed = case.seed.wrapping_add(0x5eed);
+    let write = |case: &Case, name: &str| {
+        let path = folder.join(name);
+        let text = files::recording(case, &case.realise(fresh_seed), fresh_seed);
+        std::fs::write(&path, text).is_ok().then_some(path)
+    };
+    let mut without = case.clone();
+    without.left_out.clear();
+    let again = consistent(program, folder, &folder.join("recording.csv"), "again");
+    let fresh = write(case, "fresh.csv").is_some_and(|p| consistent(program, folder, &p, "fresh"));
+    let bare = write(&without, "without.csv").is_some_and(|p| !consistent(program, folder, &p, "without"));
+    [again, fresh, bare]
+}
+
+fn set_against_the_told(row: &mut Row, case: &Case, made: &Realisation) {
+    let told = told(case, made);
+    for c in &row.score.covered {
+        if let Some((_, width)) = told.widths.iter().find(|(name, w)| *name == c.name && *w > 0.0) {
+            row.width_ratios.push(c.width / width);
+        }
+    }
+    row.removed_ratio = row.score.removed.zip(told.removed).filter(|(_, t)| *t > 0.2).map(|(r, t)| r / t);
+}
+
+/// One case from its making to its score.
+pub fn one(program: &str, case: &Case, folder: &Path, close: bool, more: &[&str]) -> std::io::Result<Row> {
+    let truth = files::write(case, folder, case.seed)?;
+    let out = folder.join("out");
+    let exit = explain(program, &folder.join("recording.csv"), &folder.join("model.toml"), &out, more);
+    let report = report(&out);
+    let correction = columns(&out.join("correction.csv"));
+    let made = case.realise(case.seed);
+    let contribution = files::contribution(case, &made);
+    let score = score(&truth, &report, correction.as_ref(), contribution.as_ref());
+    let mut row = Row { name: case.name.clone(), score, exit, ..Row::default() };
+    set_against_the_told(&mut row, case, &made);
+    if close && row.score.detected && out.join("augmented.toml").exists() {
+        row.closes = Some(closed_loop(program, case, folder));
+    }
+    Ok(row)
+}
+
+/// All wishes, so many cases each, on two threads; folders are removed when they were scored unless they shall be kept.
+pub fn all(
+    program: &str,
+    wishes: &[Wish],
+    seeds: std::ops::Range<u64>,
+    strength: (f64, f64),
+    close: bool,
+    keep: Option<&Path>,
+) -> Vec<Row> {
+    let jobs: Vec<(&Wish, u64)> = wishes.iter().flat_map(|w| seeds.clone().map(move |s| (w, s))).collect();
+    let next = AtomicUsize::new(0);
+    let rows = Mutex::new(Vec::new());
+    let work = || {
+        while let Some((wish, seed)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let case = made(wish, *seed, strength);
+            let room = tempfile::tempdir().expect("a temporary folder");
+            let folder = keep.unwrap_or(room.path()).join(&case.name);
+            let row = one(program, &case, &folder, close, &[]).expect("files can be written");
+            rows.lock().expect("no thread panics holding it").push(row);
+        }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(work);
+        scope.spawn(work);
+    });
+    let mut rows = rows.into_inner().expect("no thread panics holding it");
+    rows.sort_by(|a: &Row, b| a.name.cmp(&b.name));
+    rows
+}
