@@ -110,6 +110,7 @@ fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang)
         read: args.read.options(),
         rate: args.rate.clone(),
         unit: args.unit.clone(),
+        any_rate: false,
         sample_rate_hz: args.sample_rate,
     };
     let series = load_series(paths, &options, &mut |done, total| {
