@@ -1,7 +1,7 @@
 //! Jumps back and forth between two levels.
 //!
 //! A two-level path is sought in averages of several lengths and judged by generalised least squares under the noise of
-//! the hypothesis, less what it takes to write the path down. A process with the same spectrum gains by its spectrum
+//! the hypothesis, less what it takes to write the path down and with what other paths hold. A process with the same spectrum gains by its spectrum
 //! alone; only what the path gains beyond that tells two levels from it.
 
 use super::two_level::Chain;
@@ -9,7 +9,7 @@ use crate::effect::{EFFECTS, Model, SpectralLook, SpectrumAct, averages};
 use crate::mismatch::candidates::Tried;
 use crate::mismatch::departures::White;
 use crate::mismatch::hypothesis::{Normal, kept, part_modes};
-use crate::mismatch::noise_fit::{self, SpectrumIn};
+use crate::mismatch::noise_fit::{self, Noise, SpectrumIn};
 use crate::mismatch::problem::Problem;
 use crate::numeric::cosine::{dct2, inverse_dct2};
 
@@ -57,6 +57,8 @@ pub struct Telegraph {
 struct Ground<'a> {
     problem: &'a Problem,
     tried: &'a Tried,
+    /// The noise of the hypothesis as it is beside a process with the spectrum of a telegraph signal.
+    noise: Noise,
     residual: Vec<f64>,
     inverse: Vec<f64>,
     columns: Vec<(Vec<f64>, f64)>,
@@ -78,7 +80,7 @@ struct Judged {
 }
 
 impl<'a> Ground<'a> {
-    fn new(problem: &'a Problem, tried: &'a Tried) -> Ground<'a> {
+    fn new(problem: &'a Problem, tried: &'a Tried, noise: Noise) -> Ground<'a> {
         let scene = &problem.scenes.full;
         let courses = &tried.hypothesis.courses;
         let mut columns: Vec<(Vec<f64>, f64)> =
@@ -86,13 +88,14 @@ impl<'a> Ground<'a> {
         for part in part_modes(scene, courses) {
             columns.extend(part.free.into_iter().chain(part.beside).map(|c| (c, f64::INFINITY)));
         }
-        let powers = &tried.fit.powers;
+        let powers = scene.powers(&noise.densities(scene));
         let mut high: Vec<f64> = powers[powers.len() / 2..].to_vec();
         let white = super::median(&mut high);
         let slow = powers.iter().map(|p| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 });
         Ground {
             problem,
             tried,
+            noise,
             residual: inverse_dct2(&tried.fit.mean.residual),
             inverse: powers.iter().map(|p| 1.0 / p).collect(),
             columns,
@@ -115,11 +118,19 @@ impl<'a> Ground<'a> {
         let data = &self.tried.fit.mean.residual;
         let old: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, d)| (c.as_slice(), *d)).collect();
         let before = Normal::new(&old, data, &self.inverse);
-        let left = before.solve().2;
-        let (c, covariance, after) = before.with(&old, &[&modes], data, false, &self.inverse).solve();
+        let (c, covariance, _) = before.with(&old, &[&modes], data, false, &self.inverse).solve();
         let at = old.len();
+        let mut rest = data.clone();
+        let columns = old.iter().map(|o| o.0).chain([modes.as_slice()]);
+        for (column, x) in columns.zip(&c) {
+            rest.iter_mut().zip(column).for_each(|(r, z)| *r -= x * z);
+        }
+        let scene = &self.problem.scenes.full;
+        let mut noise = self.noise.clone();
+        let fit = noise_fit::fit(&mut noise, scene, &scene.observed(&rest));
         let variance = if covariance.nrows() > at { covariance[(at, at)] } else { 0.0 };
-        (c.get(at).copied().unwrap_or(0.0), variance.max(0.0).sqrt(), 0.5 * (left - after))
+        let gain = fit.log_likelihood - self.tried.fit.noise.log_likelihood;
+        (c.get(at).copied().unwrap_or(0.0), variance.max(0.0).sqrt(), gain)
     }
 
     /// What is slower than any dwell that averages of `m` are looked at for.
@@ -182,11 +193,11 @@ impl<'a> Ground<'a> {
 pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
     let n = problem.residual.len();
     // Its spectrum is that of a Markov process: without a gain by one there is nothing to look for.
-    let markov = rival(problem, tried, &["markov_long", "markov_short"]);
+    let (markov, noise) = rival(problem, tried, &["markov_long", "markov_short"])?;
     if markov < LEAST_GAIN {
         return None;
     }
-    let ground = Ground::new(problem, tried);
+    let ground = Ground::new(problem, tried, noise);
     let finest = n.div_ceil(MOST).max(1);
     let mut m = finest;
     while n / (4 * m) >= LEAST {
@@ -207,7 +218,10 @@ pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
     }
     let best = best.filter(|b| b.gain > 0.0)?;
     let others: Vec<&str> = EFFECTS.iter().map(|e| e.kind()).filter(|k| !k.starts_with("markov")).collect();
-    let rival_gain = markov.max(rival(problem, tried, &others)).max(freed(problem, tried)).max(line(tried));
+    let rival_gain = markov
+        .max(rival(problem, tried, &others).map_or(0.0, |r| r.0))
+        .max(freed(problem, tried))
+        .max(line(tried));
     // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
     // fitted, ½ ln M nats.
     let log_p = lengths.ln() + 1.5 * ((n / best.averaged) as f64).ln() - best.gain;
@@ -229,9 +243,11 @@ impl Ground<'_> {
         // The path is uncertain for a known background, and the background for a known path.
         let in_white = self.white / (n as f64 * share * (1.0 - share)).max(1.0);
         let spread = on_chain.powi(2) + (best.deviation.powi(2) - in_white).max(0.0);
-        let half = 1.959_964 * spread.sqrt();
+        // A sample in which a jump falls lies between the levels: of dwells of few samples, part is unseen.
+        let jumping = 1.0 / best.chain.dwell();
+        let half = 1.959_964 * (spread + (0.25 * size * jumping).powi(2)).sqrt();
         let mean_dwell_s = best.chain.dwell() * step;
-        let factor = (1.959_964 * log_dwell).exp();
+        let factor = (1.959_964 * log_dwell.hypot(0.7 * jumping)).exp();
         Telegraph {
             path: best.path.iter().map(|p| f64::from(u8::from(*p)) - share).collect(),
             amplitude_deg_h: size,
@@ -265,8 +281,8 @@ fn starts(values: &[f64], white: f64) -> Vec<Chain> {
     out
 }
 
-/// Gain of the best spectral effect of some kinds.
-fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> f64 {
+/// Gain of the best spectral effect of some kinds, and the noise beside it.
+fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, Noise)> {
     let scene = &problem.scenes.full;
     let observed = scene.observed(&tried.fit.mean.residual);
     let before = tried.fit.noise.log_likelihood;
@@ -276,7 +292,7 @@ fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> f64 {
         expected: &tried.fit.densities,
         lattice_arcsec: problem.scenes.lattice_arcsec,
     };
-    let mut best = 0.0f64;
+    let mut best: Option<(f64, Noise)> = None;
     for effect in EFFECTS.iter().filter(|e| kinds.contains(&e.kind())) {
         let Model::Spectrum(spectrum) = effect.model() else { continue };
         if spectrum.act() != SpectrumAct::Adds {
@@ -287,7 +303,11 @@ fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> f64 {
             let mut noise = tried.hypothesis.noise.clone();
             let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
             noise.spectra.push(SpectrumIn { effect: *effect, fitted, stated: false });
-            best = best.max(noise_fit::fit(&mut noise, scene, &observed).log_likelihood - before);
+            let gain = noise_fit::fit(&mut noise, scene, &observed).log_likelihood - before;
+            if best.as_ref().is_none_or(|b| gain > b.0) {
+                noise.spectra.pop();
+                best = Some((gain, noise));
+            }
         }
     }
     best
