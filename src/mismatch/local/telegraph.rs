@@ -265,6 +265,9 @@ impl Ground<'_> {
 
 /// Levels at the quarters and at the tenths of the values, with long and short dwells.
 fn starts(values: &[f64], white: f64) -> Vec<Chain> {
+    if values.is_empty() {
+        return vec![];
+    }
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share) as usize];
