@@ -4,6 +4,7 @@ use super::composite::{Composite, Described, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, toggled};
+use super::identifiable::IDENTIFIABLE;
 use super::misfit::Misfit;
 use super::model::{NoiseModel, TERMS, unit_allan_variance};
 use super::profile::{Profile, wider};
@@ -279,20 +280,28 @@ impl Whittle {
         let Some(likelihood) = Likelihood::new(evidence) else { return out };
         let Some(search) = Search::run(&likelihood, &self.slow) else { return out };
         out.likelihood_ratios = search.ratios;
-        let claimed: Structure = [
+        let fit = |structure: &Structure| likelihood.maximise(structure, None, None);
+        let mut claimed: Structure = [
             search.ratios[WHITE] > self.white,
             holds(search.slow.set, FLICKER),
             holds(search.slow.set, WALK),
             search.ratios[QUANTIZATION] > self.quantization,
             holds(search.slow.set, RAMP),
         ];
+        if let Some(best) = fit(&search.supported(&claimed)) {
+            let model = best.model();
+            let bound = likelihood.covariance_bound(&model, &search.supported(&claimed));
+            for term in [FLICKER, WALK] {
+                let relative = bound[term][term].sqrt() / model.coefficient(TERMS[term]);
+                claimed[term] &= is_told(search.preference[term], relative);
+            }
+        }
         let supported = search.supported(&claimed);
         let needed = (0..5).any(|i| supported[i] && !claimed[i]);
         out.claimed = TERMS.into_iter().zip(claimed).filter(|(_, c)| *c).map(|(t, _)| t).collect();
         out.ambiguous = needed;
         out.full = search.full.model();
         out.allowed = out.full.into();
-        let fit = |structure: &Structure| likelihood.maximise(structure, None, None);
         out.model = fit(&claimed).map_or_else(NoiseModel::default, |p| p.model());
         let Some(best) = fit(&supported) else { return out };
         out.supported = best.model();
@@ -373,6 +382,12 @@ fn estimate(
         return estimate.note(low_frequency_note());
     }
     estimate
+}
+
+/// True when a slow term that was chosen may be claimed. A rival nearly as good matters little while the term is known
+/// well; one that is hardly identifiable is claimed only where it is clearly preferred.
+pub(super) fn is_told(preference: f64, relative_sigma: f64) -> bool {
+    preference >= NEARLY || relative_sigma <= IDENTIFIABLE
 }
 
 /// Says so where another slow term in place of this one describes the record nearly as well.

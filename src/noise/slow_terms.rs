@@ -33,14 +33,14 @@ pub struct SlowPrices {
 impl Default for SlowPrices {
     fn default() -> Self {
         let mut set = [0.0; SETS];
-        set[B] = 4.6;
-        set[K] = 4.1;
+        set[B] = 4.2;
+        set[K] = 4.6;
         set[R] = 6.0;
         set[B | K] = 9.2;
         set[B | R] = 13.5;
         set[K | R] = 11.2;
         set[B | K | R] = 18.5;
-        SlowPrices { set, markov: 10.6, markov_and_ramp: 23.0 }
+        SlowPrices { set, markov: 11.8, markov_and_ramp: 23.0 }
     }
 }
 

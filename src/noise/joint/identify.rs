@@ -13,7 +13,8 @@ use crate::noise::evidence::Evidence;
 use crate::noise::fit::RAMP;
 use crate::noise::identify::{
     IDS, Identification, Identify, LIMIT_COVERAGE, LIMIT_RISE, METHOD, MarkovFound, PRICE,
-    QuasiPeriodicFound, RIVALRY, SUSPICION, Whittle, low_frequency_note, rival_of, suspects, with_rivals,
+    QuasiPeriodicFound, RIVALRY, SUSPICION, Whittle, is_told, low_frequency_note, rival_of, suspects,
+    with_rivals,
 };
 use crate::noise::misfit::Misfit;
 use crate::noise::model::TERMS;
@@ -150,7 +151,7 @@ impl Found {
             drop_base(3),
             (all - slow.deviance[B | K | R]).max(0.0),
         ];
-        let claimed = [
+        let mut claimed = [
             ratios[0] > method.base.white,
             holds(slow.choice.set, 1),
             holds(slow.choice.set, 2),
@@ -158,6 +159,14 @@ impl Found {
             ramp,
         ];
         let needless = needless(joint, shape, &full, &slow, method);
+        let (point, free) = supported(joint, shape, &full, &claimed, ramp);
+        let (variables, covariance) = parameter_covariance(joint, &point, &free);
+        for (term, claimed) in claimed.iter_mut().enumerate().take(3).skip(1) {
+            let at = variables.iter().position(|v| *v == Variable::Variance(term));
+            let sigma = at.map_or(f64::INFINITY, |i| covariance[i][i].max(0.0).sqrt());
+            let relative = sigma / point.reported(Variable::Variance(term));
+            *claimed &= is_told(slow.preference[term], relative);
+        }
         let (supported, free) = supported(joint, shape, &full, &claimed, ramp);
         Some(Found { full, slow, ratios, claimed, supported, free, needless })
     }

@@ -9,7 +9,7 @@ use crate::text::Note;
 /// Fall of the deviance that fitting the correlation time brings over the grid of octaves at most.
 const REFINING: f64 = 5.0;
 /// Excess below which a Markov process counts as describing the record about as well: its price above that of flicker.
-const NEAR: f64 = 6.0;
+const NEAR: f64 = 7.6;
 /// Shortest correlation time of a process that can stand for flicker or random walk, sample intervals.
 const SHORTEST: f64 = 4.0;
 
