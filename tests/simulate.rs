@@ -128,7 +128,7 @@ fn what_cannot_be_made_is_refused_and_leaves_nothing() {
             &["simulate", &model, "--out", "a.csv", "--like", "own.csv", "--duration", "1h"],
             "exclude each other",
         ),
-        (&["simulate", &model, "--out", "a.csv", "--seed", "-1"], "--seed"),
+        (&["simulate", &model, "--out", "a.csv", "--seed=-1"], "--seed"),
     ] {
         let found = sagnac(dir.path(), arguments);
         assert_eq!(found.code, 2, "{arguments:?}: {found:?}");

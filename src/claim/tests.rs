@@ -92,9 +92,9 @@ fn what_is_written_reads_back_to_the_bit() {
     for pair in draws.chunks_exact(2) {
         let mut claim = first.clone();
         let scale = 10f64.powi((pair[1] as i32) % 9);
-        claim.noise.n = (pair[0] * scale).abs();
+        claim.noise.n = (pair[0] * scale).abs().min(1e6);
         claim.mean.bias_deg_h = pair[0] * scale;
-        claim.uncertainty.n_rel = (pair[0] / scale).abs();
+        claim.uncertainty.n_rel = (pair[0] / scale).abs().min(1e6);
         claim.effects[0]
             .values
             .insert("step_deg_h".into(), Value::Number((pair[0] / scale).clamp(-1e6, 1e6)));
