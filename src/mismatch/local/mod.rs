@@ -7,6 +7,7 @@ pub mod bursts;
 mod gamma;
 pub mod level;
 mod rate_law;
+mod rivals;
 pub mod telegraph;
 mod time_level;
 mod two_level;

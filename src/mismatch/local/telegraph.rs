@@ -4,12 +4,12 @@
 //! the hypothesis, less what it takes to write the path down and with what other paths hold. A process with the same spectrum gains by its spectrum
 //! alone; only what the path gains beyond that tells two levels from it.
 
+use super::rivals::{freed, line, rival};
 use super::two_level::Chain;
-use crate::effect::{EFFECTS, Model, SpectralLook, SpectrumAct, averages};
+use crate::effect::{EFFECTS, averages};
 use crate::mismatch::candidates::Tried;
-use crate::mismatch::departures::White;
 use crate::mismatch::hypothesis::{Normal, kept, part_modes};
-use crate::mismatch::noise_fit::{self, Noise, SpectrumIn};
+use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::problem::Problem;
 use crate::numeric::cosine::{dct2, inverse_dct2};
 
@@ -25,6 +25,8 @@ const FIRST_TURNS: usize = 5;
 const TURNS: usize = 15;
 /// Turns of path and background.
 const ROUNDS: usize = 3;
+/// Turns of background and levels at the end.
+const SETTLING: usize = 8;
 /// Averages in the shortest period of a drift.
 const SLOWEST: usize = 64;
 
@@ -231,14 +233,30 @@ pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
 
 impl Ground<'_> {
     /// Size and dwell of the best path with their intervals.
-    fn told(&self, best: Judged, rival_gain: f64, p_value: f64) -> Telegraph {
+    fn told(&self, mut best: Judged, rival_gain: f64, p_value: f64) -> Telegraph {
         let n = self.residual.len();
-        let values = self.values(&best.background, best.averaged);
+        let mut values = self.values(&best.background, best.averaged);
+        // Background and levels in turns, each given the other, from the levels for a known path.
+        let coloured = self.slow.iter().any(|s| *s >= 0.02);
+        let (known, _, _) = self.amplitude(&best.path);
+        let mut size = known.abs();
+        for _ in 0..if coloured { SETTLING } else { 0 } {
+            let short = best.chain.posterior(&values);
+            let last = short.len().saturating_sub(1);
+            let up = best.chain.levels[1] > best.chain.levels[0];
+            let sign = if up { 1.0 } else { -1.0 };
+            let at = |i: usize| short.get((i / best.averaged).min(last)).copied().unwrap_or(0.0);
+            let course: Vec<f64> = (0..n).map(|i| sign * size * at(i)).collect();
+            values = self.values(&self.background(&course), best.averaged);
+            best.chain = (0..TURNS)
+                .fold(best.chain, |c, _| c.improved(&values, 0.5 * self.white / best.averaged as f64));
+            size = (best.chain.levels[1] - best.chain.levels[0]).abs();
+        }
         let step = best.averaged as f64 * self.problem.drivers.dt_s;
         let jumps = best.path.windows(2).filter(|w| w[0] != w[1]).count();
         let up = best.path.iter().filter(|p| **p).count() as f64;
         let share = up / n as f64;
-        let size = (best.chain.levels[1] - best.chain.levels[0]).abs();
+        size = (best.chain.levels[1] - best.chain.levels[0]).abs();
         let (on_chain, log_dwell) = best.chain.deviations(&values).unwrap_or((best.deviation, 1.0));
         // The path is uncertain for a known background, and the background for a known path.
         let in_white = self.white / (n as f64 * share * (1.0 - share)).max(1.0);
@@ -282,61 +300,4 @@ fn starts(values: &[f64], white: f64) -> Vec<Chain> {
         }
     }
     out
-}
-
-/// Gain of the best spectral effect of some kinds, and the noise beside it.
-fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, Noise)> {
-    let scene = &problem.scenes.full;
-    let observed = scene.observed(&tried.fit.mean.residual);
-    let before = tried.fit.noise.log_likelihood;
-    let look = SpectralLook {
-        bins: &scene.bins,
-        observed: &observed,
-        expected: &tried.fit.densities,
-        lattice_arcsec: problem.scenes.lattice_arcsec,
-    };
-    let mut best: Option<(f64, Noise)> = None;
-    for effect in EFFECTS.iter().filter(|e| kinds.contains(&e.kind())) {
-        let Model::Spectrum(spectrum) = effect.model() else { continue };
-        if spectrum.act() != SpectrumAct::Adds {
-            continue;
-        }
-        let bounds = spectrum.bounds(&look);
-        for start in spectrum.starts(&look) {
-            let mut noise = tried.hypothesis.noise.clone();
-            let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
-            noise.spectra.push(SpectrumIn { effect: *effect, fitted, stated: false });
-            let gain = noise_fit::fit(&mut noise, scene, &observed).log_likelihood - before;
-            if best.as_ref().is_none_or(|b| gain > b.0) {
-                noise.spectra.pop();
-                best = Some((gain, noise));
-            }
-        }
-    }
-    best
-}
-
-/// Gain of flicker or random walk set free.
-fn freed(problem: &Problem, tried: &Tried) -> f64 {
-    let scene = &problem.scenes.full;
-    let observed = scene.observed(&tried.fit.mean.residual);
-    let mut best = 0.0f64;
-    for i in 1..3 {
-        for level in [1.0, 6.0, 33.0, 200.0] {
-            let mut noise = tried.hypothesis.noise.clone();
-            let beside = (noise.base[0] * 0.01).max(1e-9);
-            noise.base[i] = noise.base[i].max(beside) * level;
-            noise.freed[i] = true;
-            let fitted = noise_fit::fit(&mut noise, scene, &observed).log_likelihood;
-            best = best.max(fitted - tried.fit.noise.log_likelihood);
-        }
-    }
-    best
-}
-
-/// Gain of the best line: half the power of the whitened residual in a pair of neighbouring modes, which hold nearly
-/// all of a line.
-fn line(tried: &Tried) -> f64 {
-    let white = White::of(&tried.fit);
-    white.modes.windows(4).map(|w| 0.5 * w.iter().map(|u| u * u).sum::<f64>()).fold(0.0, f64::max)
 }

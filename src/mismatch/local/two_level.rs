@@ -27,11 +27,10 @@ impl Chain {
         d.map(|x| (x - top).exp().max(1e-300))
     }
 
-    /// One turn of Baum-Welch. The variance stays at or above `floor`.
-    pub fn improved(&self, values: &[f64], floor: f64) -> Chain {
-        let n = values.len();
+    /// Probability of each level at each value, given the values up to it.
+    fn forward(&self, values: &[f64]) -> Vec<[f64; 2]> {
         let stay = [1.0 - self.change[0], 1.0 - self.change[1]];
-        let mut forward: Vec<[f64; 2]> = Vec::with_capacity(n);
+        let mut forward: Vec<[f64; 2]> = Vec::with_capacity(values.len());
         let mut last = self.standing();
         for (i, y) in values.iter().enumerate() {
             let w = self.weights(*y);
@@ -45,6 +44,33 @@ impl Chain {
             last = [a[0] / sum, a[1] / sum];
             forward.push(last);
         }
+        forward
+    }
+
+    /// Probability of the upper level at each value, given all.
+    pub fn posterior(&self, values: &[f64]) -> Vec<f64> {
+        let forward = self.forward(values);
+        let mut out = vec![0.0; values.len()];
+        let mut back = [1.0, 1.0];
+        for i in (0..values.len()).rev() {
+            let p = [forward[i][0] * back[0], forward[i][1] * back[1]];
+            out[i] = p[1] / (p[0] + p[1]).max(1e-300);
+            let w = self.weights(values[i]);
+            let next = [
+                (1.0 - self.change[0]) * w[0] * back[0] + self.change[0] * w[1] * back[1],
+                self.change[1] * w[0] * back[0] + (1.0 - self.change[1]) * w[1] * back[1],
+            ];
+            let scale = next[0].max(next[1]).max(1e-300);
+            back = [next[0] / scale, next[1] / scale];
+        }
+        out
+    }
+
+    /// One turn of Baum-Welch. The variance stays at or above `floor`.
+    pub fn improved(&self, values: &[f64], floor: f64) -> Chain {
+        let n = values.len();
+        let stay = [1.0 - self.change[0], 1.0 - self.change[1]];
+        let forward = self.forward(values);
         let mut back = [1.0, 1.0];
         let (mut mass, mut sum, mut square) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         let (mut changes, mut left) = ([0.0; 2], [0.0; 2]);
