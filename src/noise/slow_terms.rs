@@ -80,12 +80,14 @@ impl SlowPrices {
         self.choose_among(deviance, |set| !holds(set, term)).map_or(f64::INFINITY, |c| c.cost - choice.cost)
     }
 
-    /// 2 Δ ln L that a slow term needs against the best model without it, its rival in its place; `None` for others.
+    /// 2 Δ ln L that a slow term that is hardly identifiable needs against the best model without it, its rival in its
+    /// place; `None` for other terms.
     pub fn against_rival(&self, term: NoiseType) -> Option<f64> {
+        let between = self.set[B] - self.set[K];
         Some(match term {
-            NoiseType::Flicker => (self.set[B] - self.set[K]).max(0.0),
-            NoiseType::RateRandomWalk => (self.set[K] - self.set[B]).max(0.0),
-            NoiseType::RateRamp => self.set[R] - self.set[K].min(self.set[B]),
+            NoiseType::Flicker => (NEARLY + between).max(0.0),
+            NoiseType::RateRandomWalk => (NEARLY - between).max(0.0),
+            NoiseType::RateRamp => self.set[R],
             _ => return None,
         })
     }

@@ -54,6 +54,10 @@ pub(super) const MOST: usize = 4;
 const PER_OCTAVE: f64 = 1.5;
 /// Longest correlation time that is told from random walk: this share of the record.
 pub(super) const LONGEST: f64 = 0.125;
+/// Highest frequency in units of the sample rate below which a range was cut.
+const WHOLE_RANGE: f64 = 0.4;
+/// Corners of processes lie at least this factor below the edge of a range that was cut.
+const EDGE: f64 = 4.0;
 /// Steps of a fit that screens a grid, and of one that counts.
 const SCREEN: usize = 3;
 const FULL: usize = 40;
@@ -219,12 +223,19 @@ fn markovs(
     }
     let point = refined(joint, &best, ramp);
     let time_s = point.shape.damped.last()?.1.decay_time_s;
-    if time_s > LONGEST * evidence.span_s {
+    if time_s > LONGEST * evidence.span_s || bends_at_the_edge(evidence, time_s) {
         return None;
     }
     let reached = with_priced_quantization(joint, &point, ramp, thresholds.quantization);
     let excess = current.deviance - reached - thresholds.markov;
     Some(Candidate { point, zones: found.zones.clone(), excess })
+}
+
+/// What bends the spectrum at the upper edge of a range that was cut is the beginning of what was cut off, and no process.
+fn bends_at_the_edge(evidence: &Evidence, time_s: f64) -> bool {
+    let highest_hz = evidence.bands.iter().map(|b| b.high_hz).fold(0.0, f64::max);
+    let cut = highest_hz * evidence.tau0_s < WHOLE_RANGE;
+    cut && EDGE / (2.0 * PI * time_s) > highest_hz
 }
 
 fn periodics(
