@@ -3,6 +3,7 @@
 use super::candidates::{Candidate as Fitted, Tried};
 use super::coarse;
 use super::departures::{self, Departure};
+use super::draw::{self, Drawn};
 use super::estimates;
 use super::finding::{
     Candidate, Explanation, Finding, Fit, FitFigures, NuisanceValue, ParameterValue, PlaceRecord,
@@ -209,11 +210,22 @@ fn assemble(
 ) -> Outcome {
     let scenes = &problem.scenes;
     let local_gain = found.local_gain();
+    // What was observed, with everything that was taken out of it since.
+    let mut observed = problem.residual.clone();
+    if let Some(taken) = &found.taken {
+        observed.iter_mut().zip(taken).for_each(|(o, t)| *o += t);
+    }
     for chosen in &selection.chosen {
         found.named.push(named(chosen, &selection.best, problem));
     }
     found.named.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     let something = !found.named.is_empty();
+    let mut principal: Vec<Place> = found.named.first().map(|n| n.places.clone()).unwrap_or_default();
+    if principal.is_empty() {
+        principal.extend(
+            after.iter().filter(|d| d.p_value * (after.len() as f64) < 1e-3).map(|d| d.place).take(1),
+        );
+    }
     let mut findings: Vec<Finding> = found.named.iter().map(finding).collect();
     findings.extend(unknown(after, !something, options.alpha));
     findings.extend(dropped(problem));
@@ -260,11 +272,22 @@ fn assemble(
         recording: facts(problem, series, options),
         experiments: vec![],
     };
+    let figures = draw::all(
+        problem,
+        &Drawn {
+            before: &observed,
+            base,
+            best: &selection.best,
+            correction: correction.as_deref(),
+            added: something,
+            places: &principal,
+        },
+    );
     let correction = correction.map(|c| {
         let on_rows = c.iter().zip(&problem.regular.present).enumerate().filter(|(_, (_, p))| **p);
         on_rows.map(|(i, (v, _))| (problem.drivers.time_s(i), *v)).collect()
     });
-    Outcome { explanation, correction, augmented, figures: vec![] }
+    Outcome { explanation, correction, augmented, figures }
 }
 
 /// A chosen effect with its parameters and places.

@@ -4,6 +4,7 @@ pub mod candidates;
 pub mod coarse;
 pub mod columns;
 pub mod departures;
+pub mod draw;
 pub mod drawing;
 pub mod driver;
 pub mod engine;
