@@ -271,7 +271,8 @@ impl Pair {
 
     /// The value above which the claiming fluctuation must lie.
     fn claim_needs(&self) -> Option<f64> {
-        let threshold = Whittle::default().threshold(*TERMS.get(self.here.term)?).sqrt();
+        let relative = self.here.relative_sigma(&self.here.structure);
+        let threshold = Whittle::default().threshold(*TERMS.get(self.here.term)?, relative).sqrt();
         Some(self.scatter(Case::claim_score)?.needs(threshold))
     }
 }

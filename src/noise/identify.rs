@@ -51,9 +51,9 @@ impl Whittle {
         Some(Search::run(&Likelihood::new(evidence)?, &self.slow)?.slow)
     }
 
-    /// 2 Δ ln L that a term needs against the best model without it.
-    pub fn threshold(&self, term: NoiseType) -> f64 {
-        self.slow.against_rival(term).unwrap_or(match term {
+    /// 2 Δ ln L that a term of some relative uncertainty needs against the best model without it.
+    pub fn threshold(&self, term: NoiseType, relative_sigma: f64) -> f64 {
+        self.slow.against_rival(term, relative_sigma).unwrap_or(match term {
             NoiseType::Quantization => self.quantization,
             _ => self.white,
         })
