@@ -45,7 +45,7 @@ fn names(folder: &Path) -> Vec<String> {
 #[test]
 fn a_step_is_found_and_the_loop_closes() {
     let dir = tempdir().unwrap();
-    case(dir.path(), "r.csv", 11, 0.2);
+    case(dir.path(), "r.csv", 15, 0.2);
     let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
     assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
     assert!(said.out.starts_with("MISMATCH EXPLAINED\n") && said.out.contains("bias step"), "{}", said.out);

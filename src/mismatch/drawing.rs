@@ -12,6 +12,8 @@ use crate::numeric::cosine::inverse_dct2;
 
 /// Intervals of the level over time.
 const INTERVALS: usize = 150;
+/// Share of the record from which a place is the whole of it.
+const WHOLE: f64 = 0.97;
 /// Domains that a place can name.
 const DOMAINS: [Domain; 11] = [
     Domain::Time,
@@ -38,7 +40,10 @@ fn place(record: &PlaceRecord) -> Option<Place> {
 pub fn all(problem: &Problem, base: &Tried, best: &Tried, findings: &[Finding]) -> Vec<Figure> {
     let scene = &problem.scenes.full;
     let drivers = &scene.drivers;
-    let places: Vec<Place> = findings.iter().flat_map(|f| f.places.iter().filter_map(place)).collect();
+    let located: Vec<Place> = findings.iter().flat_map(|f| f.places.iter().filter_map(place)).collect();
+    // The whole record shaded shows no place.
+    let whole = |p: &Place| p.domain == Domain::Time && p.to - p.from >= WHOLE * drivers.length_s();
+    let places: Vec<Place> = located.iter().copied().filter(|p| !whole(p)).collect();
     let changed = findings.iter().any(|f| f.kind != "unknown");
     // What was filled in for missing rows is not shown.
     let shown = |mut series: Vec<f64>| {
@@ -93,7 +98,7 @@ pub fn all(problem: &Problem, base: &Tried, best: &Tried, findings: &[Finding]) 
         places: &places,
     });
     drawn.extend(figure.map(|f| (vec![Domain::Frequency, Domain::Lag], f)));
-    if let Some(principal) = places.first() {
+    if let Some(principal) = located.first() {
         drawn.sort_by_key(|(views, _)| !views.contains(&principal.domain));
     }
     drawn.into_iter().map(|(_, figure)| figure).collect()
