@@ -121,7 +121,11 @@ fn stated(section: &Section, reader: &mut Reader<'_>) -> Option<Stated> {
         let all = effect.params().iter().chain(effect.list_params());
         let missing: Vec<&str> = all.map(|p| p.name).filter(|n| !values.contains_key(*n)).collect();
         let message = Note::new("model_file.missing").with("kind", effect.kind());
-        let help = Note::new("model_file.help.missing").with("names", missing.join(", "));
+        let help = if missing.is_empty() {
+            Note::new("model_file.help.unfit")
+        } else {
+            Note::new("model_file.help.missing").with("names", missing.join(", "))
+        };
         reader.error(&section.span_of("kind"), message, Some(help));
     }
     Some(Stated { effect, values })

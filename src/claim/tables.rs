@@ -37,26 +37,26 @@ pub static MODEL_FILE: TableSpec = TableSpec {
 
 /// Columns of a recording beside time and rate.
 const COLUMNS: &[Word] = &[
-    ("time_s", "Time of the sample, s."),
-    ("rate_deg_h", "Output of the gyro, deg/h."),
-    ("temp_degC", "Temperature of the housing, degC."),
-    ("table_rate_deg_s", "Rate of the table about the input axis, deg/s."),
-    ("table_angle_deg", "Position of the table, 0 to 360 deg."),
-    ("outer_rate_deg_s", "Rate of the table's other axis, deg/s."),
-    ("supply_v", "Supply voltage, V."),
+    ("time_s", "Time of the sample, s"),
+    ("rate_deg_h", "Output of the gyro, deg/h"),
+    ("temp_degC", "Temperature of the housing, degC"),
+    ("table_rate_deg_s", "Rate of the table about the input axis, deg/s"),
+    ("table_angle_deg", "Position of the table, 0 to 360 deg"),
+    ("outer_rate_deg_s", "Rate of the table's other axis, deg/s"),
+    ("supply_v", "Supply voltage, V"),
 ];
 
 /// Columns that a profile can drive.
 const DRIVEN: &[Word] = &[
-    ("temp_degC", "Temperature of the housing, degC."),
-    ("table_rate_deg_s", "Rate of the table about the input axis, deg/s."),
-    ("table_angle_deg", "Position of the table, deg; written as 0 to 360."),
-    ("outer_rate_deg_s", "Rate of the table's other axis, deg/s."),
-    ("supply_v", "Supply voltage, V."),
+    ("temp_degC", "Temperature of the housing, degC"),
+    ("table_rate_deg_s", "Rate of the table about the input axis, deg/s"),
+    ("table_angle_deg", "Position of the table, deg; written as 0 to 360"),
+    ("outer_rate_deg_s", "Rate of the table's other axis, deg/s"),
+    ("supply_v", "Supply voltage, V"),
 ];
 
 const RATE: Range = Range::above_up_to(0.0, 1e9);
-const COEFFICIENT: Range = Range::between(0.0, 1e12);
+const COEFFICIENT: Range = Range::between(0.0, 1e6);
 const SIGNED: Range = Range::between(-1e12, 1e12);
 
 static RECORDING: TableSpec = TableSpec {

@@ -92,9 +92,9 @@ fn what_is_written_reads_back_to_the_bit() {
     for pair in draws.chunks_exact(2) {
         let mut claim = first.clone();
         let scale = 10f64.powi((pair[1] as i32) % 9);
-        claim.noise.n = (pair[0] * scale).abs();
+        claim.noise.n = (pair[0] * scale).abs().min(1e6);
         claim.mean.bias_deg_h = pair[0] * scale;
-        claim.uncertainty.n_rel = (pair[0] / scale).abs();
+        claim.uncertainty.n_rel = (pair[0] / scale).abs().min(1e6);
         claim.effects[0]
             .values
             .insert("step_deg_h".into(), Value::Number((pair[0] / scale).clamp(-1e6, 1e6)));
@@ -140,7 +140,11 @@ fn every_effect_can_be_stated_with_its_parameters_and_lists() {
         claim.effects.clear();
         let inside = |p: &crate::effect::Param| 0.5f64.clamp(p.lower, p.upper);
         let numbers = effect.params().iter().map(|p| (p.name.to_owned(), Value::Number(inside(p))));
-        let list = |p: &crate::effect::Param| (p.name.to_owned(), Value::List(vec![inside(p); 20]));
+        // Times must rise; twenty values in a small part of the bounds do.
+        let rising = |p: &crate::effect::Param| {
+            (0..20).map(|i| (0.5 + 0.01 * f64::from(i)).clamp(p.lower, p.upper)).collect::<Vec<f64>>()
+        };
+        let list = |p: &crate::effect::Param| (p.name.to_owned(), Value::List(rising(p)));
         let values = numbers.chain(effect.list_params().iter().map(list)).collect();
         claim.effects.push(Stated { effect: *effect, values });
         let again = read(&write(&claim));

@@ -94,8 +94,9 @@ fn page(effect: &dyn Effect, lang: Lang) -> String {
     };
     part("effects.mechanism", doc.mechanism.of(lang));
     part("effects.formula", doc.formula);
-    let parameters: Vec<String> =
-        effect.params().iter().chain(effect.list_params()).map(|p| parameter(p, lang)).collect();
+    let numbers = effect.params().iter().map(|p| parameter(p, None, lang));
+    let lists = effect.list_params().iter().map(|p| parameter(p, Some("effects.list"), lang));
+    let parameters: Vec<String> = numbers.chain(lists).collect();
     part("effects.parameters", &parameters.join("\n"));
     part("effects.shows_in", &view(effect, lang));
     part("effects.needs", &needs(effect));
@@ -115,8 +116,8 @@ fn confusers(effect: &dyn Effect, lang: Lang) -> Vec<String> {
     effect.confusers().iter().map(named).collect()
 }
 
-/// A parameter with its unit and bounds.
-fn parameter(p: &Param, lang: Lang) -> String {
+/// A parameter with its unit and bounds; a list is said to be one.
+fn parameter(p: &Param, what: Option<&'static str>, lang: Lang) -> String {
     let unit = pretty(p.unit, lang);
     let number = |v: f64| {
         let plain =
@@ -132,8 +133,8 @@ fn parameter(p: &Param, lang: Lang) -> String {
         (None, None) => Note::new("effects.any"),
     };
     let name = if unit.is_empty() { p.name.to_owned() } else { format!("{}, {unit}", p.name) };
-    let inner =
-        if p.reported { String::new() } else { format!(" ({})", Note::new("effects.inner").say(lang)) };
+    let what = what.or((!p.reported).then_some("effects.inner"));
+    let inner = what.map_or_else(String::new, |key| format!(" ({})", Note::new(key).say(lang)));
     format!("{name}: {}{inner}", bounds.say(lang))
 }
 

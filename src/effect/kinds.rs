@@ -67,7 +67,7 @@ macro_rules! frees {
             fn stated(&self, values: &$crate::effect::Values) -> Option<Vec<f64>> {
                 $crate::effect::number(values, PARAMS[0].name).map(|c| vec![c])
             }
-            fn compose(&self, fitted: &[f64], noise: &mut $crate::noise::composite::Composite) {
+            fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut $crate::noise::composite::Composite) {
                 if let [coefficient] = fitted {
                     noise.terms.$field = *coefficient;
                 }

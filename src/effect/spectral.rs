@@ -56,6 +56,11 @@ pub trait Spectrum: Sync {
         bins.iter().map(|b| self.density(fitted, b)).collect()
     }
 
+    /// Whether a fit moves a parameter from where it began.
+    fn moves(&self, _fitted: &[f64], _parameter: usize) -> bool {
+        true
+    }
+
     /// Fitted parameters to begin from, several.
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>>;
 
@@ -71,8 +76,8 @@ pub trait Spectrum: Sync {
     /// The fitted parameters of stated ones; `None` where one is missing.
     fn stated(&self, values: &Values) -> Option<Vec<f64>>;
 
-    /// Adds the effect to a noise model for simulation.
-    fn compose(&self, fitted: &[f64], noise: &mut Composite);
+    /// Adds the effect to a noise model for simulation of samples of `dt_s`.
+    fn compose(&self, fitted: &[f64], dt_s: f64, noise: &mut Composite);
 
     /// Where it lives, principal first, at most three. `excess` is the density of the bins without it and with it.
     fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place>;

@@ -6,6 +6,7 @@
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread};
 use crate::noise::intervals::BoundedPoint;
+use crate::noise::residual::degrees_of_freedom;
 use crate::text::Note;
 
 pub(super) struct AllanMinimum;
@@ -34,15 +35,16 @@ impl Measurand for AllanMinimum {
             return Some(none.note(Note::new("note.minimum_none")));
         };
         let tau_s = lowest.point.m as f64 * gyro.tau0_s;
+        let edf = minimum_edf(gyro, lowest);
         let mut estimate = Estimate::measured(
             id,
             &gyro.channel,
             lowest.point.deviation / divisor,
             "deg/h",
-            Spread::ChiSquare { dof: lowest.edf },
+            Spread::ChiSquare { dof: edf },
             "overlapping_allan",
         )
-        .note(Note::new("note.minimum_at").with("tau_s", tau_s).with("edf", lowest.edf));
+        .note(Note::new("note.minimum_at").with("tau_s", tau_s).with("edf", edf));
         if readable.last().is_some_and(|last| last.point.m == lowest.point.m) {
             estimate = estimate.note(Note::new("note.minimum_at_end"));
         } else if gyro.identification.bias_instability.value.is_none() {
@@ -56,6 +58,17 @@ impl Measurand for AllanMinimum {
 pub fn lowest(gyro: &GyroEvidence) -> Option<&BoundedPoint> {
     let positive = readable(gyro).into_iter().filter(|p| p.point.deviation > 0.0);
     positive.min_by(|a, b| a.point.deviation.total_cmp(&b.point.deviation))
+}
+
+/// Degrees of freedom of the smallest deviation: those of the prevailing kind of noise, or of the whole description
+/// where it holds lines, Markov processes or quasi-periodic disturbances and gives fewer.
+pub fn minimum_edf(gyro: &GyroEvidence, lowest: &BoundedPoint) -> f64 {
+    let model = &gyro.identification.described.model;
+    if model.lines.is_empty() && model.markov.is_empty() && model.quasi_periodic.is_empty() {
+        return lowest.edf;
+    }
+    let whole = degrees_of_freedom(model, &lowest.point, gyro.tau0_s);
+    if whole > 0.0 { lowest.edf.min(whole.max(1.0)) } else { lowest.edf }
 }
 
 /// Octaves up to a fifth of the record.

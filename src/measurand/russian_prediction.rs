@@ -1,6 +1,6 @@
 //! What the identified noise predicts for the Russian drift, and the ratios of Russian to Allan values.
 
-use super::allan_minimum::lowest;
+use super::allan_minimum::{lowest, minimum_edf};
 use super::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S, degrees_of_freedom};
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread, chi_square_quantile, normal_probability};
@@ -87,7 +87,7 @@ fn bias_ratio(gyro: &GyroEvidence) -> Estimate {
         return none.note(Note::new("compare.note.lacks_a_side"));
     };
     let value = windows.standard_deviation / minimum.point.deviation;
-    let (above, below) = (degrees_of_freedom(gyro, windows), minimum.edf);
+    let (above, below) = (degrees_of_freedom(gyro, windows), minimum_edf(gyro, minimum));
     let spread = FisherSnedecor::new(above, below).map_or(Spread::Unknown, |law| {
         let at = |z: f64| (z, value / law.inverse_cdf(normal_probability(-z)).sqrt());
         Spread::Curve(scores().map(at).filter(|p| p.1.is_finite()).collect())

@@ -63,6 +63,8 @@ pub struct Candidate {
     pub delta_bic: f64,
     /// Probability of such a gain without it, its own search counted.
     pub p_value: f64,
+    /// Logarithm of the odds against kinds with the same course.
+    pub odds: f64,
 }
 
 fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, looked: f64, rows: usize) -> Candidate {
@@ -70,7 +72,7 @@ fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, looked: f64,
     let parameters = tried.parameters - before.parameters;
     let p_value = (looked.max(1.0) * chi_square_tail(2.0 * gain.max(0.0), parameters as f64)).min(1.0);
     let delta_bic = before.bic(rows) - tried.bic(rows);
-    Candidate { effect, tried, gain, parameters, delta_bic, p_value }
+    Candidate { effect, tried, gain, parameters, delta_bic, p_value, odds: 0.0 }
 }
 
 /// Fits every effect that is not in the hypothesis yet as an addition to it; those that gain something, the largest
@@ -86,7 +88,8 @@ pub fn all(before: &Tried, scenes: &Scenes) -> Vec<Candidate> {
         })
         .collect();
     let mut found: Vec<Candidate> = fits.into_iter().flatten().collect();
-    found.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    // Kinds with the same course are ordered by what else speaks for them.
+    found.sort_by(|a, b| (b.delta_bic + 2.0 * b.odds).total_cmp(&(a.delta_bic + 2.0 * a.odds)));
     found
 }
 
@@ -296,9 +299,9 @@ fn try_course(
     let mut rough: Vec<(Vec<f64>, f64)> = starts.shapes.iter().map(|s| (s.clone(), search.gain(s))).collect();
     rough.sort_by(|a, b| b.1.total_cmp(&a.1));
     let leader = rough.first()?.1;
-    let promising = rough.into_iter().filter(|(_, g)| *g > 0.5 * leader).take(3);
+    let promising = rough.into_iter().filter(|(_, g)| *g > 0.7 * leader).take(2);
     let (shape, gain) = promising
-        .map(|(s, g)| if s.is_empty() { (s, g) } else { refine(&s, &bounds, 80, |x| search.gain(x)) })
+        .map(|(s, g)| if s.is_empty() { (s, g) } else { refine(&s, &bounds, 60, |x| search.gain(x)) })
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
     if gain.is_nan() || gain < 0.5 {
         return None;
@@ -306,12 +309,14 @@ fn try_course(
     let parts = course.parts(&shape, &scene.drivers);
     let free_shape = bounds.iter().filter(|(low, high)| high > low).count();
     let parameters = before.parameters + parts.free.len() + parts.beside.len() + free_shape;
+    let odds = course.odds(&shape, &scene.drivers);
     let mut hypothesis = before.hypothesis.clone();
     hypothesis.courses.push(CourseIn { effect, shape, coefficients: vec![] });
     // The noise, fitted anew, can give at most about as much again.
     let worth = 4.0 * gain - (parameters - before.parameters) as f64 * (scenes.rows as f64).ln();
     let fit = if worth > 0.0 { fit(&mut hypothesis, &scenes.full) } else { before.fit.raised(gain) };
-    Some(rated(effect, Tried { hypothesis, fit, parameters }, before, starts.looked, scenes.rows))
+    let rated = rated(effect, Tried { hypothesis, fit, parameters }, before, starts.looked, scenes.rows);
+    Some(Candidate { odds, ..rated })
 }
 
 fn try_spectrum(

@@ -1,6 +1,7 @@
 //! The four steps: is there a mismatch and where, what could it be, which is it and how sure, does the fit improve.
 
 use super::candidates::{Candidate as Fitted, Tried};
+use super::coarse;
 use super::departures::{self, Departure};
 use super::estimates;
 use super::finding::{
@@ -44,13 +45,13 @@ pub fn explain(
     let regular =
         Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
-    let mut problem = Problem::new(regular, claim);
+    let mut found = Found::default();
+    let mut problem = uncoarsened(Problem::new(regular, claim), &mut found, options.alpha);
     let rows = problem.scenes.rows;
     let base = problem.baseline();
     let before = departures::all(&problem.scenes.full, &base.fit, problem.level.as_deref(), &problem.usable);
     let held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
-    let mut found = Found::default();
     let mut start = take_bursts(&mut problem, &base, &mut found, options.alpha);
     if problem.level.is_none() {
         let levels = local::level(&problem, &start);
@@ -67,7 +68,35 @@ pub fn explain(
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
     let level = found.level.clone().or_else(|| problem.level.clone());
     let after = departures::all(&problem.scenes.full, &selection.best.fit, level.as_deref(), &problem.usable);
-    Ok(assemble(&problem, &base, &held_base, &selection, found, &before, &after, series, options))
+    Ok(assemble(&problem, claim, &base, &held_base, &selection, found, &before, &after, series, options))
+}
+
+/// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
+/// not state is named first: nothing finer can be judged beside it.
+fn uncoarsened(problem: Problem, found: &mut Found, alpha: f64) -> Problem {
+    let stated = problem.claim.quantization_lsb_arcsec;
+    let lsb = if stated > 0.0 { Some(stated) } else { problem.scenes.lattice_arcsec };
+    let m = lsb.map_or(1, |lsb| coarse::group(lsb, &problem.claim, problem.residual.len()));
+    let Some(lsb) = lsb.filter(|_| m > 1) else { return problem };
+    let mut claim = problem.claim.clone();
+    if stated <= 0.0 {
+        claim.quantization_lsb_arcsec = lsb;
+        claim.noise.q = lsb / 12f64.sqrt();
+        let with = Problem::new(problem.regular.clone(), &claim).baseline();
+        let gain = with.fit.log_likelihood - problem.baseline().fit.log_likelihood;
+        match samples::worth(
+            gain,
+            1,
+            crate::estimate::chi_square_tail(2.0 * gain, 1.0),
+            problem.scenes.rows,
+            alpha,
+        ) {
+            Some(delta_bic) => found.named.extend(samples::quantization(lsb, gain, delta_bic, &problem)),
+            None => return problem,
+        }
+    }
+    claim.sample_rate_hz = problem.claim.sample_rate_hz / m as f64;
+    Problem::new(coarse::averaged(&problem.regular, m), &claim)
 }
 
 /// What was found in single samples.
@@ -168,6 +197,7 @@ fn note(why: Irregular) -> Note {
 #[allow(clippy::too_many_arguments)]
 fn assemble(
     problem: &Problem,
+    claim: &Claim,
     base: &Tried,
     held_base: &HeldOut,
     selection: &Selection,
@@ -200,7 +230,7 @@ fn assemble(
         sum.iter_mut().zip(taken).for_each(|(s, t)| *s += t);
     }
     let stated = found.named.into_iter().map(|n| Stated { effect: n.effect, values: n.estimated.stated });
-    let augmented = augmented(problem, &selection.best, stated.collect());
+    let augmented = augmented(problem, claim, &selection.best, stated.collect());
     let halves = Halves::new(problem);
     let held_best = if something { halves.judge(&selection.best) } else { *held_base };
     let family = smallest_p(&selection.first, before);
@@ -453,8 +483,13 @@ fn nuisances(problem: &Problem, base: &Tried, best: &Tried) -> Vec<NuisanceValue
 
 /// The claim with its nuisances as fitted and the effects stated. A coefficient that an effect sets free stays as
 /// claimed: the effect states it.
-fn augmented(problem: &Problem, best: &Tried, mut stated: Vec<Stated>) -> Claim {
-    let mut claim = problem.claim.clone();
+fn augmented(problem: &Problem, given: &Claim, best: &Tried, mut stated: Vec<Stated>) -> Claim {
+    let mut claim = Claim {
+        sample_rate_hz: given.sample_rate_hz,
+        quantization_lsb_arcsec: given.quantization_lsb_arcsec,
+        ..problem.claim.clone()
+    };
+    claim.noise.q = given.noise.q;
     let noise = &best.hypothesis.noise;
     for (i, slot) in [&mut claim.noise.n, &mut claim.noise.b, &mut claim.noise.k].into_iter().enumerate() {
         if !noise.freed[i] {

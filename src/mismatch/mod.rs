@@ -1,6 +1,7 @@
 //! The mismatch of a claimed simulation and a recording: located, named, modelled, and the fit shown to improve.
 
 pub mod candidates;
+pub mod coarse;
 pub mod columns;
 pub mod departures;
 pub mod drawing;

@@ -150,8 +150,9 @@ impl Noise {
             .filter(|i| self.freed[*i] || (self.base[*i] > 0.0 && self.deviation[*i] > 0.0))
             .map(Which::Base);
         let effects = self.spectra.iter().enumerate().filter(|(_, s)| !s.stated).flat_map(|(e, s)| {
-            let adds = s.spectrum().is_some_and(|x| !matches!(x.act(), SpectrumAct::Frees(_)));
-            (0..if adds { s.fitted.len() } else { 0 }).map(move |p| Which::Effect(e, p))
+            let spectrum = s.spectrum().filter(|x| !matches!(x.act(), SpectrumAct::Frees(_)));
+            let moves = move |p: &usize| spectrum.is_some_and(|x| x.moves(&s.fitted, *p));
+            (0..s.fitted.len()).filter(moves).map(move |p| Which::Effect(e, p))
         });
         base.chain(effects).collect()
     }

@@ -38,6 +38,32 @@ fn value(value: f64, unit: &str, ci95: [f64; 2]) -> ParameterValue {
     ParameterValue { value, unit: unit.to_owned(), ci95 }
 }
 
+/// Rounding in steps that the values themselves show, as a finding.
+pub fn quantization(lsb_arcsec: f64, gain: f64, delta_bic: f64, problem: &Problem) -> Option<Named> {
+    // The lattice gives the step to the digits that the file writes.
+    let digits = 1e-6 * lsb_arcsec;
+    let ci95 = [lsb_arcsec - digits, lsb_arcsec + digits];
+    let step = lsb_arcsec / problem.regular.dt_s;
+    // Successive errors of the angle are subtracted: twice the variance of a rounding error.
+    let rms = step / 6f64.sqrt();
+    let reported = BTreeMap::from([
+        ("lsb_arcsec".to_owned(), value(lsb_arcsec, "arcsec", ci95)),
+        ("rms_deg_h".to_owned(), value(rms, "deg/h", [rms * 0.999, rms * 1.001])),
+    ]);
+    Some(Named {
+        effect: find("quantization")?,
+        estimated: Estimated {
+            reported,
+            stated: BTreeMap::from([("lsb_arcsec".to_owned(), Value::Number(lsb_arcsec))]),
+        },
+        equivalents: vec![],
+        places: vec![Place { domain: Domain::Amplitude, from: 0.0, to: step }],
+        delta_bic,
+        p_value: crate::estimate::chi_square_tail(2.0 * gain, 1.0),
+        local_gain: gain,
+    })
+}
+
 /// Bursts as a finding.
 pub fn bursts(found: &Bursts, delta_bic: f64, removed: &[f64], problem: &Problem) -> Option<Named> {
     let drivers = &problem.drivers;

@@ -271,7 +271,7 @@ impl Pair {
 
     /// The value above which the claiming fluctuation must lie.
     fn claim_needs(&self) -> Option<f64> {
-        let threshold = Whittle::default().thresholds.get(self.here.term)?.sqrt();
+        let threshold = Whittle::default().threshold(*TERMS.get(self.here.term)?).sqrt();
         Some(self.scatter(Case::claim_score)?.needs(threshold))
     }
 }

@@ -6,17 +6,19 @@
 //! said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
 //! root of the misfit (Birge ratio), and that is said too.
 
+use super::composite::Part;
+use super::data::NoiseType;
 use super::evidence::Evidence;
-use super::identify::{Identification, Identify};
+use super::identify::{Identification, Identify, LIMIT_COVERAGE, METHOD};
 use super::joint::expected_power;
 use super::misfit::Misfit;
-use crate::estimate::{Estimate, Spread};
+use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::text::Note;
 
 /// Probability of a larger misfit below which a range does not pass.
 const LEAST_PROBABILITY: f64 = 0.02;
 /// Probability below which the model of all frequencies fails above a range.
-const FAILS: f64 = 1e-3;
+const FAILS: f64 = 1e-5;
 /// Departure of the worst band that does no harm, whatever its significance: 2 % in power is 1 % in N.
 const HARMLESS: f64 = 0.02;
 /// Octaves that may be given up.
@@ -99,7 +101,7 @@ pub fn identify_over(
         Some(highest_hz) => method.identify(channel, &evidence.up_to(highest_hz)),
         None => method.identify(channel, evidence),
     };
-    annotated(RangedIdentification { identification, ..*range })
+    annotated(stated(RangedIdentification { identification, ..*range }, evidence.tau0_s))
 }
 
 /// True when a model of the whole evidence fails above a frequency. A departure that chance made at low frequencies is
@@ -117,6 +119,26 @@ fn fails_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -> 
     }
     let misfit = Misfit::of(&above, &whitened, 0);
     misfit.probability < FAILS || misfit.worst_probability < FAILS
+}
+
+/// Takes back what a restricted range cannot show: a filter whose cut-off, or quantisation whose rise above the white
+/// noise, lies beyond the range.
+fn stated(mut ranged: RangedIdentification, tau0_s: f64) -> RangedIdentification {
+    let Some(highest_hz) = ranged.highest_hz else { return ranged };
+    let found = &mut ranged.identification;
+    if found.cutoff.as_ref().is_some_and(|c| c.value.is_none_or(|hz| hz > highest_hz)) {
+        found.cutoff = None;
+    }
+    let density = |term| found.described.model.part_density(Part::Term(term), highest_hz, tau0_s);
+    let rises = density(NoiseType::Quantization) >= density(NoiseType::AngleRandomWalk);
+    if found.quantization.value.is_some() && !rises {
+        let q = &found.quantization;
+        let limit = q.interval95().map(|i| UpperLimit { value: i.high, coverage: LIMIT_COVERAGE });
+        found.quantization = Estimate::not_identifiable(q.id, &q.channel, limit, q.unit, METHOD);
+        found.claimed.retain(|t| *t != NoiseType::Quantization);
+        found.model.q = 0.0;
+    }
+    ranged
 }
 
 /// Puts the notes on the estimates, and the widening on their spreads.

@@ -3,10 +3,13 @@
 use super::composite::{Composite, Described, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
-use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
+use super::fit::{Likelihood, RAMP, Structure, toggled};
+use super::identifiable::IDENTIFIABLE;
 use super::misfit::Misfit;
 use super::model::{NoiseModel, TERMS, unit_allan_variance};
 use super::profile::{Profile, wider};
+use super::slow_terms::{NEARLY, SlowChoice, SlowPrices, holds};
+use super::structure::Search;
 use crate::estimate::{Estimate, UpperLimit, normal_quantile};
 use crate::text::Note;
 
@@ -23,19 +26,37 @@ pub trait Identify {
 
 /// Maximum Whittle likelihood with a structure test calibrated by simulation.
 ///
-/// A term is claimed only when twice the log-likelihood is larger by its threshold than that of the best model
-/// without it, all other terms refitted. The ramp is a nuisance when rate random walk is tested, because a record in
-/// which only the lowest mode stands out cannot tell the two apart. Thresholds are set so that fewer than 7 % of
-/// records claim anything absent (validated in the identification study).
+/// N and Q are claimed when twice the log-likelihood is larger by their threshold than that of the best model without
+/// them, all other terms refitted; flicker, random walk and ramp by comparison of their sets ([`SlowPrices`]). Set so that
+/// fewer than 7 % of records claim anything absent (validated in the identification study).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Whittle {
-    /// Threshold of 2 Δ ln L for each of [`TERMS`].
-    pub thresholds: [f64; 5],
+    /// Threshold of 2 Δ ln L for N.
+    pub white: f64,
+    /// Threshold of 2 Δ ln L for Q.
+    pub quantization: f64,
+    /// Prices of the slow terms.
+    pub slow: SlowPrices,
 }
 
 impl Default for Whittle {
     fn default() -> Self {
-        Whittle { thresholds: [4.0, 4.5, 4.0, 8.5, 7.2] }
+        Whittle { white: 4.0, quantization: 8.5, slow: SlowPrices::default() }
+    }
+}
+
+impl Whittle {
+    /// The slow terms that a record is given.
+    pub(super) fn slow_choice(&self, evidence: &Evidence) -> Option<SlowChoice> {
+        Some(Search::run(&Likelihood::new(evidence)?, &self.slow)?.slow)
+    }
+
+    /// 2 Δ ln L that a term needs against the best model without it.
+    pub fn threshold(&self, term: NoiseType) -> f64 {
+        self.slow.against_rival(term).unwrap_or(match term {
+            NoiseType::Quantization => self.quantization,
+            _ => self.white,
+        })
     }
 }
 
@@ -120,8 +141,10 @@ const WHITE: usize = 0;
 const FLICKER: usize = 1;
 const WALK: usize = 2;
 const QUANTIZATION: usize = 3;
-/// 2 Δ ln L from which quantisation that is not claimed widens the interval of N.
-const SUSPICION: f64 = 1.0;
+/// 2 Δ ln L from which a term that is not claimed widens the interval of N.
+pub(super) const SUSPICION: f64 = 1.0;
+/// 2 Δ ln L from which a rival that is not claimed widens the interval of a slow term.
+pub(super) const RIVALRY: f64 = 0.5;
 pub(super) const METHOD: &str = "whittle";
 /// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
 pub(super) const PRICE: f64 = 2.71;
@@ -255,11 +278,23 @@ impl Whittle {
     fn run(&self, channel: &str, evidence: &Evidence, intervals: bool) -> Identification {
         let mut out = Identification::empty(channel);
         let Some(likelihood) = Likelihood::new(evidence) else { return out };
-        let Some(search) = Search::run(&likelihood, self.thresholds[RAMP]) else { return out };
+        let Some(search) = Search::run(&likelihood, &self.slow) else { return out };
         out.likelihood_ratios = search.ratios;
-        let mut claimed: Structure = [false; 5];
-        for (flag, (ratio, threshold)) in claimed.iter_mut().zip(search.ratios.iter().zip(self.thresholds)) {
-            *flag = *ratio > threshold;
+        let fit = |structure: &Structure| likelihood.maximise(structure, None, None);
+        let mut claimed: Structure = [
+            search.ratios[WHITE] > self.white,
+            holds(search.slow.set, FLICKER),
+            holds(search.slow.set, WALK),
+            search.ratios[QUANTIZATION] > self.quantization,
+            holds(search.slow.set, RAMP),
+        ];
+        if let Some(best) = fit(&search.supported(&claimed)) {
+            let model = best.model();
+            let bound = likelihood.covariance_bound(&model, &search.supported(&claimed));
+            for term in [FLICKER, WALK] {
+                let relative = bound[term][term].sqrt() / model.coefficient(TERMS[term]);
+                claimed[term] &= is_told(search.preference[term], relative);
+            }
         }
         let supported = search.supported(&claimed);
         let needed = (0..5).any(|i| supported[i] && !claimed[i]);
@@ -267,7 +302,6 @@ impl Whittle {
         out.ambiguous = needed;
         out.full = search.full.model();
         out.allowed = out.full.into();
-        let fit = |structure: &Structure| likelihood.maximise(structure, None, None);
         out.model = fit(&claimed).map_or_else(NoiseModel::default, |p| p.model());
         let Some(best) = fit(&supported) else { return out };
         out.supported = best.model();
@@ -280,15 +314,7 @@ impl Whittle {
         }
         let mut estimates: [Option<Estimate>; 5] = [const { None }; 5];
         for (term, slot) in estimates.iter_mut().enumerate() {
-            *slot = Some(estimate(
-                &likelihood,
-                channel,
-                term,
-                &claimed,
-                &supported,
-                needed,
-                search.ratios[QUANTIZATION],
-            ));
+            *slot = Some(estimate(&likelihood, channel, term, &claimed, &supported, needed, &search));
         }
         let [n, b, k, q, r] = estimates;
         for (target, estimate) in [
@@ -313,34 +339,35 @@ fn estimate(
     claimed: &Structure,
     supported: &Structure,
     ambiguous: bool,
-    quantization_ratio: f64,
+    search: &Search,
 ) -> Estimate {
     let (id, unit) = IDS[term];
-    let mut structure = *supported;
-    if term == WHITE || term == QUANTIZATION {
-        // Low-frequency noise that is too weak to be named still adds to the level of the white part.
-        (structure[FLICKER], structure[WALK]) = (true, true);
-    }
+    let ratios = &search.ratios;
+    let structure = *supported;
     if claimed[term]
         && let Some(profile) = Profile::new(likelihood, &structure, term)
     {
         let mut spread = profile.spread();
-        if term == WHITE
-            && !claimed[QUANTIZATION]
-            && quantization_ratio > SUSPICION
-            && let Some(other) = Profile::new(likelihood, &toggled(&structure, QUANTIZATION, true), term)
-        {
-            spread = wider(profile.value(), &spread, &other.spread());
+        // What is too weak to be named may still hold a part of the level of the white noise.
+        for other in suspects(term) {
+            if !structure[*other]
+                && ratios[*other] > SUSPICION
+                && let Some(wide) = Profile::new(likelihood, &toggled(&structure, *other, true), term)
+            {
+                spread = wider(profile.value(), &spread, &wide.spread());
+            }
         }
         // Flicker and random walk share the lowest frequencies: a rival too weak to be claimed may hold a part of
         // what this term was given.
         if let Some(rival) = rival_of(term)
             && !structure[rival]
+            && ratios[rival] > RIVALRY
             && let Some(other) = Profile::new(likelihood, &toggled(&structure, rival, true), term)
         {
             spread = wider(profile.value(), &spread, &other.spread());
         }
-        return Estimate::measured(id, channel, profile.value(), unit, spread, METHOD);
+        let estimate = Estimate::measured(id, channel, profile.value(), unit, spread, METHOD);
+        return with_rivals(estimate, term, search.preference[term]);
     }
     // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
     let mut nuisance = [true; 5];
@@ -357,9 +384,34 @@ fn estimate(
     estimate
 }
 
+/// True when a slow term that was chosen may be claimed. A rival nearly as good matters little while the term is known
+/// well; one that is hardly identifiable is claimed only where it is clearly preferred.
+pub(super) fn is_told(preference: f64, relative_sigma: f64) -> bool {
+    preference >= NEARLY || relative_sigma <= IDENTIFIABLE
+}
+
+/// Says so where another slow term in place of this one describes the record nearly as well.
+pub(super) fn with_rivals(estimate: Estimate, term: usize, preference: f64) -> Estimate {
+    let slow = matches!(term, FLICKER | WALK | RAMP);
+    if slow && preference < NEARLY {
+        estimate.note(Note::new("slow_alike.term").with("fall", preference))
+    } else {
+        estimate
+    }
+}
+
 /// Low-frequency noise is there, and which of the terms it is stays open.
 pub(super) fn low_frequency_note() -> Note {
     Note::new("note.low_frequency_ambiguous")
+}
+
+/// Terms that may hold a part of this one while too weak to be claimed.
+pub(super) fn suspects(term: usize) -> &'static [usize] {
+    match term {
+        WHITE => &[FLICKER, WALK, QUANTIZATION],
+        QUANTIZATION => &[FLICKER, WALK],
+        _ => &[],
+    }
 }
 
 /// The term that can stand for this one at the lowest frequencies.
@@ -369,74 +421,4 @@ pub(super) fn rival_of(term: usize) -> Option<usize> {
         WALK => Some(FLICKER),
         _ => None,
     }
-}
-
-/// All structures fitted.
-struct Search {
-    /// Maximum of each set of spectral terms, by bit mask; second index: ramp fitted.
-    points: Vec<[Option<Point>; 2]>,
-    full: Point,
-    ratios: [f64; 5],
-}
-
-const ALL: usize = (1 << SPECTRAL) - 1;
-
-impl Search {
-    fn run(likelihood: &Likelihood, ramp_threshold: f64) -> Option<Search> {
-        let mut points: Vec<[Option<Point>; 2]> = vec![[None, None]; ALL + 1];
-        for set in 1..=ALL {
-            for (ramp, with_ramp) in [false, true].into_iter().enumerate() {
-                let structure = structure_of(set, with_ramp);
-                let mut best = likelihood.maximise(&structure, None, None);
-                // Never worse than any part of it: a second start from the best part.
-                let part = (0..SPECTRAL)
-                    .filter(|i| set >> i & 1 == 1)
-                    .filter_map(|i| points[set ^ (1 << i)][ramp])
-                    .min_by(|a, b| a.deviance.total_cmp(&b.deviance));
-                if let Some(part) = part
-                    && best.is_none_or(|b| part.deviance < b.deviance)
-                {
-                    best = likelihood
-                        .maximise(&structure, None, Some(&part))
-                        .filter(|p| p.deviance <= part.deviance);
-                    best = best.or(Some(part));
-                }
-                points[set][ramp] = best;
-            }
-        }
-        let full = points[ALL][0]?;
-        let deviance = |set: usize, ramp: usize| points[set][ramp].map_or(f64::INFINITY, |p| p.deviance);
-        let ratio =
-            |term: usize, ramp: usize| (deviance(ALL ^ (1 << term), ramp) - deviance(ALL, ramp)).max(0.0);
-        // The ramp: plain likelihood on both sides, at the restricted estimate.
-        let restricted = points[ALL][1]?;
-        let plain = likelihood.maximise(&[true; 5], Some((RAMP, restricted.ramp)), Some(&restricted))?;
-        let ramp_ratio = (full.deviance - plain.deviance).max(0.0);
-        let with_ramp = usize::from(ramp_ratio > ramp_threshold);
-        // Random walk must show with a ramp allowed for, and also in the description that the record is given.
-        let walk = ratio(2, 1).min(ratio(2, with_ramp));
-        // A ramp that is left out bends the whole model, and other terms would seem to mend it.
-        let ratios = [ratio(0, with_ramp), ratio(1, with_ramp), walk, ratio(3, with_ramp), ramp_ratio];
-        Some(Search { points, full: if with_ramp == 1 { restricted } else { full }, ratios })
-    }
-
-    /// The best description: claimed terms, and as few others as pay their price.
-    fn supported(&self, claimed: &Structure) -> Structure {
-        let ramp = usize::from(claimed[RAMP]);
-        let must = (0..SPECTRAL).filter(|i| claimed[*i]).fold(0usize, |set, i| set | 1 << i);
-        let cost = |set: usize| {
-            self.points[set][ramp].map_or(f64::INFINITY, |p| p.deviance + PRICE * f64::from(set.count_ones()))
-        };
-        // Quantisation is nearly white at the highest frequencies: on suspicion alone it would spoil N.
-        let suspected = ALL ^ if claimed[QUANTIZATION] { 0 } else { 1 << QUANTIZATION };
-        let best = (1..=ALL)
-            .filter(|set| set & must == must && set & suspected == *set)
-            .min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
-        structure_of(best.unwrap_or(ALL), claimed[RAMP])
-    }
-}
-
-fn structure_of(set: usize, ramp: bool) -> Structure {
-    let spectral = (0..SPECTRAL).fold([false; 5], |s, i| toggled(&s, i, set >> i & 1 == 1));
-    toggled(&spectral, RAMP, ramp)
 }

@@ -58,17 +58,17 @@ pub(super) fn remarks(gyro: &GyroEvidence) -> Vec<Note> {
     }
     let cutoff = found.cutoff.as_ref().and_then(|c| c.value);
     match (&model.bandwidth, cutoff) {
-        (Some(Bandwidth::MovingAverage { samples }), _) => {
+        (Some(Bandwidth::MovingAverage { samples }), Some(_)) => {
             notes.push(Note::new("described.moving_average").with("n", u64::from(*samples)));
         }
-        (Some(filter), _) => {
-            let hz = cutoff.unwrap_or_else(|| filter.cutoff_hz(gyro.tau0_s));
+        (Some(Bandwidth::FirstOrder { .. }), Some(hz)) => {
             notes.push(Note::new("described.cutoff").with("hz", with_interval(hz, found.cutoff.as_ref())));
         }
         (None, Some(hz)) => {
             notes.push(Note::new("described.cutoff").with("hz", with_interval(hz, found.cutoff.as_ref())));
         }
-        (None, None) => {}
+        // A filter that acts beyond the range of the fit is not stated.
+        (_, None) => {}
     }
     let nyquist_hz = 0.5 / gyro.tau0_s;
     let highest_hz = found

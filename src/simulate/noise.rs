@@ -17,7 +17,7 @@ pub(super) fn composed(claim: &Claim) -> Result<Composite, SimulateError> {
     for stated in &claim.effects {
         let Model::Spectrum(spectrum) = stated.effect.model() else { continue };
         match spectrum.stated(&stated.values) {
-            Some(fitted) => spectrum.compose(&fitted, &mut noise),
+            Some(fitted) => spectrum.compose(&fitted, 1.0 / claim.sample_rate_hz, &mut noise),
             // It is stated as a course.
             None if course_of(stated) => {}
             None => {

@@ -1,6 +1,8 @@
 //! Records for the tests of what shows in single samples: simulated noise, a claim of it, and a hand that changes it.
 
 use rand::RngExt as _;
+pub mod inject;
+
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;

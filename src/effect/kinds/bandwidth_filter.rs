@@ -32,7 +32,49 @@ static DOC: Doc = Doc {
     source: "First-order low-pass filter before averaging over the sample interval",
 };
 
-static PARAMS: [Param; 1] = [Param::reported("cutoff_hz", "Hz", 1e-9, 1e9)];
+static PARAMS: [Param; 2] =
+    [Param::reported("cutoff_hz", "Hz", 1e-9, 1e9), Param::inner("form", "", 1.0, 4.0)];
+
+/// How an output can be filtered. Stated by number: 1 first order before the samples are averaged, 2 first order on
+/// the spectrum of the samples, 3 second order (Butterworth), 4 moving average of whole samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    BeforeSampling,
+    FirstOrder,
+    SecondOrder,
+    MovingAverage,
+}
+
+const FORMS: [Form; 4] = [Form::BeforeSampling, Form::FirstOrder, Form::SecondOrder, Form::MovingAverage];
+/// Longest moving average that is tried, samples.
+const LONGEST: usize = 64;
+
+fn form(fitted: &[f64]) -> Form {
+    let number = fitted.get(1).copied().unwrap_or(1.0).round().clamp(1.0, 4.0);
+    FORMS[number as usize - 1]
+}
+
+/// Cutoff of a moving average of so many samples: where (sin nx/(n sin x))² is a half, Hz.
+fn average_cutoff_hz(samples: usize, dt_s: f64) -> f64 {
+    let n = samples as f64;
+    let response = |x: f64| ((n * x).sin() / (n * x.sin())).powi(2);
+    let (mut low, mut high) = (1e-9, PI / (n + 0.5));
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if response(middle) > 0.5 { low = middle } else { high = middle }
+    }
+    low / (PI * dt_s)
+}
+
+/// The moving average whose cutoff is nearest.
+fn average_samples(cutoff_hz: f64, dt_s: f64) -> usize {
+    (2..=LONGEST)
+        .min_by(|a, b| {
+            let off = |n: usize| (average_cutoff_hz(n, dt_s) / cutoff_hz).ln().abs();
+            off(*a).total_cmp(&off(*b))
+        })
+        .unwrap_or(2)
+}
 
 describe! {
     BandwidthFilter, "bandwidth_filter", Spectrum in Frequency, needs [],
@@ -49,32 +91,63 @@ impl Spectrum for BandwidthFilter {
         SpectrumAct::Filters
     }
 
-    /// What the filter leaves of white noise: slower noise lies where it leaves everything.
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
-        let white = |f: Bandwidth| {
-            f.unit_density(NoiseType::AngleRandomWalk, bin.frequency_hz, bin.dt_s, Sampling::Averaging)
+        self.densities(fitted, &[*bin])[0]
+    }
+
+    /// What the filter leaves of white noise: slower noise lies where it leaves everything.
+    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
+        let Some(first) = bins.first() else { return vec![] };
+        let cutoff = fitted.first().copied().unwrap_or(1e9).max(1e-12);
+        let through = |filter: Bandwidth| -> Vec<f64> {
+            let white = |b: &ModeBin| {
+                filter.unit_density(NoiseType::AngleRandomWalk, b.frequency_hz, b.dt_s, Sampling::Averaging)
+            };
+            bins.iter().map(|b| (white(b) / 3600.0).max(1e-9)).collect()
         };
-        white(filter(fitted)) / 3600.0
+        match form(fitted) {
+            Form::BeforeSampling => through(filter(fitted)),
+            Form::FirstOrder => {
+                bins.iter().map(|b| 1.0 / (1.0 + (b.frequency_hz / cutoff).powi(2))).collect()
+            }
+            Form::SecondOrder => {
+                bins.iter().map(|b| 1.0 / (1.0 + (b.frequency_hz / cutoff).powi(4))).collect()
+            }
+            Form::MovingAverage => {
+                let samples = average_samples(cutoff, first.dt_s) as u32;
+                through(Bandwidth::MovingAverage { samples })
+            }
+        }
+    }
+
+    /// The form is chosen among the starts, and the cutoff of a whole number of samples with it.
+    fn moves(&self, fitted: &[f64], parameter: usize) -> bool {
+        parameter == 0 && form(fitted) != Form::MovingAverage
     }
 
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+        let Some(first) = look.bins.first() else { return vec![] };
         let (low, high) = self.bounds(look)[0];
-        let fit = |cutoff: f64| {
-            let terms = look.bins.iter().enumerate().map(|(i, bin)| {
-                let s = (look.expected[i] * self.density(&[cutoff], bin)).max(1e-300);
+        let cost = |start: &[f64]| {
+            let factors = self.densities(start, look.bins);
+            let terms = look.bins.iter().zip(factors).enumerate().map(|(i, (bin, factor))| {
+                let s = (look.expected[i] * factor).max(1e-300);
                 bin.modes as f64 * (s.ln() + look.observed[i] / s)
             });
             terms.sum::<f64>()
         };
-        let mut rated: Vec<(f64, f64)> =
-            log_grid(2.0 * low, 0.7 * high, 16).into_iter().map(|c| (fit(c), c)).collect();
-        rated.sort_by(|a, b| a.0.total_cmp(&b.0));
-        rated.into_iter().take(2).map(|(_, c)| vec![c]).collect()
+        let best = |candidates: Vec<Vec<f64>>| {
+            candidates.into_iter().map(|c| (cost(&c), c)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, c)| c)
+        };
+        let grid = log_grid(2.0 * low, 0.7 * high, 16);
+        let of = |number: f64| best(grid.iter().map(|c| vec![*c, number]).collect());
+        let averages = (2..=LONGEST).map(|n| vec![average_cutoff_hz(n, first.dt_s), 4.0]).collect();
+        [of(1.0), of(2.0), of(3.0), best(averages)].into_iter().flatten().collect()
     }
 
     fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
         let (dt, n) = look.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
-        vec![((10.0 / (n as f64 * dt)).min(0.1 / dt), 3.0 / dt)]
+        vec![((10.0 / (n as f64 * dt)).min(0.1 / dt), 3.0 / dt), (1.0, 4.0)]
     }
 
     fn looked(&self, look: &SpectralLook<'_>) -> f64 {
@@ -87,11 +160,18 @@ impl Spectrum for BandwidthFilter {
     }
 
     fn stated(&self, values: &Values) -> Option<Vec<f64>> {
-        number(values, PARAMS[0].name).filter(|c| *c > 0.0).map(|c| vec![c])
+        let form = number(values, PARAMS[1].name).unwrap_or(1.0);
+        number(values, PARAMS[0].name).filter(|c| *c > 0.0).map(|c| vec![c, form])
     }
 
-    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
-        noise.bandwidth = Some(filter(fitted));
+    fn compose(&self, fitted: &[f64], dt_s: f64, noise: &mut Composite) {
+        noise.bandwidth = Some(match form(fitted) {
+            Form::MovingAverage => {
+                let cutoff = fitted.first().copied().unwrap_or(1.0);
+                Bandwidth::MovingAverage { samples: average_samples(cutoff, dt_s) as u32 }
+            }
+            _ => filter(fitted),
+        });
     }
 
     fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {

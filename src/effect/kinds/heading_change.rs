@@ -1,7 +1,9 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
 use super::bias_step::{instants, step};
-use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+};
 
 pub struct HeadingChange;
 
@@ -27,8 +29,22 @@ static DOC: Doc = Doc {
     source: "Ω_E (cosφ cosE cosA + sinφ sinE)",
 };
 
-static PARAMS: [Param; 2] =
-    [Param::reported("step_deg_h", "deg/h", -1e3, 1e3), Param::reported("time_s", "s", f64::MIN, f64::MAX)];
+static PARAMS: [Param; 4] = [
+    Param::reported("step_deg_h", "deg/h", -1e3, 1e3),
+    Param::reported("time_s", "s", f64::MIN, f64::MAX),
+    Param::inner("cosine_deg_h", "deg/h", -1e3, 1e3),
+    Param::inner("sine_deg_h", "deg/h", -1e3, 1e3),
+];
+
+/// The table's angle where it takes on headings apart enough for the projection to be told from a step.
+fn turning(drivers: &Drivers) -> Option<&[f64]> {
+    let angle = drivers.table_angle.as_deref()?;
+    let n = angle.len().max(1) as f64;
+    let mean = |f: fn(f64) -> f64| angle.iter().map(|a| f(a.to_radians())).sum::<f64>() / n;
+    // 1 for a table at rest.
+    let together = mean(f64::cos).hypot(mean(f64::sin));
+    (together < 0.99).then_some(angle)
+}
 
 describe! {
     HeadingChange, "heading_change", Course in Time, needs [],
@@ -50,6 +66,11 @@ fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
 }
 
 impl Course for HeadingChange {
+    /// Averages hold no angles.
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 8
     }
@@ -62,21 +83,40 @@ impl Course for HeadingChange {
         vec![(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
     }
 
+    /// A step; with a table that turns, the projection as a function of its angle from then on.
     fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { free: shape.iter().map(|at| step(drivers, *at)).collect(), ..Parts::default() }
+        let Some(at) = shape.first() else { return Parts::default() };
+        let step = step(drivers, *at);
+        let mut free = vec![];
+        match turning(drivers) {
+            Some(angle) => {
+                for part in [f64::cos, f64::sin] {
+                    free.push(step.iter().zip(angle).map(|(s, a)| s * part(a.to_radians())).collect());
+                }
+            }
+            None => free.push(step),
+        }
+        Parts { free, ..Parts::default() }
     }
 
     fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         match (shape, coefficients) {
-            ([at], [size]) => vec![*size, drivers.start_s + at],
-            _ => vec![f64::NAN; 2],
+            ([at], [size]) => vec![*size, drivers.start_s + at, f64::NAN, f64::NAN],
+            ([at], [cos, sin]) => vec![f64::NAN, drivers.start_s + at, *cos, *sin],
+            _ => vec![f64::NAN; 4],
         }
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let size = number(values, PARAMS[0].name)?;
         let at = number(values, PARAMS[1].name)? - drivers.start_s;
-        Some(step(drivers, at).into_iter().map(|s| size * s).collect())
+        let step = step(drivers, at);
+        let of = |i: usize| number(values, PARAMS[i].name);
+        if let (Some(cos), Some(sin), Some(angle)) = (of(2), of(3), &drivers.table_angle) {
+            let turned = |a: f64| cos * a.to_radians().cos() + sin * a.to_radians().sin();
+            return Some(step.iter().zip(angle).map(|(s, a)| s * turned(*a)).collect());
+        }
+        let size = of(0)?;
+        Some(step.into_iter().map(|s| size * s).collect())
     }
 
     fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

@@ -139,7 +139,7 @@ impl Spectrum for MarkovLong {
         Some(vec![number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?])
     }
 
-    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
+    fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
         noise.markov.push(process(fitted));
     }
 

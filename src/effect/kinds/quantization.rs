@@ -84,7 +84,7 @@ impl Spectrum for Quantization {
         number(values, PARAMS[0].name).map(|lsb| vec![lsb])
     }
 
-    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
+    fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
         let q = fitted.first().copied().unwrap_or(0.0) / 12f64.sqrt();
         noise.terms.q = noise.terms.q.hypot(q);
     }

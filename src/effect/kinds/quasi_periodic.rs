@@ -150,7 +150,7 @@ impl Spectrum for QuasiPeriodic {
         PARAMS.iter().map(|p| number(values, p.name)).collect()
     }
 
-    fn compose(&self, fitted: &[f64], noise: &mut Composite) {
+    fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
         noise.quasi_periodic.push(process(fitted));
     }
 

@@ -45,8 +45,8 @@ describe! {
 
 /// Shortest period that is looked for, arcsec.
 const SHORTEST: f64 = 0.5;
-/// Longest transform of the search.
-const LONGEST: usize = 1 << 22;
+/// Most cells of angle in a search.
+const LONGEST: usize = 1 << 20;
 
 /// Sensed angle at the middle of each sample since the first began, and its change over the sample, arcsec.
 fn sensed(bias: f64, drivers: &Drivers) -> Option<(Vec<f64>, Vec<f64>)> {
@@ -79,11 +79,19 @@ fn columns(period: f64, bias: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
 }
 
 /// Gains of the periods between `period` and twice that for one bias: the score put on a grid of angles and
-/// transformed. Only samples that cover less than a period count.
-fn octave(period: f64, angle: &[f64], step: &[f64], look: &Look<'_>) -> Option<(Vec<f64>, f64)> {
-    let used = || (0..angle.len()).filter(|i| step[*i].abs() < period);
+/// transformed. Only samples that cover less than a period count. `drift` turns the angle with time, arcsec a sample;
+/// `level` is that of the noise.
+fn octave(
+    period: f64,
+    (middles, steps): &(Vec<f64>, Vec<f64>),
+    drift: f64,
+    level: f64,
+    look: &Look<'_>,
+) -> Option<(Vec<f64>, f64)> {
+    let angle = |i: usize| middles[i] + drift * i as f64;
+    let used = || (0..middles.len()).filter(|i| steps[*i].abs() < period);
     let (low, high, count) = used().fold((f64::INFINITY, f64::NEG_INFINITY, 0usize), |(a, b, n), i| {
-        (a.min(angle[i]), b.max(angle[i]), n + 1)
+        (a.min(angle(i)), b.max(angle(i)), n + 1)
     });
     let cell = 0.25 * period;
     let cells = (high - low) / cell;
@@ -94,14 +102,13 @@ fn octave(period: f64, angle: &[f64], step: &[f64], look: &Look<'_>) -> Option<(
     let size = (2 * (cells as usize + 1)).next_power_of_two();
     let mut grid = vec![0.0; size];
     for i in used() {
-        if let Some(cell) = grid.get_mut(((angle[i] - low) / cell) as usize) {
+        if let Some(cell) = grid.get_mut(((angle(i) - low) / cell) as usize) {
             *cell += look.score[i];
         }
     }
     let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
     let mut spectrum = plan.make_output_vec();
     plan.process(&mut grid, &mut spectrum).ok()?;
-    let level = fast_level(look);
     let frequency_step = 1.0 / (size as f64 * cell);
     let inside = |j: usize| {
         let f = j as f64 * frequency_step;
@@ -134,19 +141,26 @@ impl Course for ResetRipple {
             return none;
         }
         let fitted = drivers.claim.bias_deg_h + look.modes[0] / (n as f64).sqrt();
-        let Some((angle, _)) = sensed(fitted, drivers) else { return none };
-        let (low, high) = crate::numeric::range::ends(&angle);
+        let Some(angles) = sensed(fitted, drivers) else { return none };
+        let (low, high) = crate::numeric::range::ends(&angles.0);
+        let level = fast_level(look);
         let (mut period, mut found, mut looked) = (SHORTEST, vec![], 1.0);
         while period < (high - low) / 3.0 {
-            let turns = if (high - low) / period > 3e5 { 2 } else { 6 };
+            let turns = match (high - low) / period {
+                few if few < 3e4 => 6,
+                many if many < 3e5 => 2,
+                _ => 1,
+            };
             for k in -turns..=turns {
-                let bias = fitted + 0.5 * f64::from(k) * period / drivers.length_s();
-                let Some((angle, step)) = sensed(bias, drivers) else { continue };
-                let Some((gains, frequency)) = octave(period, &angle, &step, look) else { continue };
+                let other = 0.5 * f64::from(k) * period / drivers.length_s();
+                let Some((gains, frequency)) = octave(period, &angles, other * drivers.dt_s, level, look)
+                else {
+                    break;
+                };
                 looked += (high - low) / period * 0.5;
                 for j in peaks(&gains, 2, 6) {
                     let f = (j as f64 + summit(&gains, j)) * frequency;
-                    found.push((gains[j], vec![1.0 / f, bias]));
+                    found.push((gains[j], vec![1.0 / f, fitted + other]));
                 }
             }
             period *= 2.0;

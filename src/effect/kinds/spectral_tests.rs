@@ -29,7 +29,7 @@ fn simulated_spectra_have_the_density_that_fits_use() {
         let effect = find(kind).unwrap();
         let Model::Spectrum(spectrum) = effect.model() else { panic!("{kind}") };
         let mut model = Composite::from(white);
-        spectrum.compose(&fitted, &mut model);
+        spectrum.compose(&fitted, 1.0, &mut model);
         let mut power = vec![0.0; n];
         for run in 0..runs {
             let setup = Setup::for_record(run * 7 + 3, 1.0, n as u64);

@@ -139,7 +139,7 @@ impl Spectrum for UnobservedDriver {
     }
 
     /// Its course is simulated from knots: see [`Effect::stated_course`].
-    fn compose(&self, _fitted: &[f64], _noise: &mut Composite) {}
+    fn compose(&self, _fitted: &[f64], _dt_s: f64, _noise: &mut Composite) {}
 
     /// Times count from the first sample.
     fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {

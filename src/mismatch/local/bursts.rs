@@ -15,6 +15,11 @@ const LONGEST: usize = 512;
 const COVER: f64 = 0.1;
 /// Share of false groups among those set aside (Benjamini and Hochberg 1995).
 const FALSE_SHARE: f64 = 0.02;
+/// Length from which a group can be told from a smooth hump, and from a part of a stretch.
+const ROUGH: usize = 8;
+const WIDE: usize = 64;
+/// Humps up to which they are a course.
+const HUMPS: usize = 2;
 /// Groups by size of the table rate.
 const RATES: usize = 8;
 /// Efficiency of the median of absolute values as an estimate of a deviation.
@@ -107,17 +112,14 @@ pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Bursts> {
         taken[first..first + m].fill(true);
         groups.push((first, m));
     }
-    let groups = isolated(merged(&scan, groups, n), longest, n)?;
+    let groups = isolated(merged(&scan, groups, n), &scan, &flat, longest)?;
     let groups = unmoved(problem, groups);
     let (groups, p_value) = admitted(&scan, groups);
     if groups.is_empty() {
         return None;
     }
-    let samples: Vec<usize> = groups
-        .iter()
-        .flat_map(|(first, m)| *first..first + m)
-        .filter(|i| problem.usable.get(*i).copied().unwrap_or(false))
-        .collect();
+    let samples: Vec<usize> =
+        groups.iter().flat_map(|(first, m)| *first..first + m).filter(|i| flat.counts(problem, *i)).collect();
     let k = samples.len() as f64;
     let excess = samples.iter().map(|i| squares[*i]).sum::<f64>() / k;
     let gain = 0.5 * k * (excess - 1.0 - excess.ln());
@@ -174,8 +176,7 @@ fn squares(problem: &Problem, flat: &Flat) -> (Vec<f64>, f64) {
     let squares = (0..n)
         .map(|i| {
             let level = levels[i / stride].max(1e-12);
-            let usable = problem.usable.get(i).copied().unwrap_or(false);
-            if usable { sizes[i] * sizes[i] / (level * level + least * least) } else { 1.0 }
+            if flat.counts(problem, i) { sizes[i] * sizes[i] / (level * level + least * least) } else { 1.0 }
         })
         .collect();
     let dof = 1.0 / (spent + 1.0 / (EFFICIENCY * width as f64));
@@ -233,15 +234,50 @@ fn merged(scan: &Scan, mut groups: Vec<(usize, usize)>, n: usize) -> Vec<(usize,
     out
 }
 
-/// The groups that stand alone: not part of a longer stretch, and not everywhere.
-fn isolated(groups: Vec<(usize, usize)>, longest: usize, n: usize) -> Option<Vec<(usize, usize)>> {
+/// The groups that stand alone: no part of a longer stretch or of a smooth course, and not everywhere.
+fn isolated(
+    groups: Vec<(usize, usize)>,
+    scan: &Scan,
+    flat: &Flat,
+    longest: usize,
+) -> Option<Vec<(usize, usize)>> {
+    let n = flat.flat.len();
     let covered: usize = groups.iter().map(|g| g.1).sum();
     if covered as f64 > COVER * n as f64 {
         return None;
     }
-    let stretches: Vec<(usize, usize)> = groups.iter().copied().filter(|g| g.1 > longest).collect();
-    let near = |g: &(usize, usize)| stretches.iter().any(|s| g.0 < s.0 + 2 * s.1 && g.0 + g.1 + s.1 > s.0);
+    let smooth: Vec<bool> = groups.iter().map(|g| is_smooth(g, scan, flat)).collect();
+    // One or two humps are a course; many of one sign are outliers of one sign.
+    let humps = smooth.iter().filter(|s| **s).count() <= HUMPS;
+    let stretched = |g: &(usize, usize)| g.1 > longest || (g.1 >= WIDE && !rises(g, scan, n));
+    let others: Vec<(usize, usize)> =
+        groups.iter().zip(&smooth).filter(|(g, s)| stretched(g) || (humps && **s)).map(|(g, _)| *g).collect();
+    let near =
+        |g: &(usize, usize)| others.iter().any(|s| g.0 < s.0 + 2 * s.1 + 16 && g.0 + g.1 + s.1 + 16 > s.0);
     Some(groups.into_iter().filter(|g| !near(g)).collect())
+}
+
+/// Whether what a group holds is seen in its sums and not in its differences.
+fn is_smooth(group: &(usize, usize), scan: &Scan, flat: &Flat) -> bool {
+    let (first, m) = *group;
+    if m < ROUGH {
+        return false;
+    }
+    let inside = &flat.flat[first..first + m];
+    let square = inside.iter().map(|e| e * e).sum::<f64>() / m as f64;
+    let rough = inside.windows(2).map(|w| 0.5 * (w[1] - w[0]).powi(2)).sum::<f64>() / (m - 1) as f64;
+    let level = square / scan.ratio(first, m).max(1e-12);
+    rough - level < 0.4 * (square - level)
+}
+
+/// Whether a long group is louder than its neighbours on both sides.
+fn rises(group: &(usize, usize), scan: &Scan, n: usize) -> bool {
+    let (first, m) = *group;
+    let gap = m / 4;
+    let before = first.checked_sub(m + gap).map_or(0.0, |f| scan.ratio(f, m));
+    let after = if first + 2 * m + gap <= n { scan.ratio(first + m + gap, m) } else { 0.0 };
+    let here = scan.ratio(first, m);
+    crate::mismatch::departures::f_normal(here / before.max(after).max(1e-9), m as f64, m as f64) > 3.0
 }
 
 /// The groups without those at changes of the table's motion, if that is where groups are.

@@ -2,7 +2,7 @@
 
 use super::gamma::{Group, fit, mean_square, overdispersion};
 use super::rate_law::{RateLaw, rate_law};
-use super::time_level::{Form, over_time};
+use super::time_level::{DECAYS, Form, over_time};
 use super::{Flat, varies};
 use crate::effect::{Column, Domain, Place};
 use crate::estimate::chi_square_tail;
@@ -76,8 +76,7 @@ pub(super) struct Found {
 /// Every law of the level that says more than one level does, the best by BIC first.
 pub fn level(problem: &Problem, tried: &Tried) -> Vec<Level> {
     let flat = Flat::of(tried);
-    let usable = |i: &usize| problem.usable.get(*i).copied().unwrap_or(false);
-    let indices: Vec<usize> = (0..flat.flat.len()).filter(usable).collect();
+    let indices: Vec<usize> = (0..flat.flat.len()).filter(|i| flat.counts(problem, *i)).collect();
     if indices.len() < 8 * FEWEST {
         return vec![];
     }
@@ -105,17 +104,16 @@ fn rated(mut found: Found, flat: &Flat, indices: &[usize]) -> Option<Level> {
         Law::Time(knots) | Law::Column(_, knots) => knots.iter_mut().for_each(|k| k.1 /= root),
         Law::Rate { .. } => {}
     }
-    let (mut before, mut after, mut logs) = (0.0, 0.0, 0.0);
-    for i in indices {
-        let (e, g) = (flat.white[*i], found.profile[*i]);
-        before += e * e;
-        after += (e / g).powi(2);
-        logs += g.ln();
-    }
-    let count = indices.len() as f64;
-    let on_white = -logs - 0.5 * count * (after / before).ln();
-    // What the whitened residual does not show, or shows for another reason, is not counted.
-    let gain = found.gain.min(on_white);
+    let sample = |i: &usize| (flat.white[*i], found.profile[*i]);
+    let on_white = gain_of(indices.iter().map(sample));
+    let difference = |i: &usize| {
+        let last = i.checked_sub(1)?;
+        Some((flat.flat[*i] - flat.flat[last], (found.profile[*i] * found.profile[last]).sqrt()))
+    };
+    let on_differences = gain_of(indices.iter().filter_map(difference));
+    // What the whitened residual does not show, or shows for another reason, is not counted; nor is a smooth course,
+    // which differences do not have.
+    let gain = found.gain.min(on_white).min(on_differences);
     let tail = chi_square_tail(2.0 * gain.max(0.0) / found.dispersion, found.free as f64);
     let p_value = (LAWS * found.looked * tail).min(1.0);
     let keep = gain.is_finite() && gain > 0.5 * found.free as f64 && p_value < 0.05;
@@ -130,6 +128,18 @@ fn rated(mut found: Found, flat: &Flat, indices: &[usize]) -> Option<Level> {
         ci95: found.ci95,
         places: vec![found.place],
     })
+}
+
+/// Gain of log-likelihood of values by their relative deviations, each side with a level of its own.
+fn gain_of(values: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (mut before, mut after, mut logs, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for (e, g) in values {
+        before += e * e;
+        after += (e / g).powi(2);
+        logs += g.ln();
+        count += 1.0;
+    }
+    -logs - 0.5 * count * (after / before).ln()
 }
 
 /// Groups of samples of like values, with the mean value of each.
@@ -278,6 +288,7 @@ impl Form {
         let j = groups as f64;
         match self {
             Form::Line => (1, 1, 1.0),
+            Form::Decay(_) => (1, 2, DECAYS as f64),
             Form::Waves(k) => (k, k, 1.0),
             Form::Step(_) => (1, 2, j),
             Form::Stretch(..) => (1, 3, 16.0 * j),

@@ -7,6 +7,7 @@ pub mod bursts;
 mod gamma;
 pub mod level;
 mod rate_law;
+mod rivals;
 pub mod telegraph;
 mod time_level;
 mod two_level;
@@ -22,8 +23,15 @@ use crate::numeric::cosine::{dct2, inverse_dct2};
 
 /// Samples on either side of a running median: courses slower than this are none of a burst.
 const SLOW: usize = 64;
-/// Modes on either side over which the own spectrum is averaged.
-const SPECTRUM: usize = 12;
+/// Modes on either side over which the own spectrum is averaged where it stands out, and elsewhere: a narrow average
+/// follows chance, and dividing by it would smear what happens in time.
+const NARROW: usize = 12;
+const WIDE: usize = 250;
+/// Power of a narrow average over a wide one within which the wide one is taken.
+const EVEN: (f64, f64) = (0.4, 2.0);
+/// Levelled power from which the ends of the record show the leakage of cosine modes, and how far.
+const STRONG: f64 = 8.0;
+const ENDS: usize = 64;
 /// A median of absolute values over the deviation of a normal law.
 const MEDIAN: f64 = 0.674_489_750_196_082;
 
@@ -35,6 +43,8 @@ pub struct Flat {
     pub flat: Vec<f64>,
     /// What a deviation of 1 deg/h of one sample is in `flat`.
     pub per_deg_h: f64,
+    /// Samples at either end that say nothing of single samples.
+    pub ends: usize,
 }
 
 impl Flat {
@@ -46,12 +56,24 @@ impl Flat {
         // Few large values must not be what the spectrum is levelled by.
         let bound = 4.0 * deviation(&fast);
         let clipped: Vec<f64> = fast.iter().map(|e| e.clamp(-bound, bound)).collect();
-        let powers = smooth(&dct2(&clipped).iter().map(|u| u * u).collect::<Vec<f64>>());
+        let squares: Vec<f64> = dct2(&clipped).iter().map(|u| u * u).collect();
+        let (narrow, wide) = (smooth(&squares, NARROW), smooth(&squares, WIDE));
+        let even = |(p, w): (&f64, &f64)| if *p > EVEN.0 * w && *p < EVEN.1 * w { *w } else { *p };
+        let powers: Vec<f64> = narrow.iter().zip(&wide).map(even).collect();
+        let level = median(&mut powers.clone());
+        let strong = powers.iter().any(|p| *p > STRONG * level);
         let modes: Vec<f64> = dct2(&fast).iter().zip(&powers).map(|(u, p)| u / p.max(1e-12).sqrt()).collect();
         let n = modes.len().max(2);
         let gains = white.roots.iter().zip(&powers).skip(1).map(|(r, p)| 1.0 / (r * p.max(1e-12).sqrt()));
         let per_deg_h = gains.sum::<f64>() / (n - 1) as f64;
-        Flat { white: white.series, flat: inverse_dct2(&modes), per_deg_h }
+        let ends = if strong { ENDS.min(n / 16) } else { 0 };
+        Flat { white: white.series, flat: inverse_dct2(&modes), per_deg_h, ends }
+    }
+
+    /// True for a sample that counts.
+    fn counts(&self, problem: &Problem, i: usize) -> bool {
+        let inside = i >= self.ends && i + self.ends < self.flat.len();
+        inside && problem.usable.get(i).copied().unwrap_or(false)
     }
 }
 
@@ -70,7 +92,7 @@ fn median(values: &mut [f64]) -> f64 {
 }
 
 /// Running mean of the powers of modes; mode 0 stays out.
-fn smooth(powers: &[f64]) -> Vec<f64> {
+fn smooth(powers: &[f64], half: usize) -> Vec<f64> {
     let n = powers.len();
     let mut sums = vec![0.0];
     let mut sum = 0.0;
@@ -80,7 +102,7 @@ fn smooth(powers: &[f64]) -> Vec<f64> {
     }
     (0..n)
         .map(|k| {
-            let (from, to) = (k.saturating_sub(SPECTRUM).max(1), (k + SPECTRUM + 1).min(n));
+            let (from, to) = (k.saturating_sub(half).max(1), (k + half + 1).min(n));
             if to > from { (sums[to] - sums[from]) / (to - from) as f64 } else { 1.0 }
         })
         .collect()

@@ -20,7 +20,7 @@ const WIDEST: f64 = 5.0;
 
 /// Fits the law to groups with mean |Ω| in `sizes`.
 pub fn rate_law(groups: &[Group], sizes: &[f64], largest: f64) -> Option<RateLaw> {
-    if !(largest > 0.0) || groups.len() < 4 {
+    if largest <= 0.0 || groups.len() < 4 {
         return None;
     }
     let one = |exponent: u8| {
@@ -28,10 +28,10 @@ pub fn rate_law(groups: &[Group], sizes: &[f64], largest: f64) -> Option<RateLaw
         let value = |log_ratio: f64| likelihood(groups, &shares, log_ratio);
         let steps = (0..=40).map(|i| WIDEST * (f64::from(i) / 20.0 - 1.0));
         let start = steps.max_by(|a, b| value(*a).total_cmp(&value(*b)))?;
-        let at = maximum(&value, start - 0.25, start + 0.25);
+        let at = maximum(value, start - 0.25, start + 0.25);
         let top = value(at);
         // χ²₁ at 95 % is 3.841.
-        let end = |side: f64| crossing(&value, at, side * 2.0 * WIDEST, top - 0.5 * 3.841_459);
+        let end = |side: f64| crossing(value, at, side * 2.0 * WIDEST, top - 0.5 * 3.841_459);
         let ci95 = [end(-1.0).exp(), end(1.0).exp()];
         Some(RateLaw { ratio: at.exp(), exponent, ci95, gain: top - value(0.0) })
     };

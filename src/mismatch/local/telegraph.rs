@@ -1,15 +1,15 @@
 //! Jumps back and forth between two levels.
 //!
 //! A two-level path is sought in averages of several lengths and judged by generalised least squares under the noise of
-//! the hypothesis, less what it takes to write the path down. A process with the same spectrum gains by its spectrum
+//! the hypothesis, less what it takes to write the path down and with what other paths hold. A process with the same spectrum gains by its spectrum
 //! alone; only what the path gains beyond that tells two levels from it.
 
-use super::two_level::{Chain, path_cost};
-use crate::effect::{EFFECTS, Model, SpectralLook, SpectrumAct, averages};
-use crate::estimate::chi_square_quantile;
+use super::rivals::{freed, line, rival};
+use super::two_level::Chain;
+use crate::effect::{EFFECTS, averages};
 use crate::mismatch::candidates::Tried;
 use crate::mismatch::hypothesis::{Normal, kept, part_modes};
-use crate::mismatch::noise_fit::{self, SpectrumIn};
+use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::problem::Problem;
 use crate::numeric::cosine::{dct2, inverse_dct2};
 
@@ -18,10 +18,17 @@ const MOST: usize = 65_536;
 const LEAST: usize = 64;
 /// Jumps below which a course is none of this kind: a level that leaves and returns has two.
 const JUMPS: usize = 3;
-/// Turns of Baum-Welch.
-const TURNS: usize = 25;
+/// Gain by a Markov process below which there is no telegraph signal either.
+const LEAST_GAIN: f64 = 8.0;
+/// Turns of Baum-Welch for each start, and for the best in each round.
+const FIRST_TURNS: usize = 5;
+const TURNS: usize = 15;
 /// Turns of path and background.
 const ROUNDS: usize = 3;
+/// Turns of background and levels at the end.
+const SETTLING: usize = 8;
+/// Averages in the shortest period of a drift.
+const SLOWEST: usize = 64;
 
 /// Jumps between two levels.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +45,7 @@ pub struct Telegraph {
     pub dwell_ci95: [f64; 2],
     /// Jumps.
     pub jumps: usize,
-    /// Gain of log-likelihood less the cost of the path.
+    /// Gain of log-likelihood, the path not known beforehand.
     pub gain: f64,
     /// Gain of the best single process in its place: a Markov process, or flicker or random walk set free.
     pub rival_gain: f64,
@@ -52,6 +59,8 @@ pub struct Telegraph {
 struct Ground<'a> {
     problem: &'a Problem,
     tried: &'a Tried,
+    /// The noise of the hypothesis as it is beside a process with the spectrum of a telegraph signal.
+    noise: Noise,
     residual: Vec<f64>,
     inverse: Vec<f64>,
     columns: Vec<(Vec<f64>, f64)>,
@@ -61,18 +70,19 @@ struct Ground<'a> {
     white: f64,
 }
 
+/// A path that was judged.
 struct Judged {
     path: Vec<bool>,
-    amplitude: f64,
+    background: Vec<f64>,
+    /// Deviation of the amplitude for that path, deg/h.
     deviation: f64,
     gain: f64,
     chain: Chain,
     averaged: usize,
-    looks: f64,
 }
 
 impl<'a> Ground<'a> {
-    fn new(problem: &'a Problem, tried: &'a Tried) -> Ground<'a> {
+    fn new(problem: &'a Problem, tried: &'a Tried, noise: Noise) -> Ground<'a> {
         let scene = &problem.scenes.full;
         let courses = &tried.hypothesis.courses;
         let mut columns: Vec<(Vec<f64>, f64)> =
@@ -80,13 +90,14 @@ impl<'a> Ground<'a> {
         for part in part_modes(scene, courses) {
             columns.extend(part.free.into_iter().chain(part.beside).map(|c| (c, f64::INFINITY)));
         }
-        let powers = &tried.fit.powers;
+        let powers = scene.powers(&noise.densities(scene));
         let mut high: Vec<f64> = powers[powers.len() / 2..].to_vec();
         let white = super::median(&mut high);
         let slow = powers.iter().map(|p| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 });
         Ground {
             problem,
             tried,
+            noise,
             residual: inverse_dct2(&tried.fit.mean.residual),
             inverse: powers.iter().map(|p| 1.0 / p).collect(),
             columns,
@@ -109,101 +120,172 @@ impl<'a> Ground<'a> {
         let data = &self.tried.fit.mean.residual;
         let old: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, d)| (c.as_slice(), *d)).collect();
         let before = Normal::new(&old, data, &self.inverse);
-        let left = before.solve().2;
-        let (c, covariance, after) = before.with(&old, &[&modes], data, false, &self.inverse).solve();
+        let (c, covariance, _) = before.with(&old, &[&modes], data, false, &self.inverse).solve();
         let at = old.len();
+        let mut rest = data.clone();
+        let columns = old.iter().map(|o| o.0).chain([modes.as_slice()]);
+        for (column, x) in columns.zip(&c) {
+            rest.iter_mut().zip(column).for_each(|(r, z)| *r -= x * z);
+        }
+        let scene = &self.problem.scenes.full;
+        let mut noise = self.noise.clone();
+        let fit = noise_fit::fit(&mut noise, scene, &scene.observed(&rest));
         let variance = if covariance.nrows() > at { covariance[(at, at)] } else { 0.0 };
-        (c.get(at).copied().unwrap_or(0.0), variance.max(0.0).sqrt(), 0.5 * (left - after))
+        let gain = fit.log_likelihood - self.tried.fit.noise.log_likelihood;
+        (c.get(at).copied().unwrap_or(0.0), variance.max(0.0).sqrt(), gain)
     }
 
-    /// Paths from one start in averages of `m`; the best by gain less cost.
-    fn search(&self, m: usize, start: Chain) -> Option<Judged> {
+    /// What is slower than any dwell that averages of `m` are looked at for.
+    fn drift(&self, m: usize) -> Vec<f64> {
+        let last = self.residual.len() / (SLOWEST * m);
+        let modes = self.tried.fit.mean.residual.iter().zip(&self.slow).enumerate();
+        let modes: Vec<f64> = modes.map(|(k, (x, s))| if k <= last { x * s } else { 0.0 }).collect();
+        inverse_dct2(&modes)
+    }
+
+    /// The best path in averages of `m`, from starts of its own and from a path in longer averages.
+    fn search(&self, m: usize, longer: Option<&Judged>) -> Option<Judged> {
         let n = self.residual.len();
-        let mut background = vec![0.0; n];
-        let mut chain = start;
+        let white = self.white / m as f64;
+        let mut background = longer.map_or_else(|| self.drift(m), |j| j.background.clone());
+        let mut values = self.values(&background, m);
+        let mut chains = starts(&values, white);
+        chains.extend(longer.map(|j| j.chain.finer(j.averaged / m)));
+        let mut chain = chains
+            .into_iter()
+            .map(|c| (0..FIRST_TURNS).fold(c, |c, _| c.improved(&values, 0.5 * white)))
+            .max_by(|a, b| a.log_likelihood(&values).total_cmp(&b.log_likelihood(&values)))?;
         let mut best: Option<Judged> = None;
         for _ in 0..ROUNDS {
-            let rest: Vec<f64> = self.residual.iter().zip(&background).map(|(r, b)| r - b).collect();
-            let values = averages(&rest, m);
-            let floor = 0.5 * self.white / m as f64;
-            for _ in 0..TURNS {
-                chain = chain.improved(&values, floor);
-            }
-            let short = chain.path(&values);
-            let (cost, jumps) = path_cost(&short);
+            chain = (0..TURNS).fold(chain, |c, _| c.improved(&values, 0.5 * white));
+            // Slow noise about the levels would make paths look less certain than they are.
+            let sharp = Chain { variance: chain.variance.min(white), ..chain };
+            let (short, joint) = sharp.path(&values);
+            let jumps = short.windows(2).filter(|w| w[0] != w[1]).count();
             if jumps < JUMPS {
                 break;
             }
             let path: Vec<bool> =
                 (0..n).map(|i| short.get((i / m).min(short.len() - 1)).copied().unwrap_or(false)).collect();
             let (amplitude, deviation, gain) = self.amplitude(&path);
-            let gain = gain - cost;
-            let course: Vec<f64> = path.iter().map(|p| amplitude * f64::from(u8::from(*p))).collect();
-            let improved = best.as_ref().is_none_or(|b| gain > b.gain + 0.1);
-            if improved {
-                let looks = (values.len() as f64).ln();
-                best = Some(Judged { path, amplitude, deviation, gain, chain, averaged: m, looks });
-            } else {
+            // P(values) = P(values, path)/P(path | values): what other paths hold counts as well.
+            let gain = gain - sharp.path_cost(&short) + (sharp.log_likelihood(&values) - joint);
+            if best.as_ref().is_some_and(|b| gain < b.gain + 0.1) {
                 break;
             }
+            let course: Vec<f64> = path.iter().map(|p| amplitude * f64::from(u8::from(*p))).collect();
+            let next = self.background(&course);
+            best = Some(Judged { path, background, deviation, gain, chain, averaged: m });
             if self.slow.iter().all(|s| *s < 0.02) {
                 break;
             }
-            background = self.background(&course);
+            values = self.values(&next, m);
+            background = next;
         }
         best
+    }
+
+    /// Averages of the residual without a background.
+    fn values(&self, background: &[f64], m: usize) -> Vec<f64> {
+        averages(&self.residual.iter().zip(background).map(|(r, b)| r - b).collect::<Vec<f64>>(), m)
     }
 }
 
 /// Looks for a telegraph signal in the residual of a hypothesis.
 pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
-    let ground = Ground::new(problem, tried);
-    let n = ground.residual.len();
-    let mut m = n.div_ceil(MOST).max(1);
-    let mut found: Vec<Judged> = vec![];
-    let mut lengths = 0.0f64;
-    while n / m >= LEAST {
-        lengths += 1.0;
-        let values = averages(&ground.residual, m);
-        for start in starts(&values, ground.white / m as f64) {
-            found.extend(ground.search(m, start));
-        }
+    let n = problem.residual.len();
+    // Its spectrum is that of a Markov process: without a gain by one there is nothing to look for.
+    let (markov, noise) = rival(problem, tried, &["markov_long", "markov_short"])?;
+    if markov < LEAST_GAIN {
+        return None;
+    }
+    let ground = Ground::new(problem, tried, noise);
+    let finest = n.div_ceil(MOST).max(1);
+    let mut m = finest;
+    while n / (4 * m) >= LEAST {
         m *= 4;
     }
-    let best = found.into_iter().filter(|j| j.gain > 0.0).max_by(|a, b| a.gain.total_cmp(&b.gain))?;
-    let jumps = best.path.windows(2).filter(|w| w[0] != w[1]).count();
-    let rival_gain = rival(problem, tried);
-    // A path and its numbers written down in `gain` nats less than the noise needs has a probability below e^−gain
-    // (Kraft); each of the three numbers is written to its own precision, ½ ln M nats.
-    let beyond = best.gain - 1.5 * best.looks;
-    let log_p = lengths.ln() - beyond;
-    let log_rival = rival_gain - best.gain;
-    let p_value = log_p.max(log_rival).min(0.0).exp().max(1e-300);
-    let step = best.averaged as f64 * problem.drivers.dt_s;
-    let mean_dwell_s = dwell(&best.chain, step);
-    let share = best.path.iter().filter(|p| **p).count() as f64 / n as f64;
-    // Of J jumps in a fixed time, by the χ² law of a Poisson count.
-    let count = jumps as f64;
-    let longest = 2.0 * count / chi_square_quantile(0.025, 2.0 * count);
-    let shortest = 2.0 * count / chi_square_quantile(0.975, 2.0 * count + 2.0);
-    let half = 1.959_964 * best.deviation;
-    let size = best.amplitude.abs();
-    Some(Telegraph {
-        path: best.path.iter().map(|p| f64::from(u8::from(*p)) - share).collect(),
-        amplitude_deg_h: size,
-        amplitude_ci95: [(size - half).max(0.0), size + half],
-        mean_dwell_s,
-        dwell_ci95: [mean_dwell_s * shortest, mean_dwell_s * longest],
-        jumps,
-        gain: best.gain,
-        rival_gain,
-        parameters: 3,
-        p_value,
-    })
+    let mut lengths = 0.0f64;
+    let mut best: Option<Judged> = None;
+    loop {
+        lengths += 1.0;
+        let found = ground.search(m, best.as_ref());
+        if let Some(found) = found.filter(|f| best.as_ref().is_none_or(|b| f.gain > b.gain)) {
+            best = Some(found);
+        }
+        if m <= finest {
+            break;
+        }
+        m /= 4;
+    }
+    let best = best.filter(|b| b.gain > 0.0)?;
+    let others: Vec<&str> = EFFECTS.iter().map(|e| e.kind()).filter(|k| !k.starts_with("markov")).collect();
+    let rival_gain = markov
+        .max(rival(problem, tried, &others).map_or(0.0, |r| r.0))
+        .max(freed(problem, tried))
+        .max(line(tried));
+    // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
+    // fitted, ½ ln M nats.
+    let log_p = lengths.ln() + 1.5 * ((n / best.averaged) as f64).ln() - best.gain;
+    let p_value = log_p.max(rival_gain - best.gain).min(0.0).exp().max(1e-300);
+    Some(ground.told(best, rival_gain, p_value))
+}
+
+impl Ground<'_> {
+    /// Size and dwell of the best path with their intervals.
+    fn told(&self, mut best: Judged, rival_gain: f64, p_value: f64) -> Telegraph {
+        let n = self.residual.len();
+        let mut values = self.values(&best.background, best.averaged);
+        // Background and levels in turns, each given the other, from the levels for a known path.
+        let coloured = self.slow.iter().any(|s| *s >= 0.02);
+        let (known, _, _) = self.amplitude(&best.path);
+        let mut size = known.abs();
+        for _ in 0..if coloured { SETTLING } else { 0 } {
+            let short = best.chain.posterior(&values);
+            let last = short.len().saturating_sub(1);
+            let up = best.chain.levels[1] > best.chain.levels[0];
+            let sign = if up { 1.0 } else { -1.0 };
+            let at = |i: usize| short.get((i / best.averaged).min(last)).copied().unwrap_or(0.0);
+            let course: Vec<f64> = (0..n).map(|i| sign * size * at(i)).collect();
+            values = self.values(&self.background(&course), best.averaged);
+            best.chain = (0..TURNS)
+                .fold(best.chain, |c, _| c.improved(&values, 0.5 * self.white / best.averaged as f64));
+            size = (best.chain.levels[1] - best.chain.levels[0]).abs();
+        }
+        let step = best.averaged as f64 * self.problem.drivers.dt_s;
+        let jumps = best.path.windows(2).filter(|w| w[0] != w[1]).count();
+        let up = best.path.iter().filter(|p| **p).count() as f64;
+        let share = up / n as f64;
+        size = (best.chain.levels[1] - best.chain.levels[0]).abs();
+        let (on_chain, log_dwell) = best.chain.deviations(&values).unwrap_or((best.deviation, 1.0));
+        // The path is uncertain for a known background, and the background for a known path.
+        let in_white = self.white / (n as f64 * share * (1.0 - share)).max(1.0);
+        let spread = on_chain.powi(2) + (best.deviation.powi(2) - in_white).max(0.0);
+        // A sample in which a jump falls lies between the levels: of dwells of few samples, part is unseen.
+        let jumping = 1.0 / best.chain.dwell();
+        let half = 1.959_964 * (spread + (0.25 * size * jumping).powi(2)).sqrt();
+        let mean_dwell_s = best.chain.dwell() * step;
+        let factor = (1.959_964 * log_dwell.hypot(0.7 * jumping)).exp();
+        Telegraph {
+            path: best.path.iter().map(|p| f64::from(u8::from(*p)) - share).collect(),
+            amplitude_deg_h: size,
+            amplitude_ci95: [(size - half).max(0.0), size + half],
+            mean_dwell_s,
+            dwell_ci95: [mean_dwell_s / factor, mean_dwell_s * factor],
+            jumps,
+            gain: best.gain,
+            rival_gain,
+            parameters: 3,
+            p_value,
+        }
+    }
 }
 
 /// Levels at the quarters and at the tenths of the values, with long and short dwells.
 fn starts(values: &[f64], white: f64) -> Vec<Chain> {
+    if values.is_empty() {
+        return vec![];
+    }
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share) as usize];
@@ -218,50 +300,4 @@ fn starts(values: &[f64], white: f64) -> Vec<Chain> {
         }
     }
     out
-}
-
-/// Mean time at a level from the probabilities of change in a step.
-fn dwell(chain: &Chain, step_s: f64) -> f64 {
-    let [a, b] = chain.change;
-    let sum = (a + b).clamp(1e-12, 0.999);
-    // Changes within a step go unseen: rates follow from the relaxation of the chain.
-    let rate = -(1.0 - sum).ln() / (step_s * sum);
-    0.5 * (1.0 / (rate * a) + 1.0 / (rate * b))
-}
-
-/// Gain of the best single process: every spectral effect that adds to low frequencies, and B and K set free.
-fn rival(problem: &Problem, tried: &Tried) -> f64 {
-    let scene = &problem.scenes.full;
-    let observed = scene.observed(&tried.fit.mean.residual);
-    let before = tried.fit.noise.log_likelihood;
-    let look = SpectralLook {
-        bins: &scene.bins,
-        observed: &observed,
-        expected: &tried.fit.densities,
-        lattice_arcsec: problem.scenes.lattice_arcsec,
-    };
-    let mut best = 0.0f64;
-    for effect in EFFECTS.iter().filter(|e| ["markov_long", "markov_short"].contains(&e.kind())) {
-        let Model::Spectrum(spectrum) = effect.model() else { continue };
-        if spectrum.act() != SpectrumAct::Adds {
-            continue;
-        }
-        let bounds = spectrum.bounds(&look);
-        for start in spectrum.starts(&look) {
-            let mut noise = tried.hypothesis.noise.clone();
-            let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
-            noise.spectra.push(SpectrumIn { effect: *effect, fitted, stated: false });
-            best = best.max(noise_fit::fit(&mut noise, scene, &observed).log_likelihood - before);
-        }
-    }
-    for i in 1..3 {
-        for level in [1.0, 6.0, 33.0, 200.0] {
-            let mut noise = tried.hypothesis.noise.clone();
-            let beside = (noise.base[0] * 0.01).max(1e-9);
-            noise.base[i] = noise.base[i].max(beside) * level;
-            noise.freed[i] = true;
-            best = best.max(noise_fit::fit(&mut noise, scene, &observed).log_likelihood - before);
-        }
-    }
-    best
 }

@@ -14,11 +14,17 @@ const FEWEST: usize = 16;
 /// Fewest samples on a side of a change.
 const SIDE: f64 = 48.0;
 
+/// Time constants of a decay that are tried, and the shortest as a share of the record; each 1.5 times the last.
+pub(super) const DECAYS: usize = 10;
+const SHORTEST: f64 = 0.02;
+
 /// A form of ln g over time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Form {
     /// A line from the beginning to the end.
     Line,
+    /// A decay from the beginning, by time constant.
+    Decay(usize),
     /// A series of cosines of that order.
     Waves(usize),
     /// A change before a group.
@@ -35,6 +41,10 @@ impl Form {
         let turn = |i: usize, k: usize| PI * k as f64 * (i as f64 + 0.5) / groups as f64;
         match self {
             Form::Line => vec![column(&|i| 2.0 * (i as f64 + 0.5) / groups as f64 - 1.0)],
+            Form::Decay(k) => {
+                let time = SHORTEST * 1.5f64.powf(k as f64);
+                vec![column(&|i| (-(i as f64 + 0.5) / (groups as f64 * time)).exp())]
+            }
             Form::Waves(order) => (1..=order).map(|k| column(&|i| turn(i, k).cos())).collect(),
             Form::Step(at) => vec![column(&|i| f64::from(u8::from(i >= at)))],
             Form::Stretch(from, to) => vec![column(&|i| f64::from(u8::from(i >= from && i < to)))],
@@ -60,6 +70,7 @@ pub(super) fn over_time(problem: &Problem, flat: &Flat, indices: &[usize]) -> Op
         .collect();
     let j = groups.len();
     let mut forms = vec![Form::Line, Form::Waves(2), Form::Waves(4), Form::Waves(8)];
+    forms.extend((0..DECAYS).map(Form::Decay));
     forms.extend(changes(&groups));
     forms.extend(period(&groups));
     let rows = (indices.len() as f64).ln();

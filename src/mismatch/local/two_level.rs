@@ -1,5 +1,7 @@
 //! A hidden Markov chain of two levels in white noise: Baum-Welch for its numbers, Viterbi for its path.
 
+use nalgebra::DMatrix;
+
 /// The numbers of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chain {
@@ -25,11 +27,10 @@ impl Chain {
         d.map(|x| (x - top).exp().max(1e-300))
     }
 
-    /// One turn of Baum-Welch. The variance stays at or above `floor`.
-    pub fn improved(&self, values: &[f64], floor: f64) -> Chain {
-        let n = values.len();
+    /// Probability of each level at each value, given the values up to it.
+    fn forward(&self, values: &[f64]) -> Vec<[f64; 2]> {
         let stay = [1.0 - self.change[0], 1.0 - self.change[1]];
-        let mut forward: Vec<[f64; 2]> = Vec::with_capacity(n);
+        let mut forward: Vec<[f64; 2]> = Vec::with_capacity(values.len());
         let mut last = self.standing();
         for (i, y) in values.iter().enumerate() {
             let w = self.weights(*y);
@@ -43,6 +44,33 @@ impl Chain {
             last = [a[0] / sum, a[1] / sum];
             forward.push(last);
         }
+        forward
+    }
+
+    /// Probability of the upper level at each value, given all.
+    pub fn posterior(&self, values: &[f64]) -> Vec<f64> {
+        let forward = self.forward(values);
+        let mut out = vec![0.0; values.len()];
+        let mut back = [1.0, 1.0];
+        for i in (0..values.len()).rev() {
+            let p = [forward[i][0] * back[0], forward[i][1] * back[1]];
+            out[i] = p[1] / (p[0] + p[1]).max(1e-300);
+            let w = self.weights(values[i]);
+            let next = [
+                (1.0 - self.change[0]) * w[0] * back[0] + self.change[0] * w[1] * back[1],
+                self.change[1] * w[0] * back[0] + (1.0 - self.change[1]) * w[1] * back[1],
+            ];
+            let scale = next[0].max(next[1]).max(1e-300);
+            back = [next[0] / scale, next[1] / scale];
+        }
+        out
+    }
+
+    /// One turn of Baum-Welch. The variance stays at or above `floor`.
+    pub fn improved(&self, values: &[f64], floor: f64) -> Chain {
+        let n = values.len();
+        let stay = [1.0 - self.change[0], 1.0 - self.change[1]];
+        let forward = self.forward(values);
         let mut back = [1.0, 1.0];
         let (mut mass, mut sum, mut square) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         let (mut changes, mut left) = ([0.0; 2], [0.0; 2]);
@@ -88,8 +116,101 @@ impl Chain {
         out
     }
 
-    /// The most probable path.
-    pub fn path(&self, values: &[f64]) -> Vec<bool> {
+    /// The same chain in steps `times` shorter.
+    pub fn finer(&self, times: usize) -> Chain {
+        let f = times.max(1) as f64;
+        Chain { variance: self.variance * f, change: self.change.map(|c| c / f), ..*self }
+    }
+
+    /// Mean time at a level, in steps. Changes within a step go unseen: rates follow from the relaxation of the chain.
+    pub fn dwell(&self) -> f64 {
+        let [a, b] = self.change;
+        let sum = (a + b).clamp(1e-12, 0.999);
+        let rate = -(-sum).ln_1p() / sum;
+        0.5 * (1.0 / (rate * a) + 1.0 / (rate * b))
+    }
+
+    /// −ln of the probability of a path.
+    pub fn path_cost(&self, path: &[bool]) -> f64 {
+        let first = path.first().map_or(0.0, |p| self.standing()[usize::from(*p)].ln());
+        let step = |w: &[bool]| {
+            let change = self.change[usize::from(w[0])];
+            if w[0] == w[1] { (-change).ln_1p() } else { change.ln() }
+        };
+        -first - path.windows(2).map(step).sum::<f64>()
+    }
+
+    /// Standard deviations of the difference of the levels and of the logarithm of the mean dwell, from the curvature
+    /// of the likelihood; `None` where it has no top there.
+    pub fn deviations(&self, values: &[f64]) -> Option<(f64, f64)> {
+        const P: usize = 5;
+        let n = values.len() as f64;
+        let changes = (n / self.dwell()).max(1.0);
+        let steps = [
+            (2.0 * self.variance / n).sqrt(),
+            (2.0 * self.variance / n).sqrt(),
+            0.5 / changes.sqrt(),
+            0.5 / changes.sqrt(),
+            1.0 / n.sqrt(),
+        ];
+        let moved = |x: [f64; P]| Chain {
+            levels: [self.levels[0] + x[0], self.levels[1] + x[1]],
+            change: [(self.change[0] * x[2].exp()).min(0.999), (self.change[1] * x[3].exp()).min(0.999)],
+            variance: self.variance * x[4].exp(),
+        };
+        let value = |i: usize, a: f64, j: usize, b: f64| {
+            let mut x = [0.0; P];
+            x[i] += a * steps[i];
+            x[j] += b * steps[j];
+            moved(x).log_likelihood(values)
+        };
+        let top = self.log_likelihood(values);
+        let curvature = DMatrix::from_fn(P, P, |i, j| {
+            let second = if i == j {
+                value(i, 1.0, i, 0.0) + value(i, -1.0, i, 0.0) - 2.0 * top
+            } else {
+                let same = value(i, 1.0, j, 1.0) + value(i, -1.0, j, -1.0);
+                0.25 * (same - value(i, 1.0, j, -1.0) - value(i, -1.0, j, 1.0))
+            };
+            -second / (steps[i] * steps[j])
+        });
+        let covariance = curvature.cholesky()?.inverse();
+        let size = covariance[(0, 0)] + covariance[(1, 1)] - 2.0 * covariance[(0, 1)];
+        let slope = |i: usize| {
+            let mut x = [0.0; P];
+            x[i] = 1e-4;
+            (moved(x).dwell() / self.dwell()).ln() / 1e-4
+        };
+        let (a, b) = (slope(2), slope(3));
+        let dwell =
+            a * a * covariance[(2, 2)] + b * b * covariance[(3, 3)] + 2.0 * a * b * covariance[(2, 3)];
+        Some((size.max(0.0).sqrt(), dwell.max(0.0).sqrt()))
+    }
+
+    /// ln of the probability of the values, whatever the path.
+    pub fn log_likelihood(&self, values: &[f64]) -> f64 {
+        let stay = [1.0 - self.change[0], 1.0 - self.change[1]];
+        let mut state = self.standing();
+        let mut sum = -0.5 * values.len() as f64 * (std::f64::consts::TAU * self.variance).ln();
+        for (i, y) in values.iter().enumerate() {
+            if i > 0 {
+                state = [
+                    state[0] * stay[0] + state[1] * self.change[1],
+                    state[0] * self.change[0] + state[1] * stay[1],
+                ];
+            }
+            let d = self.levels.map(|l| -(y - l) * (y - l) / (2.0 * self.variance));
+            let top = d[0].max(d[1]);
+            let w = d.map(|x| (x - top).exp());
+            let total = (state[0] * w[0] + state[1] * w[1]).max(1e-300);
+            state = [state[0] * w[0] / total, state[1] * w[1] / total];
+            sum += top + total.ln();
+        }
+        sum
+    }
+
+    /// The most probable path, and ln of the probability of it and the values together.
+    pub fn path(&self, values: &[f64]) -> (Vec<bool>, f64) {
         let log = |p: f64| p.max(1e-300).ln();
         let stay = [log(1.0 - self.change[0]), log(1.0 - self.change[1])];
         let change = [log(self.change[0]), log(self.change[1])];
@@ -108,30 +229,16 @@ impl Chain {
             came.push([b > a, d >= c]);
             score = [a.max(b) + e[0], c.max(d) + e[1]];
         }
+        let constant = 0.5 * values.len() as f64 * (std::f64::consts::TAU * self.variance).ln();
+        let joint = score[0].max(score[1]) - constant;
         let mut up = score[1] > score[0];
         let mut out = vec![false; values.len()];
         for i in (0..values.len()).rev() {
             out[i] = up;
             up = came[i][usize::from(up)];
         }
-        out
+        (out, joint)
     }
-}
-
-/// −ln of the probability of a path under its own rates of change, and its jumps.
-pub fn path_cost(path: &[bool]) -> (f64, usize) {
-    let mut stays = [[0.0f64; 2]; 2];
-    for w in path.windows(2) {
-        stays[usize::from(w[0])][usize::from(w[1])] += 1.0;
-    }
-    let mut cost = std::f64::consts::LN_2;
-    for row in stays {
-        let sum = row[0] + row[1];
-        for count in row.into_iter().filter(|c| *c > 0.0) {
-            cost -= count * (count / sum).ln();
-        }
-    }
-    (cost, (stays[0][1] + stays[1][0]) as usize)
 }
 
 #[cfg(test)]
@@ -149,13 +256,17 @@ mod tests {
         for _ in 0..40 {
             chain = chain.improved(&values, 1e-4);
         }
-        assert_eq!(chain.path(&values), path);
+        let (found, joint) = chain.path(&values);
+        assert_eq!(found, path);
+        // Nearly all of the probability is that path's.
+        let all = chain.log_likelihood(&values);
+        assert!(all >= joint && all - joint < 0.05, "{all} {joint}");
         assert!((chain.levels[1] - chain.levels[0] - 1.0).abs() < 1e-3, "{chain:?}");
         assert!((chain.variance - 0.04).abs() < 1e-3, "{chain:?}");
-        let (cost, jumps) = path_cost(&path);
-        assert_eq!(jumps, 9);
-        // Binary entropies: 450 steps from below with 5 changes, 449 from above with 4.
-        let h = |n: f64, k: f64| -(k * (k / n).ln() + (n - k) * ((n - k) / n).ln());
-        assert!((cost - (h(450.0, 5.0) + h(449.0, 4.0) + 2f64.ln())).abs() < 1e-9);
+        let fair = Chain { change: [0.01, 0.02], ..chain };
+        // Begun below, where it stands two thirds of the time; five changes up in 450 steps, four down in 449.
+        let cost = -((2.0f64 / 3.0).ln() + 5.0 * 0.01f64.ln() + 4.0 * 0.02f64.ln());
+        let stays = -(445.0 * 0.99f64.ln() + 445.0 * 0.98f64.ln());
+        assert!((fair.path_cost(&path) - cost - stays).abs() < 1e-9);
     }
 }

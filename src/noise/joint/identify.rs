@@ -1,6 +1,7 @@
 //! Identification with every kind of term.
 
 use super::search::{all_free, best_of};
+use super::slow::{Slow, long_markov};
 use super::{
     BASE, ExtraThresholds, Extras, Free, Joint, JointPoint, JointProfile, Kind, Shape, Variable, find_extras,
     parameter_covariance,
@@ -12,11 +13,13 @@ use crate::noise::evidence::Evidence;
 use crate::noise::fit::RAMP;
 use crate::noise::identify::{
     IDS, Identification, Identify, LIMIT_COVERAGE, LIMIT_RISE, METHOD, MarkovFound, PRICE,
-    QuasiPeriodicFound, Whittle, low_frequency_note, rival_of,
+    QuasiPeriodicFound, RIVALRY, SUSPICION, Whittle, is_told, low_frequency_note, rival_of, suspects,
+    with_rivals,
 };
 use crate::noise::misfit::Misfit;
 use crate::noise::model::TERMS;
 use crate::noise::profile::wider;
+use crate::noise::slow_terms::{B, K, R, holds};
 use std::f64::consts::PI;
 
 /// Maximum Whittle likelihood over N, B, K, Q and R, and over Markov processes, quasi-periodic disturbances and a
@@ -30,6 +33,9 @@ pub struct MaximumLikelihood {
     /// How samples were taken.
     pub sampling: Sampling,
 }
+
+/// Times that the parts of a model are looked over at most.
+const TURNS: usize = 12;
 
 impl Identify for MaximumLikelihood {
     fn identify(&self, channel: &str, evidence: &Evidence) -> Identification {
@@ -50,16 +56,36 @@ impl MaximumLikelihood {
         let ramp = plain.claims(NoiseType::RateRamp);
         let mut extras = find_extras(evidence, self.sampling, ramp, &self.extras);
         if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
-            return without_extras(plain);
+            // A long Markov process may stand where flicker or random walk is claimed.
+            let choice = self.base.slow_choice(evidence).filter(|c| c.set & (B | K) != 0);
+            let with = choice.and_then(|choice| {
+                long_markov(&Joint::new(evidence, self.sampling)?, &extras.shape, choice, &self.base.slow)
+            });
+            match with {
+                Some(with) if with.excess < 0.0 => extras.shape = with.shape,
+                near => {
+                    let mut found = without_extras(plain);
+                    near.iter().for_each(|n| n.annotate(&mut found));
+                    return found;
+                }
+            }
         }
         // A part that became needless after a later one is taken out again.
+        let mut turns = TURNS;
         loop {
+            turns = turns.saturating_sub(1);
             let resolved = evidence.resolving(&extras.zones);
             let Some(joint) = Joint::new(&resolved, self.sampling) else { return without_extras(plain) };
             let Some(found) = Found::of(&joint, &extras.shape, self) else { return without_extras(plain) };
-            match found.needless {
-                Some(part) => extras = without(&extras, part),
-                None => return found.report(channel, &joint, plain, intervals),
+            let near = long_markov(&joint, &extras.shape, found.slow.choice, &self.base.slow);
+            match (found.needless, near) {
+                (Some(part), _) if turns > 0 => extras = without(&extras, part),
+                (None, Some(with)) if turns > 0 && with.excess < 0.0 => extras.shape = with.shape,
+                (_, near) => {
+                    let mut out = found.report(channel, &joint, plain, intervals);
+                    near.iter().for_each(|n| n.annotate(&mut out));
+                    return out;
+                }
             }
             if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
                 return without_extras(plain);
@@ -94,6 +120,7 @@ fn without(extras: &Extras, part: Part) -> Extras {
 /// Everything that fits of one shape say.
 struct Found {
     full: JointPoint,
+    slow: Slow,
     ratios: [f64; 5],
     claimed: [bool; 5],
     supported: JointPoint,
@@ -103,39 +130,45 @@ struct Found {
 
 impl Found {
     fn of(joint: &Joint<'_>, shape: &Shape, method: &MaximumLikelihood) -> Option<Found> {
-        let level = best_of(joint, shape, false);
-        let sloped = best_of(joint, shape, true);
-        // The ramp: plain likelihood on both sides, at the restricted estimate.
-        let held = Free { held: Some(Variable::Ramp), ..all_free(shape, true, true) };
-        let plain = joint.maximise(&sloped, &held);
-        let ramp_ratio = (level.deviance - plain.deviance).max(0.0);
-        let ramp = ramp_ratio > method.base.thresholds[RAMP];
-        let full = if ramp { sloped.clone() } else { level.clone() };
+        let slow = Slow::of(joint, shape, &method.base.slow)?;
+        let ramp = holds(slow.choice.set, RAMP);
+        let full = if ramp { slow.sloped.clone() } else { slow.level.clone() };
         if !full.deviance.is_finite() {
             return None;
         }
-        let drop_base = |i: usize, top: &JointPoint, ramp: bool| {
+        let drop_base = |i: usize| {
             let mut free = all_free(shape, ramp, true);
             free.variance[i] = false;
-            let mut start = top.clone();
+            let mut start = full.clone();
             start.variance[i] = 0.0;
-            (joint.maximise(&start, &free).deviance - top.deviance).max(0.0)
+            (joint.maximise(&start, &free).deviance - full.deviance).max(0.0)
         };
-        let walk = drop_base(2, &sloped, true).min(drop_base(2, &full, ramp));
+        let all = slow.deviance[B | K];
         let ratios = [
-            drop_base(0, &full, ramp),
-            drop_base(1, &full, ramp),
-            walk,
-            drop_base(3, &full, ramp),
-            ramp_ratio,
+            drop_base(0),
+            drop_base(1),
+            drop_base(2),
+            drop_base(3),
+            (all - slow.deviance[B | K | R]).max(0.0),
         ];
-        let mut claimed = [false; 5];
-        for (flag, (ratio, threshold)) in claimed.iter_mut().zip(ratios.iter().zip(method.base.thresholds)) {
-            *flag = *ratio > threshold;
+        let mut claimed = [
+            ratios[0] > method.base.white,
+            holds(slow.choice.set, 1),
+            holds(slow.choice.set, 2),
+            ratios[3] > method.base.quantization,
+            ramp,
+        ];
+        let needless = needless(joint, shape, &full, &slow, method);
+        let (point, free) = supported(joint, shape, &full, &claimed, ramp);
+        let (variables, covariance) = parameter_covariance(joint, &point, &free);
+        for (term, claimed) in claimed.iter_mut().enumerate().take(3).skip(1) {
+            let at = variables.iter().position(|v| *v == Variable::Variance(term));
+            let sigma = at.map_or(f64::INFINITY, |i| covariance[i][i].max(0.0).sqrt());
+            let relative = sigma / point.reported(Variable::Variance(term));
+            *claimed &= is_told(slow.preference[term], relative);
         }
-        let needless = needless(joint, shape, &full, ramp, &method.extras);
         let (supported, free) = supported(joint, shape, &full, &claimed, ramp);
-        Some(Found { full, ratios, claimed, supported, free, needless })
+        Some(Found { full, slow, ratios, claimed, supported, free, needless })
     }
 
     fn report(
@@ -188,20 +221,26 @@ impl Found {
     fn base_estimate(&self, channel: &str, joint: &Joint<'_>, term: usize) -> Estimate {
         let (id, unit) = IDS[term];
         let variable = if term == RAMP { Variable::Ramp } else { Variable::Variance(term) };
-        let mut free = self.free.clone();
-        if term == 0 || term == 3 {
-            // Low-frequency noise that is too weak to be named still adds to the level of the white part.
-            (free.variance[1], free.variance[2]) = (true, true);
-        }
+        let free = self.free.clone();
         if self.claimed[term] {
             let (best, mut spread) = self.profile(joint, variable, &free);
             let value = best.reported(variable);
-            if let Some(rival) = rival_of(term).filter(|r| !free.variance[*r]) {
+            // What is too weak to be named may still hold a part of the level of the white noise.
+            for other in suspects(term) {
+                if !free.variance[*other] && self.ratios[*other] > SUSPICION {
+                    let mut wide = free.clone();
+                    wide.variance[*other] = true;
+                    spread = wider(value, &spread, &self.profile(joint, variable, &wide).1);
+                }
+            }
+            let rival = rival_of(term).filter(|r| !free.variance[*r] && self.ratios[*r] > RIVALRY);
+            if let Some(rival) = rival {
                 let mut wide = free.clone();
                 wide.variance[rival] = true;
                 spread = wider(value, &spread, &self.profile(joint, variable, &wide).1);
             }
-            return Estimate::measured(id, channel, value, unit, spread, METHOD);
+            let estimate = Estimate::measured(id, channel, value, unit, spread, METHOD);
+            return with_rivals(estimate, term, self.slow.preference[term]);
         }
         // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
         let mut open = all_free(&self.supported.shape, self.claimed[RAMP], true);
@@ -276,33 +315,44 @@ fn needless(
     joint: &Joint<'_>,
     shape: &Shape,
     full: &JointPoint,
-    ramp: bool,
-    thresholds: &ExtraThresholds,
+    slow: &Slow,
+    method: &MaximumLikelihood,
 ) -> Option<Part> {
-    let filter = shape.filter.map(|_| (Part::Filter, thresholds.filter));
-    let damped = shape.damped.iter().enumerate().map(|(i, (kind, _))| {
-        let threshold = match kind {
-            Kind::Markov => thresholds.markov,
-            Kind::QuasiPeriodic => thresholds.quasi_periodic,
-        };
-        (Part::Damped(i), threshold)
-    });
     if usize::from(shape.filter.is_some()) + shape.damped.len() < 2 {
         return None;
     }
+    let ramp = holds(slow.choice.set, RAMP);
+    let less_by = |part: Part, threshold: f64| {
+        let less = without_shape(shape, part);
+        let mut start = JointPoint { shape: less.clone(), ..full.clone() };
+        if let Part::Damped(i) = part {
+            start.variance.remove(BASE.len() + i);
+        }
+        let free = all_free(&less, ramp, true);
+        // From afresh too: what is left may stand where only the part could hold it.
+        let reached = joint.maximise(&start, &free).deviance.min(best_of(joint, &less, ramp).deviance);
+        reached - full.deviance - threshold
+    };
+    let excess = |part: Part| match part {
+        Part::Filter => less_by(part, method.extras.filter),
+        Part::Damped(i) => match shape.damped.get(i) {
+            Some((Kind::Markov, _)) => {
+                // Flicker or random walk may stand in its place, each at its own price.
+                let in_place = Slow::of(joint, &without_shape(shape, part), &method.base.slow)
+                    .map_or(f64::INFINITY, |s| s.choice.cost);
+                let instead = slow.choice_without_rivals(&method.base.slow);
+                let kept = (slow.choice.cost + method.extras.markov).min(instead);
+                in_place - kept
+            }
+            _ => less_by(part, method.extras.quasi_periodic),
+        },
+    };
+    let damped = (0..shape.damped.len()).map(Part::Damped);
+    let filter = shape.filter.map(|_| Part::Filter);
     filter
         .into_iter()
         .chain(damped)
-        .map(|(part, threshold)| {
-            let less = without_shape(shape, part);
-            let mut start = JointPoint { shape: less.clone(), ..full.clone() };
-            if let Part::Damped(i) = part {
-                start.variance.remove(BASE.len() + i);
-            }
-            let free = all_free(&less, ramp, true);
-            let point = joint.maximise(&start, &free);
-            (part, point.deviance - full.deviance - threshold)
-        })
+        .map(|part| (part, excess(part)))
         .filter(|(_, excess)| *excess < 0.0)
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(part, _)| part)

@@ -10,6 +10,7 @@ mod interval;
 mod maximise;
 mod peaks;
 mod search;
+mod slow;
 mod solve;
 
 pub use columns::expected_power;

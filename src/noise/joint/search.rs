@@ -16,13 +16,24 @@ pub struct ExtraThresholds {
     /// A Markov process. More than for a filter: white noise behind a filter is a Markov process as well, and is to be
     /// called by its simpler name.
     pub markov: f64,
+    /// What quantisation costs beside a filter. Both together imitate a short Markov process with a white part, one rising
+    /// where the other falls, and N would then be the level of both: few outputs are so, and the two must show clearly.
+    pub quantization_beside_filter: f64,
+    /// What quantisation costs beside a Markov process.
+    pub quantization: f64,
     /// A quasi-periodic disturbance, beside twice the logarithm of the resolved places searched.
     pub quasi_periodic: f64,
 }
 
 impl Default for ExtraThresholds {
     fn default() -> Self {
-        ExtraThresholds { filter: 14.0, markov: 17.0, quasi_periodic: 14.0 }
+        ExtraThresholds {
+            filter: 14.0,
+            markov: 17.0,
+            quantization_beside_filter: 20.0,
+            quantization: 8.5,
+            quasi_periodic: 14.0,
+        }
     }
 }
 
@@ -35,12 +46,18 @@ pub struct Extras {
     pub zones: Vec<Zone>,
 }
 
+/// Place of quantisation among the variances.
+const QUANTIZATION: usize = 3;
 /// Parts accepted at most.
-const MOST: usize = 4;
+pub(super) const MOST: usize = 4;
 /// Correlation times tried, per octave.
 const PER_OCTAVE: f64 = 1.5;
 /// Longest correlation time that is told from random walk: this share of the record.
-const LONGEST: f64 = 0.125;
+pub(super) const LONGEST: f64 = 0.125;
+/// Highest frequency in units of the sample rate below which a range was cut.
+const WHOLE_RANGE: f64 = 0.4;
+/// Corners of processes lie at least this factor below the edge of a range that was cut.
+const EDGE: f64 = 4.0;
 /// Steps of a fit that screens a grid, and of one that counts.
 const SCREEN: usize = 3;
 const FULL: usize = 40;
@@ -115,6 +132,14 @@ fn refined(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> JointPoint {
     joint.maximise(point, &all_free(&point.shape, ramp, true))
 }
 
+/// The deviance at a maximum, quantisation counted with its price or left out.
+fn with_priced_quantization(joint: &Joint<'_>, point: &JointPoint, ramp: bool, price: f64) -> f64 {
+    let mut free = all_free(&point.shape, ramp, true);
+    let mut start = point.clone();
+    (free.variance[QUANTIZATION], start.variance[QUANTIZATION]) = (false, 0.0);
+    joint.maximise(&start, &free).deviance.min(point.deviance + price)
+}
+
 fn filters(
     joint: &Joint<'_>,
     found: &Extras,
@@ -160,7 +185,9 @@ fn filters(
         .map(|p| refined(joint, p, ramp))
         .filter(|p| shows_filter(p, joint))
         .map(|point| {
-            let excess = current.deviance - point.deviance - thresholds.filter;
+            let price = thresholds.quantization_beside_filter;
+            let reached = with_priced_quantization(joint, &point, ramp, price);
+            let excess = current.deviance - reached - thresholds.filter;
             Candidate { point, zones: found.zones.clone(), excess }
         })
         .max_by(|a, b| a.excess.total_cmp(&b.excess))
@@ -196,11 +223,19 @@ fn markovs(
     }
     let point = refined(joint, &best, ramp);
     let time_s = point.shape.damped.last()?.1.decay_time_s;
-    if time_s > LONGEST * evidence.span_s {
+    if time_s > LONGEST * evidence.span_s || bends_at_the_edge(evidence, time_s) {
         return None;
     }
-    let excess = current.deviance - point.deviance - thresholds.markov;
+    let reached = with_priced_quantization(joint, &point, ramp, thresholds.quantization);
+    let excess = current.deviance - reached - thresholds.markov;
     Some(Candidate { point, zones: found.zones.clone(), excess })
+}
+
+/// What bends the spectrum at the upper edge of a range that was cut is the beginning of what was cut off, and no process.
+fn bends_at_the_edge(evidence: &Evidence, time_s: f64) -> bool {
+    let highest_hz = evidence.bands.iter().map(|b| b.high_hz).fold(0.0, f64::max);
+    let cut = highest_hz * evidence.tau0_s < WHOLE_RANGE;
+    cut && EDGE / (2.0 * PI * time_s) > highest_hz
 }
 
 fn periodics(

@@ -17,7 +17,7 @@ const LEAST_EDF: f64 = 6.0;
 /// Largest averaging time judged, as a share of the record.
 const LARGEST_SHARE: f64 = 0.125;
 /// Share of its variance that the fit leaves an octave at least, for the covariance of the fit is an estimate.
-const LEAST_LEFT: f64 = 0.3;
+const LEAST_LEFT: f64 = 0.5;
 /// Score from which a neighbouring octave belongs to the same departure.
 const NEIGHBOUR: f64 = 2.0;
 /// Lags per averaging time in the sum of squared covariances.
@@ -63,6 +63,8 @@ pub fn degrees_of_freedom(model: &Composite, point: &DeviationPoint, tau0_s: f64
     let first = term(0.0);
     let slowest_s =
         noise.quasi_periodic.iter().chain(&noise.markov).map(|d| d.decay_time_s).fold(0.0, f64::max);
+    // A line never decays.
+    let slowest_s = if noise.lines.is_empty() { slowest_s } else { f64::INFINITY };
     let span = (SPAN * point.m as f64).max((DECAYS * slowest_s / tau0_s).min(MOST_LAGS * stride));
     let most = (span / stride).min(terms - 1.0).max(0.0) as u64;
     let mut sum = terms;

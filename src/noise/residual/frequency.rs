@@ -13,7 +13,7 @@ const BAND_DOF: f64 = 12.0;
 /// Bands per octave at most.
 const PER_OCTAVE: f64 = 6.0;
 /// Least share of its variance that the fit leaves to a run that is looked at.
-const LEAST_LEFT: f64 = 0.3;
+const LEAST_LEFT: f64 = 0.5;
 
 /// Power over model in one band.
 #[derive(Debug, Clone, Copy, PartialEq)]

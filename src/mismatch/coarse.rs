@@ -1,0 +1,49 @@
+//! Records whose output is rounded to steps larger than the noise of a sample.
+//!
+//! The error of rounding an angle is even and free of memory only where the angle moves by about a step from one sample
+//! to the next. Where it does not, samples are averaged until it does: the mean of m samples is a sample of m times the
+//! interval, rounded to the same angle.
+
+use super::regular::Regular;
+use crate::claim::Claim;
+use crate::effect::Column;
+
+/// Fewest samples that are left.
+const FEWEST: usize = 1024;
+
+/// How many samples to average so that white noise moves the angle by a step of `lsb_arcsec` between two of them.
+pub fn group(lsb_arcsec: f64, claim: &Claim, samples: usize) -> usize {
+    let dt_s = 1.0 / claim.sample_rate_hz;
+    // 1 deg/h over 1 s is 1 arcsec.
+    let moved_arcsec = 60.0 * claim.noise.n * dt_s.sqrt();
+    if lsb_arcsec <= moved_arcsec || moved_arcsec <= 0.0 {
+        return 1;
+    }
+    let wanted = (lsb_arcsec / moved_arcsec).powi(2).ceil();
+    (wanted as usize).clamp(1, (samples / FEWEST).max(1))
+}
+
+/// The recording in averages over `m` samples. An average counts as present where all its samples are.
+pub fn averaged(regular: &Regular, m: usize) -> Regular {
+    let means = |values: &[f64]| crate::effect::averages(values, m);
+    let mut columns: std::collections::BTreeMap<Column, Vec<f64>> =
+        regular.columns.iter().map(|(c, v)| (*c, means(v))).collect();
+    if let (Some(mean), Some(angle)) =
+        (columns.get_mut(&Column::TableAngle), regular.columns.get(&Column::TableAngle))
+    {
+        // Angles turn over: their means are those of the direction.
+        let part = |f: fn(f64) -> f64| means(&angle.iter().map(|a| f(a.to_radians())).collect::<Vec<f64>>());
+        let (sin, cos) = (part(f64::sin), part(f64::cos));
+        *mean = sin.iter().zip(&cos).map(|(s, c)| s.atan2(*c).to_degrees().rem_euclid(360.0)).collect();
+    }
+    let present: Vec<bool> = regular.present.chunks_exact(m).map(|c| c.iter().all(|p| *p)).collect();
+    Regular {
+        dt_s: regular.dt_s * m as f64,
+        start_s: regular.start_s + 0.5 * (m - 1) as f64 * regular.dt_s,
+        rate: means(&regular.rate),
+        present,
+        columns,
+        gaps: regular.gaps.clone(),
+        disordered: regular.disordered,
+    }
+}

@@ -1,0 +1,111 @@
+//! Every structure of N, B, K, Q and R fitted, and the one that a record is given.
+
+use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
+use super::identify::PRICE;
+use super::slow_terms::{B, K, R, SETS, SlowChoice, SlowPrices};
+
+/// All structures fitted.
+pub(super) struct Search {
+    /// Maximum of each set of spectral terms, by bit mask; second index: ramp fitted.
+    points: Vec<[Option<Point>; 2]>,
+    /// The maximum with every spectral term allowed, and the ramp where it is claimed.
+    pub full: Point,
+    /// 2 Δ ln L of each of [`TERMS`](super::model::TERMS) against the best model without it.
+    pub ratios: [f64; 5],
+    /// The slow terms chosen.
+    pub slow: SlowChoice,
+    /// By how much the best set without each of [`TERMS`](super::model::TERMS) costs more.
+    pub preference: [f64; 5],
+}
+
+const ALL: usize = (1 << SPECTRAL) - 1;
+const FLICKER: usize = 1;
+const WALK: usize = 2;
+const QUANTIZATION: usize = 3;
+const NOT_SLOW: usize = 1 | (1 << QUANTIZATION);
+
+impl Search {
+    /// Fits every structure and chooses among the slow terms.
+    pub fn run(likelihood: &Likelihood, prices: &SlowPrices) -> Option<Search> {
+        let mut points: Vec<[Option<Point>; 2]> = vec![[None, None]; ALL + 1];
+        for set in 1..=ALL {
+            for (ramp, with_ramp) in [false, true].into_iter().enumerate() {
+                let structure = structure_of(set, with_ramp);
+                let mut best = likelihood.maximise(&structure, None, None);
+                // Never worse than any part of it: a second start from the best part.
+                let part = (0..SPECTRAL)
+                    .filter(|i| set >> i & 1 == 1)
+                    .filter_map(|i| points[set ^ (1 << i)][ramp])
+                    .min_by(|a, b| a.deviance.total_cmp(&b.deviance));
+                if let Some(part) = part
+                    && best.is_none_or(|b| part.deviance < b.deviance)
+                {
+                    best = likelihood
+                        .maximise(&structure, None, Some(&part))
+                        .filter(|p| p.deviance <= part.deviance);
+                    best = best.or(Some(part));
+                }
+                points[set][ramp] = best;
+            }
+        }
+        let full = points[ALL][0]?;
+        let deviance = |set: usize, ramp: usize| points[set][ramp].map_or(f64::INFINITY, |p| p.deviance);
+        let ratio =
+            |term: usize, ramp: usize| (deviance(ALL ^ (1 << term), ramp) - deviance(ALL, ramp)).max(0.0);
+        // The ramp: plain likelihood on both sides, at the restricted estimate.
+        let restricted = points[ALL][1]?;
+        let plain = likelihood.maximise(&[true; 5], Some((RAMP, restricted.ramp)), Some(&restricted))?;
+        let ramp_ratio = (full.deviance - plain.deviance).max(0.0);
+        let mut slow_deviance = [f64::INFINITY; SETS];
+        for (slow, value) in slow_deviance.iter_mut().enumerate() {
+            let flicker = usize::from(slow & B != 0) << FLICKER;
+            let walk = usize::from(slow & K != 0) << WALK;
+            let set = NOT_SLOW | flicker | walk;
+            // With a ramp the plain likelihood at the restricted estimate: the restricted one of another structure is
+            // that of other data.
+            *value = if slow & R == 0 {
+                deviance(set, 0)
+            } else {
+                points[set][1]
+                    .and_then(|p| {
+                        likelihood.maximise(&structure_of(set, true), Some((RAMP, p.ramp)), Some(&p))
+                    })
+                    .map_or(f64::INFINITY, |p| p.deviance)
+            };
+        }
+        let slow = prices.choose(&slow_deviance)?;
+        let preference = std::array::from_fn(|term| prices.preference(&slow_deviance, slow, term));
+        let with_ramp = usize::from(slow.set & R != 0);
+        // Random walk must show with a ramp allowed for, and also in the description that the record is given.
+        let walk = ratio(2, 1).min(ratio(2, with_ramp));
+        // A ramp that is left out bends the whole model, and other terms would seem to mend it.
+        let ratios = [ratio(0, with_ramp), ratio(1, with_ramp), walk, ratio(3, with_ramp), ramp_ratio];
+        Some(Search {
+            points,
+            full: if with_ramp == 1 { restricted } else { full },
+            ratios,
+            slow,
+            preference,
+        })
+    }
+
+    /// The best description: claimed terms, and as few others as pay their price.
+    pub fn supported(&self, claimed: &Structure) -> Structure {
+        let ramp = usize::from(claimed[RAMP]);
+        let must = (0..SPECTRAL).filter(|i| claimed[*i]).fold(0usize, |set, i| set | 1 << i);
+        let cost = |set: usize| {
+            self.points[set][ramp].map_or(f64::INFINITY, |p| p.deviance + PRICE * f64::from(set.count_ones()))
+        };
+        // Quantisation is nearly white at the highest frequencies: on suspicion alone it would spoil N.
+        let suspected = ALL ^ if claimed[QUANTIZATION] { 0 } else { 1 << QUANTIZATION };
+        let best = (1..=ALL)
+            .filter(|set| set & must == must && set & suspected == *set)
+            .min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+        structure_of(best.unwrap_or(ALL), claimed[RAMP])
+    }
+}
+
+fn structure_of(set: usize, ramp: bool) -> Structure {
+    let spectral = (0..SPECTRAL).fold([false; 5], |s, i| toggled(&s, i, set >> i & 1 == 1));
+    toggled(&spectral, RAMP, ramp)
+}
