@@ -4,7 +4,6 @@ pub mod candidates;
 pub mod coarse;
 pub mod columns;
 pub mod departures;
-pub mod drawing;
 pub mod driver;
 pub mod engine;
 pub mod estimates;
