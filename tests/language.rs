@@ -158,6 +158,14 @@ const LATIN: &[&str] = &[
     "m",
     "u",
     "t",
+    "BIC",
+    "ln",
+    "P",
+    "explain",
+    "explained",
+    "simulation",
+    "hide",
+    "temp",
 ];
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
@@ -196,6 +204,13 @@ const SAME: &[&str] = &[
     "compare.column.six_n",
     "compare.column.over_six_n",
     "compare.column.steep",
+    "explain.column.delta_bic",
+    "explain.column.gain",
+    "explain.column.p",
+    "explain.fit.bic",
+    "explain.fit.log_likelihood",
+    "explain.plus_minus",
+    "explain.with_interval",
 ];
 
 fn places(text: &str) -> BTreeSet<String> {

@@ -5,7 +5,6 @@ pub mod coarse;
 pub mod columns;
 pub mod departures;
 pub mod draw;
-pub mod drawing;
 pub mod driver;
 pub mod engine;
 pub mod estimates;

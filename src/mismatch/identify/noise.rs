@@ -33,7 +33,7 @@ pub struct Found {
     pub k: Coefficient,
     /// Q, arcsec.
     pub q: Coefficient,
-    /// Everything found, as a spectrum.
+    /// The noise with every term allowed, found or not: what columns are weighted by, for uncertainties.
     pub composite: Composite,
     /// Processes beyond N, B, K and Q that the catalogue can state.
     pub effects: Vec<Stated>,
@@ -90,7 +90,7 @@ pub fn identify(series: &Series, residual: &[f64]) -> Found {
         b: coefficient(&identification.bias_instability),
         k: coefficient(&identification.rate_random_walk),
         q: coefficient(&identification.quantization),
-        composite,
+        composite: identification.allowed.clone(),
         effects,
     }
 }

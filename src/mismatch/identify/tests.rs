@@ -47,20 +47,20 @@ fn the_claim_is_what_was_simulated() {
 
 #[test]
 fn the_uncertainty_of_the_coefficient_is_that_of_many_simulations() {
-    let n = 4096;
+    let n = 16_384;
     let temperature: Vec<f64> = (0..n).map(|i| 25.0 + 8.0 * (f64::from(i) / 600.0).sin()).collect();
     let mean: Vec<f64> = temperature.iter().map(|t| 0.5 * t).collect();
     let mut squares = 0.0;
-    let runs = 60;
+    let runs = 40;
     for seed in 0..runs {
         let columns = BTreeMap::from([(Column::Temperature, temperature.clone())]);
         let claim = identify(&series(100 + seed, columns, &mean), &mut |_| {}).unwrap();
         let found = claim.mean.temperature.unwrap().coefficient_deg_h_per_degc;
         squares += ((found - 0.5) / claim.uncertainty.temperature_coefficient_deg_h_per_degc).powi(2);
     }
-    // The mean of 60 squared normal deviates lies within 0.6 and 1.6 in more than 99 of 100 cases.
+    // The mean of 40 squared normal deviates lies within 0.5 and 1.7 in more than 99 of 100 cases.
     let ratio = squares / runs as f64;
-    assert!((0.6..1.6).contains(&ratio), "{ratio}");
+    assert!((0.5..1.7).contains(&ratio), "{ratio}");
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn a_heading_is_found_from_a_turning_table() {
     let claim =
         identify(&series(3, BTreeMap::from([(Column::TableAngle, angle)]), &mean), &mut |_| {}).unwrap();
     let earth = claim.mean.earth.unwrap();
-    assert!((earth.latitude_deg - 56.0).abs() < 0.01 && (earth.azimuth_deg - 40.0).abs() < 0.05, "{earth:?}");
+    assert!((earth.latitude_deg - 56.0).abs() < 0.05 && (earth.azimuth_deg - 40.0).abs() < 0.05, "{earth:?}");
 }
 
 #[test]

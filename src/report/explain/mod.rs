@@ -170,12 +170,12 @@ fn identity(all: &Explanation, context: &Context, words: Words) -> Vec<Field> {
 }
 
 fn files(context: &Context, words: Words) -> Vec<FileView> {
-    let mut names = vec![("explain.json", "explain.wrote.json")];
+    let mut names = vec![("explain.json", "explain.wrote.for_programs")];
     if context.correction {
         names.push(("correction.csv", "explain.wrote.correction"));
     }
     names.push(("augmented.toml", "explain.wrote.augmented"));
-    names.push(("report.html", "explain.wrote.html"));
+    names.push(("report.html", "explain.wrote.page"));
     names.push(("report.md", "explain.wrote.markdown"));
     names.push(("figures/*.svg", "explain.wrote.figures"));
     let row = |(name, key): (&str, &str)| FileView { name: name.to_owned(), what: words.t(key) };

@@ -167,9 +167,9 @@ mod tests {
 
     #[test]
     fn parameters_are_rounded_by_their_intervals() {
-        let step = value("step_deg_h", &given(0.031_23, 0.029_1, 0.033_4, "deg/h"), EN);
+        let step = value("step_deg_h", &given(0.031_23, 0.029_0, 0.033_4, "deg/h"), EN);
         assert_eq!(step.whole, "+0.0312 ± 0.0022\u{202f}°/h");
-        assert_eq!(step.interval, "0.0291 … 0.0334");
+        assert_eq!(step.interval, "0.0290 … 0.0334");
         let lopsided = value("time_constant_s", &given(900.0, 700.0, 1500.0, "s"), EN);
         assert_eq!(lopsided.whole, "900\u{202f}s (95 %: 700 … 1500)");
         let exact = value("missing_rows", &given(12_345.0, 12_345.0, 12_345.0, ""), EN);
