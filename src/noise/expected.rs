@@ -7,6 +7,7 @@
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, position, toggled};
+use super::identifiable::IDENTIFIABLE;
 use super::identify::{LIMIT_RISE, Whittle, rival_of};
 use super::model::{NoiseModel, TERMS};
 use super::profile::Profile;
@@ -269,11 +270,16 @@ impl Pair {
         (sized / (0.5 * (sized + claimed))).sqrt().clamp(0.0, 0.999)
     }
 
-    /// The value above which the claiming fluctuation must lie.
+    /// From where on a term that shows as much is claimed. One that is hardly identifiable has to be preferred clearly;
+    /// the larger a record shows it, the better it is known, about as the root of its size.
     fn claim_needs(&self) -> Option<f64> {
+        let term = *TERMS.get(self.here.term)?;
         let relative = self.here.relative_sigma(&self.here.structure);
-        let threshold = Whittle::default().threshold(*TERMS.get(self.here.term)?, relative).sqrt();
-        Some(self.scatter(Case::claim_score)?.needs(threshold))
+        let scatter = self.scatter(Case::claim_score)?;
+        let needs = |relative: f64| scatter.needs(Whittle::default().threshold(term, relative).sqrt());
+        let (known, hardly) = (needs(0.0), needs(f64::INFINITY));
+        let turning = ((relative / IDENTIFIABLE).powi(2) - 1.0) / relative;
+        Some(turning.min(hardly.max(known)).max(known.min(hardly)))
     }
 }
 
