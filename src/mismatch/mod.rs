@@ -1,5 +1,6 @@
 //! The mismatch of a claimed simulation and a recording: located, named, modelled, and the fit shown to improve.
 
+mod assemble;
 pub mod candidates;
 pub mod coarse;
 pub mod columns;
