@@ -102,7 +102,7 @@ impl Problem {
     pub fn baseline(&self) -> Tried {
         let mut hypothesis = Hypothesis { noise: Noise::of(&self.claim), courses: vec![] };
         let fit = fit(&mut hypothesis, &self.scenes.full);
-        Tried { hypothesis, fit, parameters: 0 }
+        Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
     }
 }
 
