@@ -38,11 +38,16 @@ pub fn all(problem: &Problem, drawn: &Drawn<'_>) -> Vec<Figure> {
         let mean = left.iter().sum::<f64>() / left.len().max(1) as f64;
         left.iter().map(|l| l - mean).collect()
     });
+    // What is drawn over the residual has its mean taken out as that has.
+    let contribution: Option<Vec<f64>> = drawn.correction.map(|c| {
+        let mean = c.iter().sum::<f64>() / c.len().max(1) as f64;
+        c.iter().map(|v| v - mean).collect()
+    });
     let course = time_course(&Course {
         time_s: &time,
         before: &before,
         after: after.as_deref(),
-        contribution: drawn.correction,
+        contribution: contribution.as_deref(),
         places: drawn.places,
     });
     let mut found: Vec<(Domain, Figure)> = vec![(Domain::Time, course)];
@@ -54,7 +59,7 @@ pub fn all(problem: &Problem, drawn: &Drawn<'_>) -> Vec<Figure> {
             column: &column,
             before: &before,
             after: after.as_deref(),
-            contribution: drawn.correction,
+            contribution: contribution.as_deref(),
             places: drawn.places,
         });
         found.extend(figure.map(|f| (place.domain, f)));

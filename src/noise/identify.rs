@@ -257,10 +257,12 @@ impl Identification {
 /// The description that N, B, K, R and Q alone give.
 fn described(model: NoiseModel, covariance: &[[f64; 5]; 5]) -> Described {
     let present: Vec<usize> = (0..5).filter(|i| model.coefficient(TERMS[*i]) != 0.0).collect();
+    // Adding zero leaves every number as it is but −0, which no file should hold.
+    let between = |i: usize, j: usize| covariance[i][j] + 0.0;
     Described {
         model: model.into(),
         parameters: present.iter().map(|i| Parameter::Coefficient(TERMS[*i])).collect(),
-        covariance: present.iter().map(|i| present.iter().map(|j| covariance[*i][*j]).collect()).collect(),
+        covariance: present.iter().map(|i| present.iter().map(|j| between(*i, *j)).collect()).collect(),
     }
 }
 
