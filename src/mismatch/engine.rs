@@ -17,6 +17,9 @@ use crate::series::Series;
 use crate::text::Note;
 use std::collections::BTreeMap;
 
+/// Samples at a level below which jumps are not told from a process.
+const FEWEST_AT_A_LEVEL: f64 = 6.0;
+
 /// Explains a recording against a claim.
 ///
 /// # Errors
@@ -158,6 +161,10 @@ fn take_telegraph(
         return;
     }
     let Some(telegraph) = local::telegraph(problem, start) else { return };
+    // Jumps every few samples are what a short Markov process looks like.
+    if telegraph.mean_dwell_s < FEWEST_AT_A_LEVEL * problem.drivers.dt_s {
+        return;
+    }
     let worth = samples::worth(telegraph.gain, telegraph.parameters, telegraph.p_value, rows, options.alpha);
     let Some(delta_bic) = worth else { return };
     let rival = start.bic(rows) - selection.best.bic(rows);
