@@ -272,7 +272,9 @@ fn remove_abandoned(parent: &Path, prefix: &str) {
         if ours
             && folder
             && old(&path)
-            && [Kind::Result, Kind::Comparison, Kind::Explanation].iter().any(|k| matches!(foreign(&path, *k), Ok(None)))
+            && [Kind::Result, Kind::Comparison, Kind::Explanation]
+                .iter()
+                .any(|k| matches!(foreign(&path, *k), Ok(None)))
         {
             let _ = fs::remove_dir_all(&path);
         }

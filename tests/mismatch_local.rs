@@ -50,17 +50,28 @@ fn bursts_are_found_with_their_groups() {
         assert_eq!(found.groups.len(), 4, "{found:?} {truth:?}");
         assert!(found.samples.iter().filter(inside).count() as f64 >= 0.85 * found.samples.len() as f64);
         assert!(found.p_value < 1e-10 && found.gain > 60.0 && (found.deviation - 3.0).abs() < 0.7);
-        // A hump at the beginning, a wrong N and steps of the output are none.
+        // A hump at the beginning and a wrong N are none.
         let (problem, tried) = WHITE.problem(6000, 40 + seed, |r| {
             r.iter_mut().enumerate().for_each(|(i, y)| *y += 10.0 * sigma * (-(i as f64) / 60.0).exp());
         });
         assert!(bursts(&problem, &tried).is_none_or(|b| b.p_value > 1e-4));
         let (problem, tried) = WHITE.problem(6000, 40 + seed, |r| inject::level(r, sigma, |_| 1.3, seed));
         assert!(bursts(&problem, &tried).is_none_or(|b| b.p_value > 1e-4));
-        let lsb = 4.0 * sigma;
-        let (problem, tried) =
-            WHITE.problem(6000, 40 + seed, |r| r.iter_mut().for_each(|y| *y = (*y / lsb).round() * lsb));
+    }
+}
+
+#[test]
+fn steps_of_the_output_are_nothing_else() {
+    let sigma = WHITE.sigma();
+    for (seed, times) in [(0, 3.0), (1, 3.0), (2, 6.0), (3, 6.0)] {
+        let lsb = times * sigma;
+        let (problem, tried) = WHITE.problem(6000, 1000 + seed, |r| {
+            r.iter_mut().for_each(|y| *y = ((*y + 7.3) / lsb).round() * lsb);
+        });
+        assert!(problem.scenes.lattice_arcsec.is_some());
         assert!(bursts(&problem, &tried).is_none_or(|b| b.p_value > 1e-4));
+        assert!(level(&problem, &tried).is_empty());
+        assert!(telegraph(&problem, &tried).is_none());
     }
 }
 

@@ -39,12 +39,19 @@ pub struct Tried {
     pub fit: Fit,
     /// Parameters that it has beyond the claim.
     pub parameters: usize,
+    /// Logarithm of the odds of its effects against kinds with the same course.
+    pub odds: f64,
 }
 
 impl Tried {
     /// −2 ln L + parameters · ln rows.
     pub fn bic(&self, rows: usize) -> f64 {
         -2.0 * self.fit.log_likelihood + self.parameters as f64 * (rows as f64).ln()
+    }
+
+    /// What hypotheses are ordered by: BIC, and between equals what else speaks for their kinds.
+    pub fn rank(&self, rows: usize) -> f64 {
+        self.bic(rows) - 2.0 * self.odds
     }
 }
 
@@ -63,8 +70,6 @@ pub struct Candidate {
     pub delta_bic: f64,
     /// Probability of such a gain without it, its own search counted.
     pub p_value: f64,
-    /// Logarithm of the odds against kinds with the same course.
-    pub odds: f64,
 }
 
 fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, looked: f64, rows: usize) -> Candidate {
@@ -72,7 +77,7 @@ fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, looked: f64,
     let parameters = tried.parameters - before.parameters;
     let p_value = (looked.max(1.0) * chi_square_tail(2.0 * gain.max(0.0), parameters as f64)).min(1.0);
     let delta_bic = before.bic(rows) - tried.bic(rows);
-    Candidate { effect, tried, gain, parameters, delta_bic, p_value, odds: 0.0 }
+    Candidate { effect, tried, gain, parameters, delta_bic, p_value }
 }
 
 /// Fits every effect that is not in the hypothesis yet as an addition to it; those that gain something, the largest
@@ -89,7 +94,7 @@ pub fn all(before: &Tried, scenes: &Scenes) -> Vec<Candidate> {
         .collect();
     let mut found: Vec<Candidate> = fits.into_iter().flatten().collect();
     // Kinds with the same course are ordered by what else speaks for them.
-    found.sort_by(|a, b| (b.delta_bic + 2.0 * b.odds).total_cmp(&(a.delta_bic + 2.0 * a.odds)));
+    found.sort_by(|a, b| a.tried.rank(scenes.rows).total_cmp(&b.tried.rank(scenes.rows)));
     found
 }
 
@@ -315,8 +320,8 @@ fn try_course(
     // The noise, fitted anew, can give at most about as much again.
     let worth = 4.0 * gain - (parameters - before.parameters) as f64 * (scenes.rows as f64).ln();
     let fit = if worth > 0.0 { fit(&mut hypothesis, &scenes.full) } else { before.fit.raised(gain) };
-    let rated = rated(effect, Tried { hypothesis, fit, parameters }, before, starts.looked, scenes.rows);
-    Some(Candidate { odds, ..rated })
+    let tried = Tried { hypothesis, fit, parameters, odds: before.odds + odds };
+    Some(rated(effect, tried, before, starts.looked, scenes.rows))
 }
 
 fn try_spectrum(
@@ -417,6 +422,7 @@ fn finish_spectrum(
     let mut hypothesis = before.hypothesis.clone();
     hypothesis.noise = noise;
     let fit = fit(&mut hypothesis, &scenes.full);
-    let candidate = rated(effect, Tried { hypothesis, fit, parameters }, before, looked, scenes.rows);
+    let candidate =
+        rated(effect, Tried { hypothesis, fit, parameters, odds: before.odds }, before, looked, scenes.rows);
     (candidate.gain > 0.5).then_some(candidate)
 }

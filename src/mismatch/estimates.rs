@@ -201,7 +201,7 @@ fn of_course(
         out.push(rms(&parts.free, coefficients, parts.fixed.as_ref(), drivers.samples));
         out
     };
-    let deviations = propagate(shape, &coefficients, &covariance, &all);
+    let deviations = propagate(shape, &coefficients, &covariance, all);
     let mut out = Estimated::default();
     for (i, (param, value)) in effect.params().iter().zip(&values).enumerate() {
         if !value.is_finite() {
@@ -241,7 +241,7 @@ fn propagate(
     shape: &[f64],
     coefficients: &[f64],
     covariance: &DMatrix<f64>,
-    functions: &dyn Fn(&[f64], &[f64]) -> Vec<f64>,
+    functions: impl Fn(&[f64], &[f64]) -> Vec<f64>,
 ) -> Vec<f64> {
     let (d, p) = (shape.len(), shape.len() + coefficients.len());
     let mut slopes: Vec<Vec<f64>> = vec![];

@@ -107,11 +107,11 @@ mod tests {
         let powers = powers(n);
         let (mut sum, mut count) = (0.0, 0.0);
         let present: Vec<bool> = (0..n).map(|i| i < 64 || i % 64 >= 8).collect();
-        for seed in 0..200 {
+        for seed in 0..2000 {
             // A fill of everything is a draw of the process.
             let mut values = vec![0.0; n];
             fill(&mut values, &vec![false; n], &powers, seed);
-            fill(&mut values, &present, &powers, 1000 + seed);
+            fill(&mut values, &present, &powers, 100_000 + seed);
             sum += values[128..136].iter().map(|v| v * v).sum::<f64>();
             count += 8.0;
         }

@@ -36,7 +36,7 @@ pub fn increment_arcsec(regular: &Regular) -> Option<f64> {
         let (mut wide, mut count) = (0.0, 0.0);
         for d in &steps {
             let times = (d / step).round();
-            if times >= 1.0 && times < 2000.0 {
+            if (1.0..2000.0).contains(&times) {
                 wide += d * times;
                 count += times * times;
             }

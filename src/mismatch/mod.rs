@@ -1,9 +1,11 @@
 //! The mismatch of a claimed simulation and a recording: located, named, modelled, and the fit shown to improve.
 
+mod assemble;
 pub mod candidates;
 pub mod coarse;
 pub mod columns;
 pub mod departures;
+pub mod draw;
 pub mod driver;
 pub mod engine;
 pub mod estimates;

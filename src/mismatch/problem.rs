@@ -5,7 +5,7 @@ use super::hypothesis::{Hypothesis, fit};
 use super::impute;
 use super::lattice;
 use super::noise_fit::Noise;
-use super::regular::Regular;
+use super::regular::{Regular, fast_length};
 use super::scene::{Scene, smoothed};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Column, Drivers, Model, Nuisance};
@@ -102,7 +102,7 @@ impl Problem {
     pub fn baseline(&self) -> Tried {
         let mut hypothesis = Hypothesis { noise: Noise::of(&self.claim), courses: vec![] };
         let fit = fit(&mut hypothesis, &self.scenes.full);
-        Tried { hypothesis, fit, parameters: 0 }
+        Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
     }
 }
 
@@ -129,22 +129,10 @@ fn level(claim: &Claim, drivers: &Drivers) -> Option<Vec<f64>> {
     Some(level)
 }
 
-/// Samples to average and how many averages to keep: a number without large factors, at which transforms are fast, that
-/// leaves out 2 % at most.
+/// Samples to average and how many averages to keep.
 fn slow_grid(samples: usize) -> (usize, usize) {
     let m = samples.div_ceil(AVERAGES);
-    let whole = samples / m;
-    let smooth = |n: &usize| {
-        let mut rest = *n;
-        for p in [2, 3, 5, 7] {
-            while rest % p == 0 {
-                rest /= p;
-            }
-        }
-        rest == 1
-    };
-    let n = (whole - whole / 50..=whole).rev().find(smooth).unwrap_or(whole);
-    (m, n)
+    (m, fast_length(samples / m))
 }
 
 fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {

@@ -66,7 +66,7 @@ impl Regular {
         }
         let start_s = time_s[0];
         let span = (time_s[rows - 1] - start_s) * sample_rate_hz;
-        if !(span < 4.0 * rows as f64 + 1000.0) {
+        if span.is_nan() || span >= 4.0 * rows as f64 + 1000.0 {
             return Err(Irregular::Sparse(rows, span));
         }
         let mut places = Vec::with_capacity(rows);
@@ -114,11 +114,11 @@ impl Regular {
 
 /// The largest length up to `n` without a prime factor above 31, at which transforms are several times faster. It leaves
 /// out a few samples at the end, a five-hundredth at most; `n` itself where that is not enough.
-fn fast_length(n: usize) -> usize {
+pub fn fast_length(n: usize) -> usize {
     let fast = |length: &usize| {
-        let mut rest = *length;
+        let mut rest: usize = *length;
         for p in [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31] {
-            while rest > 1 && rest % p == 0 {
+            while rest > 1 && rest.is_multiple_of(p) {
                 rest /= p;
             }
         }

@@ -177,5 +177,5 @@ pub fn with_free_level(base: &Tried, problem: &Problem) -> Tried {
     let mut hypothesis = base.hypothesis.clone();
     hypothesis.noise.freed[0] = true;
     let fit = super::hypothesis::fit(&mut hypothesis, &problem.scenes.full);
-    Tried { hypothesis, fit, parameters: base.parameters + 1 }
+    Tried { hypothesis, fit, parameters: base.parameters + 1, odds: base.odds }
 }

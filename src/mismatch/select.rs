@@ -73,7 +73,7 @@ fn without(tried: &Tried, slot: Slot, scenes: &Scenes) -> Tried {
         }
     };
     let fit = fit(&mut hypothesis, &scenes.full);
-    Tried { hypothesis, fit, parameters: tried.parameters.saturating_sub(removed) }
+    Tried { hypothesis, fit, parameters: tried.parameters.saturating_sub(removed), odds: tried.odds }
 }
 
 fn course_parameters(course: &CourseIn, scenes: &Scenes) -> usize {
@@ -121,7 +121,7 @@ pub fn select(base: &Tried, scenes: &Scenes, alpha: f64, most: usize) -> Selecti
                 }
             }
         }
-        next.sort_by(|a, b| a.bic(rows).total_cmp(&b.bic(rows)));
+        next.sort_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)));
         next.truncate(WIDTH);
         let Some(leader) = next.first() else { break };
         if leader.bic(rows) < best.bic(rows) - ENOUGH {

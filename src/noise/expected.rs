@@ -7,7 +7,8 @@
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, position, toggled};
-use super::identify::{LIMIT_RISE, Whittle, rival_of};
+use super::identifiable::IDENTIFIABLE;
+use super::identify::{LIMIT_RISE, RIVALRY, Whittle, rival_of};
 use super::model::{NoiseModel, TERMS};
 use super::profile::Profile;
 use crate::estimate::{chi_square_quantile, normal_probability, normal_quantile};
@@ -192,13 +193,6 @@ impl Case {
         Some((held - top).max(0.0).sqrt())
     }
 
-    /// The score with the rival free as well.
-    fn score_with_rival(&self, value: f64) -> Option<f64> {
-        let alone = self.score(&self.structure, value)?;
-        let Some(rival) = rival_of(self.term) else { return Some(alone) };
-        Some(self.score(&toggled(&self.structure, rival, true), value)?.min(alone))
-    }
-
     /// Terms left free when the term is tested: the ramp is one for rate random walk, and where the unit has one.
     fn claim_structure(&self) -> Structure {
         let mut all = [true; 5];
@@ -269,10 +263,16 @@ impl Pair {
         (sized / (0.5 * (sized + claimed))).sqrt().clamp(0.0, 0.999)
     }
 
-    /// The value above which the claiming fluctuation must lie.
+    /// From where on a term that shows as much is claimed. One that is hardly identifiable has to be preferred clearly;
+    /// the larger a record shows it, the better it is known, about as the root of its size.
     fn claim_needs(&self) -> Option<f64> {
-        let threshold = Whittle::default().threshold(*TERMS.get(self.here.term)?).sqrt();
-        Some(self.scatter(Case::claim_score)?.needs(threshold))
+        let term = *TERMS.get(self.here.term)?;
+        let relative = self.here.relative_sigma(&self.here.structure);
+        let scatter = self.scatter(Case::claim_score)?;
+        let needs = |relative: f64| scatter.needs(Whittle::default().threshold(term, relative).sqrt());
+        let (known, hardly) = (needs(0.0), needs(f64::INFINITY));
+        let turning = ((relative / IDENTIFIABLE).powi(2) - 1.0) / relative;
+        Some(turning.min(hardly.max(known)).max(known.min(hardly)))
     }
 }
 
@@ -306,12 +306,13 @@ fn fail_probability(
         normal_mean(|u| if u > claim { normal_probability((rho * u - beyond) / rest) } else { 0.0 })
     };
     let Some(r) = pair.here.rival_ratio() else { return Some(failed(score.needs(guard))) };
-    // A rival too weak to be claimed widens the interval. Where chance puts it at zero, it comes in as the term is
-    // lowered; where chance puts it above, it takes a part of the term: the estimate then lies lower by a half-normal
-    // share of what the rival adds to its scatter.
-    let shared = pair.scatter(|c| c.score_with_rival(limit))?;
-    let taken = (2.0 / std::f64::consts::PI).sqrt() * (1.0 - r * r).sqrt();
-    Some(0.5 * (failed(shared.needs(guard)) + failed(score.needs((guard + taken) / r))))
+    // A rival that is not claimed widens the interval where chance makes it gain so much: it then takes a part of the
+    // term, whose estimate lies lower by its share of the mean of what is beyond that gain.
+    let bound = RIVALRY.sqrt();
+    let beyond = 1.0 - normal_probability(bound);
+    let density = (-0.5 * RIVALRY).exp() / (2.0 * std::f64::consts::PI).sqrt();
+    let taken = density / beyond * (1.0 - r * r).sqrt();
+    Some((1.0 - beyond) * failed(score.needs(guard)) + beyond * failed(score.needs((guard + taken) / r)))
 }
 
 fn pass_probability(

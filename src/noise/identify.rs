@@ -51,9 +51,9 @@ impl Whittle {
         Some(Search::run(&Likelihood::new(evidence)?, &self.slow)?.slow)
     }
 
-    /// 2 Δ ln L that a term needs against the best model without it.
-    pub fn threshold(&self, term: NoiseType) -> f64 {
-        self.slow.against_rival(term).unwrap_or(match term {
+    /// 2 Δ ln L that a term of some relative uncertainty needs against the best model without it.
+    pub fn threshold(&self, term: NoiseType, relative_sigma: f64) -> f64 {
+        self.slow.against_rival(term, relative_sigma).unwrap_or(match term {
             NoiseType::Quantization => self.quantization,
             _ => self.white,
         })
@@ -257,10 +257,12 @@ impl Identification {
 /// The description that N, B, K, R and Q alone give.
 fn described(model: NoiseModel, covariance: &[[f64; 5]; 5]) -> Described {
     let present: Vec<usize> = (0..5).filter(|i| model.coefficient(TERMS[*i]) != 0.0).collect();
+    // Adding zero leaves every number as it is but −0, which no file should hold.
+    let between = |i: usize, j: usize| covariance[i][j] + 0.0;
     Described {
         model: model.into(),
         parameters: present.iter().map(|i| Parameter::Coefficient(TERMS[*i])).collect(),
-        covariance: present.iter().map(|i| present.iter().map(|j| covariance[*i][*j]).collect()).collect(),
+        covariance: present.iter().map(|i| present.iter().map(|j| between(*i, *j)).collect()).collect(),
     }
 }
 

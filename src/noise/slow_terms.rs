@@ -6,6 +6,7 @@
 //! most about one record in twenty claims an absent term and an identifiable one is missed no more often.
 
 use super::data::NoiseType;
+use super::identifiable::IDENTIFIABLE;
 
 /// A set of slow terms as bits.
 pub type SlowSet = usize;
@@ -80,13 +81,14 @@ impl SlowPrices {
         self.choose_among(deviance, |set| !holds(set, term)).map_or(f64::INFINITY, |c| c.cost - choice.cost)
     }
 
-    /// 2 Δ ln L that a slow term that is hardly identifiable needs against the best model without it, its rival in its
+    /// 2 Δ ln L that a slow term of some relative uncertainty needs against the best model without it, its rival in its
     /// place; `None` for other terms.
-    pub fn against_rival(&self, term: NoiseType) -> Option<f64> {
+    pub fn against_rival(&self, term: NoiseType, relative_sigma: f64) -> Option<f64> {
         let between = self.set[B] - self.set[K];
+        let preference = if relative_sigma <= IDENTIFIABLE { 0.0 } else { NEARLY };
         Some(match term {
-            NoiseType::Flicker => (NEARLY + between).max(0.0),
-            NoiseType::RateRandomWalk => (NEARLY - between).max(0.0),
+            NoiseType::Flicker => (preference + between).max(0.0),
+            NoiseType::RateRandomWalk => (preference - between).max(0.0),
             NoiseType::RateRamp => self.set[R],
             _ => return None,
         })

@@ -34,10 +34,8 @@ pub fn manifest() -> Value {
 pub fn model() -> Value {
     let mut schema = document(&MODEL_FILE, "Sagnac model");
     // Editors offer the kinds; the reader knows them from the catalogue.
-    let kinds: Vec<Value> = EFFECTS
-        .iter()
-        .map(|e| json!({"const": e.kind(), "description": e.doc().title.en}))
-        .collect();
+    let kinds: Vec<Value> =
+        EFFECTS.iter().map(|e| json!({"const": e.kind(), "description": e.doc().title.en})).collect();
     if let Some(kind) = schema.pointer_mut("/properties/effect/items/properties/kind")
         && let Some(object) = kind.as_object_mut()
     {

@@ -82,6 +82,12 @@ pub(super) fn instants(drivers: &Drivers, look: &Look<'_>) -> Starts {
         let w = weights[p] + (weights[p + 1] - weights[p]) * (x - p as f64).clamp(0.0, 1.0);
         gains[j] = if w > 0.0 { 0.5 * sum * sum / w } else { 0.0 };
     }
+    best_instants(gains, drivers)
+}
+
+/// The three best of gains by sample, apart from one another, as shapes.
+pub(super) fn best_instants(mut gains: Vec<f64>, drivers: &Drivers) -> Starts {
+    let n = gains.len();
     let mut shapes = vec![];
     let apart = (n / 50).max(1);
     for _ in 0..3 {

@@ -79,6 +79,11 @@ impl Course for Diurnal {
         Some(wave(number(values, PARAMS[0].name)?, phase, &columns))
     }
 
+    /// A line of just this period is seldom anything else.
+    fn odds(&self, _shape: &[f64], _drivers: &Drivers) -> f64 {
+        3.0
+    }
+
     fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let Some(f) = shape.first().map(|p| 1.0 / p) else { return vec![] };
         let half = 0.5 / drivers.length_s();

@@ -1,6 +1,6 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
-use super::bias_step::{instants, step};
+use super::bias_step::{best_instants, instants, step};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
@@ -65,6 +65,45 @@ fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
     Some((apart(*a, *b), usual.get(usual.len() / 2).copied().unwrap_or(0.0)))
 }
 
+/// Instants from which on another projection gains most, s after the first sample; the best first. As for a step, with
+/// two columns: their products with the score are cumulated, and their weights, which vary slowly, interpolated.
+fn turned_instants(angle: &[f64], drivers: &Drivers, look: &Look<'_>) -> Starts {
+    let n = drivers.samples;
+    if n < 8 || angle.len() < n {
+        return Starts { shapes: vec![], looked: 1.0 };
+    }
+    let points = 48.min(n / 4);
+    let at = |p: usize| 1.0 + (n as f64 - 2.0) * p as f64 / points as f64;
+    let turns: [Vec<f64>; 2] =
+        [f64::cos, f64::sin].map(|f| angle.iter().map(|a| f(a.to_radians())).collect());
+    let gram = |p: usize| {
+        let step = step(drivers, (at(p) - 0.5) * drivers.dt_s);
+        let modes = turns.each_ref().map(|t| {
+            crate::numeric::cosine::dct2(&step.iter().zip(t).map(|(s, t)| s * t).collect::<Vec<f64>>())
+        });
+        let product = |a: &[f64], b: &[f64]| {
+            a.iter().zip(b).zip(look.powers).skip(1).map(|((x, y), p)| x * y / p).sum::<f64>()
+        };
+        [product(&modes[0], &modes[0]), product(&modes[0], &modes[1]), product(&modes[1], &modes[1])]
+    };
+    let grams: Vec<[f64; 3]> = (0..=points).map(gram).collect();
+    let (mut cos, mut sin) = (0.0, 0.0);
+    let mut gains = vec![0.0; n];
+    for j in (1..n).rev() {
+        cos += look.score[j] * turns[0][j];
+        sin += look.score[j] * turns[1][j];
+        let x = (j as f64 - at(0)) / (at(1) - at(0));
+        let p = (x.max(0.0) as usize).min(points - 1);
+        let share = (x - p as f64).clamp(0.0, 1.0);
+        let [a, b, d] = std::array::from_fn(|i| grams[p][i] + (grams[p + 1][i] - grams[p][i]) * share);
+        let determinant = a * d - b * b;
+        if determinant > 1e-9 * a * d {
+            gains[j] = 0.5 * (d * cos * cos - 2.0 * b * cos * sin + a * sin * sin) / determinant;
+        }
+    }
+    best_instants(gains, drivers)
+}
+
 impl Course for HeadingChange {
     /// Averages hold no angles.
     fn pace(&self) -> Pace {
@@ -76,7 +115,10 @@ impl Course for HeadingChange {
     }
 
     fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
-        instants(drivers, look)
+        match turning(drivers) {
+            Some(angle) => turned_instants(angle, drivers, look),
+            None => instants(drivers, look),
+        }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -132,7 +174,7 @@ impl Course for HeadingChange {
         match turned(*at, drivers) {
             Some((here, usual)) if here > 0.01 && here > 5.0 * usual => 6.0,
             _ if drivers.claim.earth.is_some() => 1.0,
-            _ => -1.0,
+            _ => -3.0,
         }
     }
 }

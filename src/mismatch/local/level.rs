@@ -3,7 +3,7 @@
 use super::gamma::{Group, fit, mean_square, overdispersion};
 use super::rate_law::{RateLaw, rate_law};
 use super::time_level::{DECAYS, Form, over_time};
-use super::{Flat, varies};
+use super::{Flat, lattice_step, varies};
 use crate::effect::{Column, Domain, Place};
 use crate::estimate::chi_square_tail;
 use crate::mismatch::candidates::Tried;
@@ -77,7 +77,8 @@ pub(super) struct Found {
 pub fn level(problem: &Problem, tried: &Tried) -> Vec<Level> {
     let flat = Flat::of(tried);
     let indices: Vec<usize> = (0..flat.flat.len()).filter(|i| flat.counts(problem, *i)).collect();
-    if indices.len() < 8 * FEWEST {
+    // On a coarse lattice the size of the residual says how near the rate is to a step.
+    if indices.len() < 8 * FEWEST || lattice_step(problem, &flat) > super::COARSE {
         return vec![];
     }
     let mut found: Vec<Found> = over_time(problem, &flat, &indices).into_iter().collect();

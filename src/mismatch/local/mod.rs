@@ -32,6 +32,8 @@ const EVEN: (f64, f64) = (0.4, 2.0);
 /// Levelled power from which the ends of the record show the leakage of cosine modes, and how far.
 const STRONG: f64 = 8.0;
 const ENDS: usize = 64;
+/// Steps of a lattice, in deviations of a sample, from which values are seen to jump between them.
+const COARSE: f64 = 2.0;
 /// A median of absolute values over the deviation of a normal law.
 const MEDIAN: f64 = 0.674_489_750_196_082;
 

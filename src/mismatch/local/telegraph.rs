@@ -228,7 +228,11 @@ pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
     // fitted, ½ ln M nats.
     let log_p = lengths.ln() + 1.5 * ((n / best.averaged) as f64).ln() - best.gain;
     let p_value = log_p.max(rival_gain - best.gain).min(0.0).exp().max(1e-300);
-    Some(ground.told(best, rival_gain, p_value))
+    let told = ground.told(best, rival_gain, p_value);
+    // Two neighbouring steps of a coarse lattice are two levels as well.
+    let step = problem.scenes.lattice_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s);
+    let lattice = step > super::COARSE * ground.white.sqrt() && told.amplitude_deg_h < 1.5 * step;
+    (!lattice).then_some(told)
 }
 
 impl Ground<'_> {

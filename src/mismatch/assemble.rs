@@ -1,0 +1,400 @@
+//! The result of an explanation, put together from its parts.
+
+use super::candidates::{Candidate as Fitted, Tried};
+use super::departures::{self, Departure};
+use super::draw::{self, Drawn};
+use super::engine::Found;
+use super::estimates;
+use super::finding::{
+    Candidate, Explanation, Finding, Fit, FitFigures, NuisanceValue, ParameterValue, PlaceRecord,
+    RecordingFacts, Test,
+};
+use super::heldout::{Halves, HeldOut};
+use super::hypothesis::kept;
+use super::options::Options;
+use super::outcome::Outcome;
+use super::problem::Problem;
+use super::samples::Named;
+use super::select::{Chosen, Selection, Slot};
+use crate::claim::{Claim, Stated};
+use crate::effect::{Domain, Effect, Model, Nuisance, Place, SpectralLook, Value};
+use crate::series::Series;
+use std::collections::BTreeMap;
+
+/// A residual test counts as departed below this, its own scan and the number of tests counted.
+const DEPARTED: f64 = 1e-4;
+
+/// Everything that an explanation rests on.
+pub(super) struct Parts<'a> {
+    /// Recording and claim, with what was taken out.
+    pub problem: &'a Problem,
+    /// The claim as given.
+    pub claim: &'a Claim,
+    /// The claim's own fit.
+    pub base: &'a Tried,
+    /// Its held-out figures.
+    pub held_base: HeldOut,
+    /// What was selected.
+    pub selection: &'a Selection,
+    /// What was found in single samples.
+    pub found: Found,
+    /// Tests of the residual of the claim.
+    pub before: &'a [Departure],
+    /// Tests of what is left.
+    pub after: &'a [Departure],
+    /// The recording as read.
+    pub series: &'a Series,
+    /// Decisions of the user.
+    pub options: &'a Options,
+}
+
+/// Puts everything together.
+pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
+    let Parts { problem, claim, base, held_base, selection, mut found, before, after, series, options } =
+        parts;
+    let scenes = &problem.scenes;
+    let local_gain = found.local_gain();
+    // What was observed, with everything that was taken out of it since.
+    let mut observed = problem.residual.clone();
+    if let Some(taken) = &found.taken {
+        observed.iter_mut().zip(taken).for_each(|(o, t)| *o += t);
+    }
+    for chosen in &selection.chosen {
+        found.named.push(named(chosen, &selection.best, problem));
+    }
+    found.named.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    let something = !found.named.is_empty();
+    let mut principal: Vec<Place> = found.named.first().map(|n| n.places.clone()).unwrap_or_default();
+    if principal.is_empty() {
+        principal.extend(
+            after.iter().filter(|d| d.p_value * (after.len() as f64) < 1e-3).map(|d| d.place).take(1),
+        );
+    }
+    let mut findings: Vec<Finding> = found.named.iter().map(finding).collect();
+    findings.extend(unknown(after, !something, options.alpha));
+    findings.extend(dropped(problem));
+    let verdict = if findings.iter().any(|f| f.kind == "unknown") {
+        "unknown-mismatch"
+    } else if findings.is_empty() {
+        "consistent"
+    } else {
+        "mismatch"
+    };
+    let mut correction = estimates::correction(&selection.best, scenes);
+    if let Some(taken) = &found.taken {
+        let sum = correction.get_or_insert_with(|| vec![0.0; taken.len()]);
+        sum.iter_mut().zip(taken).for_each(|(s, t)| *s += t);
+    }
+    let stated = found.named.into_iter().map(|n| Stated { effect: n.effect, values: n.estimated.stated });
+    let augmented = augmented(problem, claim, &selection.best, stated.collect());
+    let halves = Halves::new(problem);
+    let held_best = if something { halves.judge(&selection.best) } else { held_base };
+    let family = smallest_p(&selection.first, before);
+    let figures_after = FitFigures {
+        log_likelihood: selection.best.fit.log_likelihood + local_gain,
+        heldout_log_likelihood: held_best.log_likelihood + 0.5 * local_gain,
+        heldout_rms_deg_h: held_best.rms_deg_h,
+        bic: selection.best.bic(scenes.rows) - 2.0 * local_gain,
+    };
+    let baseline = figures(base, &held_base, scenes.rows);
+    let explanation = Explanation {
+        format: "explain/1".to_owned(),
+        case: problem.claim.case.clone(),
+        verdict: verdict.to_owned(),
+        effects: findings,
+        fit: Fit {
+            heldout_tau_s: halves.bin_s(),
+            augmented: if something { figures_after } else { baseline.clone() },
+            baseline,
+        },
+        family_p_value: family,
+        family_p_value_after: if something { departures::family(after) } else { family },
+        alpha: options.alpha,
+        candidates: selection.first.iter().map(candidate).collect(),
+        tests: tests(before, after),
+        nuisances: nuisances(problem, base, &selection.best),
+        recording: facts(problem, series, options),
+        experiments: vec![],
+    };
+    let figures = draw::all(
+        problem,
+        &Drawn {
+            before: &observed,
+            base,
+            best: &selection.best,
+            correction: correction.as_deref(),
+            added: something,
+            places: &principal,
+        },
+    );
+    let correction = correction.map(|c| {
+        let on_rows = c.iter().zip(&problem.regular.present).enumerate().filter(|(_, (_, p))| **p);
+        on_rows.map(|(i, (v, _))| (problem.drivers.time_s(i), *v)).collect()
+    });
+    Outcome { explanation, correction, augmented, figures }
+}
+
+/// A chosen effect with its parameters and places.
+fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
+    let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.scenes);
+    if chosen.effect.kind() == "unobserved_driver"
+        && let Slot::Spectrum(i) = chosen.slot
+    {
+        estimated.stated = super::driver::knots(best, i, problem);
+    }
+    Named {
+        effect: chosen.effect,
+        estimated,
+        equivalents: chosen.equivalents.iter().map(|e| e.kind()).collect(),
+        places: places(chosen.effect, chosen.slot, best, chosen, problem),
+        delta_bic: chosen.delta_bic,
+        p_value: chosen.p_value,
+        local_gain: 0.0,
+    }
+}
+
+fn smallest_p(first: &[Fitted], before: &[Departure]) -> f64 {
+    let named = first.iter().map(|c| c.p_value).fold(1.0, f64::min) * first.len().max(1) as f64;
+    (2.0 * named.min(departures::family(before))).min(1.0)
+}
+
+fn figures(tried: &Tried, held: &HeldOut, rows: usize) -> FitFigures {
+    FitFigures {
+        log_likelihood: tried.fit.log_likelihood,
+        heldout_log_likelihood: held.log_likelihood,
+        heldout_rms_deg_h: held.rms_deg_h,
+        bic: tried.bic(rows),
+    }
+}
+
+fn candidate(fitted: &Fitted) -> Candidate {
+    Candidate {
+        kind: fitted.effect.kind().to_owned(),
+        delta_bic: fitted.delta_bic,
+        log_likelihood_gain: fitted.gain,
+        p_value: fitted.p_value,
+    }
+}
+
+fn record(place: &Place) -> PlaceRecord {
+    PlaceRecord { domain: place.domain.id().to_owned(), from: place.from, to: place.to }
+}
+
+fn finding(named: &Named) -> Finding {
+    Finding {
+        kind: named.effect.kind().to_owned(),
+        equivalents: named.equivalents.iter().map(|e| (*e).to_owned()).collect(),
+        parameters: named.estimated.reported.clone(),
+        places: named.places.iter().map(record).take(3).collect(),
+        delta_bic: named.delta_bic,
+        p_value: named.p_value,
+        heldout_gain: None,
+        removed_share: None,
+    }
+}
+
+fn places(
+    effect: &'static dyn Effect,
+    slot: Slot,
+    best: &Tried,
+    chosen: &Chosen,
+    problem: &Problem,
+) -> Vec<Place> {
+    match (effect.model(), slot) {
+        (Model::Course(course), Slot::Course(i)) => {
+            let scene = problem.scenes.of(course.pace());
+            let inside = &best.hypothesis.courses[i];
+            course.places(&inside.shape, &inside.coefficients, &scene.drivers)
+        }
+        (Model::Spectrum(spectrum), Slot::Spectrum(i)) => {
+            let scene = &problem.scenes.full;
+            let observed = scene.observed(&best.fit.mean.residual);
+            let look = SpectralLook {
+                bins: &scene.bins,
+                observed: &observed,
+                expected: &chosen.without.fit.densities,
+                lattice_arcsec: problem.scenes.lattice_arcsec,
+            };
+            spectrum.places(&best.hypothesis.noise.spectra[i].fitted, &look)
+        }
+        _ => vec![],
+    }
+}
+
+/// What departs from the hypothesis and has no name.
+fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Finding> {
+    let tests = after.len().max(1) as f64;
+    let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTED };
+    let mut departed: Vec<&Departure> = after.iter().filter(|d| d.p_value * tests < bound).collect();
+    departed.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    let worst = departed.first()?;
+    let mut places: Vec<PlaceRecord> = vec![];
+    for d in &departed {
+        let place = record(&d.place);
+        if !places.iter().any(|p| p.domain == place.domain) {
+            places.push(place);
+        }
+    }
+    places.truncate(3);
+    let p_value = (worst.p_value * tests).min(1.0);
+    Some(Finding {
+        kind: "unknown".to_owned(),
+        equivalents: vec![],
+        parameters: BTreeMap::new(),
+        places,
+        delta_bic: -2.0 * p_value.max(1e-300).ln(),
+        p_value,
+        heldout_gain: None,
+        removed_share: None,
+    })
+}
+
+/// Rows missing on the grid that the claim states.
+fn dropped(problem: &Problem) -> Option<Finding> {
+    let missing = problem.regular.missing();
+    if missing == 0 || problem.claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples") {
+        return None;
+    }
+    let (first, last) = (problem.regular.gaps.first()?, problem.regular.gaps.last()?);
+    let at = |i: usize| problem.drivers.time_s(i);
+    let place = PlaceRecord {
+        domain: Domain::Timestamps.id().to_owned(),
+        from: at(first.0.saturating_sub(1)),
+        to: at(last.0 + last.1),
+    };
+    let count = missing as f64;
+    let value = ParameterValue { value: count, unit: String::new(), ci95: [count, count] };
+    Some(Finding {
+        kind: "dropped_samples".to_owned(),
+        equivalents: vec![],
+        parameters: BTreeMap::from([("missing_rows".to_owned(), value)]),
+        places: vec![place],
+        delta_bic: count * (problem.scenes.rows as f64).ln(),
+        p_value: 1e-300,
+        heldout_gain: None,
+        removed_share: None,
+    })
+}
+
+fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
+    let (many, left) = (before.len().max(1) as f64, after.len().max(1) as f64);
+    let one = |(i, b): (usize, &Departure)| {
+        let a = after.get(i).filter(|a| a.test == b.test);
+        Test {
+            id: b.test.to_owned(),
+            domain: b.place.domain.id().to_owned(),
+            from: b.place.from,
+            to: b.place.to,
+            p_before: (b.p_value * many).min(1.0),
+            p_after: a.map_or(1.0, |a| (a.p_value * left).min(1.0)),
+        }
+    };
+    before.iter().enumerate().map(one).collect()
+}
+
+/// The value of a nuisance column in a fit; 0 where its prior was given up.
+fn nuisance_value(problem: &Problem, tried: &Tried, nuisance: Nuisance) -> f64 {
+    let kept = kept(&problem.scenes.full, &tried.hypothesis.courses);
+    let at = kept.iter().position(|n| n.nuisance == nuisance);
+    at.and_then(|i| tried.fit.mean.coefficients.get(i)).copied().unwrap_or(0.0)
+}
+
+fn nuisances(problem: &Problem, base: &Tried, best: &Tried) -> Vec<NuisanceValue> {
+    let (claim, u) = (&problem.claim, &problem.claim.uncertainty);
+    let mut out = vec![];
+    let names = [("N_deg_rt_h", "deg/√h"), ("B_deg_h", "deg/h"), ("K_deg_h_rt_h", "deg/h/√h")];
+    let claimed = base.hypothesis.noise.claimed;
+    for (i, (name, unit)) in names.into_iter().enumerate() {
+        let deviation = base.hypothesis.noise.deviation[i];
+        if claimed[i] > 0.0 && deviation > 0.0 {
+            out.push(NuisanceValue {
+                name: name.to_owned(),
+                unit: unit.to_owned(),
+                claimed: claimed[i],
+                uncertainty: deviation * claimed[i],
+                baseline: base.hypothesis.noise.base[i],
+                augmented: best.hypothesis.noise.base[i],
+            });
+        }
+    }
+    if let Some(t) = claim.mean.temperature
+        && u.temperature_coefficient_deg_h_per_degc > 0.0
+    {
+        let value = |tried| {
+            t.coefficient_deg_h_per_degc + nuisance_value(problem, tried, Nuisance::TemperatureCoefficient)
+        };
+        out.push(NuisanceValue {
+            name: "coefficient_deg_h_per_degC".to_owned(),
+            unit: "deg/h/°C".to_owned(),
+            claimed: t.coefficient_deg_h_per_degc,
+            uncertainty: u.temperature_coefficient_deg_h_per_degc,
+            baseline: value(base),
+            augmented: value(best),
+        });
+    }
+    if let Some(ppm) = claim.mean.scale_factor_ppm
+        && u.scale_factor_ppm > 0.0
+    {
+        let value = |tried| ppm + nuisance_value(problem, tried, Nuisance::ScaleFactor);
+        out.push(NuisanceValue {
+            name: "error_ppm".to_owned(),
+            unit: "ppm".to_owned(),
+            claimed: ppm,
+            uncertainty: u.scale_factor_ppm,
+            baseline: value(base),
+            augmented: value(best),
+        });
+    }
+    out
+}
+
+/// The claim with its nuisances as fitted and the effects stated. A coefficient that an effect sets free stays as
+/// claimed: the effect states it.
+fn augmented(problem: &Problem, given: &Claim, best: &Tried, mut stated: Vec<Stated>) -> Claim {
+    let mut claim = Claim {
+        sample_rate_hz: given.sample_rate_hz,
+        quantization_lsb_arcsec: given.quantization_lsb_arcsec,
+        ..problem.claim.clone()
+    };
+    claim.noise.q = given.noise.q;
+    let noise = &best.hypothesis.noise;
+    for (i, slot) in [&mut claim.noise.n, &mut claim.noise.b, &mut claim.noise.k].into_iter().enumerate() {
+        if !noise.freed[i] {
+            *slot = noise.base[i];
+        }
+    }
+    let observed = &problem.residual;
+    let coefficient = nuisance_value(problem, best, Nuisance::TemperatureCoefficient);
+    if let Some(t) = &mut claim.mean.temperature {
+        t.coefficient_deg_h_per_degc += coefficient;
+    }
+    if let Some(ppm) = &mut claim.mean.scale_factor_ppm {
+        *ppm += nuisance_value(problem, best, Nuisance::ScaleFactor);
+    }
+    // The bias is what is left of the mean.
+    let correction = estimates::correction(best, &problem.scenes);
+    let n = observed.len().max(1) as f64;
+    let added = correction.map_or(0.0, |c| c.iter().sum::<f64>() / n);
+    claim.mean.bias_deg_h = observed.iter().sum::<f64>() / n - added;
+    claim.effects.append(&mut stated);
+    if problem.regular.missing() > 0
+        && !claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples")
+        && let Some(effect) = crate::effect::find("dropped_samples")
+    {
+        let missing = Value::Number(problem.regular.missing() as f64);
+        claim.effects.push(Stated { effect, values: BTreeMap::from([("missing_rows".to_owned(), missing)]) });
+    }
+    claim
+}
+
+fn facts(problem: &Problem, series: &Series, options: &Options) -> RecordingFacts {
+    let length = series.time_s.last().copied().unwrap_or(0.0) - series.time_s.first().copied().unwrap_or(0.0);
+    RecordingFacts {
+        rows: series.time_s.len(),
+        missing: problem.regular.missing(),
+        sample_interval_s: problem.regular.dt_s,
+        length_s: length,
+        columns: problem.regular.columns.keys().map(|c| c.name().to_owned()).collect(),
+        hidden: options.hide.iter().map(|c| c.name().to_owned()).collect(),
+    }
+}
