@@ -120,7 +120,7 @@ pub fn consistent() -> Explanation {
         candidates: vec![],
         tests: vec![
             test("spectrum", place("frequency", 0.0012, 0.0047), 0.21, 0.21),
-            test("distribution", place("amplitude", -4.1, 4.3), 0.08, 0.08),
+            test("skewness", place("amplitude", -4.1, 4.3), 0.08, 0.08),
         ],
         nuisances: vec![
             nuisance("noise.N_deg_rt_h", "deg/sqrt(h)", 0.0023, 3.45e-5, 0.002_312),
@@ -166,7 +166,7 @@ pub fn explained(effects: Vec<Finding>) -> Explanation {
             candidate("markov_long", -4.0, 0.2),
         ],
         tests: vec![
-            test("distribution", place("amplitude", -4.1, 4.3), 0.08, 0.3),
+            test("skewness", place("amplitude", -4.1, 4.3), 0.08, 0.3),
             test("level", place("time", 5190.0, 5280.0), 2.2e-45, 0.61),
         ],
         effects,
