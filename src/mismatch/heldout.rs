@@ -2,7 +2,7 @@
 //! block is looked at about its own mean.
 
 use super::candidates::{Tried, refine};
-use super::hypothesis::{Hypothesis, Normal, PartModes, fit, kept, part_modes};
+use super::hypothesis::{Hypothesis, LeastSquares, Normal, PartModes, fit, kept, part_modes};
 use super::noise_fit::whittle;
 use super::problem::Problem;
 use super::scene::Scene;
@@ -57,7 +57,8 @@ impl Halves {
         refine_shapes(&mut hypothesis, &self.train);
         let trained = fit(&mut hypothesis, &self.train);
         let mut residual = self.test.modes.clone();
-        let mut coefficients = trained.mean.coefficients.iter();
+        let known = known(&trained.mean, &tried.fit.mean);
+        let mut coefficients = known.iter();
         let mut subtract = |column: &[f64], c: f64| {
             residual.iter_mut().zip(column).for_each(|(r, z)| *r -= c * z);
         };
@@ -86,6 +87,19 @@ impl Halves {
         let mean = bins.iter().sum::<f64>() / n;
         (bins.iter().map(|b| (b - mean).powi(2)).sum::<f64>() / n).sqrt()
     }
+}
+
+/// The coefficients that the training half knows. One whose column it hardly holds, as of a step in a block held out, is
+/// taken for nothing.
+fn known(trained: &LeastSquares, whole: &LeastSquares) -> Vec<f64> {
+    const HARDLY: f64 = 1e3;
+    let deviation =
+        |fit: &LeastSquares, i: usize| fit.covariance.get((i, i)).map_or(0.0, |v| v.max(0.0).sqrt());
+    let one = |(i, c): (usize, &f64)| {
+        let told = deviation(trained, i) <= HARDLY * deviation(whole, i);
+        if told && c.is_finite() { *c } else { 0.0 }
+    };
+    trained.coefficients.iter().enumerate().map(one).collect()
 }
 
 /// Moves each shape to where the training half has it.
