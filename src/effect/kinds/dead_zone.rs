@@ -1,6 +1,6 @@
 //! No or reduced response around zero input rate.
 
-use super::search::{best_of, log_grid, shortlist};
+use super::search::{best_of, fast_level, peaks};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
@@ -43,15 +43,44 @@ fn column(half_width: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     Some(rate.iter().map(inside).collect())
 }
 
-/// Distinct sizes of the rate in order, deg/h, at most 64 of them.
-fn sizes(drivers: &Drivers) -> Vec<f64> {
-    let rates = drivers.table_rate.iter().flatten();
-    let mut sizes: Vec<f64> =
-        rates.map(|r| (3600.0 * r).abs()).filter(|r| r.is_finite() && *r > 0.0).collect();
-    sizes.sort_by(f64::total_cmp);
-    sizes.dedup_by(|a, b| *a - *b < 1e-6 * *b);
-    let step = sizes.len().div_ceil(64).max(1);
-    sizes.into_iter().step_by(step).collect()
+/// Positions of the samples in the order of the size of their rate, with the sizes, deg/h.
+fn by_size(drivers: &Drivers) -> Vec<(f64, usize)> {
+    let rates = drivers.table_rate.iter().flatten().enumerate();
+    let mut sizes: Vec<(f64, usize)> =
+        rates.map(|(i, r)| ((3600.0 * r).abs(), i)).filter(|(s, _)| s.is_finite() && *s > 0.0).collect();
+    sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sizes
+}
+
+/// Smallest and largest rate but zero, deg/h, and how many sizes there are.
+fn sizes(drivers: &Drivers) -> Option<(f64, f64, usize)> {
+    let rates = || drivers.table_rate.iter().flatten().map(|r| (3600.0 * r).abs()).filter(|s| *s > 0.0);
+    let (low, high) = rates().fold((f64::INFINITY, 0.0f64), |(a, b), s| (a.min(s), b.max(s)));
+    let between = rates().filter(|s| *s > 1.000_001 * low && *s < 0.999_999 * high).count();
+    (low.is_finite() && high.is_finite()).then_some((low, high, between))
+}
+
+/// Widths that gain most in white noise. Between neighbouring sizes of the rate every width is the same, so that one pass
+/// over the sizes in their order sees all of them.
+fn widths(drivers: &Drivers, look: &Look<'_>, keep: usize) -> Vec<f64> {
+    let order = by_size(drivers);
+    let level = fast_level(look);
+    let (mut both, mut square, mut sum) = (0.0, 0.0, 0.0);
+    let (mut gains, mut middles) = (vec![], vec![]);
+    for pair in order.windows(2) {
+        let (size, i) = pair[0];
+        let z = drivers.table_rate.as_ref().and_then(|r| r.get(i)).map_or(0.0, |r| -3600.0 * r);
+        both += z * look.score.get(i).copied().unwrap_or(0.0);
+        square += z * z;
+        sum += z;
+        if pair[1].0 > size * (1.0 + 1e-9) {
+            let norm = (square - sum * sum / drivers.samples.max(1) as f64) / level;
+            gains.push(if norm > 0.0 { 0.5 * both * both / norm } else { 0.0 });
+            middles.push(0.5 * (size + pair[1].0));
+        }
+    }
+    let apart = (gains.len() / 200).max(1);
+    peaks(&gains, keep, apart).into_iter().map(|i| middles[i]).collect()
 }
 
 impl Course for DeadZone {
@@ -60,28 +89,21 @@ impl Course for DeadZone {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        sizes(drivers).len() >= 3
+        sizes(drivers).is_some_and(|(_, _, between)| between > 0)
     }
 
-    /// Between neighbouring sizes of the rate every width is the same: their middles are looked at.
     fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
-        let sizes = sizes(drivers);
-        let mut widths: Vec<f64> = sizes.windows(2).map(|w| (w[0] * w[1]).sqrt()).collect();
-        // Rates that pass through zero have few samples close to it.
-        if let (Some(low), Some(high), true) = (sizes.first(), sizes.last(), sizes.len() > 32) {
-            widths.extend(log_grid(*low, *high, 32));
+        if look.score.len() != drivers.samples || look.modes.len() != drivers.samples {
+            return Starts { shapes: vec![], looked: 1.0 };
         }
-        let widths = shortlist(self, widths.into_iter().map(|w| vec![w]), 6, drivers, look);
-        let shapes = best_of(self, widths, 3, drivers, look);
-        Starts { shapes, looked: sizes.len().max(1) as f64 }
+        let widths = widths(drivers, look, 5).into_iter().map(|w| vec![w]);
+        // Widths inside one another share their samples: about as many as ratios of e are apart.
+        let looked = sizes(drivers).map_or(1.0, |(_, _, between)| (between as f64).clamp(1.0, 64.0));
+        Starts { shapes: best_of(self, widths, 3, drivers, look), looked }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
-        let sizes = sizes(drivers);
-        match (sizes.first(), sizes.last()) {
-            (Some(low), Some(high)) => vec![(*low, high.max(*low))],
-            _ => vec![(1e-9, 1e-9)],
-        }
+        sizes(drivers).map_or(vec![(1e-9, 1e-9)], |(low, high, _)| vec![(low, high)])
     }
 
     fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {

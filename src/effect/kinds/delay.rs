@@ -88,8 +88,8 @@ pub(super) fn parts(mean: &[f64], lag: impl Fn(usize) -> f64) -> Parts {
     Parts { fixed: Some(fixed), free: vec![], beside: ends_out(&lost) }
 }
 
-/// Drops in a search along one number: Gauss-Newton on white noise from a start, over the samples before `until`. `lag`
-/// gives the lag of a sample per unit of the number, in samples.
+/// Improves a number that delays the claimed mean, by Gauss-Newton on white noise over the samples before `until`. Bias
+/// and scale factor stay free. `lag` gives the lag of a sample per unit of the number, in samples.
 pub(super) fn follow(
     residual: &[f64],
     mean: &[f64],
@@ -98,30 +98,66 @@ pub(super) fn follow(
     lag: impl Fn(usize) -> f64,
     step: f64,
 ) -> f64 {
+    let until = until.min(residual.len()).min(mean.len());
     let stride = (until / 20_000).max(1);
     let mut at = start;
     for _ in 0..8 {
-        let (mut n, mut sc, mut sr, mut scc, mut scr) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for i in (0..until.min(residual.len())).step_by(stride) {
+        let mut sums = Sums::default();
+        for i in (0..until).step_by(stride) {
             let place = |x: f64| between(mean, i as f64 - x * lag(i));
             let (Some(here), Some(more), Some(less)) = (place(at), place(at + step), place(at - step)) else {
                 continue;
             };
-            let slope = (more - less) / (2.0 * step);
-            let left = residual[i] - (here - mean[i]);
-            n += 1.0;
-            sc += slope;
-            sr += left;
-            scc += slope * slope;
-            scr += slope * left;
+            sums.add(mean[i], (more - less) / (2.0 * step), residual[i] - (here - mean[i]));
         }
-        let curvature = scc - sc * sc / f64::max(n, 1.0);
-        if curvature.is_nan() || curvature <= 0.0 {
-            break;
+        match sums.coefficient() {
+            Some(change) => at += change,
+            None => break,
         }
-        at += (scr - sc * sr / n) / curvature;
     }
     at
+}
+
+/// Sums of a regression on a column beside a constant and a mean.
+#[derive(Default)]
+struct Sums {
+    n: f64,
+    m: f64,
+    c: f64,
+    r: f64,
+    mm: f64,
+    mc: f64,
+    mr: f64,
+    cc: f64,
+    cr: f64,
+}
+
+impl Sums {
+    fn add(&mut self, m: f64, c: f64, r: f64) {
+        self.n += 1.0;
+        self.m += m;
+        self.c += c;
+        self.r += r;
+        self.mm += m * m;
+        self.mc += m * c;
+        self.mr += m * r;
+        self.cc += c * c;
+        self.cr += c * r;
+    }
+
+    /// Coefficient of the column; `None` where the others leave nothing of it.
+    fn coefficient(&self) -> Option<f64> {
+        let n = self.n.max(1.0);
+        let mm = self.mm - self.m * self.m / n;
+        let mc = self.mc - self.m * self.c / n;
+        let mr = self.mr - self.m * self.r / n;
+        let (mut cc, mut cr) = (self.cc - self.c * self.c / n, self.cr - self.c * self.r / n);
+        if mm > 1e-12 * self.mm {
+            cc -= mc * mc / mm;
+            cr -= mc * mr / mm;
+        }
+        (cc > 1e-12 * self.cc).then(|| cr / cc)
+    }
 }
 
 #[cfg(test)]
@@ -142,6 +178,16 @@ mod tests {
         // A quarter of the sample after the edge still shows the old level.
         assert!((course[30] + 25.0).abs() < 1e-12);
         assert!(course.iter().enumerate().all(|(i, c)| i == 30 || c.abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_delay_is_followed_to_its_value_past_an_error_of_the_scale_factor() {
+        let wave: Vec<f64> =
+            (0..2000).map(|i| if i % 300 < 150 { 9.0 } else { (0.05 * i as f64).sin() }).collect();
+        let (course, _) = shifted(&wave, |_| 0.37);
+        let residual: Vec<f64> = course.iter().zip(&wave).map(|(c, m)| c + 0.01 * m - 4.0).collect();
+        let lag = follow(&residual, &wave, 2000, 0.0, |_| 1.0, 0.05);
+        assert!((lag - 0.37).abs() < 0.004, "{lag}");
     }
 
     #[test]

@@ -163,8 +163,8 @@ fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "diurnal" => (days(), vec![0.02, 86_400.0, 40.0]),
         "line" => (drivers(), vec![0.2345, 0.01, 117.0]),
         "bias_step" => (drivers(), vec![0.05, 2111.3]),
-        // A table that turns sees the change in its projections.
-        "heading_change" => (drivers(), vec![0.05, 2111.3, 0.06, -0.05]),
+        // At one heading: a table that turns shows the new heading in all its projections.
+        "heading_change" => (Drivers { table_angle: None, ..drivers() }, vec![0.05, 2111.3]),
         "earth_rate_projection" => (headings(), vec![0.02, -20.0]),
         "table_harmonic" => (headings(), vec![3.0, 0.02, 77.0]),
         "reset_ripple" => (drivers(), vec![911.0, 0.05, 33.0, -2.95]),
