@@ -128,10 +128,15 @@ macro_rules! linear {
 }
 
 macro_rules! catalogue {
-    ($($module:ident :: $name:ident),* $(,)?) => {
+    (
+        $($module:ident :: $name:ident),* $(,)?;
+        without a kind in the format of explanations: $($own_module:ident :: $own:ident),* $(,)?
+    ) => {
         $(mod $module;)*
+        $(mod $own_module;)*
         /// Every effect, in the order of reports and lists.
-        pub static EFFECTS: &[&dyn Effect] = &[$(&$module::$name),*];
+        pub static EFFECTS: &[&dyn Effect] = &[$(&$module::$name,)* $(&$own_module::$own),*];
+        static OWN: &[&dyn Effect] = &[$(&$own_module::$own),*];
     };
 }
 
@@ -181,7 +186,15 @@ catalogue! {
     noise_variance_rate::NoiseVarianceRate,
     outlier_bursts::OutlierBursts,
     random_telegraph::RandomTelegraph,
-    dropped_samples::DroppedSamples,
+    dropped_samples::DroppedSamples;
+    without a kind in the format of explanations:
+    column_product::ColumnProduct,
+    column_curve::ColumnCurve,
+}
+
+/// True for an effect of this catalogue that the format of explanations has no kind for.
+pub(super) fn is_own(kind: &str) -> bool {
+    OWN.iter().any(|e| e.kind() == kind)
 }
 
 /// The effect of a kind.

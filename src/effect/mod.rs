@@ -16,6 +16,9 @@ pub use spectral::{ModeBin, SpectralLook, Spectrum, SpectrumAct};
 
 use std::collections::BTreeMap;
 
+/// Kind of a cause that the format of explanations has no name for.
+pub const UNKNOWN: &str = "unknown";
+
 /// One parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Param {
@@ -132,6 +135,10 @@ pub fn list<'a>(values: &'a Values, name: &str) -> &'a [f64] {
 pub trait Effect: Sync {
     /// Its kind in files.
     fn kind(&self) -> &'static str;
+    /// Its kind in the format of explanations; `unknown` for an effect of this catalogue that has none there.
+    fn reported_kind(&self) -> &'static str {
+        if kinds::is_own(self.kind()) { UNKNOWN } else { self.kind() }
+    }
     /// What it is.
     fn doc(&self) -> &'static Doc;
     /// Its parameters.
@@ -181,6 +188,8 @@ pub enum Nuisance {
     TemperatureCoefficient,
     /// Scale factor.
     ScaleFactor,
+    /// A state before the record that an effect of the claim begins from; no claim can know it.
+    InitialState,
 }
 
 /// Whether a course is seen at the sample rate, or whole in averages.

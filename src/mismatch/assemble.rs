@@ -11,13 +11,15 @@ use super::finding::{
 };
 use super::heldout::{Halves, HeldOut};
 use super::hypothesis::kept;
+use super::improvement;
 use super::options::Options;
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::samples::Named;
+use super::single_cause;
 use super::select::{Chosen, Selection, Slot};
 use crate::claim::{Claim, Stated};
-use crate::effect::{Domain, Effect, Model, Nuisance, Place, SpectralLook, Value};
+use crate::effect::{Domain, Effect, Model, Nuisance, Place, SpectralLook, UNKNOWN, Value};
 use crate::series::Series;
 use std::collections::BTreeMap;
 
@@ -59,8 +61,12 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     if let Some(taken) = &found.taken {
         observed.iter_mut().zip(taken).for_each(|(o, t)| *o += t);
     }
+    let halves = Halves::new(problem);
+    let nothing = selection.chosen.is_empty() && found.named.is_empty();
+    let held_best = if nothing { held_base } else { halves.judge(&selection.best) };
     for chosen in &selection.chosen {
-        found.named.push(named(chosen, &selection.best, problem));
+        let gained = improvement::of(chosen, selection, &scenes.full, &halves, held_best.log_likelihood);
+        found.named.push(Named { improvement: Some(gained), ..named(chosen, &selection.best, problem) });
     }
     found.named.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     let something = !found.named.is_empty();
@@ -70,10 +76,10 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
             after.iter().filter(|d| d.p_value * (after.len() as f64) < 1e-3).map(|d| d.place).take(1),
         );
     }
-    let mut findings: Vec<Finding> = found.named.iter().map(finding).collect();
+    let mut findings = findings(&found.named);
     findings.extend(unknown(after, !something, options.alpha));
     findings.extend(dropped(problem));
-    let verdict = if findings.iter().any(|f| f.kind == "unknown") {
+    let verdict = if findings.iter().any(|f| f.kind == UNKNOWN) {
         "unknown-mismatch"
     } else if findings.is_empty() {
         "consistent"
@@ -87,8 +93,6 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     }
     let stated = found.named.into_iter().map(|n| Stated { effect: n.effect, values: n.estimated.stated });
     let augmented = augmented(problem, claim, &selection.best, stated.collect());
-    let halves = Halves::new(problem);
-    let held_best = if something { halves.judge(&selection.best) } else { held_base };
     let family = smallest_p(&selection.first, before);
     let figures_after = FitFigures {
         log_likelihood: selection.best.fit.log_likelihood + local_gain,
@@ -134,6 +138,33 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     Outcome { explanation, correction, augmented, figures }
 }
 
+/// One finding a cause: several named effects that are one cause of no kind are one.
+fn findings(named: &[Named]) -> Vec<Finding> {
+    let together = single_cause::together(named);
+    let mut out = vec![];
+    for (i, one) in named.iter().enumerate() {
+        match together.iter().find(|t| t.members.contains(&i)) {
+            None => out.push(finding(one)),
+            Some(t) if t.members.first() == Some(&i) => {
+                let members = || t.members.iter().map(|m| &named[*m]);
+                out.push(Finding {
+                    kind: UNKNOWN.to_owned(),
+                    effect: None,
+                    equivalents: vec![],
+                    parameters: BTreeMap::new(),
+                    places: t.places.iter().map(record).collect(),
+                    delta_bic: members().map(|m| m.delta_bic).sum(),
+                    p_value: members().map(|m| m.p_value).fold(1.0, f64::min),
+                    heldout_gain: None,
+                    removed_share: None,
+                });
+            }
+            Some(_) => {}
+        }
+    }
+    out
+}
+
 /// A chosen effect with its parameters and places.
 fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
     let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.scenes);
@@ -145,10 +176,16 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
     Named {
         effect: chosen.effect,
         estimated,
-        equivalents: chosen.equivalents.iter().map(|e| e.kind()).collect(),
+        equivalents: chosen
+            .equivalents
+            .iter()
+            .map(|e| e.kind())
+            .filter(|_| chosen.effect.reported_kind() != UNKNOWN)
+            .collect(),
         places: places(chosen.effect, chosen.slot, best, chosen, problem),
         delta_bic: chosen.delta_bic,
         p_value: chosen.p_value,
+        improvement: None,
         local_gain: 0.0,
     }
 }
@@ -182,14 +219,15 @@ fn record(place: &Place) -> PlaceRecord {
 
 fn finding(named: &Named) -> Finding {
     Finding {
-        kind: named.effect.kind().to_owned(),
+        kind: named.effect.reported_kind().to_owned(),
+        effect: (named.effect.reported_kind() == UNKNOWN).then(|| named.effect.kind().to_owned()),
         equivalents: named.equivalents.iter().map(|e| (*e).to_owned()).collect(),
         parameters: named.estimated.reported.clone(),
         places: named.places.iter().map(record).take(3).collect(),
         delta_bic: named.delta_bic,
         p_value: named.p_value,
-        heldout_gain: None,
-        removed_share: None,
+        heldout_gain: named.improvement.map(|i| i.heldout_gain),
+        removed_share: named.improvement.and_then(|i| i.removed_share),
     }
 }
 
@@ -229,8 +267,8 @@ fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Findi
     departed.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
     let worst = departed.first()?;
     let mut places: Vec<PlaceRecord> = vec![];
-    for d in &departed {
-        let place = record(&d.place);
+    for place in departed.iter().flat_map(|d| [Some(d.place), d.beside]).flatten() {
+        let place = record(&place);
         if !places.iter().any(|p| p.domain == place.domain) {
             places.push(place);
         }
@@ -238,7 +276,8 @@ fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Findi
     places.truncate(3);
     let p_value = (worst.p_value * tests).min(1.0);
     Some(Finding {
-        kind: "unknown".to_owned(),
+        kind: UNKNOWN.to_owned(),
+        effect: None,
         equivalents: vec![],
         parameters: BTreeMap::new(),
         places,
@@ -266,6 +305,7 @@ fn dropped(problem: &Problem) -> Option<Finding> {
     let value = ParameterValue { value: count, unit: String::new(), ci95: [count, count] };
     Some(Finding {
         kind: "dropped_samples".to_owned(),
+        effect: None,
         equivalents: vec![],
         parameters: BTreeMap::from([("missing_rows".to_owned(), value)]),
         places: vec![place],
@@ -279,7 +319,8 @@ fn dropped(problem: &Problem) -> Option<Finding> {
 fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
     let (many, left) = (before.len().max(1) as f64, after.len().max(1) as f64);
     let one = |(i, b): (usize, &Departure)| {
-        let a = after.get(i).filter(|a| a.test == b.test);
+        let same = |a: &&Departure| a.test == b.test && a.place.domain == b.place.domain;
+        let a = after.get(i).filter(same).or_else(|| after.iter().find(same));
         Test {
             id: b.test.to_owned(),
             domain: b.place.domain.id().to_owned(),

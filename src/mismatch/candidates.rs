@@ -3,7 +3,7 @@
 use super::hypothesis::{CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, part_modes};
 use super::noise_fit::{self, Noise, SpectrumIn, base_index};
 use super::scene::Scene;
-use crate::effect::{Course, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct};
+use crate::effect::{Course, Drivers, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct};
 use crate::estimate::chi_square_tail;
 use crate::numeric::cosine::inverse_dct2;
 use rayon::prelude::*;
@@ -83,9 +83,19 @@ fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, looked: f64,
 /// Fits every effect that is not in the hypothesis yet as an addition to it; those that gain something, the largest
 /// ΔBIC first.
 pub fn all(before: &Tried, scenes: &Scenes) -> Vec<Candidate> {
+    among(before, scenes, |_| true)
+}
+
+/// As [`all`], of some effects only.
+pub fn among(
+    before: &Tried,
+    scenes: &Scenes,
+    wanted: impl Fn(&dyn Effect) -> bool + Sync,
+) -> Vec<Candidate> {
     let grounds = Grounds::new(before, scenes);
     let fits: Vec<Option<Candidate>> = EFFECTS
         .par_iter()
+        .filter(|effect| wanted(**effect))
         .map(|effect| match effect.model() {
             Model::Course(course) => try_course(*effect, course, before, scenes, &grounds),
             Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, scenes),
@@ -210,11 +220,23 @@ impl ShapeSearch<'_> {
     }
 }
 
+/// First steps of a local search: none where a number is whole.
+pub fn first_steps(course: &dyn Course, drivers: &Drivers) -> Vec<Option<f64>> {
+    let steps = course.steps(drivers);
+    let numbers = course.bounds(drivers).len();
+    (0..numbers)
+        .map(|i| if course.whole().contains(&i) { Some(0.0) } else { steps.get(i).copied() })
+        .collect()
+}
+
 /// Improves a shape by steps along each of its numbers, on a logarithmic scale where its bounds are positive and far
 /// apart, halving the steps.
+///
+/// `first` are the first steps, on that scale; empty: by the bounds.
 pub fn refine(
     start: &[f64],
     bounds: &[(f64, f64)],
+    first: &[Option<f64>],
     evaluations: usize,
     gain: impl Fn(&[f64]) -> f64,
 ) -> (Vec<f64>, f64) {
@@ -230,6 +252,9 @@ pub fn refine(
     let mut steps: Vec<f64> = (0..at.len())
         .map(|i| {
             let width = to(i, bounds[i].1) - to(i, bounds[i].0);
+            if let Some(Some(step)) = first.get(i) {
+                return step.min(width);
+            }
             if logarithmic[i] { 0.35f64.min(width) } else { (0.01 * width).max(0.0) }
         })
         .collect();
@@ -298,6 +323,7 @@ fn try_course(
         return None;
     }
     let bounds = course.bounds(&scene.drivers);
+    let steps = first_steps(course, &scene.drivers);
     let columns = ground.columns(Some(course));
     let normal = Normal::new(&columns, &ground.data, &ground.inverse);
     let search = ShapeSearch { course, ground, columns, normal };
@@ -306,7 +332,7 @@ fn try_course(
     let leader = rough.first()?.1;
     let promising = rough.into_iter().filter(|(_, g)| *g > 0.7 * leader).take(2);
     let (shape, gain) = promising
-        .map(|(s, g)| if s.is_empty() { (s, g) } else { refine(&s, &bounds, 60, |x| search.gain(x)) })
+        .map(|(s, g)| if s.is_empty() { (s, g) } else { refine(&s, &bounds, &steps, 60, |x| search.gain(x)) })
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
     if gain.is_nan() || gain < 0.5 {
         return None;

@@ -49,7 +49,7 @@ pub fn all(scene: &Scene, white: &White) -> Vec<Departure> {
             if let Some(p_value) = gain_of(white, &columns) {
                 let (from, to) = crate::numeric::range::ends(&named[j].1);
                 let place = Place { domain: named[j].0, from, to };
-                out.push(Departure { test: "product", place, p_value });
+                out.push(Departure { test: "product", place, beside: None, p_value });
             }
         }
     }
@@ -125,7 +125,7 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
     };
     let p_value = gain_of(white, &columns)?;
     let (from, to) = extreme(white, values, low, high);
-    Some(Departure { test, place: Place { domain, from, to }, p_value })
+    Some(Departure { test, place: Place { domain, from, to }, beside: None, p_value })
 }
 
 fn legendre(order: usize, x: f64) -> f64 {
@@ -183,5 +183,5 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
         }
     }
     let place = Place { domain, from: best.1, to: best.2 };
-    Some(Departure { test: "size", place, p_value: (best.0 * looks).min(1.0) })
+    Some(Departure { test: "size", place, beside: None, p_value: (best.0 * looks).min(1.0) })
 }

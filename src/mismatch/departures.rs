@@ -9,7 +9,11 @@ use super::scene::Scene;
 use crate::effect::{Domain, Place};
 use crate::estimate::{chi_square_two_sided, normal_two_sided};
 use crate::numeric::cosine::inverse_dct2;
+use rand::{RngExt as _, SeedableRng as _};
 use statrs::distribution::{DiscreteCDF, Poisson};
+
+/// Seed of the draws that take values off a lattice: a report is a function of recording and claim alone.
+const SEED: u64 = 0x5a67_6e61_6320_0006;
 
 /// The largest departure of one test.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +22,8 @@ pub struct Departure {
     pub test: &'static str,
     /// Where.
     pub place: Place,
+    /// Where in another view.
+    pub beside: Option<Place>,
     /// Probability of as large a departure anywhere in the test.
     pub p_value: f64,
 }
@@ -67,12 +73,12 @@ impl Scan {
             return None;
         }
         let p_value = (self.smallest * self.looks).min(1.0);
-        Some(Departure { test, place: Place { domain, from: self.from, to: self.to }, p_value })
+        Some(Departure { test, place: Place { domain, from: self.from, to: self.to }, beside: None, p_value })
     }
 }
 
 /// Dyadic windows of `values` positions from `shortest` up, each overlapping the next by half.
-fn windows(values: usize, shortest: usize, mut see: impl FnMut(usize, usize)) {
+pub fn windows(values: usize, shortest: usize, mut see: impl FnMut(usize, usize)) {
     let mut length = shortest;
     while length <= values {
         let step = (length / 2).max(1);
@@ -96,7 +102,13 @@ fn cumulated(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// Every test of the residual of a fit. `level` is the local deviation of the noise, 1 where it is as the spectrum says.
-pub fn all(scene: &Scene, fit: &Fit, level: Option<&[f64]>, usable: &[bool]) -> Vec<Departure> {
+pub fn all(
+    scene: &Scene,
+    fit: &Fit,
+    level: Option<&[f64]>,
+    usable: &[bool],
+    lattice_arcsec: Option<f64>,
+) -> Vec<Departure> {
     let mut white = White::of(fit);
     if let Some(level) = level {
         white.series.iter_mut().zip(level).for_each(|(e, g)| *e /= g);
@@ -106,8 +118,8 @@ pub fn all(scene: &Scene, fit: &Fit, level: Option<&[f64]>, usable: &[bool]) -> 
     out.extend(spectrum(scene, &white));
     out.extend(lines(scene, &white));
     out.extend(levels(scene, &white));
-    out.extend(local_power(scene, &white));
-    out.extend(tails(scene, &white, usable));
+    out.extend(super::tiles::all(scene, &white.modes));
+    out.extend(off_lattice(scene, &white, lattice_arcsec).and_then(|values| tails(scene, &values, usable)));
     out.extend(skewness(scene, &white));
     out.extend(super::columns::all(scene, &white));
     out
@@ -145,7 +157,7 @@ fn lines(scene: &Scene, white: &White) -> Option<Departure> {
     let p_value = (1.6 * n as f64 / 2.0 * (-best).exp()).min(1.0);
     let place =
         Place { domain: Domain::Frequency, from: (at as f64 - 2.0) * step, to: (at as f64 + 2.0) * step };
-    Some(Departure { test: "line", place, p_value: p_value.max(1e-300) })
+    Some(Departure { test: "line", place, beside: None, p_value: p_value.max(1e-300) })
 }
 
 /// Mean of the whitened series over windows of time.
@@ -161,43 +173,6 @@ fn levels(scene: &Scene, white: &White) -> Option<Departure> {
     scan.done("level", Domain::Time)
 }
 
-/// Power over windows of time in each octave of frequency.
-fn local_power(scene: &Scene, white: &White) -> Option<Departure> {
-    let n = white.modes.len();
-    let mut scan = Scan::new();
-    let mut high = n;
-    loop {
-        let low = high / 2;
-        if low < 64 {
-            break;
-        }
-        // Modes low..high alone on a grid of `high` points keep their variances: each point has half of that of white.
-        let mut band = vec![0.0; high];
-        band[low..high].copy_from_slice(&white.modes[low..high]);
-        let series = inverse_dct2(&band);
-        let share = (high - low) as f64 / high as f64;
-        let sums = cumulated(series.iter().map(|v| v * v));
-        let whole = sums[high];
-        let dt = scene.drivers.length_s() / high as f64;
-        windows(high, 32, |from, to| {
-            let length = (to - from) as f64;
-            let (inside, outside) = (sums[to] - sums[from], whole - (sums[to] - sums[from]));
-            let rest = high as f64 - length;
-            // Against the band's own power elsewhere: how much power it has is the spectrum's question.
-            if rest < 0.25 * length {
-                return;
-            }
-            let (dof, others) = (share * length, share * rest);
-            let ratio = (inside / dof) / (outside / others);
-            let z = f_normal(ratio, dof, others);
-            let start = scene.drivers.start_s;
-            scan.see(normal_two_sided(z), start + from as f64 * dt, start + to as f64 * dt);
-        });
-        high = low;
-    }
-    scan.done("local_power", Domain::Time)
-}
-
 /// The standard normal number of a ratio of variances (Paulson 1942).
 pub fn f_normal(ratio: f64, dof: f64, others: f64) -> f64 {
     let (a, b) = (2.0 / (9.0 * dof), 2.0 / (9.0 * others));
@@ -205,13 +180,32 @@ pub fn f_normal(ratio: f64, dof: f64, others: f64) -> f64 {
     ((1.0 - b) * root - (1.0 - a)) / (b * root * root + a).sqrt()
 }
 
+/// The whitened series with counts of a continuous law: values on a lattice are moved by an even draw over its step.
+/// `None` where the steps are too coarse for that.
+fn off_lattice(scene: &Scene, white: &White, lattice_arcsec: Option<f64>) -> Option<Vec<f64>> {
+    const FINE: f64 = 0.1;
+    const COARSE: f64 = 1.5;
+    let n = white.series.len();
+    let per_deg_h = white.roots.iter().skip(1).map(|r| 1.0 / r).sum::<f64>() / n.max(2) as f64;
+    let step = lattice_arcsec.map_or(0.0, |a| a / scene.drivers.dt_s * per_deg_h);
+    if step <= FINE {
+        return Some(white.series.clone());
+    }
+    if step >= COARSE {
+        return None;
+    }
+    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(SEED);
+    let scale = (1.0 + step * step / 12.0).sqrt();
+    Some(white.series.iter().map(|e| (e + step * (rng.random::<f64>() - 0.5)) / scale).collect())
+}
+
 /// Values of the whitened series beyond 3, 4 and 5 deviations, too many or too few.
-fn tails(scene: &Scene, white: &White, usable: &[bool]) -> Option<Departure> {
-    let values = || white.series.iter().zip(usable).filter(|(_, u)| **u).map(|(e, _)| e.abs());
+fn tails(scene: &Scene, series: &[f64], usable: &[bool]) -> Option<Departure> {
+    let values = || series.iter().zip(usable).filter(|(_, u)| **u).map(|(e, _)| e.abs());
     let n = values().count() as f64;
     let mut scan = Scan::new();
     let mut largest = (0.0, 0);
-    for (i, e) in white.series.iter().enumerate() {
+    for (i, e) in series.iter().enumerate() {
         if usable[i] && e.abs() > largest.0 {
             largest = (e.abs(), i);
         }
@@ -228,7 +222,7 @@ fn tails(scene: &Scene, white: &White, usable: &[bool]) -> Option<Departure> {
     let mut found = scan.done("tails", Domain::Time)?;
     // Where the values beyond three deviations are.
     let far: Vec<usize> =
-        (0..white.series.len()).filter(|i| usable[*i] && white.series[*i].abs() > 3.5).collect();
+        (0..series.len()).filter(|i| usable[*i] && series[*i].abs() > 3.5).collect();
     let from = far.first().copied().unwrap_or(largest.1);
     let to = far.last().copied().unwrap_or(largest.1);
     found.place =

@@ -1,10 +1,11 @@
 //! The four steps: is there a mismatch and where, what could it be, which is it and how sure, does the fit improve.
 
 use super::assemble::{Parts, assemble};
-use super::candidates::Tried;
+use super::candidates::{self, Scenes, Tried};
 use super::coarse;
-use super::departures;
+use super::departures::{self, Departure};
 use super::heldout::Halves;
+use super::hypothesis::fit;
 use super::local;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
@@ -13,6 +14,7 @@ use super::regular::{Irregular, Regular};
 use super::samples::{self, Named};
 use super::select::{self, Selection};
 use crate::claim::Claim;
+use crate::effect::{Column, EFFECTS, Effect, Model};
 use crate::series::Series;
 use crate::text::Note;
 use std::collections::BTreeMap;
@@ -43,12 +45,14 @@ pub fn explain(
     let mut problem = uncoarsened(Problem::new(regular, claim), &mut found, options.alpha);
     let rows = problem.scenes.rows;
     let base = problem.baseline();
-    let before = departures::all(&problem.scenes.full, &base.fit, problem.level.as_deref(), &problem.usable);
+    let before = tests(&problem, &base, problem.level.as_deref());
     let held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
-    let mut start = take_bursts(&mut problem, &base, &mut found, options.alpha);
+    let moved = moved(&base, &problem.scenes, options.alpha);
+    let mut start = take_bursts(&mut problem, &base, &moved, &mut found, options.alpha);
     if problem.level.is_none() {
-        let levels = local::level(&problem, &start);
+        let moved = moved_again(&moved, &start, &problem);
+        let levels = local::level(&problem, &moved);
         let passing =
             levels.first().and_then(|l| samples::worth(l.gain, l.parameters, l.p_value, rows, options.alpha));
         if let Some(delta_bic) = passing {
@@ -61,7 +65,7 @@ pub fn explain(
     take_telegraph(&mut problem, &start, &mut selection, &mut found, options);
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
     let level = found.level.clone().or_else(|| problem.level.clone());
-    let after = departures::all(&problem.scenes.full, &selection.best.fit, level.as_deref(), &problem.usable);
+    let after = tests(&problem, &selection.best, level.as_deref());
     Ok(assemble(Parts {
         problem: &problem,
         claim,
@@ -74,6 +78,12 @@ pub fn explain(
         series,
         options,
     }))
+}
+
+/// What departs from a hypothesis.
+fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departure> {
+    let scenes = &problem.scenes;
+    departures::all(&scenes.full, &tried.fit, level, &problem.usable, scenes.lattice_arcsec)
 }
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
@@ -129,16 +139,56 @@ impl Found {
     }
 }
 
+/// What single samples are judged on: the claim with the courses of a moving table that it leaves out. Their corners,
+/// as of a delay, look like bursts and like a changing level; a smooth course does not.
+fn moved(base: &Tried, scenes: &Scenes, alpha: f64) -> Tried {
+    const COURSES: usize = 2;
+    let table = [Column::TableRate, Column::TableAngle, Column::OuterRate];
+    let follows = |e: &dyn Effect| e.needs().iter().any(|c| table.contains(c));
+    if !EFFECTS.iter().any(|e| follows(*e) && e.needs().iter().all(|c| scenes.full.drivers.column(*c).is_some()))
+    {
+        return base.clone();
+    }
+    let mut out = base.clone();
+    for _ in 0..COURSES {
+        let candidates = candidates::among(&out, scenes, |e| {
+            follows(e) && matches!(e.model(), Model::Course(_))
+        });
+        let family = EFFECTS.len() as f64;
+        match candidates.into_iter().next() {
+            Some(leader) if select::passes(&leader, family, alpha) => out = leader.tried,
+            _ => break,
+        }
+    }
+    out
+}
+
+/// The same on a problem from which something was taken since.
+fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
+    if moved.hypothesis.courses.is_empty() {
+        return start.clone();
+    }
+    let mut hypothesis = moved.hypothesis.clone();
+    let fit = fit(&mut hypothesis, &problem.scenes.full);
+    Tried { hypothesis, fit, ..moved.clone() }
+}
+
 /// Sets bursts aside; the claim's fit without them.
-fn take_bursts(problem: &mut Problem, base: &Tried, found: &mut Found, alpha: f64) -> Tried {
+fn take_bursts(
+    problem: &mut Problem,
+    base: &Tried,
+    moved: &Tried,
+    found: &mut Found,
+    alpha: f64,
+) -> Tried {
     let rows = problem.scenes.rows;
     let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "outlier_bursts");
-    let Some(bursts) = local::bursts(problem, base) else { return base.clone() };
+    let Some(bursts) = local::bursts(problem, moved) else { return base.clone() };
     let Some(delta_bic) = samples::worth(bursts.gain, bursts.parameters, bursts.p_value, rows, alpha) else {
         return base.clone();
     };
     let whole = problem.residual.clone();
-    problem.without(&bursts.samples, base);
+    problem.without(&bursts.samples, moved);
     if !stated {
         let removed: Vec<f64> = whole.iter().zip(&problem.residual).map(|(w, r)| w - r).collect();
         found.named.extend(samples::bursts(&bursts, delta_bic, &removed, problem));

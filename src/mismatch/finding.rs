@@ -40,6 +40,9 @@ pub struct Explanation {
 pub struct Finding {
     /// Kind of the contract, or `unknown`.
     pub kind: String,
+    /// Effect of the catalogue, where `kind` is `unknown` because the format has no kind for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effect: Option<String>,
     /// Kinds that this recording cannot tell from it, at most three.
     pub equivalents: Vec<String>,
     /// Parameters by name.
@@ -57,6 +60,18 @@ pub struct Finding {
     /// Share of the located excess that is removed, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_share: Option<f64>,
+}
+
+impl Finding {
+    /// Id of the effect of the catalogue, whether the format of explanations has a kind for it or not.
+    pub fn effect_id(&self) -> &str {
+        self.effect.as_deref().unwrap_or(&self.kind)
+    }
+
+    /// True for a cause that nothing in the catalogue describes.
+    pub fn is_unnamed(&self) -> bool {
+        self.effect_id() == crate::effect::UNKNOWN
+    }
 }
 
 /// A parameter with its interval.

@@ -1,7 +1,7 @@
 //! Held-out figures: ten blocks of equal time, the parameters from blocks 1, 3, 5, 7, 9, judged on 2, 4, 6, 8, 10. Each
 //! block is looked at about its own mean.
 
-use super::candidates::{Tried, refine};
+use super::candidates::{Tried, first_steps, refine};
 use super::hypothesis::{Hypothesis, LeastSquares, Normal, PartModes, fit, kept, part_modes};
 use super::noise_fit::whittle;
 use super::problem::Problem;
@@ -35,13 +35,10 @@ impl Halves {
         let length = problem.drivers.samples / BLOCKS;
         let scene = |odd: usize| {
             let blocks = (0..BLOCKS).filter(|b| b % 2 == odd).map(|b| b * length).collect();
-            Scene::of_blocks(
-                problem.drivers.clone(),
-                &problem.residual,
-                &problem.deviations(),
-                blocks,
-                length,
-            )
+            let drivers = problem.drivers.clone();
+            let deviations = problem.deviations();
+            Scene::of_blocks(drivers, &problem.residual, &deviations, blocks, length)
+                .with_states(&problem.claim)
         };
         Halves { train: scene(0), test: scene(1), bin: (length / BINS).max(1) }
     }
@@ -127,7 +124,7 @@ fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
             }
             -0.5 * Normal::new(&columns, &data, &inverse).solve().2
         };
-        let (shape, _) = refine(&hypothesis.courses[i].shape, &bounds, 40, gain);
+        let (shape, _) = refine(&hypothesis.courses[i].shape, &bounds, &first_steps(course, &scene.drivers), 40, gain);
         hypothesis.courses[i].shape = shape;
     }
 }

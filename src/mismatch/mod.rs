@@ -14,6 +14,7 @@ pub mod finding;
 pub mod heldout;
 pub mod hypothesis;
 mod identify;
+mod improvement;
 pub mod impute;
 pub mod lattice;
 pub mod local;
@@ -25,6 +26,8 @@ pub mod regular;
 pub mod samples;
 pub mod scene;
 pub mod select;
+mod single_cause;
+pub mod tiles;
 
 pub use engine::explain;
 pub use identify::identify;

@@ -151,12 +151,12 @@ fn scenes(
     rows: usize,
 ) -> Scenes {
     let deviations = deviations(claim);
-    let full = Scene::new(drivers.clone(), residual, &deviations);
+    let full = Scene::new(drivers.clone(), residual, &deviations).with_states(claim);
     let slow = (drivers.samples > WHOLE).then(|| {
         let (m, n) = slow_grid(drivers.samples);
         let mut slow = drivers.averages(m);
         slow.truncate(n);
-        Scene::new(slow, &crate::effect::averages(residual, m)[..n], &deviations)
+        Scene::new(slow, &crate::effect::averages(residual, m)[..n], &deviations).with_states(claim)
     });
     Scenes { full, slow, lattice_arcsec, rows }
 }

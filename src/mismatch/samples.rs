@@ -6,6 +6,7 @@ use super::finding::ParameterValue;
 use super::local::{Bursts, Law, Level, Telegraph};
 use super::problem::Problem;
 use super::select::ENOUGH;
+use super::improvement::Improvement;
 use crate::effect::{Domain, Effect, Place, Value, find};
 use std::collections::BTreeMap;
 
@@ -23,6 +24,8 @@ pub struct Named {
     pub delta_bic: f64,
     /// Probability without it, everything counted.
     pub p_value: f64,
+    /// What it improves, where the fit in cosine modes tells.
+    pub improvement: Option<Improvement>,
     /// Gain of log-likelihood that the fit in cosine modes does not hold.
     pub local_gain: f64,
 }
@@ -60,6 +63,7 @@ pub fn quantization(lsb_arcsec: f64, gain: f64, delta_bic: f64, problem: &Proble
         places: vec![Place { domain: Domain::Amplitude, from: 0.0, to: step }],
         delta_bic,
         p_value: crate::estimate::chi_square_tail(2.0 * gain, 1.0),
+        improvement: None,
         local_gain: gain,
     })
 }
@@ -101,6 +105,7 @@ pub fn bursts(found: &Bursts, delta_bic: f64, removed: &[f64], problem: &Problem
         places,
         delta_bic,
         p_value: found.p_value,
+        improvement: None,
         local_gain: found.gain,
     })
 }
@@ -133,6 +138,7 @@ pub fn level(found: &[Level], delta_bic: f64, rows: usize, problem: &Problem) ->
         places: best.places.clone(),
         delta_bic,
         p_value: best.p_value,
+        improvement: None,
         local_gain: best.gain,
     })
 }
@@ -168,6 +174,7 @@ pub fn telegraph(found: &Telegraph, delta_bic: f64, problem: &Problem) -> Option
         places: vec![Place { domain: Domain::Time, from: at(first), to: at(last) }],
         delta_bic,
         p_value: found.p_value,
+        improvement: None,
         local_gain: found.gain,
     })
 }

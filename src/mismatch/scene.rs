@@ -4,9 +4,10 @@
 //! diagonal exactly and flicker nearly; the coefficients are then independent with variance S(f_k)/Δt. A scene may be
 //! cut into blocks of equal length, each transformed by itself and about its own mean.
 
-use crate::effect::{Drivers, ModeBin, Nuisance};
+use crate::claim::Claim;
+use crate::effect::{Drivers, ModeBin, Model, Nuisance};
 use crate::noise::data::NoiseType;
-use crate::noise::model::{Bin, Spectral};
+use crate::noise::model::{Bin, Spectral, bin_ratio, claimed_unit_density};
 use crate::numeric::cosine::dct2;
 
 /// Modes that have a bin each.
@@ -62,7 +63,9 @@ fn bins(samples: usize, dt_s: f64) -> Vec<ModeBin> {
     out
 }
 
-fn unit_densities(bin: &ModeBin) -> [f64; 3] {
+/// Densities of the terms of a claim in a bin. At the sample rate they are what the claim states; averages of many
+/// samples show what means over their interval do. `averaged` is how many samples one of the scene holds.
+fn unit_densities(bin: &ModeBin, averaged: usize) -> [f64; 3] {
     let at = Bin {
         frequency_hz: bin.frequency_hz,
         tau_s: bin.dt_s,
@@ -71,7 +74,10 @@ fn unit_densities(bin: &ModeBin) -> [f64; 3] {
         blocks: bin.samples,
         segment: 0,
     };
-    BASE.map(|term| term.density(&at))
+    BASE.map(|term| match claimed_unit_density(term, bin.frequency_hz) {
+        Some(stated) if averaged == 1 => stated * bin_ratio(term, &at),
+        _ => term.density(&at),
+    })
 }
 
 impl Scene {
@@ -92,7 +98,7 @@ impl Scene {
     ) -> Scene {
         let modes = transform(residual, &blocks, length);
         let bins = bins(length, drivers.dt_s);
-        let units = bins.iter().map(unit_densities).collect();
+        let units = bins.iter().map(|bin| unit_densities(bin, drivers.averaged)).collect();
         let nuisances = deviations
             .iter()
             .filter(|(_, deviation)| *deviation > 0.0)
@@ -103,6 +109,19 @@ impl Scene {
             })
             .collect();
         Scene { drivers, modes, blocks, length, bins, units, nuisances }
+    }
+
+    /// The same with the columns that effects of the claim leave free, as a state before the record.
+    pub fn with_states(mut self, claim: &Claim) -> Scene {
+        for stated in &claim.effects {
+            let Model::Course(course) = stated.effect.model() else { continue };
+            for column in course.beside(&stated.values, &self.drivers) {
+                let modes = self.transform(&column);
+                let deviation = f64::INFINITY;
+                self.nuisances.push(NuisanceColumn { nuisance: Nuisance::InitialState, modes, deviation });
+            }
+        }
+        self
     }
 
     /// Cosine modes of a series on the grid of the drivers, block after block.

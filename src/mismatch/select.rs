@@ -48,7 +48,7 @@ pub struct Selection {
 }
 
 /// Whether an addition may be made.
-fn passes(candidate: &Candidate, family: f64, alpha: f64) -> bool {
+pub fn passes(candidate: &Candidate, family: f64, alpha: f64) -> bool {
     candidate.delta_bic >= ENOUGH && candidate.p_value * family < alpha
 }
 
@@ -189,7 +189,7 @@ fn chosen(best: &Tried, base: &Tried, first: &[Candidate], scenes: &Scenes, fami
             let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
             let equivalents = rivals
                 .iter()
-                .filter(|c| c.effect.kind() != effect.kind())
+                .filter(|c| c.effect.kind() != effect.kind() && c.effect.reported_kind() == c.effect.kind())
                 .filter(|c| c.tried.bic(rows) < best.bic(rows) + ENOUGH)
                 .map(|c| c.effect)
                 .take(3)

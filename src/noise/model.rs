@@ -99,6 +99,18 @@ pub fn unit_density(term: NoiseType, frequency_hz: f64, tau_s: f64) -> f64 {
     }
 }
 
+/// Two-sided density at `frequency_hz` that a claim states for a coefficient of 1, (deg/h)²/Hz: 3600, 1/(2πf),
+/// 1/(3600 (2πf)²), as the samples show them up to the Nyquist frequency. `None` for terms that claims do not state so.
+pub fn claimed_unit_density(term: NoiseType, frequency_hz: f64) -> Option<f64> {
+    let w = 2.0 * PI * frequency_hz;
+    match term {
+        NoiseType::AngleRandomWalk => Some(SECONDS_PER_HOUR),
+        NoiseType::Flicker => Some(1.0 / w),
+        NoiseType::RateRandomWalk => Some(1.0 / (SECONDS_PER_HOUR * w * w)),
+        NoiseType::Quantization | NoiseType::RateRamp => None,
+    }
+}
+
 /// Allan variance at `tau_s` for a coefficient of 1, (deg/h)².
 pub fn unit_allan_variance(term: NoiseType, tau_s: f64) -> f64 {
     let tau_h = tau_s / SECONDS_PER_HOUR;

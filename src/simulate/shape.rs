@@ -5,7 +5,7 @@
 //! of the other.
 
 use crate::noise::data::NoiseType;
-use crate::noise::model::{NoiseModel, unit_density};
+use crate::noise::model::{NoiseModel, claimed_unit_density, unit_density};
 use std::f64::consts::PI;
 
 /// Taps on each side. What is cut off changes the density by 1.3 % at the Nyquist frequency itself and by less
@@ -17,8 +17,8 @@ const POINTS: usize = 2048;
 
 /// Two-sided density that a claim states at a frequency, (deg/h)²/Hz: 3600 N² + B²/(2πf) + K²/(3600 (2πf)²).
 pub fn claimed_density(noise: &NoiseModel, frequency_hz: f64) -> f64 {
-    let w = 2.0 * PI * frequency_hz;
-    3600.0 * noise.n.powi(2) + noise.b.powi(2) / w + noise.k.powi(2) / (3600.0 * w * w)
+    let of = |term| noise.coefficient(term).powi(2) * claimed_unit_density(term, frequency_hz).unwrap_or(0.0);
+    of(NoiseType::AngleRandomWalk) + of(NoiseType::Flicker) + of(NoiseType::RateRandomWalk)
 }
 
 /// Density of a claim over that of means over the sampling interval, at a frequency in cycles a sample.

@@ -84,6 +84,7 @@ pub fn of_kind(kind: &str) -> Finding {
     let listed = KINDS.iter().find(|k| k.0 == kind).map_or(&[][..], |k| k.1);
     Finding {
         kind: kind.into(),
+        effect: None,
         equivalents: vec![],
         parameters: listed
             .iter()

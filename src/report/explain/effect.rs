@@ -86,7 +86,7 @@ pub struct EffectView {
 impl EffectView {
     /// Prints a cause.
     pub(super) fn new(number: usize, f: &Finding, all: &Explanation, words: Words) -> EffectView {
-        let doc = find(&f.kind).map(|e| e.doc());
+        let doc = find(f.effect_id()).map(|e| e.doc());
         let said = |of: fn(&Doc) -> &'static str| doc.map(of).unwrap_or_default().to_owned();
         let both = |of: fn(&Doc) -> crate::effect::Both| {
             doc.map(|d| of(d).of(words.lang)).unwrap_or_default().to_owned()
@@ -94,9 +94,9 @@ impl EffectView {
         let parameters = parameters(f, all, words);
         EffectView {
             number,
-            title: capital(&title(&f.kind, words)),
+            title: capital(&title(f.effect_id(), words)),
             kind: f.kind.clone(),
-            unknown: f.kind == "unknown",
+            unknown: f.is_unnamed(),
             sentences: sentence::finding(f, all, words),
             mechanism: both(|d| d.mechanism),
             signature: both(|d| d.signature),
@@ -107,7 +107,7 @@ impl EffectView {
             has_claimed: parameters.iter().any(|p| !p.claimed.is_empty()),
             parameters,
             places: f.places.iter().map(|p| place(p, all.recording.length_s, words)).collect(),
-            delta_bic: if f.kind == "unknown" { String::new() } else { difference(f.delta_bic, words) },
+            delta_bic: if f.is_unnamed() { String::new() } else { difference(f.delta_bic, words) },
             p: chance(f.p_value, words),
             heldout_gain: f.heldout_gain.map(|v| difference(v, words)).unwrap_or_default(),
             removed: f
@@ -129,7 +129,7 @@ pub fn capital(text: &str) -> String {
 /// Parameters in the order of the catalogue, the size of the contribution last.
 fn parameters(f: &Finding, all: &Explanation, words: Words) -> Vec<ParameterRow> {
     let order: Vec<&str> =
-        find(&f.kind).map(|e| e.params().iter().map(|p| p.name).collect()).unwrap_or_default();
+        find(f.effect_id()).map(|e| e.params().iter().map(|p| p.name).collect()).unwrap_or_default();
     let place = |name: &str| match order.iter().position(|p| *p == name) {
         Some(i) => i,
         None if name == "rms_deg_h" => usize::MAX,

@@ -122,7 +122,7 @@ impl ExplainView {
             effects: effects.map(|(i, f)| EffectView::new(i + 1, f, all, words)).collect(),
             fit: tables::fit(all, words),
             fit_says: tables::fit_says(all, words),
-            unchanged: all.effects.iter().all(|f| f.kind == "unknown"),
+            unchanged: all.effects.iter().all(|f| f.is_unnamed()),
             stated: effect::stated_rows(all, words),
             methods: method::all(words),
             figures: figures.iter().enumerate().map(|(i, f)| figure(f, i + 1, words)).collect(),

@@ -8,8 +8,8 @@ use crate::report::view::Words;
 
 /// What one finding adds to the claim, or corrects in it, as a phrase.
 pub fn phrase(finding: &Finding, explanation: &Explanation, words: Words) -> String {
-    let Some(saying) = SAYINGS.iter().find(|s| s.kind == finding.kind) else {
-        return title(&finding.kind, words);
+    let Some(saying) = SAYINGS.iter().find(|s| s.kind == finding.effect_id()) else {
+        return title(finding.effect_id(), words);
     };
     let mut given: Vec<(&str, String)> =
         finding.parameters.iter().map(|(name, p)| (name.as_str(), value(name, p, words).whole)).collect();
@@ -25,7 +25,7 @@ pub fn phrase(finding: &Finding, explanation: &Explanation, words: Words) -> Str
     let pattern = words.t(saying.key);
     let known = places(&pattern).all(|name| given.iter().any(|g| g.0 == name));
     if !known {
-        return title(&finding.kind, words);
+        return title(finding.effect_id(), words);
     }
     let given: Vec<(&str, &str)> = given.iter().map(|(a, b)| (*a, b.as_str())).collect();
     words.with(saying.key, &given)
@@ -47,7 +47,7 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Words) -> Ve
         finding.places.iter().map(|p| place(p, explanation.recording.length_s, words)).collect();
     let shown = shown.join(&words.t("explain.and"));
     let mut out = vec![];
-    if finding.kind == "unknown" {
+    if finding.is_unnamed() {
         out.push(words.t("explain.sentence.unknown"));
         if let Some(rms) = finding.parameters.get("rms_deg_h") {
             let rms = value("rms_deg_h", rms, words).whole;
@@ -55,7 +55,7 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Words) -> Ve
         }
     } else {
         let what = phrase(finding, explanation, words);
-        let corrects = SAYINGS.iter().any(|s| s.kind == finding.kind && s.states.is_some());
+        let corrects = SAYINGS.iter().any(|s| s.kind == finding.effect_id() && s.states.is_some());
         let key = if corrects { "explain.sentence.misstates" } else { "explain.sentence.leaves_out" };
         out.push(words.with(key, &[("what", &what)]));
     }
@@ -72,7 +72,7 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Words) -> Ve
 
 /// What remains when everything found has been added.
 fn rest(all: &Explanation, words: Words) -> Vec<String> {
-    let named: Vec<&Finding> = all.effects.iter().filter(|f| f.kind != "unknown").collect();
+    let named: Vec<&Finding> = all.effects.iter().filter(|f| !f.is_unnamed()).collect();
     let after = all.family_p_value_after;
     let p = chance(after, words);
     let share = match named.as_slice() {

@@ -71,7 +71,7 @@ pub(super) fn candidates(all: &Explanation, words: Words) -> Vec<CandidateRow> {
     all.candidates
         .iter()
         .map(|c| {
-            let chosen = all.effects.iter().any(|f| f.kind == c.kind);
+            let chosen = all.effects.iter().any(|f| f.effect_id() == c.kind);
             let equivalent = all.effects.iter().any(|f| f.equivalents.contains(&c.kind));
             let role = match (chosen, equivalent) {
                 (true, _) => words.t("explain.role.chosen"),
@@ -145,7 +145,7 @@ const NOTICEABLE: f64 = 0.5;
 
 /// What the fit says.
 pub(super) fn fit_says(all: &Explanation, words: Words) -> String {
-    if all.effects.iter().all(|f| f.kind == "unknown") {
+    if all.effects.iter().all(|f| f.is_unnamed()) {
         return words.t("explain.fit.unchanged");
     }
     let gain = all.fit.augmented.heldout_log_likelihood - all.fit.baseline.heldout_log_likelihood;

@@ -1,0 +1,186 @@
+//! A bent dependence on a column whose bends have no kind of their own in the format of explanations.
+
+use super::reach::{reach, varies};
+use super::search::gain_of;
+use crate::effect::{
+    Both, Column, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, list, number,
+};
+use crate::numeric::range::ends;
+
+pub struct ColumnCurve;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "bent dependence on a recorded quantity",
+        ru: "нелинейная зависимость от записанной величины",
+    },
+    mechanism: Both {
+        en: "The electronics, the light source or the coil answer to a quantity by more than its first power.",
+        ru: "Электроника, источник света или контур отвечают на величину не только первой степенью.",
+    },
+    formula: "Σ cₖ uᵏ, u a column scaled to ±1, k = 1 … 2, 3 or 4",
+    signature: Both {
+        en: "A curve in residual against one column, the same whenever the column comes back to a value.",
+        ru: "Кривая остатка от одной величины, одинаковая при каждом её возвращении к тому же значению.",
+    },
+    told_by: Both {
+        en: "A straight line needs no bend; the bends of the bias over temperature and of the scale factor over rate have names of their own.",
+        ru: "Прямой изгиб не нужен; изгибы смещения нуля по температуре и масштабного коэффициента по скорости имеют свои названия.",
+    },
+    confirm: Both {
+        en: "Hold the quantity at five settings or more and compare the settled outputs with the curve.",
+        ru: "Выдержать величину на пяти и более значениях и сравнить установившиеся выходные сигналы с кривой.",
+    },
+    source: "IEEE Std 952, model equation: environmentally sensitive terms",
+};
+
+static PARAMS: [Param; 3] = [
+    Param::inner("column", "", 0.0, 3.0),
+    Param::inner("center", "", -1e9, 1e9),
+    Param::inner("half_range", "", 1e-12, 1e9),
+];
+
+/// The list of c₁, c₂, ..., deg/h.
+const COEFFICIENTS: &str = "coefficients_deg_h";
+
+describe! {
+    ColumnCurve, "column_curve", Course in Supply, needs [],
+    confusers ["supply_sensitivity", "cross_axis", "temp_rate", "sf_asymmetry"],
+    lists [
+        Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
+    ]
+}
+
+/// What the curve may follow: supply, rate of the other axis, rate of change of temperature, rate of the table.
+const DOMAINS: [Domain; 4] =
+    [Domain::Supply, Domain::OuterRate, Domain::TemperatureRate, Domain::InputRate];
+/// Highest power.
+const HIGHEST: usize = 4;
+
+fn values(domain: Domain, drivers: &Drivers) -> Option<Vec<f64>> {
+    let column = |c: Column| drivers.column(c).filter(|x| varies(Some(x))).map(<[f64]>::to_vec);
+    match domain {
+        Domain::Supply => column(Column::Supply),
+        Domain::OuterRate => column(Column::OuterRate),
+        Domain::InputRate => column(Column::TableRate),
+        Domain::TemperatureRate => {
+            varies(drivers.temperature.as_deref()).then(|| super::thermal::rate(drivers)).flatten()
+        }
+        _ => None,
+    }
+}
+
+/// Column and highest power that a shape stands for.
+fn meant(shape: &[f64]) -> Option<(Domain, usize)> {
+    let [column, order] = shape else { return None };
+    Some((*DOMAINS.get(column.round() as usize)?, (order.round() as usize).clamp(2, HIGHEST)))
+}
+
+fn scale(values: &[f64]) -> (f64, f64) {
+    let (low, high) = ends(values);
+    (0.5 * (low + high), (0.5 * (high - low)).max(1e-12))
+}
+
+fn powers(values: &[f64], (center, half): (f64, f64), order: usize) -> Vec<Vec<f64>> {
+    (1..=order as i32).map(|k| values.iter().map(|v| ((v - center) / half).powi(k)).collect()).collect()
+}
+
+fn sum(coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
+    let mut out = vec![0.0; columns.first().map_or(0, Vec::len)];
+    for (c, column) in coefficients.iter().zip(columns) {
+        out.iter_mut().zip(column).for_each(|(o, x)| *o += c * x);
+    }
+    out
+}
+
+impl Course for ColumnCurve {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        DOMAINS.iter().any(|d| values(*d, drivers).is_some())
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        // Each further order has to be worth its parameter.
+        let price = 0.5 * (drivers.samples.max(2) as f64).ln();
+        let mut rated: Vec<(f64, Vec<f64>)> = vec![];
+        for (i, domain) in DOMAINS.into_iter().enumerate() {
+            if values(domain, drivers).is_none() {
+                continue;
+            }
+            for order in 2..=HIGHEST {
+                let shape = vec![i as f64, order as f64];
+                let gain = gain_of(&self.parts(&shape, drivers), look);
+                rated.push((gain - price * order as f64, shape));
+            }
+        }
+        let looked = rated.len() as f64;
+        let best = rated.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        Starts { shapes: best.map(|(_, s)| s).into_iter().collect(), looked }
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![(0.0, (DOMAINS.len() - 1) as f64), (2.0, HIGHEST as f64)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let free = meant(shape)
+            .and_then(|(domain, order)| Some((values(domain, drivers)?, order)))
+            .map_or_else(Vec::new, |(v, order)| powers(&v, scale(&v), order));
+        Parts { free, ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let scale = meant(shape).and_then(|(domain, _)| Some(scale(&values(domain, drivers)?)));
+        let (center, half) = scale.unwrap_or((f64::NAN, f64::NAN));
+        vec![shape.first().copied().unwrap_or(f64::NAN), center, half]
+    }
+
+    fn lists(
+        &self,
+        _shape: &[f64],
+        coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<(&'static str, Vec<f64>)> {
+        vec![(COEFFICIENTS, coefficients.to_vec())]
+    }
+
+    fn course(&self, given: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let of = |i: usize| number(given, PARAMS[i].name);
+        let coefficients = list(given, COEFFICIENTS);
+        let order = coefficients.len().clamp(1, HIGHEST);
+        let (domain, _) = meant(&[of(0)?, order as f64])?;
+        let half = of(2).filter(|h| *h > 0.0)?;
+        Some(sum(coefficients, &powers(&values(domain, drivers)?, (of(1)?, half), order)))
+    }
+
+    fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some((domain, _)) = meant(shape) else { return vec![] };
+        let Some(values) = values(domain, drivers) else { return vec![] };
+        reach(domain, &values, &sum(coefficients, &self.parts(shape, drivers).free))
+    }
+
+    fn whole(&self) -> &'static [usize] {
+        &[0, 1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_of_the_supply_is_a_polynomial_of_it() {
+        let supply: Vec<f64> = (0..=20).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
+        let drivers =
+            Drivers { dt_s: 1.0, samples: 21, averaged: 1, supply: Some(supply), ..Drivers::default() };
+        let parts = ColumnCurve.parts(&[0.0, 3.0], &drivers);
+        assert_eq!(parts.free.len(), 3);
+        for (k, column) in parts.free.iter().enumerate() {
+            assert!((column[0] - (-1f64).powi(k as i32 + 1)).abs() < 1e-12 && column[10].abs() < 1e-12);
+        }
+        assert!(ColumnCurve.parts(&[1.0, 2.0], &drivers).free.is_empty(), "no rate of the other axis");
+    }
+}

@@ -1,0 +1,227 @@
+//! A contribution that goes with the product of two columns, or of one with the time. It has no kind of its own in the
+//! format of explanations.
+
+use super::reach::{reach, varies};
+use super::search::gain_of;
+use crate::effect::{
+    Both, Column, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, list, number,
+};
+use crate::numeric::range::ends;
+
+pub struct ColumnProduct;
+
+static DOC: Doc = Doc {
+    title: Both {
+        en: "product of two quantities", ru: "произведение двух величин"
+    },
+    mechanism: Both {
+        en: "One quantity changes how the gyro answers to another: a supply voltage the temperature dependence, ageing the scale factor.",
+        ru: "Одна величина меняет реакцию гироскопа на другую: напряжение питания — температурную зависимость, старение — масштабный коэффициент.",
+    },
+    formula: "c₁ u v + c₂ u + c₃ v, u and v two columns, or one and the time",
+    signature: Both {
+        en: "The slope of residual against one column changes with the other.",
+        ru: "Наклон остатка по одной величине меняется вместе с другой.",
+    },
+    told_by: Both {
+        en: "A dependence on one column alone has the same slope whatever the other does.",
+        ru: "Зависимость только от одной величины имеет один и тот же наклон при любом значении другой.",
+    },
+    confirm: Both {
+        en: "Vary one quantity at three settings of the other.",
+        ru: "Менять одну величину при трёх значениях другой.",
+    },
+    source: "IEEE Std 952, model equation: cross terms",
+};
+
+static PARAMS: [Param; 5] = [
+    Param::inner("pair", "", 0.0, 8.0),
+    Param::inner("first_center", "", -1e9, 1e9),
+    Param::inner("first_half_range", "", 1e-12, 1e9),
+    Param::inner("second_center", "", -1e9, 1e9),
+    Param::inner("second_half_range", "", 1e-12, 1e9),
+];
+
+/// The list of c₁, c₂, c₃, deg/h.
+const COEFFICIENTS: &str = "coefficients_deg_h";
+
+describe! {
+    ColumnProduct, "column_product", Course in Time, needs [],
+    confusers ["supply_sensitivity", "temp_polynomial", "sf_temperature", "unobserved_driver"],
+    lists [
+        Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
+    ]
+}
+
+/// A factor of a product.
+#[derive(Clone, Copy, PartialEq)]
+enum Factor {
+    Of(Column),
+    Time,
+}
+
+use Column::{OuterRate, Supply, TableRate, Temperature};
+
+/// The products. Temperature and rate of the table are left out: they have a kind of their own.
+const PAIRS: [(Factor, Factor); 9] = [
+    (Factor::Of(Temperature), Factor::Of(Supply)),
+    (Factor::Of(Temperature), Factor::Of(OuterRate)),
+    (Factor::Of(Temperature), Factor::Time),
+    (Factor::Of(Supply), Factor::Of(TableRate)),
+    (Factor::Of(Supply), Factor::Of(OuterRate)),
+    (Factor::Of(Supply), Factor::Time),
+    (Factor::Of(TableRate), Factor::Of(OuterRate)),
+    (Factor::Of(TableRate), Factor::Time),
+    (Factor::Of(OuterRate), Factor::Time),
+];
+
+fn values(factor: Factor, drivers: &Drivers) -> Option<Vec<f64>> {
+    match factor {
+        Factor::Of(column) => drivers.column(column).filter(|c| varies(Some(c))).map(<[f64]>::to_vec),
+        Factor::Time => Some(drivers.of_time(|t| t)),
+    }
+}
+
+fn domain(factor: Factor) -> Domain {
+    match factor {
+        Factor::Of(Temperature) => Domain::Temperature,
+        Factor::Of(TableRate) => Domain::InputRate,
+        Factor::Of(OuterRate) => Domain::OuterRate,
+        Factor::Of(Supply) => Domain::Supply,
+        Factor::Of(Column::TableAngle) => Domain::Angle,
+        Factor::Time => Domain::Time,
+    }
+}
+
+fn pair(shape: &[f64]) -> Option<(Factor, Factor)> {
+    PAIRS.get(shape.first()?.round() as usize).copied()
+}
+
+/// Middle and half width of a factor; a rate is not centred, since nothing goes with it at rest.
+fn scale(factor: Factor, values: &[f64]) -> (f64, f64) {
+    let (low, high) = ends(values);
+    match factor {
+        Factor::Of(TableRate | OuterRate) => (0.0, low.abs().max(high.abs()).max(1e-12)),
+        _ => (0.5 * (low + high), (0.5 * (high - low)).max(1e-12)),
+    }
+}
+
+/// u v, u and v.
+fn columns(
+    (first, second): (Factor, Factor),
+    scales: [(f64, f64); 2],
+    drivers: &Drivers,
+) -> Option<[Vec<f64>; 3]> {
+    let scaled = |factor, (center, half): (f64, f64)| -> Option<Vec<f64>> {
+        Some(values(factor, drivers)?.into_iter().map(|v| (v - center) / half).collect())
+    };
+    let (u, v) = (scaled(first, scales[0])?, scaled(second, scales[1])?);
+    Some([u.iter().zip(&v).map(|(u, v)| u * v).collect(), u, v])
+}
+
+fn own_scales((first, second): (Factor, Factor), drivers: &Drivers) -> Option<[(f64, f64); 2]> {
+    Some([scale(first, &values(first, drivers)?), scale(second, &values(second, drivers)?)])
+}
+
+impl Course for ColumnProduct {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        PAIRS.iter().any(|(a, b)| values(*a, drivers).is_some() && values(*b, drivers).is_some())
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let shapes = (0..PAIRS.len()).map(|i| vec![i as f64]);
+        let gain = |s: &Vec<f64>| gain_of(&self.parts(s, drivers), look);
+        let rated: Vec<(f64, Vec<f64>)> =
+            shapes.map(|s| (gain(&s), s)).filter(|(gain, _)| *gain > 0.0).collect();
+        let looked = rated.len() as f64;
+        let best = rated.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        Starts { shapes: best.map(|(_, s)| s).into_iter().collect(), looked }
+    }
+
+    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+        vec![(0.0, (PAIRS.len() - 1) as f64)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let free = pair(shape)
+            .and_then(|p| columns(p, own_scales(p, drivers)?, drivers))
+            .map_or_else(Vec::new, |c| c.to_vec());
+        Parts { free, ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let scales = pair(shape).and_then(|p| own_scales(p, drivers));
+        let [(a, b), (c, d)] = scales.unwrap_or([(f64::NAN, f64::NAN); 2]);
+        vec![shape.first().copied().unwrap_or(f64::NAN), a, b, c, d]
+    }
+
+    fn lists(
+        &self,
+        _shape: &[f64],
+        coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<(&'static str, Vec<f64>)> {
+        vec![(COEFFICIENTS, coefficients.to_vec())]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let of = |i: usize| number(values, PARAMS[i].name);
+        let scales = [(of(1)?, of(2)?), (of(3)?, of(4)?)];
+        let columns = columns(pair(&[of(0)?])?, scales, drivers)?;
+        let mut out = vec![0.0; drivers.samples];
+        for (c, column) in list(values, COEFFICIENTS).iter().zip(columns) {
+            out.iter_mut().zip(column).for_each(|(o, x)| *o += c * x);
+        }
+        Some(out)
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some((first, second)) = pair(shape) else { return vec![] };
+        let Some([product, ..]) = own_scales((first, second), drivers)
+            .and_then(|scales| columns((first, second), scales, drivers))
+        else {
+            return vec![];
+        };
+        let mut out = vec![];
+        for factor in [first, second] {
+            if factor == Factor::Time {
+                out.extend(super::reach::record(drivers));
+            } else if let Some(values) = values(factor, drivers) {
+                out.extend(reach(domain(factor), &values, &product));
+            }
+        }
+        out
+    }
+
+    fn whole(&self) -> &'static [usize] {
+        &[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_columns_of_a_product_are_what_its_formula_says() {
+        let nine = |x: [f64; 3]| Some(x.repeat(3));
+        let drivers = Drivers {
+            dt_s: 2.0,
+            samples: 9,
+            averaged: 1,
+            temperature: nine([10.0, 20.0, 30.0]),
+            supply: nine([5.0, 4.0, 6.0]),
+            ..Drivers::default()
+        };
+        let parts = ColumnProduct.parts(&[0.0], &drivers);
+        let begin: Vec<&[f64]> = parts.free.iter().map(|c| &c[..3]).collect();
+        assert_eq!(begin, [[0.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, -1.0, 1.0]]);
+        assert!(ColumnProduct.parts(&[1.0], &drivers).free.is_empty(), "no rate of the other axis");
+        let with_time = ColumnProduct.parts(&[2.0], &drivers);
+        assert_eq!(with_time.free[0][..3], [1.0, -0.0, -0.5]);
+    }
+}
