@@ -60,7 +60,7 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         taus,
         exact: args.grid.exact,
     };
-    run::finish(&request, folder, &renderer, lang)
+    run::finish(&request, None, folder, &renderer, lang)
 }
 
 /// A sentence about the recording.

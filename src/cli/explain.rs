@@ -63,7 +63,8 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
         notes: notes(&recording),
     };
     let view = ExplainView::new(&outcome.explanation, &outcome.figures, &context, lang);
-    let place = write(&outcome, &view, folder, &renderer, lang)?;
+    write(&outcome, &view, &folder, "", &renderer, lang)?;
+    let place = folder.publish().map_err(|e| say(e.note()))?;
     place::print(&format!("{}{}\n", view.summary(), place.join("report.html").display()));
     Ok(match outcome.explanation.verdict.as_str() {
         "consistent" => exit::PASS,
@@ -111,6 +112,7 @@ fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang)
         rate: args.rate.clone(),
         unit: args.unit.clone(),
         any_rate: false,
+        channels: vec![],
         sample_rate_hz: args.sample_rate,
     };
     let series = load_series(paths, &options, &mut |done, total| {
@@ -123,7 +125,7 @@ fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang)
 }
 
 /// What must be known of the recording: what was found about it, and the rows that were left out or mended.
-fn notes(series: &Series) -> Vec<Note> {
+pub(super) fn notes(series: &Series) -> Vec<Note> {
     let mut out = series.notes.clone();
     let faults = &series.faults;
     for (key, count) in [
@@ -140,20 +142,23 @@ fn notes(series: &Series) -> Vec<Note> {
     out
 }
 
-/// Writes the folder.
-fn write(
+/// Writes everything of an explanation into a folder, each name with `before` in front.
+pub(super) fn write(
     outcome: &Outcome,
     view: &ExplainView,
-    folder: StagedFolder,
+    folder: &StagedFolder,
+    before: &str,
     renderer: &Renderer,
     lang: Lang,
-) -> Result<PathBuf, String> {
+) -> Result<(), String> {
     let say = |note: Note| place::error(&note, lang);
     let json = serde_json::to_vec_pretty(&outcome.explanation)
         .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
     let html = renderer.render_view("explain.html", view, lang).map_err(|e| say(e.note()))?;
     let markdown = renderer.render_view("explain.md", view, lang).map_err(|e| say(e.note()))?;
-    let write = |name: &str, bytes: &[u8]| folder.write(name, bytes).map_err(|e| say(e.note()));
+    let write = |name: &str, bytes: &[u8]| {
+        folder.write(&format!("{before}{name}"), bytes).map_err(|e| say(e.note()))
+    };
     write("explain.json", &json)?;
     if let Some(correction) = &outcome.correction {
         write("correction.csv", csv(correction).as_bytes())?;
@@ -164,7 +169,7 @@ fn write(
     for figure in &outcome.figures {
         write(&format!("figures/{}.svg", figure.id), svg::render(figure, lang).as_bytes())?;
     }
-    folder.publish().map_err(|e| say(e.note()))
+    Ok(())
 }
 
 fn augmented(claim: &Claim) -> String {
@@ -182,7 +187,7 @@ fn csv(correction: &[(f64, f64)]) -> String {
 }
 
 /// Progress of several pieces of work, one after the other.
-struct Watch {
+pub(super) struct Watch {
     bar: Progress,
     doing: &'static str,
     said: String,
@@ -190,11 +195,11 @@ struct Watch {
 }
 
 impl Watch {
-    fn new(lang: Lang) -> Watch {
+    pub(super) fn new(lang: Lang) -> Watch {
         Watch { bar: Progress::of_steps(), doing: "", said: String::new(), lang }
     }
 
-    fn of(&mut self, p: mismatch::Progress) {
+    pub(super) fn of(&mut self, p: mismatch::Progress) {
         if p.doing != self.doing {
             self.doing = p.doing;
             self.said = Note::new(p.doing).say(self.lang);
@@ -203,7 +208,7 @@ impl Watch {
         self.bar.update(&self.said, p.done, p.total);
     }
 
-    fn finish(&self) {
+    pub(super) fn finish(&self) {
         self.bar.finish();
     }
 }

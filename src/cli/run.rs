@@ -1,5 +1,6 @@
 //! `sagnac run`: a procedure on a recording.
 
+use super::explain::Watch;
 use super::progress::Progress;
 use super::{GridArgs, RunArgs, exit, place};
 use crate::estimate::Verdict;
@@ -8,11 +9,13 @@ use crate::ingest::{RecordingError, Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
 use crate::output::StagedFolder;
 use crate::procedure::{effective, load, load_limits};
-use crate::record::{RunRecord, UnitUnderTest};
+use crate::claim::Claim;
+use crate::record::{ExplainedRecord, RunRecord, UnitUnderTest};
+use crate::report::explain::{Context, ExplainView, explained_says};
 use crate::report::{Renderer, render_html, render_markdown, svg};
-use crate::run::{Outcome, Request, RunError, execute, failed};
+use crate::run::{Outcome, Request, RunError, execute, explained, failed};
 use crate::text::{Lang, Note, lookup};
-use chrono::Utc;
+use chrono::{SecondsFormat, Utc};
 use std::path::{Path, PathBuf};
 
 pub fn main(args: &RunArgs, lang: Lang) -> u8 {
@@ -38,6 +41,7 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
             return Err(complaints.join("\n"));
         }
     };
+    let model = procedure.value.explain.as_ref().map(|spec| explained::model(spec, lang)).transpose()?;
     let renderer = renderer(args.templates.as_deref(), lang)?;
     let effective = effective(&procedure, limits.as_ref());
     for warning in procedure.warnings.iter().chain(&effective.warnings) {
@@ -86,7 +90,10 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         exact: args.grid.exact,
     };
     match refused {
-        None => finish(&request, folder, &renderer, lang),
+        None => {
+            let against = model.map(|claim| Against { claim, recording: &args.recording });
+            finish(&request, against, folder, &renderer, lang)
+        }
         Some(error) => Err(report_failure(&request, &error.into(), folder, &renderer, lang)?),
     }
 }
@@ -105,9 +112,48 @@ fn serial(given: Option<&str>, manifest: Option<&Manifest>, lang: Lang) -> Resul
     }
 }
 
+/// A model that a recording is explained against.
+pub struct Against<'a> {
+    /// The model.
+    pub claim: Claim,
+    /// The recording as named.
+    pub recording: &'a [PathBuf],
+}
+
+/// Explains a recording against the model of its procedure and writes what came of it beside the report.
+fn explain(
+    request: &Request<'_>,
+    against: Against<'_>,
+    folder: &StagedFolder,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<Option<ExplainedRecord>, String> {
+    let Some(spec) = &request.procedure.explain else { return Ok(None) };
+    let mut watch = Watch::new(lang);
+    let Against { claim, recording } = against;
+    let out = explained::explain(spec, claim, request.procedure, recording, &mut |p| watch.of(p));
+    watch.finish();
+    if let Some((claim, series, outcome)) = &out.outcome {
+        let names: Vec<String> = recording.iter().map(|p| p.display().to_string()).collect();
+        let context = Context {
+            recording: names.join(", "),
+            claim: out.record.model.clone(),
+            identified: false,
+            description: claim.description.clone(),
+            explained_at: request.now.to_rfc3339_opts(SecondsFormat::Secs, true),
+            correction: outcome.correction.is_some(),
+            notes: super::explain::notes(series),
+        };
+        let view = ExplainView::new(&outcome.explanation, &outcome.figures, &context, lang);
+        super::explain::write(outcome, &view, folder, "explain/", renderer, lang)?;
+    }
+    Ok(Some(out.record))
+}
+
 /// Runs a request, writes its folder and says what came out; also used by `analyze`.
 pub fn finish(
     request: &Request<'_>,
+    against: Option<Against<'_>>,
     folder: StagedFolder,
     renderer: &Renderer,
     lang: Lang,
@@ -116,10 +162,13 @@ pub fn finish(
     let reading = Note::new("cli.reading").say(lang);
     let outcome = execute(request, &mut |done, total| progress.update(&reading, done, total));
     progress.finish();
-    let outcome = match outcome {
+    let mut outcome = match outcome {
         Ok(outcome) => outcome,
         Err(error) => return Err(report_failure(request, &error, folder, renderer, lang)?),
     };
+    if let Some(against) = against {
+        outcome.record.explained = explain(request, against, &folder, renderer, lang)?;
+    }
     let place = publish(&outcome, folder, renderer, lang)?;
     place::print(&summary(&outcome.record, &place, lang));
     Ok(match outcome.record.verdict {
@@ -175,6 +224,9 @@ fn summary(record: &RunRecord, place: &Path, lang: Lang) -> String {
     let mut out = format!("{}\n", word(format!("verdict.{}", record.verdict.id())).to_uppercase());
     for note in &record.summary {
         out.push_str(&format!("  {}\n", note.say(lang)));
+    }
+    for sentence in record.explained.iter().flat_map(|e| explained_says(e, lang)) {
+        out.push_str(&format!("  {sentence}\n"));
     }
     out.push_str(&format!("{}\n", place.join("report.html").display()));
     out

@@ -190,6 +190,8 @@ catalogue! {
     without a kind in the format of explanations:
     column_product::ColumnProduct,
     column_curve::ColumnCurve,
+    drifting_line::DriftingLine,
+    power_law_noise::PowerLawNoise,
 }
 
 /// True for an effect of this catalogue that the format of explanations has no kind for.

@@ -77,7 +77,15 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         );
     }
     let mut findings = findings(&found.named);
-    findings.extend(unknown(after, !something, options.alpha));
+    if let Some(unknown) = unknown(after, !something, options.alpha) {
+        // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
+        let comb = after.iter().any(|d| d.test == "comb" && d.p_value * (after.len() as f64) < DEPARTED);
+        if comb {
+            findings.retain(|f| f.kind != "line");
+        }
+        findings.push(unknown);
+        findings.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    }
     findings.extend(dropped(problem));
     let verdict = if findings.iter().any(|f| f.kind == UNKNOWN) {
         "unknown-mismatch"
@@ -218,11 +226,13 @@ fn record(place: &Place) -> PlaceRecord {
 }
 
 fn finding(named: &Named) -> Finding {
+    let own = named.effect.reported_kind() == UNKNOWN;
     Finding {
         kind: named.effect.reported_kind().to_owned(),
-        effect: (named.effect.reported_kind() == UNKNOWN).then(|| named.effect.kind().to_owned()),
+        effect: own.then(|| named.effect.kind().to_owned()),
         equivalents: named.equivalents.iter().map(|e| (*e).to_owned()).collect(),
-        parameters: named.estimated.reported.clone(),
+        // Of a course of no kind, what is told of its parts is no parameter of the format.
+        parameters: if own { BTreeMap::new() } else { named.estimated.reported.clone() },
         places: named.places.iter().map(record).take(3).collect(),
         delta_bic: named.delta_bic,
         p_value: named.p_value,

@@ -108,6 +108,12 @@ pub fn among(
     found
 }
 
+/// Logarithm of the odds of an effect without a kind in the format of explanations against one that has one: it is named
+/// only where nothing with a name comes near.
+fn own_odds(effect: &dyn Effect) -> f64 {
+    if effect.reported_kind() == effect.kind() { 0.0 } else { -3.0 }
+}
+
 /// What is the same for every course tried on a hypothesis.
 struct Grounds<'a> {
     full: Ground<'a>,
@@ -340,7 +346,7 @@ fn try_course(
     let parts = course.parts(&shape, &scene.drivers);
     let free_shape = bounds.iter().filter(|(low, high)| high > low).count();
     let parameters = before.parameters + parts.free.len() + parts.beside.len() + free_shape;
-    let odds = course.odds(&shape, &scene.drivers);
+    let odds = course.odds(&shape, &scene.drivers) + own_odds(effect);
     let mut hypothesis = before.hypothesis.clone();
     hypothesis.courses.push(CourseIn { effect, shape, coefficients: vec![] });
     // The noise, fitted anew, can give at most about as much again.
@@ -448,7 +454,8 @@ fn finish_spectrum(
     let mut hypothesis = before.hypothesis.clone();
     hypothesis.noise = noise;
     let fit = fit(&mut hypothesis, &scenes.full);
+    let odds = before.odds + own_odds(effect);
     let candidate =
-        rated(effect, Tried { hypothesis, fit, parameters, odds: before.odds }, before, looked, scenes.rows);
+        rated(effect, Tried { hypothesis, fit, parameters, odds }, before, looked, scenes.rows);
     (candidate.gain > 0.5).then_some(candidate)
 }

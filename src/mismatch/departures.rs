@@ -7,7 +7,7 @@
 use super::hypothesis::Fit;
 use super::scene::Scene;
 use crate::effect::{Domain, Place};
-use crate::estimate::{chi_square_two_sided, normal_two_sided};
+use crate::estimate::{chi_square_tail, chi_square_two_sided, normal_two_sided};
 use crate::numeric::cosine::inverse_dct2;
 use rand::{RngExt as _, SeedableRng as _};
 use statrs::distribution::{DiscreteCDF, Poisson};
@@ -116,7 +116,10 @@ pub fn all(
     }
     let mut out = vec![];
     out.extend(spectrum(scene, &white));
-    out.extend(lines(scene, &white));
+    if let Some(powers) = periodogram(&white) {
+        out.extend(lines(scene, &powers));
+        out.extend(comb(scene, &powers));
+    }
     out.extend(levels(scene, &white));
     out.extend(super::tiles::all(scene, &white.modes));
     out.extend(off_lattice(scene, &white, lattice_arcsec).and_then(|values| tails(scene, &values, usable)));
@@ -137,19 +140,54 @@ fn spectrum(scene: &Scene, white: &White) -> Option<Departure> {
     scan.done("spectrum", Domain::Frequency)
 }
 
-/// The largest line of the whitened series, on a grid twice as fine as its resolution.
-fn lines(scene: &Scene, white: &White) -> Option<Departure> {
+/// Power of the whitened series on a grid of frequencies twice as fine as its resolution: each is exponential with mean 1.
+fn periodogram(white: &White) -> Option<Vec<f64>> {
     let n = white.series.len();
     let mut padded = white.series.clone();
     padded.resize(2 * n, 0.0);
     let plan = realfft::RealFftPlanner::<f64>::new().plan_fft_forward(2 * n);
     let mut spectrum = plan.make_output_vec();
     plan.process(&mut padded, &mut spectrum).ok()?;
+    Some(spectrum.iter().take(n).map(|v| v.norm_sqr() / n as f64).collect())
+}
+
+/// The largest sum of powers at the multiples of a frequency: what repeats without being a sinusoid.
+fn comb(scene: &Scene, powers: &[f64]) -> Option<Departure> {
+    const HARMONICS: [usize; 4] = [4, 8, 16, 32];
+    // Periods that the record holds fewer times than this are slow courses.
+    const PERIODS: usize = 5;
+    let n = powers.len();
+    let mut best: Option<(f64, f64, usize)> = None;
+    let mut looks = 0.0;
+    for harmonics in HARMONICS {
+        // Steps of the fundamental of a cell over the number of harmonics: the highest is met within half a cell.
+        let (mut largest, mut at) = (0.0, 0);
+        for i in 2 * PERIODS * harmonics..n.saturating_sub(1) {
+            let sum: f64 = (1..=harmonics).map(|h| powers[(h * i + harmonics / 2) / harmonics]).sum();
+            looks += 1.0;
+            if sum > largest {
+                (largest, at) = (sum, i);
+            }
+        }
+        let p = chi_square_tail(2.0 * largest, 2.0 * harmonics as f64);
+        if at > 0 && best.is_none_or(|b| p < b.0) {
+            best = Some((p, at as f64 / harmonics as f64, harmonics));
+        }
+    }
+    let (p, cell, harmonics) = best?;
+    let fundamental = cell / (2.0 * n as f64 * scene.drivers.dt_s);
+    let place =
+        Place { domain: Domain::Frequency, from: fundamental, to: fundamental * harmonics as f64 };
+    Some(Departure { test: "comb", place, beside: None, p_value: (p * looks).clamp(1e-300, 1.0) })
+}
+
+/// The largest line of the whitened series.
+fn lines(scene: &Scene, powers: &[f64]) -> Option<Departure> {
+    let n = powers.len();
     let (mut best, mut at) = (0.0, 0);
-    for (k, v) in spectrum.iter().enumerate().take(n).skip(2) {
-        let power = v.norm_sqr() / n as f64;
-        if power > best {
-            (best, at) = (power, k);
+    for (k, power) in powers.iter().enumerate().skip(2) {
+        if *power > best {
+            (best, at) = (*power, k);
         }
     }
     let step = 1.0 / (2.0 * n as f64 * scene.drivers.dt_s);

@@ -211,8 +211,9 @@ fn take_telegraph(
         return;
     }
     let Some(telegraph) = local::telegraph(problem, start) else { return };
-    // Jumps every few samples are what a short Markov process looks like.
-    if telegraph.mean_dwell_s < FEWEST_AT_A_LEVEL * problem.drivers.dt_s {
+    // Jumps every few samples are what a short Markov process looks like, even ones a periodic course.
+    let short = telegraph.mean_dwell_s < FEWEST_AT_A_LEVEL * problem.drivers.dt_s;
+    if short || telegraph.regular {
         return;
     }
     let worth = samples::worth(telegraph.gain, telegraph.parameters, telegraph.p_value, rows, options.alpha);

@@ -10,7 +10,6 @@ pub mod driver;
 pub mod engine;
 pub mod estimates;
 pub mod figures;
-pub mod finding;
 pub mod heldout;
 pub mod hypothesis;
 mod identify;
@@ -29,6 +28,7 @@ pub mod select;
 mod single_cause;
 pub mod tiles;
 
+pub use crate::record::explanation as finding;
 pub use engine::explain;
 pub use identify::identify;
 pub use options::{Options, Progress};

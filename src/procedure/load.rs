@@ -40,6 +40,9 @@ pub fn parse_procedure(name: &str, bytes: &[u8]) -> Result<Loaded<Procedure>, Pr
     {
         *layout = folder.join(&*layout);
     }
+    if let (Some(explain), Some(folder)) = (&mut procedure.value.explain, Path::new(name).parent()) {
+        explain.model = folder.join(&explain.model);
+    }
     Ok(procedure)
 }
 

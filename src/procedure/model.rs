@@ -8,6 +8,7 @@ use crate::ingest::ReadOptions;
 use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
 use chrono::NaiveDate;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A file that was read, with what identifies it.
@@ -60,6 +61,8 @@ pub struct Procedure {
     pub instruments: Vec<Instrument>,
     /// Options of the analysis.
     pub analysis: Analysis,
+    /// The model that the recording is explained against.
+    pub explain: Option<ExplainSpec>,
     /// What is determined, in the order of the report.
     pub measurands: Vec<MeasurandSpec>,
     /// Limits, references and typical values that stand in the procedure itself.
@@ -278,6 +281,17 @@ pub struct Analysis {
     pub exact: bool,
     /// Probability that noise alone shows a line anywhere.
     pub line_false_alarm: f64,
+}
+
+/// The recording against a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExplainSpec {
+    /// The model's file.
+    pub model: PathBuf,
+    /// Probability at which a correct model is called a mismatch.
+    pub alpha: f64,
+    /// Most effects that are added.
+    pub max_effects: usize,
 }
 
 /// Something to be determined.

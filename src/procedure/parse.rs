@@ -3,7 +3,7 @@
 use super::diagnostics::{Problems, SourceText};
 use super::limits::{self, LimitsFile};
 use super::model::{
-    Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, FaultBudget, Instrument, MeasurandSpec,
+    Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, ExplainSpec, FaultBudget, Instrument, MeasurandSpec,
     Orientation, Procedure, RecordingSpec, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition,
     UnitSpec, Waiver,
 };
@@ -65,6 +65,7 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
         site: root.table("site").map(site),
         instruments: root.tables("instrument").iter().map(instrument).collect(),
         analysis: analysis(root.table("analysis")),
+        explain: root.table("explain").map(explain),
         measurands: root.tables("measurand").iter().filter_map(measurand).collect(),
         limits: limits::read_set(root, None, reader),
         clauses: root.tables("clause").iter().map(clause).collect(),
@@ -192,6 +193,14 @@ fn analysis(section: Option<&Section>) -> Analysis {
         taus,
         exact: section.is_some_and(|s| s.flag("exact")),
         line_false_alarm: section.and_then(|s| s.number("line_false_alarm")).unwrap_or(0.01),
+    }
+}
+
+fn explain(section: &Section) -> ExplainSpec {
+    ExplainSpec {
+        model: section.text("model").unwrap_or_default().into(),
+        alpha: section.number("alpha").unwrap_or(0.01),
+        max_effects: section.number("max_effects").map_or(3, |n| n as usize),
     }
 }
 

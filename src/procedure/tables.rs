@@ -59,6 +59,7 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
             "Instruments used, with the validity of their calibration.",
         ),
         optional("analysis", Kind::Table(&ANALYSIS), "", "Options of the analysis."),
+        optional("explain", Kind::Table(&EXPLAIN), "", "The recording against the model of the unit's family."),
         required(
             "measurand",
             Kind::Tables(&MEASURAND),
@@ -274,6 +275,34 @@ static ANALYSIS: TableSpec = TableSpec {
             "0.01",
             "0.01",
             "Probability that noise alone shows a line anywhere in the spectrum.",
+        ),
+    ],
+};
+
+static EXPLAIN: TableSpec = TableSpec {
+    name: "explain",
+    doc: "The recording is explained against a model: whether the unit behaves like its family, and if not, where it \
+          differs and because of what. The finding stands in the report beside the verdict and is no part of it.",
+    keys: &[
+        required(
+            "model",
+            Kind::Text,
+            "\"family.toml\"",
+            "The model, a file as `sagnac explain` reads it, relative to the procedure.",
+        ),
+        with_default(
+            "alpha",
+            Kind::Number(Range::between(1e-9, 0.5)),
+            "0.01",
+            "0.01",
+            "Probability at which a correct model is called a mismatch.",
+        ),
+        with_default(
+            "max_effects",
+            Kind::Number(Range::between(1.0, 8.0)),
+            "3",
+            "2",
+            "Most effects that are added to the model.",
         ),
     ],
 };

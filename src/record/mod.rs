@@ -7,6 +7,7 @@
 mod beside;
 mod comparison;
 mod deviation;
+pub mod explanation;
 mod goodness;
 mod integrity;
 
@@ -79,9 +80,25 @@ pub struct RunRecord {
     pub options: Vec<OptionRecord>,
     /// Figures, by id, in the order of the report.
     pub figures: Vec<FigureRecord>,
+    /// The recording against the model of the unit's family, where the procedure asks for it. It is no part of the
+    /// verdict.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explained: Option<ExplainedRecord>,
     /// Errors that made the verdict `error`.
     #[schemars(with = "Vec<NoteSchema>")]
     pub errors: Vec<Note>,
+}
+
+/// A recording against the model of its family.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ExplainedRecord {
+    /// The model.
+    pub model: String,
+    /// What came of it.
+    pub explanation: Option<explanation::Explanation>,
+    /// Why nothing came of it.
+    #[schemars(with = "Option<NoteSchema>")]
+    pub error: Option<Note>,
 }
 
 /// How a [`Note`] appears in JSON.

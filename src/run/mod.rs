@@ -6,6 +6,7 @@ pub mod analysis;
 mod comparison;
 mod described;
 mod evaluate;
+pub mod explained;
 pub mod figures;
 mod goodness;
 mod gyro_facts;

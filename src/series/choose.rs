@@ -41,6 +41,10 @@ fn unit(column: Column) -> &'static str {
 /// Finds the columns.
 pub(super) fn choose(source: &Source, options: &SeriesOptions) -> Result<Chosen, SeriesError> {
     let mut chosen = Chosen { channels: vec![], time: None, rate: 0, beside: vec![], read_from: vec![] };
+    if !options.channels.is_empty() {
+        declared(source, &options.channels, &mut chosen)?;
+        return Ok(chosen);
+    }
     let named = |name: &str| source.columns().iter().position(|c| c.numeric && c.name == name);
     if let Some(i) = named("time_s").or_else(|| source.time_column()) {
         let guess = source.columns()[i].guess();
@@ -65,6 +69,40 @@ pub(super) fn choose(source: &Source, options: &SeriesOptions) -> Result<Chosen,
         chosen.beside.push((column, slot, map));
     }
     Ok(chosen)
+}
+
+/// The columns that a procedure declares: its stamps, its first gyro channel, and the first of each quantity beside.
+fn declared(source: &Source, channels: &[Channel], chosen: &mut Chosen) -> Result<(), SeriesError> {
+    let mut take = |name: &'static str, channel: &Channel, role: Role| {
+        let column = match &channel.column {
+            ColumnRef::Name(name) => name.clone(),
+            ColumnRef::Position(i) => {
+                source.columns().get(i - 1).map(|c| c.name.clone()).unwrap_or_else(|| i.to_string())
+            }
+        };
+        chosen.read_from.push(ReadFrom { name, column, unit: channel.unit.text().to_owned() });
+        chosen.channels.push(Channel { id: name.to_owned(), role, ..channel.clone() });
+        chosen.channels.len() - 1
+    };
+    let first = |wanted: &dyn Fn(Role) -> bool| channels.iter().find(|c| wanted(c.role));
+    if let Some(time) = first(&|r| r == Role::Time) {
+        chosen.time = Some(take("time_s", time, Role::Time));
+    }
+    let Some(rate) = first(&Role::is_gyro) else {
+        let path = source.path().display().to_string();
+        let names = channels.iter().map(|c| c.id.as_str()).collect::<Vec<_>>().join(", ");
+        return Err(SeriesError::Unclear(
+            Note::new("series.no_rate").with("path", path).with("columns", names),
+        ));
+    };
+    chosen.rate = take("rate_deg_h", rate, rate.role);
+    for column in Column::ALL {
+        let Some(beside) = first(&|r| r == role(column)) else { continue };
+        let Ok(map) = beside.unit.affine_to(&parse(unit(column))?) else { continue };
+        let slot = take(column.name(), beside, Role::Auxiliary);
+        chosen.beside.push((column, slot, map));
+    }
+    Ok(())
 }
 
 fn parse(unit: &str) -> Result<Unit, SeriesError> {

@@ -12,6 +12,7 @@ pub use smooth::smooth;
 use crate::effect::Column;
 use crate::ingest::{IngestError, ReadOptions, RecordingError};
 use crate::record::Integrity;
+use crate::recording::Channel;
 use crate::text::{Lang, Note};
 use std::collections::BTreeMap;
 
@@ -27,6 +28,8 @@ pub struct SeriesOptions {
     /// Take the first column that looks like an output, in whatever unit, where it is not told which is meant: for those
     /// who need the rows and not the rate.
     pub any_rate: bool,
+    /// Channels as a procedure declares them; empty: found by their names.
+    pub channels: Vec<Channel>,
     /// Sample rate, Hz: needed where there are no time stamps, and of help where their rounding leaves it open.
     pub sample_rate_hz: Option<f64>,
 }
@@ -95,6 +98,15 @@ pub enum SeriesError {
 }
 
 impl SeriesError {
+    /// What is wrong, as a note.
+    pub fn note(&self) -> Note {
+        match self {
+            SeriesError::Open(RecordingError::File(e)) | SeriesError::Read(e) => e.note(),
+            SeriesError::Open(other) => Note::new("system.other").with("reason", other.to_string()),
+            SeriesError::Unclear(note) => note.clone(),
+        }
+    }
+
     /// The diagnostic as it goes to the terminal, in a language.
     pub fn say(&self, lang: Lang) -> String {
         let error = |what: String| format!("{}: {what}\n", Note::new("diagnostic.error").say(lang));

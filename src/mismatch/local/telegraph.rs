@@ -45,6 +45,8 @@ pub struct Telegraph {
     pub dwell_ci95: [f64; 2],
     /// Jumps.
     pub jumps: usize,
+    /// True when the jumps come as regularly as of a periodic course.
+    pub regular: bool,
     /// Gain of log-likelihood, the path not known beforehand.
     pub gain: f64,
     /// Gain of the best single process in its place: a Markov process, or flicker or random walk set free.
@@ -277,12 +279,35 @@ impl Ground<'_> {
             mean_dwell_s,
             dwell_ci95: [mean_dwell_s / factor, mean_dwell_s * factor],
             jumps,
+            regular: regular(&best.path),
             gain: best.gain,
             rival_gain,
             parameters: 3,
             p_value,
         }
     }
+}
+
+/// Whether the times at both levels are more even than those of independent jumps, whose deviation is their mean.
+fn regular(path: &[bool]) -> bool {
+    const ENOUGH: usize = 8;
+    const EVEN: f64 = 0.5;
+    let mut times: [Vec<f64>; 2] = [vec![], vec![]];
+    let mut since = None;
+    for i in 1..path.len() {
+        if path[i] != path[i - 1] {
+            if let Some(start) = since {
+                times[usize::from(path[i - 1])].push((i - start) as f64);
+            }
+            since = Some(i);
+        }
+    }
+    times.iter().all(|t| {
+        let n = t.len() as f64;
+        let mean = t.iter().sum::<f64>() / n;
+        let variance = t.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        t.len() >= ENOUGH && variance.sqrt() < EVEN * mean
+    })
 }
 
 /// Levels at the quarters and at the tenths of the values, with long and short dwells.

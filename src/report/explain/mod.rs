@@ -15,7 +15,8 @@ use super::compare::figure;
 use super::number::{count, date_time, digits, duration};
 use super::view::{Field, FigureView, Words};
 use crate::figure::Figure;
-use crate::mismatch::finding::Explanation;
+use crate::record::ExplainedRecord;
+use crate::record::explanation::Explanation;
 use crate::text::{Lang, Note};
 use serde::Serialize;
 
@@ -92,6 +93,17 @@ pub struct ExplainView {
     pub footer: String,
     /// The program with its version.
     pub generator: String,
+}
+
+/// What a report says of a recording that was set against the model of its family: the verdict in a word and in
+/// sentences, or why there is none.
+pub fn explained_says(explained: &ExplainedRecord, lang: Lang) -> Vec<String> {
+    let words = Words { lang };
+    match (&explained.explanation, &explained.error) {
+        (Some(all), _) => sentence::verdict(all, words),
+        (None, Some(error)) => vec![words.with("explain.not_compared", &[("reason", &words.say(error))])],
+        (None, None) => vec![],
+    }
 }
 
 impl ExplainView {

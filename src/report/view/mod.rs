@@ -23,7 +23,8 @@ pub use rows::Row;
 
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::record::RunRecord;
+use crate::record::{ExplainedRecord, RunRecord};
+use crate::report::explain::explained_says;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::{file_name, methods, svg, unit};
 use crate::text::{Arg, Lang, Note, fill, lookup};
@@ -36,6 +37,27 @@ pub struct Field {
     pub label: String,
     /// Value, printed.
     pub value: String,
+}
+
+/// The recording against the model of its family.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Explained {
+    /// The model.
+    pub model: String,
+    /// What came of it, in sentences.
+    pub says: Vec<String>,
+    /// The whole explanation, where there is one.
+    pub page: Option<&'static str>,
+}
+
+impl Explained {
+    fn new(explained: &ExplainedRecord, lang: Lang) -> Explained {
+        Explained {
+            model: explained.model.clone(),
+            says: explained_says(explained, lang),
+            page: explained.explanation.as_ref().map(|_| "explain/report.html"),
+        }
+    }
 }
 
 /// Everything a report shows.
@@ -73,6 +95,8 @@ pub struct View {
     pub footnotes: Vec<String>,
     /// Russian and Allan values side by side, per channel.
     pub comparison: Vec<comparison::Comparison>,
+    /// The recording against the model of its family.
+    pub explained: Option<Explained>,
     /// Conditions, integrity, window, lines, models, power, instruments, waivers, clauses.
     #[serde(flatten)]
     pub evidence: evidence::Evidence,
@@ -240,6 +264,7 @@ impl View {
                 .into_iter()
                 .collect(),
             comparison: comparison::comparisons(record, words),
+            explained: record.explained.as_ref().map(|e| Explained::new(e, lang)),
             by_channel: Matrix::new(&further),
             judged,
             further,

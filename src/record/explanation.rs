@@ -70,7 +70,7 @@ impl Finding {
 
     /// True for a cause that nothing in the catalogue describes.
     pub fn is_unnamed(&self) -> bool {
-        self.effect_id() == crate::effect::UNKNOWN
+        self.effect_id() == "unknown"
     }
 }
 

@@ -1,0 +1,191 @@
+//! A sinusoid whose frequency changes steadily. It has no kind of its own in the format of explanations.
+
+use super::sinusoid::{averaged, pair, polar, wave};
+use crate::effect::{
+    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+};
+use realfft::RealFftPlanner;
+
+pub struct DriftingLine;
+
+static DOC: Doc = Doc {
+    title: Both { en: "line of drifting frequency", ru: "линия с плывущей частотой" },
+    mechanism: Both {
+        en: "A machine that runs up or down, or an oscillator that warms up, is felt at its own frequency.",
+        ru: "Разгон или выбег машины, прогрев генератора видны на собственной, меняющейся частоте.",
+    },
+    formula: "A cos(2π(f u + ½ f′ u²) + φ), u the time since the middle of the record",
+    signature: Both {
+        en: "A ridge in time and frequency together; in the spectrum of the whole record a band with sharp ends.",
+        ru: "Гребень на плоскости «время — частота»; в спектре всей записи — полоса с резкими краями.",
+    },
+    told_by: Both {
+        en: "A line keeps its frequency; a quasi-periodic disturbance loses its phase at random.",
+        ru: "Линия сохраняет частоту; квазипериодическое возмущение теряет фазу случайно.",
+    },
+    confirm: Both {
+        en: "Record beside the unit what turns or swings, and compare the frequencies over time.",
+        ru: "Записать рядом с прибором всё, что вращается или колеблется, и сравнить частоты во времени.",
+    },
+    source: "Abatzoglou 1986, maximum likelihood of a linear frequency sweep",
+};
+
+static PARAMS: [Param; 5] = [
+    Param::reported("frequency_hz", "Hz", 0.0, 1e6),
+    Param::reported("drift_hz_per_s", "Hz/s", -1e6, 1e6),
+    Param::reported("amplitude_deg_h", "deg/h", 0.0, 1e6),
+    Param::inner("phase_deg", "deg", -360.0, 360.0),
+    Param::inner("middle_s", "s", -1e12, 1e12),
+];
+
+describe! {
+    DriftingLine, "drifting_line", Course in Frequency, needs [],
+    confusers ["line", "quasi_periodic", "excess_arw"]
+}
+
+/// Samples times sweeps that a search may take: a tenth of a second.
+const BUDGET: f64 = 4e6;
+/// Fewest samples.
+const FEWEST: usize = 256;
+
+/// Rates of change on either side of 0 that are tried: steps of 2/T², which turn the phase at the ends by a quarter.
+fn rates(samples: usize) -> usize {
+    let most = 0.1 * samples as f64;
+    (BUDGET / samples.max(1) as f64).clamp(16.0, most.max(16.0)) as usize
+}
+
+fn step(drivers: &Drivers) -> f64 {
+    2.0 / drivers.length_s().powi(2)
+}
+
+fn middle_s(drivers: &Drivers) -> f64 {
+    drivers.start_s + 0.5 * (drivers.samples as f64 - 1.0) * drivers.dt_s
+}
+
+fn columns(frequency: f64, drift: f64, middle_s: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
+    pair(drivers.samples, |i| {
+        let u = drivers.time_s(i) - middle_s;
+        (frequency * u + 0.5 * drift * u * u, averaged((frequency + drift * u) * drivers.dt_s))
+    })
+}
+
+impl Course for DriftingLine {
+    fn pace(&self) -> Pace {
+        Pace::Fast
+    }
+
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.samples >= FEWEST
+    }
+
+    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+        let n = drivers.samples;
+        if n < FEWEST || look.score.len() != n || look.powers.len() != n {
+            return Starts { shapes: vec![], looked: 1.0 };
+        }
+        let rates = rates(n);
+        let padded = n.next_power_of_two();
+        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
+        let (mut even, mut odd) = (plan.make_input_vec(), plan.make_input_vec());
+        let (mut with_cos, mut with_sin) = (plan.make_output_vec(), plan.make_output_vec());
+        let (middle, step) = (middle_s(drivers), step(drivers));
+        let cell = 1.0 / (padded as f64 * drivers.dt_s);
+        let (low, high) = self.bounds(drivers)[0];
+        let (first, last) = ((low / cell).ceil() as usize, ((high / cell) as usize).min(with_cos.len() - 1));
+        let mut best = (0.0, vec![]);
+        for r in 1..=rates {
+            let drift = r as f64 * step;
+            even[n..].fill(0.0);
+            odd[n..].fill(0.0);
+            for (i, x) in look.score.iter().enumerate() {
+                let u = drivers.time_s(i) - middle;
+                let (s, c) = (std::f64::consts::PI * drift * u * u).sin_cos();
+                (even[i], odd[i]) = (x * c, x * s);
+            }
+            let done = plan.process(&mut even, &mut with_cos).is_ok()
+                && plan.process(&mut odd, &mut with_sin).is_ok();
+            if !done {
+                break;
+            }
+            for k in first..=last {
+                let (c, s) = (with_cos[k], with_sin[k]);
+                // (C ∓ iS): the sweep taken out up and down.
+                let up = (c.re + s.im).powi(2) + (c.im - s.re).powi(2);
+                let down = (c.re - s.im).powi(2) + (c.im + s.re).powi(2);
+                let (power, sign) = if up > down { (up, 1.0) } else { (down, -1.0) };
+                if power > best.0 {
+                    let mode = (2 * n * k / padded).clamp(1, n - 1);
+                    let gain = power * look.powers[mode] / n as f64;
+                    if gain > best.0 {
+                        best = (gain, vec![k as f64 * cell, sign * drift]);
+                    }
+                }
+            }
+        }
+        let shapes = if best.1.is_empty() { vec![] } else { vec![best.1] };
+        Starts { shapes, looked: n as f64 * rates as f64 }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+        let resolution = 1.0 / drivers.length_s();
+        let most = (rates(drivers.samples) + 1) as f64 * step(drivers);
+        vec![(3.0 * resolution, (0.5 / drivers.dt_s).max(4.0 * resolution)), (-most, most)]
+    }
+
+    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+        let free = match shape {
+            [frequency, drift] => columns(*frequency, *drift, middle_s(drivers), drivers),
+            _ => vec![],
+        };
+        Parts { free, ..Parts::default() }
+    }
+
+    fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let (amplitude, phase) = polar(coefficients);
+        let [frequency, drift] = *shape else { return vec![f64::NAN; PARAMS.len()] };
+        vec![frequency, drift, amplitude, phase, middle_s(drivers)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let of = |i: usize| number(values, PARAMS[i].name);
+        Some(wave(of(2)?, of(3).unwrap_or(0.0), &columns(of(0)?, of(1)?, of(4)?, drivers)))
+    }
+
+    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let [frequency, drift] = *shape else { return vec![] };
+        let half = 0.5 * drift.abs() * drivers.length_s() + 0.5 / drivers.length_s();
+        let band =
+            Place { domain: Domain::Frequency, from: (frequency - half).max(0.0), to: frequency + half };
+        [vec![band], super::reach::record(drivers)].concat()
+    }
+
+    fn steps(&self, drivers: &Drivers) -> Vec<f64> {
+        vec![0.2 / drivers.length_s(), 0.3 * step(drivers)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sweep_is_found_at_its_frequency_and_rate() {
+        let n = 4000;
+        let drivers = Drivers { dt_s: 0.5, start_s: 7.0, samples: n, averaged: 1, ..Drivers::default() };
+        for drift in [4e-5, -2.5e-5] {
+            let (f, power) = (0.31, 0.04);
+            // A fast residue of the index is as good as noise here.
+            let residual: Vec<f64> = wave(0.1, 40.0, &columns(f, drift, middle_s(&drivers), &drivers))
+                .iter()
+                .enumerate()
+                .map(|(i, x)| x + (((i as u64 * 2_654_435_761) % 1_000_003) as f64 / 1e6 - 0.5) * 0.69)
+                .collect();
+            let score: Vec<f64> = residual.iter().map(|r| r / power).collect();
+            let (modes, powers) = (crate::numeric::cosine::dct2(&residual), vec![power; n]);
+            let look = Look { score: &score, modes: &modes, powers: &powers };
+            let found = DriftingLine.starts(&drivers, &look).shapes.remove(0);
+            assert!((found[0] - f).abs() < 2.0 / 2000.0, "{found:?}");
+            assert!((found[1] - drift).abs() < 1.5 * step(&drivers), "{found:?}");
+        }
+    }
+}

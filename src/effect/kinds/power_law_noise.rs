@@ -1,0 +1,159 @@
+//! Noise whose density falls with a power of the frequency that is neither of white, flicker nor random walk. It has no
+//! kind of its own in the format of explanations.
+
+use crate::effect::{
+    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+};
+use crate::noise::composite::{Composite, Damped};
+
+pub struct PowerLawNoise;
+
+static DOC: Doc = Doc {
+    title: Both { en: "noise of a power law of its own", ru: "шум с собственным степенным законом" },
+    mechanism: Both {
+        en: "Many relaxations whose times are not spread evenly, as of traps, diffusion or a coupled structure.",
+        ru: "Множество релаксаций с неравномерно распределёнными временами: ловушки, диффузия, связанная конструкция.",
+    },
+    formula: "S(f) = S₀ (f/f₀)^−α",
+    signature: Both {
+        en: "A straight line in the logarithmic spectrum with a slope that is none of 0, −1 or −2.",
+        ru: "Прямая в логарифмическом спектре с наклоном, отличным от 0, −1 и −2.",
+    },
+    told_by: Both {
+        en: "A Markov process bends within a decade of frequency; flicker has the slope −1.",
+        ru: "Марковский процесс изгибается в пределах декады; у фликкер-шума наклон −1.",
+    },
+    confirm: Both {
+        en: "A record ten times as long: the slope goes on, where a Markov process has its plateau.",
+        ru: "Запись в десять раз длиннее: наклон продолжается там, где у марковского процесса полка.",
+    },
+    source: "Kasdin 1995, discrete simulation of power-law noise",
+};
+
+static PARAMS: [Param; 3] = [
+    Param::reported("density_deg_h_2_per_hz", "(deg/h)²/Hz", 1e-30, 1e30),
+    Param::reported("exponent", "", 0.1, 1.9),
+    Param::inner("frequency_hz", "Hz", 1e-12, 1e9),
+];
+
+impl Effect for PowerLawNoise {
+    fn kind(&self) -> &'static str {
+        "power_law_noise"
+    }
+    fn doc(&self) -> &'static Doc {
+        &DOC
+    }
+    fn params(&self) -> &'static [Param] {
+        &PARAMS
+    }
+    fn domain(&self) -> Domain {
+        Domain::Frequency
+    }
+    fn confusers(&self) -> &'static [&'static str] {
+        &["excess_flicker", "markov_short", "markov_long", "excess_arw"]
+    }
+    fn model(&self) -> Model {
+        Model::Spectrum(&PowerLawNoise)
+    }
+}
+
+/// S₀, α, f₀.
+fn law(fitted: &[f64]) -> [f64; 3] {
+    match *fitted {
+        [density, exponent, at] => [density, exponent, at],
+        _ => [0.0, 1.0, 1.0],
+    }
+}
+
+impl Spectrum for PowerLawNoise {
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Adds
+    }
+
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        let [density, exponent, at] = law(fitted);
+        density * (bin.frequency_hz / at).powf(-exponent)
+    }
+
+    fn moves(&self, _fitted: &[f64], parameter: usize) -> bool {
+        parameter < 2
+    }
+
+    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+        let (Some(first), Some(last)) = (look.bins.first(), look.bins.last()) else { return vec![] };
+        let middle = (first.frequency_hz * last.frequency_hz).sqrt();
+        let near = |b: &&ModeBin| b.frequency_hz > 0.5 * middle && b.frequency_hz < 2.0 * middle;
+        let (mut excess, mut level, mut count) = (0.0, 0.0, 0.0);
+        for (i, b) in look.bins.iter().enumerate().filter(|(_, b)| near(b)) {
+            excess += b.modes as f64 * (look.observed[i] - look.expected[i]);
+            level += b.modes as f64 * look.expected[i];
+            count += b.modes as f64;
+        }
+        let density = (excess / f64::max(count, 1.0)).max(0.05 * level / f64::max(count, 1.0)).max(1e-30);
+        [0.4, 0.7, 1.4].map(|exponent| vec![density, exponent, middle]).to_vec()
+    }
+
+    fn bounds(&self, _look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+        vec![(1e-30, 1e30), (0.1, 1.9), (1e-12, 1e9)]
+    }
+
+    fn looked(&self, _look: &SpectralLook<'_>) -> f64 {
+        3.0
+    }
+
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        law(fitted).to_vec()
+    }
+
+    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
+        PARAMS.iter().map(|p| number(values, p.name)).collect()
+    }
+
+    /// Relaxations of which each octave of time has one: their sum follows a power law to a few per cent.
+    fn compose(&self, fitted: &[f64], dt_s: f64, noise: &mut Composite) {
+        use std::f64::consts::{LN_2, PI};
+        let [density, exponent, at] = law(fitted);
+        // ∫ 2σ²T/(1 + (2πfT)²) dT/T over all T, σ² = c T^(α−1), is c (2πf)^−α π/sin(πα/2).
+        let sum = PI / (0.5 * PI * exponent).sin() * (2.0 * PI * at).powf(-exponent);
+        let c = density / sum * LN_2;
+        for octave in -3..40 {
+            let decay_time_s = dt_s * 2f64.powi(octave);
+            let rms_deg_h = (c * decay_time_s.powf(exponent - 1.0)).sqrt();
+            noise.markov.push(Damped { rms_deg_h, frequency_hz: 0.0, decay_time_s });
+        }
+    }
+
+    fn places(&self, _fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+        match (look.bins.first(), look.bins.last()) {
+            (Some(first), Some(last)) => {
+                vec![Place { domain: Domain::Frequency, from: first.frequency_hz, to: last.frequency_hz }]
+            }
+            _ => vec![],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::composite::Sampling;
+
+    #[test]
+    fn the_simulated_sum_of_relaxations_follows_the_law() {
+        for exponent in [0.5, 1.0, 1.5] {
+            let (dt_s, fitted) = (0.1, [3.0, exponent, 0.02]);
+            let mut noise = Composite::default();
+            PowerLawNoise.compose(&fitted, dt_s, &mut noise);
+            for frequency_hz in [1e-4, 1e-3, 1e-2, 0.1] {
+                let sum: f64 = noise
+                    .markov
+                    .iter()
+                    .map(|m| m.densities(dt_s, Sampling::Averaging)(frequency_hz))
+                    .sum();
+                let bin = ModeBin { frequency_hz, mode: 1, modes: 1, samples: 1000, dt_s };
+                let wanted = PowerLawNoise.density(&fitted, &bin);
+                assert!((sum / wanted - 1.0).abs() < 0.06, "{exponent} at {frequency_hz}: {sum} {wanted}");
+            }
+        }
+    }
+}
