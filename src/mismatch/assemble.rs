@@ -16,8 +16,8 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::samples::Named;
-use super::single_cause;
 use super::select::{Chosen, Selection, Slot};
+use super::single_cause;
 use crate::claim::{Claim, Stated};
 use crate::effect::{Domain, Effect, Model, Nuisance, Place, SpectralLook, UNKNOWN, Value};
 use crate::series::Series;
@@ -181,6 +181,13 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
     {
         estimated.stated = super::driver::knots(best, i, problem);
     }
+    let mut places = places(chosen.effect, chosen.slot, best, chosen, problem);
+    // An instant lies where its interval brackets it.
+    if let Some(instant) = estimated.reported.get(estimates::INSTANT) {
+        let half = 0.5 * problem.drivers.dt_s;
+        let [from, to] = [instant.ci95[0] - half, instant.ci95[1] + half];
+        places.iter_mut().filter(|p| p.domain == Domain::Time).for_each(|p| (p.from, p.to) = (from, to));
+    }
     Named {
         effect: chosen.effect,
         estimated,
@@ -190,7 +197,7 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
             .map(|e| e.kind())
             .filter(|_| chosen.effect.reported_kind() != UNKNOWN)
             .collect(),
-        places: places(chosen.effect, chosen.slot, best, chosen, problem),
+        places,
         delta_bic: chosen.delta_bic,
         p_value: chosen.p_value,
         improvement: None,

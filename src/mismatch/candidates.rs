@@ -3,7 +3,9 @@
 use super::hypothesis::{CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, part_modes};
 use super::noise_fit::{self, Noise, SpectrumIn, base_index};
 use super::scene::Scene;
-use crate::effect::{Course, Drivers, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct};
+use crate::effect::{
+    Course, Drivers, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct,
+};
 use crate::estimate::chi_square_tail;
 use crate::numeric::cosine::inverse_dct2;
 use rayon::prelude::*;
@@ -87,11 +89,7 @@ pub fn all(before: &Tried, scenes: &Scenes) -> Vec<Candidate> {
 }
 
 /// As [`all`], of some effects only.
-pub fn among(
-    before: &Tried,
-    scenes: &Scenes,
-    wanted: impl Fn(&dyn Effect) -> bool + Sync,
-) -> Vec<Candidate> {
+pub fn among(before: &Tried, scenes: &Scenes, wanted: impl Fn(&dyn Effect) -> bool + Sync) -> Vec<Candidate> {
     let grounds = Grounds::new(before, scenes);
     let fits: Vec<Option<Candidate>> = EFFECTS
         .par_iter()
@@ -226,6 +224,12 @@ impl ShapeSearch<'_> {
     }
 }
 
+/// Numbers of a shape that are searched over. One that is whole has few values: it counts in the p-value alone.
+pub fn free_numbers(course: &dyn Course, bounds: &[(f64, f64)]) -> usize {
+    let free = |(i, (low, high)): (usize, &(f64, f64))| high > low && !course.whole().contains(&i);
+    bounds.iter().enumerate().filter(|b| free(*b)).count()
+}
+
 /// First steps of a local search: none where a number is whole.
 pub fn first_steps(course: &dyn Course, drivers: &Drivers) -> Vec<Option<f64>> {
     let steps = course.steps(drivers);
@@ -344,7 +348,7 @@ fn try_course(
         return None;
     }
     let parts = course.parts(&shape, &scene.drivers);
-    let free_shape = bounds.iter().filter(|(low, high)| high > low).count();
+    let free_shape = free_numbers(course, &bounds);
     let parameters = before.parameters + parts.free.len() + parts.beside.len() + free_shape;
     let odds = course.odds(&shape, &scene.drivers) + own_odds(effect);
     let mut hypothesis = before.hypothesis.clone();
@@ -455,7 +459,6 @@ fn finish_spectrum(
     hypothesis.noise = noise;
     let fit = fit(&mut hypothesis, &scenes.full);
     let odds = before.odds + own_odds(effect);
-    let candidate =
-        rated(effect, Tried { hypothesis, fit, parameters, odds }, before, looked, scenes.rows);
+    let candidate = rated(effect, Tried { hypothesis, fit, parameters, odds }, before, looked, scenes.rows);
     (candidate.gain > 0.5).then_some(candidate)
 }

@@ -176,8 +176,7 @@ fn comb(scene: &Scene, powers: &[f64]) -> Option<Departure> {
     }
     let (p, cell, harmonics) = best?;
     let fundamental = cell / (2.0 * n as f64 * scene.drivers.dt_s);
-    let place =
-        Place { domain: Domain::Frequency, from: fundamental, to: fundamental * harmonics as f64 };
+    let place = Place { domain: Domain::Frequency, from: fundamental, to: fundamental * harmonics as f64 };
     Some(Departure { test: "comb", place, beside: None, p_value: (p * looks).clamp(1e-300, 1.0) })
 }
 
@@ -259,8 +258,7 @@ fn tails(scene: &Scene, series: &[f64], usable: &[bool]) -> Option<Departure> {
     scan.see((n * normal_two_sided(largest.0)).min(1.0), 0.0, 0.0);
     let mut found = scan.done("tails", Domain::Time)?;
     // Where the values beyond three deviations are.
-    let far: Vec<usize> =
-        (0..series.len()).filter(|i| usable[*i] && series[*i].abs() > 3.5).collect();
+    let far: Vec<usize> = (0..series.len()).filter(|i| usable[*i] && series[*i].abs() > 3.5).collect();
     let from = far.first().copied().unwrap_or(largest.1);
     let to = far.last().copied().unwrap_or(largest.1);
     found.place =

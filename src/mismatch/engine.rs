@@ -145,15 +145,16 @@ fn moved(base: &Tried, scenes: &Scenes, alpha: f64) -> Tried {
     const COURSES: usize = 2;
     let table = [Column::TableRate, Column::TableAngle, Column::OuterRate];
     let follows = |e: &dyn Effect| e.needs().iter().any(|c| table.contains(c));
-    if !EFFECTS.iter().any(|e| follows(*e) && e.needs().iter().all(|c| scenes.full.drivers.column(*c).is_some()))
+    if !EFFECTS
+        .iter()
+        .any(|e| follows(*e) && e.needs().iter().all(|c| scenes.full.drivers.column(*c).is_some()))
     {
         return base.clone();
     }
     let mut out = base.clone();
     for _ in 0..COURSES {
-        let candidates = candidates::among(&out, scenes, |e| {
-            follows(e) && matches!(e.model(), Model::Course(_))
-        });
+        let candidates =
+            candidates::among(&out, scenes, |e| follows(e) && matches!(e.model(), Model::Course(_)));
         let family = EFFECTS.len() as f64;
         match candidates.into_iter().next() {
             Some(leader) if select::passes(&leader, family, alpha) => out = leader.tried,
@@ -174,13 +175,7 @@ fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
 }
 
 /// Sets bursts aside; the claim's fit without them.
-fn take_bursts(
-    problem: &mut Problem,
-    base: &Tried,
-    moved: &Tried,
-    found: &mut Found,
-    alpha: f64,
-) -> Tried {
+fn take_bursts(problem: &mut Problem, base: &Tried, moved: &Tried, found: &mut Found, alpha: f64) -> Tried {
     let rows = problem.scenes.rows;
     let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "outlier_bursts");
     let Some(bursts) = local::bursts(problem, moved) else { return base.clone() };

@@ -3,7 +3,9 @@
 use super::candidates::{Scenes, Tried};
 use super::finding::ParameterValue;
 use super::hypothesis::{CourseIn, Normal, PartModes, kept, part_modes};
+use super::instant;
 use super::noise_fit::Which;
+use super::process;
 use super::scene::Scene;
 use super::select::Slot;
 use crate::effect::{Course, Effect, Model, Param, SpectrumAct, Value, Values};
@@ -15,6 +17,9 @@ use std::collections::BTreeMap;
 const TWO_SIDED_95: f64 = 1.959_964;
 /// Drop of the log-likelihood at the ends of a 95 % profile interval.
 const DROP_95: f64 = 1.920_729;
+
+/// Name of the parameter that is an instant.
+pub const INSTANT: &str = "time_s";
 
 /// An effect's parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -97,8 +102,12 @@ impl<'a> Placed<'a> {
         let parts = self.parts(shape);
         let bounds = self.course.bounds(&self.scene.drivers);
         let slopes: Vec<Vec<f64>> = (0..shape.len()).map(|i| self.slope(i, &bounds, coefficients)).collect();
-        let columns: Vec<(&[f64], f64)> = slopes
+        // A number that is whole, or held by its bounds, has no derivative and no part in the uncertainty.
+        let moves = |i: &usize| !self.course.whole().contains(i) && slopes[*i].iter().any(|s| *s != 0.0);
+        let active: Vec<usize> = (0..shape.len()).filter(moves).collect();
+        let columns: Vec<(&[f64], f64)> = active
             .iter()
+            .map(|i| &slopes[*i])
             .chain(&parts.free)
             .chain(&parts.beside)
             .map(|c| (c.as_slice(), f64::INFINITY))
@@ -106,7 +115,26 @@ impl<'a> Placed<'a> {
             .collect();
         let (_, covariance, _) = Normal::new(&columns, &self.data, &self.inverse).solve();
         let wanted = shape.len() + parts.free.len();
-        covariance.view((0, 0), (wanted, wanted)).into_owned()
+        let places: Vec<usize> = active.iter().copied().chain(shape.len()..wanted).collect();
+        let mut out = DMatrix::zeros(wanted, wanted);
+        for (a, i) in places.iter().enumerate() {
+            for (b, j) in places.iter().enumerate() {
+                out[(*i, *j)] = covariance[(a, b)];
+            }
+        }
+        out
+    }
+
+    /// Standard deviation that the rms of a course has from a nuisance of the claim that the course takes over: how much
+    /// of the two is the claim's own is known no better than the claim states it.
+    fn from_nuisance(&self, series: &[f64]) -> f64 {
+        let Some(replaced) = self.course.replaces() else { return 0.0 };
+        let Some(nuisance) = self.scene.nuisances.iter().find(|n| n.nuisance == replaced) else { return 0.0 };
+        let modes = self.scene.transform(series);
+        let square: f64 = modes.iter().map(|x| x * x).sum();
+        let both: f64 = modes.iter().zip(&nuisance.modes).map(|(a, b)| a * b).sum();
+        let n = self.scene.drivers.samples.max(1) as f64;
+        if square > 0.0 { nuisance.deviation * both.abs() / (square * n).sqrt() } else { 0.0 }
     }
 
     /// Derivative of the course by a number of its shape, in modes.
@@ -167,11 +195,16 @@ impl<'a> Placed<'a> {
     }
 }
 
-fn rms(columns: &[Vec<f64>], coefficients: &[f64], fixed: Option<&Vec<f64>>, samples: usize) -> f64 {
+fn summed(columns: &[Vec<f64>], coefficients: &[f64], fixed: Option<&Vec<f64>>, samples: usize) -> Vec<f64> {
     let mut sum = fixed.cloned().unwrap_or_else(|| vec![0.0; samples]);
     for (column, c) in columns.iter().zip(coefficients) {
         sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
     }
+    sum
+}
+
+fn rms(columns: &[Vec<f64>], coefficients: &[f64], fixed: Option<&Vec<f64>>, samples: usize) -> f64 {
+    let sum = summed(columns, coefficients, fixed, samples);
     let n = sum.len().max(1) as f64;
     let mean = sum.iter().sum::<f64>() / n;
     (sum.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n).sqrt()
@@ -219,17 +252,29 @@ fn of_course(
                 course.parameters(shape, &coefficients.iter().map(|c| 1.01 * c).collect::<Vec<_>>(), drivers);
             (still.get(i) == Some(value) && a != b).then_some([a.min(b), a.max(b)])
         });
-        let ci95 = by_shape.unwrap_or_else(|| interval(param, *value, deviations[i]));
+        let mut ci95 = by_shape.unwrap_or_else(|| interval(param, *value, deviations[i]));
+        if param.name == INSTANT
+            && let Some([from, to]) = instant::interval(placed.inside, &best.fit, scenes)
+        {
+            ci95 = [from.min(*value), to.max(*value)];
+        }
         let unit = param.unit.to_owned();
         out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
     }
     for (name, list) in course.lists(shape, &coefficients, drivers) {
         out.stated.insert(name.to_owned(), Value::List(list));
     }
-    let deviation = deviations.last().copied().unwrap_or(f64::NAN);
+    let series = summed(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
+    let deviation = deviations.last().copied().unwrap_or(f64::NAN).hypot(placed.from_nuisance(&series));
     if spread.is_finite() && deviation.is_finite() && spread > 0.0 {
         let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();
-        let ci95 = [spread / factor, spread * factor];
+        // A course without coefficients is as large as its shape makes it.
+        let by_shape = profile.filter(|_| coefficients.is_empty()).map(|ends| {
+            let of = |x: f64| all(&[x], &[]).last().copied().unwrap_or(spread);
+            let (a, b) = (of(ends[0]), of(ends[1]));
+            [a.min(b).min(spread), a.max(b).max(spread)]
+        });
+        let ci95 = by_shape.unwrap_or([spread / factor, spread * factor]);
         out.reported
             .insert("rms_deg_h".to_owned(), ParameterValue { value: spread, unit: "deg/h".to_owned(), ci95 });
     }
@@ -292,9 +337,10 @@ fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scene: &
         (Some(a), Some(b)) => best.fit.noise.covariance[(a, b)],
         _ => 0.0,
     };
+    let residual = &best.fit.mean.residual;
     let all = |fitted: &[f64]| {
         let mut out = spectrum.parameters(fitted);
-        out.push(added_rms(noise, index, fitted, scene));
+        out.push(process::added_rms(noise, index, fitted, scene, residual).0);
         out
     };
     let values = all(&part.fitted);
@@ -330,7 +376,8 @@ fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scene: &
             out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
         }
     }
-    let (spread, last) = (values[values.len() - 1], deviation(values.len() - 1));
+    let chance = process::added_rms(noise, index, &part.fitted, scene, residual).1;
+    let (spread, last) = (values[values.len() - 1], deviation(values.len() - 1).hypot(chance));
     if spread > 0.0 && spread.is_finite() {
         let factor = (TWO_SIDED_95 * last / spread).min(30.0).exp();
         let ci95 = [spread / factor, spread * factor];
@@ -338,33 +385,6 @@ fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scene: &
             .insert("rms_deg_h".to_owned(), ParameterValue { value: spread, unit: "deg/h".to_owned(), ci95 });
     }
     out
-}
-
-/// Root of the variance that a spectral effect adds over the record; 0 for one that takes away, or filters.
-fn added_rms(noise: &super::noise_fit::Noise, index: usize, fitted: &[f64], scene: &Scene) -> f64 {
-    let mut noise = noise.clone();
-    let claimed = noise.claimed;
-    let mut base = None;
-    if let Some(part) = noise.spectra.get_mut(index) {
-        part.fitted = fitted.to_vec();
-        if let Model::Spectrum(s) = part.effect.model()
-            && let SpectrumAct::Frees(term) = s.act()
-        {
-            base = super::noise_fit::base_index(term);
-        }
-    }
-    if let (Some(i), Some(value)) = (base, fitted.first()) {
-        noise.base[i] = *value;
-    }
-    let mut densities = noise.part_densities(index, scene);
-    if let Some(i) = base {
-        for (d, u) in densities.iter_mut().zip(&scene.units) {
-            *d -= claimed[i].powi(2) * u[i];
-        }
-    }
-    let n = scene.drivers.samples as f64;
-    let sum: f64 = scene.bins.iter().zip(&densities).map(|(b, d)| b.modes as f64 * d / b.dt_s).sum();
-    (sum / n).max(0.0).sqrt()
 }
 
 /// What everything that a hypothesis adds to the claim contributes to the rate, deg/h on the grid: courses, and the best
@@ -390,7 +410,7 @@ pub fn correction(best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
             continue;
         }
         any = true;
-        let densities = best.hypothesis.noise.part_densities(i, scene);
+        let densities = best.hypothesis.noise.added_densities(i, scene);
         let own = scene.powers(&densities);
         let modes: Vec<f64> = best
             .fit

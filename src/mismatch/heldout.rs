@@ -124,7 +124,8 @@ fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
             }
             -0.5 * Normal::new(&columns, &data, &inverse).solve().2
         };
-        let (shape, _) = refine(&hypothesis.courses[i].shape, &bounds, &first_steps(course, &scene.drivers), 40, gain);
+        let (shape, _) =
+            refine(&hypothesis.courses[i].shape, &bounds, &first_steps(course, &scene.drivers), 40, gain);
         hypothesis.courses[i].shape = shape;
     }
 }

@@ -144,6 +144,20 @@ impl Noise {
         }
     }
 
+    /// What a part adds to what the claim states, (deg/h)²/Hz by bin: of a coefficient set free, what it exceeds the stated
+    /// one by.
+    pub fn added_densities(&self, index: usize, scene: &Scene) -> Vec<f64> {
+        let mut out = self.part_densities(index, scene);
+        let act = self.spectra.get(index).and_then(|p| p.spectrum()).map(|s| s.act());
+        if let Some(SpectrumAct::Frees(term)) = act
+            && let Some(i) = base_index(term)
+        {
+            let stated = self.claimed[i].powi(2);
+            out.iter_mut().zip(&scene.units).for_each(|(d, u)| *d = (*d - stated * u[i]).max(0.0));
+        }
+        out
+    }
+
     /// The parameters that a fit moves.
     pub fn which(&self) -> Vec<Which> {
         let base = (0..3)

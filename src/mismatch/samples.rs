@@ -3,10 +3,10 @@
 use super::candidates::Tried;
 use super::estimates::Estimated;
 use super::finding::ParameterValue;
+use super::improvement::Improvement;
 use super::local::{Bursts, Law, Level, Telegraph};
 use super::problem::Problem;
 use super::select::ENOUGH;
-use super::improvement::Improvement;
 use crate::effect::{Domain, Effect, Place, Value, find};
 use std::collections::BTreeMap;
 

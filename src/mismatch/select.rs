@@ -1,7 +1,7 @@
 //! The fewest effects that make the recording an ordinary draw: a beam of hypotheses grown by ΔBIC behind gates, then
 //! pruned, then asked what else would have served as well.
 
-use super::candidates::{Candidate, Scenes, Tried, all};
+use super::candidates::{Candidate, Scenes, Tried, all, free_numbers};
 use super::hypothesis::{CourseIn, Hypothesis, fit};
 use super::noise_fit::{Noise, SpectrumIn, base_index};
 use crate::effect::{Effect, Model, SpectrumAct};
@@ -80,7 +80,7 @@ fn course_parameters(course: &CourseIn, scenes: &Scenes) -> usize {
     let Some(c) = course.course() else { return 0 };
     let scene = scenes.of(c.pace());
     let parts = c.parts(&course.shape, &scene.drivers);
-    let shape = c.bounds(&scene.drivers).iter().filter(|(low, high)| high > low).count();
+    let shape = free_numbers(c, &c.bounds(&scene.drivers));
     parts.free.len() + parts.beside.len() + shape
 }
 

@@ -29,8 +29,8 @@ enum Family {
 fn family(kind: &str) -> Option<Family> {
     match kind {
         "line" => Some(Family::Line),
-        "excess_arw" | "excess_flicker" | "excess_rrw" | "markov_short" | "markov_long" | "quasi_periodic"
-        | "bandwidth_filter" | "quantization" => Some(Family::Spectrum),
+        "excess_arw" | "excess_flicker" | "excess_rrw" | "markov_short" | "markov_long"
+        | "quasi_periodic" | "bandwidth_filter" | "quantization" => Some(Family::Spectrum),
         "bias_step" | "heading_change" => Some(Family::Jump),
         _ => None,
     }

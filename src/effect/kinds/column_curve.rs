@@ -52,8 +52,7 @@ describe! {
 }
 
 /// What the curve may follow: supply, rate of the other axis, rate of change of temperature, rate of the table.
-const DOMAINS: [Domain; 4] =
-    [Domain::Supply, Domain::OuterRate, Domain::TemperatureRate, Domain::InputRate];
+const DOMAINS: [Domain; 4] = [Domain::Supply, Domain::OuterRate, Domain::TemperatureRate, Domain::InputRate];
 /// Highest power.
 const HIGHEST: usize = 4;
 

@@ -11,9 +11,7 @@ use crate::numeric::range::ends;
 pub struct ColumnProduct;
 
 static DOC: Doc = Doc {
-    title: Both {
-        en: "product of two quantities", ru: "произведение двух величин"
-    },
+    title: Both { en: "product of two quantities", ru: "произведение двух величин" },
     mechanism: Both {
         en: "One quantity changes how the gyro answers to another: a supply voltage the temperature dependence, ageing the scale factor.",
         ru: "Одна величина меняет реакцию гироскопа на другую: напряжение питания — температурную зависимость, старение — масштабный коэффициент.",
@@ -46,7 +44,7 @@ static PARAMS: [Param; 5] = [
 const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
-    ColumnProduct, "column_product", Course in Time, needs [],
+    ColumnProduct, "column_product", Course in Temperature, needs [],
     confusers ["supply_sensitivity", "temp_polynomial", "sf_temperature", "unobserved_driver"],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
@@ -181,8 +179,8 @@ impl Course for ColumnProduct {
 
     fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let Some((first, second)) = pair(shape) else { return vec![] };
-        let Some([product, ..]) = own_scales((first, second), drivers)
-            .and_then(|scales| columns((first, second), scales, drivers))
+        let Some([product, ..]) =
+            own_scales((first, second), drivers).and_then(|scales| columns((first, second), scales, drivers))
         else {
             return vec![];
         };

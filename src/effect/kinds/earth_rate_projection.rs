@@ -72,4 +72,11 @@ impl Course for EarthRateProjection {
     fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         visited(drivers)
     }
+
+    /// A table that turns is no heading: what repeats with its angle is more likely the table's own, or that of the gyro
+    /// on it.
+    fn odds(&self, _shape: &[f64], drivers: &Drivers) -> f64 {
+        let turns = drivers.table_rate.as_ref().is_some_and(|r| r.iter().any(|r| r.abs() > 1e-6));
+        if drivers.claim.earth.is_none() && turns { -2.0 } else { 2.0 }
+    }
 }

@@ -2,14 +2,17 @@
 //! kind of its own in the format of explanations.
 
 use crate::effect::{
-    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values,
+    number,
 };
 use crate::noise::composite::{Composite, Damped};
 
 pub struct PowerLawNoise;
 
 static DOC: Doc = Doc {
-    title: Both { en: "noise of a power law of its own", ru: "шум с собственным степенным законом" },
+    title: Both {
+        en: "noise of a power law of its own", ru: "шум с собственным степенным законом"
+    },
     mechanism: Both {
         en: "Many relaxations whose times are not spread evenly, as of traps, diffusion or a coupled structure.",
         ru: "Множество релаксаций с неравномерно распределёнными временами: ловушки, диффузия, связанная конструкция.",
@@ -116,7 +119,7 @@ impl Spectrum for PowerLawNoise {
         // ∫ 2σ²T/(1 + (2πfT)²) dT/T over all T, σ² = c T^(α−1), is c (2πf)^−α π/sin(πα/2).
         let sum = PI / (0.5 * PI * exponent).sin() * (2.0 * PI * at).powf(-exponent);
         let c = density / sum * LN_2;
-        for octave in -3..40 {
+        for octave in -3..32 {
             let decay_time_s = dt_s * 2f64.powi(octave);
             let rms_deg_h = (c * decay_time_s.powf(exponent - 1.0)).sqrt();
             noise.markov.push(Damped { rms_deg_h, frequency_hz: 0.0, decay_time_s });
@@ -145,11 +148,8 @@ mod tests {
             let mut noise = Composite::default();
             PowerLawNoise.compose(&fitted, dt_s, &mut noise);
             for frequency_hz in [1e-4, 1e-3, 1e-2, 0.1] {
-                let sum: f64 = noise
-                    .markov
-                    .iter()
-                    .map(|m| m.densities(dt_s, Sampling::Averaging)(frequency_hz))
-                    .sum();
+                let sum: f64 =
+                    noise.markov.iter().map(|m| m.densities(dt_s, Sampling::Averaging)(frequency_hz)).sum();
                 let bin = ModeBin { frequency_hz, mode: 1, modes: 1, samples: 1000, dt_s };
                 let wanted = PowerLawNoise.density(&fitted, &bin);
                 assert!((sum / wanted - 1.0).abs() < 0.06, "{exponent} at {frequency_hz}: {sum} {wanted}");

@@ -17,13 +17,14 @@ fn values(effect: &dyn Effect, numbers: &[f64], lists: Vec<(&'static str, Vec<f6
 fn simulated_spectra_have_the_density_that_fits_use() {
     let (n, runs) = (2048usize, 200u64);
     let white = NoiseModel { n: 0.01, ..NoiseModel::default() };
-    let cases: [(&str, Vec<f64>); 6] = [
+    let cases: [(&str, Vec<f64>); 7] = [
         ("markov_short", vec![2.0, 0.5]),
         ("markov_long", vec![400.0, 0.5]),
         ("quasi_periodic", vec![0.07, 0.4, 600.0]),
         ("quantization", vec![0.5]),
         ("bandwidth_filter", vec![0.06]),
         ("excess_flicker", vec![0.3]),
+        ("power_law_noise", vec![2.0, 0.6, 0.02]),
     ];
     for (kind, fitted) in cases {
         let effect = find(kind).unwrap();
@@ -83,13 +84,14 @@ fn spectral_searches_begin_near_the_truth() {
         bins.push(ModeBin { frequency_hz, mode: low, modes, samples: n, dt_s: dt });
         low += modes;
     }
-    let cases: [(&str, Vec<f64>); 6] = [
+    let cases: [(&str, Vec<f64>); 7] = [
         ("markov_short", vec![0.4, 0.3]),
         ("markov_long", vec![40.0, 0.2]),
         ("quasi_periodic", vec![0.9, 0.2, 30.0]),
         ("quantization", vec![0.1]),
         ("bandwidth_filter", vec![1.5]),
         ("unobserved_driver", vec![0.3, 200.0]),
+        ("power_law_noise", vec![0.3, 0.6, 0.05]),
     ];
     let white = 3600.0 * 0.003f64.powi(2);
     for (kind, fitted) in cases {

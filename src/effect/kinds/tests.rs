@@ -178,6 +178,9 @@ fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "supply_sensitivity" => (drivers(), vec![0.05]),
         "time_offset" => (drivers(), vec![3.21]),
         "clock_drift" => (drivers(), vec![-870.0]),
+        "column_product" => (drivers(), vec![0.0, 25.0, 15.0, 27.0, 0.5]),
+        "column_curve" => (drivers(), vec![0.0, 27.0, 0.5]),
+        "drifting_line" => (drivers(), vec![0.2345, 1e-5, 0.015, 117.0, 2499.75]),
         _ => panic!("no truth for {kind}"),
     }
 }
@@ -191,6 +194,8 @@ fn values(effect: &dyn Effect, numbers: &[f64], lists: Vec<(&'static str, Vec<f6
 fn true_values(effect: &dyn Effect, numbers: &[f64]) -> Values {
     let lists = match effect.kind() {
         "temp_polynomial" => vec![("coefficients_deg_h", vec![0.01, 0.05, -0.03])],
+        "column_product" => vec![("coefficients_deg_h", vec![0.03, 0.0, 0.01])],
+        "column_curve" => vec![("coefficients_deg_h", vec![0.01, 0.03])],
         _ => vec![],
     };
     values(effect, numbers, lists)
