@@ -64,7 +64,11 @@ const fn later(id: &'static str, unit: &'static str, test: Test, doc: &'static s
     MeasurandId { id, unit, test, available: false, signed: false, options: &[], doc }
 }
 
-use Test::{Influence, RateTable, Temperature};
+const fn table(id: &'static str, unit: &'static str, doc: &'static str) -> MeasurandId {
+    MeasurandId { id, unit, test: Test::RateTable, available: true, signed: false, options: &[], doc }
+}
+
+use Test::{Influence, Temperature};
 
 /// Every measurand, in the order of reports.
 #[rustfmt::skip]
@@ -107,22 +111,27 @@ pub const MEASURANDS: &[MeasurandId] = &[
     signed(later("ramp_rate", "degC/h", Temperature, "rate of a temperature ramp")),
     later("warm_up_time", "s", Temperature, "time after switching on until the bias stays in its band"),
     later("angle_random_walk_at_temperature", "deg/sqrt(h)", Temperature, "N in one temperature zone"),
-    signed(later("scale_factor", "", RateTable, "output per input")),
-    signed(later("scale_factor_error", "ppm", RateTable, "deviation from the nominal scale factor")),
-    signed(later("scale_factor_nonlinearity", "ppm", RateTable, "largest residual of full scale")),
-    signed(later("scale_factor_nonlinearity_of_rate", "ppm", RateTable, "largest residual of the rate itself")),
-    signed(later("scale_factor_asymmetry", "ppm", RateTable, "difference between positive and negative rates")),
-    later("scale_factor_repeatability", "ppm", RateTable, "spread between repeated runs"),
-    signed(later("scale_factor_hysteresis", "ppm", RateTable, "difference between rates reached from below and above")),
-    signed(later("scale_factor_temperature_sensitivity", "ppm/degC", RateTable, "change of scale factor with temperature")),
-    signed(later("misalignment_x", "mrad", RateTable, "tilt of the input axis about the first reference axis")),
-    signed(later("misalignment_y", "mrad", RateTable, "tilt of the input axis about the second reference axis")),
-    signed(later("cross_axis", "1", RateTable, "output of one axis per rate about another")),
-    later("dead_zone", "deg/h", RateTable, "half width of the zone without response"),
-    later("threshold", "deg/h", RateTable, "smallest rate that is shown"),
-    later("resolution", "deg/h", RateTable, "smallest change of rate that is shown"),
-    later("table_harmonic_1", "deg/h", RateTable, "error once per revolution"),
-    later("table_harmonic_2", "deg/h", RateTable, "error twice per revolution"),
+    signed(table("scale_factor", "", "output per input")),
+    signed(table("scale_factor_error", "ppm", "deviation from the nominal scale factor")),
+    table("scale_factor_nonlinearity", "ppm", "largest residual of full scale"),
+    table("scale_factor_nonlinearity_of_rate", "ppm", "largest residual of the rate itself"),
+    signed(table("scale_factor_bias", "deg/h", "output at rest by the line through all rates")),
+    table("scale_factor_residual", "ppm", "rms of the residuals of full scale"),
+    signed(table("scale_factor_odd", "ppm", "cubic term at full scale")),
+    signed(table("scale_factor_even", "ppm", "quadratic term at full scale")),
+    signed(table("scale_factor_asymmetry", "ppm", "difference between positive and negative rates")),
+    table("scale_factor_repeatability", "ppm", "spread between repeated runs"),
+    signed(table("scale_factor_hysteresis", "ppm", "difference between rates reached from below and above")),
+    signed(table("scale_factor_temperature_sensitivity", "ppm/degC", "change of scale factor with temperature")),
+    table("sine_response", "s", "phase per rate of an open-loop response"),
+    signed(table("misalignment_x", "mrad", "tilt of the input axis about the first reference axis")),
+    signed(table("misalignment_y", "mrad", "tilt of the input axis about the second reference axis")),
+    signed(table("cross_axis", "1", "output of one axis per rate about another")),
+    table("dead_zone", "deg/h", "half width of the zone without response"),
+    table("threshold", "deg/h", "smallest rate that is shown"),
+    table("resolution", "deg/h", "smallest change of rate that is shown"),
+    table("table_harmonic_1", "deg/h", "error once per revolution"),
+    table("table_harmonic_2", "deg/h", "error twice per revolution"),
     signed(later("magnetic_sensitivity", "deg/h/mT", Influence, "bias per magnetic field")),
     signed(later("supply_sensitivity", "deg/h/V", Influence, "bias per supply voltage")),
     signed(later("vibration_sensitivity", "deg/h/g^2", Influence, "bias per vibration power")),

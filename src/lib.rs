@@ -27,6 +27,7 @@ pub mod noise;
 pub mod numeric;
 pub mod output;
 pub mod procedure;
+pub mod rate_table;
 pub mod record;
 pub mod recording;
 pub mod report;

@@ -119,6 +119,7 @@ impl Kind {
                 Kind::Result => {
                     matches!(name, "result.json" | "report.html" | "report.md")
                         || (name.starts_with("sigma_tau") && name.ends_with(".csv"))
+                        || name == "table_steps.csv"
                 }
                 Kind::Comparison => name
                     .strip_prefix("comparison.")

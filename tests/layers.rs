@@ -14,7 +14,7 @@ const FLOORS: &[&[&str]] = &[
     &["effect"],
     &["claim", "series"],
     &["mismatch", "simulate"],
-    &["measurand"],
+    &["measurand", "rate_table"],
     &["procedure"],
     &["condition"],
     &["run", "selftest"],

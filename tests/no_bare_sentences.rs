@@ -10,6 +10,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/procedure/tables.rs", "descriptions of keys for the schema and the guide"),
     ("src/procedure/tables_conditions.rs", "descriptions of keys for the schema and the guide"),
     ("src/procedure/tables_limits.rs", "descriptions of keys for the schema and the guide"),
+    ("src/procedure/tables_rate_table.rs", "descriptions of keys for the schema and the guide"),
     ("src/procedure/tables_site.rs", "descriptions of keys for the schema and the guide"),
     ("src/procedure/guide.rs", "the guide is an English document"),
     ("src/procedure/schema.rs", "the schema is English"),

@@ -17,6 +17,7 @@ mod output;
 mod sample_rate;
 mod steadiness;
 mod supply;
+pub mod table;
 mod temperature;
 pub mod temperature_track;
 mod unit_named;

@@ -136,11 +136,16 @@ fn files(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Manifest
             vec![]
         }
         (Some(pattern), false) => by_pattern(&pattern, &root.span_of("files"), folder, reader),
-        (None, true) => by_list(listed, folder, reader),
+        (None, true) => by_list(listed, root.flag("several_phases"), folder, reader),
     }
 }
 
-fn by_list(listed: &[Section], folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
+fn by_list(
+    listed: &[Section],
+    several_phases: bool,
+    folder: &Path,
+    reader: &mut Reader<'_>,
+) -> Vec<ManifestFile> {
     let mut found: Vec<ManifestFile> = Vec::new();
     let mut real: BTreeMap<PathBuf, usize> = BTreeMap::new();
     let most = super::joined::MOST_FILES;
@@ -160,7 +165,7 @@ fn by_list(listed: &[Section], folder: &Path, reader: &mut Reader<'_>) -> Vec<Ma
         real.insert(canonical, reader.source.error(&at, "").line);
         let sha256 = section.text("sha256").filter(|stated| hash_holds(stated, &path, section, reader));
         let phase = section.text("phase");
-        if let Some(other) = found.last().filter(|f| f.phase != phase) {
+        if let Some(other) = found.last().filter(|f| f.phase != phase && !several_phases) {
             let span = if phase.is_some() { section.span_of("phase") } else { section.span.clone() };
             let word = |p: &Option<String>| p.clone().unwrap_or_else(|| "-".to_owned());
             let note =

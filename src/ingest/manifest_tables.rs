@@ -23,6 +23,13 @@ pub static MANIFEST_FILE: TableSpec = TableSpec {
             "true",
             "True when each file follows the one before without a gap, whatever its stamps are; needed for files without stamps, whose joints are gaps of unknown length otherwise.",
         ),
+        with_default(
+            "several_phases",
+            Kind::Flag,
+            "false",
+            "true",
+            "True when files of several phases belong to one test: positions or turns, which a procedure names by their phases.",
+        ),
         optional(
             "recording",
             Kind::Table(&READING),

@@ -59,7 +59,8 @@ mod tests {
     fn every_available_id_has_exactly_one_measurand() {
         for m in ids::MEASURANDS {
             let givers = MEASURANDS.iter().filter(|g| g.ids().contains(&m.id)).count();
-            assert_eq!(givers, usize::from(m.available), "{}", m.id);
+            let here = m.available && m.test == ids::Test::Static;
+            assert_eq!(givers, usize::from(here), "{}", m.id);
         }
         for giver in MEASURANDS {
             for id in giver.ids() {

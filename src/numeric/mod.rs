@@ -3,4 +3,5 @@
 pub(crate) mod compensated;
 pub mod cosine;
 pub mod range;
+pub mod reml;
 pub mod special;

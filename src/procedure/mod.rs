@@ -14,6 +14,7 @@ pub mod schema;
 pub mod tables;
 mod tables_conditions;
 pub mod tables_limits;
+mod tables_rate_table;
 mod tables_site;
 mod validate;
 

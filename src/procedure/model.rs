@@ -59,6 +59,8 @@ pub struct Procedure {
     pub site: Option<Site>,
     /// Instruments used.
     pub instruments: Vec<Instrument>,
+    /// How a test on a rate table is evaluated; `None`: the unit rests.
+    pub rate_table: Option<crate::rate_table::Setup>,
     /// Options of the analysis.
     pub analysis: Analysis,
     /// The model that the recording is explained against.

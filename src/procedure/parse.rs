@@ -64,6 +64,7 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
         exclusions: root.tables("exclude").iter().map(exclusion).collect(),
         site: root.table("site").map(site),
         instruments: root.tables("instrument").iter().map(instrument).collect(),
+        rate_table: root.table("rate_table").map(|s| super::tables_rate_table::setup(s, root)),
         analysis: analysis(root.table("analysis")),
         explain: root.table("explain").map(explain),
         measurands: root.tables("measurand").iter().filter_map(measurand).collect(),

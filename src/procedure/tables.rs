@@ -3,6 +3,7 @@
 use super::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
 use super::tables_conditions::{CONDITIONS, EXCLUDE};
 use super::tables_limits::{LIMIT, REFERENCE};
+use super::tables_rate_table::RATE_TABLE;
 use super::tables_site::{INSTRUMENT, SITE};
 use crate::ingest::reading_tables;
 
@@ -31,6 +32,9 @@ pub const FIGURES: &[Word] = &[
     ("autocorrelation", "autocorrelation of the record and of what the model leaves"),
     ("histogram", "distribution of the samples against the normal one"),
     ("residual", "distribution of what the model leaves against the normal one"),
+    ("scale_factor_residual", "residuals of the scale factor over rate, in ppm of full scale"),
+    ("table_steps", "rate of the table and residuals of the steps over time"),
+    ("dead_zone", "response to rates near zero"),
 ];
 
 /// The procedure file as a whole.
@@ -58,6 +62,7 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
             "",
             "Instruments used, with the validity of their calibration.",
         ),
+        optional("rate_table", Kind::Table(&RATE_TABLE), "", "A test on a rate table."),
         optional("analysis", Kind::Table(&ANALYSIS), "", "Options of the analysis."),
         optional("explain", Kind::Table(&EXPLAIN), "", "The recording against the model of the unit's family."),
         required(

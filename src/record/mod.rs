@@ -10,6 +10,7 @@ mod deviation;
 pub mod explanation;
 mod goodness;
 mod integrity;
+mod table_step;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
 pub use comparison::{
@@ -19,6 +20,7 @@ pub use comparison::{
 pub use deviation::DeviationRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
+pub use table_step::TableStepRecord;
 
 use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
 use crate::text::Note;
@@ -66,6 +68,8 @@ pub struct RunRecord {
     pub goodness_of_fit: Vec<GoodnessOfFitRecord>,
     /// The Allan family at octaves, per channel.
     pub deviations: Vec<DeviationRecord>,
+    /// Steps of a test on a rate table, per channel.
+    pub table_steps: Vec<TableStepRecord>,
     /// Russian against Allan values, per channel long enough for it.
     pub comparison: Vec<ComparisonRecord>,
     /// What this test can decide: power of each limit.

@@ -19,6 +19,10 @@ fn measures(record: &RunRecord, ids: &[&str]) -> bool {
     record.measurands.iter().any(|m| ids.contains(&m.id.as_str()))
 }
 
+fn measured_by(record: &RunRecord, method: &str) -> bool {
+    record.measurands.iter().any(|m| m.method == method)
+}
+
 fn noise(record: &RunRecord) -> bool {
     !record.noise_models.is_empty()
         || record.figures.iter().any(|f| f.id.starts_with("sigma_tau"))
@@ -42,6 +46,48 @@ fn fitted_by(record: &RunRecord, name: &str) -> bool {
 
 /// All entries, in the order of the report.
 pub const METHODS: &[Method] = &[
+    Method {
+        id: "table_positions",
+        formulas: &["yₚ = K·Ωₚ + y₀;  Ωₚ = Ω_E·(cos φ·cos E·cos A + sin φ·sin E)"],
+        source: "IEEE Std 952, 12.11",
+        applies: |r| measured_by(r, "earth_rate_positions"),
+    },
+    Method {
+        id: "table_turns",
+        formulas: &["K = Σ θᵢ·(∫y dt − y₀·Tᵢ) / Σ θᵢ²"],
+        source: "Ferraris et al. 1995",
+        applies: |r| measured_by(r, "known_angles"),
+    },
+    Method {
+        id: "table_alignment",
+        formulas: &["y = y₀ + K·Ω_out·(θ_y·cos β + θ_x·sin β)"],
+        source: "IEEE Std 952, 12.12",
+        applies: |r| measured_by(r, "outer_axis_turns"),
+    },
+    Method {
+        id: "table_dead_zone",
+        formulas: &["D = sgn(x)·max(|x| − δ, 0)", "D = x·[|x| > δ]"],
+        source: "IEEE Std 952, 12.10; IEEE Std 647",
+        applies: |r| measures(r, &["dead_zone", "threshold"]),
+    },
+    Method {
+        id: "table_sine",
+        formulas: &["y = A·[1 + α·(T − T̄)]·sin κ(Ω − Ω₀) + b + β·(T − T̄)"],
+        source: "Lefèvre, The Fiber-Optic Gyroscope",
+        applies: |r| measured_by(r, "sine_response"),
+    },
+    Method {
+        id: "table_levels",
+        formulas: &["yⱼ = K·Ωⱼ + y₀ + eⱼ;  S₀ = 1/K;  δⱼ = eⱼ/(K·Ω_max)", "ε = 2·(K₊ − K₋)/(K₊ + K₋)"],
+        source: "IEEE Std 952, 12.9; Patterson and Thompson 1971",
+        applies: |r| measured_by(r, "table_levels"),
+    },
+    Method {
+        id: "table_largest",
+        formulas: &["P(max |s·δⱼ + eⱼ| ≤ max |δⱼ|) = 1/2"],
+        source: "JCGM 101:2008",
+        applies: |r| measures(r, &["scale_factor_nonlinearity", "scale_factor_nonlinearity_of_rate"]),
+    },
     Method {
         id: "allan",
         formulas: &["σ²(τ) = Σᵢ (θᵢ₊₂ₘ − 2θᵢ₊ₘ + θᵢ)² / [2τ²·(M − 2m + 1)],  τ = m·τ₀,  i = 0 … M − 2m"],

@@ -38,6 +38,7 @@ pub fn procedure(channels: Vec<Channel>, sample_rate_hz: Option<f64>, warm_up_s:
         site: None,
         instruments: vec![],
         explain: None,
+        rate_table: None,
         analysis: Analysis { taus: Taus::Octave, exact: false, line_false_alarm: 0.01 },
         measurands: MEASURANDS
             .iter()

@@ -175,12 +175,12 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
 }
 
 /// A sentence about the recording.
-fn about(request: &Request<'_>, key: &'static str) -> Note {
+pub(super) fn about(request: &Request<'_>, key: &'static str) -> Note {
     Note::new(key).with("path", request.source.path().display().to_string())
 }
 
 /// Saturation at declared rails takes the place of what was guessed for the same channel.
-fn declare_rails(integrity: &mut Integrity, declared: Vec<FaultRecord>) {
+pub(super) fn declare_rails(integrity: &mut Integrity, declared: Vec<FaultRecord>) {
     for fault in declared {
         let same = |f: &FaultRecord| f.kind == fault.kind && f.channel == fault.channel;
         let guessed: u64 = integrity.faults.iter().filter(|f| same(f)).map(|f| f.count).sum();
@@ -191,7 +191,7 @@ fn declare_rails(integrity: &mut Integrity, declared: Vec<FaultRecord>) {
 }
 
 /// Leaves out what is rounding of the file and not a property of the recording.
-fn tidy_integrity(integrity: &mut Integrity, tau0_s: f64, gyros: &[GyroEvidence]) {
+pub(super) fn tidy_integrity(integrity: &mut Integrity, tau0_s: f64, gyros: &[GyroEvidence]) {
     integrity.timestamp_jitter_s =
         integrity.timestamp_jitter_s.map(|j| if j < 1e-7 * tau0_s { 0.0 } else { j });
     let least = gyros.iter().map(|g| g.digest.histogram.standard_deviation).fold(f64::INFINITY, f64::min);
@@ -205,7 +205,7 @@ pub(super) fn tidy(interval_s: f64) -> f64 {
 }
 
 /// The channels to read: those of the procedure, without optional ones that the file lacks.
-fn channels(procedure: &Procedure, source: &Source) -> Vec<Channel> {
+pub(super) fn channels(procedure: &Procedure, source: &Source) -> Vec<Channel> {
     procedure
         .channels
         .iter()

@@ -16,6 +16,10 @@ pub mod power;
 mod settle;
 mod sigma_tau;
 mod steadiness;
+mod table;
+mod table_known;
+mod table_others;
+mod table_steps;
 mod verdict;
 mod warm_up;
 
@@ -114,7 +118,10 @@ impl std::error::Error for RunError {}
 /// # Errors
 /// [`RunError`] when there is nothing to evaluate. Everything else, a missing serial number included, is a verdict.
 pub fn execute(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<Outcome, RunError> {
-    evaluate::execute(request, progress)
+    match &request.procedure.rate_table {
+        Some(setup) if request.kind == "run" => table::execute(request, setup, progress),
+        _ => evaluate::execute(request, progress),
+    }
 }
 
 /// The record of a run whose recording could not be evaluated: the verdict is `error`, and the reason stands in it, so

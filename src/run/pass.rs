@@ -73,6 +73,12 @@ impl Inside {
         Inside { gyros, held, start_s }
     }
 
+    /// The same without the gyro channels: only what must be held.
+    pub fn held_only(mut self) -> Inside {
+        self.gyros.clear();
+        self
+    }
+
     /// What was collected.
     pub fn finish(self) -> Collected {
         let gyros = self.gyros.into_iter().map(|(slot, digest)| (slot, digest.finish())).collect();

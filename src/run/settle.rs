@@ -90,6 +90,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         noise_models: vec![],
         goodness_of_fit: vec![],
         deviations: vec![],
+        table_steps: vec![],
         comparison: vec![],
         explained: None,
         power: vec![],
@@ -202,6 +203,9 @@ fn noise_model(gyro: &GyroEvidence) -> NoiseModelRecord {
 fn options(request: &Request<'_>, found: &Found) -> Vec<OptionRecord> {
     let procedure = request.procedure;
     let option = |name: &str, value: String| OptionRecord { name: name.to_owned(), value };
+    if let Some(setup) = &procedure.rate_table {
+        return super::table::options(procedure, setup, request.use_stamps);
+    }
     vec![
         option("analysis.taus", describe_grid(&found.grid)),
         option("analysis.exact", found.exact.to_string()),

@@ -274,6 +274,7 @@ pub fn pass() -> RunRecord {
             .into_iter()
             .flat_map(|estimator| [1.0, 2.0].map(|tau_s| deviation(estimator, tau_s)))
             .collect(),
+        table_steps: vec![],
         comparison: vec![],
         explained: None,
         power: vec![PowerRecord {

@@ -38,6 +38,8 @@ pub struct Evidence {
     pub goodness: Vec<Goodness>,
     /// The Allan family at octaves, a table for each channel.
     pub deviations: Vec<Deviations>,
+    /// Steps of a rate table, a table for each channel.
+    pub table_steps: Vec<super::TableSteps>,
     /// What this test can decide.
     pub power: Vec<Power>,
     /// Instruments.
@@ -214,6 +216,7 @@ impl Evidence {
             models: record.noise_models.iter().map(|m| model(m, &record.measurands, words)).collect(),
             goodness: goodness::goodness(record, words),
             deviations: deviations::deviations(record, words),
+            table_steps: super::table_steps::table_steps(record, words),
             power: record
                 .power
                 .iter()

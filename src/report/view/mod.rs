@@ -11,6 +11,7 @@ mod faults;
 mod goodness;
 mod matrix;
 mod rows;
+mod table_steps;
 
 pub use comparison::{Comparison, Pair, Side};
 pub use conditions::Condition;
@@ -20,6 +21,7 @@ pub use faults::{Fault, FaultKind, Faults};
 pub use goodness::Goodness;
 pub use matrix::{Matrix, MatrixRow};
 pub use rows::Row;
+pub use table_steps::{TableStep, TableSteps};
 
 use crate::estimate::Verdict;
 use crate::figure::Figure;

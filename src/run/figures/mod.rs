@@ -2,9 +2,11 @@
 
 pub mod allan_family;
 pub mod autocorrelation;
+pub mod dead_zone;
 pub mod histogram;
 mod parts;
 pub mod residual;
+pub mod scale_factor;
 pub mod sigma_tau;
 pub mod spectrum;
 pub mod time_series;

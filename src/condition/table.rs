@@ -1,0 +1,258 @@
+//! What a test on a rate table must have been: steps found, the rates reached, the angle in agreement, and an output that
+//! follows the table. A mistake of sign, unit or axis is named.
+
+use super::{mistakes, record};
+use crate::record::{ConditionRecord, ConditionStatus};
+use crate::text::{Arg, Note};
+
+/// What was found of the table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TableFacts {
+    /// Steps that were evaluated.
+    pub steps: usize,
+    /// Stretches that were too short.
+    pub too_short: usize,
+    /// Least time at one rate, s.
+    pub minimum_step_s: f64,
+    /// Lowest and highest rate of a step, deg/h.
+    pub lowest: f64,
+    /// Highest rate of a step, deg/h.
+    pub highest: f64,
+    /// Rates that differ.
+    pub levels: usize,
+    /// Full scale that must be reached, deg/h.
+    pub full_scale: Option<f64>,
+    /// Relative tolerance of it.
+    pub tolerance: f64,
+    /// Largest relative difference between the angle and the rate of the table, with the rate at which it was, deg/h.
+    pub disagreement: Option<(f64, f64)>,
+    /// The channels.
+    pub channels: Vec<ChannelFact>,
+}
+
+/// How a channel follows the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelFact {
+    /// Channel.
+    pub channel: String,
+    /// Unit declared for it.
+    pub unit: String,
+    /// Output per input; `None` where no line could be drawn.
+    pub factor: Option<f64>,
+    /// Standard uncertainty of it.
+    pub standard: f64,
+}
+
+/// Factors that a unit may have, a dead zone or a bent response included; mistakes of unit lie beyond.
+const FOLLOWS: std::ops::RangeInclusive<f64> = 0.3..=2.0;
+
+/// Judges a test on a table.
+pub fn judge(facts: &TableFacts) -> Vec<ConditionRecord> {
+    let mut all = vec![steps(facts)];
+    all.extend(reached(facts));
+    all.extend(agreement(facts));
+    all.extend(facts.channels.iter().map(|c| follows(c, facts)));
+    all
+}
+
+fn per_second(rate_deg_h: f64) -> Arg {
+    Arg::figures(rate_deg_h / 3600.0, 5)
+}
+
+fn steps(facts: &TableFacts) -> ConditionRecord {
+    let enough = facts.levels >= 2;
+    let (status, key) = match (enough, facts.steps) {
+        (true, _) => (ConditionStatus::Ok, "on_table.steps_found"),
+        (false, 0) if facts.too_short > 0 => (ConditionStatus::Invalid, "on_table.steps_too_short"),
+        (false, 0) => (ConditionStatus::Invalid, "on_table.steps_none"),
+        (false, _) => (ConditionStatus::Invalid, "on_table.steps_one"),
+    };
+    let note = Note::new(key)
+        .with("steps", facts.steps)
+        .with("levels", facts.levels)
+        .with("short", facts.too_short)
+        .with("least", Arg::figures(facts.minimum_step_s, 3))
+        .with("low", per_second(facts.lowest))
+        .with("high", per_second(facts.highest));
+    let observed = [("steps", facts.steps as f64), ("levels", facts.levels as f64)];
+    record("table_steps", status, &observed, Some(Note::new("on_table.required.steps")), note)
+}
+
+/// Whether full scale was reached, on every side that was turned to.
+fn reached(facts: &TableFacts) -> Option<ConditionRecord> {
+    let full = facts.full_scale?;
+    let least = full * (1.0 - facts.tolerance);
+    let sides = [facts.highest, -facts.lowest];
+    let turned = sides.iter().filter(|s| **s > 0.0);
+    let worst = turned.fold(f64::INFINITY, |m, s| m.min(*s));
+    let one_side = sides.iter().any(|s| *s <= 0.0);
+    let worst = if worst.is_finite() { worst } else { 0.0 };
+    let (status, key) = if worst < least {
+        (ConditionStatus::Invalid, "on_table.not_reached")
+    } else if one_side {
+        (ConditionStatus::Remark, "on_table.one_side")
+    } else {
+        (ConditionStatus::Ok, "on_table.reached")
+    };
+    let note = Note::new(key)
+        .with("low", per_second(facts.lowest))
+        .with("high", per_second(facts.highest))
+        .with("full", per_second(full));
+    let required = Note::new("on_table.required.reached")
+        .with("full", per_second(full))
+        .with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
+    Some(record("table_reached", status, &[("worst_deg_h", worst)], Some(required), note))
+}
+
+/// Whether angle and rate of the table tell the same.
+fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
+    let (difference, rate) = facts.disagreement?;
+    let agrees = difference.abs() <= facts.tolerance;
+    let factor = 1.0 + difference;
+    let key = if agrees {
+        "on_table.agrees"
+    } else if (factor + 1.0).abs() <= facts.tolerance {
+        "on_table.angle_reversed"
+    } else if factor.abs() < 0.98 {
+        "on_table.fell_short"
+    } else {
+        "on_table.disagrees"
+    };
+    let status = if agrees { ConditionStatus::Ok } else { ConditionStatus::Invalid };
+    let note = Note::new(key)
+        .with("percent", Arg::figures(100.0 * difference, 3))
+        .with("angle", per_second(rate * factor))
+        .with("rate", per_second(rate));
+    let required =
+        Note::new("on_table.required.agreement").with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
+    Some(record("table_agreement", status, &[("difference", difference)], Some(required), note))
+}
+
+/// Whether the output follows the table: its factor is near 1, and otherwise what is wrong.
+fn follows(channel: &ChannelFact, facts: &TableFacts) -> ConditionRecord {
+    let id = if facts.channels.len() > 1 {
+        format!("table_response.{}", channel.channel)
+    } else {
+        "table_response".to_owned()
+    };
+    let required = Some(Note::new("on_table.required.response"));
+    let Some(factor) = channel.factor else {
+        let note = Note::new("on_table.no_line");
+        return record(id, ConditionStatus::Invalid, &[], required, note);
+    };
+    let observed = [("factor", factor)];
+    if FOLLOWS.contains(&factor) {
+        let note = Note::new("on_table.follows").with("factor", Arg::figures(factor, 5));
+        return record(id, ConditionStatus::Ok, &observed, required, note);
+    }
+    let shown = Arg::figures(factor, 4);
+    let other = facts
+        .channels
+        .iter()
+        .find(|c| c.channel != channel.channel && c.factor.is_some_and(|f| FOLLOWS.contains(&f.abs())));
+    let note = if factor.abs() < 0.1 && factor.abs() < 20.0 * channel.standard.max(0.005) {
+        match other {
+            Some(other) => Note::new("on_table.another_axis")
+                .with("channel", channel.channel.as_str())
+                .with("other", other.channel.as_str())
+                .with("factor", shown),
+            None => Note::new("on_table.does_not_follow").with("factor", shown),
+        }
+    } else if FOLLOWS.contains(&-factor) {
+        Note::new("on_table.reversed").with("factor", shown)
+    } else {
+        let known = mistakes::rate_factors(&channel.unit)
+            .into_iter()
+            .map(|m| ((m.factor * factor.abs()).ln().abs(), m))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|(off, _)| *off < 0.1);
+        match known {
+            Some((_, mistake)) => {
+                Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note))
+            }
+            None => Note::new("on_table.off").with("factor", shown),
+        }
+    };
+    record(id, ConditionStatus::Invalid, &observed, required, note)
+}
+
+/// What a channel makes of the Earth's rotation in several positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EarthFact {
+    /// Channel.
+    pub channel: String,
+    /// Whether there are others.
+    pub several: bool,
+    /// Unit declared for it.
+    pub unit: String,
+    /// Output per Earth rate expected.
+    pub factor: f64,
+    /// Standard uncertainty of it.
+    pub standard: f64,
+    /// Bias, deg/h.
+    pub bias: f64,
+    /// Latitude, where all axes are vertical: what the factor says of it.
+    pub latitude_deg: Option<f64>,
+    /// Pairs of positions that were turned in software only.
+    pub software: Vec<(String, String)>,
+}
+
+/// Judges whether all stretches of a procedure were found.
+pub fn judge_stretches(stated: usize, missing: usize) -> ConditionRecord {
+    let (status, key) = if missing == 0 {
+        (ConditionStatus::Ok, "known.stretches")
+    } else {
+        (ConditionStatus::Invalid, "known.stretches_missing")
+    };
+    let note = Note::new(key).with("n", stated).with("missing", missing);
+    record("known_stretches", status, &[("stretches", (stated - missing) as f64)], None, note)
+}
+
+/// Judges whether positions show the Earth's rotation as it is.
+pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
+    let id = if fact.several { format!("known_earth.{}", fact.channel) } else { "known_earth".to_owned() };
+    let required = Some(Note::new("known.required.earth"));
+    let observed = [("factor", fact.factor)];
+    let allowed = 4.0 * fact.standard;
+    let shown = Arg::figures(fact.factor, 4);
+    let invalid =
+        |note: Note| record(id.clone(), ConditionStatus::Invalid, &observed, required.clone(), note);
+    if let Some((first, second)) = fact.software.first() {
+        return invalid(
+            Note::new("known.software").with("first", first.as_str()).with("second", second.as_str()),
+        );
+    }
+    if (fact.factor - 1.0).abs() <= allowed.max(0.02) {
+        let key = if fact.standard > 0.25 { "known.earth_weak" } else { "known.earth_seen" };
+        let note = Note::new(key).with("factor", shown).with("uncertainty", Arg::figures(fact.standard, 2));
+        return record(id, ConditionStatus::Ok, &observed, required, note);
+    }
+    if (fact.factor + 1.0).abs() <= allowed.max(0.02) {
+        return invalid(Note::new("known.reversed").with("factor", shown));
+    }
+    if fact.factor.abs() <= allowed.max(0.02) {
+        return invalid(Note::new("known.not_turned").with("factor", shown));
+    }
+    let mistake = mistakes::rate_factors(&fact.unit)
+        .into_iter()
+        .filter(|m| (m.factor * fact.factor - 1.0).abs() <= (allowed / fact.factor.abs()).max(0.02))
+        .min_by(|a, b| {
+            let off = |m: &mistakes::Mistake| (m.factor * fact.factor).ln().abs();
+            off(a).total_cmp(&off(b))
+        });
+    if let Some(mistake) = mistake {
+        let note =
+            Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note));
+        return invalid(note);
+    }
+    let sine = fact.latitude_deg.map(|l| l.to_radians().sin() * fact.factor);
+    match sine.filter(|s| s.abs() <= 1.0) {
+        Some(sine) => invalid(
+            Note::new("known.latitude")
+                .with("factor", shown)
+                .with("stated", Arg::figures(fact.latitude_deg.unwrap_or(0.0), 4))
+                .with("fits", Arg::figures(sine.asin().to_degrees(), 3)),
+        ),
+        None => invalid(Note::new("known.off").with("factor", shown)),
+    }
+}

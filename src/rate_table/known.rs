@@ -1,0 +1,381 @@
+//! Inputs that are known without a table: positions against the Earth's rotation, turns by a known angle, rest.
+
+use super::blocks::{Block, Blocks};
+use super::combine::spread;
+use super::noise::Rows;
+use crate::estimate::{Estimate, Spread};
+use crate::numeric::reml::{self, Combination, Fit};
+use crate::text::{Arg, Note};
+use nalgebra::{DMatrix, DVector};
+
+/// Parts that all stretches of a channel are cut into.
+const PARTS: usize = 200;
+
+/// A stretch of the recording with a known input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Known {
+    /// Phase of a manifest that it is.
+    pub phase: Option<String>,
+    /// Start, s from the start of the recording.
+    pub from_s: Option<f64>,
+    /// End, s from the start of the recording.
+    pub to_s: Option<f64>,
+    /// Channel concerned; `None`: every gyro channel.
+    pub channel: Option<String>,
+    /// The input.
+    pub input: Input,
+}
+
+/// A known input. Uncertainties are standard uncertainties.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Input {
+    /// The axis points somewhere, at rest: heading and elevation with their uncertainties, deg.
+    Position {
+        /// Heading from true north, positive to the east, deg.
+        heading: (f64, f64),
+        /// Elevation above the horizon, deg.
+        elevation: (f64, f64),
+    },
+    /// The unit is turned about the axis of the channel by an angle, deg.
+    Turn {
+        /// Angle with its uncertainty, deg.
+        angle: (f64, f64),
+    },
+    /// The unit rests: its bias is taken from here.
+    Rest,
+}
+
+/// A stretch as it was found: blocks from the first to before the end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stretch {
+    /// Position in the list of known inputs.
+    pub known: usize,
+    /// Its blocks.
+    pub blocks: (usize, usize),
+}
+
+/// Finds the stretches in the blocks. `phases` are the phases of a manifest with their first and last row.
+pub fn stretches(blocks: &Blocks, known: &[Known], phases: &[(String, u64, u64)]) -> Vec<Stretch> {
+    let end_row = |b: &Block| b.first_row + u64::from(b.samples);
+    known
+        .iter()
+        .enumerate()
+        .flat_map(|(at, k)| {
+            let spans: Vec<(u64, u64)> = match &k.phase {
+                Some(name) => phases.iter().filter(|(p, _, _)| p == name).map(|(_, a, b)| (*a, *b)).collect(),
+                None => vec![(0, u64::MAX)],
+            };
+            spans.into_iter().filter_map(move |(first, last)| {
+                let inside = |i: usize, b: &Block| {
+                    let from = b.first_index as f64 * blocks.interval_s;
+                    let to = (b.first_index + u64::from(b.samples)) as f64 * blocks.interval_s;
+                    let _ = i;
+                    b.first_row >= first
+                        && end_row(b) <= last.saturating_add(1)
+                        && k.from_s.is_none_or(|f| from >= f - 1e-9)
+                        && k.to_s.is_none_or(|t| to <= t + 1e-9)
+                };
+                let start = blocks.list.iter().enumerate().position(|(i, b)| inside(i, b))?;
+                let count =
+                    blocks.list[start..].iter().enumerate().take_while(|(i, b)| inside(*i, b)).count();
+                (count > 0).then_some(Stretch { known: at, blocks: (start, start + count) })
+            })
+        })
+        .collect()
+}
+
+/// Rows of a channel over stretches: outputs with the time they were averaged over, and the stretch of each.
+struct Cut {
+    y: DVector<f64>,
+    rows: Rows,
+    of: Vec<usize>,
+}
+
+fn cut(blocks: &Blocks, stretches: &[&Stretch], channel: usize) -> Option<Cut> {
+    let total: usize = stretches.iter().map(|s| s.blocks.1 - s.blocks.0).sum();
+    let (mut y, mut of) = (vec![], vec![]);
+    let mut rows = Rows::default();
+    for (number, s) in stretches.iter().enumerate() {
+        let length = s.blocks.1 - s.blocks.0;
+        let parts = (PARTS * length / total.max(1)).clamp(2.min(length), length);
+        for k in 0..parts {
+            let list = &blocks.list[s.blocks.0 + length * k / parts..s.blocks.0 + length * (k + 1) / parts];
+            let usable = list.iter().filter(|b| b.gyro.get(channel).is_some_and(|g| g.is_finite()));
+            let (sum, n) = usable.fold((0.0, 0.0), |(s, n), b| {
+                let w = f64::from(b.samples);
+                (s + w * b.gyro[channel], n + w)
+            });
+            let (Some(first), Some(last)) = (list.first(), list.last()) else { continue };
+            if n == 0.0 {
+                continue;
+            }
+            y.push(sum / n);
+            of.push(number);
+            let end = last.first_index + u64::from(last.samples);
+            rows.mid_s.push(0.5 * (first.first_index + end) as f64 * blocks.interval_s);
+            rows.length_s.push(n * blocks.interval_s);
+            rows.step.push(number);
+        }
+    }
+    (y.len() > stretches.len()).then(|| Cut { y: DVector::from_vec(y), rows, of })
+}
+
+fn solve(cut: &Cut, x: &DMatrix<f64>) -> Option<Fit> {
+    let n = cut.rows.len();
+    let fixed = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
+    let components = [cut.rows.white(), cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()];
+    reml::fit(&cut.y, x, &fixed, &components)
+}
+
+/// One channel in positions against the Earth's rotation.
+#[derive(Debug, Clone)]
+pub struct Positions {
+    /// Channel.
+    pub channel: String,
+    /// Output per input.
+    pub factor: Combination,
+    /// Contribution of the directions and the latitude to it.
+    pub factor_directions: f64,
+    /// Bias, deg/h.
+    pub bias: Combination,
+    /// Contribution of the directions to it, deg/h.
+    pub bias_directions: f64,
+    /// Mean output in every position with its standard uncertainty, and the Earth rate expected there with its own, deg/h.
+    pub means: Vec<Mean>,
+}
+
+/// One position of one channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mean {
+    /// Name of the phase, or the number of the position counted from 1.
+    pub name: String,
+    /// Mean output, deg/h.
+    pub output: f64,
+    /// Standard uncertainty of it, deg/h.
+    pub standard: f64,
+    /// Earth rate expected, deg/h.
+    pub earth: f64,
+    /// Standard uncertainty of it, deg/h.
+    pub earth_standard: f64,
+}
+
+/// Evaluates the positions of a channel. `earth` gives the Earth rate along an axis with its standard uncertainty.
+/// `None` when fewer than two positions differ.
+pub fn positions(
+    blocks: &Blocks,
+    known: &[Known],
+    stretches: &[Stretch],
+    channel: usize,
+    earth: &dyn Fn((f64, f64), (f64, f64)) -> (f64, f64),
+) -> Option<Positions> {
+    let id = blocks.gyros.get(channel)?;
+    let own: Vec<&Stretch> = stretches
+        .iter()
+        .filter(|s| {
+            let k = &known[s.known];
+            matches!(k.input, Input::Position { .. }) && k.channel.as_ref().is_none_or(|c| c == id)
+        })
+        .collect();
+    let inputs: Vec<(f64, f64)> = own
+        .iter()
+        .map(|s| match known[s.known].input {
+            Input::Position { heading, elevation } => earth(heading, elevation),
+            _ => (0.0, 0.0),
+        })
+        .collect();
+    let span = inputs.iter().map(|i| i.0).fold(f64::NEG_INFINITY, f64::max)
+        - inputs.iter().map(|i| i.0).fold(f64::INFINITY, f64::min);
+    if own.len() < 2 || span.is_nan() || span <= 0.1 {
+        return None;
+    }
+    let cut = cut(blocks, &own, channel)?;
+    let n = cut.rows.len();
+    let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { inputs[cut.of[i]].0 });
+    let fit = solve(&cut, &x)?;
+    // What a wrong direction does to the line: each position with the weight that it has in an even line.
+    let m = inputs.len() as f64;
+    let mean = inputs.iter().map(|i| i.0).sum::<f64>() / m;
+    let sxx: f64 = inputs.iter().map(|i| (i.0 - mean) * (i.0 - mean)).sum();
+    let of_slope = inputs.iter().map(|i| ((i.0 - mean) / sxx * i.1).powi(2)).sum::<f64>().sqrt();
+    let of_bias =
+        inputs.iter().map(|i| ((1.0 / m - mean * (i.0 - mean) / sxx) * i.1).powi(2)).sum::<f64>().sqrt();
+    let saturated = DMatrix::from_fn(n, own.len(), |i, j| if cut.of[i] == j { 1.0 } else { 0.0 });
+    let each = solve(&cut, &saturated)?;
+    let means = own
+        .iter()
+        .enumerate()
+        .map(|(i, s)| {
+            let c = each.coefficient(i);
+            let k = &known[s.known];
+            Mean {
+                name: k.phase.clone().unwrap_or_else(|| (s.known + 1).to_string()),
+                output: c.value,
+                standard: c.standard,
+                earth: inputs[i].0,
+                earth_standard: inputs[i].1,
+            }
+        })
+        .collect();
+    Some(Positions {
+        channel: id.clone(),
+        factor: fit.coefficient(1),
+        factor_directions: of_slope * fit.coefficients[1].abs(),
+        bias: fit.coefficient(0),
+        bias_directions: of_bias,
+        means,
+    })
+}
+
+impl Positions {
+    /// Ids that positions give.
+    pub const IDS: [&str; 2] = ["scale_factor_error", "scale_factor_bias"];
+
+    /// The estimate of one id; `None` for an id that is not given here.
+    pub fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
+        // Outputs whose bias was turned with them tell neither of both.
+        if !self.turned_in_software().is_empty() && Positions::IDS.contains(&id) {
+            return Some(
+                Estimate::not_identifiable(id, &self.channel, None, unit, "earth_rate_positions")
+                    .note(Note::new("known.refused")),
+            );
+        }
+        let measured = |value: f64, spread: Spread| {
+            Estimate::measured(id, &self.channel, value, unit, spread, "earth_rate_positions")
+                .note(Note::new("known.positions").with("n", self.means.len()))
+        };
+        Some(match id {
+            "scale_factor_error" => measured(
+                (self.factor.value - 1.0) * 1e6,
+                spread(&self.factor, 1e6, &[1e6 * self.factor_directions]),
+            ),
+            "scale_factor_bias" => {
+                measured(self.bias.value, spread(&self.bias, 1.0, &[self.bias_directions]))
+            }
+            _ => return None,
+        })
+    }
+
+    /// Pairs of positions between which the output changed its sign with its bias: turned in software and not in space.
+    ///
+    /// In space the sum of both outputs is twice the bias, and their difference is the Earth's. Where the outputs are
+    /// opposite to one another within their errors and their size is not that of the Earth rate, the bias was turned too.
+    pub fn turned_in_software(&self) -> Vec<(&Mean, &Mean)> {
+        let mut pairs = Vec::new();
+        for (i, a) in self.means.iter().enumerate() {
+            for b in &self.means[i + 1..] {
+                let opposite = (a.earth + b.earth).abs() < 0.05 * a.earth.abs().max(b.earth.abs());
+                let scatter = a.standard.hypot(b.standard).max(1e-9);
+                let earth = 0.5 * (a.earth - b.earth);
+                let half = 0.5 * (a.output - b.output);
+                let off = (half - earth).abs();
+                let allowed = 4.0 * (0.5 * scatter).hypot(a.earth_standard.max(b.earth_standard));
+                let sum = (a.output + b.output).abs();
+                // The bias that the excess would be in software, and how nearly it is missing from the sum.
+                if opposite && sum < 3.0 * scatter && sum < 0.2 * off && off > allowed {
+                    pairs.push((a, b));
+                }
+            }
+        }
+        pairs
+    }
+}
+
+/// Turns by known angles: what every channel makes of a turn about the axis of every channel.
+#[derive(Debug, Clone)]
+pub struct Turns {
+    /// (channel of the output, channel whose axis was turned about, output per input, contribution of the angle).
+    pub table: Vec<(String, String, Combination, f64)>,
+}
+
+/// Evaluates turns by known angles; `None` without one.
+pub fn turns(blocks: &Blocks, known: &[Known], stretches: &[Stretch]) -> Option<Turns> {
+    let kind = |s: &&Stretch, rest: bool| match known[s.known].input {
+        Input::Rest => rest,
+        Input::Turn { .. } => !rest,
+        Input::Position { .. } => false,
+    };
+    let rests: Vec<&Stretch> = stretches.iter().filter(|s| kind(s, true)).collect();
+    let mut table = Vec::new();
+    for (channel, output) in blocks.gyros.iter().enumerate() {
+        // Bias, and N from what scatters at rest.
+        let rest = cut(blocks, &rests, channel).and_then(|c| {
+            let x = DMatrix::from_element(c.rows.len(), 1, 1.0);
+            let fit = solve(&c, &x)?;
+            let white = fit.strengths[0];
+            Some((fit.coefficient(0), white))
+        });
+        for axis in &blocks.gyros {
+            let own: Vec<(&Stretch, (f64, f64))> = stretches
+                .iter()
+                .filter(|s| known[s.known].channel.as_ref() == Some(axis))
+                .filter_map(|s| match known[s.known].input {
+                    Input::Turn { angle } => Some((s, angle)),
+                    _ => None,
+                })
+                .collect();
+            if own.is_empty() {
+                continue;
+            }
+            let (bias, white) = rest.unwrap_or((Combination { value: 0.0, standard: 0.0, dof: 1e9 }, 0.0));
+            let square: f64 = own.iter().map(|(_, a)| a.0 * a.0).sum();
+            let (mut sum, mut random, mut length, mut by_angle) = (0.0, 0.0, 0.0, 0.0);
+            let mut each = Vec::new();
+            for (s, angle) in &own {
+                let (turned, hours) = integral(blocks, s, channel);
+                let clean = turned - bias.value * hours;
+                sum += angle.0 * clean;
+                random += angle.0 * angle.0 * white * hours;
+                length += angle.0 * hours;
+                each.push((clean, *angle));
+            }
+            let factor = sum / square;
+            for (_, angle) in &each {
+                by_angle += (factor * angle.0 * angle.1 / square).powi(2);
+            }
+            let noise = (random / (square * square)).sqrt();
+            let of_bias = bias.standard * length.abs() / square;
+            let combined = Combination { value: factor, standard: noise.hypot(of_bias), dof: bias.dof };
+            table.push((output.clone(), axis.clone(), combined, by_angle.sqrt()));
+        }
+    }
+    (!table.is_empty()).then_some(Turns { table })
+}
+
+/// Angle that the output makes of a stretch, deg, and its length, h. Samples that cannot be used count as the mean.
+fn integral(blocks: &Blocks, s: &Stretch, channel: usize) -> (f64, f64) {
+    let list = &blocks.list[s.blocks.0..s.blocks.1];
+    let (mut angle, mut used, mut all) = (0.0, 0.0, 0.0);
+    for b in list {
+        let hours = f64::from(b.samples) * blocks.interval_s / 3600.0;
+        all += hours;
+        if let Some(g) = b.gyro.get(channel).filter(|g| g.is_finite()) {
+            angle += g * hours;
+            used += hours;
+        }
+    }
+    if used > 0.0 { (angle * all / used, all) } else { (0.0, all) }
+}
+
+impl Turns {
+    /// The estimates of one id.
+    pub fn estimates(&self, id: &'static str, unit: &'static str) -> Vec<Estimate> {
+        self.table
+            .iter()
+            .filter_map(|(output, axis, c, by_angle)| {
+                let own = output == axis;
+                let (channel, value, factor) = match (id, own) {
+                    ("scale_factor", true) => (output.clone(), c.value, 1.0),
+                    ("scale_factor_error", true) => (output.clone(), 1e6 * (c.value - 1.0), 1e6),
+                    ("cross_axis", false) => (format!("{output}<-{axis}"), c.value, 1.0),
+                    _ => return None,
+                };
+                let spread = spread(c, factor, &[factor * by_angle]);
+                let mut e = Estimate::measured(id, &channel, value, unit, spread, "known_angles");
+                if id == "scale_factor" {
+                    e.unit = "1";
+                }
+                Some(e.note(Note::new("known.turns").with("axis", Arg::Text(axis.clone()))))
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,108 @@
+//! The largest of several magnitudes, each known with errors that are correlated.
+//!
+//! The largest observed one is too large on average, and its interval is not that of one point. The truth is taken to
+//! have the shape of what was observed and some size s; the confidence of a size is the probability that errors would
+//! leave a smaller largest one than was observed. Draws are fixed, so that a result repeats to the bit.
+
+use nalgebra::{DMatrix, DVector};
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Draws of the errors.
+const DRAWS: usize = 2000;
+
+/// Normal scores at which the confidence distribution is tabled.
+const SCORES: std::ops::RangeInclusive<i32> = -12..=12;
+
+/// What is known of the largest magnitude.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Largest {
+    /// Position of the largest observed.
+    pub at: usize,
+    /// Median of the confidence distribution.
+    pub value: f64,
+    /// (normal score, value), ascending.
+    pub curve: Vec<(f64, f64)>,
+    /// Probability that errors alone leave as large a one.
+    pub by_chance: f64,
+}
+
+/// The largest of `values`, whose errors have the covariance given. `None` without values or with a covariance that is
+/// none.
+pub fn largest(values: &[f64], covariance: &DMatrix<f64>) -> Option<Largest> {
+    let n = values.len();
+    let (at, observed) =
+        values.iter().enumerate().map(|(i, v)| (i, v.abs())).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let root = root_of(covariance)?;
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x005a_676e_6163);
+    let draws: Vec<DVector<f64>> = (0..DRAWS)
+        .map(|_| {
+            let z = DVector::from_iterator(n, (0..n).map(|_| StandardNormal.sample(&mut rng)));
+            &root * z
+        })
+        .collect();
+    // The size at which a draw leaves just what was observed: the largest of |s·v + e| grows with s where s is large.
+    let mut sizes: Vec<f64> = draws.iter().map(|e| size_of(values, e, observed)).collect();
+    sizes.sort_by(f64::total_cmp);
+    let chance = draws.iter().filter(|e| e.iter().fold(0.0, |m: f64, v| m.max(v.abs())) >= observed).count()
+        as f64
+        / DRAWS as f64;
+    let quantile = |p: f64| {
+        let x = p * (DRAWS - 1) as f64;
+        let i = (x.floor() as usize).min(DRAWS - 2);
+        sizes[i] + (x - i as f64) * (sizes[i + 1] - sizes[i])
+    };
+    let curve: Vec<(f64, f64)> = SCORES
+        .map(|z| 0.25 * f64::from(z))
+        .map(|z| (z, quantile(crate::estimate::normal_probability(z)) * observed))
+        .collect();
+    let value = quantile(0.5) * observed;
+    Some(Largest { at, value, curve, by_chance: chance })
+}
+
+/// The largest s ≥ 0 with max |s·v + e| ≤ observed; 0 when errors alone exceed it.
+fn size_of(values: &[f64], errors: &DVector<f64>, observed: f64) -> f64 {
+    let mut most = f64::INFINITY;
+    for (v, e) in values.iter().zip(errors.iter()) {
+        if e.abs() > observed {
+            return 0.0;
+        }
+        if *v != 0.0 {
+            // s·v + e reaches ±observed, whichever the sign of v leads to.
+            most = most.min((observed - e * v.signum()) / v.abs());
+        }
+    }
+    if most.is_finite() { most.max(0.0) } else { 0.0 }
+}
+
+/// A root of a covariance that may be singular.
+fn root_of(covariance: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    if covariance.iter().any(|v| !v.is_finite()) || covariance.nrows() == 0 {
+        return None;
+    }
+    let eigen = covariance.clone().symmetric_eigen();
+    let scale = DMatrix::from_diagonal(&eigen.eigenvalues.map(|v| v.max(0.0).sqrt()));
+    Some(&eigen.eigenvectors * scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_that_stands_out_has_the_interval_of_a_point() {
+        let found = largest(&[10.0, 0.1, -0.2], &(DMatrix::identity(3, 3) * 0.01)).unwrap();
+        assert_eq!(found.at, 0);
+        assert!((found.value - 10.0).abs() < 0.02);
+        let at = |z: f64| found.curve.iter().find(|p| p.0 == z).unwrap().1;
+        assert!((at(2.0) - 10.2).abs() < 0.02 && (at(-2.0) - 9.8).abs() < 0.02);
+        assert_eq!(found.by_chance, 0.0);
+    }
+
+    #[test]
+    fn noise_alone_is_seen_to_be_noise() {
+        let found = largest(&[1.2, -0.8, 0.3, -1.0, 0.6], &DMatrix::identity(5, 5)).unwrap();
+        assert!(found.by_chance > 0.3, "{}", found.by_chance);
+    }
+}

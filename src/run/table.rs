@@ -1,0 +1,317 @@
+//! A procedure for a rate table applied to a recording: one pass into blocks, then steps, response, rows, figures.
+
+use super::evaluate::{self, Found, about, tidy};
+use super::pass::{Inside, Overview};
+use super::table_others::Others;
+use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
+use crate::condition::table::{ChannelFact, TableFacts, judge};
+use crate::condition::{Facts, judge_all};
+use crate::estimate::{Estimate, Spread};
+use crate::figure::Figure;
+use crate::ingest::{Plan, TimeBaseSpec, prepare};
+use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
+use crate::noise::tau_grid::TauGrid;
+use crate::procedure::Procedure;
+use crate::procedure::model::ChannelSpec;
+use crate::rate_table::blocks::Collector;
+use crate::rate_table::scale_factor::{self, ScaleFactor};
+use crate::rate_table::{Setup, TableRun};
+use crate::record::{ConditionRecord, OptionRecord};
+use crate::recording::Role;
+use crate::recording::window::{WindowSpec, Windowed};
+use crate::text::{Arg, Note};
+
+pub(super) fn execute(
+    request: &Request<'_>,
+    setup: &Setup,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Outcome, RunError> {
+    let (found, run) = collect(request, setup, progress)?;
+    let procedure = request.procedure;
+    if !setup.known.is_empty() {
+        return super::table_known::finish(request, setup, found, &run.blocks);
+    }
+    let wanted = |id: &str| procedure.measurands.iter().any(|m| m.id.id == id);
+    let evaluated: Vec<(usize, Option<ScaleFactor>)> = (0..run.blocks.gyros.len())
+        .map(|gyro| {
+            let unit = procedure.channel(&run.blocks.gyros[gyro]).map_or(("1", 1.0), as_recorded);
+            (gyro, scale_factor::evaluate(&run, gyro, setup, unit, &wanted))
+        })
+        .collect();
+    let mut conditions = judge(&facts(procedure, &run, setup, &evaluated));
+    if setup.known.is_empty() && wants_alignment(procedure) {
+        // The input axis is square to the axis that is turned about: its output follows by the tilt only.
+        conditions.retain(|c| !c.id.starts_with("table_response") && c.id != "table_reached");
+    }
+    conditions.extend(usual_conditions(request, &found));
+    let others: Vec<Others> = evaluated
+        .iter()
+        .map(|(gyro, channel)| Others::evaluate(request, &run, setup, *gyro, channel.as_ref(), &wanted))
+        .collect();
+    let mut rows = Vec::new();
+    for spec in &procedure.measurands {
+        for (_, channel) in &evaluated {
+            let Some(channel) = channel else { continue };
+            if spec.channel.as_ref().is_some_and(|c| *c != channel.channel) {
+                continue;
+            }
+            let given = !setup.sine || !super::table_others::SINE_IDS.contains(&spec.id.id);
+            if given && let Some(estimate) = channel.estimate(spec.id.id, spec.id.unit, setup, &run.steps) {
+                let estimate = without_earth(procedure, channel, estimate);
+                rows.push(verdict::row(&estimate, request.limits, procedure));
+            }
+        }
+        rows.extend(
+            others
+                .iter()
+                .flat_map(|o| o.estimate(spec, setup))
+                .map(|e| verdict::row(&e, request.limits, procedure)),
+        );
+    }
+    let mut drawn = draw(request, &run, &evaluated);
+    let shown = |id: &str| procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id));
+    if shown("dead_zone") {
+        let several = evaluated.len() > 1;
+        let zones = others.iter().filter_map(|o| o.zone.as_ref());
+        drawn.extend(zones.map(|z| figures::dead_zone::figure(z, several)));
+    }
+    let mut record = settle::record(request, &found, conditions, rows, vec![], &drawn);
+    record.table_steps = evaluated
+        .iter()
+        .filter_map(|(gyro, channel)| Some(table_steps::records(&run, channel.as_ref()?, *gyro)))
+        .flatten()
+        .collect();
+    let tables = vec![("table_steps.csv".to_owned(), table_steps::csv(&record.table_steps))];
+    Ok(Outcome { record, figures: drawn, tables })
+}
+
+/// The bias of the line without the Earth rate along the axis, where the site tells it.
+fn without_earth(procedure: &Procedure, channel: &ScaleFactor, mut estimate: Estimate) -> Estimate {
+    let Some(site) = procedure.site.as_ref().filter(|_| estimate.id == "scale_factor_bias") else {
+        return estimate;
+    };
+    let o = site.orientation_of(&channel.channel);
+    let uncertain = |value, uncertainty| Uncertain { value, uncertainty };
+    let earth = earth_rate(&Orientation {
+        latitude_deg: uncertain(site.latitude_deg, site.latitude_uncertainty_deg),
+        heading_deg: uncertain(o.heading_deg, o.heading_uncertainty_deg),
+        elevation_deg: uncertain(o.elevation_deg, o.elevation_uncertainty_deg),
+    });
+    estimate.value = estimate.value.map(|v| v - channel.factor * earth.value);
+    if let Spread::StudentT { standard_uncertainty, dof } = &mut estimate.spread {
+        let total = standard_uncertainty.hypot(earth.uncertainty);
+        *dof = (*dof * (total / *standard_uncertainty).powi(4)).min(1e9);
+        *standard_uncertainty = total;
+    }
+    estimate.note(Note::new("on_table.earth_removed").with("earth", Arg::figures(earth.value, 5)))
+}
+
+/// Rates of the other axis that differ.
+fn outer_levels(run: &TableRun) -> usize {
+    let mut rates: Vec<f64> = run.steps.list.iter().map(|s| s.outer).filter(|r| r.is_finite()).collect();
+    rates.sort_by(f64::total_cmp);
+    let largest = rates.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+    rates.dedup_by(|a, b| (*a - *b).abs() <= 1e-3 * largest);
+    rates.len()
+}
+
+fn wants_alignment(procedure: &Procedure) -> bool {
+    procedure.measurands.iter().any(|m| crate::rate_table::alignment::IDS.contains(&m.id.id))
+}
+
+/// The conditions that every test has.
+pub(super) fn usual_conditions(request: &Request<'_>, found: &Found) -> Vec<ConditionRecord> {
+    let longest_gap_s = found
+        .window
+        .excluded
+        .iter()
+        .filter(|s| s.reason == "gap")
+        .map(|s| s.to_s - s.from_s)
+        .fold(0.0, f64::max);
+    judge_all(&Facts {
+        procedure: request.procedure,
+        integrity: &found.report.integrity,
+        rows: found.report.rows,
+        sample_interval_s: found.tau0_s,
+        clock_notes: &found.report.notes,
+        has_stamps: request.use_stamps && found.channels.iter().any(|c| c.role == Role::Time),
+        usable_s: found.window.usable_s,
+        longest_gap_s,
+        held: &found.held,
+        warm_up: &[],
+        gyros: &[],
+        limits: request.limits,
+        columns: &super::gyro_facts::columns(request.source, found),
+        duration_s: found.report.duration_s,
+        stated_serials: &request.source.stated_serials(),
+        serial: request.unit.serial.as_deref(),
+        today: request.now.date_naive(),
+    })
+}
+
+/// Unit of the scale factor of a channel, and its size at K = 1: counts per input where the file holds counts.
+pub(super) fn as_recorded(channel: &ChannelSpec) -> (&'static str, f64) {
+    let counts = matches!(channel.unit_in_file.as_str(), "count" | "counts");
+    let role = channel.channel.role;
+    let Some(inside) = role.internal_unit().and_then(|u| crate::units::Unit::parse(u).ok()) else {
+        return ("1", 1.0);
+    };
+    match channel.channel.unit.factor_to(&inside) {
+        Ok(factor) if counts && factor * channel.channel.scale != 0.0 => {
+            let per_inside = 1.0 / (factor * channel.channel.scale);
+            if role == Role::Rate { ("count/(deg/h)", per_inside) } else { ("count/arcsec", per_inside) }
+        }
+        _ => ("1", 1.0),
+    }
+}
+
+fn collect(
+    request: &Request<'_>,
+    setup: &Setup,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<(Found, TableRun), RunError> {
+    let procedure = request.procedure;
+    let channels = evaluate::channels(procedure, request.source);
+    if !channels.iter().any(|c| c.role.is_gyro()) {
+        return Err(RunError::Nothing(about(request, "run_error.no_gyro")));
+    }
+    let declared = |role: Role| procedure.channels.iter().find(|c| c.channel.role == role)?.rollover;
+    let spec = TimeBaseSpec {
+        declared_sample_rate_hz: procedure.sample_rate_hz,
+        use_stamps: request.use_stamps,
+        rollover_s: declared(Role::Time),
+        counter_modulus: declared(Role::Counter),
+    };
+    let mut plan = prepare(request.source, &channels, spec)?;
+    for c in &procedure.channels {
+        if let Some(period) = c.rollover {
+            plan.set_angle_period(&c.channel.id, period);
+        }
+    }
+    let nominal_s = plan.clock().interval_s;
+    let mut read = |plan: &Plan<'_>| -> Result<_, RunError> {
+        let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
+        let grid = TauGrid::Octave;
+        let inside = Inside::new(procedure, &channels, &grid, &[], false, tidy(nominal_s), plan.start_s());
+        let window = WindowSpec {
+            from_s: procedure.conditions.warm_up_s,
+            to_s: None,
+            exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
+        };
+        let mut held = Windowed::new(inside.held_only(), window.clone(), plan.start_s(), nominal_s);
+        let blocks = Collector::new(&channels, nominal_s, setup.temperature.as_deref());
+        let blocks = if setup.known.is_empty() { blocks } else { blocks.fine() };
+        let mut blocks = Windowed::new(blocks, window, plan.start_s(), nominal_s);
+        let report = plan.stream(&mut [&mut overview, &mut held, &mut blocks], progress)?;
+        Ok((overview, held, blocks, report))
+    };
+    let mut found = read(&plan)?;
+    let measured_s = found.3.tau0_measured_s;
+    if plan.reads_angles() && (measured_s / nominal_s - 1.0).abs() > 1e-6 {
+        plan.set_increment_interval(measured_s);
+        found = read(&plan)?;
+    }
+    let (overview, held, blocks, mut report) = found;
+    let (held, window) = held.finish();
+    let (blocks, _) = blocks.finish();
+    let tau0_s = tidy(report.tau0_measured_s);
+    let mut saturated = overview.saturated();
+    saturated.iter_mut().for_each(|f| crate::ingest::locate(&report.files, f));
+    evaluate::declare_rails(&mut report.integrity, saturated);
+    evaluate::tidy_integrity(&mut report.integrity, tau0_s, &[]);
+    let run = TableRun::new(blocks.finish(report.tau0_measured_s), setup);
+    let found = Found {
+        channels,
+        report,
+        tau0_s,
+        window,
+        gyros: vec![],
+        held: held.finish().held,
+        envelopes: overview.finish(),
+        grid: TauGrid::Octave,
+        exact: false,
+    };
+    Ok((found, run))
+}
+
+fn facts(
+    procedure: &Procedure,
+    run: &TableRun,
+    setup: &Setup,
+    evaluated: &[(usize, Option<ScaleFactor>)],
+) -> TableFacts {
+    let steps = &run.steps;
+    let rates = || steps.list.iter().map(|s| s.rate);
+    let worst = |f: fn(f64, f64) -> f64, start: f64| {
+        let value = rates().fold(start, f);
+        if value.is_finite() { value } else { 0.0 }
+    };
+    let disagreement = (run.blocks.has_angle && run.blocks.has_rate)
+        .then(|| {
+            let largest = rates()
+                .fold(0.0, |m: f64, r| m.max(r.abs()))
+                .max(steps.list.iter().fold(0.0, |m: f64, s| m.max(s.nominal.abs())));
+            let counted = steps.list.iter().filter(|s| s.nominal.abs() > 0.05 * largest && s.nominal != 0.0);
+            counted
+                .map(|s| (s.rate / s.nominal - 1.0, s.nominal))
+                .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
+        })
+        .flatten();
+    TableFacts {
+        steps: steps.list.len(),
+        too_short: steps.too_short,
+        minimum_step_s: setup.minimum_step_s,
+        lowest: worst(f64::min, f64::INFINITY),
+        highest: worst(f64::max, f64::NEG_INFINITY),
+        levels: if wants_alignment(procedure) { outer_levels(run) } else { steps.levels.len() },
+        full_scale: setup.full_scale_deg_h,
+        tolerance: setup.rate_tolerance,
+        disagreement,
+        channels: evaluated
+            .iter()
+            .filter_map(|(gyro, channel)| {
+                let id = run.blocks.gyros.get(*gyro)?;
+                let spec = procedure.channel(id)?;
+                Some(ChannelFact {
+                    channel: id.clone(),
+                    unit: spec.unit_in_file.clone(),
+                    factor: channel.as_ref().map(|c| c.factor),
+                    standard: channel.as_ref().map_or(0.0, ScaleFactor::factor_uncertainty),
+                })
+            })
+            .collect(),
+    }
+}
+
+fn draw(request: &Request<'_>, run: &TableRun, evaluated: &[(usize, Option<ScaleFactor>)]) -> Vec<Figure> {
+    let wanted = |id: &str| request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id));
+    let several = evaluated.len() > 1;
+    let mut drawn = Vec::new();
+    for channel in evaluated.iter().filter_map(|(_, c)| c.as_ref()) {
+        if wanted("scale_factor_residual") {
+            let limit = request.limits.limit("scale_factor_nonlinearity", &channel.channel).map(|l| &l.limit);
+            drawn.push(figures::scale_factor::residuals(run, channel, limit, several));
+        }
+        if wanted("table_steps") {
+            drawn.push(figures::scale_factor::over_time(run, channel, several));
+        }
+    }
+    drawn
+}
+
+/// The options that a table test was evaluated with.
+pub(super) fn options(procedure: &Procedure, setup: &Setup, use_stamps: bool) -> Vec<OptionRecord> {
+    let option = |name: &str, value: String| OptionRecord { name: name.to_owned(), value };
+    let mut list = vec![
+        option("rate_table.by_angle", setup.by_angle.to_string()),
+        option("rate_table.whole_turns", setup.whole_turns.to_string()),
+        option("rate_table.settling", format!("{} s", setup.settling_s)),
+        option("rate_table.minimum_step", format!("{} s", setup.minimum_step_s)),
+        option("conditions.warm_up", format!("{} s", procedure.conditions.warm_up_s)),
+        option("recording.use_stamps", use_stamps.to_string()),
+    ];
+    if setup.rows_are_steps {
+        list.insert(0, option("rate_table.rows_are_steps", setup.rows_are_steps.to_string()));
+    }
+    list
+}

@@ -1,0 +1,82 @@
+//! Positions against the Earth's rotation and turns by known angles: rows and conditions.
+
+use super::evaluate::Found;
+use super::{Outcome, Request, RunError, settle, table, verdict};
+use crate::condition::table::{EarthFact, judge_earth};
+use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
+use crate::rate_table::Setup;
+use crate::rate_table::blocks::Blocks;
+use crate::rate_table::known::{self, Input, Positions};
+
+pub(super) fn finish(
+    request: &Request<'_>,
+    setup: &Setup,
+    found: Found,
+    blocks: &Blocks,
+) -> Result<Outcome, RunError> {
+    let procedure = request.procedure;
+    let phases: Vec<(String, u64, u64)> = found
+        .report
+        .files
+        .iter()
+        .filter_map(|f| Some((f.phase.clone()?, f.rows_before + 1, f.rows_before + f.facts.rows)))
+        .collect();
+    let stretches = known::stretches(blocks, &setup.known, &phases);
+    let latitude = procedure.site.as_ref().map(|s| (s.latitude_deg, s.latitude_uncertainty_deg));
+    let earth = |heading: (f64, f64), elevation: (f64, f64)| {
+        let uncertain = |(value, uncertainty)| Uncertain { value, uncertainty };
+        let rate = earth_rate(&Orientation {
+            latitude_deg: uncertain(latitude.unwrap_or((0.0, 0.0))),
+            heading_deg: uncertain(heading),
+            elevation_deg: uncertain(elevation),
+        });
+        (rate.value, rate.uncertainty)
+    };
+    let positions: Vec<Positions> = (0..blocks.gyros.len())
+        .filter_map(|gyro| known::positions(blocks, &setup.known, &stretches, gyro, &earth))
+        .collect();
+    let turns = known::turns(blocks, &setup.known, &stretches);
+    let vertical = setup.known.iter().all(|k| match k.input {
+        Input::Position { elevation, .. } => (elevation.0.abs() - 90.0).abs() < 1e-6,
+        _ => true,
+    });
+    let mut conditions: Vec<_> = positions
+        .iter()
+        .map(|p| {
+            judge_earth(&EarthFact {
+                channel: p.channel.clone(),
+                several: positions.len() > 1,
+                unit: procedure.channel(&p.channel).map_or_else(String::new, |c| c.unit_in_file.clone()),
+                factor: p.factor.value,
+                standard: p.factor.standard.hypot(p.factor_directions),
+                bias: p.bias.value,
+                latitude_deg: latitude.map(|l| l.0).filter(|_| vertical),
+                software: p
+                    .turned_in_software()
+                    .iter()
+                    .map(|(a, b)| (a.name.clone(), b.name.clone()))
+                    .collect(),
+            })
+        })
+        .collect();
+    let missing = setup.known.len() - {
+        let mut seen: Vec<usize> = stretches.iter().map(|s| s.known).collect();
+        seen.dedup();
+        seen.len()
+    };
+    conditions.insert(0, crate::condition::table::judge_stretches(setup.known.len(), missing));
+    conditions.extend(table::usual_conditions(request, &found));
+    let mut rows = Vec::new();
+    for spec in &procedure.measurands {
+        let asked = |channel: &str| spec.channel.as_ref().is_none_or(|c| c == channel);
+        let of_positions = positions.iter().filter_map(|p| p.estimate(spec.id.id, spec.id.unit));
+        let of_turns = turns.iter().flat_map(|t| t.estimates(spec.id.id, spec.id.unit));
+        for estimate in of_positions.chain(of_turns) {
+            if asked(estimate.channel.split("<-").next().unwrap_or_default()) {
+                rows.push(verdict::row(&estimate, request.limits, procedure));
+            }
+        }
+    }
+    let record = settle::record(request, &found, conditions, rows, vec![], &[]);
+    Ok(Outcome { record, figures: vec![], tables: vec![] })
+}

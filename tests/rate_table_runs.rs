@@ -1,0 +1,171 @@
+//! Table tests from the command line: every shipped procedure on its samples, and every mistake by its name.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root(path: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Runs a procedure on a recording; gives the exit code and the result.
+fn run(procedure: &Path, recording: &Path) -> (i32, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("report");
+    let status = Command::new(env!("CARGO_BIN_EXE_sagnac"))
+        .args(["run".as_ref(), procedure.as_os_str(), recording.as_os_str()])
+        .args(["--serial", "SN-1", "--out"])
+        .arg(&out)
+        .output()
+        .unwrap();
+    let text = std::fs::read_to_string(out.join("result.json"))
+        .unwrap_or_else(|e| panic!("{e}: {}", String::from_utf8_lossy(&status.stderr)));
+    for page in ["report.html", "report.md"] {
+        assert!(out.join(page).exists(), "{page}");
+    }
+    (status.status.code().unwrap(), serde_json::from_str(&text).unwrap())
+}
+
+#[test]
+fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
+    for (name, sample, code) in [
+        ("scale-factor", "scale-factor-pass", 0),
+        ("scale-factor", "scale-factor-fail", 1),
+        ("threshold", "threshold-pass", 0),
+        ("threshold", "threshold-fail", 1),
+        ("misalignment", "misalignment-pass", 0),
+        ("misalignment", "misalignment-fail", 1),
+        ("multi-position", "multi-position-pass", 0),
+        ("multi-position", "multi-position-software", 3),
+    ] {
+        let procedure = root(&format!("procedures/{name}.toml"));
+        let (got, result) = run(&procedure, &root(&format!("samples/{sample}.csv")));
+        assert_eq!(got, code, "{sample}: {:#}", result["summary"]);
+        assert!(!result["measurands"].as_array().unwrap().is_empty(), "{sample}");
+    }
+}
+
+/// The sentences of the conditions that are invalid, by name, and what they say.
+fn invalid(result: &Value) -> Vec<(String, String)> {
+    let list = result["conditions"].as_array().unwrap();
+    list.iter()
+        .filter(|c| c["status"] == "invalid")
+        .map(|c| (c["message"]["id"].as_str().unwrap().to_owned(), c["note"].as_str().unwrap().to_owned()))
+        .collect()
+}
+
+/// Runs a shipped procedure with texts replaced on a sample with its rows changed; gives the invalid conditions.
+fn mistaken(
+    procedure: &str,
+    changes: &[(&str, &str)],
+    sample: &str,
+    row: impl Fn(&mut Vec<f64>),
+) -> Vec<(String, String)> {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = std::fs::read_to_string(root(&format!("procedures/{procedure}.toml"))).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    let path = folder.path().join("procedure.toml");
+    std::fs::write(&path, text).unwrap();
+    let recording = std::fs::read_to_string(root(&format!("samples/{sample}.csv"))).unwrap();
+    let mut out = String::new();
+    for (i, line) in recording.lines().enumerate() {
+        if i == 0 {
+            out.push_str(line);
+        } else {
+            let mut values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
+            row(&mut values);
+            out.push_str(&values.iter().map(f64::to_string).collect::<Vec<_>>().join(","));
+        }
+        out.push('\n');
+    }
+    let data = folder.path().join("recording.csv");
+    std::fs::write(&data, out).unwrap();
+    let (code, result) = run(&path, &data);
+    assert_eq!(code, 3, "{:#}", result["conditions"]);
+    invalid(&result)
+}
+
+fn names(found: &[(String, String)], id: &str) -> bool {
+    found.iter().any(|(name, _)| name == id)
+}
+
+#[test]
+fn mistakes_name_themselves() {
+    let keep = |_: &mut Vec<f64>| {};
+    let sign = mistaken("scale-factor", &[], "scale-factor-pass", |v| v[1] = -v[1]);
+    assert!(names(&sign, "on_table.reversed"), "{sign:?}");
+
+    let short = mistaken(
+        "scale-factor",
+        &[("full_scale = \"100 deg/s\"", "full_scale = \"300 deg/s\"")],
+        "scale-factor-pass",
+        keep,
+    );
+    assert!(names(&short, "on_table.not_reached"), "{short:?}");
+
+    // The table was asked for the rates and turned at nine tenths of them.
+    let slow = mistaken("scale-factor", &[], "scale-factor-pass", |v| v[2] /= 0.9);
+    assert!(names(&slow, "on_table.fell_short"), "{slow:?}");
+
+    let unit = mistaken(
+        "threshold",
+        &[(
+            "column = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"",
+            "column = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/s\"",
+        )],
+        "threshold-pass",
+        keep,
+    );
+    assert!(unit.iter().any(|(id, said)| id == "on_table.mistaken" && said.contains("deg/h")), "{unit:?}");
+
+    let other = mistaken("scale-factor", &[], "scale-factor-pass", |v| v[1] = (v[0] * 7.3).sin().round());
+    assert!(names(&other, "on_table.does_not_follow"), "{other:?}");
+
+    let latitude = mistaken(
+        "multi-position",
+        &[("latitude = \"55.98 deg\"", "latitude = \"36 deg\"")],
+        "multi-position-pass",
+        keep,
+    );
+    assert!(
+        latitude.iter().any(|(id, said)| id == "known.latitude" && said.contains("56.0")),
+        "{latitude:?}"
+    );
+
+    let swapped = mistaken("multi-position", &[], "multi-position-pass", |v| v[1] = -v[1]);
+    assert!(names(&swapped, "known.reversed"), "{swapped:?}");
+
+    let software = mistaken("multi-position", &[], "multi-position-software", keep);
+    assert!(names(&software, "known.software"), "{software:?}");
+
+    let lying = mistaken("multi-position", &[], "multi-position-pass", |v| {
+        if ((v[0] / 600.0) as u32) % 2 == 1 {
+            v[1] += 2.0 * 12.467;
+        }
+    });
+    assert!(names(&lying, "known.not_turned"), "{lying:?}");
+}
+
+#[test]
+fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
+    use sagnac::condition::table::{ChannelFact, TableFacts, judge};
+    let channel = |name: &str, factor: f64| ChannelFact {
+        channel: name.into(),
+        unit: "deg/s".into(),
+        factor: Some(factor),
+        standard: 1e-5,
+    };
+    let facts = TableFacts {
+        steps: 20,
+        levels: 10,
+        lowest: -3600.0,
+        highest: 3600.0,
+        channels: vec![channel("z", 0.002), channel("x", 0.9998)],
+        ..TableFacts::default()
+    };
+    let said: Vec<&str> = judge(&facts).iter().map(|c| c.message.as_ref().map_or("", |m| m.id)).collect();
+    assert!(said.contains(&"on_table.another_axis") && said.contains(&"on_table.follows"), "{said:?}");
+}
