@@ -17,6 +17,7 @@ mod output;
 mod sample_rate;
 mod steadiness;
 mod supply;
+mod schedule;
 mod temperature;
 pub mod temperature_track;
 mod unit_named;
@@ -28,6 +29,7 @@ pub use gyro_fact::{BiasStep, ColumnFact, GyroFact, NoiseChange};
 use crate::procedure::{EffectiveLimits, Procedure};
 use crate::record::{ConditionRecord, ConditionStatus, Integrity};
 use crate::text::{Lang, Note};
+use crate::temperature::findings::Schedule;
 use chrono::NaiveDate;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -68,6 +70,8 @@ pub struct Facts<'a> {
     pub stated_serials: &'a [&'a str],
     /// Serial number under which the unit is tested.
     pub serial: Option<&'a str>,
+    /// The schedule of a test over temperature, where there is a temperature.
+    pub schedule: Option<&'a Schedule>,
     /// Day of the test.
     pub today: NaiveDate,
 }
@@ -101,6 +105,7 @@ pub static CONDITIONS: &[&dyn Condition] = &[
     &earth_rate::EarthRate,
     &noise_level::NoiseLevel,
     &temperature::Temperature,
+    &schedule::Schedule,
     &supply::Supply,
     &duration::Duration,
     &warm_up::WarmUp,

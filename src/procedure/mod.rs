@@ -15,6 +15,7 @@ pub mod tables;
 mod tables_conditions;
 pub mod tables_limits;
 mod tables_site;
+pub mod tables_temperature;
 mod validate;
 
 pub use crate::keyed::diagnostics;

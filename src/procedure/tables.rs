@@ -4,6 +4,7 @@ use super::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, wi
 use super::tables_conditions::{CONDITIONS, EXCLUDE};
 use super::tables_limits::{LIMIT, REFERENCE};
 use super::tables_site::{INSTRUMENT, SITE};
+use super::tables_temperature::{TEMPERATURE_TEST, WARM_UP_TEST};
 use crate::ingest::reading_tables;
 
 /// Roles a channel may have, with their meaning.
@@ -31,6 +32,11 @@ pub const FIGURES: &[Word] = &[
     ("autocorrelation", "autocorrelation of the record and of what the model leaves"),
     ("histogram", "distribution of the samples against the normal one"),
     ("residual", "distribution of what the model leaves against the normal one"),
+    ("over_temperature", "bias over temperature, both branches, with the model and its band"),
+    ("temperature_schedule", "temperature and its rate over time with the segments"),
+    ("temperature_residual", "what the model over temperature leaves, over time"),
+    ("temperature_sensitivity", "slope of the bias over temperature"),
+    ("warm_up", "bias after switching on with its band"),
 ];
 
 /// The procedure file as a whole.
@@ -59,6 +65,8 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
             "Instruments used, with the validity of their calibration.",
         ),
         optional("analysis", Kind::Table(&ANALYSIS), "", "Options of the analysis."),
+        optional("temperature_test", Kind::Table(&TEMPERATURE_TEST), "", "A test over temperature."),
+        optional("warm_up_test", Kind::Table(&WARM_UP_TEST), "", "A test of the warm-up."),
         required(
             "measurand",
             Kind::Tables(&MEASURAND),

@@ -15,6 +15,7 @@ pub mod power;
 mod settle;
 mod sigma_tau;
 mod steadiness;
+mod thermal;
 mod verdict;
 mod warm_up;
 

@@ -7,6 +7,7 @@ mod parts;
 pub mod residual;
 pub mod sigma_tau;
 pub mod spectrum;
+pub mod thermal;
 pub mod time_series;
 
 use crate::figure::{Axis, Layer, Scale, Style};
