@@ -358,7 +358,8 @@ pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
     // A spread that grows with the value (a deviation) moves the limit by a factor, any other by a difference.
     let scales = matches!(estimate.spread, Spread::ChiSquare { .. } | Spread::Curve(_)) && value > 0.0;
     let shift = |limit: f64, bound: f64| {
-        if scales && bound > 0.0 { limit * value / bound } else { limit - (bound - value) }
+        // A limit on the other side of zero is no multiple of the value.
+        if scales && bound > 0.0 && limit > 0.0 { limit * value / bound } else { limit - (bound - value) }
     };
     let passes = limit.max.is_none_or(|max| high <= max) && limit.min.is_none_or(|min| low >= min);
     let fails = limit.max.is_some_and(|max| low > max) || limit.min.is_some_and(|min| high < min);
@@ -449,6 +450,17 @@ mod tests {
             Spread::Curve((-40..=40).map(|i| (f64::from(i) / 10.0, 2.0 + 0.03 * f64::from(i))).collect());
         assert!((curve.bound(2.0, 0.975).unwrap() - (2.0 + 0.3 * 1.959_964)).abs() < 1e-6);
         assert!((curve.probability_above(2.0, 2.3).unwrap() - 0.158_655).abs() < 1e-5);
+    }
+
+    #[test]
+    fn acceptance_lies_inside_limits_on_both_sides_of_zero() {
+        let points = (-40..=40).map(|i| (f64::from(i) / 10.0, 0.5 + 0.05 * f64::from(i) / 10.0)).collect();
+        let e = Estimate { spread: Spread::Curve(points), ..normal(0.5, 0.05) };
+        let both = Limit { min: Some(-1.0), ..limit(1.0, Rule::GuardBand) };
+        let j = judge(&e, &both);
+        let (low, high) = (j.acceptance_min.unwrap(), j.acceptance_max.unwrap());
+        assert!((-1.0..-0.9).contains(&low) && (0.8..1.0).contains(&high), "{low} {high}");
+        assert_eq!(j.verdict, Verdict::Pass);
     }
 
     #[test]

@@ -60,6 +60,10 @@ const fn signed(mut m: MeasurandId) -> MeasurandId {
     m
 }
 
+const fn over_temperature(id: &'static str, unit: &'static str, doc: &'static str) -> MeasurandId {
+    MeasurandId { id, unit, test: Test::Temperature, available: true, signed: false, options: &[], doc }
+}
+
 const fn later(id: &'static str, unit: &'static str, test: Test, doc: &'static str) -> MeasurandId {
     MeasurandId { id, unit, test, available: false, signed: false, options: &[], doc }
 }
@@ -68,7 +72,7 @@ const fn table(id: &'static str, unit: &'static str, doc: &'static str) -> Measu
     MeasurandId { id, unit, test: Test::RateTable, available: true, signed: false, options: &[], doc }
 }
 
-use Test::{Influence, Temperature};
+use Test::Influence;
 
 /// Every measurand, in the order of reports.
 #[rustfmt::skip]
@@ -100,17 +104,20 @@ pub const MEASURANDS: &[MeasurandId] = &[
     given("russian_drift_100s_predicted", "deg/h", &[], "what the identified noise predicts for 100-s means"),
     given("ratio_russian_to_allan_bias", "1", &[], "Russian 100-s drift over the Allan minimum"),
     given("ratio_russian_to_allan_arw", "1", &[], "Russian 10-s angle random walk over N"),
-    signed(later("bias_temperature_sensitivity", "deg/h/degC", Temperature, "slope of bias over temperature")),
-    signed(later("bias_temperature_sensitivity_max", "deg/h/degC", Temperature, "steepest local slope")),
-    signed(later("bias_temperature_rate_sensitivity", "deg/h/(degC/min)", Temperature, "bias per rate of temperature (Shupe)")),
-    later("thermal_lag", "s", Temperature, "delay between temperature sensor and coil"),
-    signed(later("thermal_hysteresis", "deg/h", Temperature, "largest gap between the heating and the cooling branch")),
-    later("bias_over_temperature_peak_to_peak", "deg/h", Temperature, "range of bias over temperature"),
-    later("bias_over_temperature_rms", "deg/h", Temperature, "rms of bias over temperature"),
-    later("bias_residual_rms", "deg/h", Temperature, "rms left after the temperature model"),
-    signed(later("ramp_rate", "degC/h", Temperature, "rate of a temperature ramp")),
-    later("warm_up_time", "s", Temperature, "time after switching on until the bias stays in its band"),
-    later("angle_random_walk_at_temperature", "deg/sqrt(h)", Temperature, "N in one temperature zone"),
+    signed(over_temperature("bias_temperature_sensitivity", "deg/h/degC", "slope of bias over temperature")),
+    signed(over_temperature("bias_temperature_sensitivity_max", "deg/h/degC", "steepest local slope")),
+    signed(over_temperature("bias_temperature_rate_sensitivity", "deg/h/(degC/min)", "bias per rate of temperature (Shupe)")),
+    over_temperature("thermal_lag", "s", "delay between temperature sensor and coil"),
+    signed(over_temperature("thermal_hysteresis", "deg/h", "largest gap between the heating and the cooling branch that no rate of temperature explains")),
+    over_temperature("bias_over_temperature_peak_to_peak", "deg/h", "range of bias over temperature"),
+    over_temperature("bias_over_temperature_rms", "deg/h", "rms of bias about its mean over temperature (one sigma)"),
+    over_temperature("bias_over_temperature_3sigma", "deg/h", "three times that rms"),
+    signed(over_temperature("bias_loop_width", "deg/h", "largest gap between heating and cooling at the rate of the ramps, whatever its cause")),
+    over_temperature("bias_residual_rms", "deg/h", "rms left after the temperature model"),
+    signed(over_temperature("ramp_rate", "degC/h", "rate of a temperature ramp")),
+    signed(over_temperature("turn_on_transient", "deg/h", "bias at switching on, less its final value")),
+    over_temperature("warm_up_time", "s", "time after switching on until the bias stays in its band"),
+    over_temperature("angle_random_walk_at_temperature", "deg/sqrt(h)", "N in one temperature zone"),
     signed(table("scale_factor", "", "output per input")),
     signed(table("scale_factor_error", "ppm", "deviation from the nominal scale factor")),
     table("scale_factor_nonlinearity", "ppm", "largest residual of full scale"),

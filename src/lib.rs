@@ -35,5 +35,6 @@ pub mod run;
 pub mod selftest;
 pub mod series;
 pub mod simulate;
+pub mod temperature;
 pub mod text;
 pub mod units;

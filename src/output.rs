@@ -120,6 +120,8 @@ impl Kind {
                     matches!(name, "result.json" | "report.html" | "report.md")
                         || (name.starts_with("sigma_tau") && name.ends_with(".csv"))
                         || name == "table_steps.csv"
+                        || (name.starts_with("compensation")
+                            && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
                 }
                 Kind::Comparison => name
                     .strip_prefix("comparison.")

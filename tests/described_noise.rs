@@ -99,6 +99,8 @@ fn gyro() -> GyroEvidence {
         lines,
         earth: None,
         digest,
+        over_temperature: None,
+        warm_up: None,
     }
 }
 

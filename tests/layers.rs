@@ -11,7 +11,7 @@ const FLOORS: &[&[&str]] = &[
     &["record", "recording"],
     &["keyed"],
     &["ingest", "noise"],
-    &["effect"],
+    &["effect", "temperature"],
     &["claim", "series"],
     &["mismatch", "simulate"],
     &["measurand", "rate_table"],

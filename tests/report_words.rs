@@ -12,6 +12,10 @@ use sagnac::noise::model::TERMS;
 use sagnac::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
 use sagnac::procedure::{EffectiveLimits, effective, load, load_limits};
 use sagnac::record::{Integrity, RunRecord};
+use sagnac::temperature::SegmentKind;
+use sagnac::temperature::course::Span;
+use sagnac::temperature::findings::Schedule;
+use sagnac::temperature::segments::Segment;
 use sagnac::text::{Lang, lookup};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -149,6 +153,29 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         ..GyroFact::default()
     };
     let columns = [ColumnFact { channel: "rate".into(), name: "rate_deg_s".into(), unit: None }];
+    procedure.temperature_test =
+        load(&root("procedures/temperature-ramp.toml")).unwrap().value.temperature_test;
+    let ramp = |kind, from_s: f64| Segment {
+        kind,
+        from_s,
+        to_s: from_s + 3600.0,
+        begins_deg_c: 0.0,
+        ends_deg_c: 10.0,
+        rate_deg_c_h: 10.0,
+        rate_uncertainty_deg_c_h: 0.1,
+    };
+    let schedule = Schedule {
+        segments: vec![
+            ramp(SegmentKind::Heating, 0.0),
+            ramp(SegmentKind::Cooling, 3600.0),
+            ramp(SegmentKind::Dwell, 7200.0),
+        ],
+        reached: Span { low: 0.0, high: 70.0 },
+        last_deg_c: 0.0,
+        temperature: vec![],
+        command: None,
+        missing: 0.0,
+    };
     let records = judge_all(&Facts {
         procedure: &procedure,
         integrity: &integrity,
@@ -166,11 +193,12 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         duration_s: 1e9,
         stated_serials: &["SN-2"],
         serial: Some("SN-1"),
+        schedule: Some(&schedule),
         today: chrono::NaiveDate::from_ymd_opt(2100, 1, 1).unwrap(),
     });
     let kinds: BTreeSet<&str> = records.iter().filter_map(|c| c.id.split('.').next()).collect();
-    // One kind a condition, eleven more of faults.
-    assert_eq!(kinds.len(), CONDITIONS.len() - 1 + 12, "{kinds:?}");
+    // One kind a condition, eleven more of faults, three more of the schedule.
+    assert_eq!(kinds.len(), CONDITIONS.len() - 2 + 12 + 4, "{kinds:?}");
     let mut keys: BTreeSet<String> = kinds.iter().map(|k| format!("condition.{k}")).collect();
     for c in &records {
         keys.extend(c.observed.keys().map(|name| format!("observed.{name}")));

@@ -15,6 +15,7 @@ mod mistakes;
 mod noise_level;
 mod output;
 mod sample_rate;
+mod schedule;
 mod steadiness;
 mod supply;
 pub mod table;
@@ -28,6 +29,7 @@ pub use gyro_fact::{BiasStep, ColumnFact, GyroFact, NoiseChange};
 
 use crate::procedure::{EffectiveLimits, Procedure};
 use crate::record::{ConditionRecord, ConditionStatus, Integrity};
+use crate::temperature::findings::Schedule;
 use crate::text::{Lang, Note};
 use chrono::NaiveDate;
 use serde_json::{Map, Value};
@@ -69,6 +71,8 @@ pub struct Facts<'a> {
     pub stated_serials: &'a [&'a str],
     /// Serial number under which the unit is tested.
     pub serial: Option<&'a str>,
+    /// The schedule of a test over temperature, where there is a temperature.
+    pub schedule: Option<&'a Schedule>,
     /// Day of the test.
     pub today: NaiveDate,
 }
@@ -102,6 +106,7 @@ pub static CONDITIONS: &[&dyn Condition] = &[
     &earth_rate::EarthRate,
     &noise_level::NoiseLevel,
     &temperature::Temperature,
+    &schedule::Schedule,
     &supply::Supply,
     &duration::Duration,
     &warm_up::WarmUp,

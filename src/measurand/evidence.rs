@@ -7,6 +7,8 @@ use crate::noise::intervals::BoundedPoint;
 use crate::noise::lines::SpectralLine;
 use crate::noise::residual::GoodnessOfFit;
 use crate::noise::windows::WindowStatistics;
+use crate::temperature::findings::Findings;
+use crate::temperature::warm_up::WarmUpFindings;
 
 /// Earth rate along an input axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +44,10 @@ pub struct GyroEvidence {
     pub lines: Vec<SpectralLine>,
     /// Earth rate along the axis, where the site is known.
     pub earth: Option<Earth>,
+    /// What a test over temperature showed, where the procedure asks for one.
+    pub over_temperature: Option<Findings>,
+    /// What a test of the warm-up showed, where the procedure asks for one.
+    pub warm_up: Option<WarmUpFindings>,
 }
 
 impl GyroEvidence {

@@ -12,10 +12,14 @@ pub mod russian_prediction;
 mod slope_readout;
 mod spectral_line;
 pub mod static_bias;
+mod temperature;
+mod warm_up;
 
 use crate::estimate::Estimate;
 pub use crate::ids;
 pub use evidence::{Earth, GyroEvidence};
+pub use temperature::over_temperature;
+pub use warm_up::warm_up;
 
 /// Choices a procedure makes for a measurand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +35,11 @@ pub trait Measurand: Sync {
 
     /// The quantity of one id on one channel; `None` when the channel has nothing to say about it.
     fn evaluate(&self, id: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate>;
+
+    /// Every row of one id on one channel: more than one where a quantity is given by zone or by ramp.
+    fn evaluate_all(&self, id: &str, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
+        self.evaluate(id, gyro, options).into_iter().collect()
+    }
 }
 
 /// Every measurand of a gyro at rest.
@@ -44,11 +53,19 @@ pub static MEASURANDS: &[&dyn Measurand] = &[
     &spectral_line::SpectralLine,
     &correlated_noise::CorrelatedNoise,
     &slope_readout::SlopeReadOut,
+    &temperature::OverTemperature,
+    &warm_up::WarmUp,
 ];
 
 /// Evaluates a measurand by id.
 pub fn evaluate(id: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate> {
     MEASURANDS.iter().find(|m| m.ids().contains(&id)).and_then(|m| m.evaluate(id, gyro, options))
+}
+
+/// Every row of a measurand by id.
+pub fn evaluate_all(id: &str, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
+    let giver = MEASURANDS.iter().find(|m| m.ids().contains(&id));
+    giver.map_or_else(Vec::new, |m| m.evaluate_all(id, gyro, options))
 }
 
 #[cfg(test)]

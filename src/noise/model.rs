@@ -71,6 +71,17 @@ impl Spectral for NoiseType {
     }
 }
 
+/// Variance of the cosine mode `mode` ≥ 1 of `blocks` means over `tau_s`, (deg/h)², for a coefficient of 1.
+pub fn unit_mode_variance(term: NoiseType, mode: usize, blocks: usize, tau_s: f64) -> f64 {
+    let frequency_hz = mode as f64 / (2.0 * blocks.max(1) as f64 * tau_s);
+    let ratio = match term {
+        NoiseType::Flicker => flicker_mode_ratio(mode, blocks),
+        NoiseType::Quantization => quantization_mode_ratio(mode, blocks),
+        NoiseType::AngleRandomWalk | NoiseType::RateRandomWalk | NoiseType::RateRamp => 1.0,
+    };
+    unit_density(term, frequency_hz, tau_s) * ratio / tau_s
+}
+
 /// What the transform shows at a bin on average, over the density there.
 pub(crate) fn bin_ratio(term: NoiseType, bin: &Bin) -> f64 {
     match term {

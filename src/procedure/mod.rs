@@ -16,6 +16,7 @@ mod tables_conditions;
 pub mod tables_limits;
 mod tables_rate_table;
 mod tables_site;
+pub mod tables_temperature;
 mod validate;
 
 pub use crate::keyed::diagnostics;

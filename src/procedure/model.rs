@@ -7,6 +7,7 @@ use crate::ids::MeasurandId;
 use crate::ingest::ReadOptions;
 use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
+use crate::temperature::{TemperatureTest, WarmUpTest};
 use chrono::NaiveDate;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -65,6 +66,10 @@ pub struct Procedure {
     pub analysis: Analysis,
     /// The model that the recording is explained against.
     pub explain: Option<ExplainSpec>,
+    /// A test over temperature.
+    pub temperature_test: Option<TemperatureTest>,
+    /// A test of the warm-up.
+    pub warm_up_test: Option<WarmUpTest>,
     /// What is determined, in the order of the report.
     pub measurands: Vec<MeasurandSpec>,
     /// Limits, references and typical values that stand in the procedure itself.

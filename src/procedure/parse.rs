@@ -13,6 +13,7 @@ use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use super::{channel, reading, validate};
 use crate::record::{ClauseRecord, WaiverRecord};
+use crate::temperature::{SegmentKind, StatedSegment, TemperatureTest, WarmUpTest};
 
 /// Reads a procedure from its text. The second value holds every problem, warnings among them.
 pub(super) fn procedure(source: &SourceText) -> (Option<Procedure>, Problems) {
@@ -67,6 +68,8 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
         rate_table: root.table("rate_table").map(|s| super::tables_rate_table::setup(s, root)),
         analysis: analysis(root.table("analysis")),
         explain: root.table("explain").map(explain),
+        temperature_test: root.table("temperature_test").map(temperature_test),
+        warm_up_test: root.table("warm_up_test").map(warm_up_test),
         measurands: root.tables("measurand").iter().filter_map(measurand).collect(),
         limits: limits::read_set(root, None, reader),
         clauses: root.tables("clause").iter().map(clause).collect(),
@@ -202,6 +205,49 @@ fn explain(section: &Section) -> ExplainSpec {
         model: section.text("model").unwrap_or_default().into(),
         alpha: section.number("alpha").unwrap_or(0.01),
         max_effects: section.number("max_effects").map_or(3, |n| n as usize),
+    }
+}
+
+fn temperature_test(section: &Section) -> TemperatureTest {
+    let number = |key| section.number(key);
+    let (low, high) = (number("low").unwrap_or(0.0), number("high").unwrap_or(0.0));
+    let zones = number("zones").unwrap_or(5.0) as usize;
+    let zone = |i: usize| match zones {
+        1 => 0.5 * (low + high),
+        n => low + (high - low) * i as f64 / (n - 1) as f64,
+    };
+    TemperatureTest {
+        channel: section.text("channel").unwrap_or_default(),
+        command: section.text("command"),
+        low_deg_c: low,
+        high_deg_c: high,
+        end_tolerance_deg_c: number("end_tolerance").unwrap_or(2.0),
+        overshoot_deg_c: number("overshoot"),
+        ramp_rate_deg_c_h: number("ramp_rate"),
+        ramp_rate_tolerance: number("ramp_rate_tolerance").unwrap_or(0.1),
+        slowest_deg_c_h: number("slowest").unwrap_or(4.0),
+        fastest_deg_c_h: number("fastest").unwrap_or(60.0),
+        dwell_s: number("dwell"),
+        dwell_drift_deg_c_h: number("dwell_drift").unwrap_or(1.0),
+        ramps_each_way: number("ramps_each_way").unwrap_or(1.0) as usize,
+        sensor_uncertainty_deg_c: number("sensor_uncertainty").unwrap_or(0.0),
+        coverage_factor: number("coverage_factor").unwrap_or(2.0),
+        zones_deg_c: (0..zones).map(zone).collect(),
+        residual_average_s: number("residual_average").unwrap_or(100.0),
+        highest_order: number("highest_order").unwrap_or(6.0) as usize,
+        segments: section.tables("segment").iter().filter_map(segment).collect(),
+    }
+}
+
+fn segment(section: &Section) -> Option<StatedSegment> {
+    let kind = SegmentKind::ALL.into_iter().find(|k| section.word("kind") == Some(k.id()))?;
+    Some(StatedSegment { kind, from_s: section.number("from")?, to_s: section.number("to")? })
+}
+
+fn warm_up_test(section: &Section) -> WarmUpTest {
+    WarmUpTest {
+        band_deg_h: section.number("band").unwrap_or(0.0),
+        final_share: section.number("final_share").unwrap_or(0.25),
     }
 }
 

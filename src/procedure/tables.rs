@@ -5,6 +5,7 @@ use super::tables_conditions::{CONDITIONS, EXCLUDE};
 use super::tables_limits::{LIMIT, REFERENCE};
 use super::tables_rate_table::RATE_TABLE;
 use super::tables_site::{INSTRUMENT, SITE};
+use super::tables_temperature::{TEMPERATURE_TEST, WARM_UP_TEST};
 use crate::ingest::reading_tables;
 
 /// Roles a channel may have, with their meaning.
@@ -35,6 +36,11 @@ pub const FIGURES: &[Word] = &[
     ("scale_factor_residual", "residuals of the scale factor over rate, in ppm of full scale"),
     ("table_steps", "rate of the table and residuals of the steps over time"),
     ("dead_zone", "response to rates near zero"),
+    ("over_temperature", "bias over temperature, both branches, with the model and its band"),
+    ("temperature_schedule", "temperature and its rate over time with the segments"),
+    ("temperature_residual", "what the model over temperature leaves, over time"),
+    ("temperature_sensitivity", "slope of the bias over temperature"),
+    ("warm_up", "bias after switching on with its band"),
 ];
 
 /// The procedure file as a whole.
@@ -65,6 +71,8 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
         optional("rate_table", Kind::Table(&RATE_TABLE), "", "A test on a rate table."),
         optional("analysis", Kind::Table(&ANALYSIS), "", "Options of the analysis."),
         optional("explain", Kind::Table(&EXPLAIN), "", "The recording against the model of the unit's family."),
+        optional("temperature_test", Kind::Table(&TEMPERATURE_TEST), "", "A test over temperature."),
+        optional("warm_up_test", Kind::Table(&WARM_UP_TEST), "", "A test of the warm-up."),
         required(
             "measurand",
             Kind::Tables(&MEASURAND),

@@ -13,6 +13,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     channels(procedure, root, reader);
     sample_rate(procedure, root, reader);
     conditions(procedure, root, reader);
+    temperature_test(procedure, root, reader);
     site(procedure, root, reader);
     measurands(procedure, root, reader);
     limits(procedure, reader);
@@ -166,6 +167,71 @@ fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             && to <= from
         {
             reader.error(&section.span_of("to"), "check.to_before_from", None);
+        }
+    }
+}
+
+/// What a test over temperature asks must be possible, and its measurands need its table.
+fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    let is_temperature = |r| r == Role::Temperature;
+    if let Some(section) = root.table("temperature_test") {
+        channel_of(section, procedure, root, is_temperature, "check.needs_temperature", reader);
+        if let Some(command) = section.text("command")
+            && !procedure
+                .channels
+                .iter()
+                .any(|c| c.channel.id == command && c.channel.role == Role::Temperature)
+        {
+            let message = Note::new("check_temperature.command").with("id", shorten(&command));
+            reader.error(&section.span_of("command"), message, None);
+        }
+        let value = |key| section.number(key);
+        if let (Some(low), Some(high)) = (value("low"), value("high"))
+            && low >= high
+        {
+            reader.error(&section.span_of("high"), "check_temperature.ends", None);
+        }
+        if let (Some(slowest), Some(fastest)) = (value("slowest"), value("fastest"))
+            && slowest >= fastest
+        {
+            reader.error(&section.span_of("fastest"), "check_temperature.rates", None);
+        }
+        if let (Some(tolerance), Some(u), Some(k)) =
+            (value("end_tolerance"), value("sensor_uncertainty"), value("coverage_factor"))
+            && k * u >= tolerance
+        {
+            reader.error(&section.span_of("sensor_uncertainty"), "check_temperature.not_provable", None);
+        }
+        let mut last = 0.0;
+        for segment in section.tables("segment") {
+            if let (Some(from), Some(to)) = (segment.number("from"), segment.number("to")) {
+                if to <= from || from < last {
+                    reader.error(&segment.span_of("from"), "check_temperature.segments", None);
+                }
+                last = to;
+            }
+        }
+    }
+    if root.table("warm_up_test").is_some() && procedure.conditions.warm_up_s > 0.0 {
+        let at = root.table("conditions").map_or(0..0, |c| c.span_of("warm_up"));
+        reader.error(&at, "check_temperature.warm_up", None);
+    }
+    let moves = root.table("temperature_test").or(root.table("warm_up_test")).is_some();
+    for section in root.tables("measurand") {
+        let Some(measurand) = section.measurand("id") else { continue };
+        if moves && measurand.test == ids::Test::Static && measurand.id != "earth_rate_component" {
+            let message = Note::new("check_temperature.static").with("id", measurand.id);
+            reader.error(&section.span_of("id"), message, None);
+        }
+        if measurand.test != ids::Test::Temperature {
+            continue;
+        }
+        let warm_up = matches!(measurand.id, "warm_up_time" | "turn_on_transient");
+        let table = if warm_up { "warm_up_test" } else { "temperature_test" };
+        if root.table(table).is_none() {
+            let message =
+                Note::new("check_temperature.needs_table").with("id", measurand.id).with("table", table);
+            reader.error(&section.span_of("id"), message, None);
         }
     }
 }

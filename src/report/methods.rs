@@ -198,6 +198,28 @@ pub const METHODS: &[Method] = &[
         },
     },
     Method {
+        id: "thermal",
+        formulas: &[
+            "b(t) = Σₖ aₖ·Pₖ(x) + D·dT_c/dt + h·s + ν(t),  x = (2T_c − T₁ − T₂)/(T₂ − T₁)",
+            "dT_c/dt = (T − T_c)/τ;  S(f) = N² + B²/(2πf) + K²/(2πf)²",
+            "H = D·r − (db/dT)·τ·r + h",
+        ],
+        source: "IEEE Std 952, 12.11; Shupe 1980",
+        applies: |r| r.measurands.iter().any(|m| m.method == "thermal_gls"),
+    },
+    Method {
+        id: "thermal_noise",
+        formulas: &["N² = τ·Σ (ȳᵢ₊₂ − 2ȳᵢ₊₁ + ȳᵢ)² / (6n),  ν = n/1.944"],
+        source: "IEEE Std 952, Annex C",
+        applies: |r| measures(r, &["angle_random_walk_at_temperature"]),
+    },
+    Method {
+        id: "warm_up",
+        formulas: &["b(t) = b∞ + Σⱼ Aⱼ·exp(−t/tⱼ) + ν(t)"],
+        source: "IEEE Std 952, 12.5, 12.6",
+        applies: |r| measures(r, &["warm_up_time", "turn_on_transient"]),
+    },
+    Method {
         id: "guard_band",
         formulas: &["A = TL − z(1 − r)·u", "A = TL·√(χ²(r; ν) / ν)"],
         source: "JCGM 106:2012; ISO 14253-1:2017; ILAC-G8:09/2019",

@@ -1,7 +1,9 @@
 //! From a recording to the outcome.
 
 use super::pass::{Collected, HeldKey, Inside, Overview};
-use super::{Outcome, Request, RunError, figures, gyro_facts, power, settle, sigma_tau, verdict, warm_up};
+use super::{
+    Outcome, Request, RunError, figures, gyro_facts, power, settle, sigma_tau, thermal, verdict, warm_up,
+};
 use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::figure::Figure;
@@ -23,6 +25,7 @@ use crate::procedure::model::{EarthRate, Taus};
 use crate::record::{FaultRecord, Integrity, Window};
 use crate::recording::window::{WindowSpec, Windowed};
 use crate::recording::{Channel, Role};
+use crate::temperature::findings::Schedule;
 use crate::text::{Arg, Note};
 use std::collections::BTreeMap;
 
@@ -37,6 +40,15 @@ pub(super) struct Found {
     pub envelopes: BTreeMap<usize, Envelope>,
     pub grid: TauGrid,
     pub exact: bool,
+    /// The schedule of a test over temperature.
+    pub schedule: Option<Schedule>,
+}
+
+impl Found {
+    /// Whether the record is one at constant conditions, so that noise of the whole record has a meaning.
+    pub fn at_rest(&self) -> bool {
+        self.gyros.iter().all(|g| g.over_temperature.is_none() && g.warm_up.is_none())
+    }
 }
 
 pub(super) fn execute(
@@ -48,6 +60,7 @@ pub(super) fn execute(
     let warm_up: Vec<WarmUpFact> = found
         .gyros
         .iter()
+        .filter(|_| found.at_rest())
         .filter_map(|g| warm_up::fact(g, static_bias::uncertainty(g, true).standard()))
         .collect();
     let longest_gap_s = found
@@ -78,18 +91,22 @@ pub(super) fn execute(
         duration_s: found.report.duration_s,
         stated_serials: if request.kind == "run" { &stated_serials } else { &[] },
         serial: request.unit.serial.as_deref(),
+        schedule: found.schedule.as_ref(),
         today: request.now.date_naive(),
     });
     let rows = measure(request, &found);
     let drawn = draw(request, &found);
+    let compensation = thermal::tables(request, &found);
     let tables = found
         .gyros
         .iter()
+        .filter(|_| found.at_rest())
         .map(|g| {
             let name =
                 if g.several { format!("sigma_tau_{}.csv", g.channel) } else { "sigma_tau.csv".into() };
             (name, sigma_tau::csv(g))
         })
+        .chain(compensation)
         .collect();
     let powers = power::records(request.limits, &found.gyros);
     let record = settle::record(request, &found, conditions, rows, powers, &drawn);
@@ -147,7 +164,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     }
     let (overview, windowed, mut report) = found;
     let (inside, window) = windowed.finish();
-    let Collected { gyros, held } = inside.finish();
+    let Collected { gyros, held, means } = inside.finish();
     let tau0_s = tidy(report.tau0_measured_s);
     let several = gyros.len() > 1;
     let gyros: Vec<GyroEvidence> = gyros
@@ -157,6 +174,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
             Some(evidence(procedure, channel, several, tau0_s, digest))
         })
         .collect();
+    let (gyros, schedule) = thermal::examine(procedure, &channels, gyros, means.as_ref());
     if gyros.iter().all(|g| g.digest.samples < 2) {
         return Err(RunError::Nothing(if window.usable_s > 0.0 || procedure.conditions.warm_up_s == 0.0 {
             about(request, "run_error.too_few")
@@ -171,7 +189,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     declare_rails(&mut report.integrity, saturated);
     tidy_integrity(&mut report.integrity, tau0_s, &gyros);
     let envelopes = overview.finish();
-    Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact })
+    Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact, schedule })
 }
 
 /// A sentence about the recording.
@@ -290,6 +308,8 @@ fn evidence(
         goodness,
         lines,
         earth,
+        over_temperature: None,
+        warm_up: None,
     }
 }
 
@@ -301,7 +321,7 @@ fn measure(request: &Request<'_>, found: &Found) -> Vec<crate::record::Measurand
                 continue;
             }
             let options = Options { remove_earth_rate: spec.earth_rate == EarthRate::Remove };
-            if let Some(estimate) = crate::measurand::evaluate(spec.id.id, gyro, &options) {
+            for estimate in crate::measurand::evaluate_all(spec.id.id, gyro, &options) {
                 rows.push(verdict::row(&estimate, request.limits, request.procedure));
             }
         }
@@ -325,6 +345,10 @@ fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
                 &found.window,
                 found.tau0_s,
             ));
+        }
+        drawn.extend(figures::thermal::figures(gyro, found.schedule.as_ref(), request.procedure, &wanted));
+        if !found.at_rest() {
+            continue;
         }
         if wanted("sigma_tau") {
             let limit = |id: &str| request.limits.limit(id, &gyro.channel).map(|l| &l.limit);

@@ -15,8 +15,10 @@ fn gyro(g: &GyroEvidence, found: &Found) -> GyroFact {
     let facts = found.report.channels.iter().find(|c| c.id == g.channel);
     // Block means stand on the grid, which starts with the recording.
     let start_s = g.blocks().first_index as f64 * g.tau0_s;
-    let step = steadiness::bias_step(g.blocks(), g.tau0_s);
-    let change = steadiness::noise_change(g.blocks(), g.tau0_s);
+    // Over temperature and while it warms up a unit is not steady.
+    let rests = found.at_rest();
+    let step = steadiness::bias_step(g.blocks(), g.tau0_s).filter(|_| rests);
+    let change = steadiness::noise_change(g.blocks(), g.tau0_s).filter(|_| rests);
     GyroFact {
         channel: g.channel.clone(),
         mean_deg_h: g.digest.mean,

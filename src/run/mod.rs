@@ -20,6 +20,7 @@ mod table;
 mod table_known;
 mod table_others;
 mod table_steps;
+mod thermal;
 mod verdict;
 mod warm_up;
 

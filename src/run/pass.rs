@@ -8,6 +8,7 @@ use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::record::FaultRecord;
 use crate::recording::{Channel, Role, Sink, Slab};
+use crate::temperature::track::{Means, Track};
 use crate::text::{Lang, Note};
 use std::collections::BTreeMap;
 
@@ -19,6 +20,9 @@ pub struct Inside {
     /// Position among the channels, and digest.
     gyros: Vec<(usize, RateAccumulator)>,
     held: Vec<(HeldKey, usize, TemperatureTrack)>,
+    /// Block means of gyros and temperatures for tests over temperature and of the warm-up, with their positions among
+    /// the channels.
+    track: Option<(Vec<usize>, Track)>,
     start_s: f64,
 }
 
@@ -28,6 +32,8 @@ pub struct Collected {
     pub gyros: Vec<(usize, RateDigest)>,
     /// Quantities that must be held.
     pub held: BTreeMap<HeldKey, TemperatureFacts>,
+    /// Block means, and the channels that they are of.
+    pub means: Option<(Vec<usize>, Means)>,
 }
 
 impl Inside {
@@ -70,7 +76,15 @@ impl Inside {
                 held.push((("supply".to_owned(), i), slot, TemperatureTrack::new(0.0, tau0_s, Some(band))));
             }
         }
-        Inside { gyros, held, start_s }
+        let tracked = |c: &Channel| c.role.is_gyro() || c.role == Role::Temperature;
+        let asked = procedure.temperature_test.is_some() || procedure.warm_up_test.is_some();
+        let track = asked.then(|| {
+            let slots: Vec<usize> =
+                channels.iter().enumerate().filter(|(_, c)| tracked(c)).map(|(slot, _)| slot).collect();
+            let track = Track::new(slots.len(), tau0_s);
+            (slots, track)
+        });
+        Inside { gyros, held, track, start_s }
     }
 
     /// The same without the gyro channels: only what must be held.
@@ -83,7 +97,8 @@ impl Inside {
     pub fn finish(self) -> Collected {
         let gyros = self.gyros.into_iter().map(|(slot, digest)| (slot, digest.finish())).collect();
         let held = self.held.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?))).collect();
-        Collected { gyros, held }
+        let means = self.track.and_then(|(slots, track)| Some((slots, track.finish()?)));
+        Collected { gyros, held, means }
     }
 }
 
@@ -97,6 +112,13 @@ impl Sink for Inside {
         for (_, slot, track) in &mut self.held {
             if let Some(values) = slab.values.get(*slot) {
                 track.push(values, slab.time_s - self.start_s, slab.continues);
+            }
+        }
+        if let Some((slots, track)) = &mut self.track {
+            for (at, slot) in slots.iter().enumerate() {
+                if let Some(values) = slab.values.get(*slot) {
+                    track.push(at, values, slab.first_index);
+                }
             }
         }
     }

@@ -22,6 +22,8 @@ pub(super) fn record(
 ) -> RunRecord {
     let errors = errors(request);
     let (verdict, summary) = verdict::whole(&rows, &conditions, &errors);
+    // What is said of noise at rest has no meaning while the temperature moves.
+    let resting = || found.gyros.iter().filter(|_| found.at_rest());
     RunRecord {
         verdict,
         summary,
@@ -30,12 +32,12 @@ pub(super) fn record(
         integrity: found.report.integrity.clone(),
         window: found.window.clone(),
         measurands: rows,
-        lines: found.gyros.iter().flat_map(lines).collect(),
-        noise_models: found.gyros.iter().map(noise_model).collect(),
-        goodness_of_fit: found.gyros.iter().flat_map(goodness::records).collect(),
-        deviations: found.gyros.iter().flat_map(sigma_tau::records).collect(),
+        lines: resting().flat_map(lines).collect(),
+        noise_models: resting().map(noise_model).collect(),
+        goodness_of_fit: resting().flat_map(goodness::records).collect(),
+        deviations: resting().flat_map(sigma_tau::records).collect(),
+        comparison: resting().filter_map(super::comparison::record).collect(),
         explained: None,
-        comparison: found.gyros.iter().filter_map(super::comparison::record).collect(),
         power,
         options: options(request, found),
         figures: figures

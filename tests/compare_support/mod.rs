@@ -46,6 +46,8 @@ pub fn simulate(model: &Composite, hours: f64, tau0_s: f64, seed: u64) -> GyroEv
         identification,
         lines: vec![],
         earth: None,
+        over_temperature: None,
+        warm_up: None,
     }
 }
 

@@ -24,7 +24,14 @@ pub struct Condition {
 }
 
 /// Units that the name of an observed value ends in, longest first, with the unit.
-const ENDINGS: &[(&str, &str)] = &[("_deg_h", "deg/h"), ("_hz", "Hz"), ("_s", "s"), ("_h", "h")];
+const ENDINGS: &[(&str, &str)] = &[
+    ("_deg_c_h", "degC/h"),
+    ("_deg_c", "degC"),
+    ("_deg_h", "deg/h"),
+    ("_hz", "Hz"),
+    ("_s", "s"),
+    ("_h", "h"),
+];
 
 /// Values that the explanation states better.
 const IN_WORDS: &[&str] = &["difference"];

@@ -37,7 +37,8 @@ impl Matrix {
                 channels.push(row.channel.clone());
             }
         }
-        if !(2..=MOST).contains(&channels.len()) {
+        // Rows by zone or by ramp are a list, not a channel beside others.
+        if !(2..=MOST).contains(&channels.len()) || channels.iter().any(|c| c.contains('@')) {
             return None;
         }
         let mut lines: Vec<(&str, MatrixRow)> = vec![];

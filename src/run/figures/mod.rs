@@ -9,6 +9,7 @@ pub mod residual;
 pub mod scale_factor;
 pub mod sigma_tau;
 pub mod spectrum;
+pub mod thermal;
 pub mod time_series;
 
 use crate::figure::{Axis, Layer, Scale, Style};

@@ -1,0 +1,355 @@
+//! Bias over temperature: how much, how steep, what the rate of temperature, the lag and the history add, and what the
+//! model leaves. Statistics over temperature give every temperature the same weight.
+
+use super::{GyroEvidence, Measurand, Options};
+use crate::estimate::{Estimate, Spread, UpperLimit};
+use crate::ids;
+use crate::temperature::course::{legendre, legendre_slopes};
+use crate::temperature::findings::{Analysis, Findings};
+use crate::temperature::read::{self, Reading};
+use crate::temperature::sampler::Draw;
+use crate::text::{Arg, Note};
+use nalgebra::DVector;
+
+pub(super) struct OverTemperature;
+
+const IDS: &[&str] = &[
+    "bias_temperature_sensitivity",
+    "bias_temperature_sensitivity_max",
+    "bias_temperature_rate_sensitivity",
+    "thermal_lag",
+    "thermal_hysteresis",
+    "bias_over_temperature_peak_to_peak",
+    "bias_over_temperature_rms",
+    "bias_over_temperature_3sigma",
+    "bias_loop_width",
+    "bias_residual_rms",
+    "ramp_rate",
+    "angle_random_walk_at_temperature",
+];
+
+/// Name of the method of rows that come from the model over temperature.
+const METHOD: &str = "thermal_gls";
+/// Twice a log-likelihood ratio from which a lag counts as seen: χ² with one degree of freedom at 5 %.
+const SEEN: f64 = 3.84;
+/// Arguments at which a curve over temperature is read.
+const POINTS: usize = 81;
+/// Share of the range of lags beyond which a lag is not bounded.
+const UNBOUNDED: f64 = 0.9;
+
+impl Measurand for OverTemperature {
+    fn ids(&self) -> &'static [&'static str] {
+        IDS
+    }
+
+    fn evaluate(&self, id: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate> {
+        self.evaluate_all(id, gyro, options).into_iter().next()
+    }
+
+    fn evaluate_all(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Vec<Estimate> {
+        gyro.over_temperature.as_ref().map_or_else(Vec::new, |f| over_temperature(id, &gyro.channel, f))
+    }
+}
+
+/// Every row of a measurand over temperature on a channel.
+pub fn over_temperature(id: &str, channel: &str, found: &Findings) -> Vec<Estimate> {
+    match id {
+        "ramp_rate" => ramps(channel, found),
+        "angle_random_walk_at_temperature" => zones(channel, found),
+        id => match (&found.analysis, ids::find(id)) {
+            (Some(analysis), Some(m)) => {
+                Row { id: m.id, unit: m.unit, channel }.of(analysis).into_iter().collect()
+            }
+            (None, Some(m)) => {
+                let none = Estimate::not_identifiable(m.id, channel, None, m.unit, METHOD);
+                vec![none.note(Note::new("thermal.no_course"))]
+            }
+            (_, None) => vec![],
+        },
+    }
+}
+
+/// One ramp a row, its channel named after the temperature channel and its place in the schedule.
+fn ramps(channel: &str, found: &Findings) -> Vec<Estimate> {
+    let Some(schedule) = &found.schedule else { return vec![] };
+    let ramps = schedule.segments.iter().filter(|s| s.kind.is_ramp()).enumerate();
+    ramps
+        .map(|(i, s)| {
+            let spread = Spread::Normal { standard_uncertainty: s.rate_uncertainty_deg_c_h };
+            let name = format!("{channel}@ramp{}", i + 1);
+            Estimate::measured("ramp_rate", &name, s.rate_deg_c_h, "degC/h", spread, "theil_sen").note(
+                Note::new("thermal.ramp")
+                    .with("from_h", Arg::figures(s.from_s / 3600.0, 4))
+                    .with("to_h", Arg::figures(s.to_s / 3600.0, 4)),
+            )
+        })
+        .collect()
+}
+
+fn zones(channel: &str, found: &Findings) -> Vec<Estimate> {
+    let id = "angle_random_walk_at_temperature";
+    let unit = "deg/sqrt(h)";
+    let one = |z: &crate::temperature::zones::Zone| {
+        let name = format!("{channel}@{}", z.deg_c);
+        match z.n {
+            Some(n) => {
+                let spread = Spread::ChiSquare { dof: z.dof };
+                Estimate::measured(id, &name, n, unit, spread, "second_differences")
+                    .note(Note::new("thermal.zone").with("average_s", z.average_s))
+            }
+            None => Estimate::not_identifiable(id, &name, None, unit, "second_differences")
+                .note(Note::new("thermal.zone_empty")),
+        }
+    };
+    found.zones.iter().map(one).collect()
+}
+
+struct Row<'a> {
+    id: &'static str,
+    unit: &'static str,
+    channel: &'a str,
+}
+
+impl Row<'_> {
+    fn of(&self, a: &Analysis) -> Option<Estimate> {
+        let p = &a.posterior;
+        let order = p.terms.order;
+        match self.id {
+            "bias_temperature_sensitivity" => {
+                let reading = read::linear(&p.draws, |d| {
+                    // The line of least squares over temperature, weights even: the first Legendre coefficient alone.
+                    let mut w = DVector::zeros(d.coefficients.len());
+                    w[0] = 2.0 / (p.span.high - p.span.low);
+                    w
+                });
+                Some(self.measured(reading).note(self.model_note(a)))
+            }
+            "bias_temperature_sensitivity_max" => {
+                let at = steepest(a);
+                let reading = read::bent(&p.draws, |d, c| {
+                    let slopes = grid().map(|x| slope(c, order, x, a));
+                    let largest = slopes.max_by(|x, y| x.abs().total_cmp(&y.abs())).unwrap_or(0.0);
+                    // The steepest place may change its side from draw to draw; its sign is that of the best fit.
+                    let _ = d;
+                    largest.abs()
+                });
+                let sign = slope(&p.best.fitted.solved.coefficients, order, at, a).signum();
+                let note =
+                    Note::new("thermal.steepest").with("deg_c", Arg::figures(p.span.temperature(at), 3));
+                Some(self.measured(reading.scaled(sign)).note(note))
+            }
+            "bias_over_temperature_peak_to_peak" => {
+                let reading = read::bent(&p.draws, |_, c| {
+                    let values = grid().map(|x| value(c, order, x));
+                    let (low, high) =
+                        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+                    high - low
+                });
+                Some(self.measured(positive(reading)).note(self.span_note(a)))
+            }
+            "bias_over_temperature_rms" => Some(self.measured(rms(a)).note(self.span_note(a))),
+            "bias_over_temperature_3sigma" => Some(self.measured(rms(a).scaled(3.0)).note(self.span_note(a))),
+            "bias_loop_width" => self.loop_width(a),
+            "bias_temperature_rate_sensitivity" => self.rate_sensitivity(a),
+            "thermal_lag" => self.lag(a),
+            "thermal_hysteresis" => self.hysteresis(a),
+            "bias_residual_rms" => Some(self.residual(a)),
+            _ => None,
+        }
+    }
+
+    fn measured(&self, r: Reading) -> Estimate {
+        Estimate::measured(self.id, self.channel, r.value, self.unit, r.spread, METHOD)
+    }
+
+    fn none(&self, upper_limit: Option<UpperLimit>) -> Estimate {
+        Estimate::not_identifiable(self.id, self.channel, upper_limit, self.unit, METHOD)
+    }
+
+    fn span_note(&self, a: &Analysis) -> Note {
+        Note::new("thermal.span")
+            .with("low", Arg::figures(a.posterior.span.low, 3))
+            .with("high", Arg::figures(a.posterior.span.high, 3))
+    }
+
+    fn model_note(&self, a: &Analysis) -> Note {
+        let order = a.posterior.terms.order;
+        match a.orders.iter().find(|t| t.order == order) {
+            Some(t) => {
+                Note::new("thermal.order").with("order", order).with("rms", Arg::figures(t.held_out_rms, 3))
+            }
+            None => Note::new("thermal.order_fixed").with("order", order),
+        }
+    }
+
+    fn loop_width(&self, a: &Analysis) -> Option<Estimate> {
+        if !a.both_ways {
+            return Some(self.none(None).note(Note::new("thermal.one_way")));
+        }
+        let best = best_draw(a);
+        let widest = inner_grid()
+            .max_by(|x, y| {
+                gap(&best, &best.coefficients, *x, a)
+                    .abs()
+                    .total_cmp(&gap(&best, &best.coefficients, *y, a).abs())
+            })
+            .unwrap_or(0.0);
+        // At the place where the best fit is widest: a maximum over places would grow with the noise.
+        let reading = read::bent(&a.posterior.draws, |d, c| gap(d, c, widest, a));
+        let note = Note::new("thermal.loop")
+            .with("deg_c", Arg::figures(a.posterior.span.temperature(widest), 3))
+            .with("rate", Arg::figures(60.0 * a.ramp_deg_c_min, 3));
+        Some(self.measured(reading).note(note))
+    }
+
+    fn rate_sensitivity(&self, a: &Analysis) -> Option<Estimate> {
+        let Some(at) = a.posterior.terms.rate_at() else {
+            return Some(self.none(None).note(Note::new("thermal.one_way")));
+        };
+        let separable = a.separable(|s| s.rate);
+        if !separable {
+            return Some(self.none(None).note(inseparable(a)));
+        }
+        let reading = coefficient(a, at);
+        Some(self.measured(reading).note(separation_note(a)))
+    }
+
+    fn hysteresis(&self, a: &Analysis) -> Option<Estimate> {
+        let Some(at) = a.posterior.terms.hysteresis_at() else {
+            return Some(self.none(None).note(Note::new("thermal.one_way")));
+        };
+        let separable = a.separable(|s| s.hysteresis);
+        if !separable {
+            return Some(self.none(None).note(inseparable(a)));
+        }
+        Some(self.measured(coefficient(a, at).scaled(2.0)).note(separation_note(a)))
+    }
+
+    fn lag(&self, a: &Analysis) -> Option<Estimate> {
+        let p = &a.posterior;
+        let reading = read::of_states(&p.draws, |d| d.shape.first().copied().unwrap_or(0.0));
+        let separable = a.separable(|s| s.lag);
+        let upper = reading.spread.bound(reading.value, 0.95)?;
+        let bounded = upper < UNBOUNDED * p.longest_lag_s;
+        let limit = bounded.then_some(UpperLimit { value: upper, coverage: 0.95 });
+        if !separable || !bounded {
+            return Some(self.none(limit).note(inseparable(a)));
+        }
+        if p.lag_evidence < SEEN {
+            return Some(self.none(limit).note(Note::new("thermal.no_lag")));
+        }
+        Some(self.measured(reading).note(separation_note(a)))
+    }
+
+    fn residual(&self, a: &Analysis) -> Estimate {
+        let spread = Spread::ChiSquare { dof: a.residual_dof };
+        let mut e = Estimate::measured(self.id, self.channel, a.residual_rms, self.unit, spread, METHOD)
+            .note(Note::new("thermal.residual").with("average_s", Arg::figures(a.average_s, 4)));
+        let order = a.order;
+        if let Some(t) = a.orders.iter().find(|t| t.order == order) {
+            e = e.note(
+                Note::new("thermal.held_out")
+                    .with("rms", Arg::figures(t.held_out_rms, 3))
+                    .with("average_s", Arg::figures(t.average_s, 3)),
+            );
+        }
+        e
+    }
+}
+
+/// Arguments of the polynomial over the whole range.
+fn grid() -> impl Iterator<Item = f64> {
+    (0..POINTS).map(|i| 2.0 * i as f64 / (POINTS - 1) as f64 - 1.0)
+}
+
+/// Without the tenths at the ends, where branches turn round.
+fn inner_grid() -> impl Iterator<Item = f64> {
+    grid().filter(|x| x.abs() <= 0.8)
+}
+
+fn value(c: &DVector<f64>, order: usize, x: f64) -> f64 {
+    legendre(x, order).iter().zip(c.iter()).map(|(b, c)| b * c).sum()
+}
+
+fn slope(c: &DVector<f64>, order: usize, x: f64, a: &Analysis) -> f64 {
+    let p = &a.posterior.span;
+    legendre_slopes(x, order).iter().zip(c.iter()).map(|(b, c)| b * c).sum::<f64>() * 2.0 / (p.high - p.low)
+}
+
+fn steepest(a: &Analysis) -> f64 {
+    let c = &a.posterior.best.fitted.solved.coefficients;
+    let order = a.posterior.terms.order;
+    grid().max_by(|x, y| slope(c, order, *x, a).abs().total_cmp(&slope(c, order, *y, a).abs())).unwrap_or(0.0)
+}
+
+/// Root of the mean square about the mean, each temperature with the same weight: Σ cₖ²/(2k + 1).
+fn rms(a: &Analysis) -> Reading {
+    let order = a.posterior.terms.order;
+    positive(read::bent(&a.posterior.draws, |_, c| {
+        let square: f64 =
+            c.iter().take(order).enumerate().map(|(k, c)| c * c / (2.0 * (k + 1) as f64 + 1.0)).sum();
+        square.sqrt()
+    }))
+}
+
+/// A reading of what cannot be negative.
+fn positive(r: Reading) -> Reading {
+    let spread = match r.spread {
+        Spread::Curve(points) => Spread::Curve(points.into_iter().map(|(z, v)| (z, v.max(0.0))).collect()),
+        other => other,
+    };
+    Reading { value: r.value.max(0.0), spread }
+}
+
+fn best_draw(a: &Analysis) -> Draw {
+    let b = &a.posterior.best;
+    Draw {
+        shape: vec![b.shape.lag_s, b.shape.play_deg_c],
+        noise: b.fitted.noise,
+        coefficients: b.fitted.solved.coefficients.clone(),
+        covariance: b.fitted.solved.covariance.clone(),
+    }
+}
+
+/// Heating less cooling at one temperature of the sensor, at the rate r of the ramps: 2 (D r − b'(T) τ r + h).
+fn gap(draw: &Draw, c: &DVector<f64>, x: f64, a: &Analysis) -> f64 {
+    let terms = &a.posterior.terms;
+    let r = a.ramp_deg_c_min;
+    let of = |at: Option<usize>| at.and_then(|i| c.get(i)).copied().unwrap_or(0.0);
+    let lag_min = draw.shape.first().copied().unwrap_or(0.0) / 60.0;
+    2.0 * (of(terms.rate_at()) * r - slope(c, terms.order, x, a) * lag_min * r + of(terms.hysteresis_at()))
+}
+
+fn coefficient(a: &Analysis, at: usize) -> Reading {
+    read::linear(&a.posterior.draws, |d| {
+        let mut w = DVector::zeros(d.coefficients.len());
+        w[at] = 1.0;
+        w
+    })
+}
+
+/// How well the terms were told apart.
+fn separation_note(a: &Analysis) -> Note {
+    let s = a.separation;
+    let inflation = |f: fn(crate::temperature::separate::Separation) -> f64| {
+        Arg::figures(s.map_or(f64::INFINITY, f).min(1e6), 2)
+    };
+    Note::new("thermal.separation")
+        .with("rate", inflation(|s| s.rate))
+        .with("lag", inflation(|s| s.lag))
+        .with("hysteresis", inflation(|s| s.hysteresis))
+}
+
+/// What can be said in place of terms that the schedule does not tell apart: the half gap at the middle of the range,
+/// and the ramps that would tell.
+fn inseparable(a: &Analysis) -> Note {
+    let half = read::bent(&a.posterior.draws, |d, c| 0.5 * gap(d, c, 0.0, a));
+    let r = 60.0 * a.ramp_deg_c_min;
+    let other = if r > 12.0 { r / 3.0 } else { 3.0 * r };
+    Note::new("thermal.inseparable")
+        .with("half_gap", Arg::figures(half.value, 3))
+        .with("u", Arg::figures(half.standard_uncertainty(), 2))
+        .with("deg_c", Arg::figures(a.posterior.span.temperature(0.0), 3))
+        .with("rate", Arg::figures(r, 3))
+        .with("other", Arg::figures(other, 2))
+}

@@ -1,0 +1,175 @@
+//! The tables of a procedure that ask for a test over temperature, and for the warm-up time.
+
+use super::spec::{Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default};
+
+const REACHABLE: Range = Range::between(-273.15, 1000.0);
+
+/// What a stated segment may be.
+pub const SEGMENTS: &[Word] = &[
+    ("soak", "constant temperature before the first ramp"),
+    ("heating", "rising temperature"),
+    ("cooling", "falling temperature"),
+    ("dwell", "constant temperature after a ramp"),
+];
+
+pub(super) static TEMPERATURE_TEST: TableSpec = TableSpec {
+    name: "temperature_test",
+    doc: "A test over temperature: ramps and dwells, judged from the recording. Their table makes the measurands over \
+          temperature available.",
+    keys: &[
+        required(
+            "channel",
+            Kind::Id,
+            "\"temp\"",
+            "Channel with the role `temperature` that the bias is set against: the sensor nearest to the coil.",
+        ),
+        optional(
+            "command",
+            Kind::Id,
+            "\"chamber\"",
+            "Channel with the role `temperature` that holds what the chamber was told; segments are then found from it. Left out: from `channel`.",
+        ),
+        required("low", quantity("degC", REACHABLE), "\"-40 degC\"", "Lowest temperature to be reached."),
+        required("high", quantity("degC", REACHABLE), "\"60 degC\"", "Highest temperature to be reached."),
+        with_default(
+            "end_tolerance",
+            difference("degC", Range::POSITIVE),
+            "\"2 degC\"",
+            "\"2 degC\"",
+            "How far an end may be missed.",
+        ),
+        optional(
+            "overshoot",
+            difference("degC", Range::POSITIVE),
+            "\"3 degC\"",
+            "How far an end may be overshot; left out: not judged.",
+        ),
+        optional(
+            "ramp_rate",
+            difference("degC/h", Range::POSITIVE),
+            "\"20 degC/h\"",
+            "Nominal rate of the ramps; left out: any from `slowest` to `fastest`.",
+        ),
+        with_default(
+            "ramp_rate_tolerance",
+            quantity("1", Range::above_up_to(0.0, 0.5)),
+            "\"10 %\"",
+            "\"10 %\"",
+            "Largest relative difference from the nominal rate.",
+        ),
+        with_default(
+            "slowest",
+            difference("degC/h", Range::POSITIVE),
+            "\"4 degC/h\"",
+            "\"4 degC/h\"",
+            "Slowest ramp allowed.",
+        ),
+        with_default(
+            "fastest",
+            difference("degC/h", Range::POSITIVE),
+            "\"60 degC/h\"",
+            "\"60 degC/h\"",
+            "Fastest ramp allowed.",
+        ),
+        optional(
+            "dwell",
+            quantity("s", Range::POSITIVE),
+            "\"1 h\"",
+            "Least length of a dwell between ramps; left out: not judged.",
+        ),
+        with_default(
+            "dwell_drift",
+            difference("degC/h", Range::POSITIVE),
+            "\"1 degC/h\"",
+            "\"1 degC/h\"",
+            "How much the temperature may drift in the second half of a dwell.",
+        ),
+        with_default(
+            "ramps_each_way",
+            Kind::Number(Range::between(0.0, 100.0)),
+            "1",
+            "3",
+            "Ramps of each direction that there must be at least.",
+        ),
+        required(
+            "sensor_uncertainty",
+            difference("degC", Range::NOT_NEGATIVE),
+            "\"0.1 degC\"",
+            "Standard uncertainty (k = 1) of the sensor, calibration and drift included.",
+        ),
+        with_default(
+            "coverage_factor",
+            Kind::Number(Range::between(0.0, 4.0)),
+            "2.0",
+            "2.0",
+            "Multiple of the sensor's uncertainty by which requirements are narrowed.",
+        ),
+        with_default(
+            "zones",
+            Kind::Number(Range::between(0.0, 21.0)),
+            "5",
+            "5",
+            "Zones of temperature, evenly from `low` to `high`, in which the noise is determined.",
+        ),
+        with_default(
+            "residual_average",
+            quantity("s", Range::POSITIVE),
+            "\"100 s\"",
+            "\"100 s\"",
+            "Averaging time of what the model leaves.",
+        ),
+        with_default(
+            "highest_order",
+            Kind::Number(Range::between(1.0, 6.0)),
+            "6",
+            "4",
+            "Highest order of the polynomial in temperature; the order is chosen by holding out whole ramps.",
+        ),
+        optional(
+            "segment",
+            Kind::Tables(&SEGMENT),
+            "",
+            "Segments of the schedule; left out: found from the recording.",
+        ),
+    ],
+};
+
+static SEGMENT: TableSpec = TableSpec {
+    name: "temperature_test.segment",
+    doc: "A segment of the schedule, in the order of time.",
+    keys: &[
+        required("kind", Kind::Choice(SEGMENTS), "\"heating\"", "What it is."),
+        required(
+            "from",
+            quantity("s", Range::NOT_NEGATIVE),
+            "\"2 h\"",
+            "Start, from the beginning of the recording.",
+        ),
+        required(
+            "to",
+            quantity("s", Range::POSITIVE),
+            "\"7 h\"",
+            "End, from the beginning of the recording.",
+        ),
+    ],
+};
+
+pub(super) static WARM_UP_TEST: TableSpec = TableSpec {
+    name: "warm_up_test",
+    doc: "A test of the warm-up: the recording starts when the unit is switched on, and nothing is left out of it.",
+    keys: &[
+        required(
+            "band",
+            quantity("deg/h", Range::POSITIVE),
+            "\"0.01 deg/h\"",
+            "How far the bias may be from its final value once the unit is warm.",
+        ),
+        with_default(
+            "final_share",
+            quantity("1", Range::above_up_to(0.0, 0.5)),
+            "\"25 %\"",
+            "\"25 %\"",
+            "Share of the recording, at its end, whose mean is the final value.",
+        ),
+    ],
+};

@@ -1,0 +1,59 @@
+//! Tests over temperature and of the warm-up in a run: what is looked for, and the table that compensates.
+
+use super::Request;
+use super::evaluate::Found;
+use crate::measurand::GyroEvidence;
+use crate::procedure::Procedure;
+use crate::recording::Channel;
+use crate::temperature::compensation::Compensation;
+use crate::temperature::findings::{Findings, Schedule, findings, schedule};
+use crate::temperature::track::Means;
+use crate::temperature::warm_up;
+
+/// Adds what the tests showed to the evidence of each channel.
+pub(super) fn examine(
+    procedure: &Procedure,
+    channels: &[Channel],
+    mut gyros: Vec<GyroEvidence>,
+    means: Option<&(Vec<usize>, Means)>,
+) -> (Vec<GyroEvidence>, Option<Schedule>) {
+    let Some((slots, means)) = means else { return (gyros, None) };
+    let position = |id: &str| {
+        let slot = channels.iter().position(|c| c.id == id)?;
+        slots.iter().position(|s| *s == slot)
+    };
+    let mut found = None;
+    if let Some(test) = &procedure.temperature_test {
+        let temperature = position(&test.channel);
+        let command = test.command.as_deref().and_then(position);
+        found = temperature.and_then(|t| schedule(means, t, command, test));
+        for gyro in &mut gyros {
+            gyro.over_temperature = match (position(&gyro.channel), temperature) {
+                (Some(rate), Some(t)) => Some(findings(means, rate, t, found.clone(), test)),
+                _ => Some(Findings::nothing(test)),
+            };
+        }
+    }
+    if let Some(test) = &procedure.warm_up_test {
+        for gyro in &mut gyros {
+            gyro.warm_up = position(&gyro.channel).and_then(|rate| warm_up::find(means, rate, test));
+        }
+    }
+    (gyros, found)
+}
+
+/// Compensation tables of every channel with a model: TOML, JSON, C header.
+pub(super) fn tables(request: &Request<'_>, found: &Found) -> Vec<(String, String)> {
+    let mut out = vec![];
+    for gyro in &found.gyros {
+        let Some(analysis) = gyro.over_temperature.as_ref().and_then(|o| o.analysis.as_ref()) else {
+            continue;
+        };
+        let made = Compensation::of(analysis, &gyro.channel, request.unit.serial.as_deref());
+        let stem = gyro.figure_id("compensation");
+        out.push((format!("{stem}.toml"), made.toml()));
+        out.push((format!("{stem}.json"), made.json()));
+        out.push((format!("{stem}.h"), made.header()));
+    }
+    out
+}

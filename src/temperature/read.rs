@@ -1,0 +1,162 @@
+//! Numbers and their spreads from the draws of a model.
+
+use super::sampler::{Draw, normal};
+use crate::estimate::{Spread, normal_probability};
+use nalgebra::{DMatrix, DVector};
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Draws of the coefficients at each state.
+const EACH: usize = 12;
+/// Normal scores at which a spread is kept.
+const SCORES: usize = 65;
+/// Largest score.
+const FARTHEST: f64 = 3.2;
+
+/// A value with its spread.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Median.
+    pub value: f64,
+    /// Spread.
+    pub spread: Spread,
+}
+
+impl Reading {
+    /// Half of the central 68.3 %.
+    pub fn standard_uncertainty(&self) -> f64 {
+        let bound = |p: f64| self.spread.bound(self.value, p).unwrap_or(f64::NAN);
+        0.5 * (bound(0.841_344_7) - bound(0.158_655_3))
+    }
+
+    /// The same times a factor.
+    pub fn scaled(&self, factor: f64) -> Reading {
+        let spread = match &self.spread {
+            Spread::Curve(points) if factor >= 0.0 => {
+                Spread::Curve(points.iter().map(|(z, v)| (*z, v * factor)).collect())
+            }
+            Spread::Curve(points) => {
+                Spread::Curve(points.iter().rev().map(|(z, v)| (-z, v * factor)).collect())
+            }
+            other => other.clone(),
+        };
+        Reading { value: self.value * factor, spread }
+    }
+}
+
+fn scores() -> impl Iterator<Item = f64> {
+    (0..SCORES).map(|i| FARTHEST * (2.0 * i as f64 / (SCORES - 1) as f64 - 1.0))
+}
+
+/// A number that is linear in the coefficients: `weights` of the coefficients at a state.
+pub fn linear(draws: &[Draw], weights: impl Fn(&Draw) -> DVector<f64>) -> Reading {
+    let parts: Vec<(f64, f64)> = draws
+        .iter()
+        .map(|d| {
+            let w = weights(d);
+            let variance = (w.transpose() * &d.covariance * &w)[0].max(0.0);
+            (w.dot(&d.coefficients), variance.sqrt())
+        })
+        .collect();
+    let below = |x: f64| {
+        let one = |(m, s): &(f64, f64)| {
+            if *s > 0.0 { normal_probability((x - m) / s) } else { f64::from(u8::from(x >= *m)) }
+        };
+        parts.iter().map(one).sum::<f64>() / parts.len().max(1) as f64
+    };
+    let low = parts.iter().map(|(m, s)| m - 5.0 * s).fold(f64::INFINITY, f64::min);
+    let high = parts.iter().map(|(m, s)| m + 5.0 * s).fold(f64::NEG_INFINITY, f64::max);
+    let quantile = |p: f64| {
+        let (mut a, mut b) = (low, high);
+        for _ in 0..60 {
+            let middle = 0.5 * (a + b);
+            if below(middle) < p { a = middle } else { b = middle }
+        }
+        0.5 * (a + b)
+    };
+    let points: Vec<(f64, f64)> = scores().map(|z| (z, quantile(normal_probability(z)))).collect();
+    Reading { value: quantile(0.5), spread: Spread::Curve(points) }
+}
+
+/// A number that is not linear in the coefficients. The value at drawn coefficients is turned about the value at their
+/// mean, which takes the bias of a maximum or a square out to first order.
+pub fn bent(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x6265_6e74);
+    let mut values = Vec::with_capacity(draws.len() * EACH);
+    for draw in draws {
+        let p = draw.coefficients.len();
+        let factor = factor(&draw.covariance);
+        let middle = of(draw, &draw.coefficients);
+        for _ in 0..EACH {
+            let z = DVector::from_fn(p, |_, _| normal(&mut rng));
+            let drawn = &draw.coefficients + &factor * z;
+            values.push(2.0 * middle - of(draw, &drawn));
+        }
+    }
+    from_values(values)
+}
+
+/// A number of state and coefficients as it is drawn, for what has no bias to be taken out, such as a time.
+pub fn drawn(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x6472_6177);
+    let mut values = Vec::with_capacity(draws.len() * EACH);
+    for draw in draws {
+        let factor = factor(&draw.covariance);
+        for _ in 0..EACH {
+            let z = DVector::from_fn(draw.coefficients.len(), |_, _| normal(&mut rng));
+            values.push(of(draw, &(&draw.coefficients + &factor * z)));
+        }
+    }
+    from_values(values)
+}
+
+/// A number of the states themselves, such as the lag.
+pub fn of_states(draws: &[Draw], of: impl Fn(&Draw) -> f64) -> Reading {
+    from_values(draws.iter().map(of).collect())
+}
+
+/// A reading from draws.
+pub fn from_values(mut values: Vec<f64>) -> Reading {
+    values.retain(|v| v.is_finite());
+    values.sort_by(f64::total_cmp);
+    if values.is_empty() {
+        return Reading { value: f64::NAN, spread: Spread::Unknown };
+    }
+    let last = values.len() - 1;
+    let quantile = |p: f64| {
+        let at = p * last as f64;
+        let (i, rest) = (at.floor() as usize, at.fract());
+        values[i] + rest * (values[(i + 1).min(last)] - values[i])
+    };
+    let points: Vec<(f64, f64)> = scores().map(|z| (z, quantile(normal_probability(z)))).collect();
+    Reading { value: quantile(0.5), spread: Spread::Curve(points) }
+}
+
+/// A lower factor F with FFᵀ = C, where rows without variance stay zero.
+fn factor(covariance: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = covariance.nrows();
+    let mut l: DMatrix<f64> = DMatrix::zeros(n, n);
+    for j in 0..n {
+        let pivot = covariance[(j, j)] - (0..j).map(|k| l[(j, k)].powi(2)).sum::<f64>();
+        if pivot <= 1e-14 * covariance[(j, j)].abs() || pivot <= 0.0 {
+            continue;
+        }
+        l[(j, j)] = pivot.sqrt();
+        for i in j + 1..n {
+            let sum: f64 = (0..j).map(|k| l[(i, k)] * l[(j, k)]).sum();
+            l[(i, j)] = (covariance[(i, j)] - sum) / l[(j, j)];
+        }
+    }
+    l
+}
+
+/// Standard deviation of a number that is linear in the coefficients, over all draws.
+pub fn deviation(draws: &[Draw], weights: &DVector<f64>) -> f64 {
+    let n = draws.len().max(1) as f64;
+    let means: Vec<f64> = draws.iter().map(|d| weights.dot(&d.coefficients)).collect();
+    let inner =
+        draws.iter().map(|d| (weights.transpose() * &d.covariance * weights)[0].max(0.0)).sum::<f64>() / n;
+    let mean = means.iter().sum::<f64>() / n;
+    let outer = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / n;
+    (inner + outer).sqrt()
+}

@@ -1,0 +1,172 @@
+//! The time after switching on that a unit needs: one or two decays in slow noise.
+//!
+//! What is judged is the transient itself and not its noise: the last time at which it is farther from its final value
+//! than the band allows. Two decays are always allowed for: a second one that is not plainly there widens the interval.
+
+use super::gls::{Fitted, Modes};
+use super::read::{self, Reading};
+use super::sampler::{self, Draw, Range};
+use super::test::WarmUpTest;
+use super::track::{Means, bridged};
+
+/// Blocks at most.
+const BLOCKS: usize = 2048;
+/// Sweeps over what is not known.
+const SWEEPS: usize = 500;
+
+/// What was found.
+#[derive(Debug, Clone)]
+pub struct WarmUpFindings {
+    /// What was asked.
+    pub test: WarmUpTest,
+    /// Time until the transient stays within the band, s.
+    pub time: Reading,
+    /// True when the transient never left the band.
+    pub always_inside: bool,
+    /// Transient at the start of the recording, against the final value, deg/h.
+    pub transient: Reading,
+    /// Time constants of the best fit, s.
+    pub time_constants_s: Vec<f64>,
+    /// Length of the record, s.
+    pub length_s: f64,
+    /// Block means: time in s, deg/h.
+    pub blocks: Vec<(f64, f64)>,
+    /// The transient with the mean of the record, by block.
+    pub modelled: Vec<f64>,
+    /// Final value on the scale of the record, deg/h.
+    pub final_deg_h: f64,
+    /// True when the end of the record is not long enough after the transient to show a final value.
+    pub too_short: bool,
+}
+
+/// The transient as decays of given time constants at the middle of each block.
+fn columns(times: &[f64], constants: &[f64]) -> Vec<Vec<f64>> {
+    constants.iter().map(|c| times.iter().map(|t| (-t / c).exp()).collect()).collect()
+}
+
+/// Evaluates a record that starts when the unit is switched on.
+pub fn find(means: &Means, rate: usize, test: &WarmUpTest) -> Option<WarmUpFindings> {
+    let coarse = means.merged(means.len().div_ceil(BLOCKS).max(1));
+    let (y, _) = bridged(coarse.values.get(rate)?)?;
+    let n = y.len();
+    if n < 60 {
+        return None;
+    }
+    let times: Vec<f64> = (0..n).map(|i| coarse.first_s + (i as f64 + 0.5) * coarse.block_s).collect();
+    let length_s = n as f64 * coarse.block_s;
+    let modes = Modes::new(n, coarse.block_s);
+    let data = modes.of(&y);
+    let of =
+        |shape: &[f64]| -> Vec<Vec<f64>> { columns(&times, shape).iter().map(|c| modes.of(c)).collect() };
+    let (low, high) = (2.0 * coarse.block_s, 0.7 * length_s);
+    let (shape, fitted) = best(&modes, &data, &of, (low, high))?;
+    let ranges: Vec<Range> = shape.iter().map(|_| Range { low, high, log: true, step: 0.3 }).collect();
+    let draws: Vec<Draw> = sampler::sample(&modes, &data, &of, &ranges, (&shape, &fitted), SWEEPS);
+    if draws.is_empty() {
+        return None;
+    }
+    let from = ((1.0 - test.final_share) * n as f64) as usize;
+    let end = times.get(from..)?;
+    let rest = |constant: f64| end.iter().map(|t| (-t / constant).exp()).sum::<f64>() / end.len() as f64;
+    let at = |draw: &Draw, c: &nalgebra::DVector<f64>, t: f64| -> f64 {
+        draw.shape.iter().zip(c.iter()).map(|(k, a)| a * ((-t / k).exp() - rest(*k))).sum()
+    };
+    let settled = |draw: &Draw, c: &nalgebra::DVector<f64>| -> f64 {
+        let offset: f64 = draw.shape.iter().zip(c.iter()).map(|(k, a)| a * rest(*k)).sum();
+        let beyond = |t: f64| {
+            let f: f64 = draw.shape.iter().zip(c.iter()).map(|(k, a)| a * (-t / k).exp()).sum();
+            (f - offset).abs() - test.band_deg_h
+        };
+        // From the end backwards; then to the second.
+        let steps = 400;
+        let time = |i: usize| length_s * i as f64 / f64::from(steps);
+        let Some(last) = (0..=steps as usize).rev().find(|i| beyond(time(*i)) > 0.0) else { return 0.0 };
+        let (mut a, mut b) = (time(last), time(last + 1).min(length_s));
+        for _ in 0..30 {
+            let middle = 0.5 * (a + b);
+            if beyond(middle) > 0.0 { a = middle } else { b = middle }
+        }
+        0.5 * (a + b)
+    };
+    let time = read::drawn(&draws, settled);
+    let transient = read::drawn(&draws, |d, c| at(d, c, 0.0));
+    let best_columns = columns(&times, &shape);
+    let c = &fitted.solved.coefficients;
+    let raw: Vec<f64> =
+        (0..n).map(|i| best_columns.iter().zip(c.iter()).map(|(x, a)| a * x[i]).sum()).collect();
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let level = mean(&y) - mean(&raw);
+    let modelled: Vec<f64> = raw.iter().map(|v| v + level).collect();
+    let upper = time.spread.bound(time.value, 0.975).unwrap_or(length_s);
+    Some(WarmUpFindings {
+        test: test.clone(),
+        always_inside: upper <= 0.0,
+        too_short: upper > (1.0 - test.final_share) * length_s,
+        time,
+        transient,
+        time_constants_s: shape,
+        length_s,
+        blocks: times.iter().copied().zip(y.iter().copied()).collect(),
+        final_deg_h: mean(modelled.get(from..)?),
+        modelled,
+    })
+}
+
+/// Two decays where they can be told apart, else one, with the time constants.
+fn best(
+    modes: &Modes,
+    data: &[f64],
+    of: sampler::Columns<'_>,
+    range: (f64, f64),
+) -> Option<(Vec<f64>, Fitted)> {
+    let grid: Vec<f64> = (0..14).map(|i| range.0 * (range.1 / range.0).powf(f64::from(i) / 13.0)).collect();
+    let start = modes.fit(data, &of(&[(range.0 * range.1).sqrt()]), None)?;
+    let mut noise = start.noise;
+    let score =
+        |shape: &[f64], noise: &[f64; 3]| modes.solve(data, &of(shape), noise).map(|s| s.log_likelihood);
+    let climb = |shapes: Vec<Vec<f64>>, noise: &[f64; 3]| -> Option<(f64, Vec<f64>)> {
+        let rated = shapes.into_iter().filter_map(|s| Some((score(&s, noise)?, s)));
+        let mut best = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        for factor in [1.3, 1.1, 1.04] {
+            for _ in 0..6 {
+                let mut better = None;
+                for i in 0..best.1.len() {
+                    for f in [factor, 1.0 / factor] {
+                        let mut next = best.1.clone();
+                        next[i] = (next[i] * f).clamp(range.0, range.1);
+                        if let Some(l) = score(&next, noise).filter(|l| *l > best.0) {
+                            better = Some((l, next));
+                        }
+                    }
+                }
+                match better {
+                    Some(b) => best = b,
+                    None => break,
+                }
+            }
+        }
+        Some(best)
+    };
+    let one = climb(grid.iter().map(|g| vec![*g]).collect(), &noise)?;
+    let one_fit = modes.fit(data, &of(&one.1), Some(noise))?;
+    noise = one_fit.noise;
+    // A slow decay that is missing passes for a random walk, and a walk then hides it: the search goes on from both.
+    let quiet = [noise[0], 0.02 * noise[1], 0.02 * noise[2]];
+    let pairs: Vec<Vec<f64>> = grid
+        .iter()
+        .enumerate()
+        .flat_map(|(i, a)| grid.iter().skip(i + 2).map(move |b| vec![*a, *b]))
+        .collect();
+    let settled = |start: [f64; 3]| -> Option<(Fitted, Vec<f64>)> {
+        let first = climb(pairs.clone(), &start)?.1;
+        let fit = modes.fit(data, &of(&first), Some(start))?;
+        let second = climb(vec![first], &fit.noise)?.1;
+        Some((modes.fit(data, &of(&second), Some(fit.noise))?, second))
+    };
+    let two = [noise, quiet]
+        .into_iter()
+        .filter_map(settled)
+        .filter(|(_, t)| (t[0] / t[1]).ln().abs() > 0.4)
+        .max_by(|a, b| a.0.solved.log_likelihood.total_cmp(&b.0.solved.log_likelihood));
+    Some(two.map_or((one.1, one_fit), |(fit, t)| (t, fit)))
+}
