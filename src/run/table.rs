@@ -146,6 +146,7 @@ pub(super) fn usual_conditions(request: &Request<'_>, found: &Found) -> Vec<Cond
         stated_serials: &request.source.stated_serials(),
         serial: request.unit.serial.as_deref(),
         today: request.now.date_naive(),
+        schedule: None,
     })
 }
 
@@ -230,6 +231,7 @@ fn collect(
         envelopes: overview.finish(),
         grid: TauGrid::Octave,
         exact: false,
+        schedule: None,
     };
     Ok((found, run))
 }
