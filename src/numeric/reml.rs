@@ -22,7 +22,7 @@ pub struct Fit {
     pub residuals: DVector<f64>,
     /// Twice the restricted log-likelihood, but for a constant.
     pub twice_log_likelihood: f64,
-    /// Derivatives of the covariance by the strengths that are above zero.
+    /// Derivatives of the covariance by the strengths.
     slopes: Vec<DMatrix<f64>>,
     /// Covariance of those strengths.
     strength_covariance: DMatrix<f64>,
@@ -164,7 +164,7 @@ pub fn fit(
             break;
         }
     }
-    Some(finish(state, x, y, components, strengths, &units))
+    Some(finish(state, x, y, components, strengths))
 }
 
 fn evaluate(
@@ -231,18 +231,20 @@ fn finish(
     y: &DVector<f64>,
     components: &[DMatrix<f64>],
     strengths: Vec<f64>,
-    units: &[f64],
 ) -> Fit {
-    let active: Vec<usize> = (0..components.len()).filter(|k| strengths[*k] > 1e-9 * units[*k]).collect();
+    // A strength at its end of zero is no better known than one above it.
+    let active: Vec<usize> = (0..components.len()).collect();
     let p = projector(&state);
     let products: Vec<DMatrix<f64>> = active.iter().map(|k| &p * &components[*k]).collect();
     let information = DMatrix::from_fn(active.len(), active.len(), |i, j| {
         0.5 * products[i].component_mul(&products[j].transpose()).sum()
     });
-    let strength_covariance = information
-        .clone()
-        .pseudo_inverse(1e-12 * information.max().max(f64::MIN_POSITIVE))
-        .unwrap_or(information);
+    let least = 1e-12 * information.iter().fold(f64::MIN_POSITIVE, |m: f64, v| m.max(v.abs()));
+    let strength_covariance = if active.is_empty() {
+        information
+    } else {
+        information.clone().pseudo_inverse(least).unwrap_or(information)
+    };
     let slopes = active
         .iter()
         .map(|k| {

@@ -47,9 +47,9 @@ impl Rows {
         })
     }
 
-    /// Flicker with the one-sided density B²/(2πf): the strength is B², (deg/h)².
+    /// Flicker with the two-sided density B²/(2πf): the strength is B², (deg/h)².
     pub fn flicker(&self) -> DMatrix<f64> {
-        let h = 1.0 / (2.0 * std::f64::consts::PI);
+        let h = 1.0 / std::f64::consts::PI;
         // Second integral of ln|t|.
         let integral = |t: f64| {
             let t = t.abs();

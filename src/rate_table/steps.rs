@@ -256,8 +256,14 @@ fn step(
 /// Mean rate of the table over blocks, deg/h: turned angle over time where the angle was recorded.
 fn rate_of(list: &[Block], first: usize, end: usize, dt: f64, nominal: f64) -> f64 {
     let (a, b) = (&list[first], &list[end - 1]);
-    let samples = (b.first_index + u64::from(b.samples)).saturating_sub(a.first_index + 1);
-    let turned = b.angle_last - a.angle_first;
+    // Up to the reading with which the next block begins: neighbours share it, and its error goes out of their sum.
+    let (turned, samples) = match list.get(end).filter(|next| next.continues) {
+        Some(next) => (next.angle_first - a.angle_first, next.first_index - a.first_index),
+        None => {
+            let end = b.first_index + u64::from(b.samples);
+            (b.angle_last - a.angle_first, end.saturating_sub(a.first_index + 1))
+        }
+    };
     if turned.is_finite() && samples > 0 {
         // Arc seconds a second are degrees an hour.
         return turned / (samples as f64 * dt);

@@ -29,7 +29,7 @@ pub struct Bench {
     /// Bias, deg/h, and its change with temperature, deg/h/degC.
     pub bias: f64,
     pub bias_per_c: f64,
-    /// N, deg/sqrt(h); B, deg/h; K, deg/h/sqrt(h).
+    /// N, deg/sqrt(h); 1/f noise of the one-sided density b²/(2πf), deg/h; K, deg/h/sqrt(h).
     pub n: f64,
     pub b: f64,
     pub k: f64,
