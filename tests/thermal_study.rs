@@ -243,6 +243,16 @@ fn warm_up_times_cover() {
             (0..length as usize).rev().find(|t| (at(*t as f64) - end).abs() > 0.02).unwrap_or(0) as f64;
         let rows = sagnac::measurand::warm_up(&f, "rate");
         time.add(rows.iter().find(|e| e.id == "warm_up_time"), truth, None);
+        if let Some(e) = rows.iter().find(|e| e.id == "warm_up_time")
+            && e.interval95().is_some_and(|i| !(i.low..=i.high).contains(&truth))
+        {
+            eprintln!(
+                "{seed}: {decays:?} {model:?}: {truth} s, {:?} {:?}; {:?}",
+                e.value,
+                e.interval95(),
+                f.time_constants_s
+            );
+        }
         transient.add(rows.iter().find(|e| e.id == "turn_on_transient"), at(0.0) - end, None);
         if let Some(limit) = rows.iter().find(|e| e.id == "warm_up_time").and_then(|e| e.upper_limit) {
             bounded += 1;

@@ -11,6 +11,8 @@ use super::track::{Means, bridged};
 
 /// Blocks at most.
 const BLOCKS: usize = 2048;
+/// Logarithm of the ratio of two time constants at least, in the search for the best.
+const APART: f64 = 0.4;
 /// Sweeps over what is not known.
 const SWEEPS: usize = 500;
 
@@ -112,6 +114,11 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest) -> Option<WarmUpFindi
     })
 }
 
+/// Whether two time constants differ enough to be two decays.
+fn apart(constants: &[f64]) -> bool {
+    constants.windows(2).all(|w| (w[0] / w[1]).ln().abs() > APART)
+}
+
 /// Two decays where they can be told apart, else one, with the time constants.
 fn best(
     modes: &Modes,
@@ -134,7 +141,7 @@ fn best(
                     for f in [factor, 1.0 / factor] {
                         let mut next = best.1.clone();
                         next[i] = (next[i] * f).clamp(range.0, range.1);
-                        if let Some(l) = score(&next, noise).filter(|l| *l > best.0) {
+                        if let Some(l) = score(&next, noise).filter(|l| apart(&next) && *l > best.0) {
                             better = Some((l, next));
                         }
                     }
@@ -166,7 +173,6 @@ fn best(
     let two = [noise, quiet]
         .into_iter()
         .filter_map(settled)
-        .filter(|(_, t)| (t[0] / t[1]).ln().abs() > 0.4)
         .max_by(|a, b| a.0.solved.log_likelihood.total_cmp(&b.0.solved.log_likelihood));
     Some(two.map_or((one.1, one_fit), |(fit, t)| (t, fit)))
 }
