@@ -156,9 +156,8 @@ pub(super) fn write(
         .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
     let html = renderer.render_view("explain.html", view, lang).map_err(|e| say(e.note()))?;
     let markdown = renderer.render_view("explain.md", view, lang).map_err(|e| say(e.note()))?;
-    let write = |name: &str, bytes: &[u8]| {
-        folder.write(&format!("{before}{name}"), bytes).map_err(|e| say(e.note()))
-    };
+    let write =
+        |name: &str, bytes: &[u8]| folder.write(&format!("{before}{name}"), bytes).map_err(|e| say(e.note()));
     write("explain.json", &json)?;
     if let Some(correction) = &outcome.correction {
         write("correction.csv", csv(correction).as_bytes())?;

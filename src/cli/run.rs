@@ -3,13 +3,13 @@
 use super::explain::Watch;
 use super::progress::Progress;
 use super::{GridArgs, RunArgs, exit, place};
+use crate::claim::Claim;
 use crate::estimate::Verdict;
 use crate::ingest::manifest::Manifest;
 use crate::ingest::{RecordingError, Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
 use crate::output::StagedFolder;
 use crate::procedure::{effective, load, load_limits};
-use crate::claim::Claim;
 use crate::record::{ExplainedRecord, RunRecord, UnitUnderTest};
 use crate::report::explain::{Context, ExplainView, explained_says};
 use crate::report::{Renderer, render_html, render_markdown, svg};

@@ -3,9 +3,9 @@
 use super::diagnostics::{Problems, SourceText};
 use super::limits::{self, LimitsFile};
 use super::model::{
-    Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, ExplainSpec, FaultBudget, Instrument, MeasurandSpec,
-    Orientation, Procedure, RecordingSpec, ReportSpec, Site, SupplyCondition, Taus, TemperatureCondition,
-    UnitSpec, Waiver,
+    Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, ExplainSpec, FaultBudget, Instrument,
+    MeasurandSpec, Orientation, Procedure, RecordingSpec, ReportSpec, Site, SupplyCondition, Taus,
+    TemperatureCondition, UnitSpec, Waiver,
 };
 use super::reader::{Reader, checked};
 use super::section::{Entry, Section};

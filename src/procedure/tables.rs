@@ -70,7 +70,12 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
         ),
         optional("rate_table", Kind::Table(&RATE_TABLE), "", "A test on a rate table."),
         optional("analysis", Kind::Table(&ANALYSIS), "", "Options of the analysis."),
-        optional("explain", Kind::Table(&EXPLAIN), "", "The recording against the model of the unit's family."),
+        optional(
+            "explain",
+            Kind::Table(&EXPLAIN),
+            "",
+            "The recording against the model of the unit's family.",
+        ),
         optional("temperature_test", Kind::Table(&TEMPERATURE_TEST), "", "A test over temperature."),
         optional("warm_up_test", Kind::Table(&WARM_UP_TEST), "", "A test of the warm-up."),
         required(
