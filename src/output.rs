@@ -117,7 +117,7 @@ impl Kind {
         name == "figures"
             || match self {
                 Kind::Result => {
-                    matches!(name, "result.json" | "report.html" | "report.md")
+                    matches!(name, "result.json" | "report.html" | "report.md" | "explain")
                         || (name.starts_with("sigma_tau") && name.ends_with(".csv"))
                         || name == "table_steps.csv"
                         || (name.starts_with("compensation")

@@ -121,6 +121,7 @@ pub fn all(
         out.extend(comb(scene, &powers));
     }
     out.extend(levels(scene, &white));
+    out.extend(super::lags::all(scene, &white));
     out.extend(super::tiles::all(scene, &white.modes));
     out.extend(off_lattice(scene, &white, lattice_arcsec).and_then(|values| tails(scene, &values, usable)));
     out.extend(skewness(scene, &white));

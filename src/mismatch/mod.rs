@@ -16,6 +16,7 @@ mod identify;
 mod improvement;
 pub mod impute;
 mod instant;
+mod lags;
 pub mod lattice;
 pub mod local;
 pub mod noise_fit;

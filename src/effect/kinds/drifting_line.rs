@@ -167,6 +167,8 @@ impl Course for DriftingLine {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
 
     #[test]
     fn a_sweep_is_found_at_its_frequency_and_rate() {
@@ -174,11 +176,11 @@ mod tests {
         let drivers = Drivers { dt_s: 0.5, start_s: 7.0, samples: n, averaged: 1, ..Drivers::default() };
         for drift in [4e-5, -2.5e-5] {
             let (f, power) = (0.31, 0.04);
-            // A fast residue of the index is as good as noise here.
+            let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(3);
+            let mut noise = || -> f64 { StandardNormal.sample(&mut rng) };
             let residual: Vec<f64> = wave(0.1, 40.0, &columns(f, drift, middle_s(&drivers), &drivers))
                 .iter()
-                .enumerate()
-                .map(|(i, x)| x + (((i as u64 * 2_654_435_761) % 1_000_003) as f64 / 1e6 - 0.5) * 0.69)
+                .map(|x| x + 0.2 * noise())
                 .collect();
             let score: Vec<f64> = residual.iter().map(|r| r / power).collect();
             let (modes, powers) = (crate::numeric::cosine::dct2(&residual), vec![power; n]);

@@ -68,6 +68,23 @@ fn law(fitted: &[f64]) -> [f64; 3] {
     }
 }
 
+/// What means over the sampling interval have of the law at `x` cycles a sample, aliases included:
+/// sin²(πx)/π² Σ_k x^α |x + k|^(−2−α).
+fn averaged(exponent: f64, x: f64) -> f64 {
+    if x <= 1e-9 {
+        return 1.0;
+    }
+    let s = 2.0 + exponent;
+    let side = |from: f64| {
+        let sum: f64 = (0..8).map(|k| (from + f64::from(k)).powf(-s)).sum();
+        // The rest by Euler and Maclaurin.
+        let far = from + 8.0;
+        sum + far.powf(1.0 - s) / (s - 1.0) + 0.5 * far.powf(-s) + s / 12.0 * far.powf(-s - 1.0)
+    };
+    let sine = (std::f64::consts::PI * x).sin() / std::f64::consts::PI;
+    sine * sine * x.powf(exponent) * (side(x) + side(1.0 - x))
+}
+
 impl Spectrum for PowerLawNoise {
     fn act(&self) -> SpectrumAct {
         SpectrumAct::Adds
@@ -75,7 +92,7 @@ impl Spectrum for PowerLawNoise {
 
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
         let [density, exponent, at] = law(fitted);
-        density * (bin.frequency_hz / at).powf(-exponent)
+        density * (bin.frequency_hz / at).powf(-exponent) * averaged(exponent, bin.frequency_hz * bin.dt_s)
     }
 
     fn moves(&self, _fitted: &[f64], parameter: usize) -> bool {
@@ -119,7 +136,7 @@ impl Spectrum for PowerLawNoise {
         // ∫ 2σ²T/(1 + (2πfT)²) dT/T over all T, σ² = c T^(α−1), is c (2πf)^−α π/sin(πα/2).
         let sum = PI / (0.5 * PI * exponent).sin() * (2.0 * PI * at).powf(-exponent);
         let c = density / sum * LN_2;
-        for octave in -3..32 {
+        for octave in -24..32 {
             let decay_time_s = dt_s * 2f64.powi(octave);
             let rms_deg_h = (c * decay_time_s.powf(exponent - 1.0)).sqrt();
             noise.markov.push(Damped { rms_deg_h, frequency_hz: 0.0, decay_time_s });
@@ -147,7 +164,7 @@ mod tests {
             let (dt_s, fitted) = (0.1, [3.0, exponent, 0.02]);
             let mut noise = Composite::default();
             PowerLawNoise.compose(&fitted, dt_s, &mut noise);
-            for frequency_hz in [1e-4, 1e-3, 1e-2, 0.1] {
+            for frequency_hz in [1e-4, 1e-3, 1e-2, 0.1, 1.0, 4.0] {
                 let sum: f64 =
                     noise.markov.iter().map(|m| m.densities(dt_s, Sampling::Averaging)(frequency_hz)).sum();
                 let bin = ModeBin { frequency_hz, mode: 1, modes: 1, samples: 1000, dt_s };

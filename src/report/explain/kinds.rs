@@ -139,6 +139,7 @@ pub const TESTS: &[(&str, &str)] = &[
     ("level", "explain.test.level"),
     ("local_power", "explain.test.local_power"),
     ("comb", "explain.test.comb"),
+    ("lag", "explain.test.lag"),
     ("tile", "explain.test.tile"),
     ("tails", "explain.test.tails"),
     ("skewness", "explain.test.skewness"),

@@ -1,0 +1,71 @@
+//! Autocorrelation of the whitened residual: what comes a second time, some time later.
+
+use super::departures::{Departure, White};
+use super::scene::Scene;
+use crate::effect::{Domain, Place};
+use crate::estimate::normal_two_sided;
+
+/// Longest lag, in samples, and as a share of the record.
+const LONGEST: usize = 20_000;
+const SHARE: usize = 8;
+/// Fewest samples.
+const FEWEST: usize = 256;
+
+/// The lag at which the whitened residual is most correlated with itself; under a true hypothesis the correlation at each
+/// lag has a variance of one over the number of samples.
+pub fn all(scene: &Scene, white: &White) -> Option<Departure> {
+    let n = white.series.len();
+    if n < FEWEST {
+        return None;
+    }
+    let mut planner = realfft::RealFftPlanner::<f64>::new();
+    let (forward, inverse) = (planner.plan_fft_forward(2 * n), planner.plan_fft_inverse(2 * n));
+    let mut padded = white.series.clone();
+    padded.resize(2 * n, 0.0);
+    let mut spectrum = forward.make_output_vec();
+    forward.process(&mut padded, &mut spectrum).ok()?;
+    for v in &mut spectrum {
+        *v = realfft::num_complex::Complex::new(v.norm_sqr(), 0.0);
+    }
+    let mut sums = inverse.make_output_vec();
+    inverse.process(&mut spectrum, &mut sums).ok()?;
+    let longest = (n / SHARE).min(LONGEST);
+    let variance = sums[0] / n as f64;
+    // Of n − k products the sum has a standard deviation of √(n − k) variances.
+    let z = |k: usize| sums[k] / (variance * ((n - k) as f64).sqrt());
+    let lag = (1..=longest).max_by(|a, b| z(*a).abs().total_cmp(&z(*b).abs()))?;
+    let z = z(lag);
+    let dt = scene.drivers.dt_s;
+    let place = Place { domain: Domain::Lag, from: (lag as f64 - 0.5) * dt, to: (lag as f64 + 0.5) * dt };
+    let p_value = (normal_two_sided(z) * longest as f64).clamp(1e-300, 1.0);
+    Some(Departure { test: "lag", place, beside: None, p_value })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Drivers;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    fn tested(seed: u64, echo: f64) -> Departure {
+        let (n, lag) = (4096, 37);
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+        let noise: Vec<f64> = (0..n + lag).map(|_| StandardNormal.sample(&mut rng)).collect();
+        let series: Vec<f64> = (0..n).map(|i| noise[i + lag] + echo * noise[i]).collect();
+        let drivers = Drivers { dt_s: 0.5, samples: n, averaged: 1, ..Drivers::default() };
+        let scene = Scene::new(drivers, &series, &[]);
+        let modes = crate::numeric::cosine::dct2(&series);
+        let white = White { modes, series, roots: vec![1.0; n] };
+        all(&scene, &white).expect("long enough")
+    }
+
+    #[test]
+    fn an_echo_is_found_at_its_lag_and_white_noise_has_none() {
+        let found = tested(1, -0.15);
+        assert!(found.p_value < 1e-9 && found.place.from < 18.5 && found.place.to > 18.5, "{found:?}");
+        let small = (2..302).filter(|seed| tested(*seed, 0.0).p_value < 0.05).count();
+        // 15 at the most, by Bonferroni, and 4.5 standard deviations of that.
+        assert!(small <= 32, "{small} of 300");
+    }
+}
