@@ -127,7 +127,7 @@ impl<'a> Placed<'a> {
 
     /// Standard deviation that the rms of a course has from a nuisance of the claim that the course takes over: how much
     /// of the two is the claim's own is known no better than the claim states it.
-    fn from_nuisance(&self, series: &[f64]) -> f64 {
+    fn nuisance_deviation(&self, series: &[f64]) -> f64 {
         let Some(replaced) = self.course.replaces() else { return 0.0 };
         let Some(nuisance) = self.scene.nuisances.iter().find(|n| n.nuisance == replaced) else { return 0.0 };
         let modes = self.scene.transform(series);
@@ -265,7 +265,7 @@ fn of_course(
         out.stated.insert(name.to_owned(), Value::List(list));
     }
     let series = summed(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
-    let deviation = deviations.last().copied().unwrap_or(f64::NAN).hypot(placed.from_nuisance(&series));
+    let deviation = deviations.last().copied().unwrap_or(f64::NAN).hypot(placed.nuisance_deviation(&series));
     if spread.is_finite() && deviation.is_finite() && spread > 0.0 {
         let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();
         // A course without coefficients is as large as its shape makes it.
