@@ -25,6 +25,18 @@ pub fn group(lsb_arcsec: f64, claim: &Claim, samples: usize) -> usize {
     (wanted as usize).clamp(1, (samples / FEWEST).max(1))
 }
 
+/// The recording in averages over `m` samples with what the claim expects averaged as well: on a table that turns, the
+/// mean of what is expected is not what is expected at the mean angle. `expected` gives the latter of a recording.
+pub fn about_the_claim(regular: &Regular, m: usize, expected: impl Fn(&Regular) -> Vec<f64>) -> Regular {
+    let mut out = averaged(regular, m);
+    let fine = crate::effect::averages(&expected(regular), m);
+    let coarse = expected(&out);
+    for ((rate, fine), coarse) in out.rate.iter_mut().zip(&fine).zip(&coarse) {
+        *rate += coarse - fine;
+    }
+    out
+}
+
 /// The recording in averages over `m` samples. An average counts as present where all its samples are.
 pub fn averaged(regular: &Regular, m: usize) -> Regular {
     let means = |values: &[f64]| crate::effect::averages(values, m);
@@ -47,5 +59,33 @@ pub fn averaged(regular: &Regular, m: usize) -> Regular {
         columns,
         gaps: regular.gaps.clone(),
         disordered: regular.disordered,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_expected_on_a_turning_table_leaves_nothing_in_averages() {
+        let angles: Vec<f64> = (0..400).map(|i| (37.0 * f64::from(i)).rem_euclid(360.0)).collect();
+        let expected = |r: &Regular| -> Vec<f64> {
+            r.columns[&Column::TableAngle].iter().map(|a| 13.0 * a.to_radians().cos()).collect()
+        };
+        let mut regular = Regular {
+            dt_s: 2.0,
+            start_s: 0.0,
+            rate: vec![],
+            present: vec![true; 400],
+            columns: std::collections::BTreeMap::from([(Column::TableAngle, angles)]),
+            gaps: vec![],
+            disordered: 0,
+        };
+        regular.rate = expected(&regular);
+        let out = about_the_claim(&regular, 4, expected);
+        for (rate, expected) in out.rate.iter().zip(expected(&out)) {
+            assert!((rate - expected).abs() < 1e-9, "{rate} {expected}");
+        }
+        assert_eq!(out.rate.len(), 100);
     }
 }

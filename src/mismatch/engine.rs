@@ -9,7 +9,7 @@ use super::hypothesis::fit;
 use super::local;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
-use super::problem::Problem;
+use super::problem::{Problem, drivers};
 use super::regular::{Irregular, Regular};
 use super::samples::{self, Named};
 use super::select::{self, Selection};
@@ -111,7 +111,8 @@ fn uncoarsened(problem: Problem, found: &mut Found, alpha: f64) -> Problem {
         }
     }
     claim.sample_rate_hz = problem.claim.sample_rate_hz / m as f64;
-    Problem::new(coarse::averaged(&problem.regular, m), &claim)
+    let expected = |r: &Regular| drivers(r, &claim).claimed_mean();
+    Problem::new(coarse::about_the_claim(&problem.regular, m, expected), &claim)
 }
 
 /// What was found in single samples.

@@ -161,7 +161,7 @@ fn scenes(
     Scenes { full, slow, lattice_arcsec, rows }
 }
 
-fn drivers(regular: &Regular, claim: &Claim) -> Drivers {
+pub(super) fn drivers(regular: &Regular, claim: &Claim) -> Drivers {
     let column = |c: Column| regular.columns.get(&c).cloned();
     let temperature = column(Column::Temperature);
     Drivers {
