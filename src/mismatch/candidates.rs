@@ -3,9 +3,8 @@
 use super::hypothesis::{CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, part_modes};
 use super::noise_fit::{self, Noise, SpectrumIn, base_index};
 use super::scene::Scene;
-use crate::effect::{
-    Course, Drivers, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct,
-};
+use super::shape::{first_steps, free_numbers, refine};
+use crate::effect::{Course, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct};
 use crate::estimate::chi_square_tail;
 use crate::numeric::cosine::inverse_dct2;
 use rayon::prelude::*;
@@ -222,96 +221,6 @@ impl ShapeSearch<'_> {
         let normal = self.normal.with(&self.columns, &new, &data, parts.fixed.is_some(), &ground.inverse);
         0.5 * (ground.left - normal.solve().2)
     }
-}
-
-/// Numbers of a shape that are searched over. One that is whole has few values: it counts in the p-value alone.
-pub fn free_numbers(course: &dyn Course, bounds: &[(f64, f64)]) -> usize {
-    let free = |(i, (low, high)): (usize, &(f64, f64))| high > low && !course.whole().contains(&i);
-    bounds.iter().enumerate().filter(|b| free(*b)).count()
-}
-
-/// First steps of a local search: none where a number is whole.
-pub fn first_steps(course: &dyn Course, drivers: &Drivers) -> Vec<Option<f64>> {
-    let steps = course.steps(drivers);
-    let numbers = course.bounds(drivers).len();
-    (0..numbers)
-        .map(|i| if course.whole().contains(&i) { Some(0.0) } else { steps.get(i).copied() })
-        .collect()
-}
-
-/// Improves a shape by steps along each of its numbers, on a logarithmic scale where its bounds are positive and far
-/// apart, halving the steps.
-///
-/// `first` are the first steps, on that scale; empty: by the bounds.
-pub fn refine(
-    start: &[f64],
-    bounds: &[(f64, f64)],
-    first: &[Option<f64>],
-    evaluations: usize,
-    gain: impl Fn(&[f64]) -> f64,
-) -> (Vec<f64>, f64) {
-    let logarithmic: Vec<bool> = bounds.iter().map(|(low, high)| *low > 0.0 && high / low > 20.0).collect();
-    let to = |i: usize, x: f64| if logarithmic[i] { x.max(1e-300).ln() } else { x };
-    let from = |i: usize, u: f64| if logarithmic[i] { u.exp() } else { u };
-    let mut at = start.to_vec();
-    for (x, (low, high)) in at.iter_mut().zip(bounds) {
-        *x = x.clamp(*low, *high);
-    }
-    let mut best = gain(&at);
-    let mut used = 1;
-    let mut steps: Vec<f64> = (0..at.len())
-        .map(|i| {
-            let width = to(i, bounds[i].1) - to(i, bounds[i].0);
-            if let Some(Some(step)) = first.get(i) {
-                return step.min(width);
-            }
-            if logarithmic[i] { 0.35f64.min(width) } else { (0.01 * width).max(0.0) }
-        })
-        .collect();
-    let finest: Vec<f64> = steps.iter().map(|s| s * 1e-5).collect();
-    while used < evaluations && steps.iter().zip(&finest).any(|(s, f)| *s > *f) {
-        let mut moved = false;
-        for i in 0..at.len() {
-            if steps[i] <= 0.0 {
-                continue;
-            }
-            let here = to(i, at[i]);
-            let mut sides = [f64::NEG_INFINITY; 2];
-            for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
-                let mut next = at.clone();
-                next[i] = from(i, here + sign * steps[i]).clamp(bounds[i].0, bounds[i].1);
-                if next[i] == at[i] {
-                    continue;
-                }
-                let got = gain(&next);
-                used += 1;
-                sides[side] = got;
-                if got > best {
-                    (best, at) = (got, next);
-                    moved = true;
-                    break;
-                }
-            }
-            if !moved && sides.iter().all(|s| s.is_finite()) {
-                // Three points around the best: the top of their parabola.
-                let curve = sides[0] + sides[1] - 2.0 * best;
-                if curve < 0.0 {
-                    let mut next = at.clone();
-                    let shift = 0.5 * steps[i] * (sides[1] - sides[0]) / curve;
-                    next[i] = from(i, here + shift).clamp(bounds[i].0, bounds[i].1);
-                    let got = gain(&next);
-                    used += 1;
-                    if got > best {
-                        (best, at) = (got, next);
-                    }
-                }
-            }
-        }
-        if !moved {
-            steps.iter_mut().for_each(|s| *s *= 0.3);
-        }
-    }
-    (at, best)
 }
 
 fn try_course(

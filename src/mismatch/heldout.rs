@@ -1,11 +1,12 @@
 //! Held-out figures: ten blocks of equal time, the parameters from blocks 1, 3, 5, 7, 9, judged on 2, 4, 6, 8, 10. Each
 //! block is looked at about its own mean.
 
-use super::candidates::{Tried, first_steps, refine};
+use super::candidates::Tried;
 use super::hypothesis::{Hypothesis, LeastSquares, Normal, PartModes, fit, kept, part_modes};
 use super::noise_fit::whittle;
 use super::problem::Problem;
 use super::scene::Scene;
+use super::shape::{first_steps, refine};
 use crate::numeric::cosine::inverse_dct2;
 
 /// Blocks.

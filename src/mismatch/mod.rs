@@ -20,6 +20,7 @@ mod lags;
 pub mod lattice;
 pub mod local;
 pub mod noise_fit;
+mod nuisances;
 pub mod options;
 pub mod outcome;
 pub mod problem;
@@ -28,6 +29,7 @@ pub mod regular;
 pub mod samples;
 pub mod scene;
 pub mod select;
+mod shape;
 mod single_cause;
 pub mod tiles;
 

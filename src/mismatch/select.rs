@@ -1,9 +1,10 @@
 //! The fewest effects that make the recording an ordinary draw: a beam of hypotheses grown by ΔBIC behind gates, then
 //! pruned, then asked what else would have served as well.
 
-use super::candidates::{Candidate, Scenes, Tried, all, free_numbers};
+use super::candidates::{Candidate, Scenes, Tried, all};
 use super::hypothesis::{CourseIn, Hypothesis, fit};
 use super::noise_fit::{Noise, SpectrumIn, base_index};
+use super::shape::free_numbers;
 use crate::effect::{Effect, Model, SpectrumAct};
 
 /// ΔBIC that an effect must bring, and within which two are equivalent.

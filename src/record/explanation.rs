@@ -1,5 +1,7 @@
 //! What an explanation says, as `explain.json` has it.
 
+use super::NoteSchema;
+use crate::text::Note;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -194,4 +196,16 @@ pub struct Experiment {
     /// How many times as long a record tells them apart in 95 of 100, if length alone can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub times_longer: Option<f64>,
+}
+
+/// A recording against the model of its family.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ExplainedRecord {
+    /// The model.
+    pub model: String,
+    /// What came of it.
+    pub explanation: Option<Explanation>,
+    /// Why nothing came of it.
+    #[schemars(with = "Option<NoteSchema>")]
+    pub error: Option<Note>,
 }

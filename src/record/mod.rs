@@ -18,6 +18,7 @@ pub use comparison::{
     ShareRecord, WindowRecord,
 };
 pub use deviation::DeviationRecord;
+pub use explanation::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
 pub use table_step::TableStepRecord;
@@ -91,18 +92,6 @@ pub struct RunRecord {
     /// Errors that made the verdict `error`.
     #[schemars(with = "Vec<NoteSchema>")]
     pub errors: Vec<Note>,
-}
-
-/// A recording against the model of its family.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct ExplainedRecord {
-    /// The model.
-    pub model: String,
-    /// What came of it.
-    pub explanation: Option<explanation::Explanation>,
-    /// Why nothing came of it.
-    #[schemars(with = "Option<NoteSchema>")]
-    pub error: Option<Note>,
 }
 
 /// How a [`Note`] appears in JSON.

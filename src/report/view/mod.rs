@@ -7,6 +7,7 @@ mod comparison;
 mod conditions;
 mod deviations;
 mod evidence;
+mod explained;
 mod faults;
 mod goodness;
 mod matrix;
@@ -17,6 +18,7 @@ pub use comparison::{Comparison, Pair, Side};
 pub use conditions::Condition;
 pub use deviations::{DeviationCell, DeviationRow, Deviations};
 pub use evidence::{Clause, Evidence, Excluded, Instrument, Line, Model, ModelRemark, Power, Waiver};
+pub use explained::Explained;
 pub use faults::{Fault, FaultKind, Faults};
 pub use goodness::Goodness;
 pub use matrix::{Matrix, MatrixRow};
@@ -25,8 +27,7 @@ pub use table_steps::{TableStep, TableSteps};
 
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::record::{ExplainedRecord, RunRecord};
-use crate::report::explain::explained_says;
+use crate::record::RunRecord;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::{file_name, methods, svg, unit};
 use crate::text::{Arg, Lang, Note, fill, lookup};
@@ -39,27 +40,6 @@ pub struct Field {
     pub label: String,
     /// Value, printed.
     pub value: String,
-}
-
-/// The recording against the model of its family.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Explained {
-    /// The model.
-    pub model: String,
-    /// What came of it, in sentences.
-    pub says: Vec<String>,
-    /// The whole explanation, where there is one.
-    pub page: Option<&'static str>,
-}
-
-impl Explained {
-    fn new(explained: &ExplainedRecord, lang: Lang) -> Explained {
-        Explained {
-            model: explained.model.clone(),
-            says: explained_says(explained, lang),
-            page: explained.explanation.as_ref().map(|_| "explain/report.html"),
-        }
-    }
 }
 
 /// Everything a report shows.

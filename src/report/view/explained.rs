@@ -1,0 +1,28 @@
+//! The recording against the model of its family, as a report says it.
+
+use crate::record::ExplainedRecord;
+use crate::report::explain::explained_says;
+use crate::text::Lang;
+use serde::Serialize;
+
+/// The recording against the model of its family.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Explained {
+    /// The model.
+    pub model: String,
+    /// What came of it, in sentences.
+    pub says: Vec<String>,
+    /// The whole explanation, where there is one.
+    pub page: Option<&'static str>,
+}
+
+impl Explained {
+    /// Of what the record holds.
+    pub fn new(explained: &ExplainedRecord, lang: Lang) -> Explained {
+        Explained {
+            model: explained.model.clone(),
+            says: explained_says(explained, lang),
+            page: explained.explanation.as_ref().map(|_| "explain/report.html"),
+        }
+    }
+}
