@@ -143,6 +143,7 @@ macro_rules! catalogue {
 mod delay;
 mod knots;
 mod noise_level;
+mod polynomial;
 mod reach;
 mod search;
 mod sinusoid;

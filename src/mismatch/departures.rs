@@ -9,6 +9,7 @@ use super::scene::Scene;
 use crate::effect::{Domain, Place};
 use crate::estimate::{chi_square_tail, chi_square_two_sided, normal_two_sided};
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::sums::cumulated;
 use rand::{RngExt as _, SeedableRng as _};
 use statrs::distribution::{DiscreteCDF, Poisson};
 
@@ -89,16 +90,6 @@ pub fn windows(values: usize, shortest: usize, mut see: impl FnMut(usize, usize)
         }
         length *= 2;
     }
-}
-
-fn cumulated(values: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut sum = 0.0;
-    let mut out = vec![0.0];
-    out.extend(values.map(|v| {
-        sum += v;
-        sum
-    }));
-    out
 }
 
 /// Every test of the residual of a fit. `level` is the local deviation of the noise, 1 where it is as the spectrum says.

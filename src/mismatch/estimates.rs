@@ -203,8 +203,8 @@ fn summed(columns: &[Vec<f64>], coefficients: &[f64], fixed: Option<&Vec<f64>>, 
     sum
 }
 
-fn rms(columns: &[Vec<f64>], coefficients: &[f64], fixed: Option<&Vec<f64>>, samples: usize) -> f64 {
-    let sum = summed(columns, coefficients, fixed, samples);
+/// Standard deviation of a course over the record.
+fn rms(sum: &[f64]) -> f64 {
     let n = sum.len().max(1) as f64;
     let mean = sum.iter().sum::<f64>() / n;
     (sum.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n).sqrt()
@@ -226,12 +226,13 @@ fn of_course(
     let profile = placed.profile(deviation_of_shape);
     let values = course.parameters(shape, &coefficients, drivers);
     let parts = course.parts(shape, drivers);
-    let spread = rms(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
+    let series = summed(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
+    let spread = rms(&series);
     // Everything that is a function of shape and coefficients, with the rms last.
     let all = |shape: &[f64], coefficients: &[f64]| {
         let mut out = course.parameters(shape, coefficients, drivers);
         let parts = course.parts(shape, drivers);
-        out.push(rms(&parts.free, coefficients, parts.fixed.as_ref(), drivers.samples));
+        out.push(rms(&summed(&parts.free, coefficients, parts.fixed.as_ref(), drivers.samples)));
         out
     };
     let deviations = propagate(shape, &coefficients, &covariance, all);
@@ -264,7 +265,6 @@ fn of_course(
     for (name, list) in course.lists(shape, &coefficients, drivers) {
         out.stated.insert(name.to_owned(), Value::List(list));
     }
-    let series = summed(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
     let deviation = deviations.last().copied().unwrap_or(f64::NAN).hypot(placed.nuisance_deviation(&series));
     if spread.is_finite() && deviation.is_finite() && spread > 0.0 {
         let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();

@@ -4,6 +4,7 @@ use super::departures::{Departure, White};
 use super::scene::Scene;
 use crate::effect::{Domain, Place};
 use crate::estimate::normal_two_sided;
+use crate::noise::autocorrelation::lagged_products;
 
 /// Longest lag, in samples, and as a share of the record.
 const LONGEST: usize = 20_000;
@@ -18,18 +19,8 @@ pub fn all(scene: &Scene, white: &White) -> Option<Departure> {
     if n < FEWEST {
         return None;
     }
-    let mut planner = realfft::RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(2 * n), planner.plan_fft_inverse(2 * n));
-    let mut padded = white.series.clone();
-    padded.resize(2 * n, 0.0);
-    let mut spectrum = forward.make_output_vec();
-    forward.process(&mut padded, &mut spectrum).ok()?;
-    for v in &mut spectrum {
-        *v = realfft::num_complex::Complex::new(v.norm_sqr(), 0.0);
-    }
-    let mut sums = inverse.make_output_vec();
-    inverse.process(&mut spectrum, &mut sums).ok()?;
     let longest = (n / SHARE).min(LONGEST);
+    let sums = lagged_products(white.series.iter().copied(), (n + longest + 1).next_power_of_two(), longest)?;
     let variance = sums[0] / n as f64;
     // Of n − k products the sum has a standard deviation of √(n − k) variances.
     let z = |k: usize| sums[k] / (variance * ((n - k) as f64).sqrt());

@@ -9,6 +9,7 @@ use super::scene::Scene;
 use crate::effect::{Domain, Place};
 use crate::estimate::{chi_square_two_sided, normal_two_sided};
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::sums::cumulated;
 use rayon::prelude::*;
 
 /// Fewest modes of a band.
@@ -83,12 +84,8 @@ fn chi_square_normal(sum: f64, dof: f64) -> f64 {
 
 fn in_band(modes: &[f64], (first, m): (usize, usize)) -> Largest {
     let series = inverse_dct2(&modes[first..first + m]);
-    let mut sums = vec![0.0];
-    let mut sum = 0.0;
-    sums.extend(series.iter().map(|v| {
-        sum += v * v;
-        sum
-    }));
+    let sums = cumulated(series.iter().map(|v| v * v));
+    let sum = sums[m];
     let mut out = Largest::NONE;
     windows(m, SHORTEST, |from, to| {
         out.looks += 1.0;

@@ -71,7 +71,13 @@ pub fn of_series(series: &[f64], max_lag: usize) -> Option<Autocorrelation> {
     })
 }
 
-fn lagged_products(values: impl Iterator<Item = f64>, length: usize, max_lag: usize) -> Option<Vec<f64>> {
+/// Sums of products of values `k` apart, k = 0 to `max_lag`; `length` of the transform, at least the values and the lags
+/// together. `None` where a transform fails.
+pub(crate) fn lagged_products(
+    values: impl Iterator<Item = f64>,
+    length: usize,
+    max_lag: usize,
+) -> Option<Vec<f64>> {
     let mut planner = RealFftPlanner::<f64>::new();
     let (forward, inverse) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
     let (mut time, mut frequency) = (forward.make_input_vec(), forward.make_output_vec());

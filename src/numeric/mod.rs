@@ -5,3 +5,4 @@ pub mod cosine;
 pub mod range;
 pub mod reml;
 pub mod special;
+pub(crate) mod sums;

@@ -63,13 +63,6 @@ pub(super) fn execute(
         .filter(|_| found.at_rest())
         .filter_map(|g| warm_up::fact(g, static_bias::uncertainty(g, true).standard()))
         .collect();
-    let longest_gap_s = found
-        .window
-        .excluded
-        .iter()
-        .filter(|s| s.reason == "gap")
-        .map(|s| s.to_s - s.from_s)
-        .fold(0.0, f64::max);
     let gyros = if request.kind == "run" { gyro_facts::gyros(&found) } else { vec![] };
     // Without a procedure the unit comes from the name of the column, or from a user who knows better.
     let columns = if request.kind == "run" { gyro_facts::columns(request.source, &found) } else { vec![] };
@@ -82,7 +75,7 @@ pub(super) fn execute(
         clock_notes: &found.report.notes,
         has_stamps: request.use_stamps && found.channels.iter().any(|c| c.role == Role::Time),
         usable_s: found.window.usable_s,
-        longest_gap_s,
+        longest_gap_s: longest_gap_s(&found.window),
         held: &found.held,
         warm_up: if request.kind == "run" { &warm_up } else { &[] },
         gyros: &gyros,
@@ -116,22 +109,7 @@ pub(super) fn execute(
 fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<Found, RunError> {
     let procedure = request.procedure;
     let channels = channels(procedure, request.source);
-    if !channels.iter().any(|c| c.role.is_gyro()) {
-        return Err(RunError::Nothing(about(request, "run_error.no_gyro")));
-    }
-    let declared = |role: Role| procedure.channels.iter().find(|c| c.channel.role == role)?.rollover;
-    let spec = TimeBaseSpec {
-        declared_sample_rate_hz: procedure.sample_rate_hz,
-        use_stamps: request.use_stamps,
-        rollover_s: declared(Role::Time),
-        counter_modulus: declared(Role::Counter),
-    };
-    let mut plan = prepare(request.source, &channels, spec)?;
-    for c in &procedure.channels {
-        if let Some(period) = c.rollover {
-            plan.set_angle_period(&c.channel.id, period);
-        }
-    }
+    let mut plan = plan(request, &channels)?;
     let nominal_s = plan.clock().interval_s;
     let grid = request.taus.clone().unwrap_or_else(|| match &procedure.analysis.taus {
         Taus::Octave => TauGrid::Octave,
@@ -145,12 +123,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
         let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
         let inside =
             Inside::new(procedure, &channels, &grid, Estimator::ALL, exact, tidy(nominal_s), plan.start_s());
-        let window = WindowSpec {
-            from_s: procedure.conditions.warm_up_s,
-            to_s: None,
-            exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
-        };
-        let mut windowed = Windowed::new(inside, window, plan.start_s(), nominal_s);
+        let mut windowed = Windowed::new(inside, window(procedure), plan.start_s(), nominal_s);
         let report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
         Ok((overview, windowed, report))
     };
@@ -190,6 +163,46 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     tidy_integrity(&mut report.integrity, tau0_s, &gyros);
     let envelopes = overview.finish();
     Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact, schedule })
+}
+
+/// How the channels of a procedure are read.
+///
+/// # Errors
+/// [`RunError::Nothing`] without a gyro among them; what keeps the recording from being read.
+pub(super) fn plan<'a>(request: &Request<'a>, channels: &'a [Channel]) -> Result<Plan<'a>, RunError> {
+    let procedure = request.procedure;
+    if !channels.iter().any(|c| c.role.is_gyro()) {
+        return Err(RunError::Nothing(about(request, "run_error.no_gyro")));
+    }
+    let declared = |role: Role| procedure.channels.iter().find(|c| c.channel.role == role)?.rollover;
+    let spec = TimeBaseSpec {
+        declared_sample_rate_hz: procedure.sample_rate_hz,
+        use_stamps: request.use_stamps,
+        rollover_s: declared(Role::Time),
+        counter_modulus: declared(Role::Counter),
+    };
+    let mut plan = prepare(request.source, channels, spec)?;
+    for c in &procedure.channels {
+        if let Some(period) = c.rollover {
+            plan.set_angle_period(&c.channel.id, period);
+        }
+    }
+    Ok(plan)
+}
+
+/// The part of the recording that a procedure evaluates.
+pub(super) fn window(procedure: &Procedure) -> WindowSpec {
+    WindowSpec {
+        from_s: procedure.conditions.warm_up_s,
+        to_s: None,
+        exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
+    }
+}
+
+/// The longest gap in what was evaluated, s.
+pub(super) fn longest_gap_s(window: &Window) -> f64 {
+    let gaps = window.excluded.iter().filter(|s| s.reason == "gap");
+    gaps.map(|s| s.to_s - s.from_s).fold(0.0, f64::max)
 }
 
 /// A sentence about the recording.

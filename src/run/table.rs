@@ -1,6 +1,6 @@
 //! A procedure for a rate table applied to a recording: one pass into blocks, then steps, response, rows, figures.
 
-use super::evaluate::{self, Found, about, tidy};
+use super::evaluate::{self, Found, tidy};
 use super::pass::{Inside, Overview};
 use super::table_others::Others;
 use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
@@ -8,7 +8,7 @@ use crate::condition::table::{ChannelFact, TableFacts, judge};
 use crate::condition::{Facts, judge_all};
 use crate::estimate::{Estimate, Spread};
 use crate::figure::Figure;
-use crate::ingest::{Plan, TimeBaseSpec, prepare};
+use crate::ingest::Plan;
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
@@ -18,7 +18,7 @@ use crate::rate_table::scale_factor::{self, ScaleFactor};
 use crate::rate_table::{Setup, TableRun};
 use crate::record::{ConditionRecord, OptionRecord};
 use crate::recording::Role;
-use crate::recording::window::{WindowSpec, Windowed};
+use crate::recording::window::Windowed;
 use crate::text::{Arg, Note};
 
 pub(super) fn execute(
@@ -121,13 +121,6 @@ fn wants_alignment(procedure: &Procedure) -> bool {
 
 /// The conditions that every test has.
 pub(super) fn usual_conditions(request: &Request<'_>, found: &Found) -> Vec<ConditionRecord> {
-    let longest_gap_s = found
-        .window
-        .excluded
-        .iter()
-        .filter(|s| s.reason == "gap")
-        .map(|s| s.to_s - s.from_s)
-        .fold(0.0, f64::max);
     judge_all(&Facts {
         procedure: request.procedure,
         integrity: &found.report.integrity,
@@ -136,7 +129,7 @@ pub(super) fn usual_conditions(request: &Request<'_>, found: &Found) -> Vec<Cond
         clock_notes: &found.report.notes,
         has_stamps: request.use_stamps && found.channels.iter().any(|c| c.role == Role::Time),
         usable_s: found.window.usable_s,
-        longest_gap_s,
+        longest_gap_s: evaluate::longest_gap_s(&found.window),
         held: &found.held,
         warm_up: &[],
         gyros: &[],
@@ -173,32 +166,13 @@ fn collect(
 ) -> Result<(Found, TableRun), RunError> {
     let procedure = request.procedure;
     let channels = evaluate::channels(procedure, request.source);
-    if !channels.iter().any(|c| c.role.is_gyro()) {
-        return Err(RunError::Nothing(about(request, "run_error.no_gyro")));
-    }
-    let declared = |role: Role| procedure.channels.iter().find(|c| c.channel.role == role)?.rollover;
-    let spec = TimeBaseSpec {
-        declared_sample_rate_hz: procedure.sample_rate_hz,
-        use_stamps: request.use_stamps,
-        rollover_s: declared(Role::Time),
-        counter_modulus: declared(Role::Counter),
-    };
-    let mut plan = prepare(request.source, &channels, spec)?;
-    for c in &procedure.channels {
-        if let Some(period) = c.rollover {
-            plan.set_angle_period(&c.channel.id, period);
-        }
-    }
+    let mut plan = evaluate::plan(request, &channels)?;
     let nominal_s = plan.clock().interval_s;
     let mut read = |plan: &Plan<'_>| -> Result<_, RunError> {
         let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
         let grid = TauGrid::Octave;
         let inside = Inside::new(procedure, &channels, &grid, &[], false, tidy(nominal_s), plan.start_s());
-        let window = WindowSpec {
-            from_s: procedure.conditions.warm_up_s,
-            to_s: None,
-            exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
-        };
+        let window = evaluate::window(procedure);
         let mut held = Windowed::new(inside.held_only(), window.clone(), plan.start_s(), nominal_s);
         let blocks = Collector::new(&channels, nominal_s, setup.temperature.as_deref());
         let blocks = if setup.known.is_empty() { blocks } else { blocks.fine() };

@@ -1,5 +1,6 @@
 //! A bent dependence on a column whose bends have no kind of their own in the format of explanations.
 
+use super::polynomial::{powers, sum};
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
@@ -78,18 +79,6 @@ fn meant(shape: &[f64]) -> Option<(Domain, usize)> {
 fn scale(values: &[f64]) -> (f64, f64) {
     let (low, high) = ends(values);
     (0.5 * (low + high), (0.5 * (high - low)).max(1e-12))
-}
-
-fn powers(values: &[f64], (center, half): (f64, f64), order: usize) -> Vec<Vec<f64>> {
-    (1..=order as i32).map(|k| values.iter().map(|v| ((v - center) / half).powi(k)).collect()).collect()
-}
-
-fn sum(coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
-    let mut out = vec![0.0; columns.first().map_or(0, Vec::len)];
-    for (c, column) in coefficients.iter().zip(columns) {
-        out.iter_mut().zip(column).for_each(|(o, x)| *o += c * x);
-    }
-    out
 }
 
 impl Course for ColumnCurve {

@@ -1,6 +1,7 @@
 //! A contribution that goes with the product of two columns, or of one with the time. It has no kind of its own in the
 //! format of explanations.
 
+use super::polynomial::sum;
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
@@ -170,11 +171,7 @@ impl Course for ColumnProduct {
         let of = |i: usize| number(values, PARAMS[i].name);
         let scales = [(of(1)?, of(2)?), (of(3)?, of(4)?)];
         let columns = columns(pair(&[of(0)?])?, scales, drivers)?;
-        let mut out = vec![0.0; drivers.samples];
-        for (c, column) in list(values, COEFFICIENTS).iter().zip(columns) {
-            out.iter_mut().zip(column).for_each(|(o, x)| *o += c * x);
-        }
-        Some(out)
+        Some(sum(list(values, COEFFICIENTS), &columns))
     }
 
     fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

@@ -1,5 +1,6 @@
 //! Static nonlinear dependence of the bias on temperature.
 
+use super::polynomial::{powers, sum};
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
@@ -54,21 +55,8 @@ fn scale(drivers: &Drivers) -> Option<(f64, f64)> {
 }
 
 /// The order that a shape stands for.
-fn order(shape: &[f64]) -> i32 {
-    shape.first().map_or(2, |o| o.round().clamp(2.0, 4.0) as i32)
-}
-
-fn powers(order: i32, center: f64, half: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
-    let Some(t) = &drivers.temperature else { return vec![] };
-    (1..=order).map(|k| t.iter().map(|t| ((t - center) / half).powi(k)).collect()).collect()
-}
-
-fn sum(coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
-    let mut out = vec![0.0; columns.first().map_or(0, Vec::len)];
-    for (c, column) in coefficients.iter().zip(columns) {
-        out.iter_mut().zip(column).for_each(|(o, x)| *o += c * x);
-    }
-    out
+fn order(shape: &[f64]) -> usize {
+    shape.first().map_or(2, |o| o.round().clamp(2.0, 4.0) as usize)
 }
 
 impl Course for TempPolynomial {
@@ -96,8 +84,11 @@ impl Course for TempPolynomial {
     }
 
     fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let free = scale(drivers)
-            .map_or_else(Vec::new, |(center, half)| powers(order(shape), center, half, drivers));
+        let free = drivers
+            .temperature
+            .as_ref()
+            .zip(scale(drivers))
+            .map_or_else(Vec::new, |(t, scale)| powers(t, scale, order(shape)));
         Parts { free, ..Parts::default() }
     }
 
@@ -118,11 +109,11 @@ impl Course for TempPolynomial {
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let (center, half) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
         let coefficients = list(values, COEFFICIENTS);
-        if coefficients.is_empty() || drivers.temperature.is_none() || half.is_nan() || half <= 0.0 {
+        if coefficients.is_empty() || half.is_nan() || half <= 0.0 {
             return None;
         }
-        let order = i32::try_from(coefficients.len().min(12)).unwrap_or(12);
-        Some(sum(coefficients, &powers(order, center, half, drivers)))
+        let order = coefficients.len().min(12);
+        Some(sum(coefficients, &powers(drivers.temperature.as_ref()?, (center, half), order)))
     }
 
     fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

@@ -20,6 +20,7 @@ use super::candidates::Tried;
 use super::departures::White;
 use super::problem::Problem;
 use crate::numeric::cosine::{dct2, inverse_dct2};
+use crate::numeric::sums::cumulated;
 
 /// Samples on either side of a running median: courses slower than this are none of a burst.
 const SLOW: usize = 64;
@@ -135,17 +136,6 @@ fn running_median(values: &[f64], half: usize) -> Vec<f64> {
         });
     }
     out
-}
-
-/// Running sums, beginning with 0.
-fn cumulated(values: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut sum = 0.0;
-    std::iter::once(0.0)
-        .chain(values.map(|v| {
-            sum += v;
-            sum
-        }))
-        .collect()
 }
 
 /// True where a problem's column changes at all.
