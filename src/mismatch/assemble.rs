@@ -262,10 +262,9 @@ fn places(
         }
         (Model::Spectrum(spectrum), Slot::Spectrum(i)) => {
             let scene = &problem.scenes.full;
-            let observed = scene.observed(&best.fit.mean.residual);
             let look = SpectralLook {
                 bins: &scene.bins,
-                observed: &observed,
+                observed: &best.fit.observed,
                 expected: &chosen.without.fit.densities,
                 lattice_arcsec: problem.scenes.lattice_arcsec,
             };

@@ -1,6 +1,8 @@
 //! Every effect of the catalogue, tried as an addition to a hypothesis.
 
-use super::hypothesis::{CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, part_modes};
+use super::hypothesis::{
+    CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, less_fixed, part_modes, residual,
+};
 use super::noise_fit::{self, Noise, SpectrumIn, base_index};
 use super::scene::Scene;
 use super::shape::{first_steps, free_numbers, refine};
@@ -8,6 +10,7 @@ use crate::effect::{Course, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Sp
 use crate::estimate::chi_square_tail;
 use crate::numeric::cosine::inverse_dct2;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// The two resolutions a problem is looked at.
 pub struct Scenes {
@@ -48,6 +51,16 @@ impl Tried {
     /// −2 ln L + parameters · ln rows.
     pub fn bic(&self, rows: usize) -> f64 {
         -2.0 * self.fit.log_likelihood + self.parameters as f64 * (rows as f64).ln()
+    }
+
+    /// Modes of what the hypothesis leaves of the full scene.
+    pub fn residual(&self, scenes: &Scenes) -> Vec<f64> {
+        residual(&scenes.full, &self.hypothesis, &self.fit.mean)
+    }
+
+    /// Variance of each mode of the full scene, (deg/h)².
+    pub fn powers(&self, scenes: &Scenes) -> Vec<f64> {
+        scenes.full.powers(&self.fit.densities)
     }
 
     /// What hypotheses are ordered by: BIC, and between equals what else speaks for their kinds.
@@ -139,7 +152,7 @@ struct Ground<'a> {
     powers: Vec<f64>,
     inverse: Vec<f64>,
     /// The modes that are to be explained: everything fixed taken out.
-    data: Vec<f64>,
+    data: Cow<'a, [f64]>,
     residual: Vec<f64>,
     score: Vec<f64>,
     left: f64,
@@ -148,12 +161,9 @@ struct Ground<'a> {
 impl<'a> Ground<'a> {
     fn new(before: &'a Tried, scene: &'a Scene) -> Ground<'a> {
         let parts = part_modes(scene, &before.hypothesis.courses);
-        let powers = scene.powers(&before.hypothesis.noise.densities(scene));
-        let inverse: Vec<f64> = powers.iter().map(|p| 1.0 / p).collect();
-        let mut data = scene.modes.clone();
-        for fixed in parts.iter().filter_map(|p| p.fixed.as_ref()) {
-            data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
-        }
+        let densities = before.hypothesis.noise.densities(scene);
+        let (powers, inverse) = (scene.powers(&densities), scene.inverse_powers(&densities));
+        let data = less_fixed(scene, &parts);
         let mut out = Ground {
             scene,
             before,
@@ -168,7 +178,7 @@ impl<'a> Ground<'a> {
         let columns = out.columns(None);
         let normal = Normal::new(&columns, &out.data, &out.inverse);
         let (coefficients, _, left) = normal.solve();
-        let mut residual = out.data.clone();
+        let mut residual = out.data.to_vec();
         for ((column, _), c) in columns.iter().zip(&coefficients) {
             residual.iter_mut().zip(*column).for_each(|(r, x)| *r -= c * x);
         }
@@ -213,9 +223,9 @@ impl ShapeSearch<'_> {
         if parts.fixed.is_none() && parts.free.is_empty() {
             return f64::NEG_INFINITY;
         }
-        let mut data = ground.data.clone();
+        let mut data = Cow::Borrowed(&*ground.data);
         if let Some(fixed) = &parts.fixed {
-            data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+            data.to_mut().iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
         }
         let new: Vec<&[f64]> = parts.free.iter().chain(&parts.beside).map(Vec::as_slice).collect();
         let normal = self.normal.with(&self.columns, &new, &data, parts.fixed.is_some(), &ground.inverse);
@@ -277,10 +287,10 @@ fn try_spectrum(
 ) -> Option<Candidate> {
     let scene = &scenes.full;
     let act = spectrum.act();
-    let observed = scene.observed(&before.fit.mean.residual);
+    let observed = &before.fit.observed;
     let look = SpectralLook {
         bins: &scene.bins,
-        observed: &observed,
+        observed,
         expected: &before.fit.densities,
         lattice_arcsec: scenes.lattice_arcsec,
     };
@@ -289,7 +299,7 @@ fn try_spectrum(
         if before.hypothesis.noise.freed[i] {
             return None;
         }
-        return free_base(effect, i, before, scenes, &observed);
+        return free_base(effect, i, before, scenes, observed);
     }
     let repeated =
         before.hypothesis.noise.spectra.iter().any(|s| !s.stated && s.effect.kind() == effect.kind());
@@ -304,7 +314,7 @@ fn try_spectrum(
         noise.spectra.push(SpectrumIn { effect, fitted, stated: false });
         noise
     });
-    let noise = best_of(begun.collect(), scene, &observed)?;
+    let noise = best_of(begun.collect(), scene, observed)?;
     let parameters = before.parameters + noise.spectra.last().map_or(0, |s| s.fitted.len());
     finish_spectrum(effect, noise, parameters, spectrum.looked(&look), before, scenes)
 }

@@ -4,7 +4,7 @@
 //! so is their inverse transform. Each test scans them in one view and gives the probability of its largest departure
 //! with everything scanned counted.
 
-use super::hypothesis::Fit;
+use super::candidates::{Scenes, Tried};
 use super::scene::Scene;
 use crate::effect::{Domain, Place};
 use crate::estimate::{chi_square_tail, chi_square_two_sided, normal_two_sided};
@@ -40,10 +40,12 @@ pub struct White {
 }
 
 impl White {
-    /// Whitens the residual of a fit on a scene of one block.
-    pub fn of(fit: &Fit) -> White {
-        let roots: Vec<f64> = fit.powers.iter().map(|p| p.sqrt()).collect();
-        let modes: Vec<f64> = fit.mean.residual.iter().zip(&roots).map(|(x, p)| x / p).collect();
+    /// Whitens what a fitted hypothesis leaves.
+    pub fn of(tried: &Tried, scenes: &Scenes) -> White {
+        let mut roots = tried.powers(scenes);
+        roots.iter_mut().for_each(|p| *p = p.sqrt());
+        let mut modes = tried.residual(scenes);
+        modes.iter_mut().zip(&roots).for_each(|(x, p)| *x /= p);
         let series = inverse_dct2(&modes);
         White { modes, series, roots }
     }
@@ -93,14 +95,9 @@ pub fn windows(values: usize, shortest: usize, mut see: impl FnMut(usize, usize)
 }
 
 /// Every test of the residual of a fit. `level` is the local deviation of the noise, 1 where it is as the spectrum says.
-pub fn all(
-    scene: &Scene,
-    fit: &Fit,
-    level: Option<&[f64]>,
-    usable: &[bool],
-    lattice_arcsec: Option<f64>,
-) -> Vec<Departure> {
-    let mut white = White::of(fit);
+pub fn all(scenes: &Scenes, tried: &Tried, level: Option<&[f64]>, usable: &[bool]) -> Vec<Departure> {
+    let scene = &scenes.full;
+    let mut white = White::of(tried, scenes);
     if let Some(level) = level {
         white.series.iter_mut().zip(level).for_each(|(e, g)| *e /= g);
         white.modes = crate::numeric::cosine::dct2(&white.series);
@@ -114,7 +111,7 @@ pub fn all(
     out.extend(levels(scene, &white));
     out.extend(super::lags::all(scene, &white));
     out.extend(super::tiles::all(scene, &white.modes));
-    out.extend(off_lattice(scene, &white, lattice_arcsec).and_then(|values| tails(scene, &values, usable)));
+    out.extend(off_lattice(scene, &white, scenes.lattice_arcsec).and_then(|values| tails(scene, &values, usable)));
     out.extend(skewness(scene, &white));
     out.extend(super::columns::all(scene, &white));
     out

@@ -97,13 +97,11 @@ fn spectra(problem: &Problem, drawn: &Drawn<'_>) -> Option<Figure> {
     let scene = &problem.scenes.full;
     let frequency: Vec<f64> = scene.bins.iter().map(|b| b.frequency_hz).collect();
     let dof: Vec<f64> = scene.bins.iter().map(|b| scene.weight(b)).collect();
-    let observed = scene.observed(&drawn.base.fit.mean.residual);
-    let after = scene.observed(&drawn.best.fit.mean.residual);
     spectrum(&Spectra {
         frequency_hz: &frequency,
         dof: &dof,
-        observed: &observed,
-        observed_after: drawn.added.then_some(after.as_slice()),
+        observed: &drawn.base.fit.observed,
+        observed_after: drawn.added.then_some(drawn.best.fit.observed.as_slice()),
         claim: &drawn.base.fit.densities,
         augmented: drawn.added.then_some(drawn.best.fit.densities.as_slice()),
         places: drawn.places,
@@ -112,7 +110,7 @@ fn spectra(problem: &Problem, drawn: &Drawn<'_>) -> Option<Figure> {
 
 fn levels(problem: &Problem, drawn: &Drawn<'_>) -> Figure {
     let of = |tried: &Tried| {
-        let series = inverse_dct2(&White::of(&tried.fit).modes);
+        let series = inverse_dct2(&White::of(tried, &problem.scenes).modes);
         let group = (series.len() / LEVELS).max(1);
         let points: Vec<(f64, f64)> = series
             .chunks_exact(group)

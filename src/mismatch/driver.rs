@@ -20,7 +20,8 @@ pub fn knots(best: &Tried, index: usize, problem: &Problem) -> Values {
     let scene = &problem.scenes.full;
     let own = scene.powers(&best.hypothesis.noise.part_densities(index, scene));
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
-    let modes = best.fit.mean.residual.iter().zip(own.iter().zip(&best.fit.powers)).map(|(x, (s, p))| {
+    let (residual, powers) = (best.residual(&problem.scenes), best.powers(&problem.scenes));
+    let modes = residual.iter().zip(own.iter().zip(&powers)).map(|(x, (s, p))| {
         let z: f64 = StandardNormal.sample(&mut rng);
         if s.is_finite() && p.is_finite() { x * s / p + z * (s * (1.0 - s / p).max(0.0)).sqrt() } else { 0.0 }
     });

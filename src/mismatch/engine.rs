@@ -82,8 +82,7 @@ pub fn explain(
 
 /// What departs from a hypothesis.
 fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departure> {
-    let scenes = &problem.scenes;
-    departures::all(&scenes.full, &tried.fit, level, &problem.usable, scenes.lattice_arcsec)
+    departures::all(&problem.scenes, tried, level, &problem.usable)
 }
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does

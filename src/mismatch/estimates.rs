@@ -42,7 +42,7 @@ fn interval(param: &Param, value: f64, deviation: f64) -> [f64; 2] {
 pub fn of(effect: &'static dyn Effect, slot: Slot, best: &Tried, scenes: &Scenes) -> Estimated {
     match (slot, effect.model()) {
         (Slot::Course(i), Model::Course(course)) => of_course(effect, course, i, best, scenes),
-        (Slot::Spectrum(i), Model::Spectrum(_)) => of_spectrum(effect, i, best, &scenes.full),
+        (Slot::Spectrum(i), Model::Spectrum(_)) => of_spectrum(effect, i, best, scenes),
         _ => Estimated::default(),
     }
 }
@@ -255,7 +255,7 @@ fn of_course(
         });
         let mut ci95 = by_shape.unwrap_or_else(|| interval(param, *value, deviations[i]));
         if param.name == INSTANT
-            && let Some([from, to]) = instant::interval(placed.inside, &best.fit, scenes)
+            && let Some([from, to]) = instant::interval(placed.inside, best, scenes)
         {
             ci95 = [from.min(*value), to.max(*value)];
         }
@@ -320,7 +320,8 @@ fn propagate(
         .collect()
 }
 
-fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scene: &Scene) -> Estimated {
+fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scenes: &Scenes) -> Estimated {
+    let scene = &scenes.full;
     let Model::Spectrum(spectrum) = effect.model() else { return Estimated::default() };
     let noise = &best.hypothesis.noise;
     let part = &noise.spectra[index];
@@ -337,7 +338,7 @@ fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scene: &
         (Some(a), Some(b)) => best.fit.noise.covariance[(a, b)],
         _ => 0.0,
     };
-    let residual = &best.fit.mean.residual;
+    let residual = &best.residual(scenes);
     let all = |fitted: &[f64]| {
         let mut out = spectrum.parameters(fitted);
         out.push(process::added_rms(noise, index, fitted, scene, residual).0);
@@ -413,11 +414,9 @@ pub fn correction(best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
         let densities = best.hypothesis.noise.added_densities(i, scene);
         let own = scene.powers(&densities);
         let modes: Vec<f64> = best
-            .fit
-            .mean
-            .residual
+            .residual(scenes)
             .iter()
-            .zip(own.iter().zip(&best.fit.powers))
+            .zip(own.iter().zip(&best.powers(scenes)))
             .map(|(x, (s, p))| if s.is_finite() && p.is_finite() { x * s / p } else { 0.0 })
             .collect();
         out.iter_mut().zip(inverse_dct2(&modes)).for_each(|(o, c)| *o += c);

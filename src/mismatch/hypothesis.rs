@@ -5,6 +5,7 @@ use super::noise_fit::{self, Noise, NoiseFit};
 use super::scene::{NuisanceColumn, Scene};
 use crate::effect::{Course, Effect, Model, Parts};
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 
 /// A course in a hypothesis.
 #[derive(Clone)]
@@ -66,8 +67,6 @@ pub struct LeastSquares {
     pub coefficients: Vec<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
-    /// Modes of the residual.
-    pub residual: Vec<f64>,
     /// −½ Σ c²/σ² of the nuisances.
     pub prior: f64,
 }
@@ -83,8 +82,8 @@ pub struct Fit {
     pub mean: LeastSquares,
     /// Density of each bin, (deg/h)²/Hz.
     pub densities: Vec<f64>,
-    /// Variance of each mode, (deg/h)².
-    pub powers: Vec<f64>,
+    /// Density of what the mean leaves, as observed in each bin, (deg/h)²/Hz.
+    pub observed: Vec<f64>,
 }
 
 impl Fit {
@@ -194,31 +193,55 @@ impl Normal {
     }
 }
 
-/// Generalised least squares of everything in `parts` (one entry a course) and the kept nuisances.
-pub fn least_squares(
-    scene: &Scene,
-    hypothesis: &Hypothesis,
-    parts: &[PartModes],
-    powers: &[f64],
-) -> LeastSquares {
-    let inverse: Vec<f64> = powers.iter().map(|p| 1.0 / p).collect();
-    let mut data = scene.modes.clone();
-    for fixed in parts.iter().filter_map(|p| p.fixed.as_ref()) {
-        subtract(&mut data, fixed, 1.0);
-    }
-    let nuisances = kept(scene, &hypothesis.courses);
+/// Columns of the kept nuisances and of everything in `parts` (one entry a course), each with its prior deviation.
+fn columns<'a>(nuisances: &[&'a NuisanceColumn], parts: &'a [PartModes]) -> Vec<(&'a [f64], f64)> {
     let mut columns: Vec<(&[f64], f64)> =
         nuisances.iter().map(|n| (n.modes.as_slice(), n.deviation)).collect();
     for part in parts {
         columns.extend(part.free.iter().chain(&part.beside).map(|c| (c.as_slice(), f64::INFINITY)));
     }
-    let (coefficients, covariance, _) = Normal::new(&columns, &data, &inverse).solve();
+    columns
+}
+
+/// Modes of a scene less the fixed parts.
+pub fn less_fixed<'a>(scene: &'a Scene, parts: &[PartModes]) -> Cow<'a, [f64]> {
+    let mut data = Cow::Borrowed(scene.modes.as_slice());
+    for fixed in parts.iter().filter_map(|p| p.fixed.as_ref()) {
+        subtract(data.to_mut(), fixed, 1.0);
+    }
+    data
+}
+
+/// Generalised least squares of everything in `parts` (one entry a course) and the kept nuisances, and the modes of what
+/// it leaves.
+fn least_squares<'a>(
+    scene: &'a Scene,
+    hypothesis: &Hypothesis,
+    parts: &[PartModes],
+    inverse: &[f64],
+) -> (LeastSquares, Cow<'a, [f64]>) {
+    let mut data = less_fixed(scene, parts);
+    let nuisances = kept(scene, &hypothesis.courses);
+    let columns = columns(&nuisances, parts);
+    let (coefficients, covariance, _) = Normal::new(&columns, &data, inverse).solve();
     for ((column, _), c) in columns.iter().zip(&coefficients) {
-        subtract(&mut data, column, *c);
+        subtract(data.to_mut(), column, *c);
     }
     let priors = nuisances.iter().zip(&coefficients);
     let prior = -0.5 * priors.map(|(n, c)| (c / n.deviation).powi(2)).sum::<f64>();
-    LeastSquares { coefficients, covariance, residual: data, prior }
+    (LeastSquares { coefficients, covariance, prior }, data)
+}
+
+/// Modes of what a fitted hypothesis leaves of the scene it was fitted to. Not kept with the fit, since many fits are
+/// held at once and a long record has many modes.
+pub fn residual(scene: &Scene, hypothesis: &Hypothesis, mean: &LeastSquares) -> Vec<f64> {
+    let parts = part_modes(scene, &hypothesis.courses);
+    let mut data = less_fixed(scene, &parts).into_owned();
+    let nuisances = kept(scene, &hypothesis.courses);
+    for ((column, _), c) in columns(&nuisances, &parts).iter().zip(&mean.coefficients) {
+        subtract(&mut data, column, *c);
+    }
+    data
 }
 
 fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
@@ -265,10 +288,9 @@ pub fn fit_with(hypothesis: &mut Hypothesis, scene: &Scene, parts: &[PartModes])
 /// Mean for the noise at hand, then noise for that mean.
 fn turn(hypothesis: &mut Hypothesis, scene: &Scene, parts: &[PartModes]) -> Fit {
     let densities = hypothesis.noise.densities(scene);
-    let mean = least_squares(scene, hypothesis, parts, &scene.powers(&densities));
-    let observed = scene.observed(&mean.residual);
+    let (mean, residual) = least_squares(scene, hypothesis, parts, &scene.inverse_powers(&densities));
+    let observed = scene.observed(&residual);
     let noise = noise_fit::fit(&mut hypothesis.noise, scene, &observed);
     let densities = hypothesis.noise.densities(scene);
-    let powers = scene.powers(&densities);
-    Fit { log_likelihood: noise.log_likelihood + mean.prior, noise, mean, densities, powers }
+    Fit { log_likelihood: noise.log_likelihood + mean.prior, noise, mean, densities, observed }
 }

@@ -11,14 +11,13 @@ use statrs::function::gamma::digamma;
 /// In a bin of n modes of which I is the mean square, the deviance is n (I/S − 1 − ln I/S); under S it is
 /// n (ln(n/2) − ψ(n/2)) on average.
 fn misfit(scene: &Scene, fit: &Fit) -> f64 {
-    let observed = scene.observed(&fit.mean.residual);
     let one = |((bin, i), s): ((&crate::effect::ModeBin, &f64), &f64)| {
         let n = scene.weight(bin);
         let ratio = (i / s).max(1e-300);
         let chance = (0.5 * n).ln() - digamma(0.5 * n);
         n * (ratio - 1.0 - ratio.ln() - chance)
     };
-    scene.bins.iter().zip(&observed).zip(&fit.densities).map(one).sum()
+    scene.bins.iter().zip(&fit.observed).zip(&fit.densities).map(one).sum()
 }
 
 /// Figures of one chosen effect.

@@ -4,8 +4,8 @@
 //! confidence. With every instant as likely beforehand, its probability given the recording is the likelihood with the
 //! size of the step fitted; the interval spans the most probable instants that hold 95 % together.
 
-use super::candidates::Scenes;
-use super::hypothesis::{CourseIn, Fit, PartModes};
+use super::candidates::{Scenes, Tried};
+use super::hypothesis::{CourseIn, PartModes};
 use crate::numeric::cosine::{dct2, inverse_dct2};
 
 /// Probability that an interval holds.
@@ -15,7 +15,7 @@ const PLACES: usize = 48;
 
 /// The interval of the instant of a course that is a step of one size, s on the time of the recording. `None` for other
 /// courses.
-pub fn interval(inside: &CourseIn, fit: &Fit, scenes: &Scenes) -> Option<[f64; 2]> {
+pub fn interval(inside: &CourseIn, tried: &Tried, scenes: &Scenes) -> Option<[f64; 2]> {
     let scene = &scenes.full;
     let n = scene.drivers.samples;
     let parts = PartModes::of(&inside.course()?.parts(&inside.shape, &scene.drivers), scene);
@@ -23,19 +23,18 @@ pub fn interval(inside: &CourseIn, fit: &Fit, scenes: &Scenes) -> Option<[f64; 2
     if n < 16 {
         return None;
     }
-    let weighted: Vec<f64> = fit
-        .mean
-        .residual
+    let (residual, powers) = (tried.residual(scenes), tried.powers(scenes));
+    let weighted: Vec<f64> = residual
         .iter()
         .zip(column)
-        .zip(&fit.powers)
+        .zip(&powers)
         .map(|((r, z), p)| if p.is_finite() { (r + size * z) / p } else { 0.0 })
         .collect();
     let score = inverse_dct2(&weighted);
     let at = |place: usize| 1 + place * (n - 2) / PLACES;
     let weight = |j: usize| {
         let step: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i >= j))).collect();
-        dct2(&step).iter().zip(&fit.powers).skip(1).map(|(z, p)| z * z / p).sum::<f64>()
+        dct2(&step).iter().zip(&powers).skip(1).map(|(z, p)| z * z / p).sum::<f64>()
     };
     let weights: Vec<f64> = (0..=PLACES).map(|p| weight(at(p))).collect();
     let (mut gains, mut sum, mut place) = (vec![f64::NEG_INFINITY; n], 0.0, PLACES - 1);

@@ -10,6 +10,7 @@ use super::scene::{Scene, smoothed};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Column, Drivers, Model, Nuisance};
 use crate::numeric::cosine::inverse_dct2;
+use std::sync::Arc;
 
 /// Samples up to which a record is looked at in one resolution.
 const WHOLE: usize = 16_384;
@@ -25,7 +26,7 @@ pub struct Problem {
     /// The claim.
     pub claim: Claim,
     /// Columns on the grid.
-    pub drivers: Drivers,
+    pub drivers: Arc<Drivers>,
     /// Rate less claimed mean and stated courses, deg/h; places without a usable sample hold a draw.
     pub residual: Vec<f64>,
     /// True where the residual is that of a row that counts.
@@ -39,7 +40,7 @@ pub struct Problem {
 impl Problem {
     /// Brings a recording and a claim together.
     pub fn new(regular: Regular, claim: &Claim) -> Problem {
-        let drivers = drivers(&regular, claim);
+        let drivers = Arc::new(drivers(&regular, claim));
         let mean = drivers.claimed_mean();
         let mut residual: Vec<f64> = regular.rate.iter().zip(&mean).map(|(y, m)| y - m).collect();
         for stated in &claim.effects {
@@ -81,9 +82,9 @@ impl Problem {
     pub fn without(&mut self, aside: &[usize], tried: &Tried) {
         aside.iter().for_each(|i| self.usable[*i] = false);
         // The mean of the hypothesis is taken out while filling, or the draw would not hold it.
-        let rest = inverse_dct2(&tried.fit.mean.residual);
+        let rest = inverse_dct2(&tried.residual(&self.scenes));
         let mut filled = rest.clone();
-        impute::fill(&mut filled, &self.usable, &tried.fit.powers, SEED);
+        impute::fill(&mut filled, &self.usable, &tried.powers(&self.scenes), SEED);
         for i in 0..filled.len() {
             if !self.usable[i] {
                 self.residual[i] += filled[i] - rest[i];
@@ -144,7 +145,7 @@ fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
 }
 
 fn scenes(
-    drivers: &Drivers,
+    drivers: &Arc<Drivers>,
     claim: &Claim,
     residual: &[f64],
     lattice_arcsec: Option<f64>,

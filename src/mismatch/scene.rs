@@ -9,6 +9,7 @@ use crate::effect::{Drivers, ModeBin, Model, Nuisance};
 use crate::noise::data::NoiseType;
 use crate::noise::model::{Bin, Spectral, bin_ratio, claimed_unit_density};
 use crate::numeric::cosine::dct2;
+use std::sync::Arc;
 
 /// Modes that have a bin each.
 const SINGLE: usize = 64;
@@ -30,7 +31,7 @@ pub struct NuisanceColumn {
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// Columns and claim on this grid.
-    pub drivers: Drivers,
+    pub drivers: Arc<Drivers>,
     /// Cosine modes of what was observed less the claimed mean, deg/h, block after block. Mode 0 of each, which the
     /// bias takes, is 0.
     pub modes: Vec<f64>,
@@ -83,14 +84,15 @@ fn unit_densities(bin: &ModeBin, averaged: usize) -> [f64; 3] {
 impl Scene {
     /// The scene of a whole residual, deg/h, on the grid of the drivers. `deviations` are those of the nuisances with a
     /// column.
-    pub fn new(drivers: Drivers, residual: &[f64], deviations: &[(Nuisance, f64)]) -> Scene {
+    pub fn new(drivers: impl Into<Arc<Drivers>>, residual: &[f64], deviations: &[(Nuisance, f64)]) -> Scene {
+        let drivers = drivers.into();
         let length = drivers.samples;
         Scene::of_blocks(drivers, residual, deviations, vec![0], length)
     }
 
     /// The scene of blocks of `length` samples.
     pub fn of_blocks(
-        drivers: Drivers,
+        drivers: Arc<Drivers>,
         residual: &[f64],
         deviations: &[(Nuisance, f64)],
         blocks: Vec<usize>,
@@ -149,10 +151,19 @@ impl Scene {
 
     /// Variance of each mode, (deg/h)², from the densities of the bins; infinite for mode 0.
     pub fn powers(&self, densities: &[f64]) -> Vec<f64> {
-        let mut out = vec![f64::INFINITY; self.length * self.blocks.len()];
+        self.of_bins(densities, f64::INFINITY, |power| power)
+    }
+
+    /// One over the variance of each mode, (deg/h)⁻²; 0 for mode 0.
+    pub fn inverse_powers(&self, densities: &[f64]) -> Vec<f64> {
+        self.of_bins(densities, 0.0, f64::recip)
+    }
+
+    fn of_bins(&self, densities: &[f64], zeroth: f64, of: impl Fn(f64) -> f64) -> Vec<f64> {
+        let mut out = vec![zeroth; self.length * self.blocks.len()];
         for block in out.chunks_exact_mut(self.length) {
             for (bin, density) in self.bins.iter().zip(densities) {
-                block[bin.mode..bin.mode + bin.modes].fill(density / bin.dt_s);
+                block[bin.mode..bin.mode + bin.modes].fill(of(density / bin.dt_s));
             }
         }
         out

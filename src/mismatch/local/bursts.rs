@@ -80,7 +80,7 @@ impl Scan {
 
 /// Looks for bursts in the residual of a hypothesis.
 pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Bursts> {
-    let flat = Flat::of(tried);
+    let flat = Flat::of(tried, problem);
     let n = flat.flat.len();
     let longest = LONGEST.min(n / 20);
     if longest < 2 {

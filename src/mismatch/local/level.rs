@@ -75,7 +75,7 @@ pub(super) struct Found {
 
 /// Every law of the level that says more than one level does, the best by BIC first.
 pub fn level(problem: &Problem, tried: &Tried) -> Vec<Level> {
-    let flat = Flat::of(tried);
+    let flat = Flat::of(tried, problem);
     let indices: Vec<usize> = (0..flat.flat.len()).filter(|i| flat.counts(problem, *i)).collect();
     // On a coarse lattice the size of the residual says how near the rate is to a step.
     if indices.len() < 8 * FEWEST || lattice_step(problem, &flat) > super::COARSE {

@@ -52,8 +52,8 @@ pub struct Flat {
 
 impl Flat {
     /// Of the fit of a hypothesis.
-    pub fn of(tried: &Tried) -> Flat {
-        let white = White::of(&tried.fit);
+    pub fn of(tried: &Tried, problem: &Problem) -> Flat {
+        let white = White::of(tried, &problem.scenes);
         let slow = running_median(&white.series, SLOW);
         let fast: Vec<f64> = white.series.iter().zip(&slow).map(|(e, s)| e - s).collect();
         // Few large values must not be what the spectrum is levelled by.

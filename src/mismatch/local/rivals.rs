@@ -9,11 +9,11 @@ use crate::mismatch::problem::Problem;
 /// Gain of the best spectral effect of some kinds, and the noise beside it.
 pub fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, Noise)> {
     let scene = &problem.scenes.full;
-    let observed = scene.observed(&tried.fit.mean.residual);
+    let observed = &tried.fit.observed;
     let before = tried.fit.noise.log_likelihood;
     let look = SpectralLook {
         bins: &scene.bins,
-        observed: &observed,
+        observed,
         expected: &tried.fit.densities,
         lattice_arcsec: problem.scenes.lattice_arcsec,
     };
@@ -28,7 +28,7 @@ pub fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, N
             let mut noise = tried.hypothesis.noise.clone();
             let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
             noise.spectra.push(SpectrumIn { effect: *effect, fitted, stated: false });
-            let gain = noise_fit::fit(&mut noise, scene, &observed).log_likelihood - before;
+            let gain = noise_fit::fit(&mut noise, scene, observed).log_likelihood - before;
             if best.as_ref().is_none_or(|b| gain > b.0) {
                 noise.spectra.pop();
                 best = Some((gain, noise));
@@ -41,7 +41,7 @@ pub fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, N
 /// Gain of flicker or random walk set free.
 pub fn freed(problem: &Problem, tried: &Tried) -> f64 {
     let scene = &problem.scenes.full;
-    let observed = scene.observed(&tried.fit.mean.residual);
+    let observed = &tried.fit.observed;
     let mut best = 0.0f64;
     for i in 1..3 {
         for level in [1.0, 6.0, 33.0, 200.0] {
@@ -49,7 +49,7 @@ pub fn freed(problem: &Problem, tried: &Tried) -> f64 {
             let beside = (noise.base[0] * 0.01).max(1e-9);
             noise.base[i] = noise.base[i].max(beside) * level;
             noise.freed[i] = true;
-            let fitted = noise_fit::fit(&mut noise, scene, &observed).log_likelihood;
+            let fitted = noise_fit::fit(&mut noise, scene, observed).log_likelihood;
             best = best.max(fitted - tried.fit.noise.log_likelihood);
         }
     }
@@ -58,7 +58,7 @@ pub fn freed(problem: &Problem, tried: &Tried) -> f64 {
 
 /// Gain of the best line: half the power of the whitened residual in a pair of neighbouring modes, which hold nearly
 /// all of a line.
-pub fn line(tried: &Tried) -> f64 {
-    let white = White::of(&tried.fit);
+pub fn line(problem: &Problem, tried: &Tried) -> f64 {
+    let white = White::of(tried, &problem.scenes);
     white.modes.windows(4).map(|w| 0.5 * w.iter().map(|u| u * u).sum::<f64>()).fold(0.0, f64::max)
 }

@@ -63,6 +63,8 @@ struct Ground<'a> {
     tried: &'a Tried,
     /// The noise of the hypothesis as it is beside a process with the spectrum of a telegraph signal.
     noise: Noise,
+    /// Modes of what the hypothesis leaves, and the same in time.
+    modes: Vec<f64>,
     residual: Vec<f64>,
     inverse: Vec<f64>,
     columns: Vec<(Vec<f64>, f64)>,
@@ -93,6 +95,7 @@ impl<'a> Ground<'a> {
             columns.extend(part.free.into_iter().chain(part.beside).map(|c| (c, f64::INFINITY)));
         }
         let powers = scene.powers(&noise.densities(scene));
+        let modes = tried.residual(&problem.scenes);
         let mut high: Vec<f64> = powers[powers.len() / 2..].to_vec();
         let white = super::median(&mut high);
         let slow = powers.iter().map(|p| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 });
@@ -100,7 +103,8 @@ impl<'a> Ground<'a> {
             problem,
             tried,
             noise,
-            residual: inverse_dct2(&tried.fit.mean.residual),
+            residual: inverse_dct2(&modes),
+            modes,
             inverse: powers.iter().map(|p| 1.0 / p).collect(),
             columns,
             slow: slow.collect(),
@@ -119,7 +123,7 @@ impl<'a> Ground<'a> {
     fn amplitude(&self, path: &[bool]) -> (f64, f64, f64) {
         let series: Vec<f64> = path.iter().map(|p| f64::from(u8::from(*p))).collect();
         let modes = self.problem.scenes.full.transform(&series);
-        let data = &self.tried.fit.mean.residual;
+        let data = &self.modes;
         let old: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, d)| (c.as_slice(), *d)).collect();
         let before = Normal::new(&old, data, &self.inverse);
         let (c, covariance, _) = before.with(&old, &[&modes], data, false, &self.inverse).solve();
@@ -140,7 +144,7 @@ impl<'a> Ground<'a> {
     /// What is slower than any dwell that averages of `m` are looked at for.
     fn drift(&self, m: usize) -> Vec<f64> {
         let last = self.residual.len() / (SLOWEST * m);
-        let modes = self.tried.fit.mean.residual.iter().zip(&self.slow).enumerate();
+        let modes = self.modes.iter().zip(&self.slow).enumerate();
         let modes: Vec<f64> = modes.map(|(k, (x, s))| if k <= last { x * s } else { 0.0 }).collect();
         inverse_dct2(&modes)
     }
@@ -225,7 +229,7 @@ pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
     let rival_gain = markov
         .max(rival(problem, tried, &others).map_or(0.0, |r| r.0))
         .max(freed(problem, tried))
-        .max(line(tried));
+        .max(line(problem, tried));
     // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
     // fitted, ½ ln M nats.
     let log_p = lengths.ln() + 1.5 * ((n / best.averaged) as f64).ln() - best.gain;
