@@ -18,7 +18,7 @@ use super::samples::Named;
 use super::select::{Chosen, Selection, Slot};
 use super::single_cause;
 use crate::claim::{Claim, Stated};
-use crate::effect::{Domain, Effect, Model, Nuisance, Place, SpectralLook, UNKNOWN, Value};
+use crate::effect::{Column, Domain, Effect, Model, Nuisance, Place, SpectralLook, UNKNOWN, Value};
 use crate::series::Series;
 use std::collections::BTreeMap;
 
@@ -139,7 +139,7 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         },
     );
     let correction = correction.map(|c| {
-        let on_rows = c.iter().zip(&problem.regular.present).enumerate().filter(|(_, (_, p))| **p);
+        let on_rows = c.iter().zip(&problem.grid.present).enumerate().filter(|(_, (_, p))| **p);
         on_rows.map(|(i, (v, _))| (problem.drivers.time_s(i), *v)).collect()
     });
     Outcome { explanation, correction, augmented, figures }
@@ -305,11 +305,11 @@ fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Findi
 
 /// Rows missing on the grid that the claim states.
 fn dropped(problem: &Problem) -> Option<Finding> {
-    let missing = problem.regular.missing();
+    let missing = problem.grid.missing();
     if missing == 0 || problem.claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples") {
         return None;
     }
-    let (first, last) = (problem.regular.gaps.first()?, problem.regular.gaps.last()?);
+    let (first, last) = (problem.grid.gaps.first()?, problem.grid.gaps.last()?);
     let at = |i: usize| problem.drivers.time_s(i);
     let place = PlaceRecord {
         domain: Domain::Timestamps.id().to_owned(),
@@ -377,11 +377,11 @@ fn augmented(problem: &Problem, given: &Claim, best: &Tried, mut stated: Vec<Sta
     let added = correction.map_or(0.0, |c| c.iter().sum::<f64>() / n);
     claim.mean.bias_deg_h = observed.iter().sum::<f64>() / n - added;
     claim.effects.append(&mut stated);
-    if problem.regular.missing() > 0
+    if problem.grid.missing() > 0
         && !claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples")
         && let Some(effect) = crate::effect::find("dropped_samples")
     {
-        let missing = Value::Number(problem.regular.missing() as f64);
+        let missing = Value::Number(problem.grid.missing() as f64);
         claim.effects.push(Stated { effect, values: BTreeMap::from([("missing_rows".to_owned(), missing)]) });
     }
     claim
@@ -391,10 +391,14 @@ fn facts(problem: &Problem, series: &Series, options: &Options) -> RecordingFact
     let length = series.time_s.last().copied().unwrap_or(0.0) - series.time_s.first().copied().unwrap_or(0.0);
     RecordingFacts {
         rows: series.time_s.len(),
-        missing: problem.regular.missing(),
-        sample_interval_s: problem.regular.dt_s,
+        missing: problem.grid.missing(),
+        sample_interval_s: problem.grid.dt_s,
         length_s: length,
-        columns: problem.regular.columns.keys().map(|c| c.name().to_owned()).collect(),
+        columns: Column::ALL
+            .iter()
+            .filter(|c| problem.drivers.column(**c).is_some())
+            .map(|c| c.name().to_owned())
+            .collect(),
         hidden: options.hide.iter().map(|c| c.name().to_owned()).collect(),
     }
 }

@@ -12,6 +12,9 @@ use crate::numeric::cosine::inverse_dct2;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
+/// Samples above which a course at the sample rate is tried by itself.
+const LONG: usize = 1 << 20;
+
 /// The two resolutions a problem is looked at.
 pub struct Scenes {
     /// At the sample rate.
@@ -103,16 +106,19 @@ pub fn all(before: &Tried, scenes: &Scenes) -> Vec<Candidate> {
 /// As [`all`], of some effects only.
 pub fn among(before: &Tried, scenes: &Scenes, wanted: impl Fn(&dyn Effect) -> bool + Sync) -> Vec<Candidate> {
     let grounds = Grounds::new(before, scenes);
-    let fits: Vec<Option<Candidate>> = EFFECTS
-        .par_iter()
-        .filter(|effect| wanted(**effect))
-        .map(|effect| match effect.model() {
-            Model::Course(course) => try_course(*effect, course, before, scenes, &grounds),
-            Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, scenes),
-            Model::Samples(_) => None,
-        })
-        .collect();
-    let mut found: Vec<Candidate> = fits.into_iter().flatten().collect();
+    let tried = |effect: &&'static dyn Effect| match effect.model() {
+        Model::Course(course) => try_course(*effect, course, before, scenes, &grounds),
+        Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, scenes),
+        Model::Samples(_) => None,
+    };
+    // Two long ones at once would not fit into the memory that a record is granted.
+    let long = |effect: &&'static dyn Effect| {
+        scenes.full.length > LONG
+            && matches!(effect.model(), Model::Course(c) if grounds.of(c.pace()).scene.length > LONG)
+    };
+    let (alone, together): (Vec<_>, Vec<_>) = EFFECTS.iter().filter(|e| wanted(**e)).partition(|e| long(e));
+    let mut found: Vec<Candidate> = together.into_par_iter().filter_map(tried).collect();
+    found.extend(alone.into_iter().filter_map(tried));
     // Kinds with the same course are ordered by what else speaks for them.
     found.sort_by(|a, b| a.tried.rank(scenes.rows).total_cmp(&b.tried.rank(scenes.rows)));
     found
@@ -150,7 +156,6 @@ struct Ground<'a> {
     before: &'a Tried,
     parts: Vec<PartModes>,
     powers: Vec<f64>,
-    inverse: Vec<f64>,
     /// The modes that are to be explained: everything fixed taken out.
     data: Cow<'a, [f64]>,
     residual: Vec<f64>,
@@ -162,27 +167,18 @@ impl<'a> Ground<'a> {
     fn new(before: &'a Tried, scene: &'a Scene) -> Ground<'a> {
         let parts = part_modes(scene, &before.hypothesis.courses);
         let densities = before.hypothesis.noise.densities(scene);
-        let (powers, inverse) = (scene.powers(&densities), scene.inverse_powers(&densities));
+        let powers = scene.powers(&densities);
         let data = less_fixed(scene, &parts);
-        let mut out = Ground {
-            scene,
-            before,
-            parts,
-            powers,
-            inverse,
-            data,
-            residual: vec![],
-            score: vec![],
-            left: 0.0,
-        };
+        let mut out =
+            Ground { scene, before, parts, powers, data, residual: vec![], score: vec![], left: 0.0 };
         let columns = out.columns(None);
-        let normal = Normal::new(&columns, &out.data, &out.inverse);
+        let normal = Normal::new(&columns, &out.data, &out.powers);
         let (coefficients, _, left) = normal.solve();
         let mut residual = out.data.to_vec();
         for ((column, _), c) in columns.iter().zip(&coefficients) {
             residual.iter_mut().zip(*column).for_each(|(r, x)| *r -= c * x);
         }
-        let weighted: Vec<f64> = residual.iter().zip(&out.inverse).map(|(r, w)| r * w).collect();
+        let weighted: Vec<f64> = residual.iter().zip(&out.powers).map(|(r, p)| r / p).collect();
         out.score = inverse_dct2(&weighted);
         out.residual = residual;
         out.left = left;
@@ -219,7 +215,7 @@ struct ShapeSearch<'a> {
 impl ShapeSearch<'_> {
     fn gain(&self, shape: &[f64]) -> f64 {
         let ground = self.ground;
-        let parts = PartModes::of(&self.course.parts(shape, &ground.scene.drivers), ground.scene);
+        let parts = PartModes::of(self.course.parts(shape, &ground.scene.drivers), ground.scene);
         if parts.fixed.is_none() && parts.free.is_empty() {
             return f64::NEG_INFINITY;
         }
@@ -228,7 +224,7 @@ impl ShapeSearch<'_> {
             data.to_mut().iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
         }
         let new: Vec<&[f64]> = parts.free.iter().chain(&parts.beside).map(Vec::as_slice).collect();
-        let normal = self.normal.with(&self.columns, &new, &data, parts.fixed.is_some(), &ground.inverse);
+        let normal = self.normal.with(&self.columns, &new, &data, parts.fixed.is_some(), &ground.powers);
         0.5 * (ground.left - normal.solve().2)
     }
 }
@@ -254,7 +250,7 @@ fn try_course(
     let bounds = course.bounds(&scene.drivers);
     let steps = first_steps(course, &scene.drivers);
     let columns = ground.columns(Some(course));
-    let normal = Normal::new(&columns, &ground.data, &ground.inverse);
+    let normal = Normal::new(&columns, &ground.data, &ground.powers);
     let search = ShapeSearch { course, ground, columns, normal };
     let mut rough: Vec<(Vec<f64>, f64)> = starts.shapes.iter().map(|s| (s.clone(), search.gain(s))).collect();
     rough.sort_by(|a, b| b.1.total_cmp(&a.1));

@@ -4,7 +4,7 @@
 //! to the next. Where it does not, samples are averaged until it does: the mean of m samples is a sample of m times the
 //! interval, rounded to the same angle.
 
-use super::regular::Regular;
+use super::regular::{Grid, Regular};
 use crate::claim::Claim;
 use crate::effect::Column;
 
@@ -50,16 +50,15 @@ pub fn averaged(regular: &Regular, m: usize) -> Regular {
         let (sin, cos) = (part(f64::sin), part(f64::cos));
         *mean = sin.iter().zip(&cos).map(|(s, c)| s.atan2(*c).to_degrees().rem_euclid(360.0)).collect();
     }
-    let present: Vec<bool> = regular.present.chunks_exact(m).map(|c| c.iter().all(|p| *p)).collect();
-    Regular {
-        dt_s: regular.dt_s * m as f64,
-        start_s: regular.start_s + 0.5 * (m - 1) as f64 * regular.dt_s,
-        rate: means(&regular.rate),
-        present,
-        columns,
-        gaps: regular.gaps.clone(),
-        disordered: regular.disordered,
-    }
+    let fine = &regular.grid;
+    let grid = Grid {
+        dt_s: fine.dt_s * m as f64,
+        start_s: fine.start_s + 0.5 * (m - 1) as f64 * fine.dt_s,
+        present: fine.present.chunks_exact(m).map(|c| c.iter().all(|p| *p)).collect(),
+        gaps: fine.gaps.clone(),
+        disordered: fine.disordered,
+    };
+    Regular { grid, rate: means(&regular.rate), columns }
 }
 
 #[cfg(test)]
@@ -73,13 +72,9 @@ mod tests {
             r.columns[&Column::TableAngle].iter().map(|a| 13.0 * a.to_radians().cos()).collect()
         };
         let mut regular = Regular {
-            dt_s: 2.0,
-            start_s: 0.0,
+            grid: Grid { dt_s: 2.0, start_s: 0.0, present: vec![true; 400], gaps: vec![], disordered: 0 },
             rate: vec![],
-            present: vec![true; 400],
             columns: std::collections::BTreeMap::from([(Column::TableAngle, angles)]),
-            gaps: vec![],
-            disordered: 0,
         };
         regular.rate = expected(&regular);
         let out = about_the_claim(&regular, 4, expected);

@@ -43,10 +43,9 @@ pub fn all(scene: &Scene, white: &White) -> Vec<Departure> {
     }
     for i in 0..named.len() {
         for j in 0..i {
-            let (a, b) = (centred(&named[i].1), centred(&named[j].1));
-            let product: Vec<f64> = a.iter().zip(&b).map(|(x, y)| x * y).collect();
-            let columns = [product];
-            if let Some(p_value) = gain_of(white, &columns) {
+            let mut product = centred(&named[i].1);
+            product.iter_mut().zip(centred(&named[j].1)).for_each(|(x, y)| *x *= y);
+            if let Some(p_value) = gain_of(white, std::iter::once(product)) {
                 let (from, to) = crate::numeric::range::ends(&named[j].1);
                 let place = Place { domain: named[j].0, from, to };
                 out.push(Departure { test: "product", place, beside: None, p_value });
@@ -73,11 +72,13 @@ fn centred(values: &[f64]) -> Vec<f64> {
 }
 
 /// p-value of the power of the whitened residual in the span of some columns.
-fn gain_of(white: &White, columns: &[Vec<f64>]) -> Option<f64> {
-    let modes: Vec<Vec<f64>> = columns
-        .iter()
-        .map(|c| dct2(c).iter().zip(&white.roots).map(|(z, r)| z / r).collect::<Vec<f64>>())
-        .collect();
+fn gain_of(white: &White, columns: impl Iterator<Item = Vec<f64>>) -> Option<f64> {
+    let whitened = |column: Vec<f64>| {
+        let mut modes = dct2(&column);
+        modes.iter_mut().zip(&white.roots).for_each(|(z, r)| *z /= r);
+        modes
+    };
+    let modes: Vec<Vec<f64>> = columns.map(whitened).collect();
     let p = modes.len();
     let mut matrix = DMatrix::zeros(p, p);
     let mut right = DVector::zeros(p);
@@ -110,20 +111,15 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
     if high - low <= 1e-9 * low.abs().max(high.abs()) {
         return None;
     }
-    let x = centred(values);
-    let columns: Vec<Vec<f64>> = if domain == Domain::Angle {
-        (1..=ORDER / 2)
-            .flat_map(|k| {
-                let turn = |f: fn(f64) -> f64| {
-                    values.iter().map(|a| f(k as f64 * a.to_radians())).collect::<Vec<f64>>()
-                };
-                [turn(f64::cos), turn(f64::sin)]
-            })
-            .collect()
+    let p_value = if domain == Domain::Angle {
+        let turn = |k: usize, f: fn(f64) -> f64| {
+            values.iter().map(|a| f(k as f64 * a.to_radians())).collect::<Vec<f64>>()
+        };
+        gain_of(white, (1..=ORDER).map(|i| turn(i.div_ceil(2), if i % 2 == 1 { f64::cos } else { f64::sin })))
     } else {
-        (1..=ORDER).map(|k| x.iter().map(|v| legendre(k, *v)).collect()).collect()
-    };
-    let p_value = gain_of(white, &columns)?;
+        let x = centred(values);
+        gain_of(white, (1..=ORDER).map(|k| x.iter().map(|v| legendre(k, *v)).collect()))
+    }?;
     let (from, to) = extreme(white, values, low, high);
     Some(Departure { test, place: Place { domain, from, to }, beside: None, p_value })
 }

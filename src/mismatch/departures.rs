@@ -111,7 +111,9 @@ pub fn all(scenes: &Scenes, tried: &Tried, level: Option<&[f64]>, usable: &[bool
     out.extend(levels(scene, &white));
     out.extend(super::lags::all(scene, &white));
     out.extend(super::tiles::all(scene, &white.modes));
-    out.extend(off_lattice(scene, &white, scenes.lattice_arcsec).and_then(|values| tails(scene, &values, usable)));
+    out.extend(
+        off_lattice(scene, &white, scenes.lattice_arcsec).and_then(|values| tails(scene, &values, usable)),
+    );
     out.extend(skewness(scene, &white));
     out.extend(super::columns::all(scene, &white));
     out

@@ -12,7 +12,7 @@ use super::outcome::Outcome;
 use super::problem::{Problem, drivers};
 use super::regular::{Irregular, Regular};
 use super::samples::{self, Named};
-use super::select::{self, Selection};
+use super::select::{self, Selection, Slot};
 use crate::claim::Claim;
 use crate::effect::{Column, EFFECTS, Effect, Model};
 use crate::series::Series;
@@ -36,13 +36,15 @@ pub fn explain(
         .columns
         .iter()
         .filter(|(c, _)| !options.hide.contains(c))
-        .map(|(c, v)| (*c, v.clone()))
+        .map(|(c, v)| (*c, v.as_slice()))
         .collect();
     let regular =
         Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
     let mut found = Found::default();
-    let mut problem = uncoarsened(Problem::new(regular, claim), &mut found, options.alpha);
+    let mut problem = uncoarsened(&regular, claim, &mut found, options.alpha);
+    // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
+    drop(regular);
     let rows = problem.scenes.rows;
     let base = problem.baseline();
     let before = tests(&problem, &base, problem.level.as_deref());
@@ -87,7 +89,8 @@ fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departu
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
 /// not state is named first: nothing finer can be judged beside it.
-fn uncoarsened(problem: Problem, found: &mut Found, alpha: f64) -> Problem {
+fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, alpha: f64) -> Problem {
+    let problem = Problem::new(regular, claim);
     let stated = problem.claim.quantization_lsb_arcsec;
     let lsb = if stated > 0.0 { Some(stated) } else { problem.scenes.lattice_arcsec };
     let m = lsb.map_or(1, |lsb| coarse::group(lsb, &problem.claim, problem.residual.len()));
@@ -96,7 +99,7 @@ fn uncoarsened(problem: Problem, found: &mut Found, alpha: f64) -> Problem {
     if stated <= 0.0 {
         claim.quantization_lsb_arcsec = lsb;
         claim.noise.q = lsb / 12f64.sqrt();
-        let with = Problem::new(problem.regular.clone(), &claim).baseline();
+        let with = Problem::new(regular, &claim).baseline();
         let gain = with.fit.log_likelihood - problem.baseline().fit.log_likelihood;
         match samples::worth(
             gain,
@@ -111,7 +114,7 @@ fn uncoarsened(problem: Problem, found: &mut Found, alpha: f64) -> Problem {
     }
     claim.sample_rate_hz = problem.claim.sample_rate_hz / m as f64;
     let expected = |r: &Regular| drivers(r, &claim).claimed_mean();
-    Problem::new(coarse::about_the_claim(&problem.regular, m, expected), &claim)
+    Problem::new(&coarse::about_the_claim(regular, m, expected), &claim)
 }
 
 /// What was found in single samples.
@@ -192,6 +195,39 @@ fn take_bursts(problem: &mut Problem, base: &Tried, moved: &Tried, found: &mut F
     problem.baseline()
 }
 
+/// Jumps between two levels on one of the hypotheses that they may stand beside.
+struct Jumps {
+    telegraph: local::Telegraph,
+    delta_bic: f64,
+    /// What the selection gains on the same hypothesis.
+    rival: f64,
+    /// The process that the selection has in their place.
+    instead: Option<&'static str>,
+}
+
+/// The best of jumps on the claim alone, and beside what else was chosen in place of each of its processes: they have the
+/// spectrum of a slow process, and with another effect in the record neither the one nor the other alone comes near a pair.
+fn jumps(problem: &Problem, start: &Tried, selection: &Selection, alpha: f64) -> Option<Jumps> {
+    let rows = problem.scenes.rows;
+    let several = selection.chosen.len() > 1;
+    let processes = selection.chosen.iter().filter(|c| several && matches!(c.slot, Slot::Spectrum(_)));
+    let single = selection.chosen.iter().find(|_| !several).map(|c| c.effect.kind());
+    let grounds =
+        std::iter::once((start, single)).chain(processes.map(|c| (&c.without, Some(c.effect.kind()))));
+    let judged = grounds.filter_map(|(tried, instead)| {
+        let telegraph = local::telegraph(problem, tried)?;
+        // Jumps every few samples are what a short Markov process looks like, even ones a periodic course.
+        if telegraph.mean_dwell_s < FEWEST_AT_A_LEVEL * problem.drivers.dt_s || telegraph.regular {
+            return None;
+        }
+        let (gain, parameters, p_value) = (telegraph.gain, telegraph.parameters, telegraph.p_value);
+        let delta_bic = samples::worth(gain, parameters, p_value, rows, alpha)?;
+        let rival = tried.bic(rows) - selection.best.bic(rows);
+        Some(Jumps { telegraph, delta_bic, rival, instead })
+    });
+    judged.max_by(|a, b| (a.delta_bic - a.rival).total_cmp(&(b.delta_bic - b.rival)))
+}
+
 /// Takes out jumps between two levels where they explain more than anything else does.
 fn take_telegraph(
     problem: &mut Problem,
@@ -200,37 +236,23 @@ fn take_telegraph(
     found: &mut Found,
     options: &Options,
 ) {
-    let rows = problem.scenes.rows;
     let stated = problem.stated_telegraph();
     if selection.chosen.is_empty() && !stated {
         return;
     }
-    let Some(telegraph) = local::telegraph(problem, start) else { return };
-    // Jumps every few samples are what a short Markov process looks like, even ones a periodic course.
-    let short = telegraph.mean_dwell_s < FEWEST_AT_A_LEVEL * problem.drivers.dt_s;
-    if short || telegraph.regular {
+    let Some(Jumps { telegraph, delta_bic, rival, instead }) =
+        jumps(problem, start, selection, options.alpha).filter(|j| stated || j.delta_bic >= j.rival)
+    else {
         return;
-    }
-    let worth = samples::worth(telegraph.gain, telegraph.parameters, telegraph.p_value, rows, options.alpha);
-    let Some(delta_bic) = worth else { return };
-    let rival = start.bic(rows) - selection.best.bic(rows);
-    if delta_bic < rival && !stated {
-        return;
-    }
+    };
     let course: Vec<f64> = telegraph.path.iter().map(|p| telegraph.amplitude_deg_h * p).collect();
     problem.take(&course);
     let mut base = problem.baseline();
     if start.hypothesis.noise.freed[0] {
         base = samples::with_free_level(&base, problem);
     }
-    let near: Vec<&'static str> = selection
-        .chosen
-        .iter()
-        .filter(|_| selection.chosen.len() == 1 && delta_bic < rival + select::ENOUGH)
-        .map(|c| c.effect.kind())
-        .collect();
     if !stated && let Some(mut named) = samples::telegraph(&telegraph, delta_bic, problem) {
-        named.equivalents = near;
+        named.equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
         found.named.push(named);
         found.take(course);
     }

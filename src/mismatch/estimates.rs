@@ -54,7 +54,7 @@ struct Placed<'a> {
     inside: &'a CourseIn,
     columns: Vec<(Vec<f64>, f64)>,
     data: Vec<f64>,
-    inverse: Vec<f64>,
+    powers: Vec<f64>,
 }
 
 impl<'a> Placed<'a> {
@@ -74,12 +74,11 @@ impl<'a> Placed<'a> {
             }
             columns.extend(part.free.into_iter().chain(part.beside).map(|c| (c, f64::INFINITY)));
         }
-        let inverse = powers.iter().map(|p| 1.0 / p).collect();
-        Placed { scene, course, inside: &best.hypothesis.courses[index], columns, data, inverse }
+        Placed { scene, course, inside: &best.hypothesis.courses[index], columns, data, powers }
     }
 
     fn parts(&self, shape: &[f64]) -> PartModes {
-        PartModes::of(&self.course.parts(shape, &self.scene.drivers), self.scene)
+        PartModes::of(self.course.parts(shape, &self.scene.drivers), self.scene)
     }
 
     /// Penalised sum of squares over −2 for a shape: the log-likelihood with the noise held.
@@ -92,7 +91,7 @@ impl<'a> Placed<'a> {
         let mut columns: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, s)| (c.as_slice(), *s)).collect();
         let others = columns.len();
         columns.extend(parts.free.iter().chain(&parts.beside).map(|c| (c.as_slice(), f64::INFINITY)));
-        let (coefficients, _, left) = Normal::new(&columns, &data, &self.inverse).solve();
+        let (coefficients, _, left) = Normal::new(&columns, &data, &self.powers).solve();
         (-0.5 * left, coefficients[others..others + parts.free.len()].to_vec())
     }
 
@@ -113,7 +112,7 @@ impl<'a> Placed<'a> {
             .map(|c| (c.as_slice(), f64::INFINITY))
             .chain(self.columns.iter().map(|(c, s)| (c.as_slice(), *s)))
             .collect();
-        let (_, covariance, _) = Normal::new(&columns, &self.data, &self.inverse).solve();
+        let (_, covariance, _) = Normal::new(&columns, &self.data, &self.powers).solve();
         let wanted = shape.len() + parts.free.len();
         let places: Vec<usize> = active.iter().copied().chain(shape.len()..wanted).collect();
         let mut out = DMatrix::zeros(wanted, wanted);

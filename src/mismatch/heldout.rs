@@ -103,7 +103,6 @@ fn known(trained: &LeastSquares, whole: &LeastSquares) -> Vec<f64> {
 /// Moves each shape to where the training half has it.
 fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
     let powers = scene.powers(&hypothesis.noise.densities(scene));
-    let inverse: Vec<f64> = powers.iter().map(|p| 1.0 / p).collect();
     for i in 0..hypothesis.courses.len() {
         let Some(course) = hypothesis.courses[i].course() else { continue };
         if hypothesis.courses[i].shape.is_empty() {
@@ -113,7 +112,7 @@ fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
         let others = part_modes(scene, &hypothesis.courses);
         let nuisances = kept(scene, &hypothesis.courses);
         let gain = |shape: &[f64]| {
-            let own = PartModes::of(&course.parts(shape, &scene.drivers), scene);
+            let own = PartModes::of(course.parts(shape, &scene.drivers), scene);
             let mut data = scene.modes.clone();
             let mut columns: Vec<(&[f64], f64)> =
                 nuisances.iter().map(|n| (n.modes.as_slice(), n.deviation)).collect();
@@ -123,7 +122,7 @@ fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
                 }
                 columns.extend(part.free.iter().chain(&part.beside).map(|c| (c.as_slice(), f64::INFINITY)));
             }
-            -0.5 * Normal::new(&columns, &data, &inverse).solve().2
+            -0.5 * Normal::new(&columns, &data, &powers).solve().2
         };
         let (shape, _) =
             refine(&hypothesis.courses[i].shape, &bounds, &first_steps(course, &scene.drivers), 40, gain);

@@ -49,13 +49,13 @@ pub struct PartModes {
 }
 
 impl PartModes {
-    /// Transforms the parts.
-    pub fn of(parts: &Parts, scene: &Scene) -> PartModes {
-        let modes = |column: &Vec<f64>| scene.transform(column);
+    /// Transforms the parts, one after the other: of a long record each is large.
+    pub fn of(parts: Parts, scene: &Scene) -> PartModes {
+        let modes = |column: Vec<f64>| scene.transform(&column);
         PartModes {
-            fixed: parts.fixed.as_ref().map(modes),
-            free: parts.free.iter().map(modes).collect(),
-            beside: parts.beside.iter().map(modes).collect(),
+            fixed: parts.fixed.map(modes),
+            free: parts.free.into_iter().map(modes).collect(),
+            beside: parts.beside.into_iter().map(modes).collect(),
         }
     }
 }
@@ -106,26 +106,35 @@ pub struct Normal {
     total: f64,
 }
 
-fn inner(a: &[f64], b: &[f64], inverse: &[f64]) -> f64 {
-    a.iter().zip(b).zip(inverse).map(|((x, y), w)| x * y * w).sum()
+/// Σ a b/p. In four sums, none of which waits for the other.
+fn inner(a: &[f64], b: &[f64], powers: &[f64]) -> f64 {
+    let n = a.len().min(b.len()).min(powers.len());
+    let mut sums = [0.0; 4];
+    let (a, b, powers) = (&a[..n], &b[..n], &powers[..n]);
+    for ((x, y), p) in a.chunks(4).zip(b.chunks(4)).zip(powers.chunks(4)) {
+        for (sum, ((x, y), p)) in sums.iter_mut().zip(x.iter().zip(y).zip(p)) {
+            *sum += x * y / p;
+        }
+    }
+    sums.iter().sum()
 }
 
 impl Normal {
     /// The equations for `columns` with prior deviations (infinite for none).
-    pub fn new(columns: &[(&[f64], f64)], data: &[f64], inverse: &[f64]) -> Normal {
+    pub fn new(columns: &[(&[f64], f64)], data: &[f64], powers: &[f64]) -> Normal {
         let p = columns.len();
         let mut matrix = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         for (i, (a, deviation)) in columns.iter().enumerate() {
             for (j, (b, _)) in columns.iter().enumerate().take(i + 1) {
-                let value = inner(a, b, inverse);
+                let value = inner(a, b, powers);
                 matrix[(i, j)] = value;
                 matrix[(j, i)] = value;
             }
             matrix[(i, i)] += deviation.powi(-2);
-            right[i] = inner(a, data, inverse);
+            right[i] = inner(a, data, powers);
         }
-        Normal { matrix, right, total: inner(data, data, inverse) }
+        Normal { matrix, right, total: inner(data, data, powers) }
     }
 
     /// The equations with more columns, against the same data less a fixed part.
@@ -135,29 +144,29 @@ impl Normal {
         new: &[&[f64]],
         data: &[f64],
         fixed: bool,
-        inverse: &[f64],
+        powers: &[f64],
     ) -> Normal {
         let (p, q) = (old.len(), new.len());
         let mut matrix = DMatrix::zeros(p + q, p + q);
         matrix.view_mut((0, 0), (p, p)).copy_from(&self.matrix);
         let mut right = DVector::zeros(p + q);
         for (i, (a, _)) in old.iter().enumerate() {
-            right[i] = if fixed { inner(a, data, inverse) } else { self.right[i] };
+            right[i] = if fixed { inner(a, data, powers) } else { self.right[i] };
         }
         for (i, a) in new.iter().enumerate() {
             for (j, (b, _)) in old.iter().enumerate() {
-                let value = inner(a, b, inverse);
+                let value = inner(a, b, powers);
                 matrix[(p + i, j)] = value;
                 matrix[(j, p + i)] = value;
             }
             for (j, b) in new.iter().enumerate().take(i + 1) {
-                let value = inner(a, b, inverse);
+                let value = inner(a, b, powers);
                 matrix[(p + i, p + j)] = value;
                 matrix[(p + j, p + i)] = value;
             }
-            right[p + i] = inner(a, data, inverse);
+            right[p + i] = inner(a, data, powers);
         }
-        let total = if fixed { inner(data, data, inverse) } else { self.total };
+        let total = if fixed { inner(data, data, powers) } else { self.total };
         Normal { matrix, right, total }
     }
 
@@ -218,12 +227,12 @@ fn least_squares<'a>(
     scene: &'a Scene,
     hypothesis: &Hypothesis,
     parts: &[PartModes],
-    inverse: &[f64],
+    powers: &[f64],
 ) -> (LeastSquares, Cow<'a, [f64]>) {
     let mut data = less_fixed(scene, parts);
     let nuisances = kept(scene, &hypothesis.courses);
     let columns = columns(&nuisances, parts);
-    let (coefficients, covariance, _) = Normal::new(&columns, &data, inverse).solve();
+    let (coefficients, covariance, _) = Normal::new(&columns, &data, powers).solve();
     for ((column, _), c) in columns.iter().zip(&coefficients) {
         subtract(data.to_mut(), column, *c);
     }
@@ -253,7 +262,7 @@ fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
 /// Modes of every course of a hypothesis on a scene.
 pub fn part_modes(scene: &Scene, courses: &[CourseIn]) -> Vec<PartModes> {
     let one = |c: &CourseIn| {
-        c.course().map(|x| PartModes::of(&x.parts(&c.shape, &scene.drivers), scene)).unwrap_or_default()
+        c.course().map(|x| PartModes::of(x.parts(&c.shape, &scene.drivers), scene)).unwrap_or_default()
     };
     courses.iter().map(one).collect()
 }
@@ -288,7 +297,7 @@ pub fn fit_with(hypothesis: &mut Hypothesis, scene: &Scene, parts: &[PartModes])
 /// Mean for the noise at hand, then noise for that mean.
 fn turn(hypothesis: &mut Hypothesis, scene: &Scene, parts: &[PartModes]) -> Fit {
     let densities = hypothesis.noise.densities(scene);
-    let (mean, residual) = least_squares(scene, hypothesis, parts, &scene.inverse_powers(&densities));
+    let (mean, residual) = least_squares(scene, hypothesis, parts, &scene.powers(&densities));
     let observed = scene.observed(&residual);
     let noise = noise_fit::fit(&mut hypothesis.noise, scene, &observed);
     let densities = hypothesis.noise.densities(scene);

@@ -11,7 +11,7 @@ pub fn increment_arcsec(regular: &Regular) -> Option<f64> {
     let values: Vec<f64> = regular
         .rate
         .iter()
-        .zip(&regular.present)
+        .zip(&regular.grid.present)
         .filter(|(_, p)| **p)
         .map(|(v, _)| *v)
         .take(LOOKED)
@@ -53,5 +53,5 @@ pub fn increment_arcsec(regular: &Regular) -> Option<f64> {
     let distinct = steps.last().copied().unwrap_or(0.0) / step;
     // A step of a round decimal number is how the file was written, which a few dozens of levels do not tell; an angle
     // increment is seen in the spectrum as well, and that decides.
-    (share > 0.99 && distinct < 2000.0).then_some(step * regular.dt_s)
+    (share > 0.99 && distinct < 2000.0).then_some(step * regular.grid.dt_s)
 }

@@ -5,7 +5,7 @@ use super::hypothesis::{Hypothesis, fit};
 use super::impute;
 use super::lattice;
 use super::noise_fit::Noise;
-use super::regular::{Regular, fast_length};
+use super::regular::{Grid, Regular, fast_length};
 use super::scene::{Scene, smoothed};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Column, Drivers, Model, Nuisance};
@@ -21,8 +21,8 @@ const SEED: u64 = 0x5a67_6e61_6320_0005;
 
 /// Recording and claim.
 pub struct Problem {
-    /// The recording on the grid.
-    pub regular: Regular,
+    /// The grid of the recording.
+    pub grid: Grid,
     /// The claim.
     pub claim: Claim,
     /// Columns on the grid.
@@ -39,8 +39,8 @@ pub struct Problem {
 
 impl Problem {
     /// Brings a recording and a claim together.
-    pub fn new(regular: Regular, claim: &Claim) -> Problem {
-        let drivers = Arc::new(drivers(&regular, claim));
+    pub fn new(regular: &Regular, claim: &Claim) -> Problem {
+        let drivers = Arc::new(drivers(regular, claim));
         let mean = drivers.claimed_mean();
         let mut residual: Vec<f64> = regular.rate.iter().zip(&mean).map(|(y, m)| y - m).collect();
         for stated in &claim.effects {
@@ -52,8 +52,8 @@ impl Problem {
                 residual.iter_mut().zip(&course).for_each(|(r, c)| *r -= c);
             }
         }
-        let usable = regular.present.clone();
-        let lattice_arcsec = lattice::increment_arcsec(&regular);
+        let usable = regular.grid.present.clone();
+        let lattice_arcsec = lattice::increment_arcsec(regular);
         let rows = usable.iter().filter(|u| **u).count();
         let empty = Scene::new(drivers.clone(), &residual, &[]);
         let noise = Noise::of(claim);
@@ -61,7 +61,7 @@ impl Problem {
         impute::fill(&mut residual, &usable, &powers, SEED);
         let scenes = scenes(&drivers, claim, &residual, lattice_arcsec, rows);
         let level = level(claim, &drivers);
-        Problem { regular, claim: claim.clone(), drivers, residual, usable, level, scenes }
+        Problem { grid: regular.grid.clone(), claim: claim.clone(), drivers, residual, usable, level, scenes }
     }
 
     /// True when the claim states jumps between two levels without saying when.
@@ -166,8 +166,8 @@ pub(super) fn drivers(regular: &Regular, claim: &Claim) -> Drivers {
     let column = |c: Column| regular.columns.get(&c).cloned();
     let temperature = column(Column::Temperature);
     Drivers {
-        dt_s: regular.dt_s,
-        start_s: regular.start_s,
+        dt_s: regular.grid.dt_s,
+        start_s: regular.grid.start_s,
         samples: regular.rate.len(),
         averaged: 1,
         smooth_temperature: temperature.as_deref().map(smoothed),

@@ -6,16 +6,23 @@ use std::collections::BTreeMap;
 /// Rows on a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Regular {
+    /// The grid.
+    pub grid: Grid,
+    /// Rate, deg/h; interpolated where missing.
+    pub rate: Vec<f64>,
+    /// Other columns, interpolated where rows are missing.
+    pub columns: BTreeMap<Column, Vec<f64>>,
+}
+
+/// A uniform grid and which of its places rows fill.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
     /// Sample interval, s.
     pub dt_s: f64,
     /// `time_s` of the first row.
     pub start_s: f64,
-    /// Rate, deg/h; interpolated where missing.
-    pub rate: Vec<f64>,
     /// True where a row was.
     pub present: Vec<bool>,
-    /// Other columns, interpolated where rows are missing.
-    pub columns: BTreeMap<Column, Vec<f64>>,
     /// Runs of missing rows: first, count.
     pub gaps: Vec<(usize, usize)>,
     /// Rows whose stamp stands still or falls.
@@ -36,12 +43,14 @@ pub enum Irregular {
 /// Rows that are needed for anything to be said.
 pub const FEWEST: usize = 64;
 
-impl Regular {
+impl Grid {
     /// Rows missing inside.
     pub fn missing(&self) -> usize {
         self.gaps.iter().map(|g| g.1).sum()
     }
+}
 
+impl Regular {
     /// Puts rows on the grid of `sample_rate_hz`. An interval counts as the nearest whole number of sample intervals, so
     /// that the rounding of stamps and a slow error of the clock do no harm.
     ///
@@ -50,7 +59,7 @@ impl Regular {
     pub fn new(
         time_s: &[f64],
         rate_deg_h: &[f64],
-        columns: &BTreeMap<Column, Vec<f64>>,
+        columns: &BTreeMap<Column, &[f64]>,
         sample_rate_hz: f64,
     ) -> Result<Regular, Irregular> {
         let rows = time_s.len();
@@ -101,13 +110,9 @@ impl Regular {
             out
         };
         Ok(Regular {
-            dt_s,
-            start_s,
+            grid: Grid { dt_s, start_s, present, gaps, disordered },
             rate: spread(rate_deg_h),
-            present,
             columns: columns.iter().map(|(c, v)| (*c, spread(v))).collect(),
-            gaps,
-            disordered,
         })
     }
 }
@@ -154,10 +159,10 @@ mod tests {
         let rate: Vec<f64> = rows.iter().map(|i| *i as f64).collect();
         let out = Regular::new(&time, &rate, &BTreeMap::new(), 3.0).unwrap();
         assert_eq!(out.rate.len(), 200);
-        assert_eq!(out.gaps, vec![(50, 3)]);
-        assert_eq!(out.missing(), 3);
+        assert_eq!(out.grid.gaps, vec![(50, 3)]);
+        assert_eq!(out.grid.missing(), 3);
         assert!(out.rate.iter().enumerate().all(|(i, v)| (v - i as f64).abs() < 1e-12));
-        assert_eq!(out.present.iter().filter(|p| !**p).count(), 3);
+        assert_eq!(out.grid.present.iter().filter(|p| !**p).count(), 3);
     }
 
     #[test]

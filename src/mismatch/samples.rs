@@ -46,7 +46,7 @@ pub fn quantization(lsb_arcsec: f64, gain: f64, delta_bic: f64, problem: &Proble
     // The lattice gives the step to the digits that the file writes.
     let digits = 1e-6 * lsb_arcsec;
     let ci95 = [lsb_arcsec - digits, lsb_arcsec + digits];
-    let step = lsb_arcsec / problem.regular.dt_s;
+    let step = lsb_arcsec / problem.grid.dt_s;
     // Successive errors of the angle are subtracted: twice the variance of a rounding error.
     let rms = step / 6f64.sqrt();
     let reported = BTreeMap::from([

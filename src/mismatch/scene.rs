@@ -151,19 +151,10 @@ impl Scene {
 
     /// Variance of each mode, (deg/h)², from the densities of the bins; infinite for mode 0.
     pub fn powers(&self, densities: &[f64]) -> Vec<f64> {
-        self.of_bins(densities, f64::INFINITY, |power| power)
-    }
-
-    /// One over the variance of each mode, (deg/h)⁻²; 0 for mode 0.
-    pub fn inverse_powers(&self, densities: &[f64]) -> Vec<f64> {
-        self.of_bins(densities, 0.0, f64::recip)
-    }
-
-    fn of_bins(&self, densities: &[f64], zeroth: f64, of: impl Fn(f64) -> f64) -> Vec<f64> {
-        let mut out = vec![zeroth; self.length * self.blocks.len()];
+        let mut out = vec![f64::INFINITY; self.length * self.blocks.len()];
         for block in out.chunks_exact_mut(self.length) {
             for (bin, density) in self.bins.iter().zip(densities) {
-                block[bin.mode..bin.mode + bin.modes].fill(of(density / bin.dt_s));
+                block[bin.mode..bin.mode + bin.modes].fill(density / bin.dt_s);
             }
         }
         out

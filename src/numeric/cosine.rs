@@ -1,11 +1,11 @@
 //! Orthonormal discrete cosine transform of type II.
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
-use std::cell::RefCell;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// Lengths whose plans are kept, by each thread.
-const KEPT: usize = 6;
+/// Lengths whose plans are kept. All threads share them: the tables of a long record are large.
+const KEPT: usize = 16;
+static PLANS: Mutex<Vec<Plan>> = Mutex::new(vec![]);
 
 /// What transforms of one length share.
 #[derive(Clone)]
@@ -18,29 +18,25 @@ struct Plan {
 }
 
 fn plan(n: usize) -> Plan {
-    thread_local! {
-        static PLANS: RefCell<Vec<Plan>> = const { RefCell::new(vec![]) };
+    let mut plans = PLANS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(at) = plans.iter().position(|p| p.n == n) {
+        let found = plans.remove(at);
+        plans.push(found.clone());
+        return found;
     }
-    PLANS.with_borrow_mut(|plans| {
-        if let Some(at) = plans.iter().position(|p| p.n == n) {
-            let found = plans.remove(at);
-            plans.push(found.clone());
-            return found;
-        }
-        let mut planner = RealFftPlanner::<f64>::new();
-        let angle = std::f64::consts::PI / (2.0 * n as f64);
-        let made = Plan {
-            n,
-            forward: planner.plan_fft_forward(n),
-            inverse: planner.plan_fft_inverse(n),
-            turns: Arc::new((0..=n / 2).map(|k| (angle * k as f64).sin_cos()).collect()),
-        };
-        if plans.len() == KEPT {
-            plans.remove(0);
-        }
-        plans.push(made.clone());
-        made
-    })
+    let mut planner = RealFftPlanner::<f64>::new();
+    let angle = std::f64::consts::PI / (2.0 * n as f64);
+    let made = Plan {
+        n,
+        forward: planner.plan_fft_forward(n),
+        inverse: planner.plan_fft_inverse(n),
+        turns: Arc::new((0..=n / 2).map(|k| (angle * k as f64).sin_cos()).collect()),
+    };
+    if plans.len() == KEPT {
+        plans.remove(0);
+    }
+    plans.push(made.clone());
+    made
 }
 
 /// The orthonormal DCT-II: c_k = √(2/M) Σ_j y_j cos(πk(j+½)/M), c_0 = Σ y / √M.
@@ -60,7 +56,8 @@ pub fn dct2(values: &[f64]) -> Vec<f64> {
         return vec![f64::NAN; n];
     }
     let scale = (2.0 / n as f64).sqrt();
-    let mut out = vec![0.0; n];
+    // The transform leaves nothing of use in its input, whose memory serves again.
+    let mut out = ordered;
     for (k, (v, (sin, cos))) in spectrum.iter().zip(plan.turns.iter()).enumerate() {
         // V_k e^{-iπk/2n}: the real part is c_k, minus the imaginary part is c_{n−k}.
         out[k] = scale * (v.re * cos + v.im * sin);
@@ -96,6 +93,7 @@ pub fn inverse_dct2(coefficients: &[f64]) -> Vec<f64> {
     if plan.inverse.process(&mut spectrum, &mut ordered).is_err() {
         return vec![f64::NAN; n];
     }
+    drop(spectrum);
     (0..n)
         .map(|j| {
             let at = if j % 2 == 0 { j / 2 } else { n - 1 - j / 2 };

@@ -40,6 +40,9 @@ pub fn load_series(
     series.notes = source.notes().to_vec();
     series.notes.extend(report.notes);
     series.read_from = chosen.read_from;
+    series.time_s.shrink_to_fit();
+    series.rate_deg_h.shrink_to_fit();
+    series.index.shrink_to_fit();
     let columns = std::mem::take(&mut series.columns);
     for (column, mut values) in columns {
         let bad = values.iter().filter(|v| !v.is_finite()).count();
@@ -51,6 +54,7 @@ pub fn load_series(
             mend(column, &series.time_s, &mut values);
             series.faults.interpolated.insert(column, bad);
         }
+        values.shrink_to_fit();
         series.columns.insert(column, values);
     }
     Ok(series)

@@ -86,8 +86,9 @@ impl Model {
 /// A record against a claim.
 pub fn against(claim: &Claim, rate: &[f64], columns: &BTreeMap<Column, Vec<f64>>) -> (Problem, Tried) {
     let time: Vec<f64> = (0..rate.len()).map(|i| i as f64 / RATE_HZ).collect();
-    let regular = Regular::new(&time, rate, columns, RATE_HZ).unwrap();
-    let problem = Problem::new(regular, claim);
+    let columns = columns.iter().map(|(c, v)| (*c, v.as_slice())).collect();
+    let regular = Regular::new(&time, rate, &columns, RATE_HZ).unwrap();
+    let problem = Problem::new(&regular, claim);
     let tried = problem.baseline();
     (problem, tried)
 }

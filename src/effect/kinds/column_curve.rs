@@ -100,7 +100,7 @@ impl Course for ColumnCurve {
             }
             for order in 2..=HIGHEST {
                 let shape = vec![i as f64, order as f64];
-                let gain = gain_of(&self.parts(&shape, drivers), look);
+                let gain = gain_of(self.parts(&shape, drivers), look);
                 rated.push((gain - price * order as f64, shape));
             }
         }

@@ -133,7 +133,7 @@ impl Course for ColumnProduct {
 
     fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
         let shapes = (0..PAIRS.len()).map(|i| vec![i as f64]);
-        let gain = |s: &Vec<f64>| gain_of(&self.parts(s, drivers), look);
+        let gain = |s: &Vec<f64>| gain_of(self.parts(s, drivers), look);
         let rated: Vec<(f64, Vec<f64>)> =
             shapes.map(|s| (gain(&s), s)).filter(|(gain, _)| *gain > 0.0).collect();
         let looked = rated.len() as f64;

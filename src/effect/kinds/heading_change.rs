@@ -77,7 +77,7 @@ fn turned_instants(drivers: &Drivers, look: &Look<'_>) -> Starts {
     let mut rated: Vec<(f64, Vec<f64>)> = (1..points)
         .map(|p| {
             let shape = vec![((n * p / points) as f64 - 0.5) * drivers.dt_s];
-            (gain_of(&HeadingChange.parts(&shape, drivers), look), shape)
+            (gain_of(HeadingChange.parts(&shape, drivers), look), shape)
         })
         .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -3,6 +3,7 @@
 use crate::effect::{Course, Drivers, Look, Parts};
 use crate::numeric::cosine::dct2;
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 
 /// `count` values from `low` to `high` in equal ratios.
 pub(super) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
@@ -14,20 +15,20 @@ pub(super) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
 }
 
 /// Log-likelihood gain of a course for one shape: everything of it fitted, less what the columns beside it gain alone.
-pub(super) fn gain_of(parts: &Parts, look: &Look<'_>) -> f64 {
+pub(super) fn gain_of(parts: Parts, look: &Look<'_>) -> f64 {
     if parts.fixed.is_none() && parts.free.is_empty() {
         return 0.0;
     }
-    let mut residual = look.modes.to_vec();
+    let mut residual = Cow::Borrowed(look.modes);
     let mut gain = 0.0;
-    if let Some(fixed) = &parts.fixed {
-        for ((r, f), p) in residual.iter_mut().zip(dct2(fixed)).zip(look.powers).skip(1) {
+    if let Some(fixed) = parts.fixed {
+        for ((r, f), p) in residual.to_mut().iter_mut().zip(dct2(&fixed)).zip(look.powers).skip(1) {
             gain += (*r * f - 0.5 * f * f) / p;
             *r -= f;
         }
     }
-    let modes = |columns: &[Vec<f64>]| columns.iter().map(|c| dct2(c)).collect::<Vec<_>>();
-    let (mut all, beside) = (modes(&parts.free), modes(&parts.beside));
+    let modes = |columns: Vec<Vec<f64>>| columns.into_iter().map(|c| dct2(&c)).collect::<Vec<_>>();
+    let (mut all, beside) = (modes(parts.free), modes(parts.beside));
     let alone = explained(&beside, look.modes, look.powers);
     all.extend(beside);
     gain + explained(&all, &residual, look.powers) - alone
@@ -69,7 +70,7 @@ pub(super) fn best_of(
 ) -> Vec<Vec<f64>> {
     let mut rated: Vec<(f64, Vec<f64>)> = shapes
         .into_iter()
-        .map(|s| (gain_of(&course.parts(&s, drivers), look), s))
+        .map(|s| (gain_of(course.parts(&s, drivers), look), s))
         .filter(|(g, _)| *g > 0.0)
         .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -159,7 +160,7 @@ mod tests {
         let (modes, powers) = (dct2(&residual), vec![0.25; n]);
         let look = Look { score: &residual, modes: &modes, powers: &powers };
         let free = Parts { free: vec![column.clone()], ..Parts::default() };
-        assert!((gain_of(&free, &look) / look.gain(&column) - 1.0).abs() < 1e-8);
+        assert!((gain_of(free, &look) / look.gain(&column) - 1.0).abs() < 1e-8);
         assert!(
             (fast_level(&look) - 0.25).abs() < 1e-12
                 && fast_level(&Look { score: &[], modes: &[], powers: &[] }) == 0.0
@@ -171,10 +172,10 @@ mod tests {
             zz += z * z;
         }
         let fixed = Some(column.iter().map(|x| x * zr / zz).collect());
-        let gain = gain_of(&Parts { fixed, ..Parts::default() }, &look);
+        let gain = gain_of(Parts { fixed, ..Parts::default() }, &look);
         assert!((gain / look.gain(&column) - 1.0).abs() < 1e-9);
         let both = Parts { free: vec![column.clone()], beside: vec![column], ..Parts::default() };
-        assert!(gain_of(&both, &look).abs() < 1e-5);
+        assert!(gain_of(both, &look).abs() < 1e-5);
     }
 
     #[test]

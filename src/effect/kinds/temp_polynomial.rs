@@ -73,7 +73,7 @@ impl Course for TempPolynomial {
         let price = 0.5 * (drivers.samples.max(2) as f64).ln();
         let worth = |o: i32| {
             let shape = vec![f64::from(o)];
-            (gain_of(&self.parts(&shape, drivers), look) - price * f64::from(o), shape)
+            (gain_of(self.parts(&shape, drivers), look) - price * f64::from(o), shape)
         };
         let best = (2..=4).map(worth).max_by(|a, b| a.0.total_cmp(&b.0));
         Starts { shapes: best.map(|(_, s)| s).into_iter().collect(), looked: 3.0 }

@@ -241,7 +241,7 @@ fn courses_come_back_from_their_parameters_and_searches_find_them() {
                 assert!(low <= x && x <= high, "{kind}: {x} outside {low} to {high}");
             }
             let parts = course.parts(shape, &drivers);
-            found = found.max(search::gain_of(&parts, &look));
+            found = found.max(search::gain_of(parts.clone(), &look));
             let columns = parts.free.iter().chain(&parts.beside).chain(&parts.fixed);
             assert!(columns.flatten().all(|x| x.is_finite()), "{kind}");
 

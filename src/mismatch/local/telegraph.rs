@@ -66,7 +66,7 @@ struct Ground<'a> {
     /// Modes of what the hypothesis leaves, and the same in time.
     modes: Vec<f64>,
     residual: Vec<f64>,
-    inverse: Vec<f64>,
+    powers: Vec<f64>,
     columns: Vec<(Vec<f64>, f64)>,
     /// Share of each mode that is slow noise.
     slow: Vec<f64>,
@@ -98,16 +98,16 @@ impl<'a> Ground<'a> {
         let modes = tried.residual(&problem.scenes);
         let mut high: Vec<f64> = powers[powers.len() / 2..].to_vec();
         let white = super::median(&mut high);
-        let slow = powers.iter().map(|p| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 });
+        let slow = |p: &f64| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 };
         Ground {
             problem,
             tried,
             noise,
             residual: inverse_dct2(&modes),
             modes,
-            inverse: powers.iter().map(|p| 1.0 / p).collect(),
+            slow: powers.iter().map(slow).collect(),
+            powers,
             columns,
-            slow: slow.collect(),
             white,
         }
     }
@@ -125,8 +125,8 @@ impl<'a> Ground<'a> {
         let modes = self.problem.scenes.full.transform(&series);
         let data = &self.modes;
         let old: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, d)| (c.as_slice(), *d)).collect();
-        let before = Normal::new(&old, data, &self.inverse);
-        let (c, covariance, _) = before.with(&old, &[&modes], data, false, &self.inverse).solve();
+        let before = Normal::new(&old, data, &self.powers);
+        let (c, covariance, _) = before.with(&old, &[&modes], data, false, &self.powers).solve();
         let at = old.len();
         let mut rest = data.clone();
         let columns = old.iter().map(|o| o.0).chain([modes.as_slice()]);
