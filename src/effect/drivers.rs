@@ -103,6 +103,18 @@ impl Drivers {
         self.samples as f64 * self.dt_s
     }
 
+    /// The grid and the claim without the columns.
+    pub fn bare(&self) -> Drivers {
+        Drivers {
+            dt_s: self.dt_s,
+            start_s: self.start_s,
+            samples: self.samples,
+            averaged: self.averaged,
+            claim: self.claim,
+            ..Drivers::default()
+        }
+    }
+
     /// A column, if there.
     pub fn column(&self, column: Column) -> Option<&[f64]> {
         match column {

@@ -5,6 +5,7 @@ use super::departures::{self, Departure};
 use super::draw::{self, Drawn};
 use super::engine::Found;
 use super::estimates;
+use super::experiment;
 use super::finding::{
     Candidate, Explanation, Finding, Fit, FitFigures, ParameterValue, PlaceRecord, RecordingFacts, Test,
 };
@@ -125,7 +126,7 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         tests: tests(before, after),
         nuisances: nuisances(problem, base, &selection.best),
         recording: facts(problem, series, options),
-        experiments: vec![],
+        experiments: experiment::deciding(&selection.chosen, &selection.best, scenes),
     };
     let figures = draw::all(
         problem,
@@ -193,7 +194,7 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
         equivalents: chosen
             .equivalents
             .iter()
-            .map(|e| e.kind())
+            .map(|e| e.effect.kind())
             .filter(|_| chosen.effect.reported_kind() != UNKNOWN)
             .collect(),
         places,

@@ -9,6 +9,7 @@ pub mod draw;
 pub mod driver;
 pub mod engine;
 pub mod estimates;
+mod experiment;
 pub mod figures;
 pub mod heldout;
 pub mod hypothesis;

@@ -126,6 +126,16 @@ impl Scene {
         self
     }
 
+    /// The bins of a record so many times as long at the same rate, without a record and without columns.
+    pub fn longer(&self, times: f64) -> Scene {
+        let samples = (self.length as f64 * times).round() as usize;
+        let drivers = Drivers { samples, ..self.drivers.bare() };
+        let bins = bins(samples, drivers.dt_s);
+        let units = bins.iter().map(|bin| unit_densities(bin, drivers.averaged)).collect();
+        let drivers = Arc::new(drivers);
+        Scene { drivers, modes: vec![], blocks: vec![0], length: samples, bins, units, nuisances: vec![] }
+    }
+
     /// Cosine modes of a series on the grid of the drivers, block after block.
     pub fn transform(&self, series: &[f64]) -> Vec<f64> {
         transform(series, &self.blocks, self.length)

@@ -33,7 +33,7 @@ pub struct Chosen {
     /// Probability of its gain without it, its search and the catalogue counted.
     pub p_value: f64,
     /// What would have served as well, the best first.
-    pub equivalents: Vec<&'static dyn Effect>,
+    pub equivalents: Vec<Candidate>,
     /// The hypothesis without it, fitted.
     pub without: Tried,
 }
@@ -192,8 +192,8 @@ fn chosen(best: &Tried, base: &Tried, first: &[Candidate], scenes: &Scenes, fami
                 .iter()
                 .filter(|c| c.effect.kind() != effect.kind() && c.effect.reported_kind() == c.effect.kind())
                 .filter(|c| c.tried.bic(rows) < best.bic(rows) + ENOUGH)
-                .map(|c| c.effect)
                 .take(3)
+                .cloned()
                 .collect();
             let delta_bic = without.bic(rows) - best.bic(rows);
             Chosen { effect, slot, delta_bic, p_value, equivalents, without }

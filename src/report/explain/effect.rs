@@ -158,8 +158,9 @@ fn equivalent(kind: &str, chosen: &str, all: &Explanation, words: Words) -> Equi
         doc.map(|d| of(d).of(words.lang)).unwrap_or_default().to_owned()
     };
     let experiment = all.experiments.iter().find(|e| e.kind == chosen && e.against == kind);
-    let times = experiment.and_then(|e| e.times_longer).filter(|t| t.is_finite() && *t > 1.0);
+    let times = experiment.and_then(|e| e.times_longer).filter(|t| t.is_finite());
     let longer = match (times, experiment) {
+        (Some(times), _) if times <= 1.0 => words.t("explain.same_length"),
         (Some(times), _) => {
             let length = crate::report::number::duration(rounded(times * all.recording.length_s), words.lang);
             let times = limit_digits(times, 2, words.lang);
