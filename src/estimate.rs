@@ -14,7 +14,10 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 mod student;
 mod tail;
 
-pub use tail::{chi_square_tail, chi_square_two_sided, normal_two_sided};
+pub use tail::{
+    chi_square_tail, chi_square_two_sided, ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided,
+    normal_two_sided,
+};
 
 /// The standard normal quantile of a probability.
 pub fn normal_quantile(probability: f64) -> f64 {

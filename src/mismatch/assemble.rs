@@ -72,14 +72,12 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     let something = !found.named.is_empty();
     let mut principal: Vec<Place> = found.named.first().map(|n| n.places.clone()).unwrap_or_default();
     if principal.is_empty() {
-        principal.extend(
-            after.iter().filter(|d| d.p_value * (after.len() as f64) < 1e-3).map(|d| d.place).take(1),
-        );
+        principal.extend(after.iter().filter(|d| d.below(1e-3, after.len())).map(|d| d.place).take(1));
     }
-    let mut findings = findings(&found.named);
+    let mut findings = findings(&found.named, options.max_effects);
     if let Some(unknown) = unknown(after, !something, options.alpha) {
         // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
-        let comb = after.iter().any(|d| d.test == "comb" && d.p_value * (after.len() as f64) < DEPARTED);
+        let comb = after.iter().any(|d| d.test == "comb" && d.below(DEPARTED, after.len()));
         if comb {
             findings.retain(|f| f.kind != "line");
         }
@@ -147,8 +145,8 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
 }
 
 /// One finding a cause: several named effects that are one cause of no kind are one.
-fn findings(named: &[Named]) -> Vec<Finding> {
-    let together = single_cause::together(named);
+fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
+    let together = single_cause::together(named, allowed);
     let mut out = vec![];
     for (i, one) in named.iter().enumerate() {
         match together.iter().find(|t| t.members.contains(&i)) {
@@ -277,10 +275,9 @@ fn places(
 
 /// What departs from the hypothesis and has no name.
 fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Finding> {
-    let tests = after.len().max(1) as f64;
     let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTED };
-    let mut departed: Vec<&Departure> = after.iter().filter(|d| d.p_value * tests < bound).collect();
-    departed.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    let mut departed: Vec<&Departure> = after.iter().filter(|d| d.below(bound, after.len())).collect();
+    departed.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let worst = departed.first()?;
     let mut places: Vec<PlaceRecord> = vec![];
     for place in departed.iter().flat_map(|d| [Some(d.place), d.beside]).flatten() {
@@ -290,15 +287,15 @@ fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Findi
         }
     }
     places.truncate(3);
-    let p_value = (worst.p_value * tests).min(1.0);
+    let ln_p = (worst.ln_p + (after.len().max(1) as f64).ln()).min(0.0);
     Some(Finding {
         kind: UNKNOWN.to_owned(),
         effect: None,
         equivalents: vec![],
         parameters: BTreeMap::new(),
         places,
-        delta_bic: -2.0 * p_value.max(1e-300).ln(),
-        p_value,
+        delta_bic: -2.0 * ln_p,
+        p_value: ln_p.exp().max(1e-300),
         heldout_gain: None,
         removed_share: None,
     })
@@ -342,8 +339,8 @@ fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
             domain: b.place.domain.id().to_owned(),
             from: b.place.from,
             to: b.place.to,
-            p_before: (b.p_value * many).min(1.0),
-            p_after: a.map_or(1.0, |a| (a.p_value * left).min(1.0)),
+            p_before: (b.p_value() * many).min(1.0),
+            p_after: a.map_or(1.0, |a| (a.p_value() * left).min(1.0)),
         }
     };
     before.iter().enumerate().map(one).collect()

@@ -4,7 +4,7 @@
 use super::departures::{Departure, White, f_normal};
 use super::scene::{Scene, smoothed};
 use crate::effect::{Column, Domain, Place};
-use crate::estimate::{chi_square_tail, normal_two_sided};
+use crate::estimate::{ln_chi_square_tail, ln_normal_two_sided};
 use crate::numeric::cosine::dct2;
 use nalgebra::{DMatrix, DVector};
 
@@ -45,10 +45,10 @@ pub fn all(scene: &Scene, white: &White) -> Vec<Departure> {
         for j in 0..i {
             let mut product = centred(&named[i].1);
             product.iter_mut().zip(centred(&named[j].1)).for_each(|(x, y)| *x *= y);
-            if let Some(p_value) = gain_of(white, std::iter::once(product)) {
+            if let Some(ln_p) = gain_of(white, std::iter::once(product)) {
                 let (from, to) = crate::numeric::range::ends(&named[j].1);
                 let place = Place { domain: named[j].0, from, to };
-                out.push(Departure { test: "product", place, beside: None, p_value });
+                out.push(Departure { test: "product", place, beside: None, ln_p });
             }
         }
     }
@@ -71,7 +71,7 @@ fn centred(values: &[f64]) -> Vec<f64> {
     values.iter().map(|v| (v - middle) / half).collect()
 }
 
-/// p-value of the power of the whitened residual in the span of some columns.
+/// ln of the p-value of the power of the whitened residual in the span of some columns.
 fn gain_of(white: &White, columns: impl Iterator<Item = Vec<f64>>) -> Option<f64> {
     let whitened = |column: Vec<f64>| {
         let mut modes = dct2(&column);
@@ -102,7 +102,7 @@ fn gain_of(white: &White, columns: impl Iterator<Item = Vec<f64>>) -> Option<f64
         matrix[(i, i)] += 1e-9;
     }
     let solution = matrix.cholesky()?.solve(&right);
-    Some(chi_square_tail(right.dot(&solution), p as f64))
+    Some(ln_chi_square_tail(right.dot(&solution), p as f64))
 }
 
 /// Whether the residual follows a smooth function of a column, and at which of its values most.
@@ -111,7 +111,7 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
     if high - low <= 1e-9 * low.abs().max(high.abs()) {
         return None;
     }
-    let p_value = if domain == Domain::Angle {
+    let ln_p = if domain == Domain::Angle {
         let turn = |k: usize, f: fn(f64) -> f64| {
             values.iter().map(|a| f(k as f64 * a.to_radians())).collect::<Vec<f64>>()
         };
@@ -121,7 +121,7 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
         gain_of(white, (1..=ORDER).map(|k| x.iter().map(|v| legendre(k, *v)).collect()))
     }?;
     let (from, to) = extreme(white, values, low, high);
-    Some(Departure { test, place: Place { domain, from, to }, beside: None, p_value })
+    Some(Departure { test, place: Place { domain, from, to }, beside: None, ln_p })
 }
 
 fn legendre(order: usize, x: f64) -> f64 {
@@ -162,8 +162,8 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by(|a, b| by(*a).total_cmp(&by(*b)));
     let whole: f64 = white.series.iter().map(|e| e * e).sum();
-    let mut best = (1.0, 0.0, 0.0);
-    let mut looks = 0.0;
+    let mut best = (0.0, 0.0, 0.0);
+    let mut looks = 0.0f64;
     for group in order.chunks(n / GROUPS) {
         if group.len() < 32 {
             continue;
@@ -171,7 +171,7 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
         let inside: f64 = group.iter().map(|i| white.series[*i].powi(2)).sum();
         let (length, rest) = (group.len() as f64, (n - group.len()) as f64);
         let z = f_normal((inside / length) / ((whole - inside) / rest), length, rest);
-        let p = normal_two_sided(z);
+        let p = ln_normal_two_sided(z);
         looks += 1.0;
         if p < best.0 {
             let (a, b) = (by(group[0]), by(group[group.len() - 1]));
@@ -179,5 +179,5 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
         }
     }
     let place = Place { domain, from: best.1, to: best.2 };
-    Some(Departure { test: "size", place, beside: None, p_value: (best.0 * looks).min(1.0) })
+    Some(Departure { test: "size", place, beside: None, ln_p: (best.0 + looks.ln()).min(0.0) })
 }

@@ -7,7 +7,7 @@
 use super::candidates::{Scenes, Tried};
 use super::scene::Scene;
 use crate::effect::{Domain, Place};
-use crate::estimate::{chi_square_tail, chi_square_two_sided, normal_two_sided};
+use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_two_sided};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::sums::cumulated;
 use rand::{RngExt as _, SeedableRng as _};
@@ -25,8 +25,21 @@ pub struct Departure {
     pub place: Place,
     /// Where in another view.
     pub beside: Option<Place>,
+    /// Logarithm of the probability of as large a departure anywhere in the test. Of strong departures the probabilities
+    /// are all too small to be told; which is the strongest is not.
+    pub ln_p: f64,
+}
+
+impl Departure {
     /// Probability of as large a departure anywhere in the test.
-    pub p_value: f64,
+    pub fn p_value(&self) -> f64 {
+        self.ln_p.exp().clamp(1e-300, 1.0)
+    }
+
+    /// Whether it is below a probability in a family of so many tests.
+    pub fn below(&self, probability: f64, tests: usize) -> bool {
+        self.ln_p + (tests.max(1) as f64).ln() < probability.ln()
+    }
 }
 
 /// Whitened residual of a fit.
@@ -53,7 +66,7 @@ impl White {
 
 /// A scan's best so far.
 struct Scan {
-    smallest: f64,
+    ln_smallest: f64,
     from: f64,
     to: f64,
     looks: f64,
@@ -61,13 +74,13 @@ struct Scan {
 
 impl Scan {
     fn new() -> Scan {
-        Scan { smallest: 1.0, from: 0.0, to: 0.0, looks: 0.0 }
+        Scan { ln_smallest: 0.0, from: 0.0, to: 0.0, looks: 0.0 }
     }
 
-    fn see(&mut self, p: f64, from: f64, to: f64) {
+    fn see(&mut self, ln_p: f64, from: f64, to: f64) {
         self.looks += 1.0;
-        if p < self.smallest {
-            (self.smallest, self.from, self.to) = (p, from, to);
+        if ln_p < self.ln_smallest {
+            (self.ln_smallest, self.from, self.to) = (ln_p, from, to);
         }
     }
 
@@ -75,8 +88,8 @@ impl Scan {
         if self.looks == 0.0 {
             return None;
         }
-        let p_value = (self.smallest * self.looks).min(1.0);
-        Some(Departure { test, place: Place { domain, from: self.from, to: self.to }, beside: None, p_value })
+        let ln_p = (self.ln_smallest + self.looks.ln()).min(0.0);
+        Some(Departure { test, place: Place { domain, from: self.from, to: self.to }, beside: None, ln_p })
     }
 }
 
@@ -125,7 +138,7 @@ fn spectrum(scene: &Scene, white: &White) -> Option<Departure> {
     let sums = cumulated(white.modes.iter().skip(1).map(|u| u * u));
     let mut scan = Scan::new();
     windows(n - 1, 4, |from, to| {
-        let p = chi_square_two_sided(sums[to] - sums[from], (to - from) as f64);
+        let p = ln_chi_square_two_sided(sums[to] - sums[from], (to - from) as f64);
         scan.see(p, scene.frequency_hz(from as f64 + 1.0), scene.frequency_hz(to as f64));
     });
     scan.done("spectrum", Domain::Frequency)
@@ -149,7 +162,7 @@ fn comb(scene: &Scene, powers: &[f64]) -> Option<Departure> {
     const PERIODS: usize = 5;
     let n = powers.len();
     let mut best: Option<(f64, f64, usize)> = None;
-    let mut looks = 0.0;
+    let mut looks = 0.0f64;
     for harmonics in HARMONICS {
         // Steps of the fundamental of a cell over the number of harmonics: the highest is met within half a cell.
         let (mut largest, mut at) = (0.0, 0);
@@ -160,7 +173,7 @@ fn comb(scene: &Scene, powers: &[f64]) -> Option<Departure> {
                 (largest, at) = (sum, i);
             }
         }
-        let p = chi_square_tail(2.0 * largest, 2.0 * harmonics as f64);
+        let p = ln_chi_square_tail(2.0 * largest, 2.0 * harmonics as f64);
         if at > 0 && best.is_none_or(|b| p < b.0) {
             best = Some((p, at as f64 / harmonics as f64, harmonics));
         }
@@ -168,7 +181,7 @@ fn comb(scene: &Scene, powers: &[f64]) -> Option<Departure> {
     let (p, cell, harmonics) = best?;
     let fundamental = cell / (2.0 * n as f64 * scene.drivers.dt_s);
     let place = Place { domain: Domain::Frequency, from: fundamental, to: fundamental * harmonics as f64 };
-    Some(Departure { test: "comb", place, beside: None, p_value: (p * looks).clamp(1e-300, 1.0) })
+    Some(Departure { test: "comb", place, beside: None, ln_p: (p + looks.ln()).min(0.0) })
 }
 
 /// The largest line of the whitened series.
@@ -182,10 +195,10 @@ fn lines(scene: &Scene, powers: &[f64]) -> Option<Departure> {
     }
     let step = 1.0 / (2.0 * n as f64 * scene.drivers.dt_s);
     // Twice as many looks as independent frequencies cost about a factor of 1.6 (domain: un-padded loses up to 1.57).
-    let p_value = (1.6 * n as f64 / 2.0 * (-best).exp()).min(1.0);
+    let ln_p = ((0.8 * n as f64).ln() - best).min(0.0);
     let place =
         Place { domain: Domain::Frequency, from: (at as f64 - 2.0) * step, to: (at as f64 + 2.0) * step };
-    Some(Departure { test: "line", place, beside: None, p_value: p_value.max(1e-300) })
+    Some(Departure { test: "line", place, beside: None, ln_p })
 }
 
 /// Mean of the whitened series over windows of time.
@@ -195,7 +208,7 @@ fn levels(scene: &Scene, white: &White) -> Option<Departure> {
     windows(white.series.len(), 1, |from, to| {
         let z = (sums[to] - sums[from]) / ((to - from) as f64).sqrt();
         if to - from > 1 {
-            scan.see(normal_two_sided(z), scene.drivers.time_s(from), scene.drivers.time_s(to));
+            scan.see(ln_normal_two_sided(z), scene.drivers.time_s(from), scene.drivers.time_s(to));
         }
     });
     scan.done("level", Domain::Time)
@@ -244,9 +257,14 @@ fn tails(scene: &Scene, series: &[f64], usable: &[bool]) -> Option<Departure> {
         let Ok(law) = Poisson::new(expected) else { continue };
         let many = if seen == 0 { 1.0 } else { law.sf(seen - 1) };
         let few = law.cdf(seen);
-        scan.see((2.0 * many.min(few)).clamp(1e-300, 1.0), 0.0, 0.0);
+        // Where the law ends, the bound of Chernoff.
+        let (k, l) = (seen as f64, expected);
+        let bound = if k > 0.0 { k * (l / k).ln() + k - l } else { -l };
+        let exact = many.min(few);
+        let ln_p = if exact > 1e-290 { exact.ln() } else { bound };
+        scan.see((std::f64::consts::LN_2 + ln_p).min(0.0), 0.0, 0.0);
     }
-    scan.see((n * normal_two_sided(largest.0)).min(1.0), 0.0, 0.0);
+    scan.see((n.ln() + ln_normal_two_sided(largest.0)).min(0.0), 0.0, 0.0);
     let mut found = scan.done("tails", Domain::Time)?;
     // Where the values beyond three deviations are.
     let far: Vec<usize> = (0..series.len()).filter(|i| usable[*i] && series[*i].abs() > 3.5).collect();
@@ -269,17 +287,21 @@ fn skewness(scene: &Scene, white: &White) -> Option<Departure> {
         let z = third / variance.powf(1.5) * (n / 6.0).sqrt();
         // The law has heavier tails than the normal one for few values; a tenth more spread covers them.
         scan.see(
-            normal_two_sided(z / (1.0 + 8.0 / n.sqrt())),
+            ln_normal_two_sided(z / (1.0 + 8.0 / n.sqrt())),
             scene.drivers.start_s,
             scene.drivers.start_s + scene.drivers.length_s(),
         );
         m *= 8;
     }
-    scan.done("skewness", Domain::Time)
+    // A law that is not even shows in the size of the residual wherever it is looked at.
+    let variance = white.roots.iter().skip(1).map(|r| r * r).sum::<f64>() / white.roots.len().max(2) as f64;
+    let largest = white.series.iter().fold(0.0f64, |m, e| m.max(e.abs()));
+    let size = Place { domain: Domain::Amplitude, from: 0.0, to: largest * variance.sqrt() };
+    scan.done("skewness", Domain::Time).map(|d| Departure { beside: Some(size), ..d })
 }
 
 /// Probability of the smallest of several p-values.
 pub fn family(departures: &[Departure]) -> f64 {
-    let smallest = departures.iter().map(|d| d.p_value).fold(1.0, f64::min);
+    let smallest = departures.iter().map(Departure::p_value).fold(1.0, f64::min);
     (smallest * departures.len().max(1) as f64).min(1.0)
 }

@@ -18,6 +18,9 @@ const TWO_SIDED_95: f64 = 1.959_964;
 /// Drop of the log-likelihood at the ends of a 95 % profile interval.
 const DROP_95: f64 = 1.920_729;
 
+/// Factor either way within which a parameter must be told for it to be stated.
+const OPEN: f64 = 100.0;
+
 /// Name of the parameter that is an instant.
 pub const INSTANT: &str = "time_s";
 
@@ -30,12 +33,13 @@ pub struct Estimated {
     pub stated: Values,
 }
 
-fn interval(param: &Param, value: f64, deviation: f64) -> [f64; 2] {
+/// The 95 % interval of a parameter; `None` for one that the recording does not tell to within [`OPEN`].
+fn interval(param: &Param, value: f64, deviation: f64) -> Option<[f64; 2]> {
     if value > 0.0 && param.lower >= 0.0 {
-        let factor = (TWO_SIDED_95 * deviation / value).min(30.0).exp();
-        return [value / factor, value * factor];
+        let factor = (TWO_SIDED_95 * deviation / value).exp();
+        return (factor < OPEN).then_some([value / factor, value * factor]);
     }
-    [value - TWO_SIDED_95 * deviation, value + TWO_SIDED_95 * deviation]
+    Some([value - TWO_SIDED_95 * deviation, value + TWO_SIDED_95 * deviation])
 }
 
 /// The parameters of one effect of a fitted hypothesis.
@@ -252,7 +256,7 @@ fn of_course(
                 course.parameters(shape, &coefficients.iter().map(|c| 1.01 * c).collect::<Vec<_>>(), drivers);
             (still.get(i) == Some(value) && a != b).then_some([a.min(b), a.max(b)])
         });
-        let mut ci95 = by_shape.unwrap_or_else(|| interval(param, *value, deviations[i]));
+        let Some(mut ci95) = by_shape.or_else(|| interval(param, *value, deviations[i])) else { continue };
         if param.name == INSTANT
             && let Some([from, to]) = instant::interval(placed.inside, best, scenes)
         {
@@ -370,8 +374,9 @@ fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scenes: 
             continue;
         }
         out.stated.insert(param.name.to_owned(), Value::Number(*value));
-        if param.reported {
-            let ci95 = interval(param, *value, deviation(i));
+        if param.reported
+            && let Some(ci95) = interval(param, *value, deviation(i))
+        {
             let unit = param.unit.to_owned();
             out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
         }

@@ -3,7 +3,7 @@
 use super::departures::{Departure, White};
 use super::scene::Scene;
 use crate::effect::{Domain, Place};
-use crate::estimate::normal_two_sided;
+use crate::estimate::ln_normal_two_sided;
 use crate::noise::autocorrelation::lagged_products;
 
 /// Longest lag, in samples, and as a share of the record.
@@ -28,8 +28,8 @@ pub fn all(scene: &Scene, white: &White) -> Option<Departure> {
     let z = z(lag);
     let dt = scene.drivers.dt_s;
     let place = Place { domain: Domain::Lag, from: (lag as f64 - 0.5) * dt, to: (lag as f64 + 0.5) * dt };
-    let p_value = (normal_two_sided(z) * longest as f64).clamp(1e-300, 1.0);
-    Some(Departure { test: "lag", place, beside: None, p_value })
+    let ln_p = (ln_normal_two_sided(z) + (longest as f64).ln()).min(0.0);
+    Some(Departure { test: "lag", place, beside: None, ln_p })
 }
 
 #[cfg(test)]
@@ -54,8 +54,8 @@ mod tests {
     #[test]
     fn an_echo_is_found_at_its_lag_and_white_noise_has_none() {
         let found = tested(1, -0.15);
-        assert!(found.p_value < 1e-9 && found.place.from < 18.5 && found.place.to > 18.5, "{found:?}");
-        let small = (2..302).filter(|seed| tested(*seed, 0.0).p_value < 0.05).count();
+        assert!(found.p_value() < 1e-9 && found.place.from < 18.5 && found.place.to > 18.5, "{found:?}");
+        let small = (2..302).filter(|seed| tested(*seed, 0.0).p_value() < 0.05).count();
         // 15 at the most, by Bonferroni, and 4.5 standard deviations of that.
         assert!(small <= 32, "{small} of 300");
     }

@@ -8,7 +8,7 @@ use crate::effect::{Domain, Place};
 
 /// Ratio of frequencies below which two lines are neighbours.
 const NEIGHBOURS: f64 = 1.15;
-/// Findings of one family from which they are one cause.
+/// Findings of one family from which they are one cause, where no more were allowed.
 const MANY: usize = 3;
 
 /// Several findings that are one cause.
@@ -71,19 +71,21 @@ fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
     out
 }
 
-/// The findings that belong together.
-pub(super) fn together(named: &[Named]) -> Vec<Together> {
+/// The findings that belong together, of a selection that was allowed so many effects.
+pub(super) fn together(named: &[Named], allowed: usize) -> Vec<Together> {
+    // Where more findings were allowed than one family took, it was not cut short: each is what it is named.
+    let many = MANY.max(allowed);
     let of = |wanted: Family| -> Vec<usize> {
         (0..named.len()).filter(|i| family(named[*i].effect.kind()) == Some(wanted)).collect()
     };
     let mut groups: Vec<Vec<usize>> = vec![];
     let lines = of(Family::Line);
-    if lines.len() >= MANY {
+    if lines.len() >= many {
         groups.push(lines);
     } else {
         groups.extend(neighbours(named, &lines).into_iter().filter(|g| g.len() > 1));
     }
-    groups.extend([Family::Spectrum, Family::Jump].map(of).into_iter().filter(|g| g.len() >= MANY));
+    groups.extend([Family::Spectrum, Family::Jump].map(of).into_iter().filter(|g| g.len() >= many));
     groups
         .into_iter()
         .map(|members| {

@@ -7,7 +7,7 @@
 use super::departures::{Departure, f_normal, windows};
 use super::scene::Scene;
 use crate::effect::{Domain, Place};
-use crate::estimate::{chi_square_two_sided, normal_two_sided};
+use crate::estimate::{ln_chi_square_two_sided, ln_normal_two_sided};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::sums::cumulated;
 use rayon::prelude::*;
@@ -129,7 +129,7 @@ pub fn all(scene: &Scene, modes: &[f64]) -> Vec<Departure> {
         test: "local_power",
         place: time,
         beside: Some(frequency),
-        p_value: (normal_two_sided(relative.z) * found.looks).min(1.0),
+        ln_p: (ln_normal_two_sided(relative.z) + found.looks.ln()).min(0.0),
     };
     let (time, frequency) = places(&absolute);
     let dof = (absolute.window.1 - absolute.window.0) as f64;
@@ -137,7 +137,7 @@ pub fn all(scene: &Scene, modes: &[f64]) -> Vec<Departure> {
         test: "tile",
         place: frequency,
         beside: Some(time),
-        p_value: (chi_square_two_sided(absolute.power, dof) * found.looks).min(1.0),
+        ln_p: (ln_chi_square_two_sided(absolute.power, dof) + found.looks.ln()).min(0.0),
     };
     vec![local, tile]
 }
@@ -167,7 +167,7 @@ mod tests {
         let mut small = [0; 2];
         for seed in 0..300 {
             for (count, d) in small.iter_mut().zip(all(&scene, &dct2(&white(seed, n)))) {
-                *count += i32::from(d.p_value < 0.05);
+                *count += i32::from(d.p_value() < 0.05);
             }
         }
         // 15 at the most, by Bonferroni, and 4.5 standard deviations of that.
@@ -182,7 +182,7 @@ mod tests {
             *v += 0.9 * (std::f64::consts::TAU * 0.17 * i as f64).cos();
         }
         for d in all(&scene(n), &dct2(&series)) {
-            assert!(d.p_value < 1e-6, "{}: {}", d.test, d.p_value);
+            assert!(d.p_value() < 1e-6, "{}: {}", d.test, d.p_value());
             let (time, frequency) = match d.place.domain {
                 Domain::Time => (d.place, d.beside.unwrap()),
                 _ => (d.beside.unwrap(), d.place),
