@@ -3,7 +3,8 @@
 use super::progress::Progress;
 use super::{ExplainArgs, exit, place, run};
 use crate::claim::{self, Claim};
-use crate::effect::Column;
+use crate::effect::{Column, EFFECTS, find};
+use crate::keyed::diagnostics::nearest;
 use crate::mismatch::{self, Options, Outcome};
 use crate::output::{Kind, StagedFolder};
 use crate::report::explain::{Context, ExplainView};
@@ -103,7 +104,20 @@ fn options(args: &ExplainArgs) -> Result<Options, Note> {
         };
         hide.push(column);
     }
-    Ok(Options { alpha, hide, max_effects })
+    let mut without = vec![];
+    for name in &args.without {
+        let Some(effect) = find(name) else {
+            let note = Note::new("explain.error.effect").with("given", name.as_str());
+            return Err(match nearest(name, EFFECTS.iter().map(|e| e.kind())) {
+                Some(near) => {
+                    Note::new("explain.error.effect_near").with("given", name.as_str()).with("near", near)
+                }
+                None => note,
+            });
+        };
+        without.push(effect.kind());
+    }
+    Ok(Options { alpha, hide, max_effects, without })
 }
 
 fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang) -> Result<Series, String> {

@@ -285,6 +285,9 @@ struct ExplainArgs {
     /// Most effects that are added to the claim [default: 3]
     #[arg(long, value_name = "COUNT")]
     max_effects: Option<usize>,
+    /// Effect that is not thought of, by its id (`sagnac effects`); may be repeated
+    #[arg(long, value_name = "EFFECT")]
+    without: Vec<String>,
     /// Rate column by name or position [default: the only column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]
     rate: Option<String>,

@@ -84,7 +84,7 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         findings.push(unknown);
         findings.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     }
-    findings.extend(dropped(problem));
+    findings.extend(dropped(problem, options));
     let verdict = if findings.iter().any(|f| f.kind == UNKNOWN) {
         "unknown-mismatch"
     } else if findings.is_empty() {
@@ -302,7 +302,7 @@ fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Findi
 }
 
 /// Rows missing on the grid that the claim states.
-fn dropped(problem: &Problem) -> Option<Finding> {
+fn dropped(problem: &Problem, options: &Options) -> Option<Finding> {
     let missing = problem.grid.missing();
     if missing == 0 || problem.claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples") {
         return None;
@@ -316,11 +316,13 @@ fn dropped(problem: &Problem) -> Option<Finding> {
     };
     let count = missing as f64;
     let value = ParameterValue { value: count, unit: String::new(), ci95: [count, count] };
+    let named = options.allows("dropped_samples");
+    let parameters = [("missing_rows".to_owned(), value)].into_iter().filter(|_| named);
     Some(Finding {
-        kind: "dropped_samples".to_owned(),
+        kind: if named { "dropped_samples" } else { UNKNOWN }.to_owned(),
         effect: None,
         equivalents: vec![],
-        parameters: BTreeMap::from([("missing_rows".to_owned(), value)]),
+        parameters: parameters.collect(),
         places: vec![place],
         delta_bic: count * (problem.scenes.rows as f64).ln(),
         p_value: 1e-300,

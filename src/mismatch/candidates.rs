@@ -4,6 +4,7 @@ use super::hypothesis::{
     CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, less_fixed, part_modes, residual,
 };
 use super::noise_fit::{self, Noise, SpectrumIn, base_index};
+use super::options::Options;
 use super::scene::Scene;
 use super::shape::{first_steps, free_numbers, refine};
 use crate::effect::{Course, EFFECTS, Effect, Look, Model, Pace, SpectralLook, Spectrum, SpectrumAct};
@@ -97,10 +98,10 @@ fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, looked: f64,
     Candidate { effect, tried, gain, parameters, delta_bic, p_value }
 }
 
-/// Fits every effect that is not in the hypothesis yet as an addition to it; those that gain something, the largest
-/// ΔBIC first.
-pub fn all(before: &Tried, scenes: &Scenes) -> Vec<Candidate> {
-    among(before, scenes, |_| true)
+/// Fits every effect that is thought of and not in the hypothesis yet as an addition to it; those that gain something,
+/// the largest ΔBIC first.
+pub fn all(before: &Tried, scenes: &Scenes, options: &Options) -> Vec<Candidate> {
+    among(before, scenes, |e| options.allows(e.kind()))
 }
 
 /// As [`all`], of some effects only.

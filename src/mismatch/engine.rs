@@ -42,7 +42,7 @@ pub fn explain(
         Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
     let mut found = Found::default();
-    let mut problem = uncoarsened(&regular, claim, &mut found, options.alpha);
+    let mut problem = uncoarsened(&regular, claim, &mut found, options);
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
     drop(regular);
     let rows = problem.scenes.rows;
@@ -50,11 +50,12 @@ pub fn explain(
     let before = tests(&problem, &base, problem.level.as_deref());
     let held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
-    let moved = moved(&base, &problem.scenes, options.alpha);
-    let mut start = take_bursts(&mut problem, &base, &moved, &mut found, options.alpha);
+    let moved = moved(&base, &problem.scenes, options);
+    let mut start = take_bursts(&mut problem, &base, &moved, &mut found, options);
     if problem.level.is_none() {
         let moved = moved_again(&moved, &start, &problem);
-        let levels = local::level(&problem, &moved);
+        let mut levels = local::level(&problem, &moved);
+        levels.retain(|l| options.allows(l.kind));
         let passing =
             levels.first().and_then(|l| samples::worth(l.gain, l.parameters, l.p_value, rows, options.alpha));
         if let Some(delta_bic) = passing {
@@ -63,7 +64,7 @@ pub fn explain(
             start = samples::with_free_level(&start, &problem);
         }
     }
-    let mut selection = select::select(&start, &problem.scenes, options.alpha, options.max_effects);
+    let mut selection = select::select(&start, &problem.scenes, options);
     take_telegraph(&mut problem, &start, &mut selection, &mut found, options);
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
     let level = found.level.clone().or_else(|| problem.level.clone());
@@ -89,7 +90,7 @@ fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departu
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
 /// not state is named first: nothing finer can be judged beside it.
-fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, alpha: f64) -> Problem {
+fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Options) -> Problem {
     let problem = Problem::new(regular, claim);
     let stated = problem.claim.quantization_lsb_arcsec;
     let lsb = if stated > 0.0 { Some(stated) } else { problem.scenes.lattice_arcsec };
@@ -97,6 +98,9 @@ fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, alpha: f64) 
     let Some(lsb) = lsb.filter(|_| m > 1) else { return problem };
     let mut claim = problem.claim.clone();
     if stated <= 0.0 {
+        if !options.allows("quantization") {
+            return problem;
+        }
         claim.quantization_lsb_arcsec = lsb;
         claim.noise.q = lsb / 12f64.sqrt();
         let with = Problem::new(regular, &claim).baseline();
@@ -106,7 +110,7 @@ fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, alpha: f64) 
             1,
             crate::estimate::chi_square_tail(2.0 * gain, 1.0),
             problem.scenes.rows,
-            alpha,
+            options.alpha,
         ) {
             Some(delta_bic) => found.named.extend(samples::quantization(lsb, gain, delta_bic, &problem)),
             None => return problem,
@@ -144,10 +148,10 @@ impl Found {
 
 /// What single samples are judged on: the claim with the courses of a moving table that it leaves out. Their corners,
 /// as of a delay, look like bursts and like a changing level; a smooth course does not.
-fn moved(base: &Tried, scenes: &Scenes, alpha: f64) -> Tried {
+fn moved(base: &Tried, scenes: &Scenes, options: &Options) -> Tried {
     const COURSES: usize = 2;
     let table = [Column::TableRate, Column::TableAngle, Column::OuterRate];
-    let follows = |e: &dyn Effect| e.needs().iter().any(|c| table.contains(c));
+    let follows = |e: &dyn Effect| options.allows(e.kind()) && e.needs().iter().any(|c| table.contains(c));
     if !EFFECTS
         .iter()
         .any(|e| follows(*e) && e.needs().iter().all(|c| scenes.full.drivers.column(*c).is_some()))
@@ -160,7 +164,7 @@ fn moved(base: &Tried, scenes: &Scenes, alpha: f64) -> Tried {
             candidates::among(&out, scenes, |e| follows(e) && matches!(e.model(), Model::Course(_)));
         let family = EFFECTS.len() as f64;
         match candidates.into_iter().next() {
-            Some(leader) if select::passes(&leader, family, alpha) => out = leader.tried,
+            Some(leader) if select::passes(&leader, family, options.alpha) => out = leader.tried,
             _ => break,
         }
     }
@@ -178,9 +182,18 @@ fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
 }
 
 /// Sets bursts aside; the claim's fit without them.
-fn take_bursts(problem: &mut Problem, base: &Tried, moved: &Tried, found: &mut Found, alpha: f64) -> Tried {
-    let rows = problem.scenes.rows;
+fn take_bursts(
+    problem: &mut Problem,
+    base: &Tried,
+    moved: &Tried,
+    found: &mut Found,
+    options: &Options,
+) -> Tried {
+    let (rows, alpha) = (problem.scenes.rows, options.alpha);
     let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "outlier_bursts");
+    if !stated && !options.allows("outlier_bursts") {
+        return base.clone();
+    }
     let Some(bursts) = local::bursts(problem, moved) else { return base.clone() };
     let Some(delta_bic) = samples::worth(bursts.gain, bursts.parameters, bursts.p_value, rows, alpha) else {
         return base.clone();
@@ -237,7 +250,7 @@ fn take_telegraph(
     options: &Options,
 ) {
     let stated = problem.stated_telegraph();
-    if selection.chosen.is_empty() && !stated {
+    if !stated && (selection.chosen.is_empty() || !options.allows("random_telegraph")) {
         return;
     }
     let Some(Jumps { telegraph, delta_bic, rival, instead }) =
@@ -256,7 +269,7 @@ fn take_telegraph(
         found.named.push(named);
         found.take(course);
     }
-    *selection = select::select(&base, &problem.scenes, options.alpha, options.max_effects);
+    *selection = select::select(&base, &problem.scenes, options);
 }
 
 fn note(why: Irregular) -> Note {

@@ -11,11 +11,20 @@ pub struct Options {
     pub hide: Vec<Column>,
     /// Most effects that are added to the claim.
     pub max_effects: usize,
+    /// Effects that are not thought of, by their kinds.
+    pub without: Vec<&'static str>,
+}
+
+impl Options {
+    /// Whether an effect is thought of.
+    pub fn allows(&self, kind: &str) -> bool {
+        !self.without.contains(&kind)
+    }
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { alpha: 0.01, hide: vec![], max_effects: 3 }
+        Options { alpha: 0.01, hide: vec![], max_effects: 3, without: vec![] }
     }
 }
 

@@ -4,6 +4,7 @@
 use super::candidates::{Candidate, Scenes, Tried, all};
 use super::hypothesis::{CourseIn, Hypothesis, fit};
 use super::noise_fit::{Noise, SpectrumIn, base_index};
+use super::options::Options;
 use super::shape::free_numbers;
 use crate::effect::{Effect, Model, SpectrumAct};
 
@@ -106,10 +107,11 @@ fn set(tried: &Tried) -> Vec<&'static str> {
 }
 
 /// Grows a hypothesis on `base`, which is the claim with what was found in single samples before.
-pub fn select(base: &Tried, scenes: &Scenes, alpha: f64, most: usize) -> Selection {
+pub fn select(base: &Tried, scenes: &Scenes, options: &Options) -> Selection {
+    let (alpha, most) = (options.alpha, options.max_effects);
     let rows = scenes.rows;
-    let first = all(base, scenes);
-    let family = first.len().max(1) as f64 + 8.0;
+    let first = all(base, scenes, options);
+    let family = family(&first);
     let mut best = base.clone();
     let mut beam: Vec<(Tried, Vec<Candidate>)> = vec![(base.clone(), first.clone())];
     for depth in 0..most {
@@ -137,13 +139,13 @@ pub fn select(base: &Tried, scenes: &Scenes, alpha: f64, most: usize) -> Selecti
         beam = next
             .into_iter()
             .map(|t| {
-                let candidates = all(&t, scenes);
+                let candidates = all(&t, scenes, options);
                 (t, candidates)
             })
             .collect();
     }
     best = pruned(best, scenes, rows);
-    let chosen = chosen(&best, base, &first, scenes, family);
+    let chosen = chosen(&best, base, &first, scenes, options);
     Selection { best, chosen, first }
 }
 
@@ -163,6 +165,11 @@ fn worth_following<'a>(passing: &[&'a Candidate]) -> Vec<&'a Candidate> {
     out
 }
 
+/// How many effects were tried, those in single samples among them.
+fn family(first: &[Candidate]) -> f64 {
+    first.len().max(1) as f64 + 8.0
+}
+
 /// Drops effects that became needless.
 fn pruned(mut best: Tried, scenes: &Scenes, rows: usize) -> Tried {
     loop {
@@ -177,7 +184,14 @@ fn pruned(mut best: Tried, scenes: &Scenes, rows: usize) -> Tried {
     }
 }
 
-fn chosen(best: &Tried, base: &Tried, first: &[Candidate], scenes: &Scenes, family: f64) -> Vec<Chosen> {
+fn chosen(
+    best: &Tried,
+    base: &Tried,
+    first: &[Candidate],
+    scenes: &Scenes,
+    options: &Options,
+) -> Vec<Chosen> {
+    let family = family(first);
     let rows = scenes.rows;
     let all_slots = slots(&best.hypothesis);
     let single = all_slots.len() == 1;
@@ -185,7 +199,7 @@ fn chosen(best: &Tried, base: &Tried, first: &[Candidate], scenes: &Scenes, fami
         .into_iter()
         .map(|(slot, effect)| {
             let without = if single { base.clone() } else { without(best, slot, scenes) };
-            let rivals = if single { first.to_vec() } else { all(&without, scenes) };
+            let rivals = if single { first.to_vec() } else { all(&without, scenes, options) };
             let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
             let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
             let equivalents = rivals

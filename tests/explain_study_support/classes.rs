@@ -45,6 +45,46 @@ pub const SUBSTITUTES: &[(&str, &[&str])] = &[
     ("reversing_line", &["quasi_periodic"]),
 ];
 
+/// What an effect of the catalogue may be called besides `unknown` and its class when it is taken out of the catalogue: a
+/// kind that holds it as a special case, or whose course or spectrum cannot be told from it over a record.
+pub const REPLACEMENTS: &[(&str, &[&str])] = &[
+    ("temp_linear", &["temp_polynomial", "thermal_lag", "unobserved_driver"]),
+    ("temp_polynomial", &["unobserved_driver"]),
+    ("temp_rate", &["thermal_lag", "temp_hysteresis", "unobserved_driver"]),
+    ("thermal_lag", &["temp_rate", "temp_hysteresis", "unobserved_driver"]),
+    ("temp_hysteresis", &["thermal_lag", "temp_rate", "unobserved_driver"]),
+    ("warmup_exponential", &["unobserved_driver"]),
+    ("rate_ramp", &["unobserved_driver", "excess_rrw"]),
+    ("diurnal", &["line", "unobserved_driver", "quasi_periodic"]),
+    ("unobserved_driver", &["excess_rrw", "markov_long"]),
+    ("excess_flicker", &["markov_long", "excess_rrw"]),
+    ("excess_rrw", &["unobserved_driver", "excess_flicker", "markov_long"]),
+    ("markov_long", &["excess_flicker", "excess_rrw", "unobserved_driver"]),
+    ("quasi_periodic", &["line"]),
+    ("line", &["quasi_periodic", "diurnal"]),
+    ("noise_variance_rate", &["noise_variance_time"]),
+    ("reset_ripple", &["line", "quasi_periodic"]),
+    ("sf_asymmetry", &["sf_nonlinearity"]),
+    ("saturation", &["sf_nonlinearity"]),
+    ("sf_temperature", &["unobserved_driver"]),
+    ("supply_sensitivity", &["unobserved_driver"]),
+    ("time_offset", &["clock_drift"]),
+    ("clock_drift", &["time_offset"]),
+    ("earth_rate_projection", &["table_harmonic"]),
+    ("table_harmonic", &["earth_rate_projection"]),
+    ("bias_step", &["heading_change"]),
+    ("heading_change", &["bias_step"]),
+];
+
+/// Names that count for an effect that was taken out of the catalogue, in a scenario.
+pub fn replacements(kind: &str, scenario: Scenario) -> Vec<&'static str> {
+    let mut out = same_class(kind, scenario);
+    if let Some((_, allowed)) = REPLACEMENTS.iter().find(|(name, _)| *name == kind) {
+        out.extend(*allowed);
+    }
+    out
+}
+
 /// Kinds that count as `kind` in a scenario, itself among them.
 pub fn same_class(kind: &str, scenario: Scenario) -> Vec<&'static str> {
     let holds = |when: When| match when {

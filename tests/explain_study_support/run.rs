@@ -1,6 +1,7 @@
 //! The program run on cases, two at a time.
 
 use super::case::{Case, Realisation};
+use super::classes::replacements;
 use super::files;
 use super::oracle::told;
 use super::plan::{Wish, made};
@@ -68,11 +69,29 @@ fn set_against_the_told(row: &mut Row, case: &Case, made: &Realisation) {
     row.removed_ratio = row.score.removed.zip(told.removed).filter(|(_, t)| *t > 0.2).map(|(r, t)| r / t);
 }
 
+/// How cases are judged.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct How {
+    /// The closed loop is closed.
+    pub close: bool,
+    /// What was left out is taken out of the catalogue as well.
+    pub removed: bool,
+}
+
 /// One case from its making to its score.
-pub fn one(program: &str, case: &Case, folder: &Path, close: bool, more: &[&str]) -> std::io::Result<Row> {
-    let truth = files::write(case, folder, case.seed)?;
+pub fn one(program: &str, case: &Case, folder: &Path, how: How) -> std::io::Result<Row> {
+    let mut truth = files::write(case, folder, case.seed)?;
     let out = folder.join("out");
-    let exit = explain(program, &folder.join("recording.csv"), &folder.join("model.toml"), &out, more);
+    let mut more: Vec<&str> = vec![];
+    if how.removed {
+        for effect in truth["effects"].as_array_mut().into_iter().flatten() {
+            let kind = effect["kind"].as_str().unwrap_or_default().to_string();
+            effect["catalogued"] = false.into();
+            effect["class"] = replacements(&kind, case.setting.scenario).into();
+        }
+        more.extend(case.left_out.iter().flat_map(|l| ["--without", l.effect.kind.as_str()]));
+    }
+    let exit = explain(program, &folder.join("recording.csv"), &folder.join("model.toml"), &out, &more);
     let report = report(&out);
     let correction = columns(&out.join("correction.csv"));
     let made = case.realise(case.seed);
@@ -80,7 +99,7 @@ pub fn one(program: &str, case: &Case, folder: &Path, close: bool, more: &[&str]
     let score = score(&truth, &report, correction.as_ref(), contribution.as_ref());
     let mut row = Row { name: case.name.clone(), score, exit, ..Row::default() };
     set_against_the_told(&mut row, case, &made);
-    if close && row.score.detected && out.join("augmented.toml").exists() {
+    if how.close && row.score.detected && out.join("augmented.toml").exists() {
         row.closes = Some(closed_loop(program, case, folder));
     }
     Ok(row)
@@ -92,7 +111,7 @@ pub fn all(
     wishes: &[Wish],
     seeds: std::ops::Range<u64>,
     strength: (f64, f64),
-    close: bool,
+    how: How,
     keep: Option<&Path>,
 ) -> Vec<Row> {
     let jobs: Vec<(&Wish, u64)> = wishes.iter().flat_map(|w| seeds.clone().map(move |s| (w, s))).collect();
@@ -103,7 +122,7 @@ pub fn all(
             let case = made(wish, *seed, strength);
             let room = tempfile::tempdir().expect("a temporary folder");
             let folder = keep.unwrap_or(room.path()).join(&case.name);
-            let row = one(program, &case, &folder, close, &[]).expect("files can be written");
+            let row = one(program, &case, &folder, how).expect("files can be written");
             rows.lock().expect("no thread panics holding it").push(row);
         }
     };
