@@ -15,6 +15,8 @@ use std::sync::Arc;
 const SINGLE: usize = 64;
 /// Width of the bins above, relative.
 const WIDTH: f64 = 0.006;
+/// Most of the modes that are left for one bin.
+const TOWARDS_END: f64 = 0.05;
 
 /// A column whose coefficient the claim knows to within a stated deviation.
 #[derive(Debug, Clone)]
@@ -54,8 +56,10 @@ fn bins(samples: usize, dt_s: f64) -> Vec<ModeBin> {
     let mut out = vec![];
     let mut mode = 1;
     while mode < samples {
-        let modes = if mode < SINGLE { 1 } else { ((mode as f64 * WIDTH) as usize).max(1) };
-        let modes = modes.min(samples - mode);
+        // Towards the highest mode, too: there the mean of two samples has a zero, which no wide bin describes.
+        let left = samples - mode;
+        let wide = (mode as f64 * WIDTH).min(left as f64 * TOWARDS_END) as usize;
+        let modes = if mode < SINGLE { 1 } else { wide.max(1) };
         let middle = mode as f64 + 0.5 * (modes - 1) as f64;
         let frequency_hz = middle / (2.0 * samples as f64 * dt_s);
         out.push(ModeBin { frequency_hz, mode, modes, samples, dt_s });
