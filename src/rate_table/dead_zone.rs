@@ -2,7 +2,8 @@
 //!
 //! Two static models are held against the straight line: *subtractive*, D = sgn(x)·max(|x| − δ, 0), and *gap*,
 //! D = x·[|x| > δ], each about a centre that is fitted too, for the zone lies where the unit believes to be at rest. The
-//! half width δ has the interval of its profile likelihood over the means of the rates with their covariance.
+//! half width δ has the interval of its likelihood over the means of the rates with their covariance, slope and offset at
+//! their best, centre and kind averaged over.
 //!
 //! Outside a zone the output follows the rate by the scale factor. What a test of scale factor said of it may be used: a
 //! line that may have any slope takes up most of a small zone. A zone is claimed when a line with the noise of this test
@@ -62,6 +63,20 @@ impl Kind {
             }
         }
     }
+}
+
+/// What one half width leaves.
+#[derive(Debug, Clone, Copy)]
+struct Width {
+    kind: Kind,
+    /// −2 ln L at the best centre.
+    least: f64,
+    /// That centre, and slope and offset there.
+    centre: f64,
+    slope: f64,
+    offset: f64,
+    /// −2 ln of the mean likelihood over all centres: at its best centre a zone of any width follows the noise.
+    over_centres: f64,
 }
 
 /// What the small rates show.
@@ -214,7 +229,7 @@ pub fn evaluate(response: &Response, channel: &str, setup: &Setup) -> Option<Dea
     let widths: Vec<f64> =
         (0..WIDTHS).map(|i| 0.7 * largest * (i as f64 / (WIDTHS - 1) as f64).powi(2)).collect();
     // Profile over centre, slope and offset: (cost, centre, slope, offset) of every width.
-    let profile = |kind: Kind| -> Vec<(f64, f64, f64, f64)> {
+    let profile = |kind: Kind| -> Vec<Width> {
         widths
             .iter()
             .map(|w| {
@@ -222,43 +237,49 @@ pub fn evaluate(response: &Response, channel: &str, setup: &Setup) -> Option<Dea
                     let (cost, slope, offset) = points.cost(|x| kind.of(x - c, *w));
                     (cost, c, slope, offset)
                 };
-                let coarse = centres.iter().map(|c| at(*c)).min_by(|a, b| a.0.total_cmp(&b.0));
-                let Some(mut best) = coarse else {
-                    return (f64::INFINITY, 0.0, 0.0, 0.0);
+                let mut tried: Vec<(f64, f64, f64, f64)> = centres.iter().map(|c| at(*c)).collect();
+                let least = |t: &[(f64, f64, f64, f64)]| {
+                    t.iter()
+                        .copied()
+                        .fold((f64::INFINITY, 0.0, 0.0, 0.0), |m, v| if v.0 < m.0 { v } else { m })
                 };
                 let mut step = 0.5 * largest / (CENTRES - 1) as f64;
                 for _ in 0..6 {
-                    for c in [best.1 - step, best.1 + step] {
-                        let tried = at(c);
-                        if tried.0 < best.0 {
-                            best = tried;
-                        }
-                    }
+                    let middle = least(&tried).1;
+                    tried.extend([middle - step, middle + step].map(at));
                     step *= 0.5;
                 }
-                best
+                let best = least(&tried);
+                tried.sort_by(|a, b| a.1.total_cmp(&b.1));
+                let weight = |v: &(f64, f64, f64, f64)| (-0.5 * (v.0 - best.0)).exp();
+                let area: f64 =
+                    tried.windows(2).map(|p| 0.5 * (weight(&p[0]) + weight(&p[1])) * (p[1].1 - p[0].1)).sum();
+                let over_centres = best.0 - 2.0 * (area / largest).max(f64::MIN_POSITIVE).ln();
+                Width { kind, least: best.0, centre: best.1, slope: best.2, offset: best.3, over_centres }
             })
             .collect()
     };
     let both = [Kind::Subtractive, Kind::Gap].map(profile);
-    let least = |p: &[(f64, f64, f64, f64)]| p.iter().map(|v| v.0).fold(f64::INFINITY, f64::min);
-    // Which kind it is, is not known either: at every width the better one counts.
-    let chosen: Vec<(Kind, (f64, f64, f64, f64))> = (0..WIDTHS)
+    let least = |p: &[Width]| p.iter().map(|v| v.over_centres).fold(f64::INFINITY, f64::min);
+    let gain = line - both.iter().flatten().map(|v| v.least).fold(f64::INFINITY, f64::min);
+    // Which kind it is, is not known either.
+    let costs: Vec<f64> = (0..WIDTHS)
         .map(|i| {
-            let [short, gap] = [both[0][i], both[1][i]];
-            if short.0 <= gap.0 { (Kind::Subtractive, short) } else { (Kind::Gap, gap) }
+            let [a, b] = [both[0][i].over_centres, both[1][i].over_centres];
+            a.min(b) - 2.0 * (0.5 + 0.5 * (-0.5 * (a - b).abs()).exp()).ln()
         })
         .collect();
-    let cost = |i: usize| chosen[i].1.0;
+    let cost = |i: usize| costs[i];
     let best = (0..WIDTHS).min_by(|a, b| cost(*a).total_cmp(&cost(*b)))?;
-    let kind = chosen[best].0;
+    let chosen =
+        if both[0][best].over_centres <= both[1][best].over_centres { both[0][best] } else { both[1][best] };
     let lowest = cost(best);
-    let shown = points.shows_a_zone(line - lowest, (&widths, middle, largest))?;
+    let shown = points.shows_a_zone(gain, (&widths, middle, largest))?;
     // A bound holds for the kind that allows the wider zone.
-    let bound_of = |profile: &[(f64, f64, f64, f64)]| {
+    let bound_of = |profile: &[Width]| {
         let lowest = least(profile);
         let z = normal_quantile(0.95);
-        let last = (0..WIDTHS).rev().find(|i| profile[*i].0 <= lowest + z * z).unwrap_or(0);
+        let last = (0..WIDTHS).rev().find(|i| profile[*i].over_centres <= lowest + z * z).unwrap_or(0);
         widths[(last + 1).min(WIDTHS - 1)]
     };
     let bound = bound_of(&both[0]).max(bound_of(&both[1]));
@@ -293,7 +314,7 @@ pub fn evaluate(response: &Response, channel: &str, setup: &Setup) -> Option<Dea
             _ => curve.push((z, *w)),
         }
     }
-    let (_, (_, centre, slope, offset)) = chosen[best];
+    let Width { kind, centre, slope, offset, .. } = chosen;
     Some(DeadZone {
         channel: channel.to_owned(),
         kind,
