@@ -70,6 +70,12 @@ pub(super) static RATE_TABLE: TableSpec = TableSpec {
             "\"1 ppm\"",
             "Calibration of the table's rate or angle over whole turns, and of the clock.",
         ),
+        optional(
+            "scale_factor_uncertainty",
+            quantity("ppm", Range::POSITIVE),
+            "\"500 ppm\"",
+            "How far the scale factor outside a dead zone may be from nominal, from a test of scale factor. Left out: the small rates alone tell it, and a zone as small as the noise of a step is bounded, not found.",
+        ),
         with_default(
             "angle_uncertainty",
             quantity("arcsec", Range::NOT_NEGATIVE),
@@ -216,6 +222,7 @@ pub(super) fn setup(section: &Section, root: &Section) -> Setup {
         of_rate_from_deg_h: number("of_rate_from"),
         rate_tolerance: number("rate_tolerance").unwrap_or(usual.rate_tolerance),
         rate_uncertainty: number("rate_uncertainty").unwrap_or(0.0) * 1e-6,
+        scale_factor_uncertainty: number("scale_factor_uncertainty").map(|u| u * 1e-6),
         angle_uncertainty_arcsec: number("angle_uncertainty").unwrap_or(0.0),
         alignment_uncertainty_rad: number("alignment_uncertainty").unwrap_or(0.0) * 1e-3,
         temperature_uncertainty_deg_c: number("temperature_uncertainty").unwrap_or(0.0),

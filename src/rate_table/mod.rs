@@ -40,6 +40,8 @@ pub struct Setup {
     pub rate_tolerance: f64,
     /// Calibration of the rate of the table, relative.
     pub rate_uncertainty: f64,
+    /// Relative difference of the scale factor outside a dead zone from the nominal one, where it is known.
+    pub scale_factor_uncertainty: Option<f64>,
     /// One reading of the table angle, arcsec.
     pub angle_uncertainty_arcsec: f64,
     /// Angle between the input axis and the axis of the table, rad.
@@ -66,6 +68,7 @@ impl Default for Setup {
             of_rate_from_deg_h: None,
             rate_tolerance: 0.01,
             rate_uncertainty: 0.0,
+            scale_factor_uncertainty: None,
             angle_uncertainty_arcsec: 0.0,
             alignment_uncertainty_rad: 0.0,
             temperature_uncertainty_deg_c: 0.0,

@@ -45,6 +45,14 @@ pub struct Fitted {
     pub log_deviation: [f64; 3],
 }
 
+impl Solved {
+    /// Logarithm of the determinant of the information of the coefficients; `None` where they are collinear.
+    pub fn log_information(&self) -> Option<f64> {
+        let factor = self.covariance.clone().cholesky()?;
+        Some(-factor.l_dirty().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>())
+    }
+}
+
 impl Modes {
     /// For `blocks` means over `block_s`.
     pub fn new(blocks: usize, block_s: f64) -> Modes {

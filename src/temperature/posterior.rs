@@ -137,7 +137,8 @@ pub fn sample(course: &Course, terms: Terms, span: Span, sweeps: usize) -> Optio
         start.push(best.shape.play_deg_c.clamp(low, high));
     }
     let columns = |shape: &[f64]| s.columns(&Shape::of(shape, best.shape.play_deg_c));
-    let draws = sampler::sample(&s.modes, &s.data, &columns, &ranges, (&start, &best.fitted), sweeps);
+    let model: (sampler::Columns<'_>, _) = (&columns, sampler::Coefficients::Flat);
+    let draws = sampler::sample(&s.modes, &s.data, model, &ranges, (&start, &best.fitted), sweeps);
     if draws.is_empty() {
         return None;
     }

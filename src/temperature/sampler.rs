@@ -1,16 +1,14 @@
 //! Draws of what a model is not linear in, and of its slow noise.
 //!
 //! Metropolis, one number after the other, with a fixed seed. Coefficients are integrated out. B and K have a density that
-//! is flat below what the record can show and falls above as a power of them, set by simulation: flat throughout,
-//! it would widen intervals where few modes tell the walk. Each number of the shape has a flat density over its range, or in its logarithm.
+//! is flat below what the record can show and falls above as their inverse: no size is preferred there, which for one
+//! kind of noise gives Student's law. Flat throughout, it would widen intervals where few modes tell the walk. Each number
+//! of the shape has a flat density over its range, or in its logarithm.
 
 use super::gls::{Fitted, Modes};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-
-/// Power by which the density of B and K falls beyond what is visible.
-const STEEP: f64 = 0.75;
 
 /// Range of a number of the shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,11 +39,21 @@ pub struct Draw {
 /// A model: modes of its regressors at a shape.
 pub type Columns<'a> = &'a dyn Fn(&[f64]) -> Vec<Vec<f64>>;
 
+/// Density of the coefficients at a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coefficients {
+    /// Flat: regressors keep their meaning over all shapes.
+    Flat,
+    /// √|XᵀP⁻¹X| at the noise of the start, after which a shape weighs as its profile likelihood. Where two regressors
+    /// become one, a flat density has no finite integral: huge coefficients that cancel would draw all weight there.
+    Scaled,
+}
+
 /// Draws from a start, `sweeps` of them.
 pub fn sample(
     modes: &Modes,
     data: &[f64],
-    columns_of: Columns<'_>,
+    (columns_of, coefficients): (Columns<'_>, Coefficients),
     ranges: &[Range],
     start: (&[f64], &Fitted),
     sweeps: usize,
@@ -60,7 +68,14 @@ pub fn sample(
     let mut steps = vec![slow(1), slow(2)];
     steps.extend(ranges.iter().map(|r| r.step));
     let visible = modes.visible(noise[0]);
-    let prior = |noise: &[f64; 3]| -STEEP * ((noise[1] + visible[0]).ln() + (noise[2] + visible[1]).ln());
+    let prior = |noise: &[f64; 3]| -((noise[1] + visible[0]).ln() + (noise[2] + visible[1]).ln());
+    let density = |columns: &[Vec<f64>]| match coefficients {
+        Coefficients::Flat => Some(0.0),
+        Coefficients::Scaled => {
+            modes.solve(data, columns, &start.1.noise)?.log_information().map(|l| 0.5 * l)
+        }
+    };
+    let Some(mut weight) = density(&columns) else { return vec![] };
     let burn = sweeps / 3;
     let mut draws = vec![];
     for sweep in 0..sweeps + burn {
@@ -84,12 +99,17 @@ pub fn sample(
             if inside {
                 let next_columns = (which >= 2).then(|| columns_of(&next_shape));
                 let tried = modes.solve(data, next_columns.as_ref().unwrap_or(&columns), &next_noise);
-                if let Some(tried) = tried
+                let next_weight = next_columns.as_ref().map_or(Some(weight), |c| density(c));
+                if let Some((tried, next_weight)) = tried.zip(next_weight)
                     && rng.random::<f64>().max(1e-300).ln()
-                        < tried.log_likelihood + prior(&next_noise) - here.log_likelihood - prior(&noise)
+                        < tried.log_likelihood + prior(&next_noise) + next_weight
+                            - here.log_likelihood
+                            - prior(&noise)
+                            - weight
                 {
                     accepted = true;
                     here = tried;
+                    weight = next_weight;
                     (noise, shape) = (next_noise, next_shape);
                     if let Some(next) = next_columns {
                         columns = next;

@@ -63,7 +63,8 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest) -> Option<WarmUpFindi
     let (low, high) = (2.0 * coarse.block_s, 0.7 * length_s);
     let (shape, fitted) = best(&modes, &data, &of, (low, high))?;
     let ranges: Vec<Range> = shape.iter().map(|_| Range { low, high, log: true, step: 0.3 }).collect();
-    let draws: Vec<Draw> = sampler::sample(&modes, &data, &of, &ranges, (&shape, &fitted), SWEEPS);
+    let model: (sampler::Columns<'_>, _) = (&of, sampler::Coefficients::Scaled);
+    let draws: Vec<Draw> = sampler::sample(&modes, &data, model, &ranges, (&shape, &fitted), SWEEPS);
     if draws.is_empty() {
         return None;
     }
