@@ -10,6 +10,7 @@ mod earth_rate;
 mod faults;
 mod gyro_fact;
 mod held;
+pub mod influence;
 mod instruments;
 mod mistakes;
 mod noise_level;

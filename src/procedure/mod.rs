@@ -13,6 +13,7 @@ pub mod reading;
 pub mod schema;
 pub mod tables;
 mod tables_conditions;
+mod tables_influence;
 pub mod tables_limits;
 mod tables_rate_table;
 mod tables_site;

@@ -10,6 +10,7 @@ mod deviation;
 pub mod explanation;
 mod goodness;
 mod integrity;
+mod interval_mean;
 mod table_step;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
@@ -21,6 +22,7 @@ pub use deviation::DeviationRecord;
 pub use explanation::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
+pub use interval_mean::IntervalMeanRecord;
 pub use table_step::TableStepRecord;
 
 use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
@@ -71,6 +73,8 @@ pub struct RunRecord {
     pub deviations: Vec<DeviationRecord>,
     /// Steps of a test on a rate table, per channel.
     pub table_steps: Vec<TableStepRecord>,
+    /// Runs of a series of switching off and on, or intervals without and with an influence, per channel.
+    pub interval_means: Vec<IntervalMeanRecord>,
     /// Russian against Allan values, per channel long enough for it.
     pub comparison: Vec<ComparisonRecord>,
     /// What this test can decide: power of each limit.

@@ -275,6 +275,7 @@ pub fn pass() -> RunRecord {
             .flat_map(|estimator| [1.0, 2.0].map(|tau_s| deviation(estimator, tau_s)))
             .collect(),
         table_steps: vec![],
+        interval_means: vec![],
         comparison: vec![],
         explained: None,
         power: vec![PowerRecord {

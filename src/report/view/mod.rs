@@ -10,6 +10,7 @@ mod evidence;
 mod explained;
 mod faults;
 mod goodness;
+mod interval_means;
 mod matrix;
 mod rows;
 mod table_steps;
@@ -23,6 +24,7 @@ pub use faults::{Fault, FaultKind, Faults};
 pub use goodness::Goodness;
 pub use matrix::{Matrix, MatrixRow};
 pub use rows::Row;
+pub use interval_means::{IntervalMean, IntervalMeans};
 pub use table_steps::{TableStep, TableSteps};
 
 use crate::estimate::Verdict;
