@@ -362,6 +362,7 @@ fn the_guide_is_the_key_tables() {
     for (file, mark, made) in [
         ("procedure.md", "keys", guide::procedure_reference()),
         ("procedure.md", "measurands", guide::measurand_reference()),
+        ("phases.md", "keys", guide::phases_reference()),
         ("limits.md", "keys", guide::limits_reference()),
         ("layout.md", "keys", guide::layout_reference()),
         ("model.md", "keys", guide::model_reference()),

@@ -262,7 +262,7 @@ fn measurand(section: &Section) -> Option<MeasurandSpec> {
     Some(MeasurandSpec { id, channel: section.text("channel"), earth_rate, span: section.span.clone() })
 }
 
-fn clause(section: &Section) -> ClauseRecord {
+pub(super) fn clause(section: &Section) -> ClauseRecord {
     ClauseRecord {
         clause: section.text("clause").unwrap_or_default(),
         title: section.text("title").unwrap_or_default(),

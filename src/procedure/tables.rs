@@ -129,7 +129,7 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
     ],
 };
 
-static PROCEDURE: TableSpec = TableSpec {
+pub(super) static PROCEDURE: TableSpec = TableSpec {
     name: "procedure",
     doc: "Identity of the procedure. It stands in the header of every report.",
     keys: &[
@@ -147,7 +147,7 @@ static PROCEDURE: TableSpec = TableSpec {
     ],
 };
 
-static UNIT_UNDER_TEST: TableSpec = TableSpec {
+pub(super) static UNIT_UNDER_TEST: TableSpec = TableSpec {
     name: "unit_under_test",
     doc: "The unit the procedure is for. The serial number is given when the test is run.",
     keys: &[
@@ -374,7 +374,7 @@ pub const EARTH_RATE: &[Word] = &[
     ("keep", "the mean rate is reported as recorded"),
 ];
 
-static CLAUSE: TableSpec = TableSpec {
+pub(super) static CLAUSE: TableSpec = TableSpec {
     name: "clause",
     doc: "A clause of the standard and where it is dealt with.",
     keys: &[

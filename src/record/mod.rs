@@ -11,6 +11,7 @@ pub mod explanation;
 mod goodness;
 mod integrity;
 mod interval_mean;
+mod phase;
 mod table_step;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
@@ -23,6 +24,7 @@ pub use explanation::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
 pub use interval_mean::IntervalMeanRecord;
+pub use phase::PhaseRecord;
 pub use table_step::TableStepRecord;
 
 use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
@@ -93,6 +95,9 @@ pub struct RunRecord {
     /// verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explained: Option<ExplainedRecord>,
+    /// The phases of a test of several, in their order; `conditions` and `measurands` are those of all of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub phases: Vec<PhaseRecord>,
     /// Errors that made the verdict `error`.
     #[schemars(with = "Vec<NoteSchema>")]
     pub errors: Vec<Note>,
@@ -243,6 +248,9 @@ pub enum ConditionStatus {
 pub struct ConditionRecord {
     /// Id, for example `temperature`.
     pub id: String,
+    /// Phase that it is of, in a test of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<String>,
     /// State.
     pub status: ConditionStatus,
     /// What was observed, by name, in the unit of `required`.
@@ -290,6 +298,9 @@ pub struct MeasurandRecord {
     pub id: String,
     /// Channel.
     pub channel: String,
+    /// Phase that it is of, in a test of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<String>,
     /// Value, `null` where the record cannot show it.
     pub value: Option<f64>,
     /// Unit.

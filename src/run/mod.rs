@@ -15,6 +15,7 @@ mod influence_noise;
 pub mod inspect;
 mod interval_means;
 mod pass;
+pub mod phases;
 pub mod power;
 mod settle;
 mod sigma_tau;
@@ -137,7 +138,8 @@ pub fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
     settle::failed(request, error)
 }
 
-fn session(request: &Request<'_>) -> Session {
+/// Who evaluated, where and when.
+pub fn session(request: &Request<'_>) -> Session {
     Session {
         operator: request.operator.clone(),
         station: request.station.clone(),

@@ -94,6 +94,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         deviations: vec![],
         table_steps: vec![],
         interval_means: vec![],
+        phases: vec![],
         comparison: vec![],
         explained: None,
         power: vec![],

@@ -284,6 +284,9 @@ fn draw(request: &Request<'_>, run: &TableRun, evaluated: &[(usize, Option<Scale
             let limit = request.limits.limit("scale_factor_nonlinearity", &channel.channel).map(|l| &l.limit);
             drawn.push(figures::scale_factor::residuals(run, channel, limit, several));
         }
+        if wanted("table_polar") {
+            drawn.extend(figures::polar::figure(run, channel, several));
+        }
         if wanted("table_steps") {
             drawn.push(figures::scale_factor::over_time(run, channel, several));
         }

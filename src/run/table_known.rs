@@ -83,8 +83,14 @@ pub(super) fn finish(
             }
         }
     }
-    let record = settle::record(request, &found, conditions, rows, vec![], &[]);
-    Ok(Outcome { record, figures: vec![], tables: vec![] })
+    let shown = request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&"positions"));
+    let drawn: Vec<_> = positions
+        .iter()
+        .filter(|_| shown)
+        .map(|p| super::figures::positions::figure(p, positions.len() > 1))
+        .collect();
+    let record = settle::record(request, &found, conditions, rows, vec![], &drawn);
+    Ok(Outcome { record, figures: drawn, tables: vec![] })
 }
 
 /// The channel that shows the Earth's rotation in the positions stated for another one: that axis was turned in space,

@@ -63,7 +63,11 @@ pub(super) fn interval_means(record: &RunRecord, words: Words) -> Vec<IntervalMe
 fn of(channel: &str, record: &RunRecord, words: Words) -> IntervalMeans {
     let all: Vec<&IntervalMeanRecord> = record.interval_means.iter().filter(|m| m.channel == channel).collect();
     let has_levels = all.iter().any(|m| m.level.is_some());
-    let kind = if has_levels { "intervals" } else { "runs" };
+    let [title, hint, mean] = if has_levels {
+        ["interval_means.title_intervals", "interval_means.hint_intervals", "interval_means.mean_intervals"]
+    } else {
+        ["interval_means.title_runs", "interval_means.hint_runs", "interval_means.mean_runs"]
+    };
     let unit = all.iter().find_map(|m| m.level_unit.as_deref()).unwrap_or_default();
     let deg_h = words.unit("deg/h");
     let shown = if all.len() > SHOWN {
@@ -74,10 +78,10 @@ fn of(channel: &str, record: &RunRecord, words: Words) -> IntervalMeans {
     };
     IntervalMeans {
         channel: channel.to_owned(),
-        title: words.t(&format!("interval_means.title_{kind}")),
-        hint: words.t(&format!("interval_means.hint_{kind}")),
+        title: words.t(title),
+        hint: words.t(hint),
         level_title: words.with("interval_means.level", &[("unit", &words.unit(unit))]),
-        mean_title: words.with(&format!("interval_means.mean_{kind}"), &[("unit", &deg_h)]),
+        mean_title: words.with(mean, &[("unit", &deg_h)]),
         has_names: all.iter().any(|m| !m.name.is_empty()),
         has_levels,
         has_temperatures: all.iter().any(|m| m.temperature_deg_c.is_some()),

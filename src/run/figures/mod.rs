@@ -7,6 +7,8 @@ pub mod dead_zone;
 pub mod histogram;
 pub mod influence;
 mod parts;
+pub mod polar;
+pub mod positions;
 pub mod residual;
 pub mod scale_factor;
 pub mod sigma_tau;
