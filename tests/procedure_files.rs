@@ -293,6 +293,7 @@ fn every_example_is_accepted_by_its_own_key() {
                 "of the warm-up needs",
                 "is no channel with",
                 "is determined at rest",
+                "are two tests",
             ];
             assert!(whole.iter().any(|w| p.message.to_string().contains(w)), "{p}");
         }
