@@ -96,7 +96,6 @@ pub struct RunRecord {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explained: Option<ExplainedRecord>,
     /// The phases of a test of several, in their order; `conditions` and `measurands` are those of all of them.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<PhaseRecord>,
     /// Errors that made the verdict `error`.
     #[schemars(with = "Vec<NoteSchema>")]
