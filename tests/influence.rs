@@ -194,7 +194,8 @@ fn files_of_a_manifest_are_the_runs() {
         let part = |v: &[f64]| v[k * each..(k + 1) * each].to_vec();
         // Every file starts its own clock.
         let time_s = (0..each).map(|i| i as f64).collect();
-        let r = Recorded { time_s, rate: part(&all.rate), temperature: part(&all.temperature), level: vec![] };
+        let r =
+            Recorded { time_s, rate: part(&all.rate), temperature: part(&all.temperature), level: vec![] };
         std::fs::write(folder.path().join(format!("run{k}.csv")), text("SN-1", "", &r)).unwrap();
         let _ = write!(manifest, "\n[[file]]\npath = \"run{k}.csv\"\n");
     }
@@ -204,7 +205,11 @@ fn files_of_a_manifest_are_the_runs() {
     assert_eq!(code, 0, "{:#}", result["summary"]);
     let means = result["interval_means"].as_array().unwrap();
     assert_eq!((means.len(), means[3]["name"].as_str()), (8, Some("run3.csv")));
-    let (_, one) = run(&path("procedures/bias-repeatability.toml"), &path("samples/bias-repeatability-pass.csv"), "SN-0111");
+    let (_, one) = run(
+        &path("procedures/bias-repeatability.toml"),
+        &path("samples/bias-repeatability-pass.csv"),
+        "SN-0111",
+    );
     for (a, b) in means.iter().zip(one["interval_means"].as_array().unwrap()) {
         let (a, b) = (a["mean_deg_h"].as_f64().unwrap(), b["mean_deg_h"].as_f64().unwrap());
         assert!((a - b).abs() < 0.004, "{a} {b}");
@@ -213,11 +218,14 @@ fn files_of_a_manifest_are_the_runs() {
 
 #[test]
 fn mistakes_name_themselves() {
-    let says = |result: &Value, id: &str| assert!(invalid(result).iter().any(|i| i == id), "{id}: {:?}", invalid(result));
+    let says = |result: &Value, id: &str| {
+        assert!(invalid(result).iter().any(|i| i == id), "{id}: {:?}", invalid(result))
+    };
     let (code, few) = on("bias-repeatability", "", &Series { runs: 4, ..series(0.02) }.record(1));
     says(&few, "runs.too_few");
     assert_eq!(code, 3);
-    let (code, one) = on("bias-repeatability", "", &Series { runs: 1, run_s: 3000.0, ..series(0.02) }.record(2));
+    let (code, one) =
+        on("bias-repeatability", "", &Series { runs: 1, run_s: 3000.0, ..series(0.02) }.record(2));
     says(&one, "runs.one");
     assert_eq!(code, 3);
 
@@ -413,5 +421,8 @@ fn the_temperature_of_runs_and_a_trend_are_found() {
     assert!((t.slope.value - 0.2).abs() < 4.0 * t.slope.standard && t.share > 0.8, "{t:?}");
     let s = Series { trend: 0.3, per_deg_c: (0.0, 0.3), ..series(0.01) };
     let trend = repeated(&s, 78).trend.expect("a line");
-    assert!((trend.value - 0.3).abs() < 4.0 * trend.standard && trend.value > 5.0 * trend.standard, "{trend:?}");
+    assert!(
+        (trend.value - 0.3).abs() < 4.0 * trend.standard && trend.value > 5.0 * trend.standard,
+        "{trend:?}"
+    );
 }

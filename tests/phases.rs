@@ -26,12 +26,20 @@ fn acceptance() -> String {
 
 #[test]
 fn one_report_covers_all_phases_and_the_worst_verdict_is_that_of_the_whole() {
-    for (end, code, verdicts) in [("pass", 0, ["pass", "pass", "pass"]), ("fail", 1, ["pass", "fail", "pass"])] {
+    for (end, code, verdicts) in
+        [("pass", 0, ["pass", "pass", "pass"]), ("fail", 1, ["pass", "fail", "pass"])]
+    {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("report");
         let manifest = root(&format!("samples/acceptance-{end}.toml")).to_string_lossy().into_owned();
         let done = sagnac(&["run", &acceptance(), &manifest, "--lang", "en"], &out);
-        assert_eq!(done.status.code(), Some(code), "{} {}", said(&done), String::from_utf8_lossy(&done.stdout));
+        assert_eq!(
+            done.status.code(),
+            Some(code),
+            "{} {}",
+            said(&done),
+            String::from_utf8_lossy(&done.stdout)
+        );
         let whole = result(&out);
         assert_eq!(whole["procedure"]["id"], "acceptance");
         assert_eq!(whole["unit_under_test"]["serial"], "SN-0111");
@@ -113,7 +121,10 @@ fn a_phase_without_a_recording_is_an_error_in_the_report() {
     let out = folder.path().join("report");
     let two = manifest(
         folder.path(),
-        &[("bias-repeatability-pass.csv", Some("repeatability")), ("scale-factor-pass.csv", Some("scale-factor"))],
+        &[
+            ("bias-repeatability-pass.csv", Some("repeatability")),
+            ("scale-factor-pass.csv", Some("scale-factor")),
+        ],
     );
     let done = sagnac(&["run", &acceptance(), &two], &out);
     assert_eq!(done.status.code(), Some(2), "{}", said(&done));

@@ -103,7 +103,11 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
 }
 
 /// The serial number given; the manifest's where none is. Two that differ are an error: this is another unit's recording.
-pub(super) fn serial(given: Option<&str>, manifest: Option<&Manifest>, lang: Lang) -> Result<Option<String>, String> {
+pub(super) fn serial(
+    given: Option<&str>,
+    manifest: Option<&Manifest>,
+    lang: Lang,
+) -> Result<Option<String>, String> {
     let stated = manifest.and_then(|m| m.serial.as_deref());
     match (given, stated) {
         (Some(given), Some(stated)) if given.trim() != stated.trim() => {
@@ -226,9 +230,8 @@ pub(super) fn write_results(
     let html = render_html(&outcome.record, &outcome.figures, lang, renderer).map_err(|e| say(e.note()))?;
     let markdown =
         render_markdown(&outcome.record, &outcome.figures, lang, renderer).map_err(|e| say(e.note()))?;
-    let write = |name: &str, bytes: &[u8]| {
-        folder.write(&format!("{prefix}{name}"), bytes).map_err(|e| say(e.note()))
-    };
+    let write =
+        |name: &str, bytes: &[u8]| folder.write(&format!("{prefix}{name}"), bytes).map_err(|e| say(e.note()));
     write("result.json", &json)?;
     write("report.html", html.as_bytes())?;
     write("report.md", markdown.as_bytes())?;

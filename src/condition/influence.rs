@@ -122,7 +122,9 @@ fn intervals(facts: &ComparedFacts) -> ConditionRecord {
 
 fn temperature(facts: &ComparedFacts) -> ConditionRecord {
     let id = "influence_temperature";
-    let required = Some(Note::new("compared.required_temperature").with("allowed", Arg::figures(facts.allowed_deg_c, 2)));
+    let required = Some(
+        Note::new("compared.required_temperature").with("allowed", Arg::figures(facts.allowed_deg_c, 2)),
+    );
     let Some(difference) = facts.temperature else {
         return record(id, ConditionStatus::Remark, &[], required, Note::new("compared.no_temperature"));
     };

@@ -75,7 +75,12 @@ pub struct Comparison {
 }
 
 /// Evaluates a channel. `None` without an interval of both kinds.
-pub fn evaluate(blocks: &Blocks, found: &Intervals, test: &ComparisonTest, gyro: usize) -> Option<Comparison> {
+pub fn evaluate(
+    blocks: &Blocks,
+    found: &Intervals,
+    test: &ComparisonTest,
+    gyro: usize,
+) -> Option<Comparison> {
     let spans: Vec<(usize, usize)> = found.list.iter().map(|i| i.blocks).collect();
     let cut = cut(blocks, &spans, gyro)?;
     let n = cut.rows.len();
@@ -85,7 +90,8 @@ pub fn evaluate(blocks: &Blocks, found: &Intervals, test: &ComparisonTest, gyro:
     }
     let states = states(found, &off);
     let middle = cut.rows.mid_s.iter().sum::<f64>() / n as f64;
-    let length = cut.rows.mid_s.iter().fold(0.0, |m: f64, t| m.max((t - middle).abs())).max(f64::MIN_POSITIVE);
+    let length =
+        cut.rows.mid_s.iter().fold(0.0, |m: f64, t| m.max((t - middle).abs())).max(f64::MIN_POSITIVE);
     let time = DVector::from_fn(n, |i, _| (cut.rows.mid_s[i] - middle) / length);
     // A drift is told from the influence by what comes back.
     let drift = found.alternations() >= 1;
@@ -110,7 +116,8 @@ pub fn evaluate(blocks: &Blocks, found: &Intervals, test: &ComparisonTest, gyro:
     let scaled: Vec<DVector<f64>> = used.iter().zip(&sizes).map(|(a, s)| &by_axis[*a] / *s).collect();
     let (x, first) = base(&scaled);
     let (line, scatter) = solve(&cut, &off, &x)?;
-    let per_unit = sizes.iter().enumerate().map(|(k, s)| scale(&line.coefficient(first + k), 1.0 / s)).collect();
+    let per_unit =
+        sizes.iter().enumerate().map(|(k, s)| scale(&line.coefficient(first + k), 1.0 / s)).collect();
     let indicators: Vec<DVector<f64>> = (0..states.list.len())
         .map(|s| DVector::from_fn(n, |i, _| f64::from(states.of[cut.of[i]] == Some(s))))
         .collect();
@@ -168,7 +175,8 @@ fn states(found: &Intervals, off: &[bool]) -> States {
         let away = |a: &usize| (interval.levels[*a] - found.reference).abs();
         let axis = (0..interval.levels.len()).max_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
         let level = interval.levels[axis];
-        let same = |g: &(usize, Vec<f64>)| g.0 == axis && g.1.iter().any(|l| (l - level).abs() <= found.tolerance);
+        let same =
+            |g: &(usize, Vec<f64>)| g.0 == axis && g.1.iter().any(|l| (l - level).abs() <= found.tolerance);
         let at = groups.iter().position(same).unwrap_or_else(|| {
             groups.push((axis, vec![]));
             groups.len() - 1
@@ -207,7 +215,9 @@ fn solve(cut: &Cut, off: &[bool], x: &DMatrix<f64>) -> Option<(Fit, bool)> {
     }
     components.push(cut.rows.shared(&cut.of));
     match reml::fit(&cut.y, x, &fixed, &components) {
-        Some(better) if better.twice_log_likelihood > fit.twice_log_likelihood + TAKEN_FROM => Some((better, true)),
+        Some(better) if better.twice_log_likelihood > fit.twice_log_likelihood + TAKEN_FROM => {
+            Some((better, true))
+        }
         _ => Some((fit, false)),
     }
 }

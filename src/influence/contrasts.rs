@@ -33,8 +33,10 @@ impl Contrasts {
         let normal = Cholesky::new(columns.transpose() * columns)?;
         let rest = DMatrix::identity(n, n) - columns * normal.solve(&columns.transpose());
         let own = rest.symmetric_eigen();
-        let free: Vec<DVector<f64>> =
-            (0..n).filter(|k| own.eigenvalues[*k] > 0.5).map(|k| own.eigenvectors.column(k).into_owned()).collect();
+        let free: Vec<DVector<f64>> = (0..n)
+            .filter(|k| own.eigenvalues[*k] > 0.5)
+            .map(|k| own.eigenvectors.column(k).into_owned())
+            .collect();
         if free.is_empty() {
             return None;
         }

@@ -80,8 +80,7 @@ pub fn settled(
     let list = blocks.list.get(from..to)?;
     let begins = span_s(blocks, list.first()?).0;
     let kept = list.iter().position(|b| span_s(blocks, b).0 >= begins + settling_s - 1e-9)?;
-    let length: f64 =
-        list.iter().skip(kept).map(|b| f64::from(b.samples)).sum::<f64>() * blocks.interval_s;
+    let length: f64 = list.iter().skip(kept).map(|b| f64::from(b.samples)).sum::<f64>() * blocks.interval_s;
     (length >= least_s && from + kept < to).then_some((from + kept, to))
 }
 
@@ -108,7 +107,8 @@ pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option
         for k in 0..parts {
             let list = &blocks.list[from + length * k / parts..from + length * (k + 1) / parts];
             let weighted = |value: &dyn Fn(&Block) -> f64| {
-                let usable = list.iter().map(|b| (value(b), f64::from(b.samples))).filter(|v| v.0.is_finite());
+                let usable =
+                    list.iter().map(|b| (value(b), f64::from(b.samples))).filter(|v| v.0.is_finite());
                 usable.fold((0.0, 0.0), |(s, n), (v, w)| (s + v * w, n + w))
             };
             let (sum, n) = weighted(&|b| b.gyro.get(gyro).copied().unwrap_or(f64::NAN));

@@ -37,9 +37,11 @@ pub struct Intervals {
 
 /// Finds the intervals. `axes` names the channels of the level, in the order in which blocks keep them beside.
 pub fn find(blocks: &Blocks, test: &ComparisonTest, axes: &[String], files: &[FileSpan]) -> Intervals {
-    let mut found = if test.intervals.is_empty() { recorded(blocks, axes) } else { stated(blocks, test, files) };
+    let mut found =
+        if test.intervals.is_empty() { recorded(blocks, axes) } else { stated(blocks, test, files) };
     found.reference = test.reference;
-    let largest = found.list.iter().flat_map(|i| &i.levels).fold(0.0, |m: f64, l| m.max((l - test.reference).abs()));
+    let largest =
+        found.list.iter().flat_map(|i| &i.levels).fold(0.0, |m: f64, l| m.max((l - test.reference).abs()));
     found.tolerance = SAME * largest;
     let list = std::mem::take(&mut found.list);
     for interval in list {

@@ -162,11 +162,15 @@ impl Repeatability {
     pub fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
         let n = self.runs.len();
         let student = |c: &Combination| Spread::StudentT { standard_uncertainty: c.standard, dof: c.dof };
-        let none = |key| Estimate::not_identifiable(id, &self.channel, None, unit, METHOD).note(Note::new(key));
-        let measured = |c: &Combination| Estimate::measured(id, &self.channel, c.value, unit, student(c), METHOD);
+        let none =
+            |key| Estimate::not_identifiable(id, &self.channel, None, unit, METHOD).note(Note::new(key));
+        let measured =
+            |c: &Combination| Estimate::measured(id, &self.channel, c.value, unit, student(c), METHOD);
         Some(match id {
             "bias_repeatability" => self.spread(id, unit),
-            "bias_repeatability_peak_to_peak" => measured(&self.range).note(Note::new("runs.range").with("n", n)),
+            "bias_repeatability_peak_to_peak" => {
+                measured(&self.range).note(Note::new("runs.range").with("n", n))
+            }
             "bias_repeatability_trend" => match &self.trend {
                 Some(t) => measured(t).note(Note::new("runs.trend").with("n", n)),
                 None => none("runs.no_line"),

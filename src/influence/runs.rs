@@ -27,7 +27,10 @@ pub fn find(blocks: &Blocks, test: &RepeatabilityTest, files: &[FileSpan]) -> Ru
     let spans: Vec<(String, (usize, usize))> = if !test.runs.is_empty() {
         find_stated(blocks, &test.runs, files).into_iter().map(|s| (s.name, s.blocks)).collect()
     } else if files.len() > 1 {
-        files.iter().filter_map(|f| Some((f.phase.clone().unwrap_or_else(|| f.name.clone()), of(blocks, f)?))).collect()
+        files
+            .iter()
+            .filter_map(|f| Some((f.phase.clone().unwrap_or_else(|| f.name.clone()), of(blocks, f)?)))
+            .collect()
     } else {
         between_pauses(blocks, test.off_s).into_iter().map(|s| (String::new(), s)).collect()
     };

@@ -1,12 +1,12 @@
 //! Procedures of several phases: each phase is a procedure of its own, on recordings of its own.
 
+use super::LimitsFile;
 use super::diagnostics::{Problems, SourceText};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
 use super::reader::{Reader, checked};
 use super::section::Section;
 use super::tables_phases::PHASES_FILE;
-use super::LimitsFile;
 use crate::keyed::file::{self, Wording};
 use crate::record::{ClauseRecord, ProcedureRecord};
 use crate::text::Note;
@@ -125,7 +125,9 @@ fn stated(root: &Section, reader: &mut Reader<'_>) -> Vec<Stated> {
     for section in root.tables("phase") {
         let (Some(id), Some(procedure)) = (section.text("id"), section.text("procedure")) else { continue };
         let clash = |other: &Stated| {
-            other.id == id || other.id.starts_with(&format!("{id}.")) || id.starts_with(&format!("{}.", other.id))
+            other.id == id
+                || other.id.starts_with(&format!("{id}."))
+                || id.starts_with(&format!("{}.", other.id))
         };
         if let Some(other) = list.iter().find(|o| clash(o)) {
             let message = Note::new("phases.twice").with("id", id.as_str()).with("other", other.id.as_str());

@@ -10,7 +10,8 @@ use crate::influence::{ComparisonTest, Influence, RepeatabilityTest, Stated, Sta
 use crate::recording::Role;
 use crate::text::Note;
 
-const PHASE: KeySpec = optional("phase", Kind::Id, "\"on\"", "Phase of the manifest that it is; every file of it counts.");
+const PHASE: KeySpec =
+    optional("phase", Kind::Id, "\"on\"", "Phase of the manifest that it is; every file of it counts.");
 const FROM: KeySpec = optional(
     "from",
     quantity("s", Range::NOT_NEGATIVE),
@@ -21,7 +22,8 @@ const TO: KeySpec =
     optional("to", quantity("s", Range::POSITIVE), "\"20 min\"", "End, from the start of the recording.");
 const TEMPERATURE: KeySpec =
     optional("temperature", Kind::Id, "\"temp\"", "Channel of the unit's temperature; left out: the first.");
-const AXIS: KeySpec = optional("axis", Kind::Id, "\"x\"", "Axis that it acts along, where several are tested.");
+const AXIS: KeySpec =
+    optional("axis", Kind::Id, "\"x\"", "Axis that it acts along, where several are tested.");
 
 pub(super) static REPEATABILITY_TEST: TableSpec = TableSpec {
     name: "repeatability_test",
@@ -57,12 +59,20 @@ pub(super) static REPEATABILITY_TEST: TableSpec = TableSpec {
             "Runs that there must be at least. From 6 runs the deviation is known from 0.62 to 2.45 times its value.",
         ),
         TEMPERATURE,
-        optional("run", Kind::Tables(&RUN), "", "The runs, where they are not files and not divided by pauses."),
+        optional(
+            "run",
+            Kind::Tables(&RUN),
+            "",
+            "The runs, where they are not files and not divided by pauses.",
+        ),
     ],
 };
 
-static RUN: TableSpec =
-    TableSpec { name: "repeatability_test.run", doc: "One run, in the order of time.", keys: &[PHASE, FROM, TO] };
+static RUN: TableSpec = TableSpec {
+    name: "repeatability_test.run",
+    doc: "One run, in the order of time.",
+    keys: &[PHASE, FROM, TO],
+};
 
 const SETTLING: KeySpec = with_default(
     "settling",

@@ -12,8 +12,18 @@ pub static PHASES_FILE: TableSpec = TableSpec {
         required("format", Kind::Format("procedure/1"), "\"procedure/1\"", "Version of the format."),
         required("procedure", Kind::Table(&PROCEDURE), "", "Identity of the whole."),
         optional("unit_under_test", Kind::Table(&UNIT_UNDER_TEST), "", "The unit that all phases are for."),
-        required("phase", Kind::Tables(&PHASE), "", "The phases, one table each, in the order of the report."),
-        optional("clause", Kind::Tables(&CLAUSE), "", "Clauses of the standard and where each is dealt with."),
+        required(
+            "phase",
+            Kind::Tables(&PHASE),
+            "",
+            "The phases, one table each, in the order of the report.",
+        ),
+        optional(
+            "clause",
+            Kind::Tables(&CLAUSE),
+            "",
+            "Clauses of the standard and where each is dealt with.",
+        ),
     ],
 };
 
@@ -28,13 +38,23 @@ static PHASE: TableSpec = TableSpec {
             "Id. Files of the manifest with this phase belong to it; so do those whose phase begins with it and a point, \
              `positions.up`, and the procedure of the phase then sees the rest, `up`.",
         ),
-        optional("title", Kind::Text, "\"Repeatability of the bias\"", "Title; left out: that of its procedure."),
+        optional(
+            "title",
+            Kind::Text,
+            "\"Repeatability of the bias\"",
+            "Title; left out: that of its procedure.",
+        ),
         required(
             "procedure",
             Kind::Text,
             "\"bias-repeatability.toml\"",
             "Its procedure, relative to this file.",
         ),
-        optional("limits", Kind::Text, "\"limits/sample-unit.toml\"", "Its limits file, relative to this file."),
+        optional(
+            "limits",
+            Kind::Text,
+            "\"limits/sample-unit.toml\"",
+            "Its limits file, relative to this file.",
+        ),
     ],
 };

@@ -95,7 +95,8 @@ pub(super) fn repeatability(
         .filter_map(|g| repeatability::evaluate(&blocks, &series, g, earth(procedure, &blocks.gyros[g])))
         .collect();
     let channels: Vec<String> = evaluated.iter().map(|e| e.channel.clone()).collect();
-    let rows = rows(request, &channels, &|at, id, unit| evaluated[at].estimate(id, unit).into_iter().collect());
+    let rows =
+        rows(request, &channels, &|at, id, unit| evaluated[at].estimate(id, unit).into_iter().collect());
     let conditions = vec![judge_runs(&RunFacts {
         found: series.list.len(),
         fewest: test.fewest,
@@ -125,9 +126,8 @@ pub(super) fn comparison(
     })?;
     let axes: Vec<String> = found.channels.iter().filter(|c| level(c)).map(|c| c.id.clone()).collect();
     let series = intervals::find(&blocks, test, &axes, &files(&found));
-    let evaluated: Vec<Comparison> = (0..blocks.gyros.len())
-        .filter_map(|g| comparison::evaluate(&blocks, &series, test, g))
-        .collect();
+    let evaluated: Vec<Comparison> =
+        (0..blocks.gyros.len()).filter_map(|g| comparison::evaluate(&blocks, &series, test, g)).collect();
     let procedure = request.procedure;
     let noise: Vec<ChangeOfNoise> = if procedure.measures("angle_random_walk_shift", None) {
         influence_noise::find(request, &found, &blocks, &series, progress)?
@@ -137,7 +137,9 @@ pub(super) fn comparison(
     let channels: Vec<String> = evaluated.iter().map(|e| e.channel.clone()).collect();
     let rows = rows(request, &channels, &|at, id, unit| {
         let own = evaluated[at].estimates(id, unit);
-        own.into_iter().chain(noise.iter().filter(|n| n.gyro == channels[at]).filter_map(|n| n.estimate(id, unit))).collect()
+        own.into_iter()
+            .chain(noise.iter().filter(|n| n.gyro == channels[at]).filter_map(|n| n.estimate(id, unit)))
+            .collect()
     });
     let conditions = judge_compared(&ComparedFacts {
         found: series.list.len(),

@@ -138,7 +138,12 @@ pub(super) fn find(
             let level = ((level * 1e4).round() / 1e4).to_string();
             let place = if axis.is_empty() { level } else { format!("{axis}:{level}") };
             let channel_at = format!("{channel}@{place}");
-            changes.push(ChangeOfNoise { gyro: channel.clone(), channel: channel_at, without, with: state.n });
+            changes.push(ChangeOfNoise {
+                gyro: channel.clone(),
+                channel: channel_at,
+                without,
+                with: state.n,
+            });
         }
     }
     Ok(changes)

@@ -27,15 +27,19 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
     let phases: Vec<PhaseRecord> = done.iter().map(of).collect();
     let worst = phases.iter().map(|p| p.verdict).max().unwrap_or(Verdict::None);
     let serial = unit.serial.as_deref().map(str::trim).filter(|s| !s.is_empty());
-    let errors: Vec<Note> =
-        if phased.serial_required && serial.is_none() { vec![Note::new("error.serial_missing")] } else { vec![] };
+    let errors: Vec<Note> = if phased.serial_required && serial.is_none() {
+        vec![Note::new("error.serial_missing")]
+    } else {
+        vec![]
+    };
     let of_phase = |p: &PhaseRecord| {
         Note::new("phases.verdict")
             .with("title", p.title.as_str())
             .with("verdict", Arg::key("verdict", p.verdict.id()))
     };
     let summary = errors.iter().cloned().chain(phases.iter().map(of_phase)).collect();
-    let records: Vec<&RunRecord> = done.iter().filter_map(|d| d.outcome.as_ref()).map(|o| &o.record).collect();
+    let records: Vec<&RunRecord> =
+        done.iter().filter_map(|d| d.outcome.as_ref()).map(|o| &o.record).collect();
     let mut instruments = Vec::new();
     for instrument in records.iter().flat_map(|r| &r.instruments) {
         if !instruments.contains(instrument) {
@@ -114,9 +118,17 @@ fn of(done: &Done<'_>) -> PhaseRecord {
             .collect(),
         verdict: r.verdict,
         summary: r.summary.clone(),
-        conditions: r.conditions.iter().map(|c| crate::record::ConditionRecord { phase: own(), ..c.clone() }).collect(),
+        conditions: r
+            .conditions
+            .iter()
+            .map(|c| crate::record::ConditionRecord { phase: own(), ..c.clone() })
+            .collect(),
         integrity: r.integrity.clone(),
-        measurands: r.measurands.iter().map(|m| crate::record::MeasurandRecord { phase: own(), ..m.clone() }).collect(),
+        measurands: r
+            .measurands
+            .iter()
+            .map(|m| crate::record::MeasurandRecord { phase: own(), ..m.clone() })
+            .collect(),
         figures: figures(done)
             .iter()
             .map(|f| FigureRecord { id: f.id.clone(), file: format!("figures/{}.svg", f.id) })

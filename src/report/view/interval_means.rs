@@ -61,7 +61,8 @@ pub(super) fn interval_means(record: &RunRecord, words: Words) -> Vec<IntervalMe
 }
 
 fn of(channel: &str, record: &RunRecord, words: Words) -> IntervalMeans {
-    let all: Vec<&IntervalMeanRecord> = record.interval_means.iter().filter(|m| m.channel == channel).collect();
+    let all: Vec<&IntervalMeanRecord> =
+        record.interval_means.iter().filter(|m| m.channel == channel).collect();
     let has_levels = all.iter().any(|m| m.level.is_some());
     let [title, hint, mean] = if has_levels {
         ["interval_means.title_intervals", "interval_means.hint_intervals", "interval_means.mean_intervals"]

@@ -53,9 +53,10 @@ fn one(part: &PhasePart<'_>, lang: Lang) -> PhaseView {
     let phase = part.phase;
     let procedure = phase.procedure.as_ref().map_or_else(String::new, |p| {
         let id = words.with("report.id_revision", &[("id", &p.id), ("revision", &p.revision)]);
-        let limits = p.limits.as_ref().map(|l| {
-            words.with("report.id_revision", &[("id", &l.id), ("revision", &l.revision)])
-        });
+        let limits = p
+            .limits
+            .as_ref()
+            .map(|l| words.with("report.id_revision", &[("id", &l.id), ("revision", &l.revision)]));
         limits.map_or_else(|| id.clone(), |l| format!("{id}; {l}"))
     });
     PhaseView {

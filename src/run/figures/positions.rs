@@ -29,10 +29,8 @@ pub fn figure(found: &Positions, several: bool) -> Figure {
     // Positions at one place in the figure share a word.
     for (i, p) in found.means.iter().enumerate() {
         if found.means[..i].iter().all(|other| (other.earth - p.earth).abs() > room) {
-            let names: Vec<&str> = means()
-                .filter(|o| (o.earth - p.earth).abs() <= room)
-                .map(|o| o.name.as_str())
-                .collect();
+            let names: Vec<&str> =
+                means().filter(|o| (o.earth - p.earth).abs() <= room).map(|o| o.name.as_str()).collect();
             let text = Note::new("figure_positions.name").with("name", names.join(", "));
             layers.push(Layer::Label { at: (p.earth, p.output), text });
         }
