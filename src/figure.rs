@@ -9,6 +9,8 @@ pub enum Scale {
     Linear,
     /// Decades.
     Log,
+    /// Proportional, with a unit as long on both axes and no marks: a polar plot brings its own. For both axes of a panel.
+    Polar,
 }
 
 /// One axis.

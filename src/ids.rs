@@ -64,15 +64,13 @@ const fn over_temperature(id: &'static str, unit: &'static str, doc: &'static st
     MeasurandId { id, unit, test: Test::Temperature, available: true, signed: false, options: &[], doc }
 }
 
-const fn later(id: &'static str, unit: &'static str, test: Test, doc: &'static str) -> MeasurandId {
-    MeasurandId { id, unit, test, available: false, signed: false, options: &[], doc }
+const fn influence(id: &'static str, unit: &'static str, doc: &'static str) -> MeasurandId {
+    MeasurandId { id, unit, test: Test::Influence, available: true, signed: false, options: &[], doc }
 }
 
 const fn table(id: &'static str, unit: &'static str, doc: &'static str) -> MeasurandId {
     MeasurandId { id, unit, test: Test::RateTable, available: true, signed: false, options: &[], doc }
 }
-
-use Test::Influence;
 
 /// Every measurand, in the order of reports.
 #[rustfmt::skip]
@@ -139,10 +137,15 @@ pub const MEASURANDS: &[MeasurandId] = &[
     table("resolution", "deg/h", "smallest change of rate that is shown"),
     table("table_harmonic_1", "deg/h", "error once per revolution"),
     table("table_harmonic_2", "deg/h", "error twice per revolution"),
-    signed(later("magnetic_sensitivity", "deg/h/mT", Influence, "bias per magnetic field")),
-    signed(later("supply_sensitivity", "deg/h/V", Influence, "bias per supply voltage")),
-    signed(later("vibration_sensitivity", "deg/h/g^2", Influence, "bias per vibration power")),
-    later("bias_repeatability", "deg/h", Influence, "spread of bias between switchings-on"),
+    signed(influence("magnetic_sensitivity", "deg/h/mT", "bias per magnetic field")),
+    signed(influence("supply_sensitivity", "deg/h/V", "bias per supply voltage")),
+    signed(influence("vibration_sensitivity", "deg/h/g^2", "bias per vibration power")),
+    signed(influence("bias_shift", "deg/h", "change of the bias at one level of an influence")),
+    signed(influence("angle_random_walk_shift", "deg/sqrt(h)", "change of N at one level of an influence")),
+    influence("bias_repeatability", "deg/h", "standard deviation of the bias between switchings-on, noise taken out"),
+    influence("bias_repeatability_peak_to_peak", "deg/h", "largest less smallest bias of the switchings-on"),
+    signed(influence("bias_repeatability_trend", "deg/h", "change from the first to the last switching-on by the line through all")),
+    signed(influence("bias_repeatability_temperature", "deg/h/degC", "change of the bias with the temperature of the switchings-on")),
 ];
 
 /// The measurand of an id.

@@ -19,6 +19,7 @@ pub mod effect;
 pub mod estimate;
 pub mod figure;
 pub mod ids;
+pub mod influence;
 pub mod ingest;
 pub mod keyed;
 pub mod measurand;

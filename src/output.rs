@@ -119,7 +119,7 @@ impl Kind {
                 Kind::Result => {
                     matches!(name, "result.json" | "report.html" | "report.md" | "explain")
                         || (name.starts_with("sigma_tau") && name.ends_with(".csv"))
-                        || name == "table_steps.csv"
+                        || matches!(name, "table_steps.csv" | "interval_means.csv" | "phases")
                         || (name.starts_with("compensation")
                             && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
                 }

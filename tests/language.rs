@@ -170,6 +170,10 @@ const LATIN: &[&str] = &[
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "figure_influence.axis_name",
+    "figure_positions.name",
+    "figure_polar.angle",
+    "phases.verdict",
     "ingest.parts.and",
     "ingest.raw.hint.help",
     "ingest.raw.problem",

@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 const ENGLISH: &[(&str, &str)] = &[
     ("src/procedure/tables.rs", "descriptions of keys for the schema and the guide"),
     ("src/procedure/tables_conditions.rs", "descriptions of keys for the schema and the guide"),
+    ("src/procedure/tables_influence.rs", "descriptions of keys for the schema and the guide"),
+    ("src/procedure/tables_phases.rs", "descriptions of keys for the schema and the guide"),
     ("src/procedure/tables_limits.rs", "descriptions of keys for the schema and the guide"),
     ("src/procedure/tables_rate_table.rs", "descriptions of keys for the schema and the guide"),
     ("src/procedure/tables_site.rs", "descriptions of keys for the schema and the guide"),

@@ -179,8 +179,15 @@ fn a_fibre_optic_unit_shows_the_earth_rate_on_the_axis_that_was_turned_only() {
     let result = two_positions(&set, files, &channels, "z", 25.064);
     holds(&result, "scale_factor_error", "z", 14_000.0);
     holds(&result, "scale_factor_bias", "z", -7.22);
-    // The y axis stayed as it was.
-    let refused = two_positions(&set, files, &channels, "y", 25.064);
-    let conditions = refused["conditions"].as_array().unwrap();
-    assert!(conditions.iter().any(|c| c["message"]["id"] == "known.not_turned"), "{conditions:#?}");
+    // In space z was turned: what is stated of x and y was done in software only.
+    for axis in ["x", "y"] {
+        let refused = two_positions(&set, files, &channels, axis, 25.064);
+        let conditions = refused["conditions"].as_array().unwrap();
+        let software = conditions.iter().find(|c| c["message"]["id"] == "known.software_axis");
+        let software = software.unwrap_or_else(|| panic!("{conditions:#?}"));
+        assert!(software["note"].as_str().unwrap().contains("`z` was turned"), "{software}");
+        assert_eq!(refused["verdict"], "indeterminate");
+        let rows = refused["measurands"].as_array().unwrap();
+        assert!(rows.iter().all(|r| r["value"].is_null()), "{rows:#?}");
+    }
 }

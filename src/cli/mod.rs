@@ -11,6 +11,7 @@ mod place;
 mod progress;
 mod read;
 mod run;
+mod run_phases;
 mod schema;
 mod selftest;
 mod simulate;

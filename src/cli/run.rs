@@ -9,6 +9,7 @@ use crate::ingest::manifest::Manifest;
 use crate::ingest::{RecordingError, Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
 use crate::output::StagedFolder;
+use crate::procedure::phases::is_phased;
 use crate::procedure::{effective, load, load_limits};
 use crate::record::{ExplainedRecord, RunRecord, UnitUnderTest};
 use crate::report::explain::{Context, ExplainView, explained_says};
@@ -29,6 +30,9 @@ pub fn main(args: &RunArgs, lang: Lang) -> u8 {
 }
 
 fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
+    if is_phased(&args.procedure) {
+        return super::run_phases::attempt(args, lang);
+    }
     let grid = grid(&args.grid, lang)?;
     // Both files are read before either complains, so that all problems are seen at once.
     let procedure = load(&args.procedure);
@@ -99,7 +103,11 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
 }
 
 /// The serial number given; the manifest's where none is. Two that differ are an error: this is another unit's recording.
-fn serial(given: Option<&str>, manifest: Option<&Manifest>, lang: Lang) -> Result<Option<String>, String> {
+pub(super) fn serial(
+    given: Option<&str>,
+    manifest: Option<&Manifest>,
+    lang: Lang,
+) -> Result<Option<String>, String> {
     let stated = manifest.and_then(|m| m.serial.as_deref());
     match (given, stated) {
         (Some(given), Some(stated)) if given.trim() != stated.trim() => {
@@ -171,12 +179,17 @@ pub fn finish(
     }
     let place = publish(&outcome, folder, renderer, lang)?;
     place::print(&summary(&outcome.record, &place, lang));
-    Ok(match outcome.record.verdict {
+    Ok(code(outcome.record.verdict))
+}
+
+/// The exit code of a verdict.
+pub(super) fn code(verdict: Verdict) -> u8 {
+    match verdict {
         Verdict::None | Verdict::Pass => exit::PASS,
         Verdict::Fail => exit::FAIL,
         Verdict::Indeterminate => exit::INDETERMINATE,
         Verdict::Error => exit::ERROR,
-    })
+    }
 }
 
 /// Writes the report of a run that could not be carried out, and gives the message for the terminal.
@@ -199,13 +212,26 @@ fn publish(
     renderer: &Renderer,
     lang: Lang,
 ) -> Result<PathBuf, String> {
+    write_results(outcome, &folder, "", renderer, lang)?;
+    folder.publish().map_err(|e| place::error(&e.note(), lang))
+}
+
+/// Writes everything that a run gives under a prefix of a folder.
+pub(super) fn write_results(
+    outcome: &Outcome,
+    folder: &StagedFolder,
+    prefix: &str,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<(), String> {
     let say = |note: Note| place::error(&note, lang);
     let json = serde_json::to_vec_pretty(&outcome.record)
         .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
     let html = render_html(&outcome.record, &outcome.figures, lang, renderer).map_err(|e| say(e.note()))?;
     let markdown =
         render_markdown(&outcome.record, &outcome.figures, lang, renderer).map_err(|e| say(e.note()))?;
-    let write = |name: &str, bytes: &[u8]| folder.write(name, bytes).map_err(|e| say(e.note()));
+    let write =
+        |name: &str, bytes: &[u8]| folder.write(&format!("{prefix}{name}"), bytes).map_err(|e| say(e.note()));
     write("result.json", &json)?;
     write("report.html", html.as_bytes())?;
     write("report.md", markdown.as_bytes())?;
@@ -215,11 +241,11 @@ fn publish(
     for figure in &outcome.figures {
         write(&format!("figures/{}.svg", figure.id), svg::render(figure, lang).as_bytes())?;
     }
-    folder.publish().map_err(|e| say(e.note()))
+    Ok(())
 }
 
 /// The outcome in a few lines for the terminal.
-fn summary(record: &RunRecord, place: &Path, lang: Lang) -> String {
+pub(super) fn summary(record: &RunRecord, place: &Path, lang: Lang) -> String {
     let word = |key: String| lookup(lang, &key).map_or(key.clone(), str::to_owned);
     let mut out = format!("{}\n", word(format!("verdict.{}", record.verdict.id())).to_uppercase());
     for note in &record.summary {

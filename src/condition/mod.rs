@@ -10,6 +10,7 @@ mod earth_rate;
 mod faults;
 mod gyro_fact;
 mod held;
+pub mod influence;
 mod instruments;
 mod mistakes;
 mod noise_level;
@@ -139,6 +140,7 @@ fn record(
         observed.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect();
     ConditionRecord {
         id: id.into(),
+        phase: None,
         status,
         observed,
         required: requirement.as_ref().map_or_else(String::new, |r| r.say(Lang::En)),

@@ -18,6 +18,8 @@ pub struct TableFacts {
     pub lowest: f64,
     /// Highest rate of a step, deg/h.
     pub highest: f64,
+    /// True when the table turns about its other axis.
+    pub about_outer: bool,
     /// Rates that differ.
     pub levels: usize,
     /// Full scale that must be reached, deg/h.
@@ -62,6 +64,7 @@ fn per_second(rate_deg_h: f64) -> Arg {
 fn steps(facts: &TableFacts) -> ConditionRecord {
     let enough = facts.levels >= 2;
     let (status, key) = match (enough, facts.steps) {
+        (true, _) if facts.about_outer => (ConditionStatus::Ok, "on_table.steps_found_outer"),
         (true, _) => (ConditionStatus::Ok, "on_table.steps_found"),
         (false, 0) if facts.too_short > 0 => (ConditionStatus::Invalid, "on_table.steps_too_short"),
         (false, 0) => (ConditionStatus::Invalid, "on_table.steps_none"),
@@ -195,6 +198,8 @@ pub struct EarthFact {
     pub latitude_deg: Option<f64>,
     /// Pairs of positions that were turned in software only.
     pub software: Vec<(String, String)>,
+    /// Channel that shows the Earth's rotation between these positions in place of this one, and its factor.
+    pub turned_instead: Option<(String, f64)>,
 }
 
 /// Judges whether all stretches of a procedure were found.
@@ -220,6 +225,15 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
     if let Some((first, second)) = fact.software.first() {
         return invalid(
             Note::new("known.software").with("first", first.as_str()).with("second", second.as_str()),
+        );
+    }
+    if let Some((other, their)) = &fact.turned_instead {
+        return invalid(
+            Note::new("known.software_axis")
+                .with("channel", fact.channel.as_str())
+                .with("other", other.as_str())
+                .with("theirs", Arg::figures(*their, 4))
+                .with("factor", shown),
         );
     }
     if (fact.factor - 1.0).abs() <= allowed.max(0.02) {

@@ -46,7 +46,7 @@ pub use error::{IngestError, IngestErrorKind};
 pub use joined::PartFacts;
 pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
 pub use plan::{Plan, TimeBaseSpec, prepare};
-pub use recording::{Recording, RecordingError, open_recording};
+pub use recording::{Recording, RecordingError, open_files, open_recording};
 pub use source::{Source, open, open_with};
 pub use stream::{ChannelFacts, FileReport, StreamReport, locate, stream, stream_path};
 

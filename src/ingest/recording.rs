@@ -104,6 +104,27 @@ pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Record
     Ok(Recording { source: joined::open(name, &specs, false, options)?, manifest: None })
 }
 
+/// Opens files of a manifest as one recording, each with the phase given for it.
+///
+/// # Errors
+/// [`IngestError`] of one of them.
+pub fn open_files(
+    name: &Path,
+    files: &[manifest::ManifestFile],
+    contiguous: bool,
+    options: &ReadOptions,
+) -> Result<Source, IngestError> {
+    let part = |f: &manifest::ManifestFile| PartSpec {
+        path: f.path.clone(),
+        sha256: f.sha256.clone(),
+        phase: f.phase.clone(),
+    };
+    match files {
+        [one] if one.phase.is_none() => open_with(&one.path, options),
+        _ => joined::open(name, &files.iter().map(part).collect::<Vec<_>>(), contiguous, options),
+    }
+}
+
 /// The text of a path that is a pattern and no file.
 fn pattern(path: &Path) -> Option<String> {
     let text = path.to_str()?;

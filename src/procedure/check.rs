@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
+use super::phases::{Phased, is_phased, load_phased};
 use crate::ingest::manifest::{self, Manifest, is_manifest};
 use crate::ingest::raw::layout::{self, Layout};
 use crate::keyed::file;
@@ -21,6 +22,8 @@ pub enum Checked {
     Manifest(Box<Manifest>),
     /// A layout of raw binary records.
     Layout(Box<Layout>),
+    /// A sound procedure of several phases, whose procedures are sound too.
+    Phased(Box<Phased>),
 }
 
 /// Reads a file as what its first table says it is: a file with `[limits]` or `format = "limits/..."` is a limits file,
@@ -33,6 +36,8 @@ pub fn check(path: &Path) -> Result<Checked, Problems> {
         manifest::load(path).map(|m| Checked::Manifest(Box::new(m)))
     } else if says(path, |line| line.strip_prefix("format").is_some_and(|rest| rest.contains("\"layout/"))) {
         layout::load(path).map(|l| Checked::Layout(Box::new(l)))
+    } else if is_phased(path) {
+        load_phased(path).map(|p| Checked::Phased(Box::new(p)))
     } else if is_limits(path) {
         load_limits(path).map(|l| Checked::Limits(Box::new(l)))
     } else {
@@ -76,6 +81,7 @@ pub fn check_report_with(
                     Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
                     Checked::Manifest(m) => (manifest_sentence(m), vec![]),
                     Checked::Layout(l) => (layout_sentence(l), vec![]),
+                    Checked::Phased(p) => (phased_sentence(p), vec![]),
                 };
                 for warning in warnings {
                     report.text.push_str(&format!("{}\n", warning.say(lang)));
@@ -122,6 +128,14 @@ fn manifest_sentence(m: &Manifest) -> Note {
 
 fn layout_sentence(l: &Layout) -> Note {
     Note::new("layout.sound").with("bytes", l.record_bytes).with("count", l.names().count())
+}
+
+fn phased_sentence(p: &Phased) -> Note {
+    let phases: Vec<&str> = p.phases.iter().map(|phase| phase.id.as_str()).collect();
+    Note::new("phases.sound")
+        .with("id", p.identity.id.as_str())
+        .with("revision", p.identity.revision.as_str())
+        .with("phases", phases.join(", "))
 }
 
 /// True when the file says that it holds limits.

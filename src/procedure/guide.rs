@@ -3,6 +3,7 @@
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
+use super::tables_phases::PHASES_FILE;
 use crate::claim::tables::MODEL_FILE;
 use crate::ids::MEASURANDS;
 use crate::ingest::manifest_tables::MANIFEST_FILE;
@@ -12,6 +13,11 @@ use std::fmt::Write;
 /// Every key of a procedure file, as Markdown.
 pub fn procedure_reference() -> String {
     reference(&PROCEDURE_FILE)
+}
+
+/// Every key of a procedure of several phases, as Markdown.
+pub fn phases_reference() -> String {
+    reference(&PHASES_FILE)
 }
 
 /// Every key of a limits file, as Markdown.

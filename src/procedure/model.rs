@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, SourceText, Span};
 use super::limits::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use crate::ids::MeasurandId;
+use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::ingest::ReadOptions;
 use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
@@ -70,6 +71,10 @@ pub struct Procedure {
     pub temperature_test: Option<TemperatureTest>,
     /// A test of the warm-up.
     pub warm_up_test: Option<WarmUpTest>,
+    /// A series of switching off and on.
+    pub repeatability_test: Option<RepeatabilityTest>,
+    /// A comparison without and with an influence.
+    pub comparison_test: Option<ComparisonTest>,
     /// What is determined, in the order of the report.
     pub measurands: Vec<MeasurandSpec>,
     /// Limits, references and typical values that stand in the procedure itself.

@@ -70,6 +70,8 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
         explain: root.table("explain").map(explain),
         temperature_test: root.table("temperature_test").map(temperature_test),
         warm_up_test: root.table("warm_up_test").map(warm_up_test),
+        repeatability_test: root.table("repeatability_test").map(super::tables_influence::repeatability),
+        comparison_test: super::tables_influence::comparison(root),
         measurands: root.tables("measurand").iter().filter_map(measurand).collect(),
         limits: limits::read_set(root, None, reader),
         clauses: root.tables("clause").iter().map(clause).collect(),
@@ -260,7 +262,7 @@ fn measurand(section: &Section) -> Option<MeasurandSpec> {
     Some(MeasurandSpec { id, channel: section.text("channel"), earth_rate, span: section.span.clone() })
 }
 
-fn clause(section: &Section) -> ClauseRecord {
+pub(super) fn clause(section: &Section) -> ClauseRecord {
     ClauseRecord {
         clause: section.text("clause").unwrap_or_default(),
         title: section.text("title").unwrap_or_default(),

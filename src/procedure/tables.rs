@@ -2,6 +2,7 @@
 
 use super::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
 use super::tables_conditions::{CONDITIONS, EXCLUDE};
+use super::tables_influence::{MAGNETIC_TEST, REPEATABILITY_TEST, SUPPLY_TEST, VIBRATION_TEST};
 use super::tables_limits::{LIMIT, REFERENCE};
 use super::tables_rate_table::RATE_TABLE;
 use super::tables_site::{INSTRUMENT, SITE};
@@ -19,6 +20,8 @@ pub const ROLES: &[Word] = &[
     ("table_angle", "angle of the table"),
     ("outer_rate", "rate of the table's other axis"),
     ("supply", "supply voltage"),
+    ("magnetic_field", "magnetic field"),
+    ("vibration", "vibration: rms of the acceleration"),
     ("counter", "sample counter: grows by one a sample"),
     ("auxiliary", "anything else that is kept beside"),
 ];
@@ -41,6 +44,10 @@ pub const FIGURES: &[Word] = &[
     ("temperature_residual", "what the model over temperature leaves, over time"),
     ("temperature_sensitivity", "slope of the bias over temperature"),
     ("warm_up", "bias after switching on with its band"),
+    ("bias_of_runs", "bias of every switching-on with its interval"),
+    ("influence", "bias of every interval without and with an influence, and over its level"),
+    ("positions", "output in every position against the Earth rate"),
+    ("table_polar", "residual over the angle of the table, as a polar plot"),
 ];
 
 /// The procedure file as a whole.
@@ -78,6 +85,15 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
         ),
         optional("temperature_test", Kind::Table(&TEMPERATURE_TEST), "", "A test over temperature."),
         optional("warm_up_test", Kind::Table(&WARM_UP_TEST), "", "A test of the warm-up."),
+        optional(
+            "repeatability_test",
+            Kind::Table(&REPEATABILITY_TEST),
+            "",
+            "A series of switching off and on.",
+        ),
+        optional("magnetic_test", Kind::Table(&MAGNETIC_TEST), "", "A comparison in a magnetic field."),
+        optional("supply_test", Kind::Table(&SUPPLY_TEST), "", "A comparison at several supply voltages."),
+        optional("vibration_test", Kind::Table(&VIBRATION_TEST), "", "A comparison under vibration."),
         required(
             "measurand",
             Kind::Tables(&MEASURAND),
@@ -113,7 +129,7 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
     ],
 };
 
-static PROCEDURE: TableSpec = TableSpec {
+pub(super) static PROCEDURE: TableSpec = TableSpec {
     name: "procedure",
     doc: "Identity of the procedure. It stands in the header of every report.",
     keys: &[
@@ -131,7 +147,7 @@ static PROCEDURE: TableSpec = TableSpec {
     ],
 };
 
-static UNIT_UNDER_TEST: TableSpec = TableSpec {
+pub(super) static UNIT_UNDER_TEST: TableSpec = TableSpec {
     name: "unit_under_test",
     doc: "The unit the procedure is for. The serial number is given when the test is run.",
     keys: &[
@@ -358,7 +374,7 @@ pub const EARTH_RATE: &[Word] = &[
     ("keep", "the mean rate is reported as recorded"),
 ];
 
-static CLAUSE: TableSpec = TableSpec {
+pub(super) static CLAUSE: TableSpec = TableSpec {
     name: "clause",
     doc: "A clause of the standard and where it is dealt with.",
     keys: &[

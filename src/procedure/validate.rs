@@ -20,6 +20,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     waivers(procedure, root, reader);
     averaging_times(procedure, root, reader);
     super::tables_rate_table::validate(procedure, root, reader);
+    super::tables_influence::validate(procedure, root, reader);
 }
 
 /// What is worth knowing about a procedure that can be used.

@@ -30,6 +30,8 @@ pub struct Block {
     pub outer_rate: f64,
     /// Mean temperature, degC; NaN without one.
     pub temperature: f64,
+    /// Means of the channels kept beside, in the order asked for; NaN where none can be used.
+    pub beside: Vec<f64>,
     /// Angle of the table at the first sample, unwrapped, arcsec; NaN without one.
     pub angle_first: f64,
     /// The same at the last sample.
@@ -78,6 +80,7 @@ struct Slots {
     angle: Option<usize>,
     outer: Option<usize>,
     temperature: Option<usize>,
+    beside: Vec<usize>,
 }
 
 /// A block that is being filled: sums and counts.
@@ -85,6 +88,7 @@ struct Open {
     block: Block,
     counts: Vec<u32>,
     others: [(f64, u32); 3],
+    beside: Vec<u32>,
 }
 
 impl Collector {
@@ -101,6 +105,7 @@ impl Collector {
                 .and_then(|id| channels.iter().position(|c| c.id == id))
                 .or_else(|| first(Role::Temperature)),
             gyros,
+            beside: vec![],
         };
         let blocks = Blocks {
             interval_s,
@@ -122,6 +127,13 @@ impl Collector {
         self
     }
 
+    /// Keeps the means of further channels, by their positions.
+    #[must_use]
+    pub fn beside(mut self, slots: Vec<usize>) -> Collector {
+        self.slots.beside = slots;
+        self
+    }
+
     /// The blocks, with the sample interval that the whole recording has.
     pub fn finish(mut self, interval_s: f64) -> Blocks {
         self.close();
@@ -138,6 +150,9 @@ impl Collector {
         let mean = |(sum, count): (f64, u32)| if count > 0 { sum / f64::from(count) } else { f64::NAN };
         (block.table_rate, block.outer_rate, block.temperature) =
             (mean(open.others[0]), mean(open.others[1]), mean(open.others[2]));
+        for (sum, count) in block.beside.iter_mut().zip(&open.beside) {
+            *sum = mean((*sum, *count));
+        }
         self.blocks.list.push(block);
         if self.blocks.list.len() >= MOST_BLOCKS {
             self.halve();
@@ -200,6 +215,9 @@ fn join(first: &mut Block, second: &Block) {
     for (x, y) in first.gyro.iter_mut().zip(&second.gyro) {
         *x = mean(*x, *y);
     }
+    for (x, y) in first.beside.iter_mut().zip(&second.beside) {
+        *x = mean(*x, *y);
+    }
     first.table_rate = mean(first.table_rate, second.table_rate);
     first.outer_rate = mean(first.outer_rate, second.outer_rate);
     first.temperature = mean(first.temperature, second.temperature);
@@ -222,7 +240,7 @@ impl Sink for Collector {
             let raw = at(self.slots.angle, i);
             let angle =
                 if self.slots.angle.is_some() { self.unwrap_angle(raw, rate, index) } else { f64::NAN };
-            let gyros = self.slots.gyros.len();
+            let (gyros, beside) = (self.slots.gyros.len(), self.slots.beside.len());
             let open = self.open.get_or_insert_with(|| Open {
                 block: Block {
                     first_index: index,
@@ -233,11 +251,13 @@ impl Sink for Collector {
                     table_rate: 0.0,
                     outer_rate: 0.0,
                     temperature: 0.0,
+                    beside: vec![0.0; beside],
                     angle_first: angle,
                     angle_last: angle,
                 },
                 counts: vec![0; gyros],
                 others: [(0.0, 0); 3],
+                beside: vec![0; beside],
             });
             open.block.samples += 1;
             open.block.angle_last = angle;
@@ -246,6 +266,13 @@ impl Sink for Collector {
                 if value.is_finite() {
                     open.block.gyro[k] += value;
                     open.counts[k] += 1;
+                }
+            }
+            for (k, slot) in self.slots.beside.iter().enumerate() {
+                let value = at(Some(*slot), i);
+                if value.is_finite() {
+                    open.block.beside[k] += value;
+                    open.beside[k] += 1;
                 }
             }
             for (k, slot) in

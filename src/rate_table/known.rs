@@ -142,6 +142,8 @@ pub struct Positions {
     pub bias_directions: f64,
     /// Mean output in every position with its standard uncertainty, and the Earth rate expected there with its own, deg/h.
     pub means: Vec<Mean>,
+    /// Channel that shows the Earth's rotation between these positions in place of this one, and its factor.
+    pub turned_instead: Option<(String, f64)>,
 }
 
 /// One position of one channel.
@@ -223,6 +225,7 @@ pub fn positions(
         bias: fit.coefficient(0),
         bias_directions: of_bias,
         means,
+        turned_instead: None,
     })
 }
 
@@ -233,7 +236,8 @@ impl Positions {
     /// The estimate of one id; `None` for an id that is not given here.
     pub fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
         // Outputs whose bias was turned with them tell neither of both.
-        if !self.turned_in_software().is_empty() && Positions::IDS.contains(&id) {
+        let refused = self.turned_instead.is_some() || !self.turned_in_software().is_empty();
+        if refused && Positions::IDS.contains(&id) {
             return Some(
                 Estimate::not_identifiable(id, &self.channel, None, unit, "earth_rate_positions")
                     .note(Note::new("known.refused")),
@@ -253,6 +257,17 @@ impl Positions {
             }
             _ => return None,
         })
+    }
+
+    /// True when the output follows the Earth's rotation as the positions have it, as nearly as the noise tells.
+    pub fn follows(&self) -> bool {
+        let u = self.factor.standard.hypot(self.factor_directions);
+        (self.factor.value - 1.0).abs() <= (4.0 * u).max(0.02)
+    }
+
+    /// True when it is plain that it follows.
+    pub fn plainly_follows(&self) -> bool {
+        self.follows() && self.factor.standard.hypot(self.factor_directions) < 0.1
     }
 
     /// Pairs of positions between which the output changed its sign with its bias: turned in software and not in space.

@@ -10,6 +10,8 @@ mod deviation;
 pub mod explanation;
 mod goodness;
 mod integrity;
+mod interval_mean;
+mod phase;
 mod table_step;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
@@ -21,6 +23,8 @@ pub use deviation::DeviationRecord;
 pub use explanation::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
+pub use interval_mean::IntervalMeanRecord;
+pub use phase::PhaseRecord;
 pub use table_step::TableStepRecord;
 
 use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
@@ -71,6 +75,8 @@ pub struct RunRecord {
     pub deviations: Vec<DeviationRecord>,
     /// Steps of a test on a rate table, per channel.
     pub table_steps: Vec<TableStepRecord>,
+    /// Runs of a series of switching off and on, or intervals without and with an influence, per channel.
+    pub interval_means: Vec<IntervalMeanRecord>,
     /// Russian against Allan values, per channel long enough for it.
     pub comparison: Vec<ComparisonRecord>,
     /// What this test can decide: power of each limit.
@@ -89,6 +95,8 @@ pub struct RunRecord {
     /// verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explained: Option<ExplainedRecord>,
+    /// The phases of a test of several, in their order; `conditions` and `measurands` are those of all of them.
+    pub phases: Vec<PhaseRecord>,
     /// Errors that made the verdict `error`.
     #[schemars(with = "Vec<NoteSchema>")]
     pub errors: Vec<Note>,
@@ -239,6 +247,9 @@ pub enum ConditionStatus {
 pub struct ConditionRecord {
     /// Id, for example `temperature`.
     pub id: String,
+    /// Phase that it is of, in a test of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<String>,
     /// State.
     pub status: ConditionStatus,
     /// What was observed, by name, in the unit of `required`.
@@ -286,6 +297,9 @@ pub struct MeasurandRecord {
     pub id: String,
     /// Channel.
     pub channel: String,
+    /// Phase that it is of, in a test of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<String>,
     /// Value, `null` where the record cannot show it.
     pub value: Option<f64>,
     /// Unit.

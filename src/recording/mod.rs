@@ -37,6 +37,10 @@ pub enum Role {
     OuterRate,
     /// Supply voltage; inside: V.
     Supply,
+    /// Magnetic field; inside: mT.
+    MagneticField,
+    /// Vibration, rms of the acceleration; inside: g.
+    Vibration,
     /// Anything else that is kept beside; inside: as recorded.
     Auxiliary,
 }
@@ -55,6 +59,8 @@ impl Role {
             Role::TableAngle => "table_angle",
             Role::OuterRate => "outer_rate",
             Role::Supply => "supply",
+            Role::MagneticField => "magnetic_field",
+            Role::Vibration => "vibration",
             Role::Auxiliary => "auxiliary",
         }
     }
@@ -71,6 +77,8 @@ impl Role {
         Role::TableAngle,
         Role::OuterRate,
         Role::Supply,
+        Role::MagneticField,
+        Role::Vibration,
         Role::Auxiliary,
     ];
 
@@ -82,6 +90,8 @@ impl Role {
             Role::AngleIncrement | Role::AccumulatedAngle | Role::TableAngle => Some("arcsec"),
             Role::Temperature => Some("degC"),
             Role::Supply => Some("V"),
+            Role::MagneticField => Some("mT"),
+            Role::Vibration => Some("g"),
             Role::Counter | Role::Auxiliary => None,
         }
     }

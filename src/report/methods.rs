@@ -47,6 +47,18 @@ fn fitted_by(record: &RunRecord, name: &str) -> bool {
 /// All entries, in the order of the report.
 pub const METHODS: &[Method] = &[
     Method {
+        id: "runs",
+        formulas: &["m = (x'V⁻¹x)⁻¹·x'V⁻¹y;  Q(σ²) = d'(Z(σ²I + C)Z')⁻¹d;  d = Zm"],
+        source: "IEEE Std 952, 12.11; Paule and Mandel 1982; Viechtbauer 2007",
+        applies: |r| measured_by(r, "means_of_runs"),
+    },
+    Method {
+        id: "influence",
+        formulas: &["y = y₀ + r·t + k·(x − x₀) + ν;  cov ν = N₀²V₀ + N₁²V₁ + B²V_B + K²V_K + s²V_s"],
+        source: "IEEE Std 952, 12.11; Patterson and Thompson 1971",
+        applies: |r| measured_by(r, "alternating_intervals"),
+    },
+    Method {
         id: "table_positions",
         formulas: &["yₚ = K·Ωₚ + y₀;  Ωₚ = Ω_E·(cos φ·cos E·cos A + sin φ·sin E)"],
         source: "IEEE Std 952, 12.11",

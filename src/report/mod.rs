@@ -12,7 +12,7 @@ pub mod svg;
 pub mod unit;
 pub mod view;
 
-pub use render::{Renderer, ReportError, render_html, render_markdown};
+pub use render::{Renderer, ReportError, render_html, render_markdown, render_phases};
 
 use crate::figure::Figure;
 use crate::text::Lang;

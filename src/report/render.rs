@@ -1,7 +1,7 @@
 //! Templates: the built-in ones, each of which a file of the same name in a folder of the user's replaces.
 
 use super::number;
-use super::view::{View, Words};
+use super::view::{PhasePart, View, Words};
 use crate::figure::Figure;
 use crate::record::RunRecord;
 use crate::text::{Lang, Note, io_reason, lookup, table};
@@ -20,6 +20,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("evidence.html", include_str!("../../templates/evidence.html")),
     ("methods.html", include_str!("../../templates/methods.html")),
     ("signoff.html", include_str!("../../templates/signoff.html")),
+    ("phases.html", include_str!("../../templates/phases.html")),
+    ("phases.md", include_str!("../../templates/phases.md")),
     ("report.md", include_str!("../../templates/report.md")),
     ("compare.html", include_str!("../../templates/compare.html")),
     ("compare.md", include_str!("../../templates/compare.md")),
@@ -236,8 +238,18 @@ impl Renderer {
         let env = self.environment(lang)?;
         let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
         let view = View::new(record, figures, lang);
+        Renderer::filled(&template, name, &view, record, lang)
+    }
+
+    fn filled(
+        template: &minijinja::Template<'_, '_>,
+        name: &str,
+        view: &View,
+        record: &RunRecord,
+        lang: Lang,
+    ) -> Result<String, ReportError> {
         let context = minijinja::context! {
-            v => Value::from(Serde(&view)),
+            v => Value::from(Serde(view)),
             run => Value::from(Serde(record)),
             locale => Value::from(Serde(table(lang))),
         };
@@ -269,6 +281,25 @@ pub fn render_markdown(
     renderer: &Renderer,
 ) -> Result<String, ReportError> {
     renderer.render("report.md", record, figures, lang)
+}
+
+/// Renders the report of a test of several phases: HTML and Markdown.
+///
+/// # Errors
+/// [`ReportError::Template`] when a template is wrong.
+pub fn render_phases(
+    record: &RunRecord,
+    parts: &[PhasePart<'_>],
+    lang: Lang,
+    renderer: &Renderer,
+) -> Result<(String, String), ReportError> {
+    let env = renderer.environment(lang)?;
+    let view = View::of_phases(record, parts, lang);
+    let one = |name: &str| {
+        let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
+        Renderer::filled(&template, name, &view, record, lang)
+    };
+    Ok((one("phases.html")?, one("phases.md")?))
 }
 
 fn wrong(error: &minijinja::Error, name: &str) -> ReportError {

@@ -42,6 +42,8 @@ pub fn procedure(channels: Vec<Channel>, sample_rate_hz: Option<f64>, warm_up_s:
         analysis: Analysis { taus: Taus::Octave, exact: false, line_false_alarm: 0.01 },
         temperature_test: None,
         warm_up_test: None,
+        repeatability_test: None,
+        comparison_test: None,
         measurands: MEASURANDS
             .iter()
             .filter(|m| m.available && m.test == Test::Static && m.id != "earth_rate_component")

@@ -383,6 +383,29 @@ fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
     drawn
 }
 
+/// Every gyro channel over time, for tests that are not evaluated sample by sample.
+pub(super) fn over_time(request: &Request<'_>, found: &Found) -> Vec<Figure> {
+    let wanted = |id: &str| request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id));
+    if !wanted("rate") && !wanted("temperature") {
+        return vec![];
+    }
+    let gyros: Vec<&Channel> = found.channels.iter().filter(|c| c.role.is_gyro()).collect();
+    let several = gyros.len() > 1;
+    let one = |channel: &&Channel| {
+        let slot = found.channels.iter().position(|c| c.id == channel.id)?;
+        let below = if wanted("temperature") { below(request.procedure, found) } else { vec![] };
+        Some(figures::time_series::figure(
+            if several { format!("time_series_{}", channel.id) } else { "time_series".to_owned() },
+            if several { channel.id.clone() } else { String::new() },
+            found.envelopes.get(&slot)?,
+            &below,
+            &found.window,
+            found.tau0_s,
+        ))
+    };
+    gyros.iter().filter_map(one).collect()
+}
+
 /// The other channels drawn under the rate, with the bands that they must keep.
 fn below<'a>(procedure: &Procedure, found: &'a Found) -> Vec<figures::time_series::Below<'a>> {
     let mut list = Vec::new();

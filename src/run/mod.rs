@@ -10,8 +10,12 @@ pub mod explained;
 pub mod figures;
 mod goodness;
 mod gyro_facts;
+mod influence;
+mod influence_noise;
 pub mod inspect;
+mod interval_means;
 mod pass;
+pub mod phases;
 pub mod power;
 mod settle;
 mod sigma_tau;
@@ -119,8 +123,11 @@ impl std::error::Error for RunError {}
 /// # Errors
 /// [`RunError`] when there is nothing to evaluate. Everything else, a missing serial number included, is a verdict.
 pub fn execute(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<Outcome, RunError> {
-    match &request.procedure.rate_table {
-        Some(setup) if request.kind == "run" => table::execute(request, setup, progress),
+    let procedure = request.procedure;
+    match (&procedure.rate_table, &procedure.repeatability_test, &procedure.comparison_test) {
+        (Some(setup), _, _) if request.kind == "run" => table::execute(request, setup, progress),
+        (_, Some(test), _) if request.kind == "run" => influence::repeatability(request, test, progress),
+        (_, _, Some(test)) if request.kind == "run" => influence::comparison(request, test, progress),
         _ => evaluate::execute(request, progress),
     }
 }
@@ -131,7 +138,8 @@ pub fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
     settle::failed(request, error)
 }
 
-fn session(request: &Request<'_>) -> Session {
+/// Who evaluated, where and when.
+pub fn session(request: &Request<'_>) -> Session {
     Session {
         operator: request.operator.clone(),
         station: request.station.clone(),

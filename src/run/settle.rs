@@ -93,6 +93,8 @@ fn blank(request: &Request<'_>) -> RunRecord {
         goodness_of_fit: vec![],
         deviations: vec![],
         table_steps: vec![],
+        interval_means: vec![],
+        phases: vec![],
         comparison: vec![],
         explained: None,
         power: vec![],
@@ -207,6 +209,11 @@ fn options(request: &Request<'_>, found: &Found) -> Vec<OptionRecord> {
     let option = |name: &str, value: String| OptionRecord { name: name.to_owned(), value };
     if let Some(setup) = &procedure.rate_table {
         return super::table::options(procedure, setup, request.use_stamps);
+    }
+    let of_influence = super::influence::options(procedure);
+    if !of_influence.is_empty() {
+        let usual = [option("recording.use_stamps", request.use_stamps.to_string())];
+        return of_influence.into_iter().chain(usual).collect();
     }
     vec![
         option("analysis.taus", describe_grid(&found.grid)),

@@ -13,12 +13,12 @@ use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::ChannelSpec;
-use crate::rate_table::blocks::Collector;
+use crate::rate_table::blocks::{Blocks, Collector};
 use crate::rate_table::scale_factor::{self, ScaleFactor};
 use crate::rate_table::{Setup, TableRun};
 use crate::record::{ConditionRecord, OptionRecord};
-use crate::recording::Role;
 use crate::recording::window::Windowed;
+use crate::recording::{Channel, Role};
 use crate::text::{Arg, Note};
 
 pub(super) fn execute(
@@ -164,6 +164,19 @@ fn collect(
     setup: &Setup,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<(Found, TableRun), RunError> {
+    let (found, blocks) = collect_blocks(request, progress, &|channels, nominal_s| {
+        let blocks = Collector::new(channels, nominal_s, setup.temperature.as_deref());
+        if setup.known.is_empty() { blocks } else { blocks.fine() }
+    })?;
+    Ok((found, TableRun::new(blocks, setup)))
+}
+
+/// Reads a recording into blocks, with what conditions are judged by.
+pub(super) fn collect_blocks(
+    request: &Request<'_>,
+    progress: &mut dyn FnMut(u64, u64),
+    collector: &dyn Fn(&[Channel], f64) -> Collector,
+) -> Result<(Found, Blocks), RunError> {
     let procedure = request.procedure;
     let channels = evaluate::channels(procedure, request.source);
     let mut plan = evaluate::plan(request, &channels)?;
@@ -174,9 +187,7 @@ fn collect(
         let inside = Inside::new(procedure, &channels, &grid, &[], false, tidy(nominal_s), plan.start_s());
         let window = evaluate::window(procedure);
         let mut held = Windowed::new(inside.held_only(), window.clone(), plan.start_s(), nominal_s);
-        let blocks = Collector::new(&channels, nominal_s, setup.temperature.as_deref());
-        let blocks = if setup.known.is_empty() { blocks } else { blocks.fine() };
-        let mut blocks = Windowed::new(blocks, window, plan.start_s(), nominal_s);
+        let mut blocks = Windowed::new(collector(&channels, nominal_s), window, plan.start_s(), nominal_s);
         let report = plan.stream(&mut [&mut overview, &mut held, &mut blocks], progress)?;
         Ok((overview, held, blocks, report))
     };
@@ -194,7 +205,7 @@ fn collect(
     saturated.iter_mut().for_each(|f| crate::ingest::locate(&report.files, f));
     evaluate::declare_rails(&mut report.integrity, saturated);
     evaluate::tidy_integrity(&mut report.integrity, tau0_s, &[]);
-    let run = TableRun::new(blocks.finish(report.tau0_measured_s), setup);
+    let blocks = blocks.finish(report.tau0_measured_s);
     let found = Found {
         channels,
         report,
@@ -207,7 +218,7 @@ fn collect(
         exact: false,
         schedule: None,
     };
-    Ok((found, run))
+    Ok((found, blocks))
 }
 
 fn facts(
@@ -217,15 +228,19 @@ fn facts(
     evaluated: &[(usize, Option<ScaleFactor>)],
 ) -> TableFacts {
     let steps = &run.steps;
-    let rates = || steps.list.iter().map(|s| s.rate);
+    // Where the input axis is square to the axis that is turned about, that is the other one.
+    let about_outer = wants_alignment(procedure);
+    let rates = || steps.list.iter().map(|s| if about_outer { s.outer } else { s.rate });
     let worst = |f: fn(f64, f64) -> f64, start: f64| {
         let value = rates().fold(start, f);
         if value.is_finite() { value } else { 0.0 }
     };
     let disagreement = (run.blocks.has_angle && run.blocks.has_rate)
         .then(|| {
-            let largest = rates()
-                .fold(0.0, |m: f64, r| m.max(r.abs()))
+            let largest = steps
+                .list
+                .iter()
+                .fold(0.0, |m: f64, s| m.max(s.rate.abs()))
                 .max(steps.list.iter().fold(0.0, |m: f64, s| m.max(s.nominal.abs())));
             let counted = steps.list.iter().filter(|s| s.nominal.abs() > 0.05 * largest && s.nominal != 0.0);
             counted
@@ -239,7 +254,8 @@ fn facts(
         minimum_step_s: setup.minimum_step_s,
         lowest: worst(f64::min, f64::INFINITY),
         highest: worst(f64::max, f64::NEG_INFINITY),
-        levels: if wants_alignment(procedure) { outer_levels(run) } else { steps.levels.len() },
+        about_outer,
+        levels: if about_outer { outer_levels(run) } else { steps.levels.len() },
         full_scale: setup.full_scale_deg_h,
         tolerance: setup.rate_tolerance,
         disagreement,
@@ -267,6 +283,9 @@ fn draw(request: &Request<'_>, run: &TableRun, evaluated: &[(usize, Option<Scale
         if wanted("scale_factor_residual") {
             let limit = request.limits.limit("scale_factor_nonlinearity", &channel.channel).map(|l| &l.limit);
             drawn.push(figures::scale_factor::residuals(run, channel, limit, several));
+        }
+        if wanted("table_polar") {
+            drawn.extend(figures::polar::figure(run, channel, several));
         }
         if wanted("table_steps") {
             drawn.push(figures::scale_factor::over_time(run, channel, several));

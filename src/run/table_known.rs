@@ -32,9 +32,14 @@ pub(super) fn finish(
         });
         (rate.value, rate.uncertainty)
     };
-    let positions: Vec<Positions> = (0..blocks.gyros.len())
+    let mut positions: Vec<Positions> = (0..blocks.gyros.len())
         .filter_map(|gyro| known::positions(blocks, &setup.known, &stretches, gyro, &earth))
         .collect();
+    for p in positions.iter_mut().filter(|p| !p.follows()) {
+        p.turned_instead = turned_instead(blocks, setup, &p.channel, &|known, gyro| {
+            known::positions(blocks, known, &stretches, gyro, &earth)
+        });
+    }
     let turns = known::turns(blocks, &setup.known, &stretches);
     let vertical = setup.known.iter().all(|k| match k.input {
         Input::Position { elevation, .. } => (elevation.0.abs() - 90.0).abs() < 1e-6,
@@ -51,6 +56,7 @@ pub(super) fn finish(
                 standard: p.factor.standard.hypot(p.factor_directions),
                 bias: p.bias.value,
                 latitude_deg: latitude.map(|l| l.0).filter(|_| vertical),
+                turned_instead: p.turned_instead.clone(),
                 software: p
                     .turned_in_software()
                     .iter()
@@ -77,6 +83,35 @@ pub(super) fn finish(
             }
         }
     }
-    let record = settle::record(request, &found, conditions, rows, vec![], &[]);
-    Ok(Outcome { record, figures: vec![], tables: vec![] })
+    let shown = request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&"positions"));
+    let drawn: Vec<_> = positions
+        .iter()
+        .filter(|_| shown)
+        .map(|p| super::figures::positions::figure(p, positions.len() > 1))
+        .collect();
+    let record = settle::record(request, &found, conditions, rows, vec![], &drawn);
+    Ok(Outcome { record, figures: drawn, tables: vec![] })
+}
+
+/// The channel that shows the Earth's rotation in the positions stated for another one: that axis was turned in space,
+/// and the other in software only.
+fn turned_instead(
+    blocks: &Blocks,
+    setup: &Setup,
+    channel: &str,
+    evaluate: &dyn Fn(&[known::Known], usize) -> Option<Positions>,
+) -> Option<(String, f64)> {
+    let mut stated = setup.known.clone();
+    for k in stated.iter_mut().filter(|k| matches!(k.input, Input::Position { .. })) {
+        // Stretches go by their place in the list: what is stated for other channels stays in it and does not count.
+        if k.channel.as_deref().is_some_and(|c| c != channel) {
+            k.input = Input::Rest;
+        }
+        k.channel = None;
+    }
+    (0..blocks.gyros.len())
+        .filter(|gyro| blocks.gyros[*gyro] != channel)
+        .filter_map(|gyro| evaluate(&stated, gyro))
+        .find(Positions::plainly_follows)
+        .map(|p| (p.channel, p.factor.value))
 }

@@ -16,6 +16,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
     MeasurandRecord {
         id: estimate.id.to_owned(),
         channel: estimate.channel.clone(),
+        phase: None,
         value: estimate.value,
         unit: estimate.unit.to_owned(),
         interval: estimate.interval95(),
@@ -93,6 +94,7 @@ mod tests {
         MeasurandRecord {
             id: "static_bias".into(),
             channel: "rate".into(),
+            phase: None,
             value: Some(1.0),
             unit: "deg/h".into(),
             interval: None,
@@ -111,6 +113,7 @@ mod tests {
     fn condition(status: ConditionStatus) -> ConditionRecord {
         ConditionRecord {
             id: "temperature".into(),
+            phase: None,
             status,
             observed: Default::default(),
             required: String::new(),

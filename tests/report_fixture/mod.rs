@@ -29,6 +29,7 @@ pub fn row(id: &str, channel: &str, value: f64, (low, high): (f64, f64), unit: &
     MeasurandRecord {
         id: id.into(),
         channel: channel.into(),
+        phase: None,
         value: Some(value),
         unit: unit.into(),
         interval: Some(Interval { low, high, coverage: 0.95 }),
@@ -130,6 +131,7 @@ fn condition(
 ) -> ConditionRecord {
     ConditionRecord {
         id: id.into(),
+        phase: None,
         status,
         observed: observed.iter().map(|(k, v)| ((*k).to_owned(), serde_json::json!(v))).collect(),
         required: required.into(),
@@ -275,6 +277,8 @@ pub fn pass() -> RunRecord {
             .flat_map(|estimator| [1.0, 2.0].map(|tau_s| deviation(estimator, tau_s)))
             .collect(),
         table_steps: vec![],
+        interval_means: vec![],
+        phases: vec![],
         comparison: vec![],
         explained: None,
         power: vec![PowerRecord {

@@ -40,6 +40,11 @@ pub enum Direction {
 }
 
 impl Ruled {
+    /// The range shown.
+    pub fn range(&self) -> (f64, f64) {
+        (self.low, self.high)
+    }
+
     /// Settles an axis.
     ///
     /// `data` is the extent of what is to be shown (`None`: nothing); `length` the size on paper, px.
@@ -62,6 +67,7 @@ impl Ruled {
                 (String::new(), unit::pretty(&axis.unit, lang))
             }
             Scale::Linear => ruled.rule_linearly(timed, &axis.unit, direction, length, lang),
+            Scale::Polar => return ruled,
         };
         ruled.title = format!("{words}{prefix}");
         if !unit_text.is_empty() {
@@ -74,7 +80,7 @@ impl Ruled {
     /// Position of a value along the axis, 0 at the low end and 1 at the high end; `None` where it has none.
     pub fn place(&self, value: f64) -> Option<f64> {
         let at = match self.scale {
-            Scale::Linear => (value.clamp(-HUGE, HUGE) - self.low) / (self.high - self.low),
+            Scale::Linear | Scale::Polar => (value.clamp(-HUGE, HUGE) - self.low) / (self.high - self.low),
             Scale::Log if value > 0.0 => (value / self.low).log10() / (self.high / self.low).log10(),
             Scale::Log => return None,
         };
@@ -137,13 +143,13 @@ fn range(scale: Scale, fixed: Option<(f64, f64)>, data: Option<(f64, f64)>, room
             && b.is_finite()
             && a < b
             && a.abs().max(b.abs()) <= HUGE
-            && (scale == Scale::Linear || a > 1e-300)
+            && (scale != Scale::Log || a > 1e-300)
     };
     if let Some(fixed) = fixed.filter(|f| sane(*f)) {
         return fixed;
     }
     match scale {
-        Scale::Linear => {
+        Scale::Linear | Scale::Polar => {
             let (a, b) = data.unwrap_or((0.0, 1.0));
             let (a, b) = (a.clamp(-HUGE, HUGE), b.clamp(-HUGE, HUGE));
             let middle = 0.5 * a + 0.5 * b;

@@ -313,7 +313,7 @@ fn overlap(a: &[f64; 4], b: &[f64; 4]) -> bool {
 /// Terms, bands and words follow the data rather than stretch the axis: on a logarithmic axis they are given half a
 /// decade of room, and more only when there is nothing else to show.
 pub fn extent(panels: &[&Panel], scale: Scale, ordinate: bool) -> Option<(f64, f64)> {
-    let fits = |v: &f64| v.is_finite() && (scale == Scale::Linear || *v > 0.0);
+    let fits = |v: &f64| v.is_finite() && (scale != Scale::Log || *v > 0.0);
     let mut main: Option<(f64, f64)> = None;
     let mut side: Option<(f64, f64)> = None;
     let grow = |range: &mut Option<(f64, f64)>, v: f64| {

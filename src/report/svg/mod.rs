@@ -7,7 +7,7 @@ mod legend;
 mod style;
 mod write;
 
-use crate::figure::{Figure, Panel};
+use crate::figure::{Axis, Figure, Panel, Scale};
 use crate::text::{Lang, lookup};
 use axis::{Direction, Ruled};
 use layer::Plot;
@@ -32,6 +32,7 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
         figure.id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
     let panels: Vec<&Panel> = figure.panels.iter().collect();
     let height_of_plot = match panels.len() {
+        0 | 1 if panels.iter().any(|p| p.x.scale == Scale::Polar) => 480.0,
         0 | 1 => 330.0,
         2 => 212.0,
         _ => 150.0,
@@ -54,7 +55,15 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     let across = WIDTH - left - RIGHT;
     let abscissas: Vec<Ruled> = panels
         .iter()
-        .map(|p| {
+        .zip(&ordinates)
+        .map(|(p, y)| {
+            if p.x.scale == Scale::Polar {
+                // A unit is as long across as up.
+                let (low, high) = y.range();
+                let half = 0.5 * (high - low) * across / height_of_plot;
+                let axis = Axis { range: Some((-half, half)), ..p.x.clone() };
+                return Ruled::new(&axis, None, Direction::Across, across, lang);
+            }
             let same: Vec<&Panel> = panels.iter().copied().filter(|q| q.x == p.x).collect();
             Ruled::new(&p.x, layer::extent(&same, p.x.scale, false), Direction::Across, across, lang)
         })
@@ -172,7 +181,7 @@ fn frame(out: &mut String, plot: &Plot<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Axis, Layer, Scale, Style};
+    use crate::figure::{Layer, Style};
 
     fn figure(scale: Scale, points: Vec<(f64, f64)>) -> Figure {
         let axis = Axis { label: "axis.a & b", unit: "deg/h".into(), scale, range: None };

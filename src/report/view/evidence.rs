@@ -40,6 +40,8 @@ pub struct Evidence {
     pub deviations: Vec<Deviations>,
     /// Steps of a rate table, a table for each channel.
     pub table_steps: Vec<super::TableSteps>,
+    /// Runs or intervals, by channel.
+    pub interval_means: Vec<super::IntervalMeans>,
     /// What this test can decide.
     pub power: Vec<Power>,
     /// Instruments.
@@ -217,6 +219,7 @@ impl Evidence {
             goodness: goodness::goodness(record, words),
             deviations: deviations::deviations(record, words),
             table_steps: super::table_steps::table_steps(record, words),
+            interval_means: super::interval_means::interval_means(record, words),
             power: record
                 .power
                 .iter()

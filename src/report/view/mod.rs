@@ -10,7 +10,9 @@ mod evidence;
 mod explained;
 mod faults;
 mod goodness;
+mod interval_means;
 mod matrix;
+mod phase;
 mod rows;
 mod table_steps;
 
@@ -23,6 +25,8 @@ pub use faults::{Fault, FaultKind, Faults};
 pub use goodness::Goodness;
 pub use matrix::{Matrix, MatrixRow};
 pub use rows::Row;
+pub use interval_means::{IntervalMean, IntervalMeans};
+pub use phase::{PhasePart, PhaseView};
 pub use table_steps::{TableStep, TableSteps};
 
 use crate::estimate::Verdict;
@@ -90,6 +94,10 @@ pub struct View {
     pub options: Vec<Field>,
     /// Line at the foot of every page.
     pub footer: String,
+    /// What marks that others refer to begin with: they differ between the phases of one page.
+    pub anchor: String,
+    /// The phases of a test of several.
+    pub phases: Vec<phase::PhaseView>,
 }
 
 /// A file that went into the report.
@@ -267,6 +275,8 @@ impl View {
                 .map(|o| Field { label: words.name("option", &o.name), value: option_value(&o.value, words) })
                 .collect(),
             footer: footer(record, words),
+            anchor: String::new(),
+            phases: vec![],
         }
     }
 }

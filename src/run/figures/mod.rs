@@ -2,9 +2,13 @@
 
 pub mod allan_family;
 pub mod autocorrelation;
+pub mod bias_of_runs;
 pub mod dead_zone;
 pub mod histogram;
+pub mod influence;
 mod parts;
+pub mod polar;
+pub mod positions;
 pub mod residual;
 pub mod scale_factor;
 pub mod sigma_tau;
@@ -20,4 +24,10 @@ fn axis(label: &'static str, unit: &str, scale: Scale) -> Axis {
 
 fn line(points: Vec<(f64, f64)>, style: Style, legend: &str) -> Layer {
     Layer::Line { points, style, legend: legend.to_owned() }
+}
+
+/// Intervals as upright strokes: (x, low, high).
+fn strokes(intervals: impl Iterator<Item = (f64, f64, f64)>, style: Style, legend: &str) -> Layer {
+    let points = intervals.flat_map(|(x, low, high)| [(x, low), (x, high), (x, f64::NAN)]).collect();
+    line(points, style, legend)
 }

@@ -1,0 +1,16 @@
+//! The bias at rest under what is changed on purpose: switching off and on, a magnetic field, the supply voltage,
+//! vibration.
+//!
+//! Everything rests on means of stretches of the recording with noise that is identified from the recording itself and
+//! goes on between the stretches. Sources: IEEE Std 952-2020, 12.11 (bias repeatability, sensitivities).
+
+pub mod comparison;
+pub mod contrasts;
+pub mod cut;
+mod gls;
+pub mod intervals;
+pub mod repeatability;
+pub mod runs;
+pub mod setup;
+
+pub use setup::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};

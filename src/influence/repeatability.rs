@@ -1,0 +1,211 @@
+//! Repeatability of the bias from switching on to switching on.
+
+use super::contrasts::{Contrasts, Means, coefficient};
+use super::cut::{cut, span_s};
+use super::gls;
+use super::runs::Runs;
+use crate::estimate::{Estimate, Spread, UpperLimit, chi_square_quantile};
+use crate::numeric::reml::Combination;
+use crate::rate_table::blocks::Blocks;
+use crate::text::{Arg, Note};
+use nalgebra::{DMatrix, DVector};
+
+/// Ids that are given here.
+pub const IDS: [&str; 4] = [
+    "bias_repeatability",
+    "bias_repeatability_peak_to_peak",
+    "bias_repeatability_trend",
+    "bias_repeatability_temperature",
+];
+
+const METHOD: &str = "means_of_runs";
+
+/// One run of one channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunMean {
+    /// Phase or name of its file.
+    pub name: String,
+    /// Start and end of what was evaluated, s from the start of the recording.
+    pub span_s: (f64, f64),
+    /// First row.
+    pub row: u64,
+    /// Bias, deg/h.
+    pub bias: Combination,
+    /// Mean temperature, degC; NaN without one.
+    pub temperature: f64,
+}
+
+/// A series of runs.
+#[derive(Debug, Clone)]
+pub struct Repeatability {
+    /// Channel.
+    pub channel: String,
+    /// The runs.
+    pub runs: Vec<RunMean>,
+    /// Mean of the runs, each with the same weight, deg/h.
+    pub mean: f64,
+    /// Standard deviation between runs, their noise taken out, deg/h, and its confidence distribution.
+    pub deviation: (f64, Spread),
+    /// Standard deviation of the means as they are, deg/h.
+    pub plain: f64,
+    /// Largest less smallest, deg/h.
+    pub range: Combination,
+    /// Change from the first run to the last by the line through all, deg/h.
+    pub trend: Option<Combination>,
+    /// Change with the temperature of the runs.
+    pub temperature: Option<OverTemperature>,
+}
+
+/// What goes with the temperature of the runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OverTemperature {
+    /// Slope, deg/h/degC.
+    pub slope: Combination,
+    /// Standard deviation between runs that is left, deg/h.
+    pub left: f64,
+    /// Share of the variance between runs that goes with it.
+    pub share: f64,
+    /// Range of the temperatures, degC.
+    pub range: f64,
+}
+
+/// Evaluates the runs of a channel; `earth_deg_h` is taken out of every mean. `None` with fewer than two runs.
+pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> Option<Repeatability> {
+    let spans: Vec<(usize, usize)> = runs.list.iter().map(|r| r.blocks).collect();
+    let count = spans.len();
+    if count < 2 {
+        return None;
+    }
+    let cut = cut(blocks, &spans, gyro)?;
+    let n = cut.rows.len();
+    let x = DMatrix::from_fn(n, count, |i, j| if cut.of[i] == j { 1.0 } else { 0.0 });
+    let fixed = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
+    let components = [cut.rows.white(), cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()];
+    let fit = gls::lean(&cut.y, &x, &fixed, &components)?;
+    let temperature = |run: usize| {
+        let of: Vec<f64> = (0..n).filter(|i| cut.of[*i] == run).map(|i| cut.temperature[i]).collect();
+        of.iter().sum::<f64>() / of.len() as f64
+    };
+    let list: Vec<RunMean> = runs
+        .list
+        .iter()
+        .enumerate()
+        .map(|(i, run)| {
+            let (first, last) = (&blocks.list[run.blocks.0], &blocks.list[run.blocks.1 - 1]);
+            let c = fit.coefficient(i);
+            RunMean {
+                name: run.name.clone(),
+                span_s: (span_s(blocks, first).0, span_s(blocks, last).1),
+                row: first.first_row,
+                bias: Combination { value: c.value - earth_deg_h, ..c },
+                temperature: temperature(i),
+            }
+        })
+        .collect();
+    let means = Means { values: fit.coefficients.clone(), noise: fit.covariance.clone() };
+    let ones = DMatrix::from_element(count, 1, 1.0);
+    let contrasts = Contrasts::new(&means, &ones)?;
+    let value = |i: &usize| means.values[*i];
+    let largest = (0..count).max_by(|a, b| value(a).total_cmp(&value(b)))?;
+    let smallest = (0..count).min_by(|a, b| value(a).total_cmp(&value(b)))?;
+    let difference = DVector::from_fn(count, |i, _| f64::from(i == largest) - f64::from(i == smallest));
+    let line = |over: &[f64]| -> Option<(Combination, f64)> {
+        let middle = over.iter().sum::<f64>() / count as f64;
+        let x = DMatrix::from_fn(count, 2, |i, j| if j == 0 { 1.0 } else { over[i] - middle });
+        let left = Contrasts::new(&means, &x)?.variance();
+        Some((coefficient(&means, &x, 1, left)?, left))
+    };
+    let order: Vec<f64> = (0..count).map(|i| i as f64 / (count - 1) as f64).collect();
+    let temperatures: Vec<f64> = list.iter().map(|r| r.temperature).collect();
+    let span = temperatures.iter().fold(f64::NEG_INFINITY, |m, t| m.max(*t))
+        - temperatures.iter().fold(f64::INFINITY, |m, t| m.min(*t));
+    let known = count >= 4 && temperatures.iter().all(|t| t.is_finite()) && span > 1e-6;
+    let whole = contrasts.variance();
+    Some(Repeatability {
+        channel: blocks.gyros.get(gyro)?.clone(),
+        mean: list.iter().map(|r| r.bias.value).sum::<f64>() / count as f64,
+        deviation: contrasts.deviation(),
+        plain: means.values.deviation_of_sample(),
+        range: fit.combine(&difference),
+        trend: (count >= 4).then(|| line(&order)).flatten().map(|l| l.0),
+        temperature: known.then(|| line(&temperatures)).flatten().map(|(slope, left)| OverTemperature {
+            slope,
+            left: left.sqrt(),
+            share: if whole > 0.0 { (1.0 - left / whole).clamp(0.0, 1.0) } else { 0.0 },
+            range: span,
+        }),
+        runs: list,
+    })
+}
+
+/// The standard deviation of a sample.
+trait Sample {
+    fn deviation_of_sample(&self) -> f64;
+}
+
+impl Sample for DVector<f64> {
+    fn deviation_of_sample(&self) -> f64 {
+        let mean = self.mean();
+        (self.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (self.len().max(2) - 1) as f64).sqrt()
+    }
+}
+
+/// Factors on a standard deviation of so many runs between which it lies, 95 %.
+pub fn factors(runs: usize) -> (f64, f64) {
+    let dof = runs.saturating_sub(1).max(1) as f64;
+    let factor = |p: f64| (dof / chi_square_quantile(p, dof)).sqrt();
+    (factor(0.975), factor(0.025))
+}
+
+impl Repeatability {
+    /// The estimate of one id; `None` for an id that is not given here.
+    pub fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
+        let n = self.runs.len();
+        let student = |c: &Combination| Spread::StudentT { standard_uncertainty: c.standard, dof: c.dof };
+        let none =
+            |key| Estimate::not_identifiable(id, &self.channel, None, unit, METHOD).note(Note::new(key));
+        let measured =
+            |c: &Combination| Estimate::measured(id, &self.channel, c.value, unit, student(c), METHOD);
+        Some(match id {
+            "bias_repeatability" => self.spread(id, unit),
+            "bias_repeatability_peak_to_peak" => {
+                measured(&self.range).note(Note::new("runs.range").with("n", n))
+            }
+            "bias_repeatability_trend" => match &self.trend {
+                Some(t) => measured(t).note(Note::new("runs.trend").with("n", n)),
+                None => none("runs.no_line"),
+            },
+            "bias_repeatability_temperature" => match &self.temperature {
+                Some(t) => measured(&t.slope).note(
+                    Note::new("runs.temperature")
+                        .with("percent", Arg::figures(100.0 * t.share, 2))
+                        .with("left", Arg::figures(t.left, 3))
+                        .with("range", Arg::figures(t.range, 2)),
+                ),
+                None => none(if n < 4 { "runs.no_line" } else { "runs.no_temperature" }),
+            },
+            _ => return None,
+        })
+    }
+
+    fn spread(&self, id: &'static str, unit: &'static str) -> Estimate {
+        let n = self.runs.len();
+        let (low, high) = factors(n);
+        let typical = (self.runs.iter().map(|r| r.bias.standard.powi(2)).sum::<f64>() / n as f64).sqrt();
+        let (value, spread) = self.deviation.clone();
+        let told = Note::new("runs.repeatability")
+            .with("n", n)
+            .with("low", Arg::figures(low, 2))
+            .with("high", Arg::figures(high, 3))
+            .with("plain", Arg::figures(self.plain, 3))
+            .with("noise", Arg::figures(typical, 2));
+        let shown = spread.bound(value, 0.025).is_some_and(|b| b > 0.0);
+        if shown {
+            return Estimate::measured(id, &self.channel, value, unit, spread, METHOD).note(told);
+        }
+        let limit = spread.bound(value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
+        Estimate::not_identifiable(id, &self.channel, limit, unit, METHOD)
+            .note(told)
+            .note(Note::new("runs.not_shown"))
+    }
+}

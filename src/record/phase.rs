@@ -1,0 +1,37 @@
+//! Phases of a test of several.
+
+use super::{
+    ConditionRecord, FigureRecord, Integrity, MeasurandRecord, NoteSchema, ProcedureRecord, RecordingFile,
+};
+use crate::estimate::Verdict;
+use crate::text::Note;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// One phase: what its own `result.json` says, in short.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct PhaseRecord {
+    /// Id.
+    pub id: String,
+    /// Title.
+    pub title: String,
+    /// Folder with its own report and result, relative to this result; absent when it was not recorded.
+    pub folder: Option<String>,
+    /// Its procedure.
+    pub procedure: Option<ProcedureRecord>,
+    /// The files that were read.
+    pub recording: Vec<RecordingFile>,
+    /// Verdict of the phase.
+    pub verdict: Verdict,
+    /// Why.
+    #[schemars(with = "Vec<NoteSchema>")]
+    pub summary: Vec<Note>,
+    /// Its conditions.
+    pub conditions: Vec<ConditionRecord>,
+    /// Faults of its recording.
+    pub integrity: Integrity,
+    /// Its measured quantities.
+    pub measurands: Vec<MeasurandRecord>,
+    /// Its figures.
+    pub figures: Vec<FigureRecord>,
+}

@@ -1,0 +1,184 @@
+//! A procedure with a series of switching off and on, or with a comparison without and with an influence, applied to a
+//! recording: one pass into blocks, then stretches, means, rows, figures.
+
+use super::evaluate::Found;
+use super::influence_noise::{self, ChangeOfNoise};
+use super::{Outcome, Request, RunError, evaluate, figures, interval_means, settle, table, verdict};
+use crate::condition::influence::{ComparedFacts, RunFacts, judge_compared, judge_runs};
+use crate::estimate::Estimate;
+use crate::figure::Figure;
+use crate::influence::comparison::{self, Comparison};
+use crate::influence::cut::FileSpan;
+use crate::influence::intervals;
+use crate::influence::repeatability::{self, Repeatability};
+use crate::influence::{ComparisonTest, RepeatabilityTest, runs};
+use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
+use crate::procedure::Procedure;
+use crate::rate_table::blocks::Collector;
+use crate::record::{ConditionRecord, IntervalMeanRecord, OptionRecord};
+
+/// The files of a recording with their rows.
+fn files(found: &Found) -> Vec<FileSpan> {
+    let of = |f: &crate::ingest::FileReport| FileSpan {
+        name: f.path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()),
+        phase: f.phase.clone(),
+        rows: (f.rows_before + 1, f.rows_before + f.facts.rows),
+    };
+    found.report.files.iter().map(of).collect()
+}
+
+/// Earth rate along a channel, deg/h; 0 without a site.
+fn earth(procedure: &Procedure, channel: &str) -> f64 {
+    let Some(site) = &procedure.site else { return 0.0 };
+    let o = site.orientation_of(channel);
+    let uncertain = |value, uncertainty| Uncertain { value, uncertainty };
+    earth_rate(&Orientation {
+        latitude_deg: uncertain(site.latitude_deg, site.latitude_uncertainty_deg),
+        heading_deg: uncertain(o.heading_deg, o.heading_uncertainty_deg),
+        elevation_deg: uncertain(o.elevation_deg, o.elevation_uncertainty_deg),
+    })
+    .value
+}
+
+/// Rows of the measurands in the order of the procedure.
+fn rows(
+    request: &Request<'_>,
+    channels: &[String],
+    of: &dyn Fn(usize, &'static str, &'static str) -> Vec<Estimate>,
+) -> Vec<crate::record::MeasurandRecord> {
+    let mut rows = Vec::new();
+    for spec in &request.procedure.measurands {
+        for (at, channel) in channels.iter().enumerate() {
+            if spec.channel.as_ref().is_some_and(|c| c != channel) {
+                continue;
+            }
+            let estimates = of(at, spec.id.id, spec.id.unit);
+            rows.extend(estimates.iter().map(|e| verdict::row(e, request.limits, request.procedure)));
+        }
+    }
+    rows
+}
+
+fn wanted(request: &Request<'_>, id: &str) -> bool {
+    request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id))
+}
+
+fn finish(
+    request: &Request<'_>,
+    found: &Found,
+    mut conditions: Vec<ConditionRecord>,
+    rows: Vec<crate::record::MeasurandRecord>,
+    drawn: Vec<Figure>,
+    means: Vec<IntervalMeanRecord>,
+) -> Outcome {
+    conditions.extend(table::usual_conditions(request, found));
+    let mut drawn = drawn;
+    drawn.extend(evaluate::over_time(request, found));
+    let tables = vec![("interval_means.csv".to_owned(), interval_means::csv(&means))];
+    let mut record = settle::record(request, found, conditions, rows, vec![], &drawn);
+    record.interval_means = means;
+    Outcome { record, figures: drawn, tables }
+}
+
+/// A series of switching off and on.
+pub(super) fn repeatability(
+    request: &Request<'_>,
+    test: &RepeatabilityTest,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Outcome, RunError> {
+    let (found, blocks) = table::collect_blocks(request, progress, &|channels, nominal_s| {
+        Collector::new(channels, nominal_s, test.temperature.as_deref())
+    })?;
+    let series = runs::find(&blocks, test, &files(&found));
+    let procedure = request.procedure;
+    let evaluated: Vec<Repeatability> = (0..blocks.gyros.len())
+        .filter_map(|g| repeatability::evaluate(&blocks, &series, g, earth(procedure, &blocks.gyros[g])))
+        .collect();
+    let channels: Vec<String> = evaluated.iter().map(|e| e.channel.clone()).collect();
+    let rows =
+        rows(request, &channels, &|at, id, unit| evaluated[at].estimate(id, unit).into_iter().collect());
+    let conditions = vec![judge_runs(&RunFacts {
+        found: series.list.len(),
+        fewest: test.fewest,
+        too_short: series.too_short,
+        minimum_run_s: test.minimum_run_s,
+    })];
+    let several = evaluated.len() > 1;
+    let drawn = if wanted(request, "bias_of_runs") {
+        evaluated.iter().map(|e| figures::bias_of_runs::figure(e, several)).collect()
+    } else {
+        vec![]
+    };
+    let means = evaluated.iter().flat_map(interval_means::of_runs).collect();
+    Ok(finish(request, &found, conditions, rows, drawn, means))
+}
+
+/// A comparison without and with an influence.
+pub(super) fn comparison(
+    request: &Request<'_>,
+    test: &ComparisonTest,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Outcome, RunError> {
+    let level = |c: &crate::recording::Channel| c.role == test.influence.role();
+    let (found, blocks) = table::collect_blocks(request, progress, &|channels, nominal_s| {
+        let slots = channels.iter().enumerate().filter(|(_, c)| level(c)).map(|(slot, _)| slot).collect();
+        Collector::new(channels, nominal_s, test.temperature.as_deref()).beside(slots)
+    })?;
+    let axes: Vec<String> = found.channels.iter().filter(|c| level(c)).map(|c| c.id.clone()).collect();
+    let series = intervals::find(&blocks, test, &axes, &files(&found));
+    let evaluated: Vec<Comparison> =
+        (0..blocks.gyros.len()).filter_map(|g| comparison::evaluate(&blocks, &series, test, g)).collect();
+    let procedure = request.procedure;
+    let noise: Vec<ChangeOfNoise> = if procedure.measures("angle_random_walk_shift", None) {
+        influence_noise::find(request, &found, &blocks, &series, progress)?
+    } else {
+        vec![]
+    };
+    let channels: Vec<String> = evaluated.iter().map(|e| e.channel.clone()).collect();
+    let rows = rows(request, &channels, &|at, id, unit| {
+        let own = evaluated[at].estimates(id, unit);
+        own.into_iter()
+            .chain(noise.iter().filter(|n| n.gyro == channels[at]).filter_map(|n| n.estimate(id, unit)))
+            .collect()
+    });
+    let conditions = judge_compared(&ComparedFacts {
+        found: series.list.len(),
+        with: series.with(),
+        alternations: series.alternations(),
+        asked: test.alternations,
+        too_short: series.too_short,
+        missing: series.missing,
+        minimum_interval_s: test.minimum_interval_s,
+        recorded: test.intervals.is_empty(),
+        temperature: evaluated.iter().find_map(|e| e.temperature_difference),
+        allowed_deg_c: test.temperature_difference_deg_c,
+        line: evaluated.iter().filter_map(|e| e.line).reduce(f64::min),
+        squared: test.influence.degree() > 1.0,
+    });
+    let several = evaluated.len() > 1;
+    let drawn = if wanted(request, "influence") {
+        evaluated.iter().map(|e| figures::influence::figure(e, several)).collect()
+    } else {
+        vec![]
+    };
+    let means = evaluated.iter().flat_map(interval_means::of_intervals).collect();
+    Ok(finish(request, &found, conditions, rows, drawn, means))
+}
+
+/// The options of such a test; none of any other.
+pub(super) fn options(procedure: &Procedure) -> Vec<OptionRecord> {
+    let option = |name: &str, value: String| OptionRecord { name: name.to_owned(), value };
+    if let Some(t) = &procedure.repeatability_test {
+        return vec![
+            option("influence.settling", format!("{} s", t.settling_s)),
+            option("influence.minimum", format!("{} s", t.minimum_run_s)),
+            option("influence.off", format!("{} s", t.off_s)),
+        ];
+    }
+    let Some(t) = &procedure.comparison_test else { return vec![] };
+    vec![
+        option("influence.settling", format!("{} s", t.settling_s)),
+        option("influence.minimum", format!("{} s", t.minimum_interval_s)),
+        option("influence.reference", t.reference.to_string()),
+    ]
+}

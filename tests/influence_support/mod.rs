@@ -1,0 +1,113 @@
+//! A gyro at rest that is switched off and on, or put under an influence. Uses nothing of the program under test.
+#![allow(dead_code)]
+
+#[path = "../thermal_support/mod.rs"]
+mod thermal_support;
+
+pub use thermal_support::{Chance, Noise, noise};
+
+/// What was recorded: time, rate, temperature, level.
+#[derive(Clone, Debug, Default)]
+pub struct Recorded {
+    pub time_s: Vec<f64>,
+    pub rate: Vec<f64>,
+    pub temperature: Vec<f64>,
+    pub level: Vec<f64>,
+}
+
+/// A series of runs.
+#[derive(Clone, Debug)]
+pub struct Series {
+    pub runs: usize,
+    pub run_s: f64,
+    pub pause_s: f64,
+    /// Standard deviation of the bias between runs, deg/h.
+    pub between: f64,
+    /// Change from the first run to the last, deg/h.
+    pub trend: f64,
+    /// Change with the temperature of the run, deg/h/degC, and standard deviation of that, degC.
+    pub per_deg_c: (f64, f64),
+    pub level: f64,
+    pub noise: Noise,
+    pub dt: f64,
+}
+
+impl Series {
+    /// The noise goes on while the unit is off.
+    pub fn record(&self, seed: u64) -> Recorded {
+        let mut chance = Chance::new(seed);
+        let biases: Vec<f64> = (0..self.runs).map(|_| self.between * chance.normal()).collect();
+        let warm: Vec<f64> = (0..self.runs).map(|_| self.per_deg_c.1 * chance.normal()).collect();
+        let cycle = ((self.run_s + self.pause_s) / self.dt).round() as usize;
+        let on = (self.run_s / self.dt).round() as usize;
+        let y = noise(self.noise, self.dt, cycle * self.runs, &mut chance);
+        let mut out = Recorded::default();
+        for run in 0..self.runs {
+            let share = run as f64 / (self.runs - 1).max(1) as f64;
+            let bias = self.level + biases[run] + self.trend * share + self.per_deg_c.0 * warm[run];
+            for i in run * cycle..run * cycle + on {
+                out.time_s.push(i as f64 * self.dt);
+                out.rate.push(bias + y[i]);
+                out.temperature.push(20.0 + warm[run] + 0.003 * chance.normal());
+            }
+        }
+        out
+    }
+}
+
+/// Intervals in turns at levels.
+#[derive(Clone, Debug)]
+pub struct Turns {
+    pub levels: Vec<f64>,
+    pub interval_s: f64,
+    /// Bias at a level, deg/h.
+    pub bias: fn(f64, f64) -> f64,
+    /// Argument of it.
+    pub per_unit: f64,
+    /// Drift over the test, deg/h.
+    pub drift: f64,
+    /// Factor on N at the level.
+    pub noisier: fn(f64) -> f64,
+    /// degC with the influence, reached at once.
+    pub warms: f64,
+    pub level: f64,
+    pub noise: Noise,
+    pub dt: f64,
+}
+
+impl Turns {
+    pub fn record(&self, seed: u64) -> Recorded {
+        let mut chance = Chance::new(seed);
+        let each = (self.interval_s / self.dt).round() as usize;
+        let count = each * self.levels.len();
+        let slow = noise(Noise { n: 0.0, ..self.noise }, self.dt, count, &mut chance);
+        let white = 60.0 * self.noise.n / self.dt.sqrt();
+        let reference = self.levels[0];
+        let mut out = Recorded::default();
+        for i in 0..count {
+            let level = self.levels[i / each];
+            let on = f64::from((level - reference).abs() > 1e-9);
+            out.time_s.push(i as f64 * self.dt);
+            out.rate.push(
+                self.level
+                    + self.drift * i as f64 / count as f64
+                    + (self.bias)(self.per_unit, level - reference)
+                    + slow[i]
+                    + white * (self.noisier)(level - reference) * chance.normal(),
+            );
+            out.temperature.push(20.0 + self.warms * on + 0.003 * chance.normal());
+            out.level.push(level);
+        }
+        out
+    }
+}
+
+/// A bias proportional to the level.
+pub fn linear(k: f64, level: f64) -> f64 {
+    k * level
+}
+
+/// A bias proportional to the square of the level.
+pub fn squared(k: f64, level: f64) -> f64 {
+    k * level * level
+}
