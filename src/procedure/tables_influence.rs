@@ -278,7 +278,7 @@ pub(super) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
     for name in tests {
         let Some(section) = root.table(name) else { continue };
         if let Some(id) = section.text("temperature")
-            && !procedure.channel(&id).is_some_and(|c| c.channel.role == Role::Temperature)
+            && procedure.channel(&id).is_none_or(|c| c.channel.role != Role::Temperature)
         {
             let message = Note::new("rate_table_check.no_temperature").with("id", id);
             reader.error(&section.span_of("temperature"), message, None);

@@ -45,9 +45,9 @@ impl Series {
         for run in 0..self.runs {
             let share = run as f64 / (self.runs - 1).max(1) as f64;
             let bias = self.level + biases[run] + self.trend * share + self.per_deg_c.0 * warm[run];
-            for i in run * cycle..run * cycle + on {
+            for (i, noise) in y.iter().enumerate().skip(run * cycle).take(on) {
                 out.time_s.push(i as f64 * self.dt);
-                out.rate.push(bias + y[i]);
+                out.rate.push(bias + noise);
                 out.temperature.push(20.0 + warm[run] + 0.003 * chance.normal());
             }
         }
@@ -84,7 +84,7 @@ impl Turns {
         let white = 60.0 * self.noise.n / self.dt.sqrt();
         let reference = self.levels[0];
         let mut out = Recorded::default();
-        for i in 0..count {
+        for (i, slow) in slow.iter().enumerate() {
             let level = self.levels[i / each];
             let on = f64::from((level - reference).abs() > 1e-9);
             out.time_s.push(i as f64 * self.dt);
@@ -92,7 +92,7 @@ impl Turns {
                 self.level
                     + self.drift * i as f64 / count as f64
                     + (self.bias)(self.per_unit, level - reference)
-                    + slow[i]
+                    + slow
                     + white * (self.noisier)(level - reference) * chance.normal(),
             );
             out.temperature.push(20.0 + self.warms * on + 0.003 * chance.normal());

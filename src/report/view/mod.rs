@@ -23,10 +23,10 @@ pub use evidence::{Clause, Evidence, Excluded, Instrument, Line, Model, ModelRem
 pub use explained::Explained;
 pub use faults::{Fault, FaultKind, Faults};
 pub use goodness::Goodness;
-pub use matrix::{Matrix, MatrixRow};
-pub use rows::Row;
 pub use interval_means::{IntervalMean, IntervalMeans};
+pub use matrix::{Matrix, MatrixRow};
 pub use phase::{PhasePart, PhaseView};
+pub use rows::Row;
 pub use table_steps::{TableStep, TableSteps};
 
 use crate::estimate::Verdict;
