@@ -274,8 +274,10 @@ fn trimmed(text: String) -> String {
     exponent.map_or_else(|| short.to_owned(), |e| format!("{short}e{e}"))
 }
 
-/// An ASCII number with the decimal mark of a language.
+/// An ASCII number with the decimal mark of a language. What was rounded to zero has no sign.
 pub fn decimal(ascii: &str, lang: Lang) -> String {
+    let zero = |rest: &&str| rest.bytes().all(|b| matches!(b, b'0' | b'.'));
+    let ascii = ascii.strip_prefix('-').filter(zero).unwrap_or(ascii);
     ascii.replace('.', lookup(lang, "number.decimal").unwrap_or("."))
 }
 
@@ -304,6 +306,13 @@ pub fn significant(value: f64, digits: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_rounded_to_zero_has_no_sign() {
+        assert_eq!(Arg::decimals(-0.0004, 2).say(Lang::En), "0");
+        assert_eq!(Arg::fixed(-0.004, 2).say(Lang::Ru), "0,00");
+        assert_eq!(Arg::decimals(-0.04, 2).say(Lang::En), "-0.04");
+    }
 
     #[test]
     fn numbers_keep_their_significant_digits() {

@@ -30,10 +30,12 @@ static DOC: Doc = Doc {
     source: "Preisach play operator; IEEE Std 528: hysteresis error",
 };
 
-static PARAMS: [Param; 3] = [
+static PARAMS: [Param; 4] = [
     Param::reported("loop_width_deg_h", "deg/h", -1e4, 1e4),
     Param::inner("play_degC", "°C", 1e-6, 300.0),
     Param::inner("first_state", "", -1.0, 1.0),
+    // 1: higher while heating; −1: higher while cooling. The width of a loop has no sign.
+    Param::inner("sense", "", -1.0, 1.0),
 ];
 
 describe! {
@@ -88,8 +90,8 @@ impl Course for TempHysteresis {
 
     fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         match (shape, coefficients) {
-            ([play, first], [width]) => vec![*width, *play, *first],
-            _ => vec![f64::NAN; 3],
+            ([play, first], [width]) => vec![width.abs(), *play, *first, width.signum()],
+            _ => vec![f64::NAN; 4],
         }
     }
 
@@ -98,7 +100,8 @@ impl Course for TempHysteresis {
         let (low, high) = ends(smooth(drivers)?);
         let play = number(values, PARAMS[1].name).unwrap_or(0.1 * (high - low));
         let first = number(values, PARAMS[2].name).unwrap_or(0.0);
-        Some(column(play, first, drivers)?.into_iter().map(|x| width * x).collect())
+        let sense = number(values, PARAMS[3].name).unwrap_or(1.0);
+        Some(column(play, first, drivers)?.into_iter().map(|x| sense * width * x).collect())
     }
 
     fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
@@ -111,6 +114,7 @@ impl Course for TempHysteresis {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Value;
 
     #[test]
     fn the_branches_of_a_cycle_are_apart_by_the_width_of_the_loop_whatever_the_rate() {
@@ -125,5 +129,18 @@ mod tests {
             assert!((t[up] - t[down]).abs() < 1e-9);
             assert!((state[up] - state[down] - 1.0).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn a_loop_that_is_lower_while_heating_has_a_width_too() {
+        let t: Vec<f64> = (0..400).map(|i| 20.0 - 10.0 * (f64::from(i) / 30.0).cos()).collect();
+        let drivers = Drivers { dt_s: 1.0, samples: 400, temperature: Some(t), ..Drivers::default() };
+        let told = TempHysteresis.parameters(&[1.0, 0.0], &[-0.3], &drivers);
+        assert_eq!(told, [0.3, 1.0, 0.0, -1.0]);
+        let values: Values =
+            PARAMS.iter().zip(&told).map(|(p, v)| (p.name.to_owned(), Value::Number(*v))).collect();
+        let course = TempHysteresis.course(&values, &drivers).unwrap();
+        let state = column(1.0, 0.0, &drivers).unwrap();
+        assert!(course.iter().zip(&state).all(|(c, s)| (c + 0.3 * s).abs() < 1e-12));
     }
 }
