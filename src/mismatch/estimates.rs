@@ -162,15 +162,30 @@ impl<'a> Placed<'a> {
         up.iter().zip(&down).map(|(u, d)| (u - d) / (a - b)).collect()
     }
 
-    /// Ends of the interval of the only number of a shape, at which the profile log-likelihood has dropped.
+    /// Position of the only number of a shape that is not whole.
+    fn free_number(&self) -> Option<usize> {
+        let mut free = (0..self.inside.shape.len()).filter(|i| !self.course.whole().contains(i));
+        free.next().filter(|_| free.next().is_none())
+    }
+
+    /// The shape with that number in its place.
+    fn shape_at(&self, i: usize, x: f64) -> Vec<f64> {
+        let mut shape = self.inside.shape.clone();
+        shape[i] = x;
+        shape
+    }
+
+    /// Ends of the interval of the only number of a shape that is not whole, at which the profile log-likelihood has
+    /// dropped.
     fn profile(&self, deviation: f64) -> Option<[f64; 2]> {
-        let [at] = self.inside.shape[..] else { return None };
-        let (low, high) = *self.course.bounds(&self.scene.drivers).first()?;
+        let i = self.free_number()?;
+        let at = self.inside.shape[i];
+        let (low, high) = *self.course.bounds(&self.scene.drivers).get(i)?;
         if high <= low {
             return None;
         }
-        let top = self.log_likelihood(&[at]).0;
-        let drop = |x: f64| top - self.log_likelihood(&[x]).0;
+        let top = self.log_likelihood(&self.inside.shape).0;
+        let drop = |x: f64| top - self.log_likelihood(&self.shape_at(i, x)).0;
         let first = if deviation.is_finite() && deviation > 0.0 { deviation } else { 0.01 * (high - low) };
         let side = |sign: f64| {
             let (mut inside, mut step) = (at, first);
@@ -225,7 +240,8 @@ fn of_course(
     let shape = &placed.inside.shape;
     let (_, coefficients) = placed.log_likelihood(shape);
     let covariance = placed.covariance(&coefficients);
-    let deviation_of_shape = if shape.len() == 1 { covariance[(0, 0)].sqrt() } else { f64::NAN };
+    let free = placed.free_number();
+    let deviation_of_shape = free.map_or(f64::NAN, |i| covariance[(i, i)].sqrt());
     let profile = placed.profile(deviation_of_shape);
     let values = course.parameters(shape, &coefficients, drivers);
     let parts = course.parts(shape, drivers);
@@ -250,7 +266,8 @@ fn of_course(
         }
         // A parameter that the shape alone determines takes the interval of the shape.
         let by_shape = profile.and_then(|ends| {
-            let moved = ends.map(|x| course.parameters(&[x], &coefficients, drivers).get(i).copied());
+            let at = |x: f64| placed.shape_at(free.unwrap_or(0), x);
+            let moved = ends.map(|x| course.parameters(&at(x), &coefficients, drivers).get(i).copied());
             let (Some(a), Some(b)) = (moved[0], moved[1]) else { return None };
             let still =
                 course.parameters(shape, &coefficients.iter().map(|c| 1.01 * c).collect::<Vec<_>>(), drivers);
@@ -273,7 +290,8 @@ fn of_course(
         let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();
         // A course without coefficients is as large as its shape makes it.
         let by_shape = profile.filter(|_| coefficients.is_empty()).map(|ends| {
-            let of = |x: f64| all(&[x], &[]).last().copied().unwrap_or(spread);
+            let at = |x: f64| placed.shape_at(free.unwrap_or(0), x);
+            let of = |x: f64| all(&at(x), &[]).last().copied().unwrap_or(spread);
             let (a, b) = (of(ends[0]), of(ends[1]));
             [a.min(b).min(spread), a.max(b).max(spread)]
         });

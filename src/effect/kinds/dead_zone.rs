@@ -1,9 +1,13 @@
 //! No or reduced response around zero input rate.
 
-use super::search::{best_of, fast_level, peaks};
+use super::search::{best_of, fast_level, log_grid, peaks};
+
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
+
+/// Widths that are tried of a zone beyond which the response stays behind.
+const BEHIND: usize = 16;
 
 pub struct DeadZone;
 
@@ -13,7 +17,7 @@ static DOC: Doc = Doc {
         en: "Cross-talk of the modulator's drive into the detector pulls the closed loop to a point where it cancels a small input.",
         ru: "Наводка сигнала модулятора на приёмник удерживает замкнутый контур в точке, где он гасит малую входную скорость.",
     },
-    formula: "−c·Ω for |Ω| < w",
+    formula: "−c·Ω for |Ω| < w; beyond, 0, or −w sgn Ω where the response stays behind",
     signature: Both {
         en: "Within ±w the residual is the input with its sign changed; outside there is nothing.",
         ru: "В пределах ±w остаток равен входной скорости с обратным знаком; снаружи его нет.",
@@ -29,18 +33,30 @@ static DOC: Doc = Doc {
     source: "US patent 6,744,519; IEEE Std 952, 12.10: dead band",
 };
 
-static PARAMS: [Param; 2] =
-    [Param::reported("half_width_deg_h", "deg/h", 0.0, 1e6), Param::inner("lost_share", "", 0.0, 1.2)];
+static PARAMS: [Param; 3] = [
+    Param::reported("half_width_deg_h", "deg/h", 0.0, 1e6),
+    Param::inner("lost_share", "", 0.0, 1.2),
+    // 1: beyond the zone the response stays behind by the half width; 0: it is whole there.
+    Param::inner("stays_behind", "", 0.0, 1.0),
+];
 
 describe! {
     DeadZone, "dead_zone", Course in InputRate, needs [TableRate],
     confusers ["sf_nonlinearity", "sf_error", "quantization"]
 }
 
-fn column(half_width: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+/// What is lost of the rate by a zone whose response beyond is whole, or stays behind by its half width.
+fn column(half_width: f64, stays_behind: bool, drivers: &Drivers) -> Option<Vec<f64>> {
     let rate = drivers.table_rate.as_ref()?;
-    let inside = |r: &f64| if (3600.0 * r).abs() < half_width { -3600.0 * r } else { 0.0 };
-    Some(rate.iter().map(inside).collect())
+    let lost = |r: &f64| {
+        let input = 3600.0 * r;
+        match (input.abs() < half_width, stays_behind) {
+            (true, _) => -input,
+            (false, true) => -half_width.copysign(input),
+            (false, false) => 0.0,
+        }
+    };
+    Some(rate.iter().map(lost).collect())
 }
 
 /// Positions of the samples in the order of the size of their rate, with the sizes, deg/h.
@@ -96,31 +112,47 @@ impl Course for DeadZone {
         if look.score.len() != drivers.samples || look.modes.len() != drivers.samples {
             return Starts { shapes: vec![], looked: 1.0 };
         }
-        let widths = widths(drivers, look, 5).into_iter().map(|w| vec![w]);
+        let whole = widths(drivers, look, 5).into_iter().map(|w| vec![w, 0.0]);
+        let grid = sizes(drivers).map_or(vec![], |(low, high, _)| log_grid(low, high, BEHIND));
+        let shapes = whole.chain(grid.into_iter().map(|w| vec![w, 1.0]));
         // Widths inside one another share their samples: about as many as ratios of e are apart.
         let looked = sizes(drivers).map_or(1.0, |(_, _, between)| (between as f64).clamp(1.0, 64.0));
-        Starts { shapes: best_of(self, widths, 3, drivers, look), looked }
+        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
-        sizes(drivers).map_or(vec![(1e-9, 1e-9)], |(low, high, _)| vec![(low, high)])
+        sizes(drivers).map_or(vec![(1e-9, 1e-9), (0.0, 1.0)], |(low, high, _)| vec![(low, high), (0.0, 1.0)])
     }
 
     fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let free = shape.first().and_then(|w| column(*w, drivers)).into_iter().collect();
-        Parts { free, ..Parts::default() }
+        match shape {
+            // The width alone makes it: with a share of its own a narrow zone would only be known by their product.
+            [width, form] if *form > 0.5 => {
+                Parts { fixed: column(*width, true, drivers), ..Parts::default() }
+            }
+            [width, _] => {
+                Parts { free: column(*width, false, drivers).into_iter().collect(), ..Parts::default() }
+            }
+            _ => Parts::default(),
+        }
+    }
+
+    fn whole(&self) -> &'static [usize] {
+        &[1]
     }
 
     fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         match (shape, coefficients) {
-            ([width], [share]) => vec![*width, *share],
-            _ => vec![f64::NAN; 2],
+            ([width, _], []) => vec![*width, 1.0, 1.0],
+            ([width, _], [share]) => vec![*width, *share, 0.0],
+            _ => vec![f64::NAN; 3],
         }
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let share = number(values, PARAMS[1].name).unwrap_or(1.0);
-        let column = column(number(values, PARAMS[0].name)?, drivers)?;
+        let stays_behind = number(values, PARAMS[2].name).is_some_and(|b| b > 0.5);
+        let column = column(number(values, PARAMS[0].name)?, stays_behind, drivers)?;
         Some(column.into_iter().map(|x| share * x).collect())
     }
 

@@ -172,7 +172,7 @@ fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "sf_asymmetry" => (drivers(), vec![5.0]),
         "sf_nonlinearity" => (drivers(), vec![6.0, 9.0]),
         "sf_temperature" => (drivers(), vec![0.4]),
-        "dead_zone" => (drivers(), vec![150.0, 0.8]),
+        "dead_zone" => (drivers(), vec![150.0, 0.8, 0.0]),
         "saturation" => (drivers(), vec![8.99]),
         "cross_axis" => (drivers(), vec![0.02]),
         "supply_sensitivity" => (drivers(), vec![0.05]),
