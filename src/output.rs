@@ -3,8 +3,10 @@
 //! Everything is written into a hidden folder beside the target, synced to disk, and put in place by one rename. A
 //! run that is killed, or a disk that fills up, leaves the earlier result or none, never half of a new one.
 
+mod csv;
 mod file;
 
+pub use csv::quoted;
 pub use file::StagedFile;
 
 use crate::text::{Note, io_reason};

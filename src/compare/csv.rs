@@ -2,6 +2,7 @@
 
 use super::Unit;
 use super::published::Checked;
+use crate::output::quoted;
 use std::fmt::Write;
 
 /// Columns of a comparison of units.
@@ -12,15 +13,6 @@ ratio_minimum_inverse,ratio_b,null_05,null_50,null_95,sigma10_deg_h,n_10s,arw10_
 n_deg_rt_h,n_low,n_high,ratio_arw,ratio_arw_low,ratio_arw_high,predicted_deg_h,predicted_low,predicted_high,\
 observed_over_predicted,observed_over_predicted_low,observed_over_predicted_high,agreement,largest_part,\
 largest_share,crossover_s,identifiable_h\n";
-
-/// A field that holds a text.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
-}
 
 fn number(value: Option<f64>) -> String {
     value.filter(|v| v.is_finite()).map(|v| format!("{v:e}")).unwrap_or_default()

@@ -1,7 +1,8 @@
 //! Every effect of the catalogue, tried as an addition to a hypothesis.
 
 use super::hypothesis::{
-    CourseIn, Fit, Hypothesis, Normal, PartModes, fit, kept, less_fixed, part_modes, residual,
+    CourseIn, Fit, Hypothesis, Normal, PartModes, columns, fit, kept, less_fixed, part_modes, residual,
+    subtract,
 };
 use super::noise_fit::{self, Noise, SpectrumIn, base_index};
 use super::options::Options;
@@ -177,7 +178,7 @@ impl<'a> Ground<'a> {
         let (coefficients, _, left) = normal.solve();
         let mut residual = out.data.to_vec();
         for ((column, _), c) in columns.iter().zip(&coefficients) {
-            residual.iter_mut().zip(*column).for_each(|(r, x)| *r -= c * x);
+            subtract(&mut residual, column, *c);
         }
         let weighted: Vec<f64> = residual.iter().zip(&out.powers).map(|(r, p)| r / p).collect();
         out.score = inverse_dct2(&weighted);
@@ -189,15 +190,9 @@ impl<'a> Ground<'a> {
     /// The columns of the hypothesis with their priors, less the nuisance that a new course replaces.
     fn columns(&self, course: Option<&dyn Course>) -> Vec<(&[f64], f64)> {
         let replaced = course.and_then(|c| c.replaces());
-        let mut columns: Vec<(&[f64], f64)> = kept(self.scene, &self.before.hypothesis.courses)
-            .into_iter()
-            .filter(|n| Some(n.nuisance) != replaced)
-            .map(|n| (n.modes.as_slice(), n.deviation))
-            .collect();
-        for part in &self.parts {
-            columns.extend(part.free.iter().chain(&part.beside).map(|c| (c.as_slice(), f64::INFINITY)));
-        }
-        columns
+        let mut nuisances = kept(self.scene, &self.before.hypothesis.courses);
+        nuisances.retain(|n| Some(n.nuisance) != replaced);
+        columns(&nuisances, &self.parts)
     }
 
     fn look(&self) -> Look<'_> {
@@ -222,7 +217,7 @@ impl ShapeSearch<'_> {
         }
         let mut data = Cow::Borrowed(&*ground.data);
         if let Some(fixed) = &parts.fixed {
-            data.to_mut().iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+            subtract(data.to_mut(), fixed, 1.0);
         }
         let new: Vec<&[f64]> = parts.free.iter().chain(&parts.beside).map(Vec::as_slice).collect();
         let normal = self.normal.with(&self.columns, &new, &data, parts.fixed.is_some(), &ground.powers);

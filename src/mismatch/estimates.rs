@@ -243,6 +243,7 @@ fn of_course(
     let free = placed.free_number();
     let deviation_of_shape = free.map_or(f64::NAN, |i| covariance[(i, i)].sqrt());
     let profile = placed.profile(deviation_of_shape);
+    let at = |x: f64| free.map_or_else(|| shape.clone(), |i| placed.shape_at(i, x));
     let values = course.parameters(shape, &coefficients, drivers);
     let parts = course.parts(shape, drivers);
     let series = summed(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
@@ -266,7 +267,6 @@ fn of_course(
         }
         // A parameter that the shape alone determines takes the interval of the shape.
         let by_shape = profile.and_then(|ends| {
-            let at = |x: f64| placed.shape_at(free.unwrap_or(0), x);
             let moved = ends.map(|x| course.parameters(&at(x), &coefficients, drivers).get(i).copied());
             let (Some(a), Some(b)) = (moved[0], moved[1]) else { return None };
             let still =
@@ -290,7 +290,6 @@ fn of_course(
         let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();
         // A course without coefficients is as large as its shape makes it.
         let by_shape = profile.filter(|_| coefficients.is_empty()).map(|ends| {
-            let at = |x: f64| placed.shape_at(free.unwrap_or(0), x);
             let of = |x: f64| all(&at(x), &[]).last().copied().unwrap_or(spread);
             let (a, b) = (of(ends[0]), of(ends[1]));
             [a.min(b).min(spread), a.max(b).max(spread)]

@@ -1,7 +1,7 @@
 //! How much longer a record must be to decide between an effect and one that serves as well.
 
 use super::candidates::{Candidate, Scenes, Tried};
-use super::hypothesis::{CourseIn, Normal, PartModes, kept};
+use super::hypothesis::{CourseIn, Normal, PartModes, columns, kept, subtract};
 use super::noise_fit;
 use super::select::{Chosen, ENOUGH, Slot};
 use super::shape::{first_steps, refine};
@@ -98,18 +98,16 @@ fn distance(
     let parts = PartModes::of(own.course()?.parts(&own.shape, &scene.drivers), scene);
     let mut modes = parts.fixed.unwrap_or_else(|| vec![0.0; scene.modes.len()]);
     for (column, c) in parts.free.iter().zip(&own.coefficients) {
-        modes.iter_mut().zip(column).for_each(|(m, z)| *m += c * z);
+        subtract(&mut modes, column, -c);
     }
     let nuisances = kept(scene, std::slice::from_ref(other));
     let left = |shape: &[f64]| {
         let rival = PartModes::of(course.parts(shape, &scene.drivers), scene);
         let mut data = modes.clone();
         if let Some(fixed) = &rival.fixed {
-            data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+            subtract(&mut data, fixed, 1.0);
         }
-        let stated = nuisances.iter().map(|n| (n.modes.as_slice(), n.deviation));
-        let free = rival.free.iter().chain(&rival.beside).map(|c| (c.as_slice(), f64::INFINITY));
-        Normal::new(&stated.chain(free).collect::<Vec<_>>(), &data, &powers).solve().2
+        Normal::new(&columns(&nuisances, [&rival]), &data, &powers).solve().2
     };
     let bounds = course.bounds(&scene.drivers);
     let steps = first_steps(course, &scene.drivers);

@@ -2,7 +2,9 @@
 //! block is looked at about its own mean.
 
 use super::candidates::Tried;
-use super::hypothesis::{Hypothesis, LeastSquares, Normal, PartModes, fit, kept, part_modes};
+use super::hypothesis::{
+    Hypothesis, LeastSquares, Normal, PartModes, columns, fit, kept, less_fixed, part_modes,
+};
 use super::noise_fit::whittle;
 use super::problem::Problem;
 use super::scene::Scene;
@@ -113,16 +115,9 @@ fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
         let nuisances = kept(scene, &hypothesis.courses);
         let gain = |shape: &[f64]| {
             let own = PartModes::of(course.parts(shape, &scene.drivers), scene);
-            let mut data = scene.modes.clone();
-            let mut columns: Vec<(&[f64], f64)> =
-                nuisances.iter().map(|n| (n.modes.as_slice(), n.deviation)).collect();
-            for part in others.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| p).chain([&own]) {
-                if let Some(fixed) = &part.fixed {
-                    data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
-                }
-                columns.extend(part.free.iter().chain(&part.beside).map(|c| (c.as_slice(), f64::INFINITY)));
-            }
-            -0.5 * Normal::new(&columns, &data, &powers).solve().2
+            let parts = || others.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| p).chain([&own]);
+            let data = less_fixed(scene, parts());
+            -0.5 * Normal::new(&columns(&nuisances, parts()), &data, &powers).solve().2
         };
         let (shape, _) =
             refine(&hypothesis.courses[i].shape, &bounds, &first_steps(course, &scene.drivers), 40, gain);

@@ -202,8 +202,11 @@ impl Normal {
     }
 }
 
-/// Columns of the kept nuisances and of everything in `parts` (one entry a course), each with its prior deviation.
-fn columns<'a>(nuisances: &[&'a NuisanceColumn], parts: &'a [PartModes]) -> Vec<(&'a [f64], f64)> {
+/// Columns of nuisances and of everything in `parts` (one entry a course), each with its prior deviation.
+pub fn columns<'a>(
+    nuisances: &[&'a NuisanceColumn],
+    parts: impl IntoIterator<Item = &'a PartModes>,
+) -> Vec<(&'a [f64], f64)> {
     let mut columns: Vec<(&[f64], f64)> =
         nuisances.iter().map(|n| (n.modes.as_slice(), n.deviation)).collect();
     for part in parts {
@@ -213,9 +216,12 @@ fn columns<'a>(nuisances: &[&'a NuisanceColumn], parts: &'a [PartModes]) -> Vec<
 }
 
 /// Modes of a scene less the fixed parts.
-pub fn less_fixed<'a>(scene: &'a Scene, parts: &[PartModes]) -> Cow<'a, [f64]> {
+pub fn less_fixed<'a, 'b>(
+    scene: &'a Scene,
+    parts: impl IntoIterator<Item = &'b PartModes>,
+) -> Cow<'a, [f64]> {
     let mut data = Cow::Borrowed(scene.modes.as_slice());
-    for fixed in parts.iter().filter_map(|p| p.fixed.as_ref()) {
+    for fixed in parts.into_iter().filter_map(|p| p.fixed.as_ref()) {
         subtract(data.to_mut(), fixed, 1.0);
     }
     data
@@ -253,7 +259,8 @@ pub fn residual(scene: &Scene, hypothesis: &Hypothesis, mean: &LeastSquares) -> 
     data
 }
 
-fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
+/// Takes a column times a coefficient out of data.
+pub fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
     if coefficient != 0.0 {
         data.iter_mut().zip(column).for_each(|(d, c)| *d -= coefficient * c);
     }

@@ -1,9 +1,10 @@
 //! Runs and intervals as records and as a table.
 
 use crate::estimate::Spread;
-use crate::influence::comparison::Comparison;
-use crate::influence::repeatability::Repeatability;
+use crate::influence::comparison::{Comparison, IntervalMean};
+use crate::influence::repeatability::{Repeatability, RunMean};
 use crate::numeric::reml::Combination;
+use crate::output::quoted;
 use crate::record::IntervalMeanRecord;
 
 /// The 95 % interval of a mean.
@@ -12,34 +13,37 @@ pub(super) fn interval(c: &Combination) -> (f64, f64) {
     spread.interval(c.value, 0.95).map_or((f64::NAN, f64::NAN), |i| (i.low, i.high))
 }
 
+/// What every mean has, of a channel and by its number from 0.
+fn record(channel: &str, i: usize, mean: &Combination, temperature_deg_c: f64) -> IntervalMeanRecord {
+    let (low_deg_h, high_deg_h) = interval(mean);
+    IntervalMeanRecord {
+        channel: channel.to_owned(),
+        number: i + 1,
+        temperature_deg_c: Some(temperature_deg_c).filter(|t| t.is_finite()),
+        mean_deg_h: mean.value,
+        standard_uncertainty_deg_h: mean.standard,
+        degrees_of_freedom: mean.dof,
+        low_deg_h,
+        high_deg_h,
+        ..IntervalMeanRecord::default()
+    }
+}
+
 /// The runs of a channel.
 pub(super) fn of_runs(found: &Repeatability) -> Vec<IntervalMeanRecord> {
-    let one = |(i, r): (usize, &crate::influence::repeatability::RunMean)| IntervalMeanRecord {
-        channel: found.channel.clone(),
-        number: i + 1,
+    let one = |(i, r): (usize, &RunMean)| IntervalMeanRecord {
         name: r.name.clone(),
         from_s: r.span_s.0,
         to_s: r.span_s.1,
         row: r.row,
-        level: None,
-        level_unit: None,
-        axis: None,
-        without: None,
-        temperature_deg_c: Some(r.temperature).filter(|t| t.is_finite()),
-        mean_deg_h: r.bias.value,
-        standard_uncertainty_deg_h: r.bias.standard,
-        degrees_of_freedom: r.bias.dof,
-        low_deg_h: interval(&r.bias).0,
-        high_deg_h: interval(&r.bias).1,
+        ..record(&found.channel, i, &r.bias, r.temperature)
     };
     found.runs.iter().enumerate().map(one).collect()
 }
 
 /// The intervals of a channel.
 pub(super) fn of_intervals(found: &Comparison) -> Vec<IntervalMeanRecord> {
-    let one = |(i, r): (usize, &crate::influence::comparison::IntervalMean)| IntervalMeanRecord {
-        channel: found.channel.clone(),
-        number: i + 1,
+    let one = |(i, r): (usize, &IntervalMean)| IntervalMeanRecord {
         name: r.name.clone(),
         from_s: r.span_s.0,
         to_s: r.span_s.1,
@@ -48,12 +52,7 @@ pub(super) fn of_intervals(found: &Comparison) -> Vec<IntervalMeanRecord> {
         level_unit: Some(found.test.influence.unit().to_owned()),
         axis: Some(r.axis.clone()).filter(|a| !a.is_empty()),
         without: Some(r.off),
-        temperature_deg_c: Some(r.temperature).filter(|t| t.is_finite()),
-        mean_deg_h: r.mean.value,
-        standard_uncertainty_deg_h: r.mean.standard,
-        degrees_of_freedom: r.mean.dof,
-        low_deg_h: interval(&r.mean).0,
-        high_deg_h: interval(&r.mean).1,
+        ..record(&found.channel, i, &r.mean, r.temperature)
     };
     found.intervals.iter().enumerate().map(one).collect()
 }
@@ -64,13 +63,6 @@ pub(super) fn csv(records: &[IntervalMeanRecord]) -> String {
         "channel,number,name,from_s,to_s,row,level,level_unit,axis,without,temperature_degC,mean_deg_h,\
          standard_uncertainty_deg_h,degrees_of_freedom,low_deg_h,high_deg_h\n",
     );
-    let quoted = |text: &str| {
-        if text.contains([',', '"', '\n', '\r']) {
-            format!("\"{}\"", text.replace('"', "\"\""))
-        } else {
-            text.to_owned()
-        }
-    };
     for r in records {
         let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
         let fields = [
