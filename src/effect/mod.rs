@@ -7,11 +7,13 @@
 mod doc;
 mod drivers;
 mod kinds;
+mod low_pass;
 mod spectral;
 
 pub use doc::{Both, Doc};
 pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature, averages};
 pub use kinds::{EFFECTS, find};
+pub use low_pass::LowPass;
 pub use spectral::{ModeBin, SpectralLook, Spectrum, SpectrumAct};
 
 use std::collections::BTreeMap;

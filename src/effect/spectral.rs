@@ -1,6 +1,6 @@
 //! Effects that change the spectrum of the noise.
 
-use super::{Place, Values};
+use super::{LowPass, Place, Values};
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
 
@@ -78,6 +78,11 @@ pub trait Spectrum: Sync {
 
     /// Adds the effect to a noise model for simulation of samples of `dt_s`.
     fn compose(&self, fitted: &[f64], dt_s: f64, noise: &mut Composite);
+
+    /// The filter that simulated samples go through, where the noise model has none for it.
+    fn low_pass(&self, _fitted: &[f64], _dt_s: f64) -> Option<LowPass> {
+        None
+    }
 
     /// Where it lives, principal first, at most three. `excess` is the density of the bins without it and with it.
     fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place>;

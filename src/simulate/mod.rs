@@ -5,6 +5,7 @@
 
 mod drive;
 mod error;
+mod low_pass;
 mod noise;
 mod quantize;
 mod run;

@@ -2,7 +2,7 @@
 
 use super::SimulateError;
 use super::drive::{Sensors, of_recording};
-use super::noise::{Noise, composed};
+use super::noise::{Noise, composed, low_pass};
 use super::quantize::Counter;
 use crate::claim::{Claim, Profile, Stated};
 use crate::effect::{Column, Drivers, Model, Samples};
@@ -124,7 +124,7 @@ impl<'a> Simulation<'a> {
             Over::Like(_) => &[],
         };
         Ok(Simulation {
-            noise: Noise::new(&noise, order.seed, dt_s, samples),
+            noise: Noise::new(&noise, low_pass(claim), order.seed, dt_s, samples),
             sensors: Sensors::new(profiles, order.seed),
             counter: Counter::new(step, dt_s),
             done: 0,

@@ -30,10 +30,15 @@ fn ratio(term: NoiseType, x: f64) -> f64 {
     claimed / unit_density(term, x, 1.0)
 }
 
-/// One half of the filter and its middle: h₀, h₁, ..., with h₋ₖ = hₖ.
+/// The filter of a term.
 pub(super) fn taps(term: NoiseType) -> [f64; SIDE + 1] {
-    let gains: Vec<f64> =
-        (0..POINTS).map(|p| ratio(term, 0.5 * (p as f64 + 0.5) / POINTS as f64).sqrt()).collect();
+    taps_of(|x| ratio(term, x))
+}
+
+/// One half of a filter and its middle: h₀, h₁, ..., with h₋ₖ = hₖ. `power` is what it lets through at a frequency in
+/// cycles a sample.
+pub(super) fn taps_of(power: impl Fn(f64) -> f64) -> [f64; SIDE + 1] {
+    let gains: Vec<f64> = (0..POINTS).map(|p| power(0.5 * (p as f64 + 0.5) / POINTS as f64).sqrt()).collect();
     let mut taps = [0.0; SIDE + 1];
     for (k, tap) in taps.iter_mut().enumerate() {
         let sum: f64 = gains

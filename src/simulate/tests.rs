@@ -64,6 +64,40 @@ fn the_density_is_the_claimed_one_up_to_the_nyquist_frequency() {
     }
 }
 
+#[test]
+fn a_filter_of_every_form_has_the_density_that_fits_use() {
+    let (n, runs) = (4096usize, 300);
+    let crate::effect::Model::Spectrum(filter) = crate::effect::find("bandwidth_filter").unwrap().model()
+    else {
+        panic!("a spectrum")
+    };
+    for form in 1..=7 {
+        let text = format!(
+            "[noise]\nN_deg_rt_h = 0.01\n[[effect]]\nkind = \"bandwidth_filter\"\n[effect.parameters]\ncutoff_hz = 0.12\nform = {form}\n"
+        );
+        let claim = claim(&text);
+        let power = powers(&claim, n, runs);
+        let mut low = 64;
+        while low < n {
+            let high = low + 64;
+            let bin = crate::effect::ModeBin {
+                frequency_hz: (low as f64 + 31.5) / (2.0 * n as f64),
+                mode: low,
+                modes: 64,
+                samples: n,
+                dt_s: 1.0,
+            };
+            let factor = filter.density(&[0.12, f64::from(form)], &bin);
+            let ratio = power[low..high].iter().sum::<f64>() / 64.0 / (0.36 * factor);
+            // A steep fall inside a band, and a zero at the Nyquist frequency, are left out.
+            if factor > 0.004 {
+                assert!((ratio - 1.0).abs() < 0.06, "form {form}, mode {low}: {ratio}");
+            }
+            low = high;
+        }
+    }
+}
+
 fn allan_variance(y: &[f64], m: usize) -> f64 {
     let means: Vec<f64> = y.chunks_exact(m).map(|c| c.iter().sum::<f64>() / m as f64).collect();
     means.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>() / (2.0 * (means.len() - 1) as f64)
@@ -131,24 +165,28 @@ fn the_white_part_has_sixty_n_times_the_root_of_the_rate() {
 
 #[test]
 fn a_seed_fixes_every_bit_however_the_record_is_cut() {
-    let text = "[noise]\nN_deg_rt_h = 0.002\nB_deg_h = 0.004\nK_deg_h_rt_h = 0.02\nquantization_lsb_arcsec = 0.01\n\
+    let plain = "[noise]\nN_deg_rt_h = 0.002\nB_deg_h = 0.004\nK_deg_h_rt_h = 0.02\nquantization_lsb_arcsec = 0.01\n\
                 [[driver]]\ncolumn = \"temp_degC\"\ntime_s = [0.0, 5e4]\nvalue = [20.0, 40.0]\nnoise = 0.01\n";
-    let model = model(text);
-    let over = Over::Duration { duration_s: 200_000.0, start_s: 3.0, drivers: &model.drivers };
-    let begin = |seed| Simulation::begin(Order { claim: &model.claim, seed, over }).unwrap();
-    let whole = {
-        let mut simulation = begin(9);
-        simulation.block = usize::MAX;
-        simulation.next_rows().unwrap().unwrap()
-    };
-    assert_eq!(whole.time_s.len(), 200_000);
-    for block in [1000, 65_536] {
-        let mut simulation = begin(9);
-        simulation.block = block;
-        assert!(simulation.all().unwrap() == whole, "{block}");
+    let filtered =
+        "[[effect]]\nkind = \"bandwidth_filter\"\n[effect.parameters]\ncutoff_hz = 0.1\nform = 3\n";
+    for text in [plain.to_owned(), format!("{plain}{filtered}")] {
+        let model = model(&text);
+        let over = Over::Duration { duration_s: 200_000.0, start_s: 3.0, drivers: &model.drivers };
+        let begin = |seed| Simulation::begin(Order { claim: &model.claim, seed, over }).unwrap();
+        let whole = {
+            let mut simulation = begin(9);
+            simulation.block = usize::MAX;
+            simulation.next_rows().unwrap().unwrap()
+        };
+        assert_eq!(whole.time_s.len(), 200_000);
+        for block in [1000, 65_536] {
+            let mut simulation = begin(9);
+            simulation.block = block;
+            assert!(simulation.all().unwrap() == whole, "{block}");
+        }
+        assert!(begin(10).all().unwrap().rate_deg_h != whole.rate_deg_h);
+        assert_eq!((whole.time_s[0], whole.time_s[199_999]), (3.0, 200_002.0));
     }
-    assert!(begin(10).all().unwrap().rate_deg_h != whole.rate_deg_h);
-    assert_eq!((whole.time_s[0], whole.time_s[199_999]), (3.0, 200_002.0));
 }
 
 #[test]

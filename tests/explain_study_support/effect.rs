@@ -44,6 +44,10 @@ pub enum Filter {
     OnePole(f64),
     TwoPole(f64),
     Boxcar(usize),
+    /// Exponential smoothing of the samples, half the power at a cutoff, Hz.
+    Smoothing(f64),
+    /// First order by the bilinear transform, cutoff in Hz.
+    Bilinear(f64),
 }
 
 /// What happens to the white noise.

@@ -128,9 +128,11 @@ fn boxcar_cutoff(length: usize) -> f64 {
 /// Everything goes through a low-pass.
 pub fn bandwidth_filter(draw: &mut Draw, s: &Setting, a: f64) -> Effect {
     let cutoff = 0.9 * nyquist(s) / (a * draw.log_uniform(1.0, 8.0));
-    let (filter, cutoff) = match draw.below(5) {
+    let (filter, cutoff) = match draw.below(7) {
         0 => (Filter::TwoPole(cutoff), cutoff),
-        1 => {
+        1 => (Filter::Smoothing(cutoff), cutoff),
+        2 => (Filter::Bilinear(cutoff), cutoff),
+        3 => {
             let length = ((0.443 * s.claim.rate_hz / cutoff) as usize).max(2);
             (Filter::Boxcar(length), boxcar_cutoff(length) * s.claim.rate_hz)
         }
@@ -147,6 +149,17 @@ pub fn response(filter: Filter, f: f64, rate_hz: f64) -> f64 {
     match filter {
         Filter::OnePole(cutoff) => 1.0 / (1.0 + (f / cutoff).powi(2)),
         Filter::TwoPole(cutoff) => 1.0 / (1.0 + (f / cutoff).powi(4)),
+        Filter::Smoothing(cutoff) => {
+            // y += g (x - y), with the gain that has half the power at the cutoff.
+            let s = 2.0 * (PI * cutoff / rate_hz).sin().powi(2);
+            let g = (s * s + 2.0 * s).sqrt() - s;
+            let turn = (PI * f / rate_hz).sin().powi(2);
+            g * g / (g * g + 4.0 * (1.0 - g) * turn)
+        }
+        Filter::Bilinear(cutoff) => {
+            let tan = |f: f64| (PI * f / rate_hz).tan();
+            1.0 / (1.0 + (tan(f) / tan(cutoff)).powi(2))
+        }
         Filter::Boxcar(length) => {
             let x = f / rate_hz;
             if x < 1e-9 {

@@ -2,7 +2,7 @@
 
 use super::search::log_grid;
 use crate::effect::{
-    Both, Doc, Domain, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+    Both, Doc, Domain, LowPass, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Bandwidth, Composite, Sampling};
 use crate::noise::data::NoiseType;
@@ -33,25 +33,50 @@ static DOC: Doc = Doc {
 };
 
 static PARAMS: [Param; 2] =
-    [Param::reported("cutoff_hz", "Hz", 1e-9, 1e9), Param::inner("form", "", 1.0, 4.0)];
+    [Param::reported("cutoff_hz", "Hz", 1e-9, 1e9), Param::inner("form", "", 1.0, 7.0)];
 
 /// How an output can be filtered. Stated by number: 1 first order before the samples are averaged, 2 first order on
-/// the spectrum of the samples, 3 second order (Butterworth), 4 moving average of whole samples.
+/// the spectrum of the samples, 3 second order (Butterworth) on it, 4 moving average of whole samples, 5 exponential
+/// smoothing of the samples, 6 first and 7 second order (Butterworth) by the bilinear transform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
     BeforeSampling,
     FirstOrder,
     SecondOrder,
     MovingAverage,
+    Smoothing,
+    BilinearFirst,
+    BilinearSecond,
 }
 
-const FORMS: [Form; 4] = [Form::BeforeSampling, Form::FirstOrder, Form::SecondOrder, Form::MovingAverage];
+const FORMS: [Form; 7] = [
+    Form::BeforeSampling,
+    Form::FirstOrder,
+    Form::SecondOrder,
+    Form::MovingAverage,
+    Form::Smoothing,
+    Form::BilinearFirst,
+    Form::BilinearSecond,
+];
 /// Longest moving average that is tried, samples.
 const LONGEST: usize = 64;
 
 fn form(fitted: &[f64]) -> Form {
-    let number = fitted.get(1).copied().unwrap_or(1.0).round().clamp(1.0, 4.0);
+    let number = fitted.get(1).copied().unwrap_or(1.0).round().clamp(1.0, FORMS.len() as f64);
     FORMS[number as usize - 1]
+}
+
+/// The filter of samples, of the forms that act on them.
+fn of_samples(fitted: &[f64], dt_s: f64) -> Option<LowPass> {
+    let cutoff = fitted.first().copied().unwrap_or(1e9).max(1e-12) * dt_s;
+    match form(fitted) {
+        Form::BeforeSampling | Form::MovingAverage => None,
+        Form::FirstOrder => Some(LowPass::ideal(cutoff, 1)),
+        Form::SecondOrder => Some(LowPass::ideal(cutoff, 2)),
+        Form::Smoothing => Some(LowPass::smoothing(cutoff)),
+        Form::BilinearFirst => Some(LowPass::bilinear(cutoff)),
+        Form::BilinearSecond => Some(LowPass::butterworth(cutoff)),
+    }
 }
 
 /// Cutoff of a moving average of so many samples: where (sin nx/(n sin x))² is a half, Hz.
@@ -105,18 +130,15 @@ impl Spectrum for BandwidthFilter {
             };
             bins.iter().map(|b| (white(b) / 3600.0).max(1e-9)).collect()
         };
-        match form(fitted) {
-            Form::BeforeSampling => through(filter(fitted)),
-            Form::FirstOrder => {
-                bins.iter().map(|b| 1.0 / (1.0 + (b.frequency_hz / cutoff).powi(2))).collect()
+        match of_samples(fitted, first.dt_s) {
+            Some(low_pass) => {
+                bins.iter().map(|b| low_pass.power(b.frequency_hz * b.dt_s).max(1e-9)).collect()
             }
-            Form::SecondOrder => {
-                bins.iter().map(|b| 1.0 / (1.0 + (b.frequency_hz / cutoff).powi(4))).collect()
-            }
-            Form::MovingAverage => {
+            None if form(fitted) == Form::MovingAverage => {
                 let samples = average_samples(cutoff, first.dt_s) as u32;
                 through(Bandwidth::MovingAverage { samples })
             }
+            None => through(filter(fitted)),
         }
     }
 
@@ -142,12 +164,13 @@ impl Spectrum for BandwidthFilter {
         let grid = log_grid(2.0 * low, 0.7 * high, 16);
         let of = |number: f64| best(grid.iter().map(|c| vec![*c, number]).collect());
         let averages = (2..=LONGEST).map(|n| vec![average_cutoff_hz(n, first.dt_s), 4.0]).collect();
-        [of(1.0), of(2.0), of(3.0), best(averages)].into_iter().flatten().collect()
+        let forms = (1..=FORMS.len()).filter(|n| FORMS[n - 1] != Form::MovingAverage);
+        forms.map(|n| of(n as f64)).chain([best(averages)]).flatten().collect()
     }
 
     fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
         let (dt, n) = look.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
-        vec![((10.0 / (n as f64 * dt)).min(0.1 / dt), 3.0 / dt), (1.0, 4.0)]
+        vec![((10.0 / (n as f64 * dt)).min(0.1 / dt), 3.0 / dt), (1.0, FORMS.len() as f64)]
     }
 
     fn looked(&self, look: &SpectralLook<'_>) -> f64 {
@@ -165,13 +188,18 @@ impl Spectrum for BandwidthFilter {
     }
 
     fn compose(&self, fitted: &[f64], dt_s: f64, noise: &mut Composite) {
-        noise.bandwidth = Some(match form(fitted) {
+        noise.bandwidth = match form(fitted) {
             Form::MovingAverage => {
                 let cutoff = fitted.first().copied().unwrap_or(1.0);
-                Bandwidth::MovingAverage { samples: average_samples(cutoff, dt_s) as u32 }
+                Some(Bandwidth::MovingAverage { samples: average_samples(cutoff, dt_s) as u32 })
             }
-            _ => filter(fitted),
-        });
+            Form::BeforeSampling => Some(filter(fitted)),
+            _ => noise.bandwidth,
+        };
+    }
+
+    fn low_pass(&self, fitted: &[f64], dt_s: f64) -> Option<LowPass> {
+        of_samples(fitted, dt_s)
     }
 
     fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {

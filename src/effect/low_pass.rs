@@ -1,0 +1,145 @@
+//! Low-pass filters that act on samples, by recursion.
+
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+/// Highest cutoff, cycles a sample: beyond it a filter of samples passes everything.
+const HIGHEST: f64 = 0.49;
+
+/// A filter y_i = Σ b_k x_{i−k} − Σ a_k y_{i−k}, which passes a constant unchanged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LowPass {
+    /// b₀, b₁, b₂.
+    pub forward: [f64; 3],
+    /// a₁, a₂.
+    pub back: [f64; 2],
+    /// Where the response wanted is 1/(1 + (f/f_c)^2p) and the recursion comes near it only: f_c in cycles a sample, and p.
+    ideal: Option<(f64, i32)>,
+    /// Samples within which it forgets what was before.
+    pub memory: usize,
+}
+
+fn memory(cutoff: f64) -> usize {
+    // exp(−12) is left.
+    (12.0 / (TAU * cutoff * SQRT_2.recip())).min(1e9).ceil() as usize
+}
+
+/// |b₀ + b₁ z⁻¹ + b₂ z⁻²|² at a frequency in cycles a sample.
+fn square(c: [f64; 3], x: f64) -> f64 {
+    let w = TAU * x;
+    let re = c[0] + c[1] * w.cos() + c[2] * (2.0 * w).cos();
+    let im = c[1] * w.sin() + c[2] * (2.0 * w).sin();
+    re * re + im * im
+}
+
+impl LowPass {
+    /// Exponential smoothing with half the power at a cutoff, cycles a sample.
+    pub fn smoothing(cutoff: f64) -> LowPass {
+        let x = cutoff.min(HIGHEST);
+        let c = 2.0 - (TAU * x).cos();
+        let a = c - (c * c - 1.0).sqrt();
+        LowPass { forward: [1.0 - a, 0.0, 0.0], back: [-a, 0.0], ideal: None, memory: memory(x) }
+    }
+
+    /// First-order filter by the bilinear transform, cutoff in cycles a sample.
+    pub fn bilinear(cutoff: f64) -> LowPass {
+        let x = cutoff.min(HIGHEST);
+        let c = (PI * x).tan();
+        let b = c / (1.0 + c);
+        LowPass { forward: [b, b, 0.0], back: [(c - 1.0) / (c + 1.0), 0.0], ideal: None, memory: memory(x) }
+    }
+
+    /// Second-order Butterworth filter by the bilinear transform, cutoff in cycles a sample.
+    pub fn butterworth(cutoff: f64) -> LowPass {
+        let x = cutoff.min(HIGHEST);
+        let c = (PI * x).tan();
+        let norm = 1.0 + SQRT_2 * c + c * c;
+        let b = c * c / norm;
+        LowPass {
+            forward: [b, 2.0 * b, b],
+            back: [2.0 * (c * c - 1.0) / norm, (1.0 - SQRT_2 * c + c * c) / norm],
+            ideal: None,
+            memory: memory(x),
+        }
+    }
+
+    /// Half the power at a cutoff (cycles a sample) and 1/(1 + (f/f_c)^2p) at every frequency, p of 1 or 2.
+    pub fn ideal(cutoff: f64, order: i32) -> LowPass {
+        // Poles where those of the continuous filter lie.
+        let w = TAU * cutoff;
+        let (back, gain) = if order < 2 {
+            let r = (-w).exp();
+            ([-r, 0.0], 1.0 - r)
+        } else {
+            let (r, turn) = ((-w / SQRT_2).exp(), w / SQRT_2);
+            let a = [-2.0 * r * turn.cos(), r * r];
+            (a, 1.0 + a[0] + a[1])
+        };
+        LowPass {
+            forward: [gain, 0.0, 0.0],
+            back,
+            ideal: Some((cutoff, order.clamp(1, 2))),
+            memory: memory(cutoff),
+        }
+    }
+
+    /// Power that the recursion lets through at a frequency, cycles a sample.
+    fn recursion(&self, x: f64) -> f64 {
+        square(self.forward, x) / square([1.0, self.back[0], self.back[1]], x).max(1e-300)
+    }
+
+    /// Power that the filter lets through at a frequency, cycles a sample.
+    pub fn power(&self, x: f64) -> f64 {
+        match self.ideal {
+            Some((cutoff, order)) => 1.0 / (1.0 + (x / cutoff).powi(2 * order)),
+            None => self.recursion(x),
+        }
+    }
+
+    /// What the power wanted is of that of the recursion, where they differ.
+    pub fn correction(&self, x: f64) -> Option<f64> {
+        self.ideal.map(|_| self.power(x) / self.recursion(x).max(1e-300))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn filters_pass_constants_and_half_the_power_at_their_cutoffs() {
+        for x in [0.001, 0.05, 0.2, 0.4] {
+            for filter in [
+                LowPass::smoothing(x),
+                LowPass::bilinear(x),
+                LowPass::butterworth(x),
+                LowPass::ideal(x, 1),
+                LowPass::ideal(x, 2),
+            ] {
+                assert!((filter.power(0.0) - 1.0).abs() < 1e-9, "{filter:?}");
+                assert!((filter.recursion(0.0) - 1.0).abs() < 1e-9, "{filter:?}");
+                assert!((filter.power(x) - 0.5).abs() < 1e-9, "{filter:?}: {}", filter.power(x));
+            }
+        }
+    }
+
+    #[test]
+    fn recursions_have_their_response() {
+        // The response to a sinusoid, once what was before is forgotten.
+        let filter = LowPass::butterworth(0.08);
+        for x in [0.03, 0.11, 0.3] {
+            let (mut y, mut u) = ([0.0; 2], [0.0; 2]);
+            let (mut sum, mut count) = (0.0, 0.0);
+            for i in 0..6000 {
+                let input = (TAU * x * f64::from(i)).sin();
+                let output = filter.forward[0] * input + filter.forward[1] * u[0] + filter.forward[2] * u[1]
+                    - filter.back[0] * y[0]
+                    - filter.back[1] * y[1];
+                (u, y) = ([input, u[0]], [output, y[0]]);
+                if i >= 1000 {
+                    (sum, count) = (sum + output * output, count + 1.0);
+                }
+            }
+            assert!((2.0 * sum / count / filter.power(x) - 1.0).abs() < 2e-3, "{x}");
+        }
+    }
+}
