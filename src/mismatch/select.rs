@@ -86,6 +86,17 @@ fn course_parameters(course: &CourseIn, scenes: &Scenes) -> usize {
     parts.free.len() + parts.beside.len() + shape
 }
 
+/// BIC of an addition with what it lets free beside its own parameters, as the state of a delay before the record, charged
+/// no more than chance gains by it: it makes a worse guess, but one no less able to do what its rivals do.
+fn bic_of_rival(candidate: &Candidate, scenes: &Scenes) -> f64 {
+    let rows = scenes.rows;
+    let beside =
+        candidate.tried.hypothesis.courses.last().filter(|c| c.effect.kind() == candidate.effect.kind());
+    let beside =
+        beside.and_then(|c| Some(c.course()?.parts(&c.shape, &scenes.of(c.course()?.pace()).drivers)));
+    candidate.tried.bic(rows) - beside.map_or(0, |b| b.beside.len()) as f64 * ((rows as f64).ln() - 1.0)
+}
+
 /// Puts a freed coefficient back under its prior; the number of parameters that go.
 fn restore(noise: &mut Noise, part: &SpectrumIn) -> usize {
     if let Model::Spectrum(s) = part.effect.model()
@@ -205,7 +216,7 @@ fn chosen(
             let equivalents = rivals
                 .iter()
                 .filter(|c| c.effect.kind() != effect.kind() && c.effect.reported_kind() == c.effect.kind())
-                .filter(|c| c.tried.bic(rows) < best.bic(rows) + ENOUGH)
+                .filter(|c| bic_of_rival(c, scenes) < best.bic(rows) + ENOUGH)
                 .take(3)
                 .cloned()
                 .collect();
