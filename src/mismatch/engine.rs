@@ -258,16 +258,17 @@ fn take_telegraph(
     else {
         return;
     };
-    let course: Vec<f64> = telegraph.path.iter().map(|p| telegraph.amplitude_deg_h * p).collect();
-    problem.take(&course);
+    problem.take(&telegraph.course);
     let mut base = problem.baseline();
     if start.hypothesis.noise.freed[0] {
         base = samples::with_free_level(&base, problem);
     }
     if !stated && let Some(mut named) = samples::telegraph(&telegraph, delta_bic, problem) {
         named.equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
+        // The fit without the course counts it as known: it gains more than the jumps do.
+        named.local_gain = telegraph.gain - (base.fit.log_likelihood - start.fit.log_likelihood);
         found.named.push(named);
-        found.take(course);
+        found.take(telegraph.course);
     }
     *selection = select::select(&base, &problem.scenes, options);
 }

@@ -1,8 +1,8 @@
 //! Jumps back and forth between two levels.
 //!
-//! A two-level path is sought in averages of several lengths and judged by generalised least squares under the noise of
-//! the hypothesis, less what it takes to write the path down and with what other paths hold. A process with the same spectrum gains by its spectrum
-//! alone; only what the path gains beyond that tells two levels from it.
+//! Levels and rates of change are sought in averages of several lengths and judged by the likelihood of the chain over all
+//! its paths, beside the slow noise of the hypothesis. A process with the same spectrum gains by its spectrum alone; only
+//! what the chain gains beyond that tells two levels from it.
 
 use super::rivals::{freed, line, rival};
 use super::two_level::Chain;
@@ -25,8 +25,9 @@ const FIRST_TURNS: usize = 5;
 const TURNS: usize = 15;
 /// Turns of path and background.
 const ROUNDS: usize = 3;
-/// Turns of background and levels at the end.
-const SETTLING: usize = 8;
+/// Turns of background and levels at the end, and the relative change of the amplitude at which they end.
+const SETTLING: usize = 40;
+const SETTLED: f64 = 1e-3;
 /// Averages in the shortest period of a drift.
 const SLOWEST: usize = 64;
 
@@ -35,6 +36,8 @@ const SLOWEST: usize = 64;
 pub struct Telegraph {
     /// 0 and 1 for the two levels less their mean, for each sample.
     pub path: Vec<f64>,
+    /// What is expected of each sample given all, less the mean, deg/h.
+    pub course: Vec<f64>,
     /// Between the levels, deg/h.
     pub amplitude_deg_h: f64,
     /// Its 95 % interval.
@@ -47,7 +50,7 @@ pub struct Telegraph {
     pub jumps: usize,
     /// True when the jumps come as regularly as of a periodic course.
     pub regular: bool,
-    /// Gain of log-likelihood, the path not known beforehand.
+    /// Gain of log-likelihood over all paths.
     pub gain: f64,
     /// Gain of the best single process in its place: a Markov process, or flicker or random walk set free.
     pub rival_gain: f64,
@@ -60,9 +63,6 @@ pub struct Telegraph {
 /// What does not change while paths are tried.
 struct Ground<'a> {
     problem: &'a Problem,
-    tried: &'a Tried,
-    /// The noise of the hypothesis as it is beside a process with the spectrum of a telegraph signal.
-    noise: Noise,
     /// Modes of what the hypothesis leaves, and the same in time.
     modes: Vec<f64>,
     residual: Vec<f64>,
@@ -72,14 +72,14 @@ struct Ground<'a> {
     slow: Vec<f64>,
     /// Variance of a sample's white noise, (deg/h)².
     white: f64,
+    /// What the noise beside jumps loses against that of the hypothesis where there are no jumps.
+    lost: f64,
 }
 
 /// A path that was judged.
 struct Judged {
     path: Vec<bool>,
     background: Vec<f64>,
-    /// Deviation of the amplitude for that path, deg/h.
-    deviation: f64,
     gain: f64,
     chain: Chain,
     averaged: usize,
@@ -99,17 +99,38 @@ impl<'a> Ground<'a> {
         let mut high: Vec<f64> = powers[powers.len() / 2..].to_vec();
         let white = super::median(&mut high);
         let slow = |p: &f64| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 };
+        let without = noise_fit::whittle(scene, &tried.fit.observed, &noise.densities(scene)) + noise.prior();
         Ground {
             problem,
-            tried,
-            noise,
             residual: inverse_dct2(&modes),
             modes,
             slow: powers.iter().map(slow).collect(),
             powers,
             columns,
             white,
+            lost: tried.fit.noise.log_likelihood - without,
         }
+    }
+
+    /// Gain of log-likelihood of a chain beside its best background, which costs what the spectrum of the slow noise says.
+    /// Where all is white it is the likelihood of the chain over that of white noise.
+    fn evidence(&self, chain: &Chain, background: &[f64], m: usize) -> f64 {
+        let white = self.white;
+        let of_background: f64 = dct2(background)
+            .iter()
+            .zip(&self.slow)
+            .filter(|(_, s)| **s > 0.0)
+            .map(|(b, s)| b * b * (1.0 - s) / (s * white))
+            .sum();
+        let beside: f64 = self.residual.iter().zip(background).map(|(r, b)| (r - b).powi(2)).sum();
+        // White noise beside the best slow noise: what the spectrum leaves of each mode.
+        let alone: f64 = self.modes.iter().zip(&self.slow).map(|(x, s)| x * x * (1.0 - s)).sum();
+        let values = self.values(background, m);
+        let variance = white / m as f64;
+        let flat: f64 = values.iter().map(|v| v * v / variance).sum();
+        let flat = -0.5 * (flat + values.len() as f64 * (std::f64::consts::TAU * variance).ln());
+        let chain = Chain { variance, ..*chain };
+        chain.log_likelihood(&values) - flat - 0.5 * (of_background + (beside - alone) / white) - self.lost
     }
 
     /// The best estimate of the slow noise under a path, deg/h.
@@ -119,26 +140,25 @@ impl<'a> Ground<'a> {
         inverse_dct2(&modes)
     }
 
-    /// Amplitude, its deviation and the gain of a path.
-    fn amplitude(&self, path: &[bool]) -> (f64, f64, f64) {
+    /// Amplitude of a known path, and its deviation.
+    fn amplitude(&self, path: &[bool]) -> (f64, f64) {
         let series: Vec<f64> = path.iter().map(|p| f64::from(u8::from(*p))).collect();
         let modes = self.problem.scenes.full.transform(&series);
-        let data = &self.modes;
         let old: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, d)| (c.as_slice(), *d)).collect();
-        let before = Normal::new(&old, data, &self.powers);
-        let (c, covariance, _) = before.with(&old, &[&modes], data, false, &self.powers).solve();
+        let before = Normal::new(&old, &self.modes, &self.powers);
+        let (c, covariance, _) = before.with(&old, &[&modes], &self.modes, false, &self.powers).solve();
         let at = old.len();
-        let mut rest = data.clone();
-        let columns = old.iter().map(|o| o.0).chain([modes.as_slice()]);
-        for (column, x) in columns.zip(&c) {
-            rest.iter_mut().zip(column).for_each(|(r, z)| *r -= x * z);
-        }
-        let scene = &self.problem.scenes.full;
-        let mut noise = self.noise.clone();
-        let fit = noise_fit::fit(&mut noise, scene, &scene.observed(&rest));
         let variance = if covariance.nrows() > at { covariance[(at, at)] } else { 0.0 };
-        let gain = fit.log_likelihood - self.tried.fit.noise.log_likelihood;
-        (c.get(at).copied().unwrap_or(0.0), variance.max(0.0).sqrt(), gain)
+        (c.get(at).copied().unwrap_or(0.0), variance.max(0.0).sqrt())
+    }
+
+    /// What a chain of averages of `m` is expected to add to each sample where `raised` is the probability of its second
+    /// level, deg/h.
+    fn course(&self, chain: &Chain, m: usize, raised: &[f64], size: f64) -> Vec<f64> {
+        let sign = if chain.levels[1] > chain.levels[0] { 1.0 } else { -1.0 };
+        let last = raised.len().saturating_sub(1);
+        let at = |i: usize| raised.get((i / m).min(last)).copied().unwrap_or(0.0);
+        (0..self.residual.len()).map(|i| sign * size * at(i)).collect()
     }
 
     /// What is slower than any dwell that averages of `m` are looked at for.
@@ -166,27 +186,26 @@ impl<'a> Ground<'a> {
             chain = (0..TURNS).fold(chain, |c, _| c.improved(&values, 0.5 * white));
             // Slow noise about the levels would make paths look less certain than they are.
             let sharp = Chain { variance: chain.variance.min(white), ..chain };
-            let (short, joint) = sharp.path(&values);
+            let short = sharp.path(&values);
             let jumps = short.windows(2).filter(|w| w[0] != w[1]).count();
             if jumps < JUMPS {
                 break;
             }
             let path: Vec<bool> =
                 (0..n).map(|i| short.get((i / m).min(short.len() - 1)).copied().unwrap_or(false)).collect();
-            let (amplitude, deviation, gain) = self.amplitude(&path);
-            // P(values) = P(values, path)/P(path | values): what other paths hold counts as well.
-            let gain = gain - sharp.path_cost(&short) + (sharp.log_likelihood(&values) - joint);
+            // The background that is best beside what is expected of the levels: a turn of expectation and maximum.
+            let size = (sharp.levels[1] - sharp.levels[0]).abs();
+            let course = self.course(&sharp, m, &sharp.posterior(&values), size);
+            background = self.background(&course);
+            let gain = self.evidence(&sharp, &background, m);
             if best.as_ref().is_some_and(|b| gain < b.gain + 0.1) {
                 break;
             }
-            let course: Vec<f64> = path.iter().map(|p| amplitude * f64::from(u8::from(*p))).collect();
-            let next = self.background(&course);
-            best = Some(Judged { path, background, deviation, gain, chain, averaged: m });
+            best = Some(Judged { path, background: background.clone(), gain, chain, averaged: m });
             if self.slow.iter().all(|s| *s < 0.02) {
                 break;
             }
-            values = self.values(&next, m);
-            background = next;
+            values = self.values(&background, m);
         }
         best
     }
@@ -248,29 +267,32 @@ impl Ground<'_> {
         let mut values = self.values(&best.background, best.averaged);
         // Background and levels in turns, each given the other, from the levels for a known path.
         let coloured = self.slow.iter().any(|s| *s >= 0.02);
-        let (known, _, _) = self.amplitude(&best.path);
+        let (known, deviation) = self.amplitude(&best.path);
         let mut size = known.abs();
+        let mut raised = best.chain.posterior(&values);
         for _ in 0..if coloured { SETTLING } else { 0 } {
-            let short = best.chain.posterior(&values);
-            let last = short.len().saturating_sub(1);
-            let up = best.chain.levels[1] > best.chain.levels[0];
-            let sign = if up { 1.0 } else { -1.0 };
-            let at = |i: usize| short.get((i / best.averaged).min(last)).copied().unwrap_or(0.0);
-            let course: Vec<f64> = (0..n).map(|i| sign * size * at(i)).collect();
+            let course = self.course(&best.chain, best.averaged, &raised, size);
             values = self.values(&self.background(&course), best.averaged);
             best.chain = (0..TURNS)
                 .fold(best.chain, |c, _| c.improved(&values, 0.5 * self.white / best.averaged as f64));
-            size = (best.chain.levels[1] - best.chain.levels[0]).abs();
+            raised = best.chain.posterior(&values);
+            let before = std::mem::replace(&mut size, (best.chain.levels[1] - best.chain.levels[0]).abs());
+            if (size - before).abs() < SETTLED * size {
+                break;
+            }
         }
         let step = best.averaged as f64 * self.problem.drivers.dt_s;
         let jumps = best.path.windows(2).filter(|w| w[0] != w[1]).count();
         let up = best.path.iter().filter(|p| **p).count() as f64;
         let share = up / n as f64;
         size = (best.chain.levels[1] - best.chain.levels[0]).abs();
-        let (on_chain, log_dwell) = best.chain.deviations(&values).unwrap_or((best.deviation, 1.0));
+        let mut course = self.course(&best.chain, best.averaged, &raised, size);
+        let mean = course.iter().sum::<f64>() / n as f64;
+        course.iter_mut().for_each(|c| *c -= mean);
+        let (on_chain, log_dwell) = best.chain.deviations(&values).unwrap_or((deviation, 1.0));
         // The path is uncertain for a known background, and the background for a known path.
         let in_white = self.white / (n as f64 * share * (1.0 - share)).max(1.0);
-        let spread = on_chain.powi(2) + (best.deviation.powi(2) - in_white).max(0.0);
+        let spread = on_chain.powi(2) + (deviation.powi(2) - in_white).max(0.0);
         // A sample in which a jump falls lies between the levels: of dwells of few samples, part is unseen.
         let jumping = 1.0 / best.chain.dwell();
         let half = 1.959_964 * (spread + (0.25 * size * jumping).powi(2)).sqrt();
@@ -278,6 +300,7 @@ impl Ground<'_> {
         let factor = (1.959_964 * log_dwell.hypot(0.7 * jumping)).exp();
         Telegraph {
             path: best.path.iter().map(|p| f64::from(u8::from(*p)) - share).collect(),
+            course,
             amplitude_deg_h: size,
             amplitude_ci95: [(size - half).max(0.0), size + half],
             mean_dwell_s,

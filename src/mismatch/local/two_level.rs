@@ -130,16 +130,6 @@ impl Chain {
         0.5 * (1.0 / (rate * a) + 1.0 / (rate * b))
     }
 
-    /// −ln of the probability of a path.
-    pub fn path_cost(&self, path: &[bool]) -> f64 {
-        let first = path.first().map_or(0.0, |p| self.standing()[usize::from(*p)].ln());
-        let step = |w: &[bool]| {
-            let change = self.change[usize::from(w[0])];
-            if w[0] == w[1] { (-change).ln_1p() } else { change.ln() }
-        };
-        -first - path.windows(2).map(step).sum::<f64>()
-    }
-
     /// Standard deviations of the difference of the levels and of the logarithm of the mean dwell, from the curvature
     /// of the likelihood; `None` where it has no top there.
     pub fn deviations(&self, values: &[f64]) -> Option<(f64, f64)> {
@@ -209,8 +199,8 @@ impl Chain {
         sum
     }
 
-    /// The most probable path, and ln of the probability of it and the values together.
-    pub fn path(&self, values: &[f64]) -> (Vec<bool>, f64) {
+    /// The most probable path.
+    pub fn path(&self, values: &[f64]) -> Vec<bool> {
         let log = |p: f64| p.max(1e-300).ln();
         let stay = [log(1.0 - self.change[0]), log(1.0 - self.change[1])];
         let change = [log(self.change[0]), log(self.change[1])];
@@ -229,15 +219,13 @@ impl Chain {
             came.push([b > a, d >= c]);
             score = [a.max(b) + e[0], c.max(d) + e[1]];
         }
-        let constant = 0.5 * values.len() as f64 * (std::f64::consts::TAU * self.variance).ln();
-        let joint = score[0].max(score[1]) - constant;
         let mut up = score[1] > score[0];
         let mut out = vec![false; values.len()];
         for i in (0..values.len()).rev() {
             out[i] = up;
             up = came[i][usize::from(up)];
         }
-        (out, joint)
+        out
     }
 }
 
@@ -246,7 +234,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_clear_path_is_found_exactly_and_costs_its_entropy() {
+    fn a_clear_path_is_found_exactly_and_holds_the_likelihood() {
         let path: Vec<bool> = (0..900).map(|i| i / 90 % 2 == 1).collect();
         // Steps of 1 with a deterministic ripple of ±0.2.
         let ripple = |i: usize| if i.is_multiple_of(2) { 0.2 } else { -0.2 };
@@ -256,17 +244,16 @@ mod tests {
         for _ in 0..40 {
             chain = chain.improved(&values, 1e-4);
         }
-        let (found, joint) = chain.path(&values);
-        assert_eq!(found, path);
-        // Nearly all of the probability is that path's.
-        let all = chain.log_likelihood(&values);
-        assert!(all >= joint && all - joint < 0.05, "{all} {joint}");
+        assert_eq!(chain.path(&values), path);
         assert!((chain.levels[1] - chain.levels[0] - 1.0).abs() < 1e-3, "{chain:?}");
         assert!((chain.variance - 0.04).abs() < 1e-3, "{chain:?}");
-        let fair = Chain { change: [0.01, 0.02], ..chain };
-        // Begun below, where it stands two thirds of the time; five changes up in 450 steps, four down in 449.
-        let cost = -((2.0f64 / 3.0).ln() + 5.0 * 0.01f64.ln() + 4.0 * 0.02f64.ln());
-        let stays = -(445.0 * 0.99f64.ln() + 445.0 * 0.98f64.ln());
-        assert!((fair.path_cost(&path) - cost - stays).abs() < 1e-9);
+        // Nearly all of the likelihood is that path's: begun at a level that stands two thirds of the time, five changes up
+        // in 450 steps, four down in 449, and every value 0.2 beside its level.
+        let fair = Chain { levels: [0.0, 1.0], variance: 0.04, change: [0.01, 0.02] };
+        let jumps = (2.0f64 / 3.0).ln() + 5.0 * 0.01f64.ln() + 4.0 * 0.02f64.ln();
+        let stays = 445.0 * 0.99f64.ln() + 445.0 * 0.98f64.ln();
+        let noise = -450.0 * (1.0 + (std::f64::consts::TAU * 0.04).ln());
+        let all = fair.log_likelihood(&values);
+        assert!((0.0..0.1).contains(&(all - jumps - stays - noise)), "{all}");
     }
 }
