@@ -5,7 +5,9 @@ use super::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
-use realfft::RealFftPlanner;
+use rayon::prelude::*;
+use realfft::{RealFftPlanner, RealToComplex};
+use std::sync::Arc;
 
 pub struct ResetRipple;
 
@@ -47,6 +49,12 @@ describe! {
 const SHORTEST: f64 = 0.5;
 /// Most cells of angle in a search.
 const LONGEST: usize = 1 << 20;
+/// Cells and samples that a search of one octave of periods may go through.
+const EFFORT: f64 = 1.2e7;
+/// What a bias may be off from the claimed one, deg/h.
+const WIDE: f64 = 100.0;
+/// Deviations of the fitted bias within which the true one is looked for.
+const SURE: f64 = 3.0;
 
 /// Sensed angle at the middle of each sample since the first began, and its change over the sample, arcsec.
 fn sensed(bias: f64, drivers: &Drivers) -> Option<(Vec<f64>, Vec<f64>)> {
@@ -78,48 +86,69 @@ fn columns(period: f64, bias: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
     }
 }
 
-/// Gains of the periods between `period` and twice that for one bias: the score put on a grid of angles and
-/// transformed. Only samples that cover less than a period count. `drift` turns the angle with time, arcsec a sample;
-/// `level` is that of the noise.
-fn octave(
+/// A search of the periods between one and twice that: the score put on a grid of angles and transformed. Only samples that
+/// cover less than a period count.
+struct Octave {
     period: f64,
-    (middles, steps): &(Vec<f64>, Vec<f64>),
-    drift: f64,
-    level: f64,
-    look: &Look<'_>,
-) -> Option<(Vec<f64>, f64)> {
-    let angle = |i: usize| middles[i] + drift * i as f64;
-    let used = || (0..middles.len()).filter(|i| steps[*i].abs() < period);
-    let (low, high, count) = used().fold((f64::INFINITY, f64::NEG_INFINITY, 0usize), |(a, b, n), i| {
-        (a.min(angle(i)), b.max(angle(i)), n + 1)
-    });
-    let cell = 0.25 * period;
-    let cells = (high - low) / cell;
-    if count < 32 || !cells.is_finite() || cells >= LONGEST as f64 {
-        return None;
-    }
-    // Twice the range, so that periods between the cycles of the range are seen too.
-    let size = (2 * (cells as usize + 1)).next_power_of_two();
-    let mut grid = vec![0.0; size];
-    for i in used() {
-        if let Some(cell) = grid.get_mut(((angle(i) - low) / cell) as usize) {
-            *cell += look.score[i];
+    /// Angle (arcsec), time since the first sample (s) and score of each sample that counts.
+    samples: Vec<(f64, f64, f64)>,
+    low: f64,
+    range: f64,
+    size: usize,
+    plan: Arc<dyn RealToComplex<f64>>,
+}
+
+impl Octave {
+    /// Cells of angle in a period.
+    const CELLS: f64 = 4.0;
+
+    /// `margin` is what biases turn the angle by, arcsec.
+    fn new(
+        period: f64,
+        (middles, steps): &(Vec<f64>, Vec<f64>),
+        dt_s: f64,
+        margin: f64,
+        look: &Look<'_>,
+    ) -> Option<Octave> {
+        let used = (0..middles.len()).filter(|i| steps[*i].abs() < period);
+        let samples: Vec<(f64, f64, f64)> =
+            used.map(|i| (middles[i], i as f64 * dt_s, look.score[i])).collect();
+        let (low, high) = samples
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (s.0.min(a), s.0.max(b)));
+        let (low, high) = (low - margin, high + margin);
+        let cells = (high - low) / period * Octave::CELLS;
+        if samples.len() < 32 || !cells.is_finite() || cells >= LONGEST as f64 {
+            return None;
         }
+        // Twice the range, so that periods between the cycles of the range are seen too.
+        let size = (2 * (cells as usize + 1)).next_power_of_two();
+        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
+        Some(Octave { period, samples, low, range: high - low, size, plan })
     }
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
-    let mut spectrum = plan.make_output_vec();
-    plan.process(&mut grid, &mut spectrum).ok()?;
-    let frequency_step = 1.0 / (size as f64 * cell);
-    let inside = |j: usize| {
-        let f = j as f64 * frequency_step;
-        f > 0.5 / period && f <= 1.0 / period && f * (high - low) >= 3.0
-    };
-    let gains = spectrum
-        .iter()
-        .enumerate()
-        .map(|(j, w)| if inside(j) { w.norm_sqr() * level / count as f64 } else { 0.0 })
-        .collect();
-    Some((gains, frequency_step))
+
+    /// Gains for one bias by their frequency, and the step of that, cycles an arcsec. `level` is that of the noise.
+    fn gains(&self, bias_deg_h: f64, level: f64) -> Option<(Vec<f64>, f64)> {
+        let cell = self.period / Octave::CELLS;
+        let mut grid = vec![0.0; self.size];
+        for (angle, time_s, score) in &self.samples {
+            // A degree an hour is an arcsecond a second.
+            let at = (angle + bias_deg_h * time_s - self.low) / cell;
+            if let Some(cell) = grid.get_mut(at as usize) {
+                *cell += score;
+            }
+        }
+        let mut spectrum = self.plan.make_output_vec();
+        self.plan.process(&mut grid, &mut spectrum).ok()?;
+        let step = 1.0 / (self.size as f64 * cell);
+        let inside = |j: usize| {
+            let f = j as f64 * step;
+            f > 0.5 / self.period && f <= 1.0 / self.period && f * self.range >= 3.0
+        };
+        let scale = level / self.samples.len() as f64;
+        let gains = spectrum.iter().enumerate();
+        Some((gains.map(|(j, w)| if inside(j) { w.norm_sqr() * scale } else { 0.0 }).collect(), step))
+    }
 }
 
 impl Course for ResetRipple {
@@ -141,28 +170,35 @@ impl Course for ResetRipple {
             return none;
         }
         let fitted = drivers.claim.bias_deg_h + look.modes[0] / (n as f64).sqrt();
+        // The mean of slow noise is known no better than its slowest waves are small.
+        let deviation = (look.powers[1] / n as f64).sqrt();
         let Some(angles) = sensed(fitted, drivers) else { return none };
         let (low, high) = crate::numeric::range::ends(&angles.0);
         let level = fast_level(look);
         let (mut period, mut found, mut looked) = (SHORTEST, vec![], 1.0);
         while period < (high - low) / 3.0 {
-            let turns = match (high - low) / period {
-                few if few < 3e4 => 6,
-                many if many < 3e5 => 2,
-                _ => 1,
+            // Half turns of the phase over the record that the uncertainty of the bias amounts to.
+            let uncertain = SURE * deviation * drivers.length_s() / (0.5 * period);
+            let affordable = 0.5 * EFFORT / (8.0 * (high - low) / period + n as f64);
+            let turns = uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32;
+            let per_turn = 0.5 * period / drivers.length_s();
+            let margin = f64::from(turns) * 0.5 * period;
+            let Some(octave) = Octave::new(period, &angles, drivers.dt_s, margin, look) else {
+                period *= 2.0;
+                continue;
             };
-            for k in -turns..=turns {
-                let other = 0.5 * f64::from(k) * period / drivers.length_s();
-                let Some((gains, frequency)) = octave(period, &angles, other * drivers.dt_s, level, look)
-                else {
-                    break;
-                };
-                looked += (high - low) / period * 0.5;
-                for j in peaks(&gains, 2, 6) {
+            let of_bias = |k: i32| {
+                let other = f64::from(k) * per_turn;
+                let (gains, frequency) = octave.gains(other, level)?;
+                let shape = |j: usize| {
                     let f = (j as f64 + summit(&gains, j)) * frequency;
-                    found.push((gains[j], vec![1.0 / f, fitted + other]));
-                }
-            }
+                    (gains[j], vec![1.0 / f, fitted + other])
+                };
+                Some(peaks(&gains, 2, 6).into_iter().map(shape).collect::<Vec<_>>())
+            };
+            let seen: Vec<Vec<_>> = (-turns..=turns).into_par_iter().filter_map(of_bias).collect();
+            looked += seen.len() as f64 * (high - low) / period * 0.5;
+            found.extend(seen.into_iter().flatten());
             period *= 2.0;
         }
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -173,7 +209,7 @@ impl Course for ResetRipple {
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
         let bias = drivers.claim.bias_deg_h;
         let range = extent(bias, drivers);
-        vec![(0.5 * SHORTEST, (0.5 * range).max(SHORTEST)), (bias - 0.5, bias + 0.5)]
+        vec![(0.5 * SHORTEST, (0.5 * range).max(SHORTEST)), (bias - WIDE, bias + WIDE)]
     }
 
     fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
