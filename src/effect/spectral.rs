@@ -61,6 +61,11 @@ pub trait Spectrum: Sync {
         true
     }
 
+    /// Whether fitted parameters are still what the effect is; a fit that ends elsewhere is none of it.
+    fn plausible(&self, _fitted: &[f64]) -> bool {
+        true
+    }
+
     /// Fitted parameters to begin from, several.
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>>;
 

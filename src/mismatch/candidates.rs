@@ -307,6 +307,9 @@ fn try_spectrum(
         noise
     });
     let noise = best_of(begun.collect(), scene, observed)?;
+    if noise.spectra.last().is_some_and(|s| !spectrum.plausible(&s.fitted)) {
+        return None;
+    }
     let parameters = before.parameters + noise.spectra.last().map_or(0, |s| s.fitted.len());
     finish_spectrum(effect, noise, parameters, spectrum.looked(&look), before, scenes)
 }

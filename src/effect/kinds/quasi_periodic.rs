@@ -95,6 +95,11 @@ impl Spectrum for QuasiPeriodic {
         bins.iter().map(one).collect()
     }
 
+    /// Coherent for one of its periods at least: anything shorter is correlated noise.
+    fn plausible(&self, fitted: &[f64]) -> bool {
+        matches!(fitted, [frequency, _, time] if frequency * time >= 1.0)
+    }
+
     fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
         let Some(first) = look.bins.first() else { return vec![] };
         let length = first.samples as f64 * first.dt_s;
