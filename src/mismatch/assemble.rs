@@ -1,6 +1,7 @@
 //! The result of an explanation, put together from its parts.
 
 use super::candidates::{Candidate as Fitted, Tried};
+use super::contribution;
 use super::departures::{self, Departure};
 use super::draw::{self, Drawn};
 use super::engine::Found;
@@ -14,7 +15,7 @@ use super::improvement;
 use super::nuisances::{nuisance_value, nuisances};
 use super::options::Options;
 use super::outcome::Outcome;
-use super::problem::Problem;
+use super::problem::{Problem, level, scaled};
 use super::samples::Named;
 use super::select::{Chosen, Selection, Slot};
 use super::single_cause;
@@ -92,13 +93,13 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     } else {
         "mismatch"
     };
-    let mut correction = estimates::correction(&selection.best, scenes);
+    let mut correction = contribution::correction(&selection.best, scenes);
     if let Some(taken) = &found.taken {
         let sum = correction.get_or_insert_with(|| vec![0.0; taken.len()]);
         sum.iter_mut().zip(taken).for_each(|(s, t)| *s += t);
     }
     let stated = found.named.into_iter().map(|n| Stated { effect: n.effect, values: n.estimated.stated });
-    let augmented = augmented(problem, claim, &selection.best, stated.collect());
+    let augmented = augmented(problem, claim, &selection.best, stated.collect(), found.level.is_some());
     let family = smallest_p(&selection.first, before);
     let figures_after = FitFigures {
         log_likelihood: selection.best.fit.log_likelihood + local_gain,
@@ -267,7 +268,12 @@ fn places(
                 expected: &chosen.without.fit.densities,
                 lattice_arcsec: problem.scenes.lattice_arcsec,
             };
-            spectrum.places(&best.hypothesis.noise.spectra[i].fitted, &look)
+            let mut out = spectrum.places(&best.hypothesis.noise.spectra[i].fitted, &look);
+            // A slow process moves at some times more than at others.
+            if out.len() < 3 && !out.iter().any(|p| p.domain == Domain::Time) {
+                out.extend(contribution::time_of_process(i, best, &problem.scenes));
+            }
+            out
         }
         _ => vec![],
     }
@@ -350,7 +356,14 @@ fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
 
 /// The claim with its nuisances as fitted and the effects stated. A coefficient that an effect sets free stays as
 /// claimed: the effect states it.
-fn augmented(problem: &Problem, given: &Claim, best: &Tried, mut stated: Vec<Stated>) -> Claim {
+/// A level of the noise that was found frees N as well: what it comes to is the claim's.
+fn augmented(
+    problem: &Problem,
+    given: &Claim,
+    best: &Tried,
+    mut stated: Vec<Stated>,
+    levelled: bool,
+) -> Claim {
     let mut claim = Claim {
         sample_rate_hz: given.sample_rate_hz,
         quantization_lsb_arcsec: given.quantization_lsb_arcsec,
@@ -359,7 +372,8 @@ fn augmented(problem: &Problem, given: &Claim, best: &Tried, mut stated: Vec<Sta
     claim.noise.q = given.noise.q;
     let noise = &best.hypothesis.noise;
     for (i, slot) in [&mut claim.noise.n, &mut claim.noise.b, &mut claim.noise.k].into_iter().enumerate() {
-        if !noise.freed[i] {
+        let by_level = i == 0 && levelled && !stated.iter().any(|s| s.effect.kind() == "excess_arw");
+        if !noise.freed[i] || by_level {
             *slot = noise.base[i];
         }
     }
@@ -372,11 +386,15 @@ fn augmented(problem: &Problem, given: &Claim, best: &Tried, mut stated: Vec<Sta
         *ppm += nuisance_value(problem, best, Nuisance::ScaleFactor);
     }
     // The bias is what is left of the mean.
-    let correction = estimates::correction(best, &problem.scenes);
+    let correction = contribution::correction(best, &problem.scenes);
     let n = observed.len().max(1) as f64;
     let added = correction.map_or(0.0, |c| c.iter().sum::<f64>() / n);
     claim.mean.bias_deg_h = observed.iter().sum::<f64>() / n - added;
     claim.effects.append(&mut stated);
+    // N, B and K are those that the stated level multiplies.
+    if let Some((_, rms)) = level(&claim, &problem.drivers) {
+        claim.noise = scaled(claim.noise, 1.0 / rms);
+    }
     if problem.grid.missing() > 0
         && !claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples")
         && let Some(effect) = crate::effect::find("dropped_samples")

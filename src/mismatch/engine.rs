@@ -6,7 +6,9 @@ use super::coarse;
 use super::departures::{self, Departure};
 use super::heldout::Halves;
 use super::hypothesis::fit;
+use super::lattice::{self, Lattice};
 use super::local;
+use super::noise_fit::SpectrumIn;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::problem::{Problem, drivers};
@@ -14,7 +16,7 @@ use super::regular::{Irregular, Regular};
 use super::samples::{self, Named};
 use super::select::{self, Selection, Slot};
 use crate::claim::Claim;
-use crate::effect::{Column, EFFECTS, Effect, Model};
+use crate::effect::{Column, EFFECTS, Effect, Model, number};
 use crate::series::Series;
 use crate::text::Note;
 use std::collections::BTreeMap;
@@ -46,7 +48,7 @@ pub fn explain(
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
     drop(regular);
     let rows = problem.scenes.rows;
-    let base = problem.baseline();
+    let base = with_stated_jumps(&mut problem, options.alpha);
     let before = tests(&problem, &base, problem.level.as_deref());
     let held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
@@ -92,11 +94,13 @@ fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departu
 /// not state is named first: nothing finer can be judged beside it.
 fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Options) -> Problem {
     let problem = Problem::new(regular, claim);
-    let stated = problem.claim.quantization_lsb_arcsec;
+    let as_effect = claim.effects.iter().filter(|e| e.effect.kind() == "quantization");
+    let as_effect = as_effect.filter_map(|e| number(&e.values, "lsb_arcsec")).fold(0.0, f64::max);
+    let stated = claim.quantization_lsb_arcsec.max(as_effect);
     let lsb = if stated > 0.0 { Some(stated) } else { problem.scenes.lattice_arcsec };
     let m = lsb.map_or(1, |lsb| coarse::group(lsb, &problem.claim, problem.residual.len()));
     let Some(lsb) = lsb.filter(|_| m > 1) else { return problem };
-    let mut claim = problem.claim.clone();
+    let mut claim = claim.clone();
     if stated <= 0.0 {
         if !options.allows("quantization") {
             return problem;
@@ -112,7 +116,11 @@ fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Op
             problem.scenes.rows,
             options.alpha,
         ) {
-            Some(delta_bic) => found.named.extend(samples::quantization(lsb, gain, delta_bic, &problem)),
+            Some(delta_bic) => {
+                let lattice = lattice::of(regular)
+                    .unwrap_or(Lattice { increment_arcsec: lsb, open_arcsec: 1e-6 * lsb });
+                found.named.extend(samples::quantization(lattice, gain, delta_bic, &problem));
+            }
             None => return problem,
         }
     }
@@ -176,9 +184,14 @@ fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
     if moved.hypothesis.courses.is_empty() {
         return start.clone();
     }
-    let mut hypothesis = moved.hypothesis.clone();
+    refitted(moved, problem)
+}
+
+/// A hypothesis fitted to what a problem has become.
+fn refitted(tried: &Tried, problem: &Problem) -> Tried {
+    let mut hypothesis = tried.hypothesis.clone();
     let fit = fit(&mut hypothesis, &problem.scenes.full);
-    Tried { hypothesis, fit, ..moved.clone() }
+    Tried { hypothesis, fit, ..tried.clone() }
 }
 
 /// Sets bursts aside; the claim's fit without them.
@@ -205,7 +218,7 @@ fn take_bursts(
         found.named.extend(samples::bursts(&bursts, delta_bic, &removed, problem));
         found.take(removed);
     }
-    problem.baseline()
+    refitted(base, problem)
 }
 
 /// Jumps between two levels on one of the hypotheses that they may stand beside.
@@ -241,6 +254,29 @@ fn jumps(problem: &Problem, start: &Tried, selection: &Selection, alpha: f64) ->
     judged.max_by(|a, b| (a.delta_bic - a.rival).total_cmp(&(b.delta_bic - b.rival)))
 }
 
+/// The claim's own fit where it states jumps between two levels: they are taken out where they are found as they are
+/// stated, and stand as the Markov process that has their spectrum where they cannot be told one by one.
+fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> Tried {
+    const AS_STATED: f64 = 2.0;
+    let base = problem.baseline();
+    let Some((amplitude, dwell_s)) = problem.stated_telegraph() else { return base };
+    let alone = Selection { best: base.clone(), chosen: vec![], first: vec![] };
+    if let Some(Jumps { telegraph, .. }) = jumps(problem, &base, &alone, alpha) {
+        let [low, high] = telegraph.amplitude_ci95;
+        if (telegraph.amplitude_deg_h - amplitude).abs() < 0.5 * AS_STATED * (high - low) {
+            problem.take(&telegraph.course);
+            return problem.baseline();
+        }
+    }
+    let markov = crate::effect::find("markov_long");
+    let same = markov.map(|effect| SpectrumIn {
+        effect,
+        fitted: vec![0.5 * dwell_s, 0.5 * amplitude],
+        stated: true,
+    });
+    problem.baseline_with(same)
+}
+
 /// Takes out jumps between two levels where they explain more than anything else does.
 fn take_telegraph(
     problem: &mut Problem,
@@ -249,12 +285,12 @@ fn take_telegraph(
     found: &mut Found,
     options: &Options,
 ) {
-    let stated = problem.stated_telegraph();
-    if !stated && (selection.chosen.is_empty() || !options.allows("random_telegraph")) {
+    let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "random_telegraph");
+    if stated || selection.chosen.is_empty() || !options.allows("random_telegraph") {
         return;
     }
     let Some(Jumps { telegraph, delta_bic, rival, instead }) =
-        jumps(problem, start, selection, options.alpha).filter(|j| stated || j.delta_bic >= j.rival)
+        jumps(problem, start, selection, options.alpha).filter(|j| j.delta_bic >= j.rival)
     else {
         return;
     };
@@ -263,7 +299,7 @@ fn take_telegraph(
     if start.hypothesis.noise.freed[0] {
         base = samples::with_free_level(&base, problem);
     }
-    if !stated && let Some(mut named) = samples::telegraph(&telegraph, delta_bic, problem) {
+    if let Some(mut named) = samples::telegraph(&telegraph, delta_bic, problem) {
         named.equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
         // The fit without the course counts it as known: it gains more than the jumps do.
         named.local_gain = telegraph.gain - (base.fit.log_likelihood - start.fit.log_likelihood);

@@ -9,7 +9,6 @@ use super::process;
 use super::scene::Scene;
 use super::select::Slot;
 use crate::effect::{Course, Effect, Model, Param, SpectrumAct, Value, Values};
-use crate::numeric::cosine::inverse_dct2;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -20,6 +19,9 @@ const DROP_95: f64 = 1.920_729;
 
 /// Factor either way within which a parameter must be told for it to be stated.
 const OPEN: f64 = 100.0;
+
+/// Relative deviation of a number that a fit does not move, as of a whole number of samples.
+const EXACT: f64 = 1e-6;
 
 /// Name of the parameter that is an instant.
 pub const INSTANT: &str = "time_s";
@@ -392,7 +394,7 @@ fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scenes: 
         }
         out.stated.insert(param.name.to_owned(), Value::Number(*value));
         if param.reported
-            && let Some(ci95) = interval(param, *value, deviation(i))
+            && let Some(ci95) = interval(param, *value, deviation(i).max(EXACT * value.abs()))
         {
             let unit = param.unit.to_owned();
             out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
@@ -407,40 +409,4 @@ fn of_spectrum(effect: &'static dyn Effect, index: usize, best: &Tried, scenes: 
             .insert("rms_deg_h".to_owned(), ParameterValue { value: spread, unit: "deg/h".to_owned(), ci95 });
     }
     out
-}
-
-/// What everything that a hypothesis adds to the claim contributes to the rate, deg/h on the grid: courses, and the best
-/// linear estimate of processes that are slow or narrow-band. `None` where nothing can be predicted sample by sample.
-pub fn correction(best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
-    let scene = &scenes.full;
-    let mut out = vec![0.0; scene.drivers.samples];
-    let mut any = false;
-    for inside in &best.hypothesis.courses {
-        let Some(course) = inside.course() else { continue };
-        let parts = course.parts(&inside.shape, &scene.drivers);
-        any = true;
-        if let Some(fixed) = &parts.fixed {
-            out.iter_mut().zip(fixed).for_each(|(o, f)| *o += f);
-        }
-        for (column, c) in parts.free.iter().zip(&inside.coefficients) {
-            out.iter_mut().zip(column).for_each(|(o, z)| *o += c * z);
-        }
-    }
-    for (i, part) in best.hypothesis.noise.spectra.iter().enumerate() {
-        let Model::Spectrum(spectrum) = part.effect.model() else { continue };
-        if part.stated || !spectrum.has_course() {
-            continue;
-        }
-        any = true;
-        let densities = best.hypothesis.noise.added_densities(i, scene);
-        let own = scene.powers(&densities);
-        let modes: Vec<f64> = best
-            .residual(scenes)
-            .iter()
-            .zip(own.iter().zip(&best.powers(scenes)))
-            .map(|(x, (s, p))| if s.is_finite() && p.is_finite() { x * s / p } else { 0.0 })
-            .collect();
-        out.iter_mut().zip(inverse_dct2(&modes)).for_each(|(o, c)| *o += c);
-    }
-    any.then_some(out)
 }

@@ -1,13 +1,23 @@
 //! Whether the values of a recording lie on a lattice, and its step as an angle increment.
 
 use super::regular::Regular;
+use std::collections::BTreeMap;
 
 /// Values looked at.
 const LOOKED: usize = 4096;
 
-/// The step of the lattice that the values lie on, as the angle increment of a sample, arcsec. `None` where there is
-/// none, or where it is no more than the last digit that the file writes.
-pub fn increment_arcsec(regular: &Regular) -> Option<f64> {
+/// A lattice that values lie on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// Its step as the angle increment of a sample, arcsec.
+    pub increment_arcsec: f64,
+    /// What the digits that the file writes leave open of it, either way, arcsec.
+    pub open_arcsec: f64,
+}
+
+/// The lattice that the values lie on. `None` where there is none, or where it is no more than the last digit that the
+/// file writes.
+pub fn of(regular: &Regular) -> Option<Lattice> {
     let values: Vec<f64> = regular
         .rate
         .iter()
@@ -53,5 +63,30 @@ pub fn increment_arcsec(regular: &Regular) -> Option<f64> {
     let distinct = steps.last().copied().unwrap_or(0.0) / step;
     // A step of a round decimal number is how the file was written, which a few dozens of levels do not tell; an angle
     // increment is seen in the spectrum as well, and that decides.
-    (share > 0.99 && distinct < 2000.0).then_some(step * regular.grid.dt_s)
+    if share <= 0.99 || distinct >= 2000.0 {
+        return None;
+    }
+    let (step, open) = by_levels(&values, step);
+    let dt_s = regular.grid.dt_s;
+    Some(Lattice { increment_arcsec: step * dt_s, open_arcsec: open * dt_s })
+}
+
+/// The step as the slope of the levels that occur, each of which was rounded once, and what their rounding leaves open.
+fn by_levels(values: &[f64], step: f64) -> (f64, f64) {
+    let first = values.first().copied().unwrap_or(0.0);
+    let levels: BTreeMap<i64, f64> =
+        values.iter().map(|v| (((v - first) / step).round() as i64, *v)).collect();
+    let n = levels.len() as f64;
+    let mean = |f: &dyn Fn(&i64, &f64) -> f64| levels.iter().map(|(k, v)| f(k, v)).sum::<f64>() / n;
+    let (middle, level) = (mean(&|k, _| *k as f64), mean(&|_, v| *v));
+    let square = levels.keys().map(|k| (*k as f64 - middle).powi(2)).sum::<f64>();
+    if levels.len() < 3 {
+        return (step, 1e-3 * step);
+    }
+    let slope = levels.iter().map(|(k, v)| (*k as f64 - middle) * (v - level)).sum::<f64>() / square;
+    let off = |(k, v): (&i64, &f64)| (v - level - slope * (*k as f64 - middle)).abs();
+    let largest = levels.iter().map(off).fold(0.0, f64::max);
+    // Errors of rounding are bounded: no slope that differs by more keeps within twice the largest of them.
+    let span = levels.keys().last().zip(levels.keys().next()).map_or(1, |(a, b)| a - b) as f64;
+    (slope, (4.0 * largest / span).max(1e-9 * slope.abs()))
 }

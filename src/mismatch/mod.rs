@@ -4,6 +4,7 @@ mod assemble;
 pub mod candidates;
 pub mod coarse;
 pub mod columns;
+mod contribution;
 pub mod departures;
 pub mod draw;
 pub mod driver;

@@ -4,11 +4,12 @@ use super::candidates::{Scenes, Tried};
 use super::hypothesis::{Hypothesis, fit};
 use super::impute;
 use super::lattice;
-use super::noise_fit::Noise;
+use super::noise_fit::{Noise, SpectrumIn};
 use super::regular::{Grid, Regular, fast_length};
 use super::scene::{Scene, smoothed};
 use crate::claim::{Claim, Stated};
-use crate::effect::{Column, Drivers, Model, Nuisance};
+use crate::effect::{Column, Drivers, Model, Nuisance, number};
+use crate::noise::model::NoiseModel;
 use crate::numeric::cosine::inverse_dct2;
 use std::sync::Arc;
 
@@ -23,7 +24,7 @@ const SEED: u64 = 0x5a67_6e61_6320_0005;
 pub struct Problem {
     /// The grid of the recording.
     pub grid: Grid,
-    /// The claim.
+    /// The claim, its noise as it is on the average of the record where its level changes.
     pub claim: Claim,
     /// Columns on the grid.
     pub drivers: Arc<Drivers>,
@@ -53,22 +54,29 @@ impl Problem {
             }
         }
         let usable = regular.grid.present.clone();
-        let lattice_arcsec = lattice::increment_arcsec(regular);
+        let level = level(claim, &drivers);
+        let mut claim = claim.clone();
+        if let Some((_, rms)) = &level {
+            claim.noise = scaled(claim.noise, *rms);
+        }
+        let lattice_arcsec = lattice::of(regular).map(|l| l.increment_arcsec);
         let rows = usable.iter().filter(|u| **u).count();
         let empty = Scene::new(drivers.clone(), &residual, &[]);
-        let noise = Noise::of(claim);
+        let noise = Noise::of(&claim);
         let powers = empty.powers(&noise.densities(&empty));
         impute::fill(&mut residual, &usable, &powers, SEED);
-        let scenes = scenes(&drivers, claim, &residual, lattice_arcsec, rows);
-        let level = level(claim, &drivers);
-        Problem { grid: regular.grid.clone(), claim: claim.clone(), drivers, residual, usable, level, scenes }
+        let scenes = scenes(&drivers, &claim, &residual, lattice_arcsec, rows);
+        let level = level.map(|(level, _)| level);
+        Problem { grid: regular.grid.clone(), claim, drivers, residual, usable, level, scenes }
     }
 
-    /// True when the claim states jumps between two levels without saying when.
-    pub fn stated_telegraph(&self) -> bool {
-        let telegraph = |e: &&Stated| e.effect.kind() == "random_telegraph";
-        let unknown = |e: &Stated| e.effect.stated_course(&e.values, &self.drivers).is_none();
-        self.claim.effects.iter().find(telegraph).is_some_and(unknown)
+    /// Size of the jumps (deg/h) and mean time at a level (s) where the claim states jumps between two levels without
+    /// saying when.
+    pub fn stated_telegraph(&self) -> Option<(f64, f64)> {
+        let stated = self.claim.effects.iter().find(|e| e.effect.kind() == "random_telegraph")?;
+        let known = stated.effect.stated_course(&stated.values, &self.drivers).is_some();
+        let of = |name: &str| number(&stated.values, name);
+        Some((of("amplitude_deg_h")?.abs(), of("mean_dwell_s")?)).filter(|_| !known)
     }
 
     /// Takes a course out of the residual.
@@ -101,14 +109,27 @@ impl Problem {
 
     /// The claim alone, its nuisances fitted under their priors.
     pub fn baseline(&self) -> Tried {
-        let mut hypothesis = Hypothesis { noise: Noise::of(&self.claim), courses: vec![] };
+        self.baseline_with(None)
+    }
+
+    /// The same with one more stated effect on the spectrum.
+    pub fn baseline_with(&self, stated: Option<SpectrumIn>) -> Tried {
+        let mut noise = Noise::of(&self.claim);
+        noise.spectra.extend(stated);
+        let mut hypothesis = Hypothesis { noise, courses: vec![] };
         let fit = fit(&mut hypothesis, &self.scenes.full);
         Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
     }
 }
 
-/// The level of the noise that stated effects give each sample, scaled to a mean square of 1.
-fn level(claim: &Claim, drivers: &Drivers) -> Option<Vec<f64>> {
+/// N, B and K times a factor.
+pub(super) fn scaled(noise: NoiseModel, factor: f64) -> NoiseModel {
+    NoiseModel { n: noise.n * factor, b: noise.b * factor, k: noise.k * factor, ..noise }
+}
+
+/// The level of the noise that stated effects give each sample, scaled to a mean square of 1, and its root mean square
+/// over what N, B and K say.
+pub(super) fn level(claim: &Claim, drivers: &Drivers) -> Option<(Vec<f64>, f64)> {
     let kinds = ["noise_variance_time", "noise_variance_rate"];
     let stated: Vec<&Stated> = claim.effects.iter().filter(|e| kinds.contains(&e.effect.kind())).collect();
     if stated.is_empty() {
@@ -127,7 +148,7 @@ fn level(claim: &Claim, drivers: &Drivers) -> Option<Vec<f64>> {
         rate.iter().zip(&mean).map(|(y, m)| (y - m - drivers.claim.bias_deg_h).abs().max(1e-6)).collect();
     let root = (level.iter().map(|g| g * g).sum::<f64>() / level.len().max(1) as f64).sqrt();
     level.iter_mut().for_each(|g| *g /= root);
-    Some(level)
+    Some((level, root))
 }
 
 /// Samples to average and how many averages to keep.

@@ -4,6 +4,7 @@ use super::candidates::Tried;
 use super::estimates::Estimated;
 use super::finding::ParameterValue;
 use super::improvement::Improvement;
+use super::lattice::Lattice;
 use super::local::{Bursts, Law, Level, Telegraph};
 use super::problem::Problem;
 use super::select::ENOUGH;
@@ -42,10 +43,9 @@ fn value(value: f64, unit: &str, ci95: [f64; 2]) -> ParameterValue {
 }
 
 /// Rounding in steps that the values themselves show, as a finding.
-pub fn quantization(lsb_arcsec: f64, gain: f64, delta_bic: f64, problem: &Problem) -> Option<Named> {
-    // The lattice gives the step to the digits that the file writes.
-    let digits = 1e-6 * lsb_arcsec;
-    let ci95 = [lsb_arcsec - digits, lsb_arcsec + digits];
+pub fn quantization(lattice: Lattice, gain: f64, delta_bic: f64, problem: &Problem) -> Option<Named> {
+    let (lsb_arcsec, open) = (lattice.increment_arcsec, lattice.open_arcsec);
+    let ci95 = [lsb_arcsec - open, lsb_arcsec + open];
     let step = lsb_arcsec / problem.grid.dt_s;
     // Successive errors of the angle are subtracted: twice the variance of a rounding error.
     let rms = step / 6f64.sqrt();
@@ -77,7 +77,7 @@ pub fn bursts(found: &Bursts, delta_bic: f64, removed: &[f64], problem: &Problem
     let rms = (removed.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / n).sqrt();
     let spread = 1.96 / (2.0 * found.samples.len().max(1) as f64).sqrt();
     let mut reported = BTreeMap::new();
-    reported.insert("count".to_owned(), value(count, "", [count, count]));
+    reported.insert("count".to_owned(), value(count, "", [count, count + found.missed as f64]));
     reported.insert("rms_deg_h".to_owned(), value(rms, "deg/h", [rms * (-spread).exp(), rms * spread.exp()]));
     let size = |g: &(usize, usize)| {
         let inside = &removed[g.0..g.0 + g.1];
@@ -123,6 +123,9 @@ pub fn level(found: &[Level], delta_bic: f64, rows: usize, problem: &Problem) ->
         .collect();
     let reported = BTreeMap::from([("ratio".to_owned(), value(best.ratio, "", best.ci95))]);
     let mut stated = BTreeMap::from([("ratio".to_owned(), Value::Number(best.ratio))]);
+    if let Law::Rate { exponent, .. } = &best.law {
+        stated.insert("exponent".to_owned(), Value::Number(f64::from(*exponent)));
+    }
     if best.kind == "noise_variance_time" {
         let knots = match &best.law {
             Law::Time(knots) => knots.clone(),

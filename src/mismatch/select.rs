@@ -97,6 +97,23 @@ fn bic_of_rival(candidate: &Candidate, scenes: &Scenes) -> f64 {
     candidate.tried.bic(rows) - beside.map_or(0, |b| b.beside.len()) as f64 * ((rows as f64).ln() - 1.0)
 }
 
+/// How many modes tell of a process: the sum of squares of its share of the power. A parameter of it is worth the logarithm
+/// of that many, not of all samples.
+fn modes_of_process(slot: Slot, best: &Tried, scenes: &Scenes) -> Option<f64> {
+    let Slot::Spectrum(i) = slot else { return None };
+    let scene = &scenes.full;
+    let added = best.hypothesis.noise.added_densities(i, scene);
+    let shares = added.iter().zip(&best.fit.densities).map(|(a, s)| (a / s).powi(2));
+    Some(shares.zip(&scene.bins).map(|(share, bin)| share * scene.weight(bin)).sum::<f64>().max(2.0))
+}
+
+/// What BIC charges a rival process for parameters beyond those of the process that was chosen, more than they are worth.
+fn overcharged(candidate: &Candidate, best: &Tried, modes: Option<f64>, rows: usize) -> f64 {
+    let process = matches!(candidate.effect.model(), Model::Spectrum(_));
+    let more = candidate.tried.parameters.saturating_sub(best.parameters) as f64;
+    modes.filter(|_| process).map_or(0.0, |m| more * (rows as f64 / m).ln().max(0.0))
+}
+
 /// Puts a freed coefficient back under its prior; the number of parameters that go.
 fn restore(noise: &mut Noise, part: &SpectrumIn) -> usize {
     if let Model::Spectrum(s) = part.effect.model()
@@ -213,10 +230,14 @@ fn chosen(
             let rivals = if single { first.to_vec() } else { all(&without, scenes, options) };
             let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
             let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
+            let modes = modes_of_process(slot, best, scenes);
+            let near = |c: &Candidate| {
+                bic_of_rival(c, scenes) - overcharged(c, best, modes, rows) < best.bic(rows) + ENOUGH
+            };
             let equivalents = rivals
                 .iter()
                 .filter(|c| c.effect.kind() != effect.kind() && c.effect.reported_kind() == c.effect.kind())
-                .filter(|c| bic_of_rival(c, scenes) < best.bic(rows) + ENOUGH)
+                .filter(|c| near(c))
                 .take(3)
                 .cloned()
                 .collect();

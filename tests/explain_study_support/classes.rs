@@ -54,7 +54,7 @@ pub const REPLACEMENTS: &[(&str, &[&str])] = &[
     ("thermal_lag", &["temp_rate", "temp_hysteresis", "unobserved_driver"]),
     ("temp_hysteresis", &["thermal_lag", "temp_rate", "unobserved_driver"]),
     ("warmup_exponential", &["unobserved_driver"]),
-    ("rate_ramp", &["unobserved_driver", "excess_rrw"]),
+    ("rate_ramp", &["unobserved_driver", "excess_rrw", "warmup_exponential"]),
     ("diurnal", &["line", "unobserved_driver", "quasi_periodic"]),
     ("unobserved_driver", &["excess_rrw", "markov_long"]),
     ("excess_flicker", &["markov_long", "excess_rrw"]),
@@ -71,7 +71,7 @@ pub const REPLACEMENTS: &[(&str, &[&str])] = &[
     ("time_offset", &["clock_drift"]),
     ("clock_drift", &["time_offset"]),
     ("earth_rate_projection", &["table_harmonic"]),
-    ("table_harmonic", &["earth_rate_projection"]),
+    ("table_harmonic", &["earth_rate_projection", "reset_ripple"]),
     ("bias_step", &["heading_change"]),
     ("heading_change", &["bias_step"]),
 ];

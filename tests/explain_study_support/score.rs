@@ -194,13 +194,20 @@ pub fn score(
         s.first = effects.iter().any(|t| exactly(entry, t));
         s.class = effects.iter().any(|t| named(entry, t));
     }
+    // Of an effect of no catalogue the verdict decides: it is unknown wherever an entry is.
+    if effects.iter().any(|t| t["catalogued"] == false) && s.verdict == "unknown-mismatch" {
+        s.class = true;
+    }
     let partner =
         |t: &Value| found.iter().find(|e| exactly(e, t)).or_else(|| found.iter().find(|e| named(e, t)));
     s.all_named = effects.iter().all(|t| partner(t).is_some());
     s.surplus = found.iter().filter(|e| !effects.iter().any(|t| named(e, t))).count();
     // Without the right name the principal finding may still be in the right place.
-    s.located =
-        effects.iter().all(|t| partner(t).or(found.first()).is_some_and(|e| located(e, t, resolution_s)));
+    s.located = effects.iter().all(|t| {
+        let principal = partner(t).or(found.first());
+        let unknown = found.iter().filter(|e| t["catalogued"] == false && e["kind"] == "unknown");
+        principal.into_iter().chain(unknown).any(|e| located(e, t, resolution_s))
+    });
     for t in effects {
         if let Some(entry) = found.iter().find(|e| exactly(e, t)) {
             s.covered.extend(intervals(entry, t));

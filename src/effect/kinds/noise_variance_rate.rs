@@ -12,7 +12,7 @@ static DOC: Doc = Doc {
         en: "Jitter of the time stamps, unsteady drive of the table or the loop's own errors grow with the rate.",
         ru: "Дрожание меток времени, неравномерность привода стола или погрешности контура растут со скоростью.",
     },
-    formula: "σ² = σ₀² (1 + (r² − 1)(Ω/Ω_max)²)",
+    formula: "σ² = σ₀² (1 + (r² − 1)(|Ω|/Ω_max)^p), p = 2",
     signature: Both {
         en: "The scatter of the residual grows with the size of the rate, the same for both signs.",
         ru: "Разброс остатка растёт с модулем скорости, одинаково для обоих знаков.",
@@ -28,7 +28,8 @@ static DOC: Doc = Doc {
     source: "Jitter of time stamps: white angle noise proportional to the rate",
 };
 
-static PARAMS: [Param; 1] = [Param::reported("ratio", "", 1e-3, 1e3)];
+static PARAMS: [Param; 2] =
+    [Param::reported("ratio", "", 1e-3, 1e3), Param::inner("exponent", "", 1.0, 2.0)];
 
 describe! {
     NoiseVarianceRate, "noise_variance_rate", Samples in InputRate, needs [TableRate],
@@ -44,8 +45,9 @@ impl Samples for NoiseVarianceRate {
         if largest <= 0.0 {
             return;
         }
+        let exponent = number(values, PARAMS[1].name).unwrap_or(2.0);
         let gain = |i: usize| {
-            let share = table.get(i).map_or(0.0, |r| (r / largest).powi(2));
+            let share = table.get(i).map_or(0.0, |r| (r.abs() / largest).powf(exponent));
             (1.0 + (ratio * ratio - 1.0) * share).max(0.0).sqrt()
         };
         super::noise_level::scale(drivers, rate, gain);

@@ -32,6 +32,9 @@ pub struct Bursts {
     pub groups: Vec<(usize, usize)>,
     /// Samples to set aside.
     pub samples: Vec<usize>,
+    /// Groups at most that are too small to be found: as many as there are between the smallest that is found and twice
+    /// its size, if sizes are no more frequent below it.
+    pub missed: usize,
     /// Deviation of the whitened samples set aside; 1 where the noise is as the hypothesis says.
     pub deviation: f64,
     /// Gain of log-likelihood by a deviation of their own, against the level of their neighbourhood.
@@ -125,7 +128,17 @@ pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Bursts> {
     let gain = 0.5 * k * (excess - 1.0 - excess.ln());
     let deviation = (samples.iter().map(|i| flat.white[*i].powi(2)).sum::<f64>() / k).sqrt();
     let parameters = 2 * groups.len() + 1;
-    Some(Bursts { groups, samples, deviation, gain, parameters, p_value })
+    let missed = missed(&scan, &groups);
+    Some(Bursts { groups, samples, missed, deviation, gain, parameters, p_value })
+}
+
+/// Groups that may have been too small to be found.
+fn missed(scan: &Scan, groups: &[(usize, usize)]) -> usize {
+    let found = groups.len() as f64;
+    // What chance may hold of as many looks at the share of false groups that is admitted.
+    let smallest = (scan.looks / (FALSE_SHARE * found.max(1.0))).ln().max(1.0);
+    // Gain goes with the square of the size.
+    groups.iter().filter(|g| scan.gain(g.0, g.1) < 4.0 * smallest).count()
 }
 
 fn lengths(longest: usize) -> Vec<usize> {
