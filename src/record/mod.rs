@@ -11,6 +11,7 @@ pub mod explanation;
 mod goodness;
 mod integrity;
 mod interval_mean;
+mod origin;
 mod phase;
 mod table_step;
 
@@ -24,6 +25,7 @@ pub use explanation::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
 pub use interval_mean::IntervalMeanRecord;
+pub use origin::{ColumnRecord, LimitsFile, ProcedureRecord, Program, RecordingFile, Session, UnitUnderTest};
 pub use phase::PhaseRecord;
 pub use table_step::TableStepRecord;
 
@@ -112,122 +114,6 @@ pub struct NoteSchema {
     id: String,
     /// Its arguments.
     args: std::collections::BTreeMap<String, serde_json::Value>,
-}
-
-/// The program that wrote a result.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct Program {
-    /// `sagnac`.
-    pub name: &'static str,
-    /// Version of the program.
-    pub version: String,
-}
-
-/// Identity of the procedure.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct ProcedureRecord {
-    /// Id, for example `static-bias`.
-    pub id: String,
-    /// Title shown on the report.
-    pub title: String,
-    /// Revision.
-    pub revision: String,
-    /// Standard followed.
-    pub standard: Option<String>,
-    /// Clause of the standard.
-    pub clause: Option<String>,
-    /// Who wrote it.
-    pub author: Option<String>,
-    /// File it was read from, as given.
-    pub path: String,
-    /// SHA-256 of the file.
-    pub sha256: String,
-    /// The limits file, when one was given.
-    pub limits: Option<LimitsFile>,
-}
-
-/// Identity of a limits file.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct LimitsFile {
-    /// Id of the limits.
-    pub id: String,
-    /// Title.
-    pub title: String,
-    /// Revision.
-    pub revision: String,
-    /// Where the values come from.
-    pub source: Option<String>,
-    /// File it was read from, as given.
-    pub path: String,
-    /// SHA-256 of the file.
-    pub sha256: String,
-}
-
-/// Identity of the unit that was tested.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
-pub struct UnitUnderTest {
-    /// Serial number.
-    pub serial: Option<String>,
-    /// Family, for example `OIUS-501`.
-    pub family: Option<String>,
-    /// Part number.
-    pub part: Option<String>,
-    /// Revision of the part.
-    pub revision: Option<String>,
-    /// Lot or batch.
-    pub lot: Option<String>,
-}
-
-/// Who tested, where, when.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
-pub struct Session {
-    /// Operator.
-    pub operator: Option<String>,
-    /// Station.
-    pub station: Option<String>,
-    /// When the evaluation ran, RFC 3339, UTC.
-    pub evaluated_at: String,
-}
-
-/// One file of the recording.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct RecordingFile {
-    /// Path as given.
-    pub path: String,
-    /// SHA-256 of the bytes of the file.
-    pub sha256: String,
-    /// Size of the file, bytes.
-    pub bytes: u64,
-    /// Rows read.
-    pub samples: u64,
-    /// Measured mean sample interval, s.
-    pub sample_interval_s: f64,
-    /// Standard uncertainty of the interval from the scatter of the stamps, s; absent without stamps. What the clock is
-    /// off by against true time is not in it.
-    pub sample_interval_uncertainty_s: Option<f64>,
-    /// Change of the clock's rate from the beginning to the end, ppm, where the stamps tell it.
-    pub clock_drift_ppm: Option<f64>,
-    /// Phase of the test that the file belongs to, where a manifest says it.
-    pub phase: Option<String>,
-    /// Start of the recording, RFC 3339, when the stamps are absolute.
-    pub start: Option<String>,
-    /// Last stamp minus first stamp plus one interval, s.
-    pub duration_s: f64,
-    /// Columns that were used: name, role, unit.
-    pub columns: Vec<ColumnRecord>,
-}
-
-/// One column and what it was taken for.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct ColumnRecord {
-    /// Name in the file.
-    pub name: String,
-    /// Channel id used in this result, for example `rate`.
-    pub channel: String,
-    /// Role, for example `temperature`.
-    pub role: String,
-    /// Unit in the file.
-    pub unit: String,
 }
 
 /// State of a condition.

@@ -9,6 +9,7 @@ mod deviations;
 mod evidence;
 mod explained;
 mod faults;
+mod figures;
 mod goodness;
 mod interval_means;
 mod matrix;
@@ -22,6 +23,9 @@ pub use deviations::{DeviationCell, DeviationRow, Deviations};
 pub use evidence::{Clause, Evidence, Excluded, Instrument, Line, Model, ModelRemark, Power, Waiver};
 pub use explained::Explained;
 pub use faults::{Fault, FaultKind, Faults};
+pub use figures::FigureView;
+pub(crate) use figures::caption;
+use figures::drawn;
 pub use goodness::Goodness;
 pub use interval_means::{IntervalMean, IntervalMeans};
 pub use matrix::{Matrix, MatrixRow};
@@ -33,7 +37,7 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::record::RunRecord;
 use crate::report::number::{count, date_time, duration, limit};
-use crate::report::{file_name, methods, svg, unit};
+use crate::report::{methods, unit};
 use crate::text::{Arg, Lang, Note, fill, lookup};
 use serde::Serialize;
 
@@ -111,23 +115,6 @@ pub struct FileView {
     pub sha256: String,
     /// Size, rows, interval, start, length; columns.
     pub details: Vec<String>,
-}
-
-/// A figure with its drawing.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FigureView {
-    /// Id.
-    pub id: String,
-    /// Number, counted from 1.
-    pub number: usize,
-    /// Title.
-    pub title: String,
-    /// What is to be seen, in a sentence; empty when the table has none.
-    pub caption: String,
-    /// The drawing.
-    pub svg: String,
-    /// File, relative to the report, as a URL.
-    pub href: String,
 }
 
 /// An entry of the methods appendix.
@@ -381,55 +368,6 @@ fn files(record: &RunRecord, words: Words) -> Vec<FileView> {
         add("report.procedure", &p.path, &p.sha256);
         if let Some(l) = &p.limits {
             add("report.limits", &l.path, &l.sha256);
-        }
-    }
-    out
-}
-
-fn drawn(record: &RunRecord, figures: &[Figure], words: Words) -> Vec<FigureView> {
-    figures
-        .iter()
-        .enumerate()
-        .map(|(i, figure)| {
-            let title = words.t(figure.title);
-            let file = record
-                .figures
-                .iter()
-                .find(|f| f.id == figure.id)
-                .map_or_else(|| format!("figures/{}", file_name(&figure.id)), |f| f.file.clone());
-            FigureView {
-                id: figure.id.clone(),
-                number: i + 1,
-                title: if figure.channel.is_empty() {
-                    title
-                } else {
-                    format!("{title} · {}", figure.channel)
-                },
-                caption: caption(figure, words),
-                svg: svg::render(figure, words.lang),
-                href: encode(&file),
-            }
-        })
-        .collect()
-}
-
-/// What is to be seen, in a sentence, and the numbers that belong to it.
-pub(crate) fn caption(figure: &Figure, words: Words) -> String {
-    let id = figure.title.strip_prefix("figure.title.").unwrap_or_default();
-    let mut sentences: Vec<String> =
-        lookup(words.lang, &format!("figure.caption.{id}")).map(str::to_owned).into_iter().collect();
-    sentences.extend(figure.remarks.iter().map(|r| words.say(r)));
-    sentences.join(" ")
-}
-
-/// A relative path as a URL.
-fn encode(path: &str) -> String {
-    let mut out = String::with_capacity(path.len());
-    for byte in path.replace('\\', "/").bytes() {
-        if byte.is_ascii_alphanumeric() || matches!(byte, b'/' | b'.' | b'-' | b'_' | b'~' | b'@') {
-            out.push(char::from(byte));
-        } else {
-            out.push_str(&format!("%{byte:02X}"));
         }
     }
     out

@@ -1,0 +1,81 @@
+use super::*;
+
+fn limit(max: f64, rule: Rule) -> Limit {
+    Limit { min: None, max: Some(max), rule, risk: 0.05, source: "test".into() }
+}
+
+fn normal(value: f64, u: f64) -> Estimate {
+    Estimate::measured(
+        "static_bias",
+        "rate",
+        value,
+        "deg/h",
+        Spread::Normal { standard_uncertainty: u },
+        "mean",
+    )
+}
+
+#[test]
+fn guard_band_follows_iso_14253() {
+    // ISO 14253-1: acceptance limit is 1.645 u inside the tolerance limit.
+    let j = judge(&normal(0.5, 0.1), &limit(1.0, Rule::GuardBand));
+    assert_eq!(j.verdict, Verdict::Pass);
+    assert!((j.acceptance_max.unwrap() - (1.0 - 0.164_485_363)).abs() < 1e-6);
+    assert_eq!(judge(&normal(0.9, 0.1), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Indeterminate);
+    assert_eq!(judge(&normal(1.1, 0.1), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Indeterminate);
+    assert_eq!(judge(&normal(1.2, 0.1), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Fail);
+    assert_eq!(judge(&normal(1.0001, 0.1), &limit(1.0, Rule::Simple)).verdict, Verdict::Fail);
+}
+
+#[test]
+fn specific_risk_is_that_of_jcgm_106() {
+    let j = judge(&normal(0.9, 0.1), &limit(1.0, Rule::GuardBand));
+    assert!((j.specific_risk.unwrap() - 0.158_655_25).abs() < 1e-6);
+    let j = judge(&normal(1.0, 0.1), &limit(1.0, Rule::Simple));
+    assert!((j.specific_risk.unwrap() - 0.5).abs() < 1e-9);
+}
+
+#[test]
+fn chi_square_bounds_scale_with_the_value() {
+    // edf 10: 95 % factors on a deviation are 0.70 and 1.75 (NIST SP 1065 practice).
+    let i = Spread::ChiSquare { dof: 10.0 }.interval(1.0, 0.95).unwrap();
+    assert!((i.low - 0.6987).abs() < 1e-3 && (i.high - 1.7549).abs() < 1e-3, "{i:?}");
+    let e =
+        Estimate::measured("russian_drift_100s", "rate", 1.0, "deg/h", Spread::ChiSquare { dof: 10.0 }, "s");
+    let j = judge(&e, &limit(2.0, Rule::GuardBand));
+    let acceptance = j.acceptance_max.unwrap();
+    let at_limit = Spread::ChiSquare { dof: 10.0 }.bound(acceptance, 0.95).unwrap();
+    assert!((at_limit - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_a_record_cannot_show_is_never_failed() {
+    let bound = |v| Some(UpperLimit { value: v, coverage: 0.95 });
+    let e = |v| Estimate::not_identifiable("bias_instability", "rate", bound(v), "deg/h", "whittle");
+    assert_eq!(judge(&e(0.5), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Pass);
+    assert_eq!(judge(&e(5.0), &limit(1.0, Rule::GuardBand)).verdict, Verdict::Indeterminate);
+}
+
+#[test]
+fn curves_are_read_both_ways() {
+    let curve = Spread::Curve((-40..=40).map(|i| (f64::from(i) / 10.0, 2.0 + 0.03 * f64::from(i))).collect());
+    assert!((curve.bound(2.0, 0.975).unwrap() - (2.0 + 0.3 * 1.959_964)).abs() < 1e-6);
+    assert!((curve.probability_above(2.0, 2.3).unwrap() - 0.158_655).abs() < 1e-5);
+}
+
+#[test]
+fn acceptance_lies_inside_limits_on_both_sides_of_zero() {
+    let points = (-40..=40).map(|i| (f64::from(i) / 10.0, 0.5 + 0.05 * f64::from(i) / 10.0)).collect();
+    let e = Estimate { spread: Spread::Curve(points), ..normal(0.5, 0.05) };
+    let both = Limit { min: Some(-1.0), ..limit(1.0, Rule::GuardBand) };
+    let j = judge(&e, &both);
+    let (low, high) = (j.acceptance_min.unwrap(), j.acceptance_max.unwrap());
+    assert!((-1.0..-0.9).contains(&low) && (0.8..1.0).contains(&high), "{low} {high}");
+    assert_eq!(j.verdict, Verdict::Pass);
+}
+
+#[test]
+fn worst_wins_in_the_stated_order() {
+    use Verdict::{Error, Fail, Indeterminate, None, Pass};
+    assert!(None < Pass && Pass < Indeterminate && Indeterminate < Fail && Fail < Error);
+}
