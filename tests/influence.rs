@@ -142,6 +142,12 @@ fn holds(result: &Value, id: &str, truth: f64) {
     assert!((low - half..=high + half).contains(&truth), "{id}: {low} … {high}, truth {truth}");
 }
 
+/// A spread that flicker might have made is bounded; the truth is not beyond, nor is the bound far.
+fn bounds(result: &Value, id: &str, truth: f64) {
+    let limit = row(result, id)["upper_limit"]["value"].as_f64().unwrap_or_else(|| panic!("{id}"));
+    assert!(truth <= limit && limit < 3.0 * truth, "{id}: {limit}, truth {truth}");
+}
+
 #[test]
 fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
     let names = ["bias-repeatability", "magnetic-sensitivity", "supply-sensitivity", "vibration"];
@@ -152,7 +158,7 @@ fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
             let (got, result) = run(&procedure, &path(&format!("samples/{name}-{end}.csv")), &serial);
             assert_eq!(got, code, "{name}-{end}: {:#} {:#}", result["summary"], result["measurands"]);
             match (*name, end) {
-                ("bias-repeatability", "pass") => holds(&result, "bias_repeatability", 0.02),
+                ("bias-repeatability", "pass") => bounds(&result, "bias_repeatability", 0.02),
                 ("bias-repeatability", _) => holds(&result, "bias_repeatability", 0.3),
                 ("magnetic-sensitivity", "pass") => holds(&result, "magnetic_sensitivity", 0.05),
                 ("magnetic-sensitivity", _) => holds(&result, "magnetic_sensitivity", 0.6),
@@ -398,9 +404,9 @@ fn study(records: u64, seed: u64, scatters: &[f64]) -> Vec<(String, Count, f64)>
 
 #[test]
 fn intervals_hold_the_truth() {
-    // Of 24 runs at 95 %, fewer than 19 come about less than once in 1000.
-    for (name, count, truth) in study(24, 500_000, &[0.03]) {
-        assert!(count.coverage() >= 19.0 / 24.0, "{}", count.say(&name, truth));
+    // Of 16 runs at 95 %, fewer than 12 come about less than once in 1000.
+    for (name, count, truth) in study(16, 500_000, &[0.03]) {
+        assert!(count.coverage() >= 12.0 / 16.0, "{}", count.say(&name, truth));
     }
 }
 
