@@ -2,7 +2,8 @@
 //! mistakes by their names, and intervals against simulated truth.
 //!
 //! `cargo test --release --test influence -- --ignored write_the_samples` writes the samples anew;
-//! `cargo test --release --test influence -- --ignored long_study --nocapture` measures coverage (SAGNAC_RUNS=n).
+//! `cargo test --release --test influence -- --ignored long_study --nocapture` measures coverage (SAGNAC_RUNS=n,
+//! SAGNAC_FIRST=seed, SAGNAC_ONLY=the beginning of an id).
 
 mod influence_support;
 
@@ -142,6 +143,12 @@ fn holds(result: &Value, id: &str, truth: f64) {
     assert!((low - half..=high + half).contains(&truth), "{id}: {low} … {high}, truth {truth}");
 }
 
+/// A spread that flicker might have made is bounded; the truth is not beyond, nor is the bound far.
+fn bounds(result: &Value, id: &str, truth: f64) {
+    let limit = row(result, id)["upper_limit"]["value"].as_f64().unwrap_or_else(|| panic!("{id}"));
+    assert!(truth <= limit && limit < 3.0 * truth, "{id}: {limit}, truth {truth}");
+}
+
 #[test]
 fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
     let names = ["bias-repeatability", "magnetic-sensitivity", "supply-sensitivity", "vibration"];
@@ -152,7 +159,7 @@ fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
             let (got, result) = run(&procedure, &path(&format!("samples/{name}-{end}.csv")), &serial);
             assert_eq!(got, code, "{name}-{end}: {:#} {:#}", result["summary"], result["measurands"]);
             match (*name, end) {
-                ("bias-repeatability", "pass") => holds(&result, "bias_repeatability", 0.02),
+                ("bias-repeatability", "pass") => bounds(&result, "bias_repeatability", 0.02),
                 ("bias-repeatability", _) => holds(&result, "bias_repeatability", 0.3),
                 ("magnetic-sensitivity", "pass") => holds(&result, "magnetic_sensitivity", 0.05),
                 ("magnetic-sensitivity", _) => holds(&result, "magnetic_sensitivity", 0.6),
@@ -362,10 +369,11 @@ const KINDS: [(&str, Noise); 3] = [
 
 /// A random walk that goes on while the unit is off differs from switching on by nothing that runs of minutes show: the
 /// repeatability is studied without it.
-fn study(records: u64, seed: u64, scatters: &[f64]) -> Vec<(String, Count, f64)> {
+fn study(records: u64, seed: u64, scatters: &[f64], only: &str) -> Vec<(String, Count, f64)> {
     let mut out = Vec::new();
     for (kind, noise) in KINDS {
-        for between in scatters.iter().copied().filter(|_| noise.k == 0.0) {
+        let repeated_too = noise.k == 0.0 && "bias_repeatability".starts_with(only);
+        for between in scatters.iter().copied().filter(|_| repeated_too) {
             let s = Series { noise, trend: 0.0, dt: 2.0, ..series(between) };
             let (mut deviation, mut trend) = (Count::default(), Count::default());
             for r in 0..records {
@@ -381,7 +389,7 @@ fn study(records: u64, seed: u64, scatters: &[f64]) -> Vec<(String, Count, f64)>
             ("magnetic_sensitivity", Turns { noise, dt: 2.0, ..turns(&FIELD, 0.1) }, 0.1),
             ("vibration_sensitivity", Turns { noise, dt: 2.0, ..shaken(0.004, louder) }, 0.004),
         ];
-        for (id, turns, truth) in cases {
+        for (id, turns, truth) in cases.into_iter().filter(|c| c.0.starts_with(only)) {
             let (mut unit, mut shift) = (Count::default(), Count::default());
             for r in 0..records {
                 let found = compared(&turns, seed + 10_000 + r);
@@ -398,17 +406,20 @@ fn study(records: u64, seed: u64, scatters: &[f64]) -> Vec<(String, Count, f64)>
 
 #[test]
 fn intervals_hold_the_truth() {
-    // Of 24 runs at 95 %, fewer than 19 come about less than once in 1000.
-    for (name, count, truth) in study(24, 500_000, &[0.03]) {
-        assert!(count.coverage() >= 19.0 / 24.0, "{}", count.say(&name, truth));
+    // Of 16 runs at 95 %, fewer than 12 come about less than once in 1000.
+    for (name, count, truth) in study(16, 500_000, &[0.03], "") {
+        assert!(count.coverage() >= 12.0 / 16.0, "{}", count.say(&name, truth));
     }
 }
 
 #[test]
 #[ignore = "a long study"]
 fn long_study() {
-    let records = std::env::var("SAGNAC_RUNS").ok().and_then(|n| n.parse().ok()).unwrap_or(1000);
-    for (name, count, truth) in study(records, 900_000, &[0.005, 0.02, 0.1]) {
+    let asked =
+        |name: &str, otherwise| std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(otherwise);
+    let (records, first) = (asked("SAGNAC_RUNS", 1000), asked("SAGNAC_FIRST", 900_000));
+    let only = std::env::var("SAGNAC_ONLY").unwrap_or_default();
+    for (name, count, truth) in study(records, first, &[0.005, 0.02, 0.1], &only) {
         println!("{}", count.say(&name, truth));
     }
 }

@@ -8,6 +8,7 @@ use sagnac::procedure::model::{Allowance, EarthRate, Taus};
 use sagnac::procedure::spec::{Kind, Need, TableSpec};
 use sagnac::procedure::tables::PROCEDURE_FILE;
 use sagnac::procedure::tables_limits::LIMITS_FILE;
+use sagnac::procedure::tables_phases::PHASES_FILE;
 use sagnac::procedure::{effective, guide, load, load_limits, parse_limits, parse_procedure, power, schema};
 use sagnac::recording::{ColumnRef, Role};
 use sagnac::text::Lang;
@@ -313,24 +314,56 @@ fn every_example_is_accepted_by_its_own_key() {
 
 #[test]
 fn the_schema_holds_every_key_with_its_description() {
-    for (schema, root) in [
-        (schema::procedure(), &PROCEDURE_FILE),
-        (schema::limits(), &LIMITS_FILE),
-        (schema::model(), &MODEL_FILE),
-    ] {
-        assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    let both = schema::procedure();
+    let [single, phased] = [0, 1].map(|i| both["oneOf"][i].clone());
+    assert_eq!(both["oneOf"].as_array().unwrap().len(), 2);
+    let (limits, model) = (schema::limits(), schema::model());
+    for whole in [&both, &limits, &model] {
+        assert_eq!(whole["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    }
+    for (schema, root) in
+        [(&single, &PROCEDURE_FILE), (&phased, &PHASES_FILE), (&limits, &LIMITS_FILE), (&model, &MODEL_FILE)]
+    {
         let mut count = 0;
-        count_described(&schema, &mut count);
+        count_described(schema, &mut count);
         // A table that may be a list too stands twice in the schema.
         assert!(count >= keys(root).len(), "{count}");
         assert_eq!(schema["additionalProperties"], false);
     }
-    let schema = schema::procedure();
+    let schema = single;
     let role = &schema["properties"]["channel"]["items"]["properties"]["role"]["oneOf"];
     assert_eq!(role.as_array().unwrap().len(), Role::ALL.len());
     let ids = schema["properties"]["measurand"]["items"]["properties"]["id"]["enum"].as_array().unwrap();
     assert!(["angle_random_walk", "bias_repeatability"].iter().all(|id| ids.iter().any(|i| i == id)));
     assert_eq!(schema["properties"]["conditions"]["properties"]["warm_up"]["default"], "0 s");
+}
+
+/// Alternatives whose keys a file keeps to, none missing and none unknown.
+fn forms_of(text: &str) -> Vec<usize> {
+    let schema = schema::procedure();
+    let file: toml::Table = text.parse().unwrap();
+    let fits = |form: &serde_json::Value| {
+        let known = form["properties"].as_object().unwrap();
+        let required = form["required"].as_array().unwrap();
+        file.keys().all(|k| known.contains_key(k))
+            && required.iter().all(|k| file.contains_key(k.as_str().unwrap()))
+    };
+    let forms = schema["oneOf"].as_array().unwrap().iter().enumerate();
+    forms.filter(|(_, f)| fits(f)).map(|(i, _)| i).collect()
+}
+
+#[test]
+fn every_shipped_procedure_is_of_one_form_of_the_schema() {
+    let forms: Vec<usize> = toml_files(&shipped(""))
+        .iter()
+        .flat_map(|path| {
+            let text = std::fs::read_to_string(path).unwrap();
+            let forms = forms_of(&text);
+            assert_eq!(forms, [usize::from(text.contains("[[phase]]"))], "{}", path.display());
+            forms
+        })
+        .collect();
+    assert!(forms.contains(&0) && forms.contains(&1));
 }
 
 fn count_described(schema: &serde_json::Value, count: &mut usize) {

@@ -4,16 +4,19 @@
 //! `SAGNAC_RUNS=1000 cargo test --release --test thermal_study -- --ignored --nocapture`
 
 mod thermal_support;
+mod thermal_tally;
 
-use sagnac::estimate::Estimate;
+use sagnac::estimate::{Estimate, normal_probability};
 use sagnac::temperature::course::{Shape, Terms};
 use sagnac::temperature::findings::{Findings, findings, schedule};
 use sagnac::temperature::gls::Modes;
+use sagnac::temperature::read::of_distribution;
 use sagnac::temperature::track::Track;
 use sagnac::temperature::{TemperatureTest, WarmUpTest, warm_up};
 use std::collections::BTreeMap;
 use thermal_support::warm_up as switched_on;
 use thermal_support::{Chance, Leg, Noise, Recorded, Unit, programme, record};
+use thermal_tally::Tally;
 
 fn asked() -> TemperatureTest {
     TemperatureTest {
@@ -67,53 +70,6 @@ fn unit(chance: &mut Chance) -> Unit {
             k: chance.between(0.0, 0.002),
         },
         level: 12.4,
-    }
-}
-
-/// Hits of intervals, errors over deviations, number stated.
-#[derive(Default)]
-struct Tally {
-    inside: usize,
-    stated: usize,
-    asked: usize,
-    z: f64,
-    z2: f64,
-    width: Vec<f64>,
-    /// Over the deviation of a fit that is told noise, lag, play and order.
-    ratio: Vec<f64>,
-}
-
-impl Tally {
-    fn add(&mut self, e: Option<&Estimate>, truth: f64, told: Option<f64>) {
-        self.asked += 1;
-        let Some((value, i)) = e.and_then(|e| Some((e.value?, e.interval95()?))) else { return };
-        self.stated += 1;
-        self.inside += usize::from((i.low..=i.high).contains(&truth));
-        let u = (i.high - i.low) / 3.92;
-        self.z += (value - truth) / u;
-        self.z2 += ((value - truth) / u).powi(2);
-        self.width.push(u);
-        self.ratio.extend(told.map(|t| u / t));
-    }
-
-    fn coverage(&self) -> f64 {
-        self.inside as f64 / self.stated.max(1) as f64
-    }
-
-    fn say(&mut self, name: &str) {
-        self.width.sort_by(f64::total_cmp);
-        let n = self.stated.max(1) as f64;
-        let median = self.width.get(self.width.len() / 2).copied().unwrap_or(f64::NAN);
-        self.ratio.sort_by(f64::total_cmp);
-        let ratio = self.ratio.get(self.ratio.len() / 2).copied().unwrap_or(f64::NAN);
-        eprintln!(
-            "{name:<42} stated {:>4}/{:<4} covered {:.3}  mean z {:+.3}  rms z {:.3}  median u {median:.3e}  over told {ratio:.2}",
-            self.stated,
-            self.asked,
-            self.coverage(),
-            self.z / n,
-            (self.z2 / n).sqrt(),
-        );
     }
 }
 
@@ -296,6 +252,93 @@ fn one_rate_without_dwells() {
     }
 }
 
+/// Width of the sensitivity's interval over that of a fit told everything, and whether it holds the truth, for a fit told
+/// lag, play, order and N, and of B and K that they are evenly spread below `most` (`None`: what the program takes).
+fn told_a_range(u: &Unit, f: &Findings, most: Option<f64>) -> Option<(f64, bool)> {
+    const STEPS: usize = 12;
+    let a = f.analysis.as_ref()?;
+    let span = a.posterior.span;
+    let terms = Terms { order: 3, rate: true, hysteresis: true };
+    let shape = Shape { lag_s: u.lag_s, play_deg_c: u.hysteresis.1 };
+    let modes = Modes::new(a.course.len(), a.course.block_s);
+    let data = modes.of(&a.course.rate_deg_h);
+    let columns: Vec<_> = a.course.columns(&terms, &shape, &span).iter().map(|c| modes.of(c)).collect();
+    let visible = modes.visible(u.noise.n);
+    let at = |i: usize, which: usize| {
+        let share = (i as f64 + 0.5) / STEPS as f64;
+        match most {
+            Some(factor) => factor * [0.003, 0.002][which] * share,
+            // Equal steps of ln(x + visible), up to a hundred times what the record shows.
+            None => visible[which] * (share * 101f64.ln()).exp_m1(),
+        }
+    };
+    let per_deg_c = 2.0 / (span.high - span.low);
+    let mut parts = vec![];
+    for i in 0..STEPS {
+        for j in 0..STEPS {
+            let s = modes.solve(&data, &columns, &[u.noise.n, at(i, 0), at(j, 1)])?;
+            parts.push((
+                s.log_likelihood,
+                s.coefficients[0] * per_deg_c,
+                s.covariance[(0, 0)].sqrt() * per_deg_c,
+            ));
+        }
+    }
+    let top = parts.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
+    let total: f64 = parts.iter().map(|p| (p.0 - top).exp()).sum();
+    let below = |x: f64| {
+        parts.iter().map(|(l, m, s)| (l - top).exp() * normal_probability((x - m) / s)).sum::<f64>() / total
+    };
+    let ends = parts.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (_, m, s)| {
+        (l.min(m - 6.0 * s), h.max(m + 6.0 * s))
+    });
+    let reading = of_distribution(below, ends);
+    let i = reading.spread.interval(reading.value, 0.95)?;
+    let exact = told(u, f)?["bias_temperature_sensitivity"];
+    let truth = truth("bias_temperature_sensitivity", u, f);
+    Some(((i.high - i.low) / 3.92 / exact, (i.low..=i.high).contains(&truth)))
+}
+
+/// What a fit can do that is told everything but the strengths of the slow noise: the program is to be held against it.
+#[test]
+#[ignore = "minutes; see the head of the file"]
+fn sensitivity_at_one_rate_told_all_but_the_slow_noise() {
+    let legs = programme(&[20.0], 3600.0);
+    // Walks as the other studies draw them, and twice as strong ones.
+    for stronger in [1.0, 2.0] {
+        let mut rows = vec![(vec![], 0); 5];
+        for seed in first(60_001)..first(60_001) + runs() {
+            let mut chance = Chance::new(seed);
+            let mut u = unit(&mut chance);
+            u.noise.b *= stronger;
+            u.noise.k *= stronger;
+            let r = record(&u, -40.0, &legs, 10.0, 0.01, 7919 * seed + 1);
+            let f = found(&r);
+            let own = sagnac::measurand::over_temperature("bias_temperature_sensitivity", "rate", &f);
+            let own = own[0].interval95().and_then(|i| {
+                let truth = truth("bias_temperature_sensitivity", &u, &f);
+                let exact = told(&u, &f)?["bias_temperature_sensitivity"];
+                Some(((i.high - i.low) / 3.92 / exact, (i.low..=i.high).contains(&truth)))
+            });
+            let ranges = [Some(1.0), Some(3.0), Some(10.0), None].map(|m| told_a_range(&u, &f, m));
+            for (row, got) in rows.iter_mut().zip(ranges.into_iter().chain([own])) {
+                let (width, inside) = got.expect("an interval");
+                row.0.push(width);
+                row.1 += usize::from(inside);
+            }
+        }
+        let names = ["range once", "range times 3", "range times 10", "the program's density", "the program"];
+        for ((mut widths, inside), name) in rows.into_iter().zip(names) {
+            widths.sort_by(f64::total_cmp);
+            let (n, median) = (widths.len(), widths[widths.len() / 2]);
+            eprintln!(
+                "B, K times {stronger}: {name:<22} width {median:.2} of told all, covered {:.3} of {n}",
+                inside as f64 / n as f64
+            );
+        }
+    }
+}
+
 #[test]
 fn warm_up_intervals_hold_where_two_decays_are_nearly_one() {
     // Seeds of the study whose intervals missed while coefficients had a flat density.
@@ -311,14 +354,15 @@ fn warm_up_intervals_hold_where_two_decays_are_nearly_one() {
 
 #[test]
 fn a_few_intervals_hold() {
-    let tallies = study(&[60.0, 20.0], 3600.0, 30, 700_001);
+    let tallies = study(&[60.0, 20.0], 3600.0, 20, 700_001);
     let linear = ["bias_temperature_sensitivity", "bias_temperature_rate_sensitivity", "thermal_hysteresis"];
     let (inside, stated) =
         linear.iter().map(|id| &tallies[id]).fold((0, 0), |(i, s), t| (i + t.inside, s + t.stated));
-    // Of 90 at 95 % fewer than 79 are inside once in 300 times.
-    assert!(stated == 90 && inside >= 79, "{inside} of {stated}");
+    // Of 60 at 95 % fewer than 52 are inside once in 300 times.
+    assert!(stated == 60 && inside >= 52, "{inside} of {stated}");
     let zones = &tallies["angle_random_walk_at_temperature"];
-    assert!(zones.stated == 150 && zones.inside >= 134, "{} of {}", zones.inside, zones.stated);
+    // Of 100 fewer than 89 once in 200 times.
+    assert!(zones.stated == 100 && zones.inside >= 89, "{} of {}", zones.inside, zones.stated);
 }
 
 /// The rows of one recording.

@@ -4,7 +4,7 @@
 //! are free of β and turned to the axes of their noise, Q(σ²) = Σ eₖ²/(σ² + λₖ) is χ² with as many degrees of freedom
 //! as there are contrasts, whatever C is (Viechtbauer 2007, "Q profile"; Paule and Mandel 1982 for the value).
 
-use crate::estimate::{Spread, chi_square_quantile, normal_probability};
+use crate::estimate::{Spread, chi_square_quantile, chi_square_tail, normal_probability};
 use crate::numeric::reml::Combination;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -82,6 +82,16 @@ impl Contrasts {
     /// The variance between the means, their noise taken out.
     pub fn variance(&self) -> f64 {
         self.variance_at(self.dof())
+    }
+
+    /// Confidence that the standard deviation between the means is less.
+    pub fn below(&self, deviation: f64) -> f64 {
+        chi_square_tail(self.q(deviation * deviation), self.dof())
+    }
+
+    /// A standard deviation that is more with a confidence of one in ten thousand only.
+    pub fn largest(&self) -> f64 {
+        self.variance_at(chi_square_quantile(1e-4, self.dof())).sqrt()
     }
 
     /// The standard deviation between the means with its confidence distribution.

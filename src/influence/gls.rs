@@ -15,12 +15,17 @@ pub fn lean(
     components: &[DMatrix<f64>],
 ) -> Option<Fit> {
     let fit = reml::fit(y, x, fixed, components)?;
-    let parts: Vec<f64> = components.iter().zip(&fit.strengths).map(|(v, s)| s * v.trace()).collect();
-    let total: f64 = parts.iter().sum();
     let kept: Vec<DMatrix<f64>> =
-        components.iter().zip(&parts).filter(|(_, p)| **p > SHARE * total).map(|(v, _)| v.clone()).collect();
+        shown(&fit, components).into_iter().map(|k| components[k].clone()).collect();
     if kept.len() == components.len() || kept.is_empty() {
         return Some(fit);
     }
     Some(reml::fit(y, x, fixed, &kept).unwrap_or(fit))
+}
+
+/// The components that have a share in the noise of a fit.
+pub fn shown(fit: &Fit, components: &[DMatrix<f64>]) -> Vec<usize> {
+    let parts: Vec<f64> = components.iter().zip(&fit.strengths).map(|(v, s)| s * v.trace()).collect();
+    let total: f64 = parts.iter().sum();
+    (0..components.len()).filter(|k| parts[*k] > SHARE * total).collect()
 }

@@ -12,5 +12,6 @@ pub mod intervals;
 pub mod repeatability;
 pub mod runs;
 pub mod setup;
+mod unsure;
 
 pub use setup::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};

@@ -4,6 +4,7 @@ use super::contrasts::{Contrasts, Means, coefficient};
 use super::cut::{cut, span_s};
 use super::gls;
 use super::runs::Runs;
+use super::unsure;
 use crate::estimate::{Estimate, Spread, UpperLimit, chi_square_quantile};
 use crate::numeric::reml::Combination;
 use crate::rate_table::blocks::Blocks;
@@ -124,7 +125,7 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     Some(Repeatability {
         channel: blocks.gyros.get(gyro)?.clone(),
         mean: list.iter().map(|r| r.bias.value).sum::<f64>() / count as f64,
-        deviation: contrasts.deviation(),
+        deviation: unsure::deviation(&cut, &x, &fixed).unwrap_or_else(|| contrasts.deviation()),
         plain: means.values.deviation_of_sample(),
         range: fit.combine(&difference),
         trend: (count >= 4).then(|| line(&order)).flatten().map(|l| l.0),
@@ -203,7 +204,9 @@ impl Repeatability {
         if shown {
             return Estimate::measured(id, &self.channel, value, unit, spread, METHOD).note(told);
         }
-        let limit = spread.bound(value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
+        // The upper end of the interval: whether there is a lower one was decided by the same means, and a limit of one side
+        // would miss beside the misses of the intervals.
+        let limit = spread.bound(value, 0.975).map(|value| UpperLimit { value, coverage: 0.95 });
         Estimate::not_identifiable(id, &self.channel, limit, unit, METHOD)
             .note(told)
             .note(Note::new("runs.not_shown"))

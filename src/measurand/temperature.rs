@@ -6,6 +6,7 @@ use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::ids;
 use crate::temperature::course::{legendre, legendre_slopes};
 use crate::temperature::findings::{Analysis, Findings};
+use crate::temperature::lag;
 use crate::temperature::read::{self, Reading};
 use crate::temperature::sampler::Draw;
 use crate::text::{Arg, Note};
@@ -227,7 +228,7 @@ impl Row<'_> {
 
     fn lag(&self, a: &Analysis) -> Option<Estimate> {
         let p = &a.posterior;
-        let reading = read::of_states(&p.draws, |d| d.shape.first().copied().unwrap_or(0.0));
+        let reading = lag::reading(&p.lags);
         let separable = a.separable(|s| s.lag);
         let upper = reading.spread.bound(reading.value, 0.95)?;
         let bounded = upper < UNBOUNDED * p.longest_lag_s;

@@ -2,6 +2,7 @@
 
 pub(crate) mod compensated;
 pub mod cosine;
+mod inverse;
 pub mod range;
 pub mod reml;
 pub mod special;

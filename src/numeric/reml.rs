@@ -4,6 +4,7 @@
 //! (Gilmour, Thompson and Cullis 1995); β follows by generalised least squares. A linear combination of β is Student's
 //! with the degrees of freedom of Satterthwaite (Giesbrecht and Burns 1985).
 
+use super::inverse::inverse;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Steps of the climb.
@@ -122,7 +123,7 @@ pub fn fit(
         if components.is_empty() {
             break;
         }
-        let (score, information) = derivatives(&state, x, components);
+        let (score, information) = derivatives(&state, components);
         let free: Vec<usize> = (0..components.len())
             .filter(|k| strengths[*k] > 0.0 || score[*k] > 0.0)
             .filter(|k| information[(*k, *k)] > 0.0)
@@ -202,21 +203,14 @@ fn evaluate(
 
 /// P = V⁻¹ − V⁻¹X (X'V⁻¹X)⁻¹ X'V⁻¹.
 fn projector(state: &State) -> DMatrix<f64> {
-    state.factor.inverse() - &state.weighted * &state.covariance * state.weighted.transpose()
+    inverse(&state.factor) - &state.weighted * &state.covariance * state.weighted.transpose()
 }
 
 /// Score and average information of the strengths.
-fn derivatives(state: &State, x: &DMatrix<f64>, components: &[DMatrix<f64>]) -> (DVector<f64>, DMatrix<f64>) {
+fn derivatives(state: &State, components: &[DMatrix<f64>]) -> (DVector<f64>, DMatrix<f64>) {
     let p = projector(state);
     let moved: Vec<DVector<f64>> = components.iter().map(|v| v * &state.projected).collect();
-    let back: Vec<DVector<f64>> = moved
-        .iter()
-        .map(|m| {
-            let solved = state.factor.solve(m);
-            let fitted = &state.covariance * (x.transpose() * &solved);
-            solved - &state.weighted * fitted
-        })
-        .collect();
+    let back: Vec<DVector<f64>> = moved.iter().map(|m| &p * m).collect();
     let k = components.len();
     let score = DVector::from_fn(k, |i, _| {
         0.5 * (state.projected.dot(&moved[i]) - p.component_mul(&components[i]).sum())

@@ -5,6 +5,7 @@
 use super::spec::{KeySpec, Kind, Need, Range, TableSpec, Word};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
+use super::tables_phases::PHASES_FILE;
 use crate::claim::tables::MODEL_FILE;
 use crate::effect::EFFECTS;
 use crate::ids::MEASURANDS;
@@ -12,12 +13,19 @@ use crate::ingest::manifest_tables::MANIFEST_FILE;
 use crate::ingest::raw::tables::LAYOUT_FILE;
 use serde_json::{Map, Value, json};
 
+/// The draft that schemas are written in.
+const DRAFT: &str = "https://json-schema.org/draft/2020-12/schema";
+
 /// Pattern of a number with its unit.
 const QUANTITY_PATTERN: &str = r"^\s*[+\-−]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*\S.*$";
 
-/// The schema of a procedure file.
+/// The schema of a procedure file: of one recording, or of several phases.
 pub fn procedure() -> Value {
-    document(&PROCEDURE_FILE, "Sagnac procedure")
+    json!({
+        "$schema": DRAFT,
+        "title": "Sagnac procedure",
+        "oneOf": [table(&PROCEDURE_FILE), table(&PHASES_FILE)],
+    })
 }
 
 /// The schema of a limits file.
@@ -54,7 +62,7 @@ pub fn layout() -> Value {
 fn document(root: &'static TableSpec, title: &str) -> Value {
     let mut schema = table(root);
     if let Some(object) = schema.as_object_mut() {
-        object.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
+        object.insert("$schema".into(), json!(DRAFT));
         object.insert("title".into(), json!(title));
     }
     schema

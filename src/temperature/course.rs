@@ -85,15 +85,18 @@ impl Terms {
 
 /// Legendre polynomials 1 to `order`: orthogonal over temperature with even weight.
 pub fn legendre(x: f64, order: usize) -> Vec<f64> {
+    let mut values = Vec::with_capacity(order);
+    each_legendre(x, order, |_, v| values.push(v));
+    values
+}
+
+fn each_legendre(x: f64, order: usize, mut take: impl FnMut(usize, f64)) {
     let (mut before, mut here) = (1.0, x);
-    (1..=order)
-        .map(|k| {
-            let value = here;
-            let n = k as f64;
-            (before, here) = (here, ((2.0 * n + 1.0) * x * here - n * before) / (n + 1.0));
-            value
-        })
-        .collect()
+    for k in 0..order {
+        take(k, here);
+        let n = (k + 1) as f64;
+        (before, here) = (here, ((2.0 * n + 1.0) * x * here - n * before) / (n + 1.0));
+    }
 }
 
 /// Derivatives of the Legendre polynomials 1 to `order`.
@@ -182,9 +185,7 @@ impl Course {
         let coil = self.coil(shape);
         let mut columns = vec![Vec::with_capacity(coil.len()); terms.order];
         for t in &coil {
-            for (column, v) in columns.iter_mut().zip(legendre(span.argument(*t), terms.order)) {
-                column.push(v);
-            }
+            each_legendre(span.argument(*t), terms.order, |k, v| columns[k].push(v));
         }
         if terms.rate {
             columns.push(rate_per_minute(&coil, self.block_s, self.reach()));

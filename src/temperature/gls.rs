@@ -45,6 +45,21 @@ pub struct Fitted {
     pub log_deviation: [f64; 3],
 }
 
+/// Σ aᵢbᵢwᵢ, in lanes: a single sum waits for every addition before.
+fn weighted_dot(a: &[f64], b: &[f64], w: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let (ca, cb, cw) = (a.chunks_exact(LANES), b.chunks_exact(LANES), w.chunks_exact(LANES));
+    let rest: f64 =
+        ca.remainder().iter().zip(cb.remainder()).zip(cw.remainder()).map(|((x, y), w)| x * y * w).sum();
+    for ((x, y), w) in ca.zip(cb).zip(cw) {
+        for i in 0..LANES {
+            sums[i] += x[i] * y[i] * w[i];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
 impl Solved {
     /// Logarithm of the determinant of the information of the coefficients; `None` where they are collinear.
     pub fn log_information(&self) -> Option<f64> {
@@ -84,20 +99,18 @@ impl Modes {
         let powers = self.powers(noise);
         let p = columns.len();
         let inverse: Vec<f64> = powers.iter().map(|v| 1.0 / v).collect();
-        let weighted: Vec<Vec<f64>> =
-            columns.iter().map(|c| c.iter().zip(&inverse).map(|(x, w)| x * w).collect()).collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let dot = |a: &[f64], b: &[f64]| weighted_dot(a, b, &inverse);
         let mut matrix = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         for i in 0..p {
             for j in 0..=i {
-                let v = dot(&weighted[i], &columns[j]);
+                let v = dot(&columns[i], &columns[j]);
                 matrix[(i, j)] = v;
                 matrix[(j, i)] = v;
             }
-            right[i] = dot(&weighted[i], data);
+            right[i] = dot(&columns[i], data);
         }
-        let total: f64 = data.iter().zip(&inverse).map(|(y, w)| y * y * w).sum();
+        let total = dot(data, data);
         let log_powers: f64 = powers.iter().map(|v| v.ln()).sum();
         if p == 0 {
             return Some(Solved {

@@ -8,6 +8,7 @@ pub mod compensation;
 pub mod course;
 pub mod findings;
 pub mod gls;
+pub mod lag;
 pub mod order;
 pub mod posterior;
 pub mod read;

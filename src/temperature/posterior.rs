@@ -5,6 +5,7 @@
 
 use super::course::{Course, Shape, Span, Terms};
 use super::gls::{Fitted, Modes, Solved};
+use super::lag::{self, Conditional};
 use super::sampler::{self, Draw, Range};
 use nalgebra::{DMatrix, DVector};
 
@@ -19,6 +20,8 @@ pub struct Posterior {
     pub best: Best,
     /// States, equally weighted.
     pub draws: Vec<Draw>,
+    /// Distributions of the lag at a part of the states.
+    pub lags: Vec<Conditional>,
     /// Longest lag that was tried, s.
     pub longest_lag_s: f64,
     /// Twice the log-likelihood ratio of the best lag to none.
@@ -145,7 +148,26 @@ pub fn sample(course: &Course, terms: Terms, span: Span, sweeps: usize) -> Optio
     let none = Shape { lag_s: 0.0, ..best.shape };
     let without = s.modes.fit(&s.data, &s.columns(&none), Some(best.fitted.noise))?;
     let lag_evidence = 2.0 * (best.fitted.solved.log_likelihood - without.solved.log_likelihood);
-    Some(Posterior { terms, span, best, draws, longest_lag_s: longest, lag_evidence })
+    let lags = lags(&s, &draws, longest, best.shape.play_deg_c);
+    Some(Posterior { terms, span, best, draws, lags, longest_lag_s: longest, lag_evidence })
+}
+
+/// Distributions of the lag at a part of the states, noise and play held.
+fn lags(s: &Search<'_>, draws: &[Draw], longest: f64, play_deg_c: f64) -> Vec<Conditional> {
+    let grid = lag::grid(draws, longest);
+    // All columns but that of the play are those of the lag alone.
+    let apart = Terms { hysteresis: false, ..s.terms };
+    let play = Terms { order: 0, rate: false, hysteresis: s.terms.hysteresis };
+    let modes = |terms: &Terms, shape: &Shape| -> Vec<Vec<f64>> {
+        s.course.columns(terms, shape, &s.span).iter().map(|c| s.modes.of(c)).collect()
+    };
+    let common: Vec<Vec<Vec<f64>>> =
+        grid.iter().map(|lag_s| modes(&apart, &Shape { lag_s: *lag_s, play_deg_c })).collect();
+    lag::conditionals(draws, &grid, |at, draw| {
+        let shape = Shape { lag_s: grid[at], ..Shape::of(&draw.shape, play_deg_c) };
+        let columns: Vec<Vec<f64>> = common[at].iter().cloned().chain(modes(&play, &shape)).collect();
+        s.modes.solve(&s.data, &columns, &draw.noise).map_or(f64::NEG_INFINITY, |s| s.log_likelihood)
+    })
 }
 
 impl Posterior {
@@ -187,16 +209,17 @@ pub fn average(models: Vec<(Posterior, f64)>, shown: usize) -> Option<Posterior>
     let highest = models.iter().map(|m| m.0.terms.order).max()?;
     let total: f64 = models.iter().map(|m| m.1).sum();
     let mut whole: Option<Posterior> = None;
-    let mut draws = vec![];
+    let (mut draws, mut lags) = (vec![], vec![]);
     for (model, weight) in models {
         let is_shown = model.terms.order == shown;
         let model = model.raised(highest);
         let kept = (model.draws.len() as f64 * weight / total).round().max(f64::from(u8::from(is_shown)));
         let step = model.draws.len() as f64 / kept.max(1.0);
         draws.extend((0..kept as usize).filter_map(|i| model.draws.get((i as f64 * step) as usize).cloned()));
+        lags.extend(model.lags.iter().map(|c| Conditional { weight, ..c.clone() }));
         if is_shown {
             whole = Some(model);
         }
     }
-    whole.map(|w| Posterior { draws, ..w })
+    whole.map(|w| Posterior { draws, lags, ..w })
 }

@@ -66,6 +66,11 @@ pub fn linear(draws: &[Draw], weights: impl Fn(&Draw) -> DVector<f64>) -> Readin
     };
     let low = parts.iter().map(|(m, s)| m - 5.0 * s).fold(f64::INFINITY, f64::min);
     let high = parts.iter().map(|(m, s)| m + 5.0 * s).fold(f64::NEG_INFINITY, f64::max);
+    of_distribution(below, (low, high))
+}
+
+/// A reading from the probability of less than a value, which all but lies between two values.
+pub fn of_distribution(below: impl Fn(f64) -> f64, (low, high): (f64, f64)) -> Reading {
     let quantile = |p: f64| {
         let (mut a, mut b) = (low, high);
         for _ in 0..60 {
@@ -108,11 +113,6 @@ pub fn drawn(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Readin
         }
     }
     from_values(values)
-}
-
-/// A number of the states themselves, such as the lag.
-pub fn of_states(draws: &[Draw], of: impl Fn(&Draw) -> f64) -> Reading {
-    from_values(draws.iter().map(of).collect())
 }
 
 /// A reading from draws.

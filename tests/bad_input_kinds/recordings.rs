@@ -1,9 +1,7 @@
 //! Broken recordings in files, each with line, character, offending text and a piece of the message written by hand.
 
-mod support;
-
+use crate::support::{corpus, result, sagnac};
 use std::path::Path;
-use support::{corpus, result, sagnac};
 use tempfile::tempdir;
 
 /// `line:character: token: fragment`; `-` where there is no such place.

@@ -1,10 +1,8 @@
 //! Broken procedures and limits files: every problem is reported at its place, and nothing else.
 
-mod support;
-
+use crate::support::corpus::{cases, each_problem_at_its_place, problems};
 use sagnac::procedure::{Problem, parse_limits, parse_procedure};
 use std::path::Path;
-use support::corpus::{cases, each_problem_at_its_place, problems};
 
 fn name(file: &Path) -> String {
     file.file_name().unwrap().to_string_lossy().into_owned()

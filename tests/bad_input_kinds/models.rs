@@ -1,10 +1,8 @@
 //! Broken models: every problem is reported at its place, and nothing else.
 
-mod support;
-
+use crate::support::corpus::{cases, each_problem_at_its_place};
 use sagnac::claim;
 use sagnac::text::Lang;
-use support::corpus::{cases, each_problem_at_its_place};
 
 #[test]
 fn broken_models_are_reported_at_their_place() {

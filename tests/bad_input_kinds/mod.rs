@@ -1,0 +1,6 @@
+//! Broken files by their kinds.
+
+mod layouts;
+mod models;
+mod procedures;
+mod recordings;
