@@ -19,9 +19,14 @@ const MODEL: &str = "[recording]\ncase = \"t\"\nsample_rate_hz = 1\n\
 
 /// A recording of white noise with a step, and its model, in a folder.
 fn case(folder: &Path, name: &str, seed: u64, step: f64) {
+    with(folder, name, seed, |i| if i >= AT { step } else { 0.0 });
+}
+
+/// A recording of white noise and a course, and its model, in a folder.
+fn with(folder: &Path, name: &str, seed: u64, course: impl Fn(usize) -> f64) {
     let mut text = String::from("time_s,rate_deg_h,temp_degC\n");
     for i in 0..4000usize {
-        let rate = 5.0 + 60.0 * N * white(seed, i as u64) + if i >= AT { step } else { 0.0 };
+        let rate = 5.0 + 60.0 * N * white(seed, i as u64) + course(i);
         let temperature = 20.0 + (i as f64 / 900.0).sin() + 0.01 * white(seed + 1, i as u64);
         let _ = writeln!(text, "{i},{rate:.6},{temperature:.4}");
     }
@@ -82,6 +87,50 @@ fn a_step_is_found_and_the_loop_closes() {
     );
     assert_eq!((again.code, again.err.as_str()), (0, ""), "{again:?}");
     assert!(again.out.starts_with("СОГЛАСУЕТСЯ\n"), "{}", again.out);
+}
+
+#[test]
+fn a_level_that_leaves_and_returns_was_not_recorded() {
+    let dir = tempdir().unwrap();
+    with(dir.path(), "r.csv", 16, |i| if (1000..2200).contains(&i) { 0.4 } else { 0.0 });
+    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
+    let all = json(&dir.path().join("e/explain.json"));
+    let effects = all["effects"].as_array().unwrap();
+    assert_eq!((effects.len(), effects[0]["kind"].as_str()), (1, Some("unobserved_driver")), "{effects:?}");
+    let place = &effects[0]["where"][0];
+    let at = |end: &str, truth: f64| (place[end].as_f64().unwrap() - truth).abs() < 60.0;
+    assert!(at("from", 1000.0) && at("to", 2200.0), "{place}");
+    // 0.4 over 1200 of 4000 samples.
+    let rms = &effects[0]["parameters"]["rms_deg_h"];
+    let inside = |x: f64| rms["ci95"][0].as_f64().unwrap() < x && x < rms["ci95"][1].as_f64().unwrap();
+    assert!(inside(0.4 * (0.3f64 * 0.7).sqrt()), "{rms}");
+    let again = sagnac(dir.path(), &["explain", "r.csv", "--model", "e/augmented.toml", "--out", "again"]);
+    assert_eq!(again.code, 0, "{again:?}");
+    // Without that entry of the catalogue it is one cause still, and has no name.
+    let less =
+        ["explain", "r.csv", "--model", "model.toml", "--out", "less", "--without", "unobserved_driver"];
+    assert_eq!(sagnac(dir.path(), &less).code, 3);
+    let all = json(&dir.path().join("less/explain.json"));
+    assert_eq!(all["effects"].as_array().map(|e| e.len()), Some(1), "{}", all["effects"]);
+    assert_eq!(all["effects"][0]["kind"], "unknown");
+}
+
+#[test]
+fn a_level_of_the_noise_that_was_explained_is_consistent() {
+    let dir = tempdir().unwrap();
+    let louder = |i: usize| if i < 2500 { 0.0 } else { 60.0 * N * 0.8 * white(99, i as u64) };
+    with(dir.path(), "r.csv", 17, louder);
+    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    assert_eq!(said.code, 1, "{said:?}");
+    let all = json(&dir.path().join("e/explain.json"));
+    assert_eq!(all["effects"][0]["kind"], "noise_variance_time");
+    for (recording, consistent) in [("r.csv", true), ("quiet.csv", false)] {
+        with(dir.path(), "quiet.csv", 18, |_| 0.0);
+        let again =
+            sagnac(dir.path(), &["explain", recording, "--model", "e/augmented.toml", "--out", "again"]);
+        assert_eq!(again.code == 0, consistent, "{recording}: {again:?}");
+    }
 }
 
 #[test]

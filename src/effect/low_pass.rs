@@ -5,6 +5,9 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 /// Highest cutoff, cycles a sample: beyond it a filter of samples passes everything.
 const HIGHEST: f64 = 0.49;
 
+/// Longest memory for which what leaks from the ends of a record is counted, samples.
+const LONGEST: usize = 1024;
+
 /// A filter y_i = Σ b_k x_{i−k} − Σ a_k y_{i−k}, which passes a constant unchanged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LowPass {
@@ -95,6 +98,41 @@ impl LowPass {
         }
     }
 
+    /// Autocovariance of unit white noise behind the recursion at lags of 0, 1, 2, ... samples; nothing where its memory is
+    /// longer than [`LONGEST`] or another response is wanted.
+    fn autocovariance(&self) -> Vec<f64> {
+        if self.ideal.is_some() || self.memory > LONGEST {
+            return vec![];
+        }
+        let (mut y, mut response) = ([0.0; 2], Vec::with_capacity(self.memory + 3));
+        for i in 0..self.memory + 3 {
+            let out = self.forward.get(i).copied().unwrap_or(0.0) - self.back[0] * y[0] - self.back[1] * y[1];
+            y = [out, y[0]];
+            response.push(out);
+        }
+        (0..response.len())
+            .map(|lag| response.iter().zip(&response[lag..]).map(|(a, b)| a * b).sum())
+            .collect()
+    }
+
+    /// Mean power of cosine modes (DCT-II) of `samples` of filtered white noise at frequencies in cycles a sample. The ends
+    /// of a record leak into the modes that a steep filter leaves next to nothing:
+    /// E X_k² = Σ r(h) [(1 − |h|/n) cos ωh − sin ω|h|/(n sin ω)].
+    pub fn mode_powers(&self, frequencies: impl Iterator<Item = f64>, samples: usize) -> Vec<f64> {
+        let covariance = self.autocovariance();
+        let leaked = |x: f64| {
+            let w = TAU * x;
+            let (step_cos, step_sin) = (w.cos(), w.sin());
+            let (mut cos, mut sin, mut sum) = (1.0, 0.0, 0.0);
+            for (h, r) in covariance.iter().enumerate().skip(1) {
+                (cos, sin) = (cos * step_cos - sin * step_sin, sin * step_cos + cos * step_sin);
+                sum += r * (h as f64 * cos + sin / step_sin.max(1e-12));
+            }
+            -2.0 * sum / samples.max(1) as f64
+        };
+        frequencies.map(|x| self.power(x) + if covariance.is_empty() { 0.0 } else { leaked(x) }).collect()
+    }
+
     /// What the power wanted is of that of the recursion, where they differ.
     pub fn correction(&self, x: f64) -> Option<f64> {
         self.ideal.map(|_| self.power(x) / self.recursion(x).max(1e-300))
@@ -119,6 +157,29 @@ mod tests {
                 assert!((filter.recursion(0.0) - 1.0).abs() < 1e-9, "{filter:?}");
                 assert!((filter.power(x) - 0.5).abs() < 1e-9, "{filter:?}: {}", filter.power(x));
             }
+        }
+    }
+
+    #[test]
+    fn modes_of_a_short_record_have_the_power_of_the_exact_covariance() {
+        let (n, filter) = (96usize, LowPass::butterworth(0.08));
+        let covariance = filter.autocovariance();
+        let r = |lag: usize| covariance.get(lag).copied().unwrap_or(0.0);
+        for k in [1usize, 20, 60, 94] {
+            let mode =
+                |i: usize| (2.0 / n as f64).sqrt() * (PI * k as f64 * (i as f64 + 0.5) / n as f64).cos();
+            let mut exact = 0.0;
+            for i in 0..n {
+                for j in 0..n {
+                    exact += mode(i) * mode(j) * r(i.abs_diff(j));
+                }
+            }
+            let got = filter.mode_powers(std::iter::once(k as f64 / (2.0 * n as f64)), n)[0];
+            assert!((got / exact - 1.0).abs() < 1e-3, "mode {k}: {got} {exact}");
+            assert!(
+                k < 60 || exact > 3.0 * filter.power(k as f64 / (2.0 * n as f64)),
+                "nothing leaks at {k}"
+            );
         }
     }
 

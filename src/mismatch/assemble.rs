@@ -69,6 +69,9 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         let gained = improvement::of(chosen, selection, &scenes.full, &halves, held_best.log_likelihood);
         found.named.push(Named { improvement: Some(gained), ..named(chosen, &selection.best, problem) });
     }
+    if options.allows("unobserved_driver") {
+        single_cause::returned(&mut found.named, problem);
+    }
     found.named.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     let something = !found.named.is_empty();
     let mut principal: Vec<Place> = found.named.first().map(|n| n.places.clone()).unwrap_or_default();
@@ -254,7 +257,7 @@ fn places(
     chosen: &Chosen,
     problem: &Problem,
 ) -> Vec<Place> {
-    match (effect.model(), slot) {
+    let mut out = match (effect.model(), slot) {
         (Model::Course(course), Slot::Course(i)) => {
             let scene = problem.scenes.of(course.pace());
             let inside = &best.hypothesis.courses[i];
@@ -268,15 +271,15 @@ fn places(
                 expected: &chosen.without.fit.densities,
                 lattice_arcsec: problem.scenes.lattice_arcsec,
             };
-            let mut out = spectrum.places(&best.hypothesis.noise.spectra[i].fitted, &look);
-            // A slow process moves at some times more than at others.
-            if out.len() < 3 && !out.iter().any(|p| p.domain == Domain::Time) {
-                out.extend(contribution::time_of_process(i, best, &problem.scenes));
-            }
-            out
+            spectrum.places(&best.hypothesis.noise.spectra[i].fitted, &look)
         }
-        _ => vec![],
+        _ => return vec![],
+    };
+    // Whatever it follows, it acts at some times more than at others.
+    if out.len() < 3 && !out.iter().any(|p| p.domain == Domain::Time) {
+        out.extend(contribution::time_of(slot, best, &problem.scenes));
     }
+    out
 }
 
 /// What departs from the hypothesis and has no name.

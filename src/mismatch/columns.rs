@@ -38,8 +38,8 @@ pub fn all(scene: &Scene, white: &White) -> Vec<Departure> {
     }
     let mut out: Vec<Departure> = vec![];
     for (place, values) in &named {
-        out.extend(function_of(white, "column_mean", *place, values));
-        out.extend(size_over(white, *place, values));
+        let found = [function_of(white, "column_mean", *place, values), size_over(white, *place, values)];
+        out.extend(found.into_iter().flatten().map(|d| when(d, scene, values)));
     }
     for i in 0..named.len() {
         for j in 0..i {
@@ -103,6 +103,23 @@ fn gain_of(white: &White, columns: impl Iterator<Item = Vec<f64>>) -> Option<f64
     }
     let solution = matrix.cholesky()?.solve(&right);
     Some(ln_chi_square_tail(right.dot(&solution), p as f64))
+}
+
+/// The times between which a column has the values of a departure.
+fn when(departure: Departure, scene: &Scene, values: &[f64]) -> Departure {
+    let Place { domain, from, to } = departure.place;
+    // Sizes of the rate stand for both signs of it.
+    let inside = |v: &f64| {
+        let held = from..=to;
+        held.contains(v) || (domain == Domain::InputRate && held.contains(&v.abs()))
+    };
+    let ends = values.iter().position(inside).zip(values.iter().rposition(inside));
+    let beside = ends.map(|(a, b)| Place {
+        domain: Domain::Time,
+        from: scene.drivers.time_s(a),
+        to: scene.drivers.time_s(b),
+    });
+    Departure { beside, ..departure }
 }
 
 /// Whether the residual follows a smooth function of a column, and at which of its values most.

@@ -1,6 +1,7 @@
 //! What chosen effects add to the rate, sample by sample.
 
 use super::candidates::{Scenes, Tried};
+use super::select::Slot;
 use crate::effect::{Domain, Model, Place};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::sums::cumulated;
@@ -8,26 +9,32 @@ use crate::numeric::sums::cumulated;
 /// What everything that a hypothesis adds to the claim contributes to the rate, deg/h on the grid: courses, and the best
 /// linear estimate of processes that are slow or narrow-band. `None` where nothing can be predicted sample by sample.
 pub fn correction(best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
-    let scene = &scenes.full;
-    let mut out = vec![0.0; scene.drivers.samples];
-    let mut any = false;
-    for inside in &best.hypothesis.courses {
-        let Some(course) = inside.course() else { continue };
-        let parts = course.parts(&inside.shape, &scene.drivers);
-        any = true;
-        if let Some(fixed) = &parts.fixed {
-            out.iter_mut().zip(fixed).for_each(|(o, f)| *o += f);
-        }
-        for (column, c) in parts.free.iter().zip(&inside.coefficients) {
-            out.iter_mut().zip(column).for_each(|(o, z)| *o += c * z);
+    let courses = (0..best.hypothesis.courses.len()).map(Slot::Course);
+    let processes = (0..best.hypothesis.noise.spectra.len()).map(Slot::Spectrum);
+    let mut sum: Option<Vec<f64>> = None;
+    for course in courses.chain(processes).filter_map(|slot| of(slot, best, scenes)) {
+        match &mut sum {
+            Some(sum) => sum.iter_mut().zip(course).for_each(|(s, c)| *s += c),
+            None => sum = Some(course),
         }
     }
-    for i in 0..best.hypothesis.noise.spectra.len() {
-        let Some(course) = course_of_process(i, best, scenes) else { continue };
-        any = true;
-        out.iter_mut().zip(course).for_each(|(o, c)| *o += c);
+    sum
+}
+
+/// What one effect adds to each sample, deg/h.
+fn of(slot: Slot, best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
+    match slot {
+        Slot::Course(i) => {
+            let inside = &best.hypothesis.courses[i];
+            let parts = inside.course()?.parts(&inside.shape, &scenes.full.drivers);
+            let mut out = parts.fixed.unwrap_or_else(|| vec![0.0; scenes.full.drivers.samples]);
+            for (column, c) in parts.free.iter().zip(&inside.coefficients) {
+                out.iter_mut().zip(column).for_each(|(o, z)| *o += c * z);
+            }
+            Some(out)
+        }
+        Slot::Spectrum(i) => course_of_process(i, best, scenes),
     }
-    any.then_some(out)
 }
 
 /// The best linear estimate of what a process that was found adds to each sample, deg/h; `None` for one that is stated, and
@@ -49,11 +56,10 @@ fn course_of_process(index: usize, best: &Tried, scenes: &Scenes) -> Option<Vec<
     Some(inverse_dct2(&modes))
 }
 
-/// When a process that was found is away from its median: between the instants before and after which lie half a
-/// hundredth of its square.
-pub fn time_of_process(index: usize, best: &Tried, scenes: &Scenes) -> Option<Place> {
+/// When an effect is away from its median: between the instants before and after which lie half a hundredth of its square.
+pub fn time_of(slot: Slot, best: &Tried, scenes: &Scenes) -> Option<Place> {
     const OUTSIDE: f64 = 0.005;
-    let course = course_of_process(index, best, scenes)?;
+    let course = of(slot, best, scenes)?;
     let mut sorted = course.clone();
     let middle = sorted.len() / 2;
     let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;

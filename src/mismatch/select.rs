@@ -10,6 +10,11 @@ use crate::effect::{Effect, Model, SpectrumAct};
 
 /// ΔBIC that an effect must bring, and within which two are equivalent.
 pub const ENOUGH: f64 = 6.0;
+/// Times that one effect of the chosen is exchanged for another at most: what was best alone need not be the best beside
+/// what was found after it.
+const EXCHANGES: usize = 3;
+/// A single jump.
+const JUMP: &str = "bias_step";
 /// Hypotheses kept at each depth.
 const WIDTH: usize = 3;
 
@@ -37,6 +42,8 @@ pub struct Chosen {
     pub equivalents: Vec<Candidate>,
     /// The hypothesis without it, fitted.
     pub without: Tried,
+    /// What does better in its place than it does, the effect itself from another beginning among it.
+    better: Option<Tried>,
 }
 
 /// What was selected.
@@ -153,7 +160,9 @@ pub fn select(base: &Tried, scenes: &Scenes, options: &Options) -> Selection {
             }
         }
         next.sort_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)));
+        let jump = next.iter().skip(WIDTH).find(|t| set(t) == [JUMP]).cloned();
         next.truncate(WIDTH);
+        next.extend(jump);
         let Some(leader) = next.first() else { break };
         if leader.bic(rows) < best.bic(rows) - ENOUGH {
             best = leader.clone();
@@ -173,7 +182,13 @@ pub fn select(base: &Tried, scenes: &Scenes, options: &Options) -> Selection {
             .collect();
     }
     best = pruned(best, scenes, rows);
-    let chosen = chosen(&best, base, &first, scenes, options);
+    let mut chosen = self::chosen(&best, base, &first, scenes, options);
+    for _ in 0..EXCHANGES {
+        let better = chosen.iter().filter_map(|c| c.better.as_ref());
+        let Some(better) = better.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))) else { break };
+        best = pruned(better.clone(), scenes, rows);
+        chosen = self::chosen(&best, base, &first, scenes, options);
+    }
     Selection { best, chosen, first }
 }
 
@@ -189,6 +204,10 @@ fn worth_following<'a>(passing: &[&'a Candidate]) -> Vec<&'a Candidate> {
     {
         out.truncate(WIDTH - 1);
         out.push(course);
+    }
+    // A level that leaves and returns is two jumps, of which one alone explains little.
+    if !out.iter().any(|c| c.effect.kind() == JUMP) {
+        out.extend(passing.iter().find(|c| c.effect.kind() == JUMP));
     }
     out
 }
@@ -241,8 +260,15 @@ fn chosen(
                 .take(3)
                 .cloned()
                 .collect();
+            let better = rivals
+                .iter()
+                .filter(|c| !single && passes(c, family, options.alpha))
+                .map(|c| &c.tried)
+                .filter(|t| t.rank(rows) < best.rank(rows) - ENOUGH)
+                .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)))
+                .cloned();
             let delta_bic = without.bic(rows) - best.bic(rows);
-            Chosen { effect, slot, delta_bic, p_value, equivalents, without }
+            Chosen { effect, slot, delta_bic, p_value, equivalents, without, better }
         })
         .collect();
     out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));

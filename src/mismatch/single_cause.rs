@@ -1,13 +1,22 @@
 //! Findings that are together one cause of no kind.
 //!
 //! Lines side by side are one line that is modulated; many lines are a periodic course; three changes of the spectrum are
-//! a spectrum that no kind has; three jumps are a staircase. Each of them, named alone, would say what is not the case.
+//! a spectrum that no kind has; three jumps are a staircase; a level that leaves and returns is
+//! one driver that was not recorded. Each of them, named alone, would say what is not the case.
 
+use super::estimates::{Estimated, INSTANT};
+use super::finding::ParameterValue;
+use super::problem::Problem;
 use super::samples::Named;
-use crate::effect::{Domain, Place};
+use crate::effect::{Domain, Place, Value, find};
+use std::collections::BTreeMap;
 
 /// Ratio of frequencies below which two lines are neighbours.
 const NEIGHBOURS: f64 = 1.15;
+/// Share of a jump within which the next one takes the level back.
+const BACK: f64 = 0.5;
+/// The same in standard deviations of the two.
+const BACK_DEVIATIONS: f64 = 3.0;
 /// Findings of one family from which they are one cause, where no more were allowed.
 const MANY: usize = 3;
 
@@ -71,6 +80,68 @@ fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
     out
 }
 
+/// Positions of the only two jumps, by time, if the second takes back what the first brought.
+fn there_and_back(named: &[Named]) -> Option<[usize; 2]> {
+    let jumps: Vec<usize> =
+        (0..named.len()).filter(|i| family(named[*i].effect.kind()) == Some(Family::Jump)).collect();
+    // A gyro that was turned and turned back changed its heading twice.
+    let steps = jumps.iter().all(|i| named[*i].effect.kind() == "bias_step");
+    let [a, b] = jumps[..] else { return None };
+    let parameter = |i: usize, name: &str| named[i].estimated.reported.get(name);
+    let (first, second) = (parameter(a, STEP)?, parameter(b, STEP)?);
+    let deviation = |p: &ParameterValue| (p.ci95[1] - p.ci95[0]) / 3.92;
+    let left = (first.value + second.value).abs();
+    let back = left < BACK * first.value.abs().max(second.value.abs())
+        && left < BACK_DEVIATIONS * deviation(first).hypot(deviation(second));
+    let ordered = parameter(a, INSTANT)?.value <= parameter(b, INSTANT)?.value;
+    (steps && back).then_some(if ordered { [a, b] } else { [b, a] })
+}
+
+/// Size of a jump.
+const STEP: &str = "step_deg_h";
+
+/// Two jumps, there and back, made the one thing that the format of explanations calls them: something that was not
+/// recorded came and went.
+pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem) {
+    let Some([first, second]) = there_and_back(named) else { return };
+    let Some(effect) = find("unobserved_driver") else { return };
+    let value = |i: usize, name: &str| named[i].estimated.reported.get(name).cloned();
+    let (Some(up), Some(down)) = (value(first, STEP), value(second, STEP)) else { return };
+    let (Some(from), Some(to)) = (value(first, INSTANT), value(second, INSTANT)) else { return };
+    let weight = |p: &ParameterValue| (p.ci95[1] - p.ci95[0]).max(1e-300).powi(-2);
+    let (a, b) = (weight(&up), weight(&down));
+    let height = (a * up.value - b * down.value) / (a + b);
+    let half = 1.0 / (a + b).sqrt() / 2.0;
+    let drivers = &problem.drivers;
+    let share = ((to.value - from.value) / drivers.length_s()).clamp(0.0, 1.0);
+    let root = (share * (1.0 - share)).sqrt();
+    let rms = ParameterValue {
+        value: height.abs() * root,
+        unit: "deg/h".to_owned(),
+        ci95: [(height.abs() - half).max(0.0) * root, (height.abs() + half) * root],
+    };
+    let edge = 1e-3 * drivers.dt_s;
+    let times = [from.value - edge, from.value + edge, to.value - edge, to.value + edge];
+    let list = |x: &[f64]| Value::List(x.to_vec());
+    let stated = BTreeMap::from([
+        ("knots_time_s".to_owned(), list(&times)),
+        ("knots_deg_h".to_owned(), list(&[0.0, height, height, 0.0])),
+    ]);
+    let pair = [&named[first], &named[second]];
+    let whole = Named {
+        effect,
+        estimated: Estimated { reported: BTreeMap::from([("rms_deg_h".to_owned(), rms)]), stated },
+        equivalents: vec![],
+        places: hull(named, &[first, second]),
+        delta_bic: pair.iter().map(|n| n.delta_bic).sum(),
+        p_value: pair.iter().map(|n| n.p_value).fold(1.0, f64::min),
+        improvement: None,
+        local_gain: pair.iter().map(|n| n.local_gain).sum(),
+    };
+    named[first] = whole;
+    named.remove(second);
+}
+
 /// The findings that belong together, of a selection that was allowed so many effects.
 pub(super) fn together(named: &[Named], allowed: usize) -> Vec<Together> {
     // Where more findings were allowed than one family took, it was not cut short: each is what it is named.
@@ -86,6 +157,7 @@ pub(super) fn together(named: &[Named], allowed: usize) -> Vec<Together> {
         groups.extend(neighbours(named, &lines).into_iter().filter(|g| g.len() > 1));
     }
     groups.extend([Family::Spectrum, Family::Jump].map(of).into_iter().filter(|g| g.len() >= many));
+    groups.extend(there_and_back(named).map(|pair| pair.to_vec()));
     groups
         .into_iter()
         .map(|members| {

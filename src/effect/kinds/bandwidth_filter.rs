@@ -132,7 +132,9 @@ impl Spectrum for BandwidthFilter {
         };
         match of_samples(fitted, first.dt_s) {
             Some(low_pass) => {
-                bins.iter().map(|b| low_pass.power(b.frequency_hz * b.dt_s).max(1e-9)).collect()
+                let frequencies = bins.iter().map(|b| b.frequency_hz * b.dt_s);
+                let powers = low_pass.mode_powers(frequencies, first.samples);
+                powers.into_iter().map(|p| p.max(1e-9)).collect()
             }
             None if form(fitted) == Form::MovingAverage => {
                 let samples = average_samples(cutoff, first.dt_s) as u32;
