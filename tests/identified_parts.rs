@@ -1,11 +1,14 @@
-//! Identification with parts beside N, B, K, Q and R: quantisation that another part could stand for.
+//! Identification with parts beside N, B, K, Q and R: quantisation that another part could stand for, and intervals
+//! without a second search.
 
 #[allow(dead_code)]
 mod study_support;
 
-use sagnac::noise::composite::Composite;
+use sagnac::noise::composite::{Composite, Sampling};
 use sagnac::noise::data::NoiseType;
-use sagnac::noise::identify::Identification;
+use sagnac::noise::evidence::Evidence;
+use sagnac::noise::identify::{Identification, Identify};
+use sagnac::noise::joint::MaximumLikelihood;
 use sagnac::noise::model::NoiseModel;
 use study_support::generator::Generator;
 use study_support::mixes::{Mix, TAU0_S, mixes};
@@ -58,5 +61,22 @@ fn quantisation_that_shows_beside_a_short_process_is_claimed() {
             let (low, high) = (1.25 * score.low - 0.25 * score.high, 1.25 * score.high - 0.25 * score.low);
             assert!(low < truth && truth < high, "{}: {score:?}", estimate.id);
         }
+    }
+}
+
+#[test]
+fn intervals_after_a_description_are_those_of_a_whole_identification() {
+    let method = MaximumLikelihood { sampling: Sampling::Averaging, ..Default::default() };
+    for name in ["N+B", "N+K", "N+short Markov", "N+quasi-periodic", "N moving average"] {
+        let record = digest(&simulated(&mix(name), SAMPLES, 77), TAU0_S);
+        let evidence = Evidence::new(&record.blocks, Some(&record.welch.spectrum), TAU0_S, &[]);
+        let described = method.describe("rate", &evidence);
+        let completed = method.complete("rate", &evidence, &described);
+        assert_eq!(completed, method.identify("rate", &evidence), "{name}");
+        assert_eq!(
+            (completed.model, &completed.described),
+            (described.model, &described.described),
+            "{name}"
+        );
     }
 }

@@ -41,22 +41,33 @@ const TURNS: usize = 12;
 
 impl Identify for MaximumLikelihood {
     fn identify(&self, channel: &str, evidence: &Evidence) -> Identification {
-        self.run(channel, evidence, true)
+        self.run(channel, evidence, None, true)
     }
 
     fn describe(&self, channel: &str, evidence: &Evidence) -> Identification {
-        self.run(channel, evidence, false)
+        self.run(channel, evidence, None, false)
+    }
+
+    fn complete(&self, channel: &str, evidence: &Evidence, described: &Identification) -> Identification {
+        self.run(channel, evidence, described.searched.as_ref(), true)
     }
 }
 
 impl MaximumLikelihood {
-    fn run(&self, channel: &str, evidence: &Evidence, intervals: bool) -> Identification {
+    fn run(
+        &self,
+        channel: &str,
+        evidence: &Evidence,
+        known: Option<&Extras>,
+        intervals: bool,
+    ) -> Identification {
         let plain = self.base.describe(channel, evidence);
         let without_extras = |plain: Identification| {
             if intervals { self.base.identify(channel, evidence) } else { plain }
         };
         let ramp = plain.claims(NoiseType::RateRamp);
-        let mut extras = find_extras(evidence, self.sampling, ramp, &self.extras);
+        let search = || find_extras(evidence, self.sampling, ramp, &self.extras);
+        let mut extras = known.cloned().unwrap_or_else(search);
         if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
             // A long Markov process may stand where flicker or random walk is claimed.
             let choice = self.base.slow_choice(evidence).filter(|c| c.set & (B | K) != 0);
@@ -68,6 +79,7 @@ impl MaximumLikelihood {
                 near => {
                     let mut found = without_extras(plain);
                     near.iter().for_each(|n| n.annotate(&mut found));
+                    found.searched = Some(extras);
                     return found;
                 }
             }
@@ -86,6 +98,7 @@ impl MaximumLikelihood {
                 (_, near) => {
                     let mut out = found.report(channel, &joint, plain, intervals);
                     near.iter().for_each(|n| n.annotate(&mut out));
+                    out.searched = (turns > 0).then_some(extras);
                     return out;
                 }
             }
