@@ -6,7 +6,7 @@ pub mod damped;
 mod described;
 mod windowed;
 
-pub use bandwidth::Bandwidth;
+pub use bandwidth::{Bandwidth, averaged_white_mode};
 pub use damped::{Damped, Modes, Sampling};
 pub use described::{Described, Parameter};
 pub use windowed::Windowed;

@@ -1,7 +1,9 @@
 //! Expected band powers of each part for a coefficient of 1.
 
 use super::{BASE, Shape};
-use crate::noise::composite::{Bandwidth, Composite, Damped, Modes, Sampling, Windowed, sampled_density};
+use crate::noise::composite::{
+    Bandwidth, Composite, Damped, Modes, Sampling, Windowed, averaged_white_mode, sampled_density,
+};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 use crate::noise::model::{Bin, Spectral, bin_ratio};
@@ -23,6 +25,12 @@ impl Spectral for Filtered {
             None => sampled_density(self.term, f, tau, self.sampling_of(bin)),
             Some(filter @ Bandwidth::FirstOrder { .. }) => {
                 filter.unit_density(self.term, f, tau, self.sampling_of(bin))
+            }
+            Some(Bandwidth::MovingAverage { samples })
+                if bin.mode > 0 && tau <= 1.5 * self.tau0_s && self.term == NoiseType::AngleRandomWalk =>
+            {
+                sampled_density(self.term, f, tau, self.sampling)
+                    * averaged_white_mode(samples, bin.mode, bin.blocks)
             }
             Some(Bandwidth::MovingAverage { samples }) => {
                 let n = f64::from(samples.max(1));
