@@ -98,8 +98,8 @@ pub fn identify_over(
     range: &RangedIdentification,
 ) -> RangedIdentification {
     let identification = match range.highest_hz {
-        Some(highest_hz) => method.identify(channel, &evidence.up_to(highest_hz)),
-        None => method.identify(channel, evidence),
+        Some(highest_hz) => method.complete(channel, &evidence.up_to(highest_hz), &range.identification),
+        None => method.complete(channel, evidence, &range.identification),
     };
     annotated(stated(RangedIdentification { identification, ..*range }, evidence.tau0_s))
 }

@@ -5,6 +5,7 @@ use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, toggled};
 use super::identifiable::IDENTIFIABLE;
+use super::joint::Extras;
 use super::misfit::Misfit;
 use super::model::{NoiseModel, TERMS, unit_allan_variance};
 use super::profile::{Profile, wider};
@@ -20,6 +21,12 @@ pub trait Identify {
 
     /// The same without intervals and limits, which take most of the time: what is claimed, the models, the misfit.
     fn describe(&self, channel: &str, evidence: &Evidence) -> Identification {
+        self.identify(channel, evidence)
+    }
+
+    /// Intervals and limits for what [`Identify::describe`] found in the same evidence; equal to
+    /// [`Identify::identify`], and may use that the search has been made.
+    fn complete(&self, channel: &str, evidence: &Evidence, _described: &Identification) -> Identification {
         self.identify(channel, evidence)
     }
 }
@@ -107,6 +114,8 @@ pub struct Identification {
     pub quasi_periodic: Vec<QuasiPeriodicFound>,
     /// −3 dB cut-off of the measurement, Hz, where the record shows a filter.
     pub cutoff: Option<Estimate>,
+    /// Where the search for further parts ended; `None` where a second search might end elsewhere.
+    pub(super) searched: Option<Extras>,
 }
 
 /// A first-order Markov process that was found.
@@ -250,6 +259,7 @@ impl Identification {
             markov: vec![],
             quasi_periodic: vec![],
             cutoff: None,
+            searched: None,
         }
     }
 }

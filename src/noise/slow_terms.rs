@@ -36,7 +36,7 @@ impl Default for SlowPrices {
         let mut set = [0.0; SETS];
         set[B] = 4.2;
         set[K] = 4.6;
-        set[R] = 6.0;
+        set[R] = 7.0;
         set[B | K] = 9.2;
         set[B | R] = 13.5;
         set[K | R] = 11.2;

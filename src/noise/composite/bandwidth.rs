@@ -23,6 +23,24 @@ pub enum Bandwidth {
 /// Neighbouring aliases summed on each side; what is left out falls as the fifth power of the distance.
 const ALIASES: i32 = 3;
 
+/// E\[c_k²\] of the orthonormal cosine mode k of `blocks` means over the last `samples` of white samples of variance 1.
+///
+/// The ends of a record leave power at the zeros of the mean, where the density has none: taken for something else, it is
+/// quantisation.
+pub fn averaged_white_mode(samples: u32, mode: usize, blocks: usize) -> f64 {
+    let (n, m) = (f64::from(samples.max(1)), blocks as f64);
+    let (sin, cos) = (PI * mode as f64 / m).sin_cos();
+    // cos(ad) and sin(ad) by the angle-addition recurrence; the autocovariance is a triangle of `samples` lags.
+    let (mut c, mut s) = (1.0, 0.0);
+    let mut sum = 0.5 * n;
+    for lag in 1..samples.max(1) {
+        (c, s) = (c * cos - s * sin, s * cos + c * sin);
+        let d = f64::from(lag);
+        sum += (n - d) * ((1.0 - d / m) * c - s / (m * sin));
+    }
+    (2.0 * sum / (n * n)).max(0.0)
+}
+
 impl Bandwidth {
     /// −3 dB cut-off, Hz.
     pub fn cutoff_hz(&self, tau0_s: f64) -> f64 {
@@ -120,6 +138,25 @@ mod tests {
             let f = filter.cutoff_hz(1.0);
             let half = filter.unit_density(NoiseType::AngleRandomWalk, f, 1.0, Sampling::Averaging) / 3600.0;
             assert!((half - 0.5).abs() < 0.002, "{filter:?}: {half}");
+        }
+    }
+
+    #[test]
+    fn modes_of_averaged_white_noise_are_those_of_its_covariance() {
+        let blocks = 60;
+        for (samples, mode) in [(2, 59), (4, 1), (4, 29), (4, 30), (5, 24), (8, 45), (1, 30)] {
+            let n = f64::from(samples);
+            let wave = |j: usize| {
+                (2.0 / blocks as f64).sqrt() * (PI * mode as f64 * (j as f64 + 0.5) / blocks as f64).cos()
+            };
+            let mut expected = 0.0;
+            for i in 0..blocks {
+                for j in 0..blocks {
+                    expected += wave(i) * wave(j) * (n - i.abs_diff(j) as f64).max(0.0) / (n * n);
+                }
+            }
+            let got = averaged_white_mode(samples, mode, blocks);
+            assert!((got - expected).abs() < 1e-12, "{samples} {mode}: {got} {expected}");
         }
     }
 

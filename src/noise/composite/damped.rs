@@ -96,7 +96,7 @@ impl Damped {
     }
 
     /// The factors of the autocovariance of samples, for σ = 1: γ₀ and γ_d = Re\[h ρ^d\] for d ≥ 1.
-    fn covariance(&self, tau_s: f64, sampling: Sampling) -> (f64, Complex<f64>, Complex<f64>) {
+    pub(super) fn covariance(&self, tau_s: f64, sampling: Sampling) -> (f64, Complex<f64>, Complex<f64>) {
         let z = self.rate() * tau_s;
         let rho = (-z).exp();
         match sampling {
@@ -138,33 +138,6 @@ impl Damped {
         let last = rho.powf(blocks as f64 - 1.0);
         let scale = self.rms_deg_h.powi(2) * tau_s;
         Modes { gamma0, first, rho, last, blocks, scale }
-    }
-
-    /// Two-sided density that a Hann window over `segment` samples shows on average at `frequency_hz`, (deg/h)²/Hz:
-    /// what a resonance narrower than the window becomes.
-    pub fn windowed_density(&self, frequency_hz: f64, segment: usize, tau_s: f64, sampling: Sampling) -> f64 {
-        let (gamma0, first, rho) = self.covariance(tau_s, sampling);
-        let l = segment as f64;
-        let one = Complex::new(1.0, 0.0);
-        let turn = |phase: f64| Complex::new(phase.cos(), phase.sin());
-        // Autocorrelation of the window: (1 − x)(2 + cos 2πx)/3 + sin(2πx)/(2π), x = d/L.
-        let (theta, bin) = (2.0 * PI * frequency_hz * tau_s, 2.0 * PI / l);
-        let mut sum = Complex::new(0.0, 0.0);
-        for side in [theta, -theta] {
-            for shift in [-1.0, 0.0, 1.0] {
-                let u = turn(side + shift * bin);
-                let z = rho * u;
-                let last = z.powf(l - 1.0);
-                let plain = u * (one - last) / (one - z);
-                let weighted = u * (one - last * l + last * z * (l - 1.0)) / ((one - z) * (one - z));
-                let (even, odd) = match shift {
-                    0.0 => (2.0 / 3.0, Complex::new(0.0, 0.0)),
-                    s => (1.0 / 6.0, Complex::new(0.0, -s / (4.0 * PI))),
-                };
-                sum += (plain - weighted / l) * even + plain * odd;
-            }
-        }
-        (self.rms_deg_h.powi(2) * tau_s * (gamma0 + (first * sum).re)).max(0.0)
     }
 
     /// V(t), (deg/h)²: the variance of the mean over `t_s` of the continuous process.
@@ -247,7 +220,7 @@ mod tests {
                         expected += window[i] * window[j] * gamma(i.abs_diff(j)) * phase.cos() / square;
                     }
                 }
-                let got = d.windowed_density(f, l, 1.0, Sampling::Averaging);
+                let got = d.windowed(l, 1.0, Sampling::Averaging).density(f);
                 // The window is summed at middles of samples here and integrated there.
                 assert!((got - expected).abs() < 5e-3 * expected + 2e-4, "{f} {t} {k}: {got} {expected}");
             }

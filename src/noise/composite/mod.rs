@@ -4,10 +4,12 @@
 mod bandwidth;
 pub mod damped;
 mod described;
+mod windowed;
 
-pub use bandwidth::Bandwidth;
+pub use bandwidth::{Bandwidth, averaged_white_mode};
 pub use damped::{Damped, Modes, Sampling};
 pub use described::{Described, Parameter};
+pub use windowed::Windowed;
 
 use super::data::NoiseType;
 use super::model::{NoiseModel, TERMS, unit_allan_variance, unit_density, unit_mean_variance};

@@ -1,7 +1,9 @@
 //! Expected band powers of each part for a coefficient of 1.
 
 use super::{BASE, Shape};
-use crate::noise::composite::{Bandwidth, Composite, Damped, Modes, Sampling, sampled_density};
+use crate::noise::composite::{
+    Bandwidth, Composite, Damped, Modes, Sampling, Windowed, averaged_white_mode, sampled_density,
+};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 use crate::noise::model::{Bin, Spectral, bin_ratio};
@@ -23,6 +25,12 @@ impl Spectral for Filtered {
             None => sampled_density(self.term, f, tau, self.sampling_of(bin)),
             Some(filter @ Bandwidth::FirstOrder { .. }) => {
                 filter.unit_density(self.term, f, tau, self.sampling_of(bin))
+            }
+            Some(Bandwidth::MovingAverage { samples })
+                if bin.mode > 0 && tau <= 1.5 * self.tau0_s && self.term == NoiseType::AngleRandomWalk =>
+            {
+                sampled_density(self.term, f, tau, self.sampling)
+                    * averaged_white_mode(samples, bin.mode, bin.blocks)
             }
             Some(Bandwidth::MovingAverage { samples }) => {
                 let n = f64::from(samples.max(1));
@@ -50,6 +58,8 @@ struct Process {
     sampling: Sampling,
     /// The modes of the transform that was asked for last: bins of one transform come together.
     last: Cell<Option<(f64, usize, Modes)>>,
+    /// The bins of the segment length that was asked for last.
+    windowed: Cell<Option<(f64, usize, Windowed)>>,
 }
 
 impl Spectral for Process {
@@ -63,7 +73,12 @@ impl Spectral for Process {
             self.last.set(Some((bin.tau_s, bin.blocks, modes)));
             modes.power(bin.mode)
         } else if bin.segment > 0 {
-            self.process.windowed_density(bin.frequency_hz, bin.segment, bin.tau_s, sampling)
+            let windowed = match self.windowed.get() {
+                Some((tau_s, segment, windowed)) if tau_s == bin.tau_s && segment == bin.segment => windowed,
+                _ => self.process.windowed(bin.segment, bin.tau_s, sampling),
+            };
+            self.windowed.set(Some((bin.tau_s, bin.segment, windowed)));
+            windowed.density(bin.frequency_hz)
         } else {
             self.process.density(bin.frequency_hz, bin.tau_s, sampling)
         }
@@ -89,7 +104,8 @@ pub(super) fn base(evidence: &Evidence, filter: Option<Bandwidth>, sampling: Sam
 /// The column of one process.
 pub(super) fn process(evidence: &Evidence, process: &Damped, sampling: Sampling) -> Vec<f64> {
     let unit = Damped { rms_deg_h: 1.0, ..*process };
-    evidence.expectation(&Process { process: unit, tau0_s: evidence.tau0_s, sampling, last: Cell::new(None) })
+    let (tau0_s, last, windowed) = (evidence.tau0_s, Cell::new(None), Cell::new(None));
+    evidence.expectation(&Process { process: unit, tau0_s, sampling, last, windowed })
 }
 
 /// All columns of a shape.

@@ -1,6 +1,8 @@
 //! Identification with every kind of term.
 
-use super::search::{all_free, best_of};
+use super::confounded::quantization_price;
+use super::needless::{Part, needless, without};
+use super::search::all_free;
 use super::slow::{Slow, long_markov};
 use super::{
     BASE, ExtraThresholds, Extras, Free, Joint, JointPoint, JointProfile, Kind, Shape, Variable, find_extras,
@@ -39,22 +41,33 @@ const TURNS: usize = 12;
 
 impl Identify for MaximumLikelihood {
     fn identify(&self, channel: &str, evidence: &Evidence) -> Identification {
-        self.run(channel, evidence, true)
+        self.run(channel, evidence, None, true)
     }
 
     fn describe(&self, channel: &str, evidence: &Evidence) -> Identification {
-        self.run(channel, evidence, false)
+        self.run(channel, evidence, None, false)
+    }
+
+    fn complete(&self, channel: &str, evidence: &Evidence, described: &Identification) -> Identification {
+        self.run(channel, evidence, described.searched.as_ref(), true)
     }
 }
 
 impl MaximumLikelihood {
-    fn run(&self, channel: &str, evidence: &Evidence, intervals: bool) -> Identification {
+    fn run(
+        &self,
+        channel: &str,
+        evidence: &Evidence,
+        known: Option<&Extras>,
+        intervals: bool,
+    ) -> Identification {
         let plain = self.base.describe(channel, evidence);
         let without_extras = |plain: Identification| {
             if intervals { self.base.identify(channel, evidence) } else { plain }
         };
         let ramp = plain.claims(NoiseType::RateRamp);
-        let mut extras = find_extras(evidence, self.sampling, ramp, &self.extras);
+        let search = || find_extras(evidence, self.sampling, ramp, &self.extras);
+        let mut extras = known.cloned().unwrap_or_else(search);
         if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
             // A long Markov process may stand where flicker or random walk is claimed.
             let choice = self.base.slow_choice(evidence).filter(|c| c.set & (B | K) != 0);
@@ -66,6 +79,7 @@ impl MaximumLikelihood {
                 near => {
                     let mut found = without_extras(plain);
                     near.iter().for_each(|n| n.annotate(&mut found));
+                    found.searched = Some(extras);
                     return found;
                 }
             }
@@ -84,6 +98,7 @@ impl MaximumLikelihood {
                 (_, near) => {
                     let mut out = found.report(channel, &joint, plain, intervals);
                     near.iter().for_each(|n| n.annotate(&mut out));
+                    out.searched = (turns > 0).then_some(extras);
                     return out;
                 }
             }
@@ -92,29 +107,6 @@ impl MaximumLikelihood {
             }
         }
     }
-}
-
-/// A part beside N, B, K, Q and R.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Part {
-    Filter,
-    Damped(usize),
-}
-
-fn without_shape(shape: &Shape, part: Part) -> Shape {
-    let mut out = shape.clone();
-    match part {
-        Part::Filter => out.filter = None,
-        Part::Damped(i) if i < out.damped.len() => {
-            out.damped.remove(i);
-        }
-        Part::Damped(_) => {}
-    }
-    out
-}
-
-fn without(extras: &Extras, part: Part) -> Extras {
-    Extras { shape: without_shape(&extras.shape, part), zones: extras.zones.clone() }
 }
 
 /// Everything that fits of one shape say.
@@ -155,10 +147,12 @@ impl Found {
             ratios[0] > method.base.white,
             holds(slow.choice.set, 1),
             holds(slow.choice.set, 2),
-            ratios[3] > method.base.quantization,
+            // The price is looked up only where it decides.
+            ratios[3] > method.base.quantization
+                && ratios[3] > quantization_price(joint, &full, ramp, &method.extras),
             ramp,
         ];
-        let needless = needless(joint, shape, &full, &slow, method);
+        let needless = needless(joint, shape, &full, &slow, &method.base.slow, &method.extras);
         let (point, free) = supported(joint, shape, &full, &claimed, ramp);
         let (variables, covariance) = parameter_covariance(joint, &point, &free);
         for (term, claimed) in claimed.iter_mut().enumerate().take(3).skip(1) {
@@ -308,54 +302,6 @@ impl Found {
             }
         };
     }
-}
-
-/// The part whose loss costs less than it was accepted for, by the most.
-fn needless(
-    joint: &Joint<'_>,
-    shape: &Shape,
-    full: &JointPoint,
-    slow: &Slow,
-    method: &MaximumLikelihood,
-) -> Option<Part> {
-    if usize::from(shape.filter.is_some()) + shape.damped.len() < 2 {
-        return None;
-    }
-    let ramp = holds(slow.choice.set, RAMP);
-    let less_by = |part: Part, threshold: f64| {
-        let less = without_shape(shape, part);
-        let mut start = JointPoint { shape: less.clone(), ..full.clone() };
-        if let Part::Damped(i) = part {
-            start.variance.remove(BASE.len() + i);
-        }
-        let free = all_free(&less, ramp, true);
-        // From afresh too: what is left may stand where only the part could hold it.
-        let reached = joint.maximise(&start, &free).deviance.min(best_of(joint, &less, ramp).deviance);
-        reached - full.deviance - threshold
-    };
-    let excess = |part: Part| match part {
-        Part::Filter => less_by(part, method.extras.filter),
-        Part::Damped(i) => match shape.damped.get(i) {
-            Some((Kind::Markov, _)) => {
-                // Flicker or random walk may stand in its place, each at its own price.
-                let in_place = Slow::of(joint, &without_shape(shape, part), &method.base.slow)
-                    .map_or(f64::INFINITY, |s| s.choice.cost);
-                let instead = slow.choice_without_rivals(&method.base.slow);
-                let kept = (slow.choice.cost + method.extras.markov).min(instead);
-                in_place - kept
-            }
-            _ => less_by(part, method.extras.quasi_periodic),
-        },
-    };
-    let damped = (0..shape.damped.len()).map(Part::Damped);
-    let filter = shape.filter.map(|_| Part::Filter);
-    filter
-        .into_iter()
-        .chain(damped)
-        .map(|part| (part, excess(part)))
-        .filter(|(_, excess)| *excess < 0.0)
-        .min_by(|a, b| a.1.total_cmp(&b.1))
-        .map(|(part, _)| part)
 }
 
 /// The best description: claimed terms, and as few others as pay their price.

@@ -5,9 +5,11 @@
 //! over both, variances bounded at zero.
 
 mod columns;
+mod confounded;
 mod identify;
 mod interval;
 mod maximise;
+mod needless;
 mod peaks;
 mod search;
 mod slow;

@@ -1,5 +1,6 @@
 //! What there is beside N, B, K, Q and R: one more part at a time, while one is worth its parameters.
 
+use super::confounded::QUANTIZATION;
 use super::peaks::strongest;
 use super::{BASE, Free, Joint, JointPoint, Kind, Shape};
 use crate::noise::composite::{Bandwidth, Part, Sampling};
@@ -21,6 +22,9 @@ pub struct ExtraThresholds {
     pub quantization_beside_filter: f64,
     /// What quantisation costs beside a Markov process.
     pub quantization: f64,
+    /// What the claim of quantisation needs where it makes N uncertain. More than the choice of structure: a process
+    /// without quantisation is to be told from a filter with it all the same.
+    pub quantization_confounded: f64,
     /// A quasi-periodic disturbance, beside twice the logarithm of the resolved places searched.
     pub quasi_periodic: f64,
 }
@@ -32,6 +36,7 @@ impl Default for ExtraThresholds {
             markov: 17.0,
             quantization_beside_filter: 20.0,
             quantization: 8.5,
+            quantization_confounded: 20.0,
             quasi_periodic: 14.0,
         }
     }
@@ -46,8 +51,6 @@ pub struct Extras {
     pub zones: Vec<Zone>,
 }
 
-/// Place of quantisation among the variances.
-const QUANTIZATION: usize = 3;
 /// Parts accepted at most.
 pub(super) const MOST: usize = 4;
 /// Correlation times tried, per octave.

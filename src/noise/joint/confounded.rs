@@ -1,0 +1,43 @@
+//! Whether quantisation can be told from what else bends the spectrum near its upper end.
+
+use super::search::all_free;
+use super::{ExtraThresholds, Joint, JointPoint, Variable, parameter_covariance};
+
+/// Place of quantisation among the variances.
+pub(super) const QUANTIZATION: usize = 3;
+/// Growth of the uncertainty of N by letting quantisation in from which the two count as confounded: a needless
+/// quantisation then displaces N by several of the deviations it would have without.
+const CONFOUNDED: f64 = 2.0;
+
+/// What quantisation costs at a maximum.
+///
+/// Beside a short Markov process it rises where the process falls, and the white level between them can be nearly
+/// anything: N would be wrong by far more than its interval said if chance alone brought it in.
+pub(super) fn quantization_price(
+    joint: &Joint<'_>,
+    point: &JointPoint,
+    ramp: bool,
+    thresholds: &ExtraThresholds,
+) -> f64 {
+    if confounds_white(joint, point, ramp) {
+        thresholds.quantization_confounded
+    } else {
+        thresholds.quantization
+    }
+}
+
+/// True when N is several times less certain with quantisation free than with it held.
+fn confounds_white(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> bool {
+    let mut free = all_free(&point.shape, ramp, true);
+    let mut sigma_of_white = |quantization: bool| {
+        free.variance[QUANTIZATION] = quantization;
+        let (variables, covariance) = parameter_covariance(joint, point, &free);
+        let at = variables.iter().position(|v| *v == Variable::Variance(0))?;
+        Some(covariance.get(at)?.get(at)?.max(0.0).sqrt())
+    };
+    match (sigma_of_white(true), sigma_of_white(false)) {
+        (Some(with), Some(without)) => with > CONFOUNDED * without,
+        // Where N has vanished, quantisation stands in its place.
+        _ => point.variance.get(QUANTIZATION).is_some_and(|v| *v > 0.0) && !point.shape.is_plain(),
+    }
+}
