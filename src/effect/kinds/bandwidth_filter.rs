@@ -153,18 +153,29 @@ impl Spectrum for BandwidthFilter {
         let Some(first) = look.bins.first() else { return vec![] };
         let (low, high) = self.bounds(look)[0];
         let cost = |start: &[f64]| {
+            // The level is left open: without the filter it was drawn down to what the filter leaves.
             let factors = self.densities(start, look.bins);
-            let terms = look.bins.iter().zip(factors).enumerate().map(|(i, (bin, factor))| {
+            let (mut logarithms, mut ratios, mut modes) = (0.0, 0.0, 0.0);
+            for (i, (bin, factor)) in look.bins.iter().zip(factors).enumerate() {
                 let s = (look.expected[i] * factor).max(1e-300);
-                bin.modes as f64 * (s.ln() + look.observed[i] / s)
-            });
-            terms.sum::<f64>()
+                let weight = bin.modes as f64;
+                logarithms += weight * s.ln();
+                ratios += weight * look.observed[i] / s;
+                modes += weight;
+            }
+            logarithms + modes * (ratios / modes).ln()
         };
         let best = |candidates: Vec<Vec<f64>>| {
             candidates.into_iter().map(|c| (cost(&c), c)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, c)| c)
         };
         let grid = log_grid(2.0 * low, 0.7 * high, 16);
-        let of = |number: f64| best(grid.iter().map(|c| vec![*c, number]).collect());
+        // Filters of samples pass everything beyond the Nyquist frequency, whatever their cutoff.
+        let within = |c: &&f64, number: f64| {
+            of_samples(&[**c, number], first.dt_s).is_none() || **c < 0.45 / first.dt_s || number < 4.0
+        };
+        let of = |number: f64| {
+            best(grid.iter().filter(|c| within(c, number)).map(|c| vec![*c, number]).collect())
+        };
         let averages = (2..=LONGEST).map(|n| vec![average_cutoff_hz(n, first.dt_s), 4.0]).collect();
         let forms = (1..=FORMS.len()).filter(|n| FORMS[n - 1] != Form::MovingAverage);
         forms.map(|n| of(n as f64)).chain([best(averages)]).flatten().collect()

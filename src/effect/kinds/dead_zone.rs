@@ -68,6 +68,9 @@ fn by_size(drivers: &Drivers) -> Vec<(f64, usize)> {
     sizes
 }
 
+/// Share of the largest rate up to which a zone is one around zero.
+const AROUND: f64 = 0.8;
+
 /// Smallest and largest rate but zero, deg/h, and how many sizes there are.
 fn sizes(drivers: &Drivers) -> Option<(f64, f64, usize)> {
     let rates = || drivers.table_rate.iter().flatten().map(|r| (3600.0 * r).abs()).filter(|s| *s > 0.0);
@@ -121,7 +124,11 @@ impl Course for DeadZone {
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
-        sizes(drivers).map_or(vec![(1e-9, 1e-9), (0.0, 1.0)], |(low, high, _)| vec![(low, high), (0.0, 1.0)])
+        // What holds at nearly every rate is no zone around zero.
+        let around_zero = |high: f64, low: f64| (AROUND * high).max(low);
+        sizes(drivers).map_or(vec![(1e-9, 1e-9), (0.0, 1.0)], |(low, high, _)| {
+            vec![(low, around_zero(high, low)), (0.0, 1.0)]
+        })
     }
 
     fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
