@@ -173,9 +173,8 @@ impl Spectrum for BandwidthFilter {
         let within = |c: &&f64, number: f64| {
             of_samples(&[**c, number], first.dt_s).is_none() || **c < 0.45 / first.dt_s || number < 4.0
         };
-        let of = |number: f64| {
-            best(grid.iter().filter(|c| within(c, number)).map(|c| vec![*c, number]).collect())
-        };
+        let of =
+            |number: f64| best(grid.iter().filter(|c| within(c, number)).map(|c| vec![*c, number]).collect());
         let averages = (2..=LONGEST).map(|n| vec![average_cutoff_hz(n, first.dt_s), 4.0]).collect();
         let forms = (1..=FORMS.len()).filter(|n| FORMS[n - 1] != Form::MovingAverage);
         forms.map(|n| of(n as f64)).chain([best(averages)]).flatten().collect()

@@ -28,8 +28,7 @@ static DOC: Doc = Doc {
     source: "Jitter of time stamps: white angle noise proportional to the rate",
 };
 
-static PARAMS: [Param; 2] =
-    [Param::reported("ratio", "", 1e-3, 1e3), Param::inner("exponent", "", 1.0, 2.0)];
+static PARAMS: [Param; 2] = [Param::reported("ratio", "", 1e-3, 1e3), Param::inner("exponent", "", 1.0, 2.0)];
 
 describe! {
     NoiseVarianceRate, "noise_variance_rate", Samples in InputRate, needs [TableRate],

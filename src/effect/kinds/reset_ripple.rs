@@ -113,9 +113,8 @@ impl Octave {
         let used = (0..middles.len()).filter(|i| steps[*i].abs() < period);
         let samples: Vec<(f64, f64, f64)> =
             used.map(|i| (middles[i], i as f64 * dt_s, look.score[i])).collect();
-        let (low, high) = samples
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (s.0.min(a), s.0.max(b)));
+        let (low, high) =
+            samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (s.0.min(a), s.0.max(b)));
         let (low, high) = (low - margin, high + margin);
         let cells = (high - low) / period * Octave::CELLS;
         if samples.len() < 32 || !cells.is_finite() || cells >= LONGEST as f64 {
