@@ -3,7 +3,9 @@
 //! The floor is a running robust power law: a median of ln S over neighbouring bins after the local slope in ln f is
 //! taken off, so that flicker and random walk raise no alarm. Without a line a bin of the averaged periodogram is
 //! Gamma distributed with the equivalent number of averages, and its ratio to the floor follows an F distribution, the
-//! floor being an average of limited number itself. The rate is shared among all bins searched (Šidák).
+//! floor being an average of limited number itself. The rate is shared among all bins searched (Šidák). What stands out
+//! from the wide floor must stand out from its nearest neighbours as well: beside the zeros of an averaging filter the
+//! spectrum bends more than a power law over many bins can.
 
 use super::data::WelchSpectrum;
 use crate::estimate::normal_probability;
@@ -21,6 +23,8 @@ const FIRST_FLOOR_BIN: usize = 2;
 const FLOOR_ERROR: [f64; 2] = [0.05, 0.02];
 /// Half width, in bins, of what a pure line fills under a Hann window.
 const LOBE: usize = 2;
+/// Bins on each side that a line must stand out from.
+const NEAREST: usize = 12;
 /// Variance of a median against a mean (π/2) times the correlation of neighbouring bins under a Hann window
 /// (1 + 2·(4/9 + 1/36)).
 const FLOOR_INFLATION: f64 = std::f64::consts::FRAC_PI_2 * 1.9444;
@@ -65,7 +69,15 @@ pub fn find_lines(spectrum: &WelchSpectrum, tau0_s: f64, false_alarm_rate: f64) 
     }
     let floor = floor_of(density, spectrum.effective_averages);
     let searched = end - FIRST_BIN;
-    let probability = |k: usize| corrected(tail(density, &floor, k, spectrum.effective_averages), searched);
+    let averages = spectrum.effective_averages;
+    let probability = |k: usize| {
+        let wide = corrected(tail(density, (floor.level[k], floor.spread[k]), k, averages), searched);
+        // Most bins stand out from nothing, and their neighbours need not be looked at.
+        if wide > false_alarm_rate || half_width(k) <= NEAREST {
+            return wide;
+        }
+        wide.max(corrected(tail(density, nearest(density, k, averages), k, averages), searched))
+    };
     let mut lines = vec![];
     let mut k = FIRST_BIN;
     while k < end {
@@ -175,8 +187,7 @@ struct Floor {
 fn floor_of(density: &[f64], averages: f64) -> Floor {
     let logs: Vec<f64> = density.iter().map(|p| p.max(f64::MIN_POSITIVE).ln()).collect();
     let bins = density.len();
-    // The median of a Gamma variate lies below its mean.
-    let to_mean = -3.0 * (1.0 - 1.0 / (9.0 * averages)).max(0.1).ln();
+    let to_mean = to_mean(averages);
     let mut nodes: Vec<(f64, f64, f64)> = vec![];
     let (mut k, mut scratch) = (1, vec![]);
     while k + 1 < bins {
@@ -213,22 +224,48 @@ fn log_floor(logs: &[f64], k: usize, scratch: &mut Vec<(f64, f64)>) -> (f64, f64
     scratch.clear();
     let outside = (from..=to).filter(|j| j.abs_diff(k) > LOBE);
     scratch.extend(outside.map(|j| ((j as f64).ln() - centre, logs[j])));
-    let (count, middle) = (scratch.len() as f64, scratch.len() / 2);
-    if middle == 0 {
-        return (logs[k], 1.0);
-    }
+    if scratch.len() < 2 { (logs[k], 1.0) } else { along_slope(scratch) }
+}
+
+/// Median of some logarithms along their slope, at 0; and its variance as above.
+fn along_slope(points: &[(f64, f64)]) -> (f64, f64) {
+    let (count, middle) = (points.len() as f64, points.len() / 2);
     let mut medians = [(0.0, 0.0); 2];
-    for (half, out) in [0..middle, middle..scratch.len()].into_iter().zip(&mut medians) {
-        let mut values: Vec<f64> = scratch[half.clone()].iter().map(|p| p.1).collect();
-        let x = scratch[half].iter().map(|p| p.0).sum::<f64>() / values.len() as f64;
+    for (half, out) in [0..middle, middle..points.len()].into_iter().zip(&mut medians) {
+        let mut values: Vec<f64> = points[half.clone()].iter().map(|p| p.1).collect();
+        let x = points[half].iter().map(|p| p.0).sum::<f64>() / values.len() as f64;
         *out = (x, median(&mut values));
     }
     let arm = medians[1].0 - medians[0].0;
     let slope = (medians[1].1 - medians[0].1) / arm;
     let slope = if slope.is_finite() { slope } else { 0.0 };
-    let mut levels: Vec<f64> = scratch.iter().map(|p| p.1 - slope * p.0).collect();
-    let off_middle = scratch.iter().map(|p| p.0).sum::<f64>() / count / arm;
+    let mut levels: Vec<f64> = points.iter().map(|p| p.1 - slope * p.0).collect();
+    let off_middle = points.iter().map(|p| p.0).sum::<f64>() / count / arm;
     (median(&mut levels), (1.0 + 4.0 * off_middle * off_middle) / count)
+}
+
+/// ln of mean over median of a Gamma variate.
+fn to_mean(averages: f64) -> f64 {
+    -3.0 * (1.0 - 1.0 / (9.0 * averages)).max(0.1).ln()
+}
+
+/// Floor of the nearest neighbours and its variance in units of that of a bin: their median, or the one along their
+/// slope where that is larger. On a steep flank the first is the level at the middle, whatever it bends.
+fn nearest(density: &[f64], k: usize, averages: f64) -> (f64, f64) {
+    let from = k.saturating_sub(NEAREST).max(FIRST_FLOOR_BIN);
+    let to = (k + NEAREST).min(density.len().saturating_sub(2));
+    let logs: Vec<f64> =
+        density.get(from..=to).unwrap_or_default().iter().map(|p| p.max(f64::MIN_POSITIVE).ln()).collect();
+    let mut points: Vec<(f64, f64)> = vec![];
+    let centre = k - from;
+    points.extend(
+        (0..logs.len())
+            .filter(|j| j.abs_diff(centre) > LOBE)
+            .map(|j| (((from + j) as f64 / k as f64).ln(), logs[j])),
+    );
+    let mut plain: Vec<f64> = points.iter().map(|p| p.1).collect();
+    let (sloped, spread) = along_slope(&points);
+    ((sloped.max(median(&mut plain)) + to_mean(averages)).exp(), spread)
 }
 
 fn median(values: &mut [f64]) -> f64 {
@@ -236,14 +273,14 @@ fn median(values: &mut [f64]) -> f64 {
     if values.is_empty() { f64::NAN } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// Probability of a ratio to the floor at least as large as that of bin `k`, noise alone.
-fn tail(density: &[f64], floor: &Floor, k: usize, averages: f64) -> f64 {
-    let ratio = density[k] / floor.level[k];
+/// Probability of a ratio to a floor of some level and spread at least as large as that of bin `k`, noise alone.
+fn tail(density: &[f64], (level, spread): (f64, f64), k: usize, averages: f64) -> f64 {
+    let ratio = density[k] / level;
     if ratio <= 1.0 || ratio.is_nan() {
         return 1.0;
     }
     let error = FLOOR_ERROR[usize::from(k >= 64)];
-    let variance = FLOOR_INFLATION * floor.spread[k] / averages + error * error;
+    let variance = FLOOR_INFLATION * spread / averages + error * error;
     upper_f(ratio, 2.0 * averages, 2.0 / variance)
 }
 

@@ -38,6 +38,20 @@ fn noise(count: usize, mix: Mix, seed: u64) -> Vec<f64> {
         .collect()
 }
 
+#[test]
+fn flanks_beside_the_zeros_of_a_moving_average_are_no_lines() {
+    for (length, segment) in [(2, 2048), (4, 1024), (4, 4096), (7, 2048)] {
+        let found = (0..40u64).filter(|seed| {
+            let white = noise(36_000 + length, Mix::White, 5000 + seed);
+            let mean: Vec<f64> =
+                white.windows(length).map(|w| w.iter().sum::<f64>() / length as f64).collect();
+            !search(&mean, segment).lines.is_empty()
+        });
+        // 1 in 100 is stated.
+        assert!(found.count() <= 3, "{length} samples, segments of {segment}");
+    }
+}
+
 fn search(samples: &[f64], segment: usize) -> LineSearch {
     let mut welch = WelchAccumulator::with_segment(segment);
     welch.push(samples, false);

@@ -27,9 +27,9 @@ const ALIASES: i32 = 3;
 ///
 /// The ends of a record leave power at the zeros of the mean, where the density has none: taken for something else, it is
 /// quantisation.
-pub fn averaged_white_mode(samples: u32, mode: usize, blocks: usize) -> f64 {
+pub fn averaged_white_mode(samples: u32, mode: f64, blocks: usize) -> f64 {
     let (n, m) = (f64::from(samples.max(1)), blocks as f64);
-    let (sin, cos) = (PI * mode as f64 / m).sin_cos();
+    let (sin, cos) = (PI * mode / m).sin_cos();
     // cos(ad) and sin(ad) by the angle-addition recurrence; the autocovariance is a triangle of `samples` lags.
     let (mut c, mut s) = (1.0, 0.0);
     let mut sum = 0.5 * n;
@@ -155,7 +155,7 @@ mod tests {
                     expected += wave(i) * wave(j) * (n - i.abs_diff(j) as f64).max(0.0) / (n * n);
                 }
             }
-            let got = averaged_white_mode(samples, mode, blocks);
+            let got = averaged_white_mode(samples, mode as f64, blocks);
             assert!((got - expected).abs() < 1e-12, "{samples} {mode}: {got} {expected}");
         }
     }

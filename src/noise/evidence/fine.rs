@@ -2,6 +2,7 @@
 
 use super::build::banded;
 use super::{Band, Evidence};
+use std::sync::Arc;
 
 /// One mode or bin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +53,20 @@ impl Evidence {
         }
         let bands: Vec<Band> = banded(&self.fine, zones);
         Evidence { bands, ..self.clone() }
+    }
+
+    /// The same evidence without the cosine modes that `hidden` names by the averaging time of their means (s), their order
+    /// and the number of means.
+    pub fn leaving_out(&self, hidden: impl Fn(f64, usize, usize) -> bool) -> Evidence {
+        let out = |bin: &FineBin| {
+            let piece = self.pieces.get(bin.piece as usize).filter(|p| p.blocks > 0);
+            piece.is_some_and(|p| hidden(p.tau_s, bin.index as usize, p.blocks))
+        };
+        let fine: Vec<FineBin> = self.fine.iter().filter(|b| !out(b)).copied().collect();
+        if fine.len() == self.fine.len() {
+            return self.clone();
+        }
+        Evidence { bands: banded(&fine, &[]), fine: Arc::new(fine), ..self.clone() }
     }
 
     /// Mean power of the band nearest to a frequency, (deg/h)²/Hz; 0 without any.

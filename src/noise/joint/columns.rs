@@ -30,7 +30,7 @@ impl Spectral for Filtered {
                 if bin.mode > 0 && tau <= 1.5 * self.tau0_s && self.term == NoiseType::AngleRandomWalk =>
             {
                 sampled_density(self.term, f, tau, self.sampling)
-                    * averaged_white_mode(samples, bin.mode, bin.blocks)
+                    * averaged_white_mode(samples, bin.mode as f64, bin.blocks)
             }
             Some(Bandwidth::MovingAverage { samples }) => {
                 let n = f64::from(samples.max(1));

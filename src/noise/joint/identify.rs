@@ -1,6 +1,7 @@
 //! Identification with every kind of term.
 
 use super::confounded::quantization_price;
+use super::ends::judged;
 use super::needless::{Part, needless, without};
 use super::search::all_free;
 use super::slow::{Slow, long_markov};
@@ -88,7 +89,7 @@ impl MaximumLikelihood {
         let mut turns = TURNS;
         loop {
             turns = turns.saturating_sub(1);
-            let resolved = evidence.resolving(&extras.zones);
+            let resolved = judged(evidence, &extras);
             let Some(joint) = Joint::new(&resolved, self.sampling) else { return without_extras(plain) };
             let Some(found) = Found::of(&joint, &extras.shape, self) else { return without_extras(plain) };
             let near = long_markov(&joint, &extras.shape, found.slow.choice, &self.base.slow);

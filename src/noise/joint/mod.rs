@@ -6,6 +6,7 @@
 
 mod columns;
 mod confounded;
+mod ends;
 mod identify;
 mod interval;
 mod maximise;

@@ -1,6 +1,7 @@
 //! What there is beside N, B, K, Q and R: one more part at a time, while one is worth its parameters.
 
 use super::confounded::QUANTIZATION;
+use super::ends::judged;
 use super::peaks::strongest;
 use super::{BASE, Free, Joint, JointPoint, Kind, Shape};
 use crate::noise::composite::{Bandwidth, Part, Sampling};
@@ -85,7 +86,7 @@ pub fn find_extras(
 ) -> Extras {
     let mut found = Extras { shape: Shape::default(), zones: vec![] };
     for _ in 0..MOST {
-        let resolved = evidence.resolving(&found.zones);
+        let resolved = judged(evidence, &found);
         let Some(joint) = Joint::new(&resolved, sampling) else { break };
         let current = best_of(&joint, &found.shape, ramp);
         if !current.deviance.is_finite() {
@@ -258,7 +259,7 @@ fn periodics(
         }
         let mut zones = found.zones.clone();
         zones.push(peak.zone);
-        let resolved = evidence.resolving(&zones);
+        let resolved = judged(evidence, &Extras { shape: found.shape.clone(), zones: zones.clone() });
         let Some(fine) = Joint::new(&resolved, joint.sampling()) else { continue };
         let before = at_shape(&fine, &found.shape, current, ramp, FULL);
         let time_s = 1.0 / (2.0 * PI * peak.zone.half_width_hz);
