@@ -97,12 +97,14 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         "mismatch"
     };
     let mut correction = contribution::correction(&selection.best, scenes);
+    let stated = found.named.into_iter().map(|n| Stated { effect: n.effect, values: n.estimated.stated });
+    let levelled = found.level.is_some();
+    let augmented =
+        augmented(problem, claim, &selection.best, stated.collect(), levelled, correction.as_deref());
     if let Some(taken) = &found.taken {
         let sum = correction.get_or_insert_with(|| vec![0.0; taken.len()]);
         sum.iter_mut().zip(taken).for_each(|(s, t)| *s += t);
     }
-    let stated = found.named.into_iter().map(|n| Stated { effect: n.effect, values: n.estimated.stated });
-    let augmented = augmented(problem, claim, &selection.best, stated.collect(), found.level.is_some());
     let family = smallest_p(&selection.first, before);
     let figures_after = FitFigures {
         log_likelihood: selection.best.fit.log_likelihood + local_gain,
@@ -358,14 +360,15 @@ fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
 }
 
 /// The claim with its nuisances as fitted and the effects stated. A coefficient that an effect sets free stays as
-/// claimed: the effect states it.
-/// A level of the noise that was found frees N as well: what it comes to is the claim's.
+/// claimed: the effect states it. A level of the noise that was found frees N as well: what it comes to is the claim's.
+/// `correction` is what the hypothesis adds to each sample.
 fn augmented(
     problem: &Problem,
     given: &Claim,
     best: &Tried,
     mut stated: Vec<Stated>,
     levelled: bool,
+    correction: Option<&[f64]>,
 ) -> Claim {
     let mut claim = Claim {
         sample_rate_hz: given.sample_rate_hz,
@@ -389,7 +392,6 @@ fn augmented(
         *ppm += nuisance_value(problem, best, Nuisance::ScaleFactor);
     }
     // The bias is what is left of the mean.
-    let correction = contribution::correction(best, &problem.scenes);
     let n = observed.len().max(1) as f64;
     let added = correction.map_or(0.0, |c| c.iter().sum::<f64>() / n);
     claim.mean.bias_deg_h = observed.iter().sum::<f64>() / n - added;

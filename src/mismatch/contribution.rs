@@ -21,17 +21,28 @@ pub fn correction(best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
     sum
 }
 
+/// Fixed part and columns times their coefficients, of so many samples.
+pub(super) fn summed(
+    columns: &[Vec<f64>],
+    coefficients: &[f64],
+    fixed: Option<&Vec<f64>>,
+    samples: usize,
+) -> Vec<f64> {
+    let mut sum = fixed.cloned().unwrap_or_else(|| vec![0.0; samples]);
+    for (column, c) in columns.iter().zip(coefficients) {
+        sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
+    }
+    sum
+}
+
 /// What one effect adds to each sample, deg/h.
 fn of(slot: Slot, best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
     match slot {
         Slot::Course(i) => {
             let inside = &best.hypothesis.courses[i];
             let parts = inside.course()?.parts(&inside.shape, &scenes.full.drivers);
-            let mut out = parts.fixed.unwrap_or_else(|| vec![0.0; scenes.full.drivers.samples]);
-            for (column, c) in parts.free.iter().zip(&inside.coefficients) {
-                out.iter_mut().zip(column).for_each(|(o, z)| *o += c * z);
-            }
-            Some(out)
+            let samples = scenes.full.drivers.samples;
+            Some(summed(&parts.free, &inside.coefficients, parts.fixed.as_ref(), samples))
         }
         Slot::Spectrum(i) => course_of_process(i, best, scenes),
     }

@@ -1,6 +1,7 @@
 //! Parameters of the chosen effects with their 95 % intervals, and what each adds to the rate.
 
 use super::candidates::{Scenes, Tried};
+use super::contribution::summed;
 use super::finding::ParameterValue;
 use super::hypothesis::{CourseIn, Normal, PartModes, kept, part_modes};
 use super::instant;
@@ -213,14 +214,6 @@ impl<'a> Placed<'a> {
         };
         Some([side(-1.0), side(1.0)])
     }
-}
-
-fn summed(columns: &[Vec<f64>], coefficients: &[f64], fixed: Option<&Vec<f64>>, samples: usize) -> Vec<f64> {
-    let mut sum = fixed.cloned().unwrap_or_else(|| vec![0.0; samples]);
-    for (column, c) in columns.iter().zip(coefficients) {
-        sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
-    }
-    sum
 }
 
 /// Standard deviation of a course over the record.

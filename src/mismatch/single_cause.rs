@@ -1,8 +1,8 @@
 //! Findings that are together one cause of no kind.
 //!
 //! Lines side by side are one line that is modulated; many lines are a periodic course; three changes of the spectrum are
-//! a spectrum that no kind has; three jumps are a staircase; a level that leaves and returns is
-//! one driver that was not recorded. Each of them, named alone, would say what is not the case.
+//! a spectrum that no kind has; three jumps are a staircase; a level that leaves and
+//! returns is one driver that was not recorded. Each of them, named alone, would say what is not the case.
 
 use super::estimates::{Estimated, INSTANT};
 use super::finding::ParameterValue;
@@ -13,6 +13,8 @@ use std::collections::BTreeMap;
 
 /// Ratio of frequencies below which two lines are neighbours.
 const NEIGHBOURS: f64 = 1.15;
+/// Size of a jump.
+const STEP: &str = "step_deg_h";
 /// Share of a jump within which the next one takes the level back.
 const BACK: f64 = 0.5;
 /// The same in standard deviations of the two.
@@ -96,9 +98,6 @@ fn there_and_back(named: &[Named]) -> Option<[usize; 2]> {
     let ordered = parameter(a, INSTANT)?.value <= parameter(b, INSTANT)?.value;
     (steps && back).then_some(if ordered { [a, b] } else { [b, a] })
 }
-
-/// Size of a jump.
-const STEP: &str = "step_deg_h";
 
 /// Two jumps, there and back, made the one thing that the format of explanations calls them: something that was not
 /// recorded came and went.
