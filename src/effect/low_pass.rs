@@ -21,9 +21,11 @@ pub struct LowPass {
     pub memory: usize,
 }
 
-fn memory(cutoff: f64) -> usize {
-    // exp(−12) is left.
-    (12.0 / (TAU * cutoff * SQRT_2.recip())).min(1e9).ceil() as usize
+/// Samples after which a recursion with these a₁, a₂ keeps exp(−12) of what was, by its largest pole.
+fn memory([a, b]: [f64; 2]) -> usize {
+    let discriminant = 0.25 * a * a - b;
+    let pole = if discriminant < 0.0 { b.sqrt() } else { 0.5 * a.abs() + discriminant.sqrt() };
+    (12.0 / -pole.clamp(1e-3, 1.0 - 1e-9).ln()).min(1e9).ceil() as usize
 }
 
 /// |b₀ + b₁ z⁻¹ + b₂ z⁻²|² at a frequency in cycles a sample.
@@ -35,12 +37,16 @@ fn square(c: [f64; 3], x: f64) -> f64 {
 }
 
 impl LowPass {
+    fn of(forward: [f64; 3], back: [f64; 2], ideal: Option<(f64, i32)>) -> LowPass {
+        LowPass { forward, back, ideal, memory: memory(back) }
+    }
+
     /// Exponential smoothing with half the power at a cutoff, cycles a sample.
     pub fn smoothing(cutoff: f64) -> LowPass {
         let x = cutoff.min(HIGHEST);
         let c = 2.0 - (TAU * x).cos();
         let a = c - (c * c - 1.0).sqrt();
-        LowPass { forward: [1.0 - a, 0.0, 0.0], back: [-a, 0.0], ideal: None, memory: memory(x) }
+        LowPass::of([1.0 - a, 0.0, 0.0], [-a, 0.0], None)
     }
 
     /// First-order filter by the bilinear transform, cutoff in cycles a sample.
@@ -48,7 +54,7 @@ impl LowPass {
         let x = cutoff.min(HIGHEST);
         let c = (PI * x).tan();
         let b = c / (1.0 + c);
-        LowPass { forward: [b, b, 0.0], back: [(c - 1.0) / (c + 1.0), 0.0], ideal: None, memory: memory(x) }
+        LowPass::of([b, b, 0.0], [(c - 1.0) / (c + 1.0), 0.0], None)
     }
 
     /// Second-order Butterworth filter by the bilinear transform, cutoff in cycles a sample.
@@ -57,12 +63,8 @@ impl LowPass {
         let c = (PI * x).tan();
         let norm = 1.0 + SQRT_2 * c + c * c;
         let b = c * c / norm;
-        LowPass {
-            forward: [b, 2.0 * b, b],
-            back: [2.0 * (c * c - 1.0) / norm, (1.0 - SQRT_2 * c + c * c) / norm],
-            ideal: None,
-            memory: memory(x),
-        }
+        let back = [2.0 * (c * c - 1.0) / norm, (1.0 - SQRT_2 * c + c * c) / norm];
+        LowPass::of([b, 2.0 * b, b], back, None)
     }
 
     /// Half the power at a cutoff (cycles a sample) and 1/(1 + (f/f_c)^2p) at every frequency, p of 1 or 2.
@@ -77,12 +79,7 @@ impl LowPass {
             let a = [-2.0 * r * turn.cos(), r * r];
             (a, 1.0 + a[0] + a[1])
         };
-        LowPass {
-            forward: [gain, 0.0, 0.0],
-            back,
-            ideal: Some((cutoff, order.clamp(1, 2))),
-            memory: memory(cutoff),
-        }
+        LowPass::of([gain, 0.0, 0.0], back, Some((cutoff, order.clamp(1, 2))))
     }
 
     /// Power that the recursion lets through at a frequency, cycles a sample.
@@ -101,7 +98,7 @@ impl LowPass {
     /// Autocovariance of unit white noise behind the recursion at lags of 0, 1, 2, ... samples; nothing where its memory is
     /// longer than [`LONGEST`] or another response is wanted.
     fn autocovariance(&self) -> Vec<f64> {
-        if self.ideal.is_some() || self.memory > LONGEST {
+        if self.counted_memory() == 0 {
             return vec![];
         }
         let (mut y, mut response) = ([0.0; 2], Vec::with_capacity(self.memory + 3));
@@ -113,6 +110,11 @@ impl LowPass {
         (0..response.len())
             .map(|lag| response.iter().zip(&response[lag..]).map(|(a, b)| a * b).sum())
             .collect()
+    }
+
+    /// Samples within which it forgets, 0 where what leaks from ends is not counted.
+    pub fn counted_memory(&self) -> usize {
+        if self.ideal.is_some() || self.memory > LONGEST { 0 } else { self.memory }
     }
 
     /// Mean power of cosine modes (DCT-II) of `samples` of filtered white noise at frequencies in cycles a sample. The ends

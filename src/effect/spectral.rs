@@ -17,6 +17,9 @@ pub struct ModeBin {
     pub samples: usize,
     /// Sample interval, s.
     pub dt_s: f64,
+    /// True where the ends of the record were drawn from noise that is even about them: what a filter would do there leaks
+    /// into no mode.
+    pub even_ends: bool,
 }
 
 /// What a search for spectral effects may look at.
@@ -54,6 +57,17 @@ pub trait Spectrum: Sync {
     /// [`Spectrum::density`] of many bins.
     fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
         bins.iter().map(|b| self.density(fitted, b)).collect()
+    }
+
+    /// Samples at either end of a record that a filter of samples makes unlike noise that is even about its ends. They leak
+    /// into the modes that it leaves next to nothing, the same few samples into all of them.
+    fn unlike_at_ends(&self, _fitted: &[f64], _dt_s: f64) -> usize {
+        0
+    }
+
+    /// Frequencies below the Nyquist frequency at which a filter of samples leaves nothing, Hz.
+    fn zeros_hz(&self, _fitted: &[f64], _dt_s: f64) -> Vec<f64> {
+        vec![]
     }
 
     /// Whether a fit moves a parameter from where it began.

@@ -11,10 +11,13 @@ use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::sums::cumulated;
 use rand::{RngExt as _, SeedableRng as _};
+use rand_distr::{Distribution as _, StandardNormal};
 use statrs::distribution::{DiscreteCDF, Poisson};
 
 /// Seed of the draws that take values off a lattice: a report is a function of recording and claim alone.
 const SEED: u64 = 0x5a67_6e61_6320_0006;
+/// Seed of the draws for modes that are left out.
+const UNSEEN: u64 = 0x5a67_6e61_6320_0008;
 
 /// The largest departure of one test.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +61,11 @@ impl White {
         let mut roots = tried.powers(scenes);
         roots.iter_mut().for_each(|p| *p = p.sqrt());
         let mut modes = tried.residual(scenes);
-        modes.iter_mut().zip(&roots).for_each(|(x, p)| *x /= p);
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(UNSEEN);
+        for (k, (x, root)) in modes.iter_mut().zip(&roots).enumerate() {
+            // What is left out of the fit is no departure either: a draw stands for it.
+            *x = if k == 0 || root.is_finite() { *x / root } else { StandardNormal.sample(&mut rng) };
+        }
         let series = inverse_dct2(&modes);
         White { modes, series, roots }
     }
@@ -294,7 +301,8 @@ fn skewness(scene: &Scene, white: &White) -> Option<Departure> {
         m *= 8;
     }
     // A law that is not even shows in the size of the residual wherever it is looked at.
-    let variance = white.roots.iter().skip(1).map(|r| r * r).sum::<f64>() / white.roots.len().max(2) as f64;
+    let seen = white.roots.iter().filter(|r| r.is_finite());
+    let variance = seen.map(|r| r * r).sum::<f64>() / white.roots.len().max(2) as f64;
     let largest = white.series.iter().fold(0.0f64, |m, e| m.max(e.abs()));
     let size = Place { domain: Domain::Amplitude, from: 0.0, to: largest * variance.sqrt() };
     scan.done("skewness", Domain::Time).map(|d| Departure { beside: Some(size), ..d })

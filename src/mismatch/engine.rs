@@ -4,6 +4,7 @@ use super::assemble::{Parts, assemble};
 use super::candidates::{self, Scenes, Tried};
 use super::coarse;
 use super::departures::{self, Departure};
+use super::filtered;
 use super::heldout::Halves;
 use super::hypothesis::fit;
 use super::lattice::{self, Lattice};
@@ -48,11 +49,17 @@ pub fn explain(
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
     drop(regular);
     let rows = problem.scenes.rows;
-    let base = with_stated_jumps(&mut problem, options.alpha);
+    let mut base = with_stated_jumps(&mut problem, options.alpha);
     let before = tests(&problem, &base, problem.level.as_deref());
-    let held_base = Halves::new(&problem).judge(&base);
+    let mut held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
-    let moved = moved(&base, &problem.scenes, options);
+    let filtered = filtered::behind(&problem, &base, options);
+    let filtered = filtered.filter(|f| problem.see_behind(&base, f)).map(|f| refitted(&f, &problem));
+    if filtered.is_some() {
+        base = refitted(&base, &problem);
+        held_base = Halves::new(&problem).judge(&base);
+    }
+    let moved = moved(filtered.as_ref().unwrap_or(&base), &problem.scenes, options);
     let mut start = take_bursts(&mut problem, &base, &moved, &mut found, options);
     if problem.level.is_none() {
         let moved = moved_again(&moved, &start, &problem);
@@ -67,6 +74,12 @@ pub fn explain(
         }
     }
     let mut selection = select::select(&start, &problem.scenes, options);
+    if problem.see_behind(&selection.best, &selection.best) {
+        base = refitted(&base, &problem);
+        held_base = Halves::new(&problem).judge(&base);
+        start = refitted(&start, &problem);
+        selection = select::select(&start, &problem.scenes, options);
+    }
     take_telegraph(&mut problem, &start, &mut selection, &mut found, options);
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
     let level = found.level.clone().or_else(|| problem.level.clone());
@@ -181,7 +194,8 @@ fn moved(base: &Tried, scenes: &Scenes, options: &Options) -> Tried {
 
 /// The same on a problem from which something was taken since.
 fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
-    if moved.hypothesis.courses.is_empty() {
+    let filters = |t: &Tried| t.hypothesis.noise.filters().count();
+    if moved.hypothesis.courses.is_empty() && filters(moved) == filters(start) {
         return start.clone();
     }
     refitted(moved, problem)

@@ -106,6 +106,11 @@ impl Noise {
         out
     }
 
+    /// The effects that multiply the density of everything else.
+    pub fn filters(&self) -> impl Iterator<Item = &SpectrumIn> {
+        self.spectra.iter().filter(|s| s.spectrum().is_some_and(|x| x.act() == SpectrumAct::Filters))
+    }
+
     /// Density of each bin, (deg/h)²/Hz.
     pub fn densities(&self, scene: &Scene) -> Vec<f64> {
         let q2 = self.quantization_arcsec.powi(2);

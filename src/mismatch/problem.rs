@@ -34,6 +34,8 @@ pub struct Problem {
     pub usable: Vec<bool>,
     /// Level of the noise that the claim states, of each sample over that of the record.
     pub level: Option<Vec<f64>>,
+    /// The filters, stated or found, for which the ends of the record were drawn.
+    filters: Vec<SpectrumIn>,
     /// Both resolutions.
     pub scenes: Scenes,
 }
@@ -53,7 +55,7 @@ impl Problem {
                 residual.iter_mut().zip(&course).for_each(|(r, c)| *r -= c);
             }
         }
-        let usable = regular.grid.present.clone();
+        let mut usable = regular.grid.present.clone();
         let level = level(claim, &drivers);
         let mut claim = claim.clone();
         if let Some((_, rms)) = &level {
@@ -61,13 +63,15 @@ impl Problem {
         }
         let lattice_arcsec = lattice::of(regular).map(|l| l.increment_arcsec);
         let rows = usable.iter().filter(|u| **u).count();
-        let empty = Scene::new(drivers.clone(), &residual, &[]);
         let noise = Noise::of(&claim);
+        let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
+        let even_ends = set_ends_aside(&mut usable, &filters, drivers.dt_s);
+        let empty = Scene::new(drivers.clone(), &residual, &[]).with_even_ends(even_ends);
         let powers = empty.powers(&noise.densities(&empty));
         impute::fill(&mut residual, &usable, &powers, SEED);
-        let scenes = scenes(&drivers, &claim, &residual, lattice_arcsec, rows);
+        let scenes = scenes(&drivers, &claim, &residual, &filters, lattice_arcsec, rows);
         let level = level.map(|(level, _)| level);
-        Problem { grid: regular.grid.clone(), claim, drivers, residual, usable, level, scenes }
+        Problem { grid: regular.grid.clone(), claim, drivers, residual, usable, level, filters, scenes }
     }
 
     /// Size of the jumps (deg/h) and mean time at a level (s) where the claim states jumps between two levels without
@@ -82,24 +86,55 @@ impl Problem {
     /// Takes a course out of the residual.
     pub fn take(&mut self, course: &[f64]) {
         self.residual.iter_mut().zip(course).for_each(|(r, c)| *r -= c);
-        let rows = self.scenes.rows;
-        self.scenes = scenes(&self.drivers, &self.claim, &self.residual, self.scenes.lattice_arcsec, rows);
+        self.look_again();
+    }
+
+    /// Draws the ends of the record anew where the filters of a hypothesis make them unlike noise that is even about them;
+    /// true where that was not done for such filters before. Their few samples are in every mode that a filter leaves next
+    /// to nothing, which a likelihood of independent modes does not know. `mean` is fitted to the problem as it is.
+    pub fn see_behind(&mut self, mean: &Tried, tried: &Tried) -> bool {
+        let noise = &tried.hypothesis.noise;
+        let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
+        if alike(&filters, &self.filters) || !set_ends_aside(&mut self.usable, &filters, self.drivers.dt_s) {
+            return false;
+        }
+        self.residual = self.drawn(mean, noise, &self.usable);
+        self.filters = filters;
+        self.look_again();
+        true
+    }
+
+    /// What would be seen behind the filters of a noise, the ends drawn for them.
+    pub fn seen_behind(&self, mean: &Tried, noise: &Noise) -> Scene {
+        let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
+        let mut usable = self.usable.clone();
+        set_ends_aside(&mut usable, &filters, self.drivers.dt_s);
+        full(&self.drivers, &self.claim, &self.drawn(mean, noise, &usable), &filters)
+    }
+
+    /// The residual with a draw of a noise where no sample is usable. The mean of a fit is taken out while filling, or the
+    /// draw would not hold it.
+    fn drawn(&self, mean: &Tried, noise: &Noise, usable: &[bool]) -> Vec<f64> {
+        let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
+        let rest = inverse_dct2(&mean.residual(&self.scenes));
+        let even_ends = has_ends_aside(&filters, self.drivers.dt_s);
+        let scene = Scene::new(self.drivers.clone(), &rest, &[]).with_even_ends(even_ends);
+        let mut filled = rest.clone();
+        impute::fill(&mut filled, usable, &scene.powers(&noise.densities(&scene)), SEED);
+        let change = filled.iter().zip(&rest).zip(usable).map(|((f, r), u)| if *u { 0.0 } else { f - r });
+        self.residual.iter().zip(change).map(|(r, c)| r + c).collect()
+    }
+
+    fn look_again(&mut self) {
+        let Scenes { lattice_arcsec, rows, .. } = self.scenes;
+        self.scenes = scenes(&self.drivers, &self.claim, &self.residual, &self.filters, lattice_arcsec, rows);
     }
 
     /// The same with more samples set aside and the noise of a hypothesis for what is filled in.
     pub fn without(&mut self, aside: &[usize], tried: &Tried) {
         aside.iter().for_each(|i| self.usable[*i] = false);
-        // The mean of the hypothesis is taken out while filling, or the draw would not hold it.
-        let rest = inverse_dct2(&tried.residual(&self.scenes));
-        let mut filled = rest.clone();
-        impute::fill(&mut filled, &self.usable, &tried.powers(&self.scenes), SEED);
-        for i in 0..filled.len() {
-            if !self.usable[i] {
-                self.residual[i] += filled[i] - rest[i];
-            }
-        }
-        let rows = self.scenes.rows;
-        self.scenes = scenes(&self.drivers, &self.claim, &self.residual, self.scenes.lattice_arcsec, rows);
+        self.residual = self.drawn(tried, &tried.hypothesis.noise, &self.usable);
+        self.look_again();
     }
 
     /// Stated deviations of the nuisances that have a column.
@@ -120,6 +155,36 @@ impl Problem {
         let fit = fit(&mut hypothesis, &self.scenes.full);
         Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
     }
+}
+
+/// Samples at either end that filters make unlike noise that is even about the ends.
+fn unlike_at_ends(filters: &[SpectrumIn], dt_s: f64) -> usize {
+    let of = |filter: &SpectrumIn| match filter.effect.model() {
+        Model::Spectrum(s) => s.unlike_at_ends(&filter.fitted, dt_s),
+        _ => 0,
+    };
+    filters.iter().map(of).max().unwrap_or(0)
+}
+
+fn has_ends_aside(filters: &[SpectrumIn], dt_s: f64) -> bool {
+    unlike_at_ends(filters, dt_s) > 0
+}
+
+/// Sets the samples aside that filters make unlike the rest; true where there are any.
+fn set_ends_aside(usable: &mut [bool], filters: &[SpectrumIn], dt_s: f64) -> bool {
+    let (n, ends) = (usable.len(), unlike_at_ends(filters, dt_s));
+    usable[..ends.min(n)].fill(false);
+    usable[n.saturating_sub(ends)..].fill(false);
+    ends > 0
+}
+
+/// Whether two sets of filters are the same but for a little of their cutoffs.
+fn alike(some: &[SpectrumIn], others: &[SpectrumIn]) -> bool {
+    const LITTLE: f64 = 0.03;
+    let same = |(a, b): (&SpectrumIn, &SpectrumIn)| {
+        a.fitted.iter().zip(&b.fitted).all(|(x, y)| (x - y).abs() <= LITTLE * x.abs().max(y.abs()))
+    };
+    some.len() == others.len() && some.iter().zip(others).all(same)
 }
 
 /// N, B and K times a factor.
@@ -165,15 +230,22 @@ fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
     ]
 }
 
+/// The scene at the sample rate, the ends drawn for some filters.
+fn full(drivers: &Arc<Drivers>, claim: &Claim, residual: &[f64], filters: &[SpectrumIn]) -> Scene {
+    let whole = Scene::new(drivers.clone(), residual, &deviations(claim)).with_states(claim);
+    if has_ends_aside(filters, drivers.dt_s) { whole.behind(filters) } else { whole }
+}
+
 fn scenes(
     drivers: &Arc<Drivers>,
     claim: &Claim,
     residual: &[f64],
+    filters: &[SpectrumIn],
     lattice_arcsec: Option<f64>,
     rows: usize,
 ) -> Scenes {
     let deviations = deviations(claim);
-    let full = Scene::new(drivers.clone(), residual, &deviations).with_states(claim);
+    let full = full(drivers, claim, residual, filters);
     let slow = (drivers.samples > WHOLE).then(|| {
         let (m, n) = slow_grid(drivers.samples);
         let mut slow = drivers.averages(m);

@@ -4,6 +4,7 @@
 //! diagonal exactly and flicker nearly; the coefficients are then independent with variance S(f_k)/Δt. A scene may be
 //! cut into blocks of equal length, each transformed by itself and about its own mean.
 
+use super::noise_fit::SpectrumIn;
 use crate::claim::Claim;
 use crate::effect::{Drivers, ModeBin, Model, Nuisance};
 use crate::noise::data::NoiseType;
@@ -52,17 +53,26 @@ pub struct Scene {
 /// N, B, K in the order of arrays.
 pub const BASE: [NoiseType; 3] = [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
 
-fn bins(samples: usize, dt_s: f64) -> Vec<ModeBin> {
+/// Least power of a filter whose modes are judged: below it the noise is that of the last digits or of what comes after the
+/// filter.
+const FAINTEST: f64 = 1e-5;
+/// Width of a bin over its distance from the zero of a filter.
+const BESIDE_ZERO: f64 = 0.1;
+
+/// Bins of modes, narrow beside the orders of modes in `zeros`.
+fn bins(samples: usize, dt_s: f64, zeros: &[f64]) -> Vec<ModeBin> {
     let mut out = vec![];
     let mut mode = 1;
     while mode < samples {
         // Towards the highest mode, too: there the mean of two samples has a zero, which no wide bin describes.
         let left = samples - mode;
         let wide = (mode as f64 * WIDTH).min(left as f64 * TOWARDS_END) as usize;
+        let near = zeros.iter().map(|z| (z - mode as f64).abs()).fold(f64::INFINITY, f64::min);
+        let wide = wide.min((near * BESIDE_ZERO) as usize);
         let modes = if mode < SINGLE { 1 } else { wide.max(1) };
         let middle = mode as f64 + 0.5 * (modes - 1) as f64;
         let frequency_hz = middle / (2.0 * samples as f64 * dt_s);
-        out.push(ModeBin { frequency_hz, mode, modes, samples, dt_s });
+        out.push(ModeBin { frequency_hz, mode, modes, samples, dt_s, even_ends: false });
         mode += modes;
     }
     out
@@ -103,7 +113,7 @@ impl Scene {
         length: usize,
     ) -> Scene {
         let modes = transform(residual, &blocks, length);
-        let bins = bins(length, drivers.dt_s);
+        let bins = bins(length, drivers.dt_s, &[]);
         let units = bins.iter().map(|bin| unit_densities(bin, drivers.averaged)).collect();
         let nuisances = deviations
             .iter()
@@ -130,11 +140,39 @@ impl Scene {
         self
     }
 
+    /// The same after the ends of the record were drawn.
+    pub fn with_even_ends(mut self, even: bool) -> Scene {
+        self.bins.iter_mut().for_each(|b| b.even_ends = even);
+        self
+    }
+
+    /// The same behind filters for which the ends of the record were drawn: without the modes that they leave next to
+    /// nothing, and with narrow bins beside their zeros.
+    pub fn behind(mut self, filters: &[SpectrumIn]) -> Scene {
+        let spectra = || {
+            filters.iter().filter_map(|f| match f.effect.model() {
+                Model::Spectrum(s) => Some((s, &f.fitted)),
+                _ => None,
+            })
+        };
+        let (samples, dt_s) = (self.length, self.drivers.dt_s);
+        let order = |f: f64| 2.0 * samples as f64 * dt_s * f;
+        let zeros: Vec<f64> = spectra().flat_map(|(s, fitted)| s.zeros_hz(fitted, dt_s)).map(order).collect();
+        self.bins = bins(samples, dt_s, &zeros);
+        self = self.with_even_ends(true);
+        for (spectrum, fitted) in spectra() {
+            let mut through = spectrum.densities(fitted, &self.bins).into_iter();
+            self.bins.retain(|_| through.next().is_none_or(|power| power >= FAINTEST));
+        }
+        self.units = self.bins.iter().map(|bin| unit_densities(bin, self.drivers.averaged)).collect();
+        self
+    }
+
     /// The bins of a record so many times as long at the same rate, without a record and without columns.
     pub fn longer(&self, times: f64) -> Scene {
         let samples = (self.length as f64 * times).round() as usize;
         let drivers = Drivers { samples, ..self.drivers.bare() };
-        let bins = bins(samples, drivers.dt_s);
+        let bins = bins(samples, drivers.dt_s, &[]);
         let units = bins.iter().map(|bin| unit_densities(bin, drivers.averaged)).collect();
         let drivers = Arc::new(drivers);
         Scene { drivers, modes: vec![], blocks: vec![0], length: samples, bins, units, nuisances: vec![] }
@@ -163,7 +201,7 @@ impl Scene {
         (bin.modes * self.blocks.len()) as f64
     }
 
-    /// Variance of each mode, (deg/h)², from the densities of the bins; infinite for mode 0.
+    /// Variance of each mode, (deg/h)², from the densities of the bins; infinite for mode 0 and where no bin is.
     pub fn powers(&self, densities: &[f64]) -> Vec<f64> {
         let mut out = vec![f64::INFINITY; self.length * self.blocks.len()];
         for block in out.chunks_exact_mut(self.length) {

@@ -86,6 +86,7 @@ fn a_filter_of_every_form_has_the_density_that_fits_use() {
                 modes: 64,
                 samples: n,
                 dt_s: 1.0,
+                even_ends: false,
             };
             let factor = filter.density(&[0.12, f64::from(form)], &bin);
             let ratio = power[low..high].iter().sum::<f64>() / 64.0 / (0.36 * factor);

@@ -4,7 +4,7 @@ use super::search::log_grid;
 use crate::effect::{
     Both, Doc, Domain, LowPass, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
 };
-use crate::noise::composite::{Bandwidth, Composite, Sampling};
+use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode};
 use crate::noise::data::NoiseType;
 use std::f64::consts::PI;
 
@@ -58,6 +58,12 @@ const FORMS: [Form; 7] = [
     Form::BilinearFirst,
     Form::BilinearSecond,
 ];
+/// Least power that is let through: below it is what rounding leaves.
+const LEAST: f64 = 1e-9;
+/// Observed over expected power, times the samples, below which bins hold the ends of the record and not what a filter does.
+const FAINT: f64 = 30.0;
+/// Rounds in which the beginning of a cutoff is brought nearer.
+const CLOSER: i32 = 3;
 /// Longest moving average that is tried, samples.
 const LONGEST: usize = 64;
 
@@ -106,6 +112,30 @@ describe! {
     confusers ["markov_short", "excess_arw", "time_offset"]
 }
 
+/// Offsets in half widths of a bin, and weights, that average a density within it: about the zeros of a moving average it
+/// is a parabola, which three points of Gauss do exactly.
+const WITHIN: [(f64, f64); 3] =
+    [(-0.774_596_669_241_483_4, 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.774_596_669_241_483_4, 5.0 / 18.0)];
+
+/// Mean over the modes of a bin of a function of the order of a mode.
+fn mean_within(bin: &ModeBin, of: impl Fn(f64) -> f64) -> f64 {
+    let half = 0.5 * (bin.modes.max(1) - 1) as f64;
+    let middle = bin.mode as f64 + half;
+    if bin.modes < 3 { of(middle) } else { WITHIN.iter().map(|(x, w)| w * of(middle + x * half)).sum() }
+}
+
+/// Power of white noise behind a moving average in a bin.
+fn averaged(samples: usize, bin: &ModeBin) -> f64 {
+    if !bin.even_ends {
+        return mean_within(bin, |mode| averaged_white_mode(samples as u32, mode, bin.samples));
+    }
+    let n = samples as f64;
+    mean_within(bin, |mode| {
+        let x = 0.5 * PI * mode / bin.samples as f64;
+        if x.sin().abs() < 1e-12 { 1.0 } else { ((n * x).sin() / (n * x.sin())).powi(2) }
+    })
+}
+
 fn filter(fitted: &[f64]) -> Bandwidth {
     let cutoff = fitted.first().copied().unwrap_or(1e9).max(1e-12);
     Bandwidth::FirstOrder { time_constant_s: 1.0 / (2.0 * PI * cutoff) }
@@ -124,24 +154,53 @@ impl Spectrum for BandwidthFilter {
     fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
         let Some(first) = bins.first() else { return vec![] };
         let cutoff = fitted.first().copied().unwrap_or(1e9).max(1e-12);
-        let through = |filter: Bandwidth| -> Vec<f64> {
-            let white = |b: &ModeBin| {
-                filter.unit_density(NoiseType::AngleRandomWalk, b.frequency_hz, b.dt_s, Sampling::Averaging)
-            };
-            bins.iter().map(|b| (white(b) / 3600.0).max(1e-9)).collect()
-        };
         match of_samples(fitted, first.dt_s) {
             Some(low_pass) => {
                 let frequencies = bins.iter().map(|b| b.frequency_hz * b.dt_s);
+                if first.even_ends {
+                    return frequencies.map(|x| low_pass.power(x).max(LEAST)).collect();
+                }
                 let powers = low_pass.mode_powers(frequencies, first.samples);
-                powers.into_iter().map(|p| p.max(1e-9)).collect()
+                powers.into_iter().map(|p| p.max(LEAST)).collect()
             }
             None if form(fitted) == Form::MovingAverage => {
-                let samples = average_samples(cutoff, first.dt_s) as u32;
-                through(Bandwidth::MovingAverage { samples })
+                let samples = average_samples(cutoff, first.dt_s);
+                bins.iter().map(|b| averaged(samples, b).max(LEAST)).collect()
             }
-            None => through(filter(fitted)),
+            None => {
+                let filter = filter(fitted);
+                let white = |b: &ModeBin| {
+                    filter.unit_density(
+                        NoiseType::AngleRandomWalk,
+                        b.frequency_hz,
+                        b.dt_s,
+                        Sampling::Averaging,
+                    )
+                };
+                bins.iter().map(|b| (white(b) / 3600.0).max(LEAST)).collect()
+            }
         }
+    }
+
+    fn unlike_at_ends(&self, fitted: &[f64], dt_s: f64) -> usize {
+        // The covariance of noise that is even about an end differs from that of filtered noise where two distances
+        // from the end add up to less than the memory.
+        let memory = match of_samples(fitted, dt_s) {
+            Some(low_pass) => low_pass.counted_memory(),
+            None if form(fitted) == Form::MovingAverage => {
+                average_samples(fitted.first().copied().unwrap_or(1e9).max(1e-12), dt_s)
+            }
+            None => 0,
+        };
+        memory.div_ceil(2)
+    }
+
+    fn zeros_hz(&self, fitted: &[f64], dt_s: f64) -> Vec<f64> {
+        if form(fitted) != Form::MovingAverage {
+            return vec![];
+        }
+        let samples = average_samples(fitted.first().copied().unwrap_or(1e9).max(1e-12), dt_s);
+        (1..=samples / 2).map(|k| k as f64 / (samples as f64 * dt_s)).collect()
     }
 
     /// The form is chosen among the starts, and the cutoff of a whole number of samples with it.
@@ -157,6 +216,9 @@ impl Spectrum for BandwidthFilter {
             let factors = self.densities(start, look.bins);
             let (mut logarithms, mut ratios, mut modes) = (0.0, 0.0, 0.0);
             for (i, (bin, factor)) in look.bins.iter().zip(factors).enumerate() {
+                if look.observed[i] * (bin.samples as f64) < FAINT * look.expected[i] {
+                    continue;
+                }
                 let s = (look.expected[i] * factor).max(1e-300);
                 let weight = bin.modes as f64;
                 logarithms += weight * s.ln();
@@ -170,11 +232,18 @@ impl Spectrum for BandwidthFilter {
         };
         let grid = log_grid(2.0 * low, 0.7 * high, 16);
         // Filters of samples pass everything beyond the Nyquist frequency, whatever their cutoff.
-        let within = |c: &&f64, number: f64| {
-            of_samples(&[**c, number], first.dt_s).is_none() || **c < 0.45 / first.dt_s || number < 4.0
+        let within = |c: f64, number: f64| number < 4.0 || c < 0.45 / first.dt_s;
+        let of = |number: f64| {
+            let of = |cutoffs: Vec<f64>| {
+                best(cutoffs.into_iter().filter(|c| within(*c, number)).map(|c| vec![c, number]).collect())
+            };
+            // Steep filters of a long record are fitted from nearby alone.
+            (0..CLOSER).fold(of(grid.clone()), |found, round| {
+                let step = 0.2 * 0.3f64.powi(round);
+                let near = |c: f64| (-2..=2).map(|i| c * (f64::from(i) * step).exp()).collect();
+                of(near(found?[0]))
+            })
         };
-        let of =
-            |number: f64| best(grid.iter().filter(|c| within(c, number)).map(|c| vec![*c, number]).collect());
         let averages = (2..=LONGEST).map(|n| vec![average_cutoff_hz(n, first.dt_s), 4.0]).collect();
         let forms = (1..=FORMS.len()).filter(|n| FORMS[n - 1] != Form::MovingAverage);
         forms.map(|n| of(n as f64)).chain([best(averages)]).flatten().collect()

@@ -51,11 +51,12 @@ fn simulated_spectra_have_the_density_that_fits_use() {
             let high = (low + low / 6 + 1).min(n);
             let modes = high - low;
             let frequency_hz = (low as f64 + 0.5 * (modes as f64 - 1.0)) / (2.0 * n as f64);
-            let expected = density(&ModeBin { frequency_hz, mode: low, modes, samples: n, dt_s: 1.0 });
+            let expected =
+                density(&ModeBin { frequency_hz, mode: low, modes, samples: n, dt_s: 1.0, even_ends: false });
             let got = power[low..high].iter().sum::<f64>() / modes as f64;
             let single = |k: usize| {
                 let frequency_hz = k as f64 / (2.0 * n as f64);
-                density(&ModeBin { frequency_hz, mode: k, modes: 1, samples: n, dt_s: 1.0 })
+                density(&ModeBin { frequency_hz, mode: k, modes: 1, samples: n, dt_s: 1.0, even_ends: false })
             };
             // A resonance inside a bin makes the scatter that of few modes.
             let square = (low..high).map(|k| single(k).powi(2)).sum::<f64>();
@@ -81,7 +82,7 @@ fn spectral_searches_begin_near_the_truth() {
     while low < n {
         let modes = (low / 12).max(1).min(n - low);
         let frequency_hz = (low as f64 + 0.5 * (modes as f64 - 1.0)) / (2.0 * n as f64 * dt);
-        bins.push(ModeBin { frequency_hz, mode: low, modes, samples: n, dt_s: dt });
+        bins.push(ModeBin { frequency_hz, mode: low, modes, samples: n, dt_s: dt, even_ends: false });
         low += modes;
     }
     let cases: [(&str, Vec<f64>); 7] = [

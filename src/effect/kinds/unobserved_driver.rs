@@ -196,6 +196,7 @@ mod tests {
                 modes,
                 samples: n,
                 dt_s: 1.0,
+                even_ends: false,
             };
             for k in [1usize, 2, 5, 12, 13, 30] {
                 let (exact, sum) = (UnobservedDriver.density(&[1.0, time], &bin(k, 1)), summed(time, k, n));

@@ -1,0 +1,93 @@
+//! A record behind a filter that its claim leaves out.
+//!
+//! Modes that a filter leaves next to nothing hold the few samples at the ends of the record instead, all of them the same.
+//! A likelihood that takes modes as independent counts those samples many times, and prefers a wrong filter, or bursts and
+//! jumps beside the right one. Each filter is therefore judged with the ends drawn as it would have them.
+
+use super::candidates::{self, Tried};
+use super::hypothesis::{Fit, Hypothesis, fit};
+use super::noise_fit::SpectrumIn;
+use super::options::Options;
+use super::problem::Problem;
+use super::scene::Scene;
+use super::select;
+use crate::effect::{EFFECTS, Effect, Model, SpectralLook, Spectrum, SpectrumAct};
+
+/// Times that the ends are drawn for one filter, each for what was fitted before.
+const TURNS: usize = 2;
+/// Observed over claimed power, times the samples, below which the ends of a record matter in a bin.
+const FAINT: f64 = 300.0;
+/// Modes of a bin whose power counts as seen.
+const SEEN: usize = 8;
+
+fn filter(effect: &dyn Effect) -> Option<&'static dyn Spectrum> {
+    match effect.model() {
+        Model::Spectrum(s) if s.act() == SpectrumAct::Filters => Some(s),
+        _ => None,
+    }
+}
+
+/// One filter, fitted to what is seen behind it.
+struct Judged {
+    tried: Tried,
+    modes: Vec<f64>,
+    powers: Vec<f64>,
+}
+
+/// The claim behind the filter that it leaves out, where there is one and the ends of the record matter; fitted to what is
+/// seen behind it.
+pub fn behind(problem: &Problem, base: &Tried, options: &Options) -> Option<Tried> {
+    let scene = &problem.scenes.full;
+    let ratios = scene.bins.iter().zip(base.fit.observed.iter().zip(&base.fit.densities));
+    let faint = |share: f64| share * (scene.length as f64) < FAINT;
+    if !ratios.filter(|(b, _)| b.modes >= SEEN).any(|(_, (seen, claimed))| faint(seen / claimed)) {
+        return None;
+    }
+    let wanted = |e: &dyn Effect| filter(e).is_some() && options.allows(e.kind());
+    let leader = candidates::among(base, &problem.scenes, wanted).into_iter().next()?;
+    if !select::passes(&leader, EFFECTS.len() as f64, options.alpha) {
+        return None;
+    }
+    let look = SpectralLook {
+        bins: &scene.bins,
+        observed: &base.fit.observed,
+        expected: &base.fit.densities,
+        lattice_arcsec: problem.scenes.lattice_arcsec,
+    };
+    let judged: Vec<Judged> = EFFECTS
+        .iter()
+        .filter(|e| wanted(**e))
+        .filter_map(|e| Some((*e, filter(*e)?)))
+        .flat_map(|(effect, spectrum)| {
+            let fitted = spectrum.starts(&look).into_iter();
+            fitted.map(move |fitted| SpectrumIn { effect, fitted, stated: false })
+        })
+        .map(|part| judged(problem, base, part))
+        .collect();
+    // All are compared on the modes that each of them leaves to be judged.
+    let common: Vec<bool> =
+        (0..scene.length).map(|k| judged.iter().all(|j| j.powers[k].is_finite())).collect();
+    let value = |j: &Judged| {
+        let modes = j.modes.iter().zip(&j.powers).zip(&common).filter(|(_, c)| **c);
+        modes.map(|((x, p), _)| p.ln() + x * x / p).sum::<f64>()
+    };
+    judged.into_iter().min_by(|a, b| value(a).total_cmp(&value(b))).map(|j| j.tried)
+}
+
+fn judged(problem: &Problem, base: &Tried, part: SpectrumIn) -> Judged {
+    let parameters = base.parameters + part.fitted.len();
+    let mut hypothesis = base.hypothesis.clone();
+    hypothesis.noise.spectra.push(part);
+    let turn = |hypothesis: &mut Hypothesis| -> (Scene, Fit) {
+        let scene = problem.seen_behind(base, &hypothesis.noise);
+        let fit = fit(hypothesis, &scene);
+        (scene, fit)
+    };
+    let (mut scene, mut fit) = turn(&mut hypothesis);
+    for _ in 1..TURNS {
+        (scene, fit) = turn(&mut hypothesis);
+    }
+    let modes = super::hypothesis::residual(&scene, &hypothesis, &fit.mean);
+    let powers = scene.powers(&fit.densities);
+    Judged { tried: Tried { hypothesis, fit, parameters, odds: base.odds }, modes, powers }
+}
