@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use sagnac::noise::composite::{Composite, Damped, Parameter};
 use sagnac::noise::data::NoiseType;
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
-use sagnac::noise::identify::Identification;
+use sagnac::noise::identification::Identification;
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::simulate::{Setup, Simulator};
 use study_support::generator::Generator;

@@ -6,7 +6,7 @@ mod study_support;
 
 use sagnac::estimate::{Estimate, Spread};
 use sagnac::noise::family::Estimator;
-use sagnac::noise::identify::{MarkovFound, QuasiPeriodicFound};
+use sagnac::noise::identification::{MarkovFound, QuasiPeriodicFound};
 use sagnac::noise::model::{NoiseModel, TERMS};
 use study_support::allan::{self, Point};
 use study_support::alternatives::{log_log, minimum, nonnegative_variances, slopes};

@@ -2,7 +2,7 @@
 
 use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::digest::RateDigest;
-use crate::noise::identify::Identification;
+use crate::noise::identification::Identification;
 use crate::noise::intervals::BoundedPoint;
 use crate::noise::lines::SpectralLine;
 use crate::noise::residual::GoodnessOfFit;

@@ -109,9 +109,11 @@ fn random_walk_ratio(gyro: &GyroEvidence) -> Estimate {
         };
         let shared = covariance_with(&found.described, white, expected)?;
         let (_, u_n) = found.described.propagate(|m| m.terms.n);
-        // The interval of N may be wider: it allows for terms that the description lacks.
+        // The interval of N may be wider: it allows for terms that the description lacks; and the description may hold
+        // quantisation that was not claimed.
         let own = found.angle_random_walk.interval95().map_or(0.0, |i| (i.high - i.low) / (2.0 * NORMAL_95));
-        let unshared = (own * own - u_n * u_n).max(0.0);
+        let moved = n - found.described.model.terms.n;
+        let unshared = (own * own - u_n * u_n).max(0.0) + moved * moved;
         let scatter = 2.0 / p.scatter_dof;
         let relative = scatter + (2.0 * u_n / n).powi(2) - 4.0 * shared / (n * p.sigma * p.sigma);
         let dof = 2.0 / (relative.max(LEAST_LEFT * scatter) + 4.0 * unshared / (n * n));

@@ -9,7 +9,8 @@
 use super::composite::Part;
 use super::data::NoiseType;
 use super::evidence::Evidence;
-use super::identify::{Identification, Identify, LIMIT_COVERAGE, METHOD};
+use super::identification::Identification;
+use super::identify::{Identify, LIMIT_COVERAGE, METHOD};
 use super::joint::expected_power;
 use super::misfit::Misfit;
 use crate::estimate::{Estimate, Spread, UpperLimit};

@@ -1,17 +1,17 @@
 //! Which noise terms a record shows, and how large they are.
 
-use super::composite::{Composite, Described, Parameter};
+use super::composite::{Described, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, toggled};
 use super::identifiable::IDENTIFIABLE;
-use super::joint::Extras;
+use super::identification::{IDS, Identification};
 use super::misfit::Misfit;
-use super::model::{NoiseModel, TERMS, unit_allan_variance};
+use super::model::{NoiseModel, TERMS};
 use super::profile::{Profile, wider};
 use super::slow_terms::{NEARLY, SlowChoice, SlowPrices, holds};
 use super::structure::Search;
-use crate::estimate::{Estimate, UpperLimit, normal_quantile};
+use crate::estimate::{Estimate, UpperLimit};
 use crate::text::Note;
 
 /// A method that identifies noise terms from spectral evidence.
@@ -48,7 +48,7 @@ pub struct Whittle {
 
 impl Default for Whittle {
     fn default() -> Self {
-        Whittle { white: 4.0, quantization: 8.5, slow: SlowPrices::default() }
+        Whittle { white: 4.0, quantization: 11.0, slow: SlowPrices::default() }
     }
 }
 
@@ -67,85 +67,6 @@ impl Whittle {
     }
 }
 
-/// What was found about the noise of one channel.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Identification {
-    /// Channel.
-    pub channel: String,
-    /// Name of the method.
-    pub method: &'static str,
-    /// The claimed terms, refitted together; others 0.
-    pub model: NoiseModel,
-    /// The model that describes the record best, terms included that are needed but not certain. For predictions,
-    /// for the uncertainty of other quantities, for drawing.
-    pub supported: NoiseModel,
-    /// The maximum with every term allowed.
-    pub full: NoiseModel,
-    /// Terms claimed, in the order of [`TERMS`].
-    pub claimed: Vec<NoiseType>,
-    /// True when low-frequency noise is present that could be flicker, random walk or a ramp, so that no single one
-    /// of them is claimed.
-    pub ambiguous: bool,
-    /// 2 Δ ln L of each of [`TERMS`] against the best model without it.
-    pub likelihood_ratios: [f64; 5],
-    /// N with its interval, or its upper limit.
-    pub angle_random_walk: Estimate,
-    /// B of the 1/f law with its interval, or its upper limit. The Allan floor is 0.664 B.
-    pub bias_instability: Estimate,
-    /// K with its interval, or its upper limit.
-    pub rate_random_walk: Estimate,
-    /// R with its interval, or the upper limit of its size.
-    pub rate_ramp: Estimate,
-    /// Q with its interval, or its upper limit.
-    pub quantization: Estimate,
-    /// Covariance of the coefficients of `supported`, order of [`TERMS`]; zeros for absent terms.
-    pub covariance: [[f64; 5]; 5],
-    /// How well `supported` fits.
-    pub misfit: Misfit,
-    /// The best description with every kind of term, and the covariance of its parameters. For predictions, residuals
-    /// and drawing; its N, B, K, R and Q are those of `supported`.
-    pub described: Described,
-    /// The maximum with N, B, K and Q allowed beside everything that was found: [`Identification::full`] with the rest.
-    /// For uncertainties.
-    pub allowed: Composite,
-    /// Markov processes found.
-    pub markov: Vec<MarkovFound>,
-    /// Quasi-periodic disturbances found, the strongest first.
-    pub quasi_periodic: Vec<QuasiPeriodicFound>,
-    /// −3 dB cut-off of the measurement, Hz, where the record shows a filter.
-    pub cutoff: Option<Estimate>,
-    /// Where the search for further parts ended; `None` where a second search might end elsewhere.
-    pub(super) searched: Option<Extras>,
-}
-
-/// A first-order Markov process that was found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MarkovFound {
-    /// Standard deviation, deg/h.
-    pub sigma: Estimate,
-    /// Correlation time, s.
-    pub correlation_time: Estimate,
-}
-
-/// A quasi-periodic disturbance that was found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct QuasiPeriodicFound {
-    /// Rms, deg/h.
-    pub amplitude: Estimate,
-    /// Centre frequency, Hz.
-    pub frequency: Estimate,
-    /// Coherence time, s: 1/(π × full width at half power).
-    pub coherence_time: Estimate,
-}
-
-/// Id, unit in the order of [`TERMS`].
-pub(super) const IDS: [(&str, &str); 5] = [
-    ("angle_random_walk", "deg/sqrt(h)"),
-    ("bias_instability", "deg/h"),
-    ("rate_random_walk", "deg/h/sqrt(h)"),
-    ("quantization", "arcsec"),
-    ("rate_ramp", "deg/h/h"),
-];
 const WHITE: usize = 0;
 const FLICKER: usize = 1;
 const WALK: usize = 2;
@@ -162,107 +83,6 @@ pub(super) const LIMIT_COVERAGE: f64 = 0.95;
 /// Rise of the deviance that makes an upper limit. A limit is only given when the term was not claimed, that is when
 /// chance made it look small; 5 in place of 2.71 keeps the coverage in spite of that.
 pub(super) const LIMIT_RISE: f64 = 5.0;
-
-impl Identification {
-    /// σ(τ) of the supported model with its 95 % band: (low, value, high), deg/h; zeros for an empty model.
-    pub fn sigma_band(&self, tau_s: f64) -> (f64, f64, f64) {
-        let variance = self.supported.allan_variance(tau_s);
-        if variance <= 0.0 {
-            return (0.0, 0.0, 0.0);
-        }
-        let gradient = TERMS.map(|t| 2.0 * self.supported.coefficient(t) * unit_allan_variance(t, tau_s));
-        let mut square = 0.0;
-        for (row, gi) in self.covariance.iter().zip(gradient) {
-            square += gi * row.iter().zip(gradient).map(|(c, gj)| c * gj).sum::<f64>();
-        }
-        // The band is symmetric in the logarithm, as the variance is positive.
-        let half = 0.5 * normal_quantile(0.975) * square.max(0.0).sqrt() / variance;
-        let sigma = variance.sqrt();
-        (sigma * (-half).exp(), sigma, sigma * half.exp())
-    }
-
-    /// The estimates in the order of the contract: N, B, K, R, Q.
-    pub fn estimates(&self) -> [&Estimate; 5] {
-        [
-            &self.angle_random_walk,
-            &self.bias_instability,
-            &self.rate_random_walk,
-            &self.rate_ramp,
-            &self.quantization,
-        ]
-    }
-
-    /// The same, to be changed.
-    pub fn estimates_mut(&mut self) -> [&mut Estimate; 5] {
-        [
-            &mut self.angle_random_walk,
-            &mut self.bias_instability,
-            &mut self.rate_random_walk,
-            &mut self.rate_ramp,
-            &mut self.quantization,
-        ]
-    }
-
-    /// Every estimate there is, those of Markov processes, quasi-periodic disturbances and the bandwidth too.
-    pub(super) fn every_estimate_mut(&mut self) -> Vec<&mut Estimate> {
-        let mut out = vec![
-            &mut self.angle_random_walk,
-            &mut self.bias_instability,
-            &mut self.rate_random_walk,
-            &mut self.rate_ramp,
-            &mut self.quantization,
-        ];
-        out.extend(self.markov.iter_mut().flat_map(|m| [&mut m.sigma, &mut m.correlation_time]));
-        for q in &mut self.quasi_periodic {
-            out.extend([&mut q.amplitude, &mut q.frequency, &mut q.coherence_time]);
-        }
-        out.extend(&mut self.cutoff);
-        out
-    }
-
-    /// The estimates in the order of [`TERMS`]: N, B, K, Q, R.
-    pub(super) fn estimates_mut_by_term(&mut self) -> [&mut Estimate; 5] {
-        [
-            &mut self.angle_random_walk,
-            &mut self.bias_instability,
-            &mut self.rate_random_walk,
-            &mut self.quantization,
-            &mut self.rate_ramp,
-        ]
-    }
-
-    /// True when the term is claimed.
-    pub fn claims(&self, term: NoiseType) -> bool {
-        self.claimed.contains(&term)
-    }
-
-    fn empty(channel: &str) -> Identification {
-        let none = |i: usize| Estimate::not_identifiable(IDS[i].0, channel, None, IDS[i].1, METHOD);
-        Identification {
-            channel: channel.to_owned(),
-            method: METHOD,
-            model: NoiseModel::default(),
-            supported: NoiseModel::default(),
-            full: NoiseModel::default(),
-            claimed: vec![],
-            ambiguous: false,
-            likelihood_ratios: [0.0; 5],
-            angle_random_walk: none(0),
-            bias_instability: none(1),
-            rate_random_walk: none(2),
-            quantization: none(3),
-            rate_ramp: none(4),
-            covariance: [[0.0; 5]; 5],
-            misfit: Misfit::none(),
-            described: Described::default(),
-            allowed: Composite::default(),
-            markov: vec![],
-            quasi_periodic: vec![],
-            cutoff: None,
-            searched: None,
-        }
-    }
-}
 
 /// The description that N, B, K, R and Q alone give.
 fn described(model: NoiseModel, covariance: &[[f64; 5]; 5]) -> Described {
@@ -319,6 +139,15 @@ impl Whittle {
         out.supported = best.model();
         out.covariance = likelihood.covariance_bound(&out.supported, &supported);
         out.described = described(out.supported, &out.covariance);
+        // Quantisation too weak to be claimed lies in the level of the white noise, which a prediction must allow for.
+        if !claimed[QUANTIZATION]
+            && search.ratios[QUANTIZATION] > SUSPICION
+            && let structure = toggled(&supported, QUANTIZATION, true)
+            && let Some(with) = fit(&structure)
+        {
+            let model = with.model();
+            out.described = described(model, &likelihood.covariance_bound(&model, &structure));
+        }
         out.misfit =
             Misfit::of(evidence, &likelihood.whitened(&best), supported.iter().filter(|s| **s).count());
         if !intervals {

@@ -17,6 +17,7 @@ pub mod fit;
 pub mod fit_range;
 pub mod histogram;
 pub mod identifiable;
+pub mod identification;
 pub mod identify;
 pub mod intervals;
 pub mod joint;

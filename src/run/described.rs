@@ -3,7 +3,7 @@
 use crate::estimate::Estimate;
 use crate::measurand::GyroEvidence;
 use crate::noise::composite::Bandwidth;
-use crate::noise::identify::{MarkovFound, QuasiPeriodicFound};
+use crate::noise::identification::{MarkovFound, QuasiPeriodicFound};
 use crate::text::{Arg, Note};
 
 /// Share of a stretch below which the residual is said to hold only a part of the record.

@@ -13,7 +13,7 @@ use crate::noise::composite::Sampling;
 use crate::noise::digest::RateDigest;
 use crate::noise::envelope::Envelope;
 use crate::noise::family::Estimator;
-use crate::noise::identify::Identification;
+use crate::noise::identification::Identification;
 use crate::noise::intervals::BoundedPoint;
 use crate::noise::lines::{SpectralLine, find_lines};
 use crate::noise::residual::GoodnessOfFit;

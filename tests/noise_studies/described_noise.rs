@@ -7,7 +7,7 @@ use sagnac::noise::composite::{Composite, Damped, Described, Line, Parameter, Sa
 use sagnac::noise::data::NoiseType;
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
 use sagnac::noise::family::Estimator;
-use sagnac::noise::identify::{MarkovFound, QuasiPeriodicFound};
+use sagnac::noise::identification::{MarkovFound, QuasiPeriodicFound};
 use sagnac::noise::intervals::{BoundedPoint, bounded};
 use sagnac::noise::lines::find_lines;
 use sagnac::noise::model::NoiseModel;

@@ -3,7 +3,8 @@
 use realfft::RealFftPlanner;
 use sagnac::noise::data::{BlockSeries, WelchSpectrum};
 use sagnac::noise::evidence::{Evidence, Mask};
-use sagnac::noise::identify::{Identification, Identify, Whittle};
+use sagnac::noise::identification::Identification;
+use sagnac::noise::identify::{Identify, Whittle};
 use sagnac::noise::model::{NoiseModel, TERMS};
 use sagnac::noise::simulate::{Setup, Simulator};
 

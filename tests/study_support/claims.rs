@@ -4,7 +4,7 @@ use super::mixes::{Kind, Quantity, TAU0_S, label};
 use sagnac::estimate::Estimate;
 use sagnac::noise::composite::{Bandwidth, Composite, Parameter};
 use sagnac::noise::data::NoiseType;
-use sagnac::noise::identify::Identification;
+use sagnac::noise::identification::Identification;
 
 /// Estimates come in the order of the contract.
 const ORDER: [NoiseType; 5] = [

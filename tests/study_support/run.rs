@@ -11,7 +11,7 @@ use super::whittle::Layout;
 use super::{allan, gmwm, rivals};
 use rayon::prelude::*;
 use sagnac::noise::composite::Parameter;
-use sagnac::noise::identify::Identification;
+use sagnac::noise::identification::Identification;
 use sagnac::noise::model::TERMS;
 use sagnac::noise::simulate::{Setup, Simulator};
 

@@ -14,10 +14,10 @@ use crate::noise::composite::{Bandwidth, Described, Sampling};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 use crate::noise::fit::RAMP;
+use crate::noise::identification::{IDS, Identification, MarkovFound, QuasiPeriodicFound};
 use crate::noise::identify::{
-    IDS, Identification, Identify, LIMIT_COVERAGE, LIMIT_RISE, METHOD, MarkovFound, PRICE,
-    QuasiPeriodicFound, RIVALRY, SUSPICION, Whittle, is_told, low_frequency_note, rival_of, suspects,
-    with_rivals,
+    Identify, LIMIT_COVERAGE, LIMIT_RISE, METHOD, PRICE, RIVALRY, SUSPICION, Whittle, is_told,
+    low_frequency_note, rival_of, suspects, with_rivals,
 };
 use crate::noise::misfit::Misfit;
 use crate::noise::model::TERMS;

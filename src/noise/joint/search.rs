@@ -36,7 +36,7 @@ impl Default for ExtraThresholds {
             filter: 14.0,
             markov: 17.0,
             quantization_beside_filter: 20.0,
-            quantization: 8.5,
+            quantization: 11.0,
             quantization_confounded: 20.0,
             quasi_periodic: 14.0,
         }

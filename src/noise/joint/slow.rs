@@ -2,7 +2,7 @@
 
 use super::search::{LONGEST, MOST, all_free, best_of};
 use super::{BASE, Free, Joint, JointPoint, Kind, Shape, Variable};
-use crate::noise::identify::Identification;
+use crate::noise::identification::Identification;
 use crate::noise::slow_terms::{B, K, R, SETS, SlowChoice, SlowPrices, SlowSet};
 use crate::text::Note;
 

@@ -7,7 +7,7 @@ use crate::condition::temperature_track::{TemperatureFacts, TemperatureTrack};
 use crate::ingest::{IngestError, IngestErrorKind, Plan, Source, StreamReport, TimeBaseSpec, prepare};
 use crate::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
 use crate::noise::envelope::EnvelopeAccumulator;
-use crate::noise::identify::Identification;
+use crate::noise::identification::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::recording::{Channel, Role, Sink, Slab};
 use crate::run::evaluate::{spectral, tidy};
