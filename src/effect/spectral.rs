@@ -70,6 +70,11 @@ pub trait Spectrum: Sync {
         vec![]
     }
 
+    /// The power of a parameter that the whole density is proportional to; `None` for one that changes its shape.
+    fn scales_with(&self, _parameter: usize) -> Option<f64> {
+        None
+    }
+
     /// Whether a fit moves a parameter from where it began.
     fn moves(&self, _fitted: &[f64], _parameter: usize) -> bool {
         true

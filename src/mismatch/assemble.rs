@@ -17,7 +17,7 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::problem::{Problem, level, scaled};
 use super::samples::Named;
-use super::select::{Chosen, Selection, Slot};
+use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::single_cause;
 use crate::claim::{Claim, Stated};
 use crate::effect::{Column, Domain, Effect, Model, Nuisance, Place, SpectralLook, UNKNOWN, Value};
@@ -196,10 +196,11 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
         effect: chosen.effect,
         estimated,
         equivalents: chosen
-            .equivalents
-            .iter()
-            .map(|e| e.effect.kind())
+            .beside
+            .into_iter()
+            .chain(chosen.equivalents.iter().map(|e| e.effect.kind()))
             .filter(|_| chosen.effect.reported_kind() != UNKNOWN)
+            .take(MOST_EQUIVALENTS)
             .collect(),
         places,
         delta_bic: chosen.delta_bic,

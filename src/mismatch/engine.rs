@@ -239,6 +239,8 @@ fn take_bursts(
 struct Jumps {
     telegraph: local::Telegraph,
     delta_bic: f64,
+    /// True when nothing else explains nearly as much.
+    told: bool,
     /// What the selection gains on the same hypothesis.
     rival: f64,
     /// The process that the selection has in their place.
@@ -260,10 +262,11 @@ fn jumps(problem: &Problem, start: &Tried, selection: &Selection, alpha: f64) ->
         if telegraph.mean_dwell_s < FEWEST_AT_A_LEVEL * problem.drivers.dt_s || telegraph.regular {
             return None;
         }
-        let (gain, parameters, p_value) = (telegraph.gain, telegraph.parameters, telegraph.p_value);
-        let delta_bic = samples::worth(gain, parameters, p_value, rows, alpha)?;
+        let (gain, parameters) = (telegraph.gain, telegraph.parameters);
+        let delta_bic = samples::worth(gain, parameters, telegraph.chance, rows, alpha)?;
+        let told = samples::worth(gain, parameters, telegraph.p_value, rows, alpha).is_some();
         let rival = tried.bic(rows) - selection.best.bic(rows);
-        Some(Jumps { telegraph, delta_bic, rival, instead })
+        Some(Jumps { telegraph, delta_bic, told, rival, instead })
     });
     judged.max_by(|a, b| (a.delta_bic - a.rival).total_cmp(&(b.delta_bic - b.rival)))
 }
@@ -275,7 +278,7 @@ fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> Tried {
     let base = problem.baseline();
     let Some((amplitude, dwell_s)) = problem.stated_telegraph() else { return base };
     let alone = Selection { best: base.clone(), chosen: vec![], first: vec![] };
-    if let Some(Jumps { telegraph, .. }) = jumps(problem, &base, &alone, alpha) {
+    if let Some(Jumps { telegraph, .. }) = jumps(problem, &base, &alone, alpha).filter(|j| j.told) {
         let [low, high] = telegraph.amplitude_ci95;
         if (telegraph.amplitude_deg_h - amplitude).abs() < 0.5 * AS_STATED * (high - low) {
             problem.take(&telegraph.course);
@@ -291,7 +294,8 @@ fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> Tried {
     problem.baseline_with(same)
 }
 
-/// Takes out jumps between two levels where they explain more than anything else does.
+/// Takes out jumps between two levels where they explain more than anything else does; where they explain about as much,
+/// they are an equivalent.
 fn take_telegraph(
     problem: &mut Problem,
     start: &Tried,
@@ -303,11 +307,18 @@ fn take_telegraph(
     if stated || selection.chosen.is_empty() || !options.allows("random_telegraph") {
         return;
     }
-    let Some(Jumps { telegraph, delta_bic, rival, instead }) =
-        jumps(problem, start, selection, options.alpha).filter(|j| j.delta_bic >= j.rival)
+    let Some(Jumps { telegraph, delta_bic, told, rival, instead }) =
+        jumps(problem, start, selection, options.alpha)
     else {
         return;
     };
+    if !told || delta_bic < rival {
+        if delta_bic > rival - select::ENOUGH {
+            let replaced = selection.chosen.iter_mut().find(|c| Some(c.effect.kind()) == instead);
+            replaced.into_iter().for_each(|c| c.beside = Some("random_telegraph"));
+        }
+        return;
+    }
     problem.take(&telegraph.course);
     let mut base = problem.baseline();
     if start.hypothesis.noise.freed[0] {

@@ -310,7 +310,7 @@ fn derivatives(
 ) -> (DVector<f64>, DMatrix<f64>) {
     let p = which.len();
     let (mut gradient, mut fisher) = (DVector::zeros(p), DMatrix::zeros(p, p));
-    let slopes: Vec<Vec<f64>> = which.iter().map(|w| log_slope(noise, *w, scene, densities)).collect();
+    let slopes = log_slopes(noise, which, scene, densities);
     for (b, bin) in scene.bins.iter().enumerate() {
         let n = scene.weight(bin);
         let excess = observed[b] / densities[b] - 1.0;
@@ -339,32 +339,46 @@ fn derivatives(
     (gradient, fisher)
 }
 
-/// d ln S/d ln parameter in each bin.
-fn log_slope(noise: &Noise, which: Which, scene: &Scene, densities: &[f64]) -> Vec<f64> {
-    const STEP: f64 = 1e-3;
-    let filters = noise.spectra.iter().any(|s| s.spectrum().is_some_and(|x| x.act() == SpectrumAct::Filters));
-    if let (Which::Base(i), false) = (which, filters) {
-        let c2 = 2.0 * noise.base[i].powi(2);
-        return scene.units.iter().zip(densities).map(|(u, s)| c2 * u[i] / s).collect();
-    }
-    if let (Which::Effect(e, _), false) = (which, filters)
-        && let Some(spectrum) = noise.spectra[e].spectrum()
-    {
-        // The part alone: differences of the whole would lose it in rounding where it is small.
-        let mut up = noise.spectra[e].fitted.clone();
-        let mut down = up.clone();
-        if let Which::Effect(_, p) = which {
-            up[p] *= STEP.exp();
-            down[p] *= (-STEP).exp();
+/// d ln S/d ln parameter in each bin, for each of `which`.
+///
+/// By differences to one side with a step that a rounded density bears and a narrow resonance does: what is compared with
+/// is at hand.
+fn log_slopes(noise: &Noise, which: &[Which], scene: &Scene, densities: &[f64]) -> Vec<Vec<f64>> {
+    const STEP: f64 = 1e-5;
+    let filtered = noise.filters().next().is_some();
+    // Of one part at a time.
+    let mut alone: Option<(usize, Vec<f64>)> = None;
+    let mut one = |which: Which| {
+        let whole = || {
+            let mut up = noise.clone();
+            up.set(which, noise.value(which) * STEP.exp());
+            up.densities(scene).iter().zip(densities).map(|(a, b)| (a / b).ln() / STEP).collect()
+        };
+        if filtered {
+            return whole();
         }
-        let (up, down) = (spectrum.densities(&up, &scene.bins), spectrum.densities(&down, &scene.bins));
-        let slope = |((a, b), s): ((f64, f64), &f64)| (a - b) / (2.0 * STEP * s);
-        return up.into_iter().zip(down).zip(densities).map(slope).collect();
-    }
-    let mut up = noise.clone();
-    up.set(which, noise.value(which) * STEP.exp());
-    let mut down = noise.clone();
-    down.set(which, noise.value(which) * (-STEP).exp());
-    let (up, down) = (up.densities(scene), down.densities(scene));
-    up.iter().zip(&down).map(|(a, b)| (a / b).ln() / (2.0 * STEP)).collect()
+        match which {
+            Which::Base(i) => {
+                let c2 = 2.0 * noise.base[i].powi(2);
+                scene.units.iter().zip(densities).map(|(u, s)| c2 * u[i] / s).collect()
+            }
+            // The part alone: differences of the whole would lose it in rounding where it is small.
+            Which::Effect(e, p) => {
+                let part = &noise.spectra[e];
+                let Some(spectrum) = part.spectrum() else { return whole() };
+                if alone.as_ref().is_none_or(|(known, _)| *known != e) {
+                    alone = Some((e, spectrum.densities(&part.fitted, &scene.bins)));
+                }
+                let at = alone.iter().flat_map(|(_, at)| at).zip(densities);
+                if let Some(power) = spectrum.scales_with(p) {
+                    return at.map(|(a, s)| power * a / s).collect();
+                }
+                let mut up = part.fitted.clone();
+                up[p] *= STEP.exp();
+                let up = spectrum.densities(&up, &scene.bins);
+                up.into_iter().zip(at).map(|(up, (a, s))| (up - a) / (STEP * s)).collect()
+            }
+        }
+    };
+    which.iter().map(|w| one(*w)).collect()
 }

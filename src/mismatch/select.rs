@@ -10,6 +10,8 @@ use crate::effect::{Effect, Model, SpectrumAct};
 
 /// ΔBIC that an effect must bring, and within which two are equivalent.
 pub const ENOUGH: f64 = 6.0;
+/// Equivalents that are named at most.
+pub const MOST_EQUIVALENTS: usize = 3;
 /// Times that one effect of the chosen is exchanged for another at most: what was best alone need not be the best beside
 /// what was found after it.
 const EXCHANGES: usize = 3;
@@ -40,6 +42,8 @@ pub struct Chosen {
     pub p_value: f64,
     /// What would have served as well, the best first.
     pub equivalents: Vec<Candidate>,
+    /// What single samples say would have served as well.
+    pub beside: Option<&'static str>,
     /// The hypothesis without it, fitted.
     pub without: Tried,
     /// What does better in its place than it does, the effect itself from another beginning among it.
@@ -257,7 +261,7 @@ fn chosen(
                 .iter()
                 .filter(|c| c.effect.kind() != effect.kind() && c.effect.reported_kind() == c.effect.kind())
                 .filter(|c| near(c))
-                .take(3)
+                .take(MOST_EQUIVALENTS)
                 .cloned()
                 .collect();
             let better = rivals
@@ -268,7 +272,7 @@ fn chosen(
                 .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)))
                 .cloned();
             let delta_bic = without.bic(rows) - best.bic(rows);
-            Chosen { effect, slot, delta_bic, p_value, equivalents, without, better }
+            Chosen { effect, slot, delta_bic, p_value, equivalents, beside: None, without, better }
         })
         .collect();
     out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));

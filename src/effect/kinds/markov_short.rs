@@ -45,6 +45,10 @@ impl Spectrum for MarkovShort {
         SpectrumAct::Adds
     }
 
+    fn scales_with(&self, parameter: usize) -> Option<f64> {
+        (parameter == 1).then_some(2.0)
+    }
+
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
         self.densities(fitted, &[*bin])[0]
     }

@@ -76,10 +76,14 @@ fn averaged(exponent: f64, x: f64) -> f64 {
     }
     let s = 2.0 + exponent;
     let side = |from: f64| {
-        let sum: f64 = (0..8).map(|k| (from + f64::from(k)).powf(-s)).sum();
-        // The rest by Euler and Maclaurin.
-        let far = from + 8.0;
-        sum + far.powf(1.0 - s) / (s - 1.0) + 0.5 * far.powf(-s) + s / 12.0 * far.powf(-s - 1.0)
+        let near: f64 = (0..3).map(|k| (from + f64::from(k)).powf(-s)).sum();
+        // The rest by Euler and Maclaurin, to 1e-6 of the whole.
+        let far = from + 3.0;
+        let inverse = 1.0 / far;
+        let second = s * inverse / 12.0;
+        let fourth = second * (s + 1.0) * (s + 2.0) * inverse * inverse / 60.0;
+        let sixth = fourth * (s + 3.0) * (s + 4.0) * inverse * inverse / 42.0;
+        near + far.powf(-s) * (far / (s - 1.0) + 0.5 + second - fourth + sixth)
     };
     let sine = (std::f64::consts::PI * x).sin() / std::f64::consts::PI;
     sine * sine * x.powf(exponent) * (side(x) + side(1.0 - x))
@@ -88,6 +92,10 @@ fn averaged(exponent: f64, x: f64) -> f64 {
 impl Spectrum for PowerLawNoise {
     fn act(&self) -> SpectrumAct {
         SpectrumAct::Adds
+    }
+
+    fn scales_with(&self, parameter: usize) -> Option<f64> {
+        (parameter == 0).then_some(1.0)
     }
 
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
@@ -170,6 +178,23 @@ mod tests {
                 let bin = ModeBin { frequency_hz, mode: 1, modes: 1, samples: 1000, dt_s, even_ends: false };
                 let wanted = PowerLawNoise.density(&fitted, &bin);
                 assert!((sum / wanted - 1.0).abs() < 0.06, "{exponent} at {frequency_hz}: {sum} {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn aliases_are_summed_to_the_end() {
+        for exponent in [0.1, 0.7, 1.9] {
+            for x in [0.01, 0.2, 0.5_f64] {
+                let s = 2.0 + exponent;
+                let side = |from: f64| -> f64 {
+                    let sum: f64 = (0..3000).map(|k| (from + f64::from(k)).powf(-s)).sum();
+                    sum + (from + 2999.5).powf(1.0 - s) / (s - 1.0)
+                };
+                let sine = (std::f64::consts::PI * x).sin() / std::f64::consts::PI;
+                let wanted = sine * sine * x.powf(exponent) * (side(x) + side(1.0 - x));
+                let got = averaged(exponent, x);
+                assert!((got / wanted - 1.0).abs() < 2e-6, "{exponent} at {x}: {got} {wanted}");
             }
         }
     }

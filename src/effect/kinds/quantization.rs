@@ -42,6 +42,10 @@ impl Spectrum for Quantization {
         SpectrumAct::Adds
     }
 
+    fn scales_with(&self, parameter: usize) -> Option<f64> {
+        (parameter == 0).then_some(2.0)
+    }
+
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
         let lsb = fitted.first().copied().unwrap_or(0.0);
         lsb * lsb / 12.0 * unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s)

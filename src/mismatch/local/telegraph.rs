@@ -24,7 +24,7 @@ const LEAST_GAIN: f64 = 8.0;
 const FIRST_TURNS: usize = 5;
 const TURNS: usize = 15;
 /// Turns of path and background.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 8;
 /// Turns of background and levels at the end, and the relative change of the amplitude at which they end.
 const SETTLING: usize = 40;
 const SETTLED: f64 = 1e-3;
@@ -56,7 +56,9 @@ pub struct Telegraph {
     pub rival_gain: f64,
     /// Amplitude and the two rates of change.
     pub parameters: usize,
-    /// Bound of the probability of such a gain under the hypothesis, or under the rival where that explains more.
+    /// Bound of the probability of such a gain under the hypothesis.
+    pub chance: f64,
+    /// The same, or of such a gain over the rival where that is the likelier.
     pub p_value: f64,
 }
 
@@ -182,6 +184,7 @@ impl<'a> Ground<'a> {
             .map(|c| (0..FIRST_TURNS).fold(c, |c, _| c.improved(&values, 0.5 * white)))
             .max_by(|a, b| a.log_likelihood(&values).total_cmp(&b.log_likelihood(&values)))?;
         let mut best: Option<Judged> = None;
+        let coloured = self.coloured();
         for _ in 0..ROUNDS {
             chain = (0..TURNS).fold(chain, |c, _| c.improved(&values, 0.5 * white));
             // Slow noise about the levels would make paths look less certain than they are.
@@ -193,21 +196,29 @@ impl<'a> Ground<'a> {
             }
             let path: Vec<bool> =
                 (0..n).map(|i| short.get((i / m).min(short.len() - 1)).copied().unwrap_or(false)).collect();
-            // The background that is best beside what is expected of the levels: a turn of expectation and maximum.
-            let size = (sharp.levels[1] - sharp.levels[0]).abs();
+            // The background that is best beside what is expected of the levels: a turn of expectation and maximum. The
+            // levels are those of the path beside any background: in turns, they would close in on them slowly.
+            let size = if coloured { self.amplitude(&path).0.abs() } else { sharp.apart() };
+            let sharp = sharp.set_apart(size);
             let course = self.course(&sharp, m, &sharp.posterior(&values), size);
             background = self.background(&course);
+            chain = chain.set_apart(size);
             let gain = self.evidence(&sharp, &background, m);
             if best.as_ref().is_some_and(|b| gain < b.gain + 0.1) {
                 break;
             }
             best = Some(Judged { path, background: background.clone(), gain, chain, averaged: m });
-            if self.slow.iter().all(|s| *s < 0.02) {
+            if !coloured {
                 break;
             }
             values = self.values(&background, m);
         }
         best
+    }
+
+    /// Whether there is slow noise that paths must be told from.
+    fn coloured(&self) -> bool {
+        self.slow.iter().any(|s| *s >= 0.02)
     }
 
     /// Averages of the residual without a background.
@@ -252,8 +263,8 @@ pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
     // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
     // fitted, ½ ln M nats.
     let log_p = lengths.ln() + 1.5 * ((n / best.averaged) as f64).ln() - best.gain;
-    let p_value = log_p.max(rival_gain - best.gain).min(0.0).exp().max(1e-300);
-    let told = ground.told(best, rival_gain, p_value);
+    let [chance, p_value] = [log_p, log_p.max(rival_gain - best.gain)].map(|p| p.min(0.0).exp().max(1e-300));
+    let told = Telegraph { chance, p_value, ..ground.told(best, rival_gain) };
     // Two neighbouring steps of a coarse lattice are two levels as well.
     let step = problem.scenes.lattice_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s);
     let lattice = step > super::COARSE * ground.white.sqrt() && told.amplitude_deg_h < 1.5 * step;
@@ -262,11 +273,11 @@ pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
 
 impl Ground<'_> {
     /// Size and dwell of the best path with their intervals.
-    fn told(&self, mut best: Judged, rival_gain: f64, p_value: f64) -> Telegraph {
+    fn told(&self, mut best: Judged, rival_gain: f64) -> Telegraph {
         let n = self.residual.len();
         let mut values = self.values(&best.background, best.averaged);
         // Background and levels in turns, each given the other, from the levels for a known path.
-        let coloured = self.slow.iter().any(|s| *s >= 0.02);
+        let coloured = self.coloured();
         let (known, deviation) = self.amplitude(&best.path);
         let mut size = known.abs();
         let mut raised = best.chain.posterior(&values);
@@ -276,7 +287,7 @@ impl Ground<'_> {
             best.chain = (0..TURNS)
                 .fold(best.chain, |c, _| c.improved(&values, 0.5 * self.white / best.averaged as f64));
             raised = best.chain.posterior(&values);
-            let before = std::mem::replace(&mut size, (best.chain.levels[1] - best.chain.levels[0]).abs());
+            let before = std::mem::replace(&mut size, best.chain.apart());
             if (size - before).abs() < SETTLED * size {
                 break;
             }
@@ -285,7 +296,7 @@ impl Ground<'_> {
         let jumps = best.path.windows(2).filter(|w| w[0] != w[1]).count();
         let up = best.path.iter().filter(|p| **p).count() as f64;
         let share = up / n as f64;
-        size = (best.chain.levels[1] - best.chain.levels[0]).abs();
+        size = best.chain.apart();
         let mut course = self.course(&best.chain, best.averaged, &raised, size);
         let mean = course.iter().sum::<f64>() / n as f64;
         course.iter_mut().for_each(|c| *c -= mean);
@@ -310,7 +321,8 @@ impl Ground<'_> {
             gain: best.gain,
             rival_gain,
             parameters: 3,
-            p_value,
+            chance: 1.0,
+            p_value: 1.0,
         }
     }
 }

@@ -20,6 +20,19 @@ impl Chain {
         [self.change[1] / sum, self.change[0] / sum]
     }
 
+    /// Distance of the levels.
+    pub fn apart(&self) -> f64 {
+        (self.levels[1] - self.levels[0]).abs()
+    }
+
+    /// The same with another distance of the levels about the same mean.
+    pub fn set_apart(&self, size: f64) -> Chain {
+        let [low, high] = self.standing();
+        let mean = low * self.levels[0] + high * self.levels[1];
+        let size = size * (self.levels[1] - self.levels[0]).signum();
+        Chain { levels: [mean - high * size, mean + low * size], ..*self }
+    }
+
     fn weights(&self, y: f64) -> [f64; 2] {
         let d = self.levels.map(|l| -(y - l) * (y - l) / (2.0 * self.variance));
         let top = d[0].max(d[1]);
