@@ -6,6 +6,7 @@
 pub mod bursts;
 mod gamma;
 pub mod level;
+mod path;
 mod rate_law;
 mod rivals;
 pub mod telegraph;

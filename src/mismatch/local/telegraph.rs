@@ -4,6 +4,7 @@
 //! its paths, beside the slow noise of the hypothesis. A process with the same spectrum gains by its spectrum alone; only
 //! what the chain gains beyond that tells two levels from it.
 
+use super::path::Paths;
 use super::rivals::{freed, line, rival};
 use super::two_level::Chain;
 use crate::effect::{EFFECTS, averages};
@@ -28,6 +29,8 @@ const ROUNDS: usize = 8;
 /// Turns of background and levels at the end, and the relative change of the amplitude at which they end.
 const SETTLING: usize = 40;
 const SETTLED: f64 = 1e-3;
+/// Averages in which paths are mended stretch by stretch at most.
+const PATHS: usize = 4096;
 /// Averages in the shortest period of a drift.
 const SLOWEST: usize = 64;
 
@@ -185,11 +188,20 @@ impl<'a> Ground<'a> {
             .max_by(|a, b| a.log_likelihood(&values).total_cmp(&b.log_likelihood(&values)))?;
         let mut best: Option<Judged> = None;
         let coloured = self.coloured();
+        let paths = (coloured && values.len() <= PATHS).then(|| {
+            let powers: Vec<f64> = self.powers.iter().take(values.len()).map(|p| p / m as f64).collect();
+            Paths::new(&averages(&self.residual, m), &powers, white)
+        });
         for _ in 0..ROUNDS {
             chain = (0..TURNS).fold(chain, |c, _| c.improved(&values, 0.5 * white));
             // Slow noise about the levels would make paths look less certain than they are.
             let sharp = Chain { variance: chain.variance.min(white), ..chain };
-            let short = sharp.path(&values);
+            let mut short = sharp.path(&values);
+            if let Some(paths) = &paths {
+                // From nothing as well: a background that was held has hidden stretches, or made them.
+                let [kept, anew] = [short, vec![false; values.len()]].map(|path| paths.improved(path));
+                short = if anew.0 > kept.0 { anew.1 } else { kept.1 };
+            }
             let jumps = short.windows(2).filter(|w| w[0] != w[1]).count();
             if jumps < JUMPS {
                 break;
@@ -198,11 +210,19 @@ impl<'a> Ground<'a> {
                 (0..n).map(|i| short.get((i / m).min(short.len() - 1)).copied().unwrap_or(false)).collect();
             // The background that is best beside what is expected of the levels: a turn of expectation and maximum. The
             // levels are those of the path beside any background: in turns, they would close in on them slowly.
-            let size = if coloured { self.amplitude(&path).0.abs() } else { sharp.apart() };
-            let sharp = sharp.set_apart(size);
+            let (sharp, size) = if coloured {
+                let size = self.amplitude(&path).0;
+                let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+                let sharp = sharp.of_path(&short, size, mean);
+                let known: Vec<f64> = short.iter().map(|p| f64::from(u8::from(*p))).collect();
+                values = self.values(&self.background(&self.course(&sharp, m, &known, size.abs())), m);
+                (sharp, size.abs())
+            } else {
+                (sharp, sharp.apart())
+            };
             let course = self.course(&sharp, m, &sharp.posterior(&values), size);
             background = self.background(&course);
-            chain = chain.set_apart(size);
+            chain = Chain { variance: chain.variance, ..sharp };
             let gain = self.evidence(&sharp, &background, m);
             if best.as_ref().is_some_and(|b| gain < b.gain + 0.1) {
                 break;

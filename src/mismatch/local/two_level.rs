@@ -25,12 +25,16 @@ impl Chain {
         (self.levels[1] - self.levels[0]).abs()
     }
 
-    /// The same with another distance of the levels about the same mean.
-    pub fn set_apart(&self, size: f64) -> Chain {
-        let [low, high] = self.standing();
-        let mean = low * self.levels[0] + high * self.levels[1];
-        let size = size * (self.levels[1] - self.levels[0]).signum();
-        Chain { levels: [mean - high * size, mean + low * size], ..*self }
+    /// The chain of a known path whose second level is `size` above the first, about a mean.
+    pub fn of_path(&self, path: &[bool], size: f64, mean: f64) -> Chain {
+        let of = |level: bool| {
+            let stays = path.iter().filter(|p| **p == level).count() as f64;
+            let leaves = path.windows(2).filter(|w| w[0] == level && w[1] != level).count() as f64;
+            ((leaves + 0.5) / (stays + 1.0)).clamp(0.25 / path.len().max(1) as f64, 0.5)
+        };
+        let share = path.iter().filter(|p| **p).count() as f64 / path.len().max(1) as f64;
+        let levels = [mean - share * size, mean + (1.0 - share) * size];
+        Chain { levels, change: [of(false), of(true)], ..*self }
     }
 
     fn weights(&self, y: f64) -> [f64; 2] {
