@@ -165,6 +165,34 @@ fn every_form_of_output_filter_is_named_alone() {
 }
 
 #[test]
+fn slow_jumps_beside_flicker_are_told_from_a_slow_process() {
+    let dir = tempdir().unwrap();
+    let claim = "[recording]\ncase = \"jumps\"\nsample_rate_hz = 0.5\n[noise]\nN_deg_rt_h = 0.00061\nB_deg_h = 0.004\n\
+        K_deg_h_rt_h = 0.0002\n[bias]\nvalue_deg_h = -11.3\n[uncertainty]\nN_rel = 0.01\nB_rel = 0.13\nK_rel = 0.2\n\
+        bias_deg_h = 0.005\n";
+    let jumps = format!(
+        "{claim}[[effect]]\nkind = \"random_telegraph\"\n[effect.parameters]\namplitude_deg_h = 0.02\nmean_dwell_s = 5600\n"
+    );
+    std::fs::write(dir.path().join("model.toml"), claim).unwrap();
+    std::fs::write(dir.path().join("jumps.toml"), jumps).unwrap();
+    for seed in ["1", "6"] {
+        let simulate = ["simulate", "jumps.toml", "--out", "r.csv", "--seed", seed, "--duration", "80000s"];
+        assert_eq!(sagnac(dir.path(), &simulate).code, 0);
+        let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+        assert_eq!(said.code, 1, "{said:?}");
+        let effects = &json(&dir.path().join("e/explain.json"))["effects"];
+        assert_eq!(effects.as_array().map(Vec::len), Some(1), "{effects}");
+        assert_eq!(effects[0]["kind"], "random_telegraph", "seed {seed}");
+        let found = |name: &str| effects[0]["parameters"][name]["value"].as_f64().unwrap();
+        assert!((found("amplitude_deg_h") / 0.02 - 1.0).abs() < 0.15, "seed {seed}: {effects}");
+        assert!((found("mean_dwell_s") / 5600.0).ln().abs() < 0.6, "seed {seed}: {effects}");
+        let again =
+            sagnac(dir.path(), &["explain", "r.csv", "--model", "e/augmented.toml", "--out", "again"]);
+        assert_eq!(again.code, 0, "seed {seed}: {again:?}");
+    }
+}
+
+#[test]
 fn a_correct_claim_is_consistent_and_changes_nothing() {
     let dir = tempdir().unwrap();
     case(dir.path(), "r.csv", 21, 0.0);
