@@ -62,6 +62,8 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     if let Some(taken) = &found.taken {
         observed.iter_mut().zip(taken).for_each(|(o, t)| *o += t);
     }
+    // What single samples show stands before what was tried in modes.
+    let ranked = found.named.iter().map(told).chain(selection.first.iter().map(candidate)).collect();
     let halves = Halves::new(problem);
     let nothing = selection.chosen.is_empty() && found.named.is_empty();
     let held_best = if nothing { held_base } else { halves.judge(&selection.best) };
@@ -126,7 +128,7 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         family_p_value: family,
         family_p_value_after: if something { departures::family(after) } else { family },
         alpha: options.alpha,
-        candidates: selection.first.iter().map(candidate).collect(),
+        candidates: ranked,
         tests: tests(before, after),
         nuisances: nuisances(problem, base, &selection.best),
         recording: facts(problem, series, options),
@@ -221,6 +223,15 @@ fn figures(tried: &Tried, held: &HeldOut, rows: usize) -> FitFigures {
         heldout_log_likelihood: held.log_likelihood,
         heldout_rms_deg_h: held.rms_deg_h,
         bic: tried.bic(rows),
+    }
+}
+
+fn told(named: &Named) -> Candidate {
+    Candidate {
+        kind: named.effect.kind().to_owned(),
+        delta_bic: named.delta_bic,
+        log_likelihood_gain: named.local_gain,
+        p_value: named.p_value,
     }
 }
 

@@ -151,6 +151,8 @@ pub(super) struct Found {
     pub level: Option<Vec<f64>>,
     /// What was taken out of the residual, deg/h.
     pub taken: Option<Vec<f64>>,
+    /// What the fits without it gained, which counts it as known.
+    pub gained_in_fit: f64,
 }
 
 impl Found {
@@ -163,7 +165,7 @@ impl Found {
 
     /// Gain that the fits in cosine modes do not hold.
     pub fn local_gain(&self) -> f64 {
-        self.named.iter().map(|n| n.local_gain).sum()
+        self.named.iter().map(|n| n.local_gain).sum::<f64>() - self.gained_in_fit
     }
 }
 
@@ -326,12 +328,13 @@ fn take_telegraph(
     }
     if let Some(mut named) = samples::telegraph(&telegraph, delta_bic, problem) {
         named.equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
-        // The fit without the course counts it as known: it gains more than the jumps do.
-        named.local_gain = telegraph.gain - (base.fit.log_likelihood - start.fit.log_likelihood);
+        found.gained_in_fit += base.fit.log_likelihood - start.fit.log_likelihood;
         found.named.push(named);
         found.take(telegraph.course);
     }
-    *selection = select::select(&base, &problem.scenes, options);
+    // What was tried on the claim alone is what the jumps stood against.
+    let first = std::mem::take(&mut selection.first);
+    *selection = Selection { first, ..select::select(&base, &problem.scenes, options) };
 }
 
 fn note(why: Irregular) -> Note {
