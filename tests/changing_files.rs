@@ -217,6 +217,13 @@ fn a_disk_that_fills_up_at_any_moment_leaves_the_earlier_result() {
     assert!(refused >= 6, "{refused}");
 }
 
+/// Whether a signal is ignored here, as interrupts are by what a shell runs in the background.
+fn ignored(number: u32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|l| l.strip_prefix("SigIgn:"));
+    mask.and_then(|m| u64::from_str_radix(m.trim(), 16).ok()).is_some_and(|m| m >> (number - 1) & 1 == 1)
+}
+
 /// A run that is asked to stop leaves the earlier result as it was; what it had begun is hidden, and is cleared away
 /// by the first run that finds it a day old.
 #[test]
@@ -225,7 +232,11 @@ fn a_run_that_is_asked_to_stop_leaves_the_earlier_result() {
     assert_eq!(run_into(dir.path(), "out").code, 0);
     let earlier = files(&dir.path().join("out"));
     std::fs::write(dir.path().join("long.csv"), recording(2_000_000)).unwrap();
-    for signal in ["INT", "TERM", "HUP"] {
+    for (signal, number) in [("INT", 2), ("TERM", 15), ("HUP", 1)] {
+        if ignored(number) {
+            eprintln!("{signal} is ignored by what runs the tests, and so by what they start: skipped");
+            continue;
+        }
         let mut child = Command::new(program())
             .current_dir(dir.path())
             .args(["run", &procedure(), "long.csv", "--serial", "SN-1", "--out", "out"])
