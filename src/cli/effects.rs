@@ -93,7 +93,7 @@ fn page(effect: &dyn Effect, lang: Lang) -> String {
         }
     };
     part("effects.mechanism", doc.mechanism.of(lang));
-    part("effects.formula", doc.formula);
+    part("effects.formula", doc.formula.of(lang));
     let numbers = effect.params().iter().map(|p| parameter(p, None, lang));
     let lists = effect.list_params().iter().map(|p| parameter(p, Some("effects.list"), lang));
     let parameters: Vec<String> = numbers.chain(lists).collect();
@@ -184,7 +184,7 @@ fn value(effect: &dyn Effect, lang: Lang) -> Value {
         "domain": effect.domain().id(),
         "needs": effect.needs().iter().map(|c| c.name()).collect::<Vec<_>>(),
         "mechanism": doc.mechanism.of(lang),
-        "formula": doc.formula,
+        "formula": doc.formula.of(lang),
         "parameters": params(effect.params()),
         "lists": params(effect.list_params()),
         "signature": doc.signature.of(lang),

@@ -12,6 +12,11 @@ pub struct Both {
 }
 
 impl Both {
+    /// A text without words, the same in every language.
+    pub const fn same(text: &'static str) -> Both {
+        Both { en: text, ru: text }
+    }
+
     /// The text in a language.
     pub fn of(&self, lang: Lang) -> &'static str {
         match lang {
@@ -29,7 +34,7 @@ pub struct Doc {
     /// What happens in the instrument or around it.
     pub mechanism: Both,
     /// The forward model as a formula.
-    pub formula: &'static str,
+    pub formula: Both,
     /// How it shows in each view.
     pub signature: Both,
     /// What tells it from its nearest confusers.

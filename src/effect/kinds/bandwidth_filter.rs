@@ -16,7 +16,10 @@ static DOC: Doc = Doc {
         en: "A loop or an output filter of the instrument passes slow rates and damps fast ones.",
         ru: "Контур обратной связи или выходной фильтр прибора пропускает медленные изменения и подавляет быстрые.",
     },
-    formula: "|H|² = 1/(1 + (f/f_c)²) before sampling",
+    formula: Both {
+        en: "|H|² = 1/(1 + (f/f_c)²) before sampling",
+        ru: "|H|² = 1/(1 + (f/f_c)²) до дискретизации",
+    },
     signature: Both {
         en: "The spectrum falls towards the Nyquist frequency below the claimed level; neighbouring samples correlate positively.",
         ru: "Спектр спадает к частоте Найквиста ниже заявленного уровня; соседние отсчёты коррелируют положительно.",

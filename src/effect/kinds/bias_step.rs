@@ -12,7 +12,7 @@ static DOC: Doc = Doc {
         en: "A contact, a crack, a hop of the source's mode or a knock leaves the bias at another level.",
         ru: "Контакт, трещина, перескок моды источника или удар оставляют смещение нуля на другом уровне.",
     },
-    formula: "J·H(t − t₁)",
+    formula: Both::same("J·H(t − t₁)"),
     signature: Both {
         en: "Two levels in time; the Allan deviation grows as τ to the power 1/2 like a rate random walk.",
         ru: "Два уровня во времени; девиация Аллана растёт как τ в степени 1/2, как при случайном блуждании скорости.",

@@ -15,7 +15,10 @@ static DOC: Doc = Doc {
         en: "Gyro and table count time by clocks of different rates.",
         ru: "Время гироскопа и стола отсчитывают часы с разным ходом.",
     },
-    formula: "m(t − d·(t − t₀)) − m(t), m the claimed mean, t₀ the beginning of the record",
+    formula: Both {
+        en: "m(t − d·(t − t₀)) − m(t), m the claimed mean, t₀ the beginning of the record",
+        ru: "m(t − d·(t − t₀)) − m(t), m — заявленное среднее, t₀ — начало записи",
+    },
     signature: Both {
         en: "Spikes of the residual wherever the table's rate changes, larger towards the end of the record.",
         ru: "Импульсы остатка при каждом изменении скорости стола, растущие к концу записи.",

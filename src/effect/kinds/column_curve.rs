@@ -19,7 +19,10 @@ static DOC: Doc = Doc {
         en: "The electronics, the light source or the coil answer to a quantity by more than its first power.",
         ru: "Электроника, источник света или контур отвечают на величину не только первой степенью.",
     },
-    formula: "Σ cₖ uᵏ, u a column scaled to ±1, k = 1 … 2, 3 or 4",
+    formula: Both {
+        en: "Σ cₖ uᵏ, u a column scaled to ±1, k = 1 … 2, 3 or 4",
+        ru: "Σ cₖ uᵏ, u — величина, приведённая к ±1, k = 1 … 2, 3 или 4",
+    },
     signature: Both {
         en: "A curve in residual against one column, the same whenever the column comes back to a value.",
         ru: "Кривая остатка от одной величины, одинаковая при каждом её возвращении к тому же значению.",

@@ -17,7 +17,10 @@ static DOC: Doc = Doc {
         en: "One quantity changes how the gyro answers to another: a supply voltage the temperature dependence, ageing the scale factor.",
         ru: "Одна величина меняет реакцию гироскопа на другую: напряжение питания — температурную зависимость, старение — масштабный коэффициент.",
     },
-    formula: "c₁ u v + c₂ u + c₃ v, u and v two columns, or one and the time",
+    formula: Both {
+        en: "c₁ u v + c₂ u + c₃ v, u and v two columns, or one and the time",
+        ru: "c₁ u v + c₂ u + c₃ v, u и v — две величины либо одна величина и время",
+    },
     signature: Both {
         en: "The slope of residual against one column changes with the other.",
         ru: "Наклон остатка по одной величине меняется вместе с другой.",

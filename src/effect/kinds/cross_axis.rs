@@ -13,7 +13,7 @@ static DOC: Doc = Doc {
         en: "The input axis is not square to the table's other axis.",
         ru: "Ось чувствительности не перпендикулярна второй оси стола.",
     },
-    formula: "10⁻³·δ·Ω_outer",
+    formula: Both { en: "10⁻³·δ·Ω_outer", ru: "10⁻³·δ·Ω_внеш" },
     signature: Both {
         en: "A straight line in residual against the rate of the other axis.",
         ru: "Прямая остатка по скорости второй оси.",

@@ -17,7 +17,10 @@ static DOC: Doc = Doc {
         en: "Cross-talk of the modulator's drive into the detector pulls the closed loop to a point where it cancels a small input.",
         ru: "Наводка сигнала модулятора на приёмник удерживает замкнутый контур в точке, где он гасит малую входную скорость.",
     },
-    formula: "−c·Ω for |Ω| < w; beyond, 0, or −w sgn Ω where the response stays behind",
+    formula: Both {
+        en: "−c·Ω for |Ω| < w; beyond, 0, or −w sgn Ω where the response stays behind",
+        ru: "−c·Ω при |Ω| < w; дальше 0 либо −w sgn Ω, если отклик остаётся смещённым",
+    },
     signature: Both {
         en: "Within ±w the residual is the input with its sign changed; outside there is nothing.",
         ru: "В пределах ±w остаток равен входной скорости с обратным знаком; снаружи его нет.",

@@ -12,7 +12,7 @@ static DOC: Doc = Doc {
         en: "Tilt of the foundation, weather and the building's heating repeat with the day.",
         ru: "Наклон фундамента, погода и отопление здания повторяются с периодом суток.",
     },
-    formula: "A·cos(2πt/24 h + φ)",
+    formula: Both { en: "A·cos(2πt/24 h + φ)", ru: "A·cos(2πt/24 ч + φ)" },
     signature: Both {
         en: "A wave of 24 hours, in step with the solar time.",
         ru: "Волна с периодом 24 часа, привязанная к солнечному времени.",

@@ -14,7 +14,10 @@ static DOC: Doc = Doc {
         en: "A machine that runs up or down, or an oscillator that warms up, is felt at its own frequency.",
         ru: "Разгон или выбег машины, прогрев генератора видны на собственной, меняющейся частоте.",
     },
-    formula: "A cos(2π(f u + ½ f′ u²) + φ), u the time since the middle of the record",
+    formula: Both {
+        en: "A cos(2π(f u + ½ f′ u²) + φ), u the time since the middle of the record",
+        ru: "A cos(2π(f u + ½ f′ u²) + φ), u — время от середины записи",
+    },
     signature: Both {
         en: "A ridge in time and frequency together; in the spectrum of the whole record a band with sharp ends.",
         ru: "Гребень на плоскости «время — частота»; в спектре всей записи — полоса с резкими краями.",

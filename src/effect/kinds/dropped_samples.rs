@@ -12,7 +12,7 @@ static DOC: Doc = Doc {
         en: "A buffer overflows, a link breaks: rows never reach the file.",
         ru: "Переполняется буфер, рвётся связь: строки не попадают в файл.",
     },
-    formula: "rows left out",
+    formula: Both { en: "rows left out", ru: "строки пропущены" },
     signature: Both {
         en: "Gaps of the time stamps by whole sample intervals.",
         ru: "Разрывы меток времени на целое число интервалов.",

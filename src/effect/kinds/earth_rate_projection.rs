@@ -13,7 +13,9 @@ static DOC: Doc = Doc {
         en: "The simulation leaves the Earth rate out, or has another latitude, azimuth or sign of the table.",
         ru: "В модели нет скорости Земли либо иные широта, азимут или знак угла стола.",
     },
-    formula: "A·cos(ψ + φ), ψ the table angle",
+    formula: Both {
+        en: "A·cos(ψ + φ), ψ the table angle", ru: "A·cos(ψ + φ), ψ — угол стола"
+    },
     signature: Both {
         en: "One wave for each turn of the table, at most 15 deg/h high, fixed to the north.",
         ru: "Одна волна на оборот стола, не выше 15 град/ч, привязанная к северу.",

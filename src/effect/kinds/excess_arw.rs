@@ -12,7 +12,7 @@ static DOC: Doc = Doc {
         en: "Shot noise, excess noise of the source, thermal noise of the receiver: white noise of the rate, stronger or weaker than the simulation has it.",
         ru: "Дробовой шум, избыточный шум источника, тепловой шум приёмника: белый шум скорости, сильнее или слабее, чем в модели.",
     },
-    formula: "S(f) = 3600 N²",
+    formula: Both::same("S(f) = 3600 N²"),
     signature: Both {
         en: "A flat excess of the spectrum up to the Nyquist frequency; the Allan deviation keeps its slope of −1/2 at another height.",
         ru: "Плоское превышение спектра до частоты Найквиста; девиация Аллана сохраняет наклон −1/2 на другой высоте.",

@@ -12,7 +12,7 @@ static DOC: Doc = Doc {
         en: "Electronics, the source's intensity and polarisation wander on all time scales at once, stronger or weaker than the simulation has it.",
         ru: "Электроника, интенсивность источника и поляризация блуждают на всех временах сразу, сильнее или слабее, чем в модели.",
     },
-    formula: "S(f) = B²/(2πf)",
+    formula: Both::same("S(f) = B²/(2πf)"),
     signature: Both {
         en: "An excess of the spectrum that rises as 1/f towards low frequencies; the flat floor of the Allan deviation at another height, 0.664 B.",
         ru: "Превышение спектра, растущее как 1/f к низким частотам; полка девиации Аллана на другой высоте, 0,664 B.",

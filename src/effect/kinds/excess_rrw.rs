@@ -13,7 +13,7 @@ static DOC: Doc = Doc {
         en: "Small independent shifts of the bias add up, with no preferred sign, faster or slower than the simulation has it.",
         ru: "Малые независимые сдвиги нуля накапливаются без преимущественного знака, быстрее или медленнее, чем в модели.",
     },
-    formula: "S(f) = K²/(2πf)²",
+    formula: Both::same("S(f) = K²/(2πf)²"),
     signature: Both {
         en: "The spectrum rises as f⁻² towards low frequencies; the Allan deviation as τ to the power 1/2.",
         ru: "Спектр растёт как f⁻² к низким частотам, девиация Аллана — как τ в степени 1/2.",

@@ -14,7 +14,7 @@ static DOC: Doc = Doc {
         en: "The table crept, a mount gave way or a cable pulled: the input axis sees another part of the Earth's rate.",
         ru: "Стол сместился, крепление поддалось или потянул кабель: ось чувствительности видит иную часть скорости Земли.",
     },
-    formula: "J·H(t − t₁), J = Ω_E cosφ·(cos A₂ − cos A₁)",
+    formula: Both::same("J·H(t − t₁), J = Ω_E cosφ·(cos A₂ − cos A₁)"),
     signature: Both {
         en: "Two levels in time, often with the disturbance of the move between them.",
         ru: "Два уровня во времени, часто с возмущением от самого поворота между ними.",

@@ -15,7 +15,10 @@ static DOC: Doc = Doc {
         en: "Mains, a fan, a thermostat or a drive adds a sinusoid that keeps its phase over the record.",
         ru: "Сеть, вентилятор, термостат или привод добавляет синусоиду, сохраняющую фазу в течение всей записи.",
     },
-    formula: "A·cos(2πft + φ), averaged over each sample",
+    formula: Both {
+        en: "A·cos(2πft + φ), averaged over each sample",
+        ru: "A·cos(2πft + φ), осреднённая по каждому отсчёту",
+    },
     signature: Both {
         en: "A peak of the spectrum no wider than 1/T; the Allan deviation has a bump at 0.371/f of 0.725 A.",
         ru: "Пик спектра не шире 1/T; на девиации Аллана бугор 0,725 A при τ = 0,371/f.",

@@ -14,7 +14,7 @@ static DOC: Doc = Doc {
         en: "Thermal regulators, wandering polarisation, a slow loop: something that forgets with one time constant.",
         ru: "Терморегуляторы, блуждание поляризации, медленный контур: то, что забывает с одной постоянной времени.",
     },
-    formula: "R(t) = σ² exp(−|t|/T_c)",
+    formula: Both::same("R(t) = σ² exp(−|t|/T_c)"),
     signature: Both {
         en: "A plateau of the spectrum below 1/(2πT_c) and a fall as f⁻² above; a hump of the Allan deviation at 1.89 T_c; an autocorrelation that decays exponentially.",
         ru: "Плато спектра ниже 1/(2πT_c) и спад f⁻² выше; горб девиации Аллана при 1,89 T_c; экспоненциальный спад автокорреляции.",

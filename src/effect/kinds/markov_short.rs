@@ -14,7 +14,10 @@ static DOC: Doc = Doc {
         en: "Dynamics of the loop, smoothing inside the instrument, bandwidth of the detector: noise that remembers a few samples.",
         ru: "Динамика контура обратной связи, внутреннее сглаживание, полоса приёмника: шум с памятью в несколько отсчётов.",
     },
-    formula: "R(t) = σ² exp(−|t|/T_c), T_c below ten samples",
+    formula: Both {
+        en: "R(t) = σ² exp(−|t|/T_c), T_c below ten samples",
+        ru: "R(t) = σ² exp(−|t|/T_c), T_c меньше десяти отсчётов",
+    },
     signature: Both {
         en: "Positive autocorrelation over the first lags; an excess of the spectrum that falls towards the Nyquist frequency.",
         ru: "Положительная автокорреляция на первых сдвигах; превышение спектра, спадающее к частоте Найквиста.",

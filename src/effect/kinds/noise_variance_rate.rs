@@ -12,7 +12,7 @@ static DOC: Doc = Doc {
         en: "Jitter of the time stamps, unsteady drive of the table or the loop's own errors grow with the rate.",
         ru: "Дрожание меток времени, неравномерность привода стола или погрешности контура растут со скоростью.",
     },
-    formula: "σ² = σ₀² (1 + (r² − 1)(|Ω|/Ω_max)^p), p = 2",
+    formula: Both::same("σ² = σ₀² (1 + (r² − 1)(|Ω|/Ω_max)^p), p = 2"),
     signature: Both {
         en: "The scatter of the residual grows with the size of the rate, the same for both signs.",
         ru: "Разброс остатка растёт с модулем скорости, одинаково для обоих знаков.",

@@ -13,7 +13,10 @@ static DOC: Doc = Doc {
         en: "Power of the source, losses of the coil with temperature or traffic in the building change the noise and not the mean.",
         ru: "Мощность источника, потери контура при изменении температуры или движение в здании меняют шум, но не среднее.",
     },
-    formula: "y = m + s(t)·(y₀ − m), s by straight lines between knots",
+    formula: Both {
+        en: "y = m + s(t)·(y₀ − m), s by straight lines between knots",
+        ru: "y = m + s(t)·(y₀ − m), s — ломаная между узлами",
+    },
     signature: Both {
         en: "The scatter drifts while the mean stays; the spectrum is white on average; the amplitudes have heavy tails.",
         ru: "Разброс меняется при неизменном среднем; спектр в среднем белый; у распределения тяжёлые хвосты.",

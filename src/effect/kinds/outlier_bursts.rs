@@ -13,7 +13,10 @@ static DOC: Doc = Doc {
         en: "Radio, switching, knocks: for a moment the output is disturbed by much more than its noise.",
         ru: "Радиопомехи, коммутация, толчки: на мгновение выход возмущается намного сильнее своего шума.",
     },
-    formula: "y + s·e in each burst, e normal with deviation 1",
+    formula: Both {
+        en: "y + s·e in each burst, e normal with deviation 1",
+        ru: "y + s·e в каждом выбросе, e — нормальная величина с отклонением 1",
+    },
     signature: Both {
         en: "A few groups of samples beyond four deviations; white noise and its Allan deviation rise a little; heavy tails.",
         ru: "Несколько групп отсчётов за четырьмя отклонениями; белый шум и его девиация Аллана немного растут; тяжёлые хвосты.",

@@ -17,7 +17,7 @@ static DOC: Doc = Doc {
         en: "Many relaxations whose times are not spread evenly, as of traps, diffusion or a coupled structure.",
         ru: "Множество релаксаций с неравномерно распределёнными временами: ловушки, диффузия, связанная конструкция.",
     },
-    formula: "S(f) = S₀ (f/f₀)^−α",
+    formula: Both::same("S(f) = S₀ (f/f₀)^−α"),
     signature: Both {
         en: "A straight line in the logarithmic spectrum with a slope that is none of 0, −1 or −2.",
         ru: "Прямая в логарифмическом спектре с наклоном, отличным от 0, −1 и −2.",

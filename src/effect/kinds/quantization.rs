@@ -15,7 +15,7 @@ static DOC: Doc = Doc {
         en: "The output counts whole angle increments; what is left over stays for the next sample.",
         ru: "Выход считает целые приращения угла; остаток переходит в следующий отсчёт.",
     },
-    formula: "S(f) = (4Q²/τ₀)·sin²(πfτ₀), Q = Δθ/√12",
+    formula: Both::same("S(f) = (4Q²/τ₀)·sin²(πfτ₀), Q = Δθ/√12"),
     signature: Both {
         en: "Values lie on a lattice; the spectrum rises towards the Nyquist frequency; the Allan deviation starts with slope −1.",
         ru: "Значения лежат на решётке; спектр растёт к частоте Найквиста; девиация Аллана начинается с наклона −1.",

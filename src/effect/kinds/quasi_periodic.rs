@@ -17,7 +17,10 @@ static DOC: Doc = Doc {
         en: "A thermostat, a fan or a limit cycle of the loop oscillates and loses its phase after a while.",
         ru: "Термостат, вентилятор или предельный цикл контура колеблется и со временем теряет фазу.",
     },
-    formula: "R(t) = σ² exp(−|t|/T)·cos(2πf₀t), full width at half power 1/(πT)",
+    formula: Both {
+        en: "R(t) = σ² exp(−|t|/T)·cos(2πf₀t), full width at half power 1/(πT)",
+        ru: "R(t) = σ² exp(−|t|/T)·cos(2πf₀t), полная ширина на половине мощности 1/(πT)",
+    },
     signature: Both {
         en: "A resonance of the spectrum wider than 1/T of the record; a damped cosine in the autocorrelation; a bump of the Allan deviation at 0.371/f₀.",
         ru: "Резонанс спектра шире обратной длины записи; затухающий косинус в автокорреляции; бугор девиации Аллана при 0,371/f₀.",

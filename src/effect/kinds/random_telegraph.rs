@@ -14,7 +14,10 @@ static DOC: Doc = Doc {
         en: "A mode of the source, a contact or a charge trap hops between two states.",
         ru: "Мода источника, контакт или зарядовая ловушка переключается между двумя состояниями.",
     },
-    formula: "±Δ/2, each level held for an exponential time of mean 1/λ",
+    formula: Both {
+        en: "±Δ/2, each level held for an exponential time of mean 1/λ",
+        ru: "±Δ/2, каждый уровень держится показательно распределённое время со средним 1/λ",
+    },
     signature: Both {
         en: "Two levels in time; the spectrum of a Markov process with T_c = 1/(2λ) and σ = Δ/2; two humps of the distribution after averaging.",
         ru: "Два уровня во времени; спектр марковского процесса с T_c = 1/(2λ) и σ = Δ/2; после осреднения распределение двугорбое.",

@@ -10,7 +10,7 @@ static DOC: Doc = Doc {
         en: "Ageing of the source, relaxing stress in the coil, slow drift of the electronics.",
         ru: "Старение источника, релаксация напряжений в контуре, медленный уход электроники.",
     },
-    formula: "R·t",
+    formula: Both::same("R·t"),
     signature: Both {
         en: "A straight line in time; the Allan deviation rises as τ, the Hadamard deviation does not see it.",
         ru: "Прямая во времени; девиация Аллана растёт как τ, девиация Адамара её не видит.",

@@ -17,7 +17,7 @@ static DOC: Doc = Doc {
         en: "The digital phase ramp of the closed loop is reset by a step other than 2π: each reset disturbs the output.",
         ru: "Цифровая фазовая пила замкнутого контура сбрасывается на величину, отличную от 2π: каждый сброс возмущает выход.",
     },
-    formula: "A·cos(2πθ/P + φ), θ = ∫(Ω + b) dt, P = λn/D",
+    formula: Both::same("A·cos(2πθ/P + φ), θ = ∫(Ω + b) dt, P = λn/D"),
     signature: Both {
         en: "A ripple whose frequency is proportional to the rate; it averages out once a sample covers a period.",
         ru: "Пульсация, частота которой пропорциональна скорости; исчезает, когда за отсчёт проходит целый период.",

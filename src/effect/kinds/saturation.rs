@@ -15,7 +15,9 @@ static DOC: Doc = Doc {
         en: "The loop, a converter or the format of the output reaches its limit.",
         ru: "Контур, преобразователь или формат выхода достигает своего предела.",
     },
-    formula: "−sgn(Ω)·(|Ω| − L) for |Ω| > L",
+    formula: Both {
+        en: "−sgn(Ω)·(|Ω| − L) for |Ω| > L", ru: "−sgn(Ω)·(|Ω| − L) при |Ω| > L"
+    },
     signature: Both {
         en: "A flat top of the output; beyond the limit the residual falls as fast as the rate grows.",
         ru: "Плоская вершина выходного сигнала; за пределом остаток падает так же быстро, как растёт скорость.",

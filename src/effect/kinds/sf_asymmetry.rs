@@ -14,7 +14,7 @@ static DOC: Doc = Doc {
         en: "Modulator and loop treat the two senses of rotation differently.",
         ru: "Модулятор и контур обратной связи по-разному отрабатывают два направления вращения.",
     },
-    formula: "10⁻⁶·(ε_a/2)·|Ω|",
+    formula: Both::same("10⁻⁶·(ε_a/2)·|Ω|"),
     signature: Both {
         en: "A V in residual against input rate.",
         ru: "Галочка в зависимости остатка от входной скорости.",

@@ -14,7 +14,7 @@ static DOC: Doc = Doc {
         en: "Wavelength of the source, size of the coil or a constant in the firmware differ from what the simulation has.",
         ru: "Длина волны источника, размер контура или константа в прошивке отличаются от принятых в модели.",
     },
-    formula: "10⁻⁶·ε·Ω",
+    formula: Both::same("10⁻⁶·ε·Ω"),
     signature: Both {
         en: "A straight line through zero in residual against input rate.",
         ru: "Прямая через ноль в зависимости остатка от входной скорости.",

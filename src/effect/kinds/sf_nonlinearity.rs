@@ -13,7 +13,7 @@ static DOC: Doc = Doc {
         en: "The sine response of the interferometer and a finite gain of the loop leave a cubic term.",
         ru: "Синусный отклик интерферометра и конечное усиление контура оставляют кубический член.",
     },
-    formula: "10⁻⁶·c·Ω·(Ω/Ω_max)²",
+    formula: Both::same("10⁻⁶·c·Ω·(Ω/Ω_max)²"),
     signature: Both {
         en: "An odd curve in residual against rate that steepens towards large rates.",
         ru: "Нечётная кривая остатка по скорости, круче при больших скоростях.",

@@ -14,7 +14,7 @@ static DOC: Doc = Doc {
         en: "The wavelength of the source and the size of the coil change with temperature.",
         ru: "Длина волны источника и размер контура меняются с температурой.",
     },
-    formula: "10⁻⁶·ε_T·(T − T_ref)·Ω",
+    formula: Both::same("10⁻⁶·ε_T·(T − T_ref)·Ω"),
     signature: Both {
         en: "The slope of residual against rate changes with temperature.",
         ru: "Наклон остатка по скорости меняется с температурой.",

@@ -15,7 +15,7 @@ static DOC: Doc = Doc {
         en: "References, drivers and amplifiers let part of the supply through to the output.",
         ru: "Опорные источники, драйверы и усилители пропускают часть изменений питания на выход.",
     },
-    formula: "k (U − U₀)",
+    formula: Both::same("k (U − U₀)"),
     signature: Both {
         en: "A straight line in residual against voltage; in time a copy of the supply, ripple and switching included.",
         ru: "Прямая остатка по напряжению; во времени — копия питания вместе с пульсациями и переключениями.",

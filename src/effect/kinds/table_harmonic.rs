@@ -16,7 +16,10 @@ static DOC: Doc = Doc {
         en: "Wobble of the axis, poles of the motor or the encoder modulate the rate in step with the table angle.",
         ru: "Биение оси, полюса двигателя или датчик угла модулируют скорость синхронно с углом стола.",
     },
-    formula: "A·cos(kψ + φ), ψ the table angle, k a whole number",
+    formula: Both {
+        en: "A·cos(kψ + φ), ψ the table angle, k a whole number",
+        ru: "A·cos(kψ + φ), ψ — угол стола, k — целое число",
+    },
     signature: Both {
         en: "A line at k times the rotation rate that follows the rate of the table.",
         ru: "Линия на частоте k оборотов, следующая за скоростью стола.",

@@ -14,7 +14,10 @@ static DOC: Doc = Doc {
         en: "Potting and spool creep and stick: the strain of the fibre remembers where the temperature came from.",
         ru: "Компаунд и каркас ползут и залипают: деформация волокна помнит, откуда пришла температура.",
     },
-    formula: "(W/2)·(T − p)/r, p the play of half width r that follows T",
+    formula: Both {
+        en: "(W/2)·(T − p)/r, p the play of half width r that follows T",
+        ru: "(W/2)·(T − p)/r, p — люфт полуширины r, следующий за T",
+    },
     signature: Both {
         en: "A loop of residual against temperature whose width does not depend on the rate of heating.",
         ru: "Петля остатка по температуре, ширина которой не зависит от скорости нагрева.",

@@ -15,7 +15,7 @@ static DOC: Doc = Doc {
         en: "Bias follows the temperature of the coil, the source or the electronics in proportion.",
         ru: "Смещение нуля пропорционально температуре контура, источника излучения или электроники.",
     },
-    formula: "a₁ (T − T_ref)",
+    formula: Both::same("a₁ (T − T_ref)"),
     signature: Both {
         en: "A straight line in residual against temperature, the same on heating and on cooling; in time a copy of the temperature.",
         ru: "Прямая в зависимости остатка от температуры, одинаковая при нагреве и охлаждении; во времени — копия температуры.",

@@ -18,7 +18,10 @@ static DOC: Doc = Doc {
         en: "Several parts with their own temperature laws add up to a bent curve of bias against temperature.",
         ru: "Узлы с разными температурными законами дают в сумме изогнутую зависимость смещения нуля от температуры.",
     },
-    formula: "Σ cₖ uᵏ, u = (T − T_c)/T_h, k = 1 … 2, 3 or 4",
+    formula: Both {
+        en: "Σ cₖ uᵏ, u = (T − T_c)/T_h, k = 1 … 2, 3 or 4",
+        ru: "Σ cₖ uᵏ, u = (T − T_c)/T_h, k = 1 … 2, 3 или 4",
+    },
     signature: Both {
         en: "A single-valued curve in residual against temperature, the same on heating and on cooling.",
         ru: "Однозначная кривая остатка от температуры, одинаковая при нагреве и охлаждении.",

@@ -15,7 +15,7 @@ static DOC: Doc = Doc {
         en: "Both waves pass a warming stretch of the fibre at different times; what is not wound symmetrically remains as a rate.",
         ru: "Встречные волны проходят нагреваемый участок волокна в разное время; несимметричная часть намотки даёт ложную скорость.",
     },
-    formula: "D·dT/dt",
+    formula: Both::same("D·dT/dt"),
     signature: Both {
         en: "A pulse at each thermal ramp that changes its sign with the ramp; a straight line against dT/dt; a loop against temperature.",
         ru: "Импульс на каждом изменении температуры, меняющий знак вместе с ним; прямая по dT/dt; петля по температуре.",

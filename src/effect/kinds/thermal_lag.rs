@@ -14,7 +14,10 @@ static DOC: Doc = Doc {
         en: "The sensor on the housing feels the temperature before the coil does: the bias follows a delayed temperature.",
         ru: "Датчик на корпусе чувствует температуру раньше контура: смещение нуля следует за запаздывающей температурой.",
     },
-    formula: "a₁ (T_d − T), τ dT_d/dt = T − T_d, a₁ as claimed",
+    formula: Both {
+        en: "a₁ (T_d − T), τ dT_d/dt = T − T_d, a₁ as claimed",
+        ru: "a₁ (T_d − T), τ dT_d/dt = T − T_d, a₁ — как заявлено",
+    },
     signature: Both {
         en: "A loop of residual against temperature that opens with the rate of heating; an exponential settling after each turn of the temperature.",
         ru: "Петля остатка по температуре, раскрывающаяся со скоростью нагрева; экспоненциальное установление после каждого изменения температуры.",

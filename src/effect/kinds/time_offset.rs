@@ -16,7 +16,10 @@ static DOC: Doc = Doc {
         en: "Gyro and table are stamped by different clocks, buffers or filters: one of them is late.",
         ru: "Метки времени гироскопа и стола проходят через разные часы, буферы или фильтры: один из них запаздывает.",
     },
-    formula: "m(t − L) − m(t), m the claimed mean",
+    formula: Both {
+        en: "m(t − L) − m(t), m the claimed mean",
+        ru: "m(t − L) − m(t), m — заявленное среднее",
+    },
     signature: Both {
         en: "Spikes of the residual wherever the table's rate changes, of the sign of its acceleration.",
         ru: "Импульсы остатка при каждом изменении скорости стола, со знаком её ускорения.",

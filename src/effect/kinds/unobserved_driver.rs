@@ -16,7 +16,10 @@ static DOC: Doc = Doc {
         en: "Temperature of another part, tilt, a magnetic field, vibration: something moved smoothly and nobody recorded it.",
         ru: "Температура другого узла, наклон, магнитное поле, вибрация: нечто плавно менялось, и это не записали.",
     },
-    formula: "R(t) = σ² (1 + |t|/T)·exp(−|t|/T); stated: straight lines between knots",
+    formula: Both {
+        en: "R(t) = σ² (1 + |t|/T)·exp(−|t|/T); stated: straight lines between knots",
+        ru: "R(t) = σ² (1 + |t|/T)·exp(−|t|/T); передаётся ломаной между узлами",
+    },
     signature: Both {
         en: "A smooth course in time; the spectrum falls as f⁻⁴ above a corner.",
         ru: "Плавный ход во времени; спектр спадает как f⁻⁴ выше излома.",

@@ -12,7 +12,10 @@ static DOC: Doc = Doc {
         en: "After power-on source, electronics and coil warm up, and the bias settles with their time constants.",
         ru: "После включения источник, электроника и контур прогреваются, и смещение нуля устанавливается с их постоянными времени.",
     },
-    formula: "A·exp(−t/t₁), t from the beginning of the record",
+    formula: Both {
+        en: "A·exp(−t/t₁), t from the beginning of the record",
+        ru: "A·exp(−t/t₁), t — от начала записи",
+    },
     signature: Both {
         en: "Largest at the start and gone after a few time constants; the Allan deviation rises at long τ.",
         ru: "Наибольший в начале и исчезает через несколько постоянных времени; девиация Аллана растёт при больших τ.",

@@ -87,7 +87,6 @@ impl EffectView {
     /// Prints a cause.
     pub(super) fn new(number: usize, f: &Finding, all: &Explanation, words: Words) -> EffectView {
         let doc = find(f.effect_id()).map(|e| e.doc());
-        let said = |of: fn(&Doc) -> &'static str| doc.map(of).unwrap_or_default().to_owned();
         let both = |of: fn(&Doc) -> crate::effect::Both| {
             doc.map(|d| of(d).of(words.lang)).unwrap_or_default().to_owned()
         };
@@ -102,8 +101,8 @@ impl EffectView {
             signature: both(|d| d.signature),
             told_by: both(|d| d.told_by),
             confirm: both(|d| d.confirm),
-            formula: words.formula(&said(|d| d.formula)),
-            source: said(|d| d.source),
+            formula: words.formula(&both(|d| d.formula)),
+            source: doc.map_or("", |d| d.source).to_owned(),
             has_claimed: parameters.iter().any(|p| !p.claimed.is_empty()),
             parameters,
             places: f.places.iter().map(|p| place(p, all.recording.length_s, words)).collect(),
