@@ -115,14 +115,14 @@ pub fn evaluate(
     let sizes: Vec<f64> = used.iter().map(|a| by_axis[*a].amax()).collect();
     let scaled: Vec<DVector<f64>> = used.iter().zip(&sizes).map(|(a, s)| &by_axis[*a] / *s).collect();
     let (x, first) = base(&scaled);
-    let (line, scatter) = solve(&cut, &off, &x)?;
+    let (line, scatter) = solve(&cut, &states, &x)?;
     let per_unit =
         sizes.iter().enumerate().map(|(k, s)| scale(&line.coefficient(first + k), 1.0 / s)).collect();
     let indicators: Vec<DVector<f64>> = (0..states.list.len())
         .map(|s| DVector::from_fn(n, |i, _| f64::from(states.of[cut.of[i]] == Some(s))))
         .collect();
     let (x, first) = base(&indicators);
-    let (each, _) = solve(&cut, &off, &x)?;
+    let (each, _) = solve(&cut, &states, &x)?;
     let shifts: Vec<Shift> = states
         .list
         .iter()
@@ -146,7 +146,7 @@ pub fn evaluate(
         per_unit,
         line: off_line(&each, first, &drives),
         shifts,
-        intervals: means(blocks, found, &off, &cut, drift.then_some(&time))?,
+        intervals: means(blocks, found, &states, &cut, drift.then_some(&time))?,
         drift,
         scatter,
         temperature_difference: temperature(&cut, &off, drift.then_some(&time)),
@@ -188,16 +188,20 @@ fn states(found: &Intervals, off: &[bool]) -> States {
     States { list, of }
 }
 
-/// White noise without and with the influence apart, and slow noise common to both.
-fn noise(cut: &Cut, off: &[bool]) -> Vec<DMatrix<f64>> {
-    let of = |state: bool| {
+/// White noise of every level apart, since an influence such as vibration makes noise that grows with it, and slow noise
+/// common to all.
+fn noise(cut: &Cut, states: &States) -> Vec<DMatrix<f64>> {
+    let of = |state: Option<usize>| {
         let mut v = cut.rows.white();
-        for i in (0..cut.rows.len()).filter(|i| off[cut.of[*i]] != state) {
+        for i in (0..cut.rows.len()).filter(|i| states.of[cut.of[*i]] != state) {
             v[(i, i)] = 0.0;
         }
         v
     };
-    vec![of(true), of(false), cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()]
+    let mut components: Vec<DMatrix<f64>> =
+        std::iter::once(None).chain((0..states.list.len()).map(Some)).map(of).collect();
+    components.extend([cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()]);
+    components
 }
 
 /// A covariance that keeps matrices regular.
@@ -207,10 +211,10 @@ fn known(cut: &Cut) -> DMatrix<f64> {
 }
 
 /// Generalised least squares in the identified noise, with a scatter between intervals where the test speaks for it.
-fn solve(cut: &Cut, off: &[bool], x: &DMatrix<f64>) -> Option<(Fit, bool)> {
-    let (fixed, mut components) = (known(cut), noise(cut, off));
+fn solve(cut: &Cut, states: &States, x: &DMatrix<f64>) -> Option<(Fit, bool)> {
+    let (fixed, mut components) = (known(cut), noise(cut, states));
     let fit = reml::fit(&cut.y, x, &fixed, &components)?;
-    if off.len() <= x.ncols() {
+    if states.of.len() <= x.ncols() {
         return Some((fit, false));
     }
     components.push(cut.rows.shared(&cut.of));
@@ -226,26 +230,27 @@ fn solve(cut: &Cut, off: &[bool], x: &DMatrix<f64>) -> Option<(Fit, bool)> {
 fn means(
     blocks: &Blocks,
     found: &Intervals,
-    off: &[bool],
+    states: &States,
     cut: &Cut,
     time: Option<&DVector<f64>>,
 ) -> Option<Vec<IntervalMean>> {
     let (n, count) = (cut.rows.len(), found.list.len());
+    let is_off = |k: usize| states.of[k].is_none();
     // Time within an interval belongs to the noise here: the drift is taken from the means of those without.
     let x = DMatrix::from_fn(n, count, |i, j| f64::from(cut.of[i] == j));
-    let fit = gls::lean(&cut.y, &x, &known(cut), &noise(cut, off))?;
+    let fit = gls::lean(&cut.y, &x, &known(cut), &noise(cut, states))?;
     let middle = |k: usize, v: &dyn Fn(usize) -> f64| {
         let of: Vec<f64> = (0..n).filter(|i| cut.of[*i] == k).map(v).collect();
         of.iter().sum::<f64>() / of.len().max(1) as f64
     };
-    let without: Vec<usize> = (0..count).filter(|k| off[*k]).collect();
+    let without: Vec<usize> = (0..count).filter(|k| is_off(*k)).collect();
     let t: Vec<f64> = (0..count).map(|k| time.map_or(0.0, |time| middle(k, &|i| time[i]))).collect();
     let m = without.len() as f64;
     let t0 = without.iter().map(|k| t[*k]).sum::<f64>() / m;
     let stt: f64 = without.iter().map(|k| (t[*k] - t0).powi(2)).sum();
     let list = found.list.iter().enumerate().map(|(k, interval)| {
         let weights = DVector::from_fn(count, |j, _| {
-            let line = if !off[j] {
+            let line = if !is_off(j) {
                 0.0
             } else if stt > 0.0 {
                 1.0 / m + (t[k] - t0) * (t[j] - t0) / stt
@@ -262,8 +267,8 @@ fn means(
             span_s: (span_s(blocks, first).0, span_s(blocks, last).1),
             row: first.first_row,
             level: interval.levels[axis],
-            axis: if off[k] { String::new() } else { found.axes[axis].clone() },
-            off: off[k],
+            axis: if is_off(k) { String::new() } else { found.axes[axis].clone() },
+            off: is_off(k),
             mean: fit.combine(&weights),
             temperature: middle(k, &|i| cut.temperature[i]),
         }
