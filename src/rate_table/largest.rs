@@ -2,11 +2,13 @@
 //!
 //! The largest observed one is too large on average, and its interval is not that of one point. The truth is taken to
 //! have the shape of what was observed and some size s; the confidence of a size is the probability that errors would
-//! leave a smaller largest one than was observed. Draws are fixed, so that a result repeats to the bit.
+//! leave a smaller largest one than was observed. The covariance comes from the record as well: every draw of the errors is
+//! stretched as the scale of such a covariance is uncertain, so that one value alone has Student's interval. Draws are fixed,
+//! so that a result repeats to the bit.
 
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Draws of the errors.
@@ -28,18 +30,21 @@ pub struct Largest {
     pub by_chance: f64,
 }
 
-/// The largest of `values`, whose errors have the covariance given. `None` without values or with a covariance that is
-/// none.
-pub fn largest(values: &[f64], covariance: &DMatrix<f64>) -> Option<Largest> {
+/// The largest of `values`, whose errors have the covariance given, which has the degrees of freedom that `dof` gives for
+/// each value. `None` without values or with a covariance that is none.
+pub fn largest(values: &[f64], covariance: &DMatrix<f64>, dof: &dyn Fn(usize) -> f64) -> Option<Largest> {
     let n = values.len();
     let (at, observed) =
         values.iter().enumerate().map(|(i, v)| (i, v.abs())).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let root = root_of(covariance)?;
+    let dof = dof(at).max(1.0);
+    let scatter = ChiSquared::new(dof).ok()?;
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x005a_676e_6163);
     let draws: Vec<DVector<f64>> = (0..DRAWS)
         .map(|_| {
             let z = DVector::from_iterator(n, (0..n).map(|_| StandardNormal.sample(&mut rng)));
-            &root * z
+            let stretch = (dof / scatter.sample(&mut rng)).sqrt();
+            &root * z * stretch
         })
         .collect();
     // The size at which a draw leaves just what was observed: the largest of |s·v + e| grows with s where s is large.
@@ -92,7 +97,7 @@ mod tests {
 
     #[test]
     fn one_that_stands_out_has_the_interval_of_a_point() {
-        let found = largest(&[10.0, 0.1, -0.2], &(DMatrix::identity(3, 3) * 0.01)).unwrap();
+        let found = largest(&[10.0, 0.1, -0.2], &(DMatrix::identity(3, 3) * 0.01), &|_| 1e9).unwrap();
         assert_eq!(found.at, 0);
         assert!((found.value - 10.0).abs() < 0.02);
         let at = |z: f64| found.curve.iter().find(|p| p.0 == z).unwrap().1;
@@ -101,8 +106,16 @@ mod tests {
     }
 
     #[test]
+    fn one_that_stands_out_has_students_interval_where_the_noise_is_hardly_known() {
+        let found = largest(&[10.0, 0.1, -0.2], &(DMatrix::identity(3, 3) * 0.01), &|_| 4.0).unwrap();
+        // Student's quantile at Φ(2) with four degrees of freedom is 2.869.
+        let at = |z: f64| found.curve.iter().find(|p| p.0 == z).unwrap().1;
+        assert!((at(2.0) - 10.287).abs() < 0.04 && (at(-2.0) - 9.713).abs() < 0.04, "{}", at(2.0));
+    }
+
+    #[test]
     fn noise_alone_is_seen_to_be_noise() {
-        let found = largest(&[1.2, -0.8, 0.3, -1.0, 0.6], &DMatrix::identity(5, 5)).unwrap();
+        let found = largest(&[1.2, -0.8, 0.3, -1.0, 0.6], &DMatrix::identity(5, 5), &|_| 1e9).unwrap();
         assert!(found.by_chance > 0.3, "{}", found.by_chance);
     }
 }

@@ -113,7 +113,11 @@ pub fn evaluate(
     let full_scale = setup
         .full_scale_deg_h
         .unwrap_or_else(|| response.levels.iter().fold(0.0, |m: f64, r| m.max(r.abs())));
-    let found = largest(residuals.as_slice(), &covariance);
+    let dof = |level: usize| {
+        let weights: Vec<f64> = rest.row(level).iter().copied().collect();
+        response.of_levels(&weights).dof
+    };
+    let found = largest(residuals.as_slice(), &covariance, &dof);
     let from = setup.of_rate_from_deg_h.unwrap_or(0.1 * full_scale) * 0.995;
     let high: Vec<usize> = (0..l).filter(|i| response.levels[*i].abs() >= from && from > 0.0).collect();
     let of_rate = {
@@ -122,7 +126,7 @@ pub fn evaluate(
         let c = DMatrix::from_fn(high.len(), high.len(), |i, j| {
             covariance[(high[i], high[j])] * scale(i) * scale(j)
         });
-        largest(&values, &c).map(|found| {
+        largest(&values, &c, &|i| dof(high[i])).map(|found| {
             let rate = response.levels[high[found.at]];
             (found, rate)
         })
