@@ -3,6 +3,7 @@
 mod compare_support;
 
 use compare_support::{from_env, quantile, share, simulate};
+use rayon::prelude::*;
 use sagnac::measurand::{GyroEvidence, Options, evaluate};
 use sagnac::noise::composite::{Bandwidth, Composite, Damped, Described, Line};
 use sagnac::noise::model::NoiseModel;
@@ -80,29 +81,39 @@ struct Tally {
 }
 
 fn study(model: &Composite, hours: f64, tau0_s: f64, records: u64, seed: u64) -> Tally {
-    let mut tally = Tally { records: records as usize, ..Tally::default() };
-    for run in 0..records {
+    let unit = |run: u64| {
         let gyro = simulate(model, hours, tau0_s, seed * 1_000_003 + run);
-        for (i, window_s) in [100.0, 10.0].into_iter().enumerate() {
+        let agreements = [100.0, 10.0].map(|window_s| {
             let windows = gyro.windows(window_s).expect("windows");
             let described = &gyro.identification.described;
             let p = WindowPrediction::of(described, window_s, windows.n, tau0_s).expect("a model");
-            match p.agreement(windows.standard_deviation).expect("an interval") {
+            p.agreement(windows.standard_deviation).expect("an interval")
+        });
+        let truth = Truth::of(model, &gyro);
+        let options = Options { remove_earth_rate: false };
+        let covered = [
+            ("russian_drift_100s_predicted", truth.predicted),
+            ("ratio_russian_to_allan_bias", truth.ratio_bias),
+            ("ratio_russian_to_allan_arw", truth.ratio_arw),
+        ]
+        .map(|(id, truth)| {
+            // A record that does not claim N has no ratio to it, and does not count as covered.
+            let interval = evaluate(id, &gyro, &options).expect("an estimate").interval95();
+            interval.is_some_and(|i| i.low <= truth && truth <= i.high)
+        });
+        (agreements, covered)
+    };
+    let mut tally = Tally { records: records as usize, ..Tally::default() };
+    for (agreements, covered) in (0..records).into_par_iter().map(unit).collect::<Vec<_>>() {
+        for (i, agreement) in agreements.into_iter().enumerate() {
+            match agreement {
                 Agreement::Consistent => tally.consistent[i] += 1,
                 Agreement::Above => tally.above[i] += 1,
                 Agreement::Below => tally.below[i] += 1,
             }
         }
-        let truth = Truth::of(model, &gyro);
-        let options = Options { remove_earth_rate: false };
-        for (covered, (id, truth)) in tally.covered.iter_mut().zip([
-            ("russian_drift_100s_predicted", truth.predicted),
-            ("ratio_russian_to_allan_bias", truth.ratio_bias),
-            ("ratio_russian_to_allan_arw", truth.ratio_arw),
-        ]) {
-            // A record that does not claim N has no ratio to it, and does not count as covered.
-            let interval = evaluate(id, &gyro, &options).expect("an estimate").interval95();
-            *covered += usize::from(interval.is_some_and(|i| i.low <= truth && truth <= i.high));
+        for (sum, covered) in tally.covered.iter_mut().zip(covered) {
+            *sum += usize::from(covered);
         }
     }
     tally
@@ -226,8 +237,7 @@ fn a_model_that_is_wrong_is_told() {
 /// Share of units with angle random walk alone whose ratio lies within the 5 to 95 % of the null.
 fn null_coverage(hours: f64, tau0_s: f64, records: u64) -> f64 {
     let model = terms(0.0023, 0.0, 0.0, 0.0, 0.0);
-    let mut inside = 0;
-    for run in 0..records {
+    let within = |run: &u64| {
         let gyro = simulate(&model, hours, tau0_s, 900_000 + run);
         let longest = 0.2 * gyro.usable_s();
         let read: Vec<_> = gyro
@@ -239,9 +249,9 @@ fn null_coverage(hours: f64, tau0_s: f64, records: u64) -> f64 {
         let largest = read.last().expect("an octave").point.m as f64 * tau0_s;
         let null = null_minimum(1.0, gyro.usable_s(), largest, 100.0).expect("a null").ratio;
         let ratio = gyro.drift_100s().expect("a drift") / least;
-        inside += usize::from(null[0] <= ratio && ratio <= null[2]);
-    }
-    share(inside, records as usize)
+        null[0] <= ratio && ratio <= null[2]
+    };
+    share((0..records).into_par_iter().filter(within).count(), records as usize)
 }
 
 #[test]

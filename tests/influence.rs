@@ -8,6 +8,7 @@
 mod influence_support;
 
 use influence_support::{Noise, Recorded, Series, Turns, linear, squared};
+use rayon::prelude::*;
 use sagnac::estimate::Estimate;
 use sagnac::influence::comparison::{self, Comparison};
 use sagnac::influence::cut::FileSpan;
@@ -376,8 +377,8 @@ fn study(records: u64, seed: u64, scatters: &[f64], only: &str) -> Vec<(String, 
         for between in scatters.iter().copied().filter(|_| repeated_too) {
             let s = Series { noise, trend: 0.0, dt: 2.0, ..series(between) };
             let (mut deviation, mut trend) = (Count::default(), Count::default());
-            for r in 0..records {
-                let found = repeated(&s, seed + r);
+            let series: Vec<_> = (0..records).into_par_iter().map(|r| repeated(&s, seed + r)).collect();
+            for found in series {
                 deviation.take(&found.estimate("bias_repeatability", "deg/h").unwrap(), between);
                 trend.take(&found.estimate("bias_repeatability_trend", "deg/h").unwrap(), 0.0);
             }
@@ -391,8 +392,9 @@ fn study(records: u64, seed: u64, scatters: &[f64], only: &str) -> Vec<(String, 
         ];
         for (id, turns, truth) in cases.into_iter().filter(|c| c.0.starts_with(only)) {
             let (mut unit, mut shift) = (Count::default(), Count::default());
-            for r in 0..records {
-                let found = compared(&turns, seed + 10_000 + r);
+            let tests: Vec<_> =
+                (0..records).into_par_iter().map(|r| compared(&turns, seed + 10_000 + r)).collect();
+            for found in tests {
                 unit.take(&found.estimates(id, "deg/h")[0], truth);
                 let (at, s) = (&found.estimates("bias_shift", "deg/h")[0], &found.shifts[0]);
                 shift.take(at, (turns.bias)(turns.per_unit, s.level));

@@ -6,6 +6,7 @@ mod rate_table_support;
 use nalgebra::{DMatrix, DVector};
 use rate_table_judged::{Count, told, truths};
 use rate_table_support::{Bench, EARTH, Recorded, SmallRates, TwoAxes};
+use rayon::prelude::*;
 use sagnac::estimate::{Estimate, normal_probability};
 use sagnac::ids;
 use sagnac::rate_table::blocks::Collector;
@@ -156,16 +157,24 @@ fn on_bench(bench: &Bench, recorded: &Recorded) -> (TableRun, Setup) {
 /// Coverage over many simulated tests of every measurand that has a truth.
 fn study(bench: &Bench, runs: u64, first: u64) -> Vec<(&'static str, Count)> {
     let mut counts: Vec<(&'static str, Count)> = vec![];
-    for seed in first..first + runs {
+    let evaluated = |seed: u64| -> Vec<(&'static str, Estimate, f64, Option<f64>)> {
         let bench = Bench { seed, ..bench.clone() };
         let recorded = bench.record();
         let (run, setup) = on_bench(&bench, &recorded);
         let found = scale_factor::evaluate(&run, 0, &setup, ("1", 1.0), &|_| true).expect("a line");
         let told = told(&bench, &run, &found);
-        for (id, truth) in truths(&bench, &recorded, &found).into_iter().filter(|t| t.1.is_finite()) {
-            let told = told.get(id).copied();
-            let unit = ids::find(id).unwrap().unit;
-            let estimate = found.estimate(id, unit, &setup, &run.steps).expect("an estimate");
+        let truths = truths(&bench, &recorded, &found).into_iter().filter(|t| t.1.is_finite());
+        truths
+            .map(|(id, truth)| {
+                let unit = ids::find(id).unwrap().unit;
+                let estimate = found.estimate(id, unit, &setup, &run.steps).expect("an estimate");
+                (id, estimate, truth, told.get(id).copied())
+            })
+            .collect()
+    };
+    let tests: Vec<_> = (first..first + runs).into_par_iter().map(evaluated).collect();
+    for test in tests {
+        for (id, estimate, truth, told) in test {
             match counts.iter_mut().find(|c| c.0 == id) {
                 Some((_, count)) => count.take(&estimate, truth, told),
                 None => {
@@ -244,9 +253,10 @@ fn zone_of(bench: &SmallRates, known: Option<f64>) -> Estimate {
 
 fn zones(half_width: f64, subtractive: bool, known: Option<f64>, runs: u64, first: u64) -> Count {
     let mut count = Count::default();
-    for seed in first..first + runs {
-        let bench = SmallRates { half_width, subtractive, seed, ..SmallRates::default() };
-        count.take(&zone_of(&bench, known), half_width, None);
+    let found =
+        |seed: u64| zone_of(&SmallRates { half_width, subtractive, seed, ..SmallRates::default() }, known);
+    for zone in (first..first + runs).into_par_iter().map(found).collect::<Vec<_>>() {
+        count.take(&zone, half_width, None);
     }
     count
 }

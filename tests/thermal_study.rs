@@ -6,6 +6,7 @@
 mod thermal_support;
 mod thermal_tally;
 
+use rayon::prelude::*;
 use sagnac::estimate::{Estimate, normal_probability};
 use sagnac::temperature::course::{Shape, Terms};
 use sagnac::temperature::findings::{Findings, findings, schedule};
@@ -137,12 +138,14 @@ fn study(rates: &[f64], dwell_s: f64, runs: u64, first: u64) -> BTreeMap<&'stati
     let mut tallies: BTreeMap<&'static str, Tally> = BTreeMap::new();
     let legs: Vec<Leg> = programme(rates, dwell_s);
     let mut orders = [0; 8];
-    for seed in first..first + runs {
-        let mut chance = Chance::new(seed);
-        let u = unit(&mut chance);
-        let r = record(&u, -40.0, &legs, 10.0, 0.01, 7919 * seed + 1);
-        let f = found(&r);
+    let evaluated = |seed: u64| {
+        let u = unit(&mut Chance::new(seed));
+        let f = found(&record(&u, -40.0, &legs, 10.0, 0.01, 7919 * seed + 1));
         let told = told(&u, &f);
+        (u, f, told)
+    };
+    let tests: Vec<_> = (first..first + runs).into_par_iter().map(evaluated).collect();
+    for (u, f, told) in tests {
         if let Some(a) = &f.analysis {
             orders[a.order] += 1;
         }

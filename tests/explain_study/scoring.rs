@@ -1,17 +1,14 @@
 //! The judge of the study is judged: scores of hand-made reports, and the fit told the truth against closed forms.
 
-#[allow(dead_code)]
-mod explain_study_support;
-
-use explain_study_support::case::{Case, single};
-use explain_study_support::classes::{CLASSES, SUBSTITUTES, same_class};
-use explain_study_support::draw::Draw;
-use explain_study_support::effect::{DEVELOPMENT_UNKNOWNS, HELD_OUT_UNKNOWNS, KINDS, find};
-use explain_study_support::files;
-use explain_study_support::oracle::told;
-use explain_study_support::score::{located, removed, score};
-use explain_study_support::setting::{Scenario, Setting};
-use explain_study_support::table::{Row, Tally, by_kind};
+use crate::support::case::{Case, single};
+use crate::support::classes::{CLASSES, SUBSTITUTES, same_class};
+use crate::support::draw::Draw;
+use crate::support::effect::{DEVELOPMENT_UNKNOWNS, HELD_OUT_UNKNOWNS, KINDS, find};
+use crate::support::files;
+use crate::support::oracle::told;
+use crate::support::score::{located, removed, score};
+use crate::support::setting::{Scenario, Setting};
+use crate::support::table::{Row, Tally, by_kind};
 use serde_json::{Value, json};
 
 fn line_case() -> (Case, Value, (Vec<f64>, Vec<f64>)) {
@@ -127,7 +124,7 @@ fn white_case(kind: &str, amplitude: f64) -> Case {
     setting.departure = Default::default();
     setting.claim.uncertainty.n_rel = 1e-9;
     let effect = (find(kind).expect("a kind").make)(&mut Draw::new(8, "x"), &setting, amplitude);
-    let left = explain_study_support::case::Left { effect, strength: 0.0 };
+    let left = crate::support::case::Left { effect, strength: 0.0 };
     Case { name: kind.into(), seed: 8, setting, left_out: vec![left], stated: Vec::new() }
 }
 
@@ -168,15 +165,14 @@ fn the_course_of_a_process_is_predicted_as_well_as_theory_allows() {
     let removed = told(&case, &made).removed.expect("a process adds");
     // Σ P²/(P + λ) over Σ P, from the closed forms alone.
     let s = &case.setting;
-    let Some(explain_study_support::effect::Process::Markov { sigma, time_s }) =
-        case.left_out[0].effect.process
+    let Some(crate::support::effect::Process::Markov { sigma, time_s }) = case.left_out[0].effect.process
     else {
         panic!("a Markov process");
     };
     let (mut kept, mut all) = (0.0, 0.0);
     for k in 1..s.rows {
-        let f = explain_study_support::modes::mode_frequency(k, s.rows, s.claim.rate_hz);
-        let p = explain_study_support::noise::markov_variance(f, s.claim.rate_hz, sigma, time_s);
+        let f = crate::support::modes::mode_frequency(k, s.rows, s.claim.rate_hz);
+        let p = crate::support::noise::markov_variance(f, s.claim.rate_hz, sigma, time_s);
         kept += p * p / (p + s.claim.mode_variance(f, [0.0; 3]));
         all += p;
     }

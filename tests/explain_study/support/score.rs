@@ -9,8 +9,6 @@ pub struct Covered {
     pub inside: bool,
     /// Width of the 95 % interval, in the parameter's unit.
     pub width: f64,
-    /// The true value.
-    pub truth: f64,
 }
 
 /// What a report was worth.
@@ -110,12 +108,7 @@ fn intervals(entry: &Value, truth: &Value) -> Vec<Covered> {
         .filter_map(|(name, stated)| {
             let truth = truth["parameters"][name].as_f64()?;
             let (low, high) = (stated["ci95"][0].as_f64()?, stated["ci95"][1].as_f64()?);
-            Some(Covered {
-                name: name.clone(),
-                inside: low <= truth && truth <= high,
-                width: high - low,
-                truth,
-            })
+            Some(Covered { name: name.clone(), inside: low <= truth && truth <= high, width: high - low })
         })
         .collect()
 }

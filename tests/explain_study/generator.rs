@@ -1,24 +1,21 @@
 //! The generator of concealed cases held against closed forms, and its files against the contract.
 
-#[allow(dead_code)]
-mod explain_study_support;
-
-use explain_study_support::case::single;
-use explain_study_support::claim::Claim;
-use explain_study_support::draw::Draw;
-use explain_study_support::effect::{DEVELOPMENT_UNKNOWNS, HELD_OUT_UNKNOWNS, KINDS, find};
-use explain_study_support::files;
-use explain_study_support::modes::{cosine_modes, mode_frequency};
-use explain_study_support::noise::{
+use crate::support::case::single;
+use crate::support::claim::Claim;
+use crate::support::draw::Draw;
+use crate::support::effect::{DEVELOPMENT_UNKNOWNS, HELD_OUT_UNKNOWNS, KINDS, find};
+use crate::support::files;
+use crate::support::modes::{cosine_modes, mode_frequency};
+use crate::support::noise::{
     flicker, markov, markov_variance, quantisation_variance, quantised, random_walk, resonance,
     resonance_variance, white,
 };
-use explain_study_support::plan::{self, Wish};
-use explain_study_support::profile::Profile;
-use explain_study_support::setting::{Scenario, Setting};
-use explain_study_support::strength::Spectrum;
-use explain_study_support::thermal::Thermal;
-use explain_study_support::unknowns::divergence_of_tails;
+use crate::support::plan::{self, Wish};
+use crate::support::profile::Profile;
+use crate::support::setting::{Scenario, Setting};
+use crate::support::strength::Spectrum;
+use crate::support::thermal::Thermal;
+use crate::support::unknowns::divergence_of_tails;
 use std::f64::consts::{PI, TAU};
 
 /// Samples and draws of a spectrum's test.
