@@ -1,7 +1,7 @@
 //! The bad-data drill: samples corrupted in every way of the list. Each corruption is caught by a diagnostic that names
 //! it, or changes neither the verdict nor, within their intervals, the values. What catches what was written by hand.
 //!
-//! With every test each corruption goes through one long sample and one short one, in turn; all through all:
+//! With every test each corruption goes through a short sample, one in three through a long one; all through all:
 //! `cargo test --release --test drill -- --ignored`.
 //! `SAGNAC_WRITE_DRILL=1 cargo test --release --test drill` does that and writes the table to docs/drill.md.
 
