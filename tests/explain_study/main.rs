@@ -77,7 +77,7 @@ fn hold_clear(rows: &[Row]) {
         t.removed_ratio
     );
     if t.looped > 0 {
-        let names = ["the same recording", "a fresh one", "one without the effect"];
+        let names = ["the same recording", "a fresh one", "one of another case"];
         for (count, name) in t.loops.iter().zip(names) {
             assert!(share(*count, t.looped) >= 0.95, "closed loop, {name}: {count} of {}", t.looped);
         }

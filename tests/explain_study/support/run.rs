@@ -43,20 +43,25 @@ fn consistent(program: &str, folder: &Path, recording: &Path, tag: &str) -> bool
     code == Some(0) && report(&out)["verdict"] == "consistent"
 }
 
-/// The recording against the augmented claim; a fresh day with the same effects; a day without them.
-fn closed_loop(program: &str, case: &Case, folder: &Path) -> [bool; 3] {
+/// The recording against the augmented claim; a fresh day with the same effects; a recording of another case; a day of this
+/// one without the effects, which is more than is asked.
+fn closed_loop(program: &str, case: &Case, other: &Case, folder: &Path) -> [bool; 4] {
     let fresh_seed = case.seed.wrapping_add(0x5eed);
-    let write = |case: &Case, name: &str| {
+    let write = |case: &Case, seed: u64, name: &str| {
         let path = folder.join(name);
-        let text = files::recording(case, &case.realise(fresh_seed), fresh_seed);
+        let text = files::recording(case, &case.realise(seed), seed);
         std::fs::write(&path, text).is_ok().then_some(path)
     };
     let mut without = case.clone();
     without.left_out.clear();
     let again = consistent(program, folder, &folder.join("recording.csv"), "again");
-    let fresh = write(case, "fresh.csv").is_some_and(|p| consistent(program, folder, &p, "fresh"));
-    let bare = write(&without, "without.csv").is_some_and(|p| !consistent(program, folder, &p, "without"));
-    [again, fresh, bare]
+    let fresh =
+        write(case, fresh_seed, "fresh.csv").is_some_and(|p| consistent(program, folder, &p, "fresh"));
+    let foreign =
+        write(other, other.seed, "other.csv").is_some_and(|p| !consistent(program, folder, &p, "other"));
+    let bare = write(&without, fresh_seed, "without.csv")
+        .is_some_and(|p| !consistent(program, folder, &p, "without"));
+    [again, fresh, foreign, bare]
 }
 
 fn set_against_the_told(row: &mut Row, case: &Case, made: &Realisation) {
@@ -78,8 +83,14 @@ pub struct How {
     pub removed: bool,
 }
 
-/// One case from its making to its score.
-pub fn one(program: &str, case: &Case, folder: &Path, how: How) -> std::io::Result<Row> {
+/// One case from its making to its score; `other` gives the recording of another case for the closed loop.
+pub fn one(
+    program: &str,
+    case: &Case,
+    other: &dyn Fn() -> Case,
+    folder: &Path,
+    how: How,
+) -> std::io::Result<Row> {
     let mut truth = files::write(case, folder, case.seed)?;
     let out = folder.join("out");
     let mut more: Vec<&str> = vec![];
@@ -100,7 +111,7 @@ pub fn one(program: &str, case: &Case, folder: &Path, how: How) -> std::io::Resu
     let mut row = Row { name: case.name.clone(), score, exit, ..Row::default() };
     set_against_the_told(&mut row, case, &made);
     if how.close && row.score.detected && out.join("augmented.toml").exists() {
-        row.closes = Some(closed_loop(program, case, folder));
+        row.closes = Some(closed_loop(program, case, &other(), folder));
     }
     Ok(row)
 }
@@ -122,7 +133,8 @@ pub fn all(
             let case = made(wish, *seed, strength);
             let room = tempfile::tempdir().expect("a temporary folder");
             let folder = keep.unwrap_or(room.path()).join(&case.name);
-            let row = one(program, &case, &folder, how).expect("files can be written");
+            let other = || made(wish, seed.wrapping_add(1), strength);
+            let row = one(program, &case, &other, &folder, how).expect("files can be written");
             rows.lock().expect("no thread panics holding it").push(row);
         }
     };

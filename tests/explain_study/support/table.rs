@@ -12,8 +12,8 @@ pub struct Row {
     pub width_ratios: Vec<f64>,
     /// Removed variance over that of the fit told the truth.
     pub removed_ratio: Option<f64>,
-    /// Closed loop: the recording, a fresh one, and one without the effect against the augmented claim.
-    pub closes: Option<[bool; 3]>,
+    /// Closed loop: the recording, a fresh one, one of another case, and one without the effect against the augmented claim.
+    pub closes: Option<[bool; 4]>,
     /// Exit code that the program gave.
     pub exit: Option<i32>,
 }
@@ -33,7 +33,7 @@ pub struct Tally {
     pub unknown: usize,
     pub sane: usize,
     pub held_out: usize,
-    pub loops: [usize; 3],
+    pub loops: [usize; 4],
     pub looped: usize,
     pub width_ratio: Option<f64>,
     pub removed: Option<f64>,
@@ -82,7 +82,7 @@ impl Tally {
         let shares =
             [self.detected, self.first, self.class, self.all_named, self.surplus, self.located].map(share);
         format!(
-            "{name:<28}{:>6}{}{}{:>6}{}{}{}{}{}{}{}{}{}",
+            "{name:<28}{:>6}{}{}{:>6}{}{}{}{}{}{}{}{}{}{}",
             self.cases,
             shares.concat(),
             of(self.inside, self.intervals),
@@ -96,12 +96,13 @@ impl Tally {
             of(self.loops[0], self.looped),
             of(self.loops[1], self.looped),
             of(self.loops[2], self.looped),
+            of(self.loops[3], self.looped),
         )
     }
 }
 
 const HEAD: &str = "detect  first  class    all surplus locate  cover   ivs  width remove rm/told unknown  sane \
-                    heldout   loop  fresh without";
+                    heldout   loop  fresh  other without";
 
 /// The table over kinds, with a last row over all.
 pub fn by_kind(rows: &[Row]) -> String {
