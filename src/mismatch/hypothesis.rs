@@ -5,6 +5,7 @@ use super::noise_fit::{self, Noise, NoiseFit};
 use super::scene::{NuisanceColumn, Scene};
 use crate::effect::{Course, Effect, Model, Parts};
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// A course in a hypothesis.
@@ -49,13 +50,13 @@ pub struct PartModes {
 }
 
 impl PartModes {
-    /// Transforms the parts, one after the other: of a long record each is large.
+    /// Transforms the parts, those of a kind side by side.
     pub fn of(parts: Parts, scene: &Scene) -> PartModes {
         let modes = |column: Vec<f64>| scene.transform(&column);
         PartModes {
             fixed: parts.fixed.map(modes),
-            free: parts.free.into_iter().map(modes).collect(),
-            beside: parts.beside.into_iter().map(modes).collect(),
+            free: parts.free.into_par_iter().map(modes).collect(),
+            beside: parts.beside.into_par_iter().map(modes).collect(),
         }
     }
 }
@@ -153,18 +154,20 @@ impl Normal {
         for (i, (a, _)) in old.iter().enumerate() {
             right[i] = if fixed { inner(a, data, powers) } else { self.right[i] };
         }
-        for (i, a) in new.iter().enumerate() {
-            for (j, (b, _)) in old.iter().enumerate() {
-                let value = inner(a, b, powers);
-                matrix[(p + i, j)] = value;
-                matrix[(j, p + i)] = value;
+        let known = |j: usize| if j < p { old[j].0 } else { new[j - p] };
+        let rows: Vec<Vec<f64>> = (0..q)
+            .into_par_iter()
+            .map(|i| {
+                let against = (0..=p + i).into_par_iter().map(|j| inner(new[i], known(j), powers));
+                against.chain(rayon::iter::once(inner(new[i], data, powers))).collect()
+            })
+            .collect();
+        for (i, row) in rows.into_iter().enumerate() {
+            for (j, value) in row[..=p + i].iter().enumerate() {
+                matrix[(p + i, j)] = *value;
+                matrix[(j, p + i)] = *value;
             }
-            for (j, b) in new.iter().enumerate().take(i + 1) {
-                let value = inner(a, b, powers);
-                matrix[(p + i, p + j)] = value;
-                matrix[(p + j, p + i)] = value;
-            }
-            right[p + i] = inner(a, data, powers);
+            right[p + i] = row[p + i + 1];
         }
         let total = if fixed { inner(data, data, powers) } else { self.total };
         Normal { matrix, right, total }

@@ -1,6 +1,10 @@
 //! Sinusoids as samples see them: means over the sampling interval.
 
+use rayon::prelude::*;
 use std::f64::consts::PI;
+
+/// Samples that are worth handing to another core.
+const SHARE: usize = 1 << 14;
 
 /// What a mean over so many cycles leaves of a sinusoid.
 pub(super) fn averaged(cycles: f64) -> f64 {
@@ -9,14 +13,13 @@ pub(super) fn averaged(cycles: f64) -> f64 {
 }
 
 /// Cosine and sine of the phase of each sample, given in cycles, with what the sample's own mean leaves of them.
-pub(super) fn pair(samples: usize, phase: impl Fn(usize) -> (f64, f64)) -> Vec<Vec<f64>> {
-    let (mut cosine, mut sine) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
-    for i in 0..samples {
+pub(super) fn pair(samples: usize, phase: impl Fn(usize) -> (f64, f64) + Sync) -> Vec<Vec<f64>> {
+    let of = |i: usize| {
         let (cycles, left) = phase(i);
         let (s, c) = (2.0 * PI * cycles.fract()).sin_cos();
-        cosine.push(left * c);
-        sine.push(left * s);
-    }
+        (left * c, left * s)
+    };
+    let (cosine, sine) = (0..samples).into_par_iter().with_min_len(SHARE).map(of).unzip();
     vec![cosine, sine]
 }
 
