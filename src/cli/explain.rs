@@ -50,7 +50,8 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
         }
         (None, None) => return Err(say("explain.error.both".into())),
     };
-    let outcome = mismatch::explain(&recording, &claim, &options, &mut |p| progress.of(p));
+    let notes = recording.remarks();
+    let outcome = mismatch::explain(recording, &claim, &options, &mut |p| progress.of(p));
     progress.finish();
     let outcome = outcome.map_err(say)?;
 
@@ -61,7 +62,7 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
         description: claim.description.clone(),
         explained_at: now.to_rfc3339_opts(SecondsFormat::Secs, true),
         correction: outcome.correction.is_some(),
-        notes: notes(&recording),
+        notes,
     };
     let view = ExplainView::new(&outcome.explanation, &outcome.figures, &context, lang);
     write(&outcome, &view, &folder, "", &renderer, lang)?;
@@ -136,24 +137,6 @@ fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang)
         progress.finish();
         e.say(lang)
     })
-}
-
-/// What must be known of the recording: what was found about it, and the rows that were left out or mended.
-pub(super) fn notes(series: &Series) -> Vec<Note> {
-    let mut out = series.notes.clone();
-    let faults = &series.faults;
-    for (key, count) in [
-        ("explain.note.without_time", faults.without_time),
-        ("explain.note.without_rate", faults.without_rate),
-    ] {
-        if count > 0 {
-            out.push(Note::new(key).with("count", count));
-        }
-    }
-    for (column, count) in &faults.interpolated {
-        out.push(Note::new("explain.note.mended").with("count", *count).with("column", column.name()));
-    }
-    out
 }
 
 /// Writes everything of an explanation into a folder, each name with `before` in front.

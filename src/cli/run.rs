@@ -141,7 +141,7 @@ fn explain(
     let Against { claim, recording } = against;
     let out = explained::explain(spec, claim, request.procedure, recording, &mut |p| watch.of(p));
     watch.finish();
-    if let Some((claim, series, outcome)) = &out.outcome {
+    if let Some((claim, notes, outcome)) = &out.outcome {
         let names: Vec<String> = recording.iter().map(|p| p.display().to_string()).collect();
         let context = Context {
             recording: names.join(", "),
@@ -150,7 +150,7 @@ fn explain(
             description: claim.description.clone(),
             explained_at: request.now.to_rfc3339_opts(SecondsFormat::Secs, true),
             correction: outcome.correction.is_some(),
-            notes: super::explain::notes(series),
+            notes: notes.clone(),
         };
         let view = ExplainView::new(&outcome.explanation, &outcome.figures, &context, lang);
         super::explain::write(outcome, &view, folder, "explain/", renderer, lang)?;

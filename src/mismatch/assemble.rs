@@ -1,5 +1,6 @@
 //! The result of an explanation, put together from its parts.
 
+use super::augmented::augmented;
 use super::candidates::{Candidate as Fitted, Tried};
 use super::contribution;
 use super::departures::{self, Departure};
@@ -12,16 +13,15 @@ use super::finding::{
 };
 use super::heldout::{Halves, HeldOut};
 use super::improvement;
-use super::nuisances::{nuisance_value, nuisances};
+use super::nuisances::nuisances;
 use super::options::Options;
 use super::outcome::Outcome;
-use super::problem::{Problem, level, scaled};
+use super::problem::Problem;
 use super::samples::Named;
 use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::single_cause;
 use crate::claim::{Claim, Stated};
-use crate::effect::{Column, Domain, Effect, Model, Nuisance, Place, SpectralLook, UNKNOWN, Value};
-use crate::series::Series;
+use crate::effect::{Column, Domain, Effect, Model, Place, SpectralLook, UNKNOWN};
 use std::collections::BTreeMap;
 
 /// A residual test counts as departed below this, its own scan and the number of tests counted.
@@ -46,14 +46,23 @@ pub(super) struct Parts<'a> {
     /// Tests of what is left.
     pub after: &'a [Departure],
     /// The recording as read.
-    pub series: &'a Series,
+    pub recorded: Recorded,
     /// Decisions of the user.
     pub options: &'a Options,
 }
 
+/// What is told of a recording after its rows are on the grid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Recorded {
+    /// Rows.
+    pub rows: usize,
+    /// Time from the first to the last, s.
+    pub length_s: f64,
+}
+
 /// Puts everything together.
 pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
-    let Parts { problem, claim, base, held_base, selection, mut found, before, after, series, options } =
+    let Parts { problem, claim, base, held_base, selection, mut found, before, after, recorded, options } =
         parts;
     let scenes = &problem.scenes;
     let local_gain = found.local_gain();
@@ -131,7 +140,7 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         candidates: ranked,
         tests: tests(before, after),
         nuisances: nuisances(problem, base, &selection.best),
-        recording: facts(problem, series, options),
+        recording: facts(problem, recorded, options),
         experiments: experiment::deciding(&selection.chosen, &selection.best, scenes),
     };
     let figures = draw::all(
@@ -371,64 +380,12 @@ fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
     before.iter().enumerate().map(one).collect()
 }
 
-/// The claim with its nuisances as fitted and the effects stated. A coefficient that an effect sets free stays as
-/// claimed: the effect states it. A level of the noise that was found frees N as well: what it comes to is the claim's.
-/// `correction` is what the hypothesis adds to each sample.
-fn augmented(
-    problem: &Problem,
-    given: &Claim,
-    best: &Tried,
-    mut stated: Vec<Stated>,
-    levelled: bool,
-    correction: Option<&[f64]>,
-) -> Claim {
-    let mut claim = Claim {
-        sample_rate_hz: given.sample_rate_hz,
-        quantization_lsb_arcsec: given.quantization_lsb_arcsec,
-        ..problem.claim.clone()
-    };
-    claim.noise.q = given.noise.q;
-    let noise = &best.hypothesis.noise;
-    for (i, slot) in [&mut claim.noise.n, &mut claim.noise.b, &mut claim.noise.k].into_iter().enumerate() {
-        let by_level = i == 0 && levelled && !stated.iter().any(|s| s.effect.kind() == "excess_arw");
-        if !noise.freed[i] || by_level {
-            *slot = noise.base[i];
-        }
-    }
-    let observed = &problem.residual;
-    let coefficient = nuisance_value(problem, best, Nuisance::TemperatureCoefficient);
-    if let Some(t) = &mut claim.mean.temperature {
-        t.coefficient_deg_h_per_degc += coefficient;
-    }
-    if let Some(ppm) = &mut claim.mean.scale_factor_ppm {
-        *ppm += nuisance_value(problem, best, Nuisance::ScaleFactor);
-    }
-    // The bias is what is left of the mean.
-    let n = observed.len().max(1) as f64;
-    let added = correction.map_or(0.0, |c| c.iter().sum::<f64>() / n);
-    claim.mean.bias_deg_h = observed.iter().sum::<f64>() / n - added;
-    claim.effects.append(&mut stated);
-    // N, B and K are those that the stated level multiplies.
-    if let Some((_, rms)) = level(&claim, &problem.drivers) {
-        claim.noise = scaled(claim.noise, 1.0 / rms);
-    }
-    if problem.grid.missing() > 0
-        && !claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples")
-        && let Some(effect) = crate::effect::find("dropped_samples")
-    {
-        let missing = Value::Number(problem.grid.missing() as f64);
-        claim.effects.push(Stated { effect, values: BTreeMap::from([("missing_rows".to_owned(), missing)]) });
-    }
-    claim
-}
-
-fn facts(problem: &Problem, series: &Series, options: &Options) -> RecordingFacts {
-    let length = series.time_s.last().copied().unwrap_or(0.0) - series.time_s.first().copied().unwrap_or(0.0);
+fn facts(problem: &Problem, recorded: Recorded, options: &Options) -> RecordingFacts {
     RecordingFacts {
-        rows: series.time_s.len(),
+        rows: recorded.rows,
         missing: problem.grid.missing(),
         sample_interval_s: problem.grid.dt_s,
-        length_s: length,
+        length_s: recorded.length_s,
         columns: Column::ALL
             .iter()
             .filter(|c| problem.drivers.column(**c).is_some())

@@ -7,6 +7,7 @@ use crate::effect::{Column, Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_normal_two_sided};
 use crate::numeric::cosine::dct2;
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 
 /// Order of the polynomials of a column.
 const ORDER: usize = 6;
@@ -25,14 +26,15 @@ fn domain(column: Column) -> Domain {
 
 /// Every test against columns.
 pub fn all(scene: &Scene, white: &White) -> Vec<Departure> {
-    let mut named: Vec<(Domain, Vec<f64>)> = vec![];
+    let mut named: Vec<(Domain, Cow<'_, [f64]>)> = vec![];
     for column in Column::ALL {
         let Some(values) = scene.drivers.column(column) else { continue };
-        let values = if column == Column::Temperature { smoothed(values) } else { values.to_vec() };
+        let values =
+            if column == Column::Temperature { smoothed(values).into() } else { Cow::Borrowed(values) };
         if column == Column::Temperature {
             let per_minute = 60.0 / scene.drivers.dt_s;
-            let rate = derivative(&values).iter().map(|d| d * per_minute).collect();
-            named.push((Domain::TemperatureRate, rate));
+            let rate: Vec<f64> = derivative(&values).iter().map(|d| d * per_minute).collect();
+            named.push((Domain::TemperatureRate, rate.into()));
         }
         named.push((domain(column), values));
     }

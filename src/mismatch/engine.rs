@@ -1,6 +1,6 @@
 //! The four steps: is there a mismatch and where, what could it be, which is it and how sure, does the fit improve.
 
-use super::assemble::{Parts, assemble};
+use super::assemble::{Parts, Recorded, assemble};
 use super::candidates::{self, Scenes, Tried};
 use super::coarse;
 use super::departures::{self, Departure};
@@ -30,19 +30,15 @@ const FEWEST_AT_A_LEVEL: f64 = 6.0;
 /// # Errors
 /// A note of what keeps the two from being compared.
 pub fn explain(
-    series: &Series,
+    series: Series,
     claim: &Claim,
     options: &Options,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Outcome, Note> {
-    let columns: BTreeMap<_, _> = series
-        .columns
-        .iter()
-        .filter(|(c, _)| !options.hide.contains(c))
-        .map(|(c, v)| (*c, v.as_slice()))
-        .collect();
-    let regular =
-        Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)?;
+    let length_s =
+        series.time_s.last().copied().unwrap_or(0.0) - series.time_s.first().copied().unwrap_or(0.0);
+    let recorded = Recorded { rows: series.time_s.len(), length_s };
+    let regular = on_grid(series, claim, options)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
     let mut found = Found::default();
     let mut problem = uncoarsened(&regular, claim, &mut found, options);
@@ -93,9 +89,20 @@ pub fn explain(
         found,
         before: &before,
         after: &after,
-        series,
+        recorded,
         options,
     }))
+}
+
+/// The rows on the grid of the claim, columns that are treated as not recorded left out.
+fn on_grid(series: Series, claim: &Claim, options: &Options) -> Result<Regular, Note> {
+    let columns: BTreeMap<_, _> = series
+        .columns
+        .iter()
+        .filter(|(c, _)| !options.hide.contains(c))
+        .map(|(c, v)| (*c, v.as_slice()))
+        .collect();
+    Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)
 }
 
 /// What departs from a hypothesis.

@@ -1,6 +1,7 @@
 //! The mismatch of a claimed simulation and a recording: located, named, modelled, and the fit shown to improve.
 
 mod assemble;
+mod augmented;
 pub mod candidates;
 pub mod coarse;
 pub mod columns;

@@ -6,7 +6,7 @@ use crate::mismatch::{self, Options, Outcome, Progress};
 use crate::procedure::Procedure;
 use crate::procedure::model::ExplainSpec;
 use crate::record::ExplainedRecord;
-use crate::series::{Series, SeriesOptions, load_series};
+use crate::series::{SeriesOptions, load_series};
 use crate::text::{Lang, Note};
 use std::path::PathBuf;
 
@@ -14,8 +14,8 @@ use std::path::PathBuf;
 pub struct Explained {
     /// As the result keeps it.
     pub record: ExplainedRecord,
-    /// The explanation with its claim and the series it was found in; `None` where there is none.
-    pub outcome: Option<(Claim, Series, Outcome)>,
+    /// The explanation with its claim and what must be known of the recording; `None` where there is none.
+    pub outcome: Option<(Claim, Vec<Note>, Outcome)>,
 }
 
 /// Reads the model that a procedure names.
@@ -36,9 +36,9 @@ pub fn explain(
 ) -> Explained {
     let model = spec.model.display().to_string();
     match attempt(spec, &claim, procedure, recording, progress) {
-        Ok((series, outcome)) => Explained {
+        Ok((notes, outcome)) => Explained {
             record: ExplainedRecord { model, explanation: Some(outcome.explanation.clone()), error: None },
-            outcome: Some((claim, series, outcome)),
+            outcome: Some((claim, notes, outcome)),
         },
         Err(error) => Explained {
             record: ExplainedRecord { model, explanation: None, error: Some(error) },
@@ -53,7 +53,7 @@ fn attempt(
     procedure: &Procedure,
     recording: &[PathBuf],
     progress: &mut dyn FnMut(Progress),
-) -> Result<(Series, Outcome), Note> {
+) -> Result<(Vec<Note>, Outcome), Note> {
     let options = SeriesOptions {
         read: procedure.recording.read.clone(),
         channels: procedure.channels.iter().map(|c| c.channel.clone()).collect(),
@@ -65,6 +65,7 @@ fn attempt(
     })
     .map_err(|e| e.note())?;
     let wanted = Options { alpha: spec.alpha, max_effects: spec.max_effects, ..Options::default() };
-    let outcome = mismatch::explain(&series, claim, &wanted, progress)?;
-    Ok((series, outcome))
+    let notes = series.remarks();
+    let outcome = mismatch::explain(series, claim, &wanted, progress)?;
+    Ok((notes, outcome))
 }

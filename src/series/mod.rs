@@ -75,6 +75,26 @@ pub struct Faults {
     pub integrity: Integrity,
 }
 
+impl Series {
+    /// What must be known of the recording: what was found about it, and the rows that were left out or mended.
+    pub fn remarks(&self) -> Vec<Note> {
+        let mut out = self.notes.clone();
+        let faults = &self.faults;
+        for (key, count) in [
+            ("explain.note.without_time", faults.without_time),
+            ("explain.note.without_rate", faults.without_rate),
+        ] {
+            if count > 0 {
+                out.push(Note::new(key).with("count", count));
+            }
+        }
+        for (column, count) in &faults.interpolated {
+            out.push(Note::new("explain.note.mended").with("count", *count).with("column", column.name()));
+        }
+        out
+    }
+}
+
 /// Where a quantity was read from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReadFrom {
