@@ -3,7 +3,7 @@
 
 use super::evaluate::Found;
 use super::influence_noise::{self, ChangeOfNoise};
-use super::{Outcome, Request, RunError, evaluate, figures, interval_means, settle, table, verdict};
+use super::{Outcome, Request, RunError, drawn, figures, interval_means, settle, table, verdict};
 use crate::condition::influence::{ComparedFacts, RunFacts, judge_compared, judge_runs};
 use crate::estimate::Estimate;
 use crate::figure::Figure;
@@ -73,7 +73,7 @@ fn finish(
 ) -> Outcome {
     conditions.extend(table::usual_conditions(request, found));
     let mut drawn = drawn;
-    drawn.extend(evaluate::over_time(request, found));
+    drawn.extend(drawn::over_time(request, found));
     let tables = vec![("interval_means.csv".to_owned(), interval_means::csv(&means))];
     let mut record = settle::record(request, found, conditions, rows, vec![], &drawn);
     record.interval_means = means;

@@ -5,6 +5,7 @@
 pub mod analysis;
 mod comparison;
 mod described;
+mod drawn;
 mod evaluate;
 pub mod explained;
 pub mod figures;
