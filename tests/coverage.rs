@@ -45,22 +45,22 @@ fn assert_honest(tally: &Tally, coverage: f64, false_pass: f64) {
 #[test]
 fn intervals_hold_and_units_at_their_limit_rarely_pass() {
     for (i, mix) in mixes().into_iter().enumerate() {
-        let tally = study(&mix, 10.0, 10.0, 24, 7_100_000 + 10_000 * i as u64);
+        let tally = study(&mix, 10.0, 10.0, 40, 7_100_000 + 10_000 * i as u64);
         assert_honest(&tally, 0.92, 0.08);
     }
 }
 
 #[test]
 fn intervals_hold_over_a_hundred_hours() {
-    let tally = study(&mixes()[1], 100.0, 10.0, 16, 7_200_000);
+    let tally = study(&mixes()[1], 100.0, 10.0, 24, 7_200_000);
     assert_honest(&tally, 0.92, 0.08);
 }
 
 #[test]
 fn frequency_and_amplitude_of_a_line_hold() {
     for (i, excess) in [20.0, 300.0].into_iter().enumerate() {
-        let tally = line_study(excess, 36_000, 60, 7_300_000 + 10_000 * i as u64);
-        assert!(tally.found >= 59, "{} of 60 lines of excess {excess} found", tally.found);
+        let tally = line_study(excess, 36_000, 100, 7_300_000 + 10_000 * i as u64);
+        assert!(tally.found >= 99, "{} of 100 lines of excess {excess} found", tally.found);
         at_least("frequency", tally.frequency_holds, tally.found, 0.93);
         at_least("amplitude", tally.amplitude_holds, tally.found, 0.93);
         // Not by being wide: errors are of the size of the uncertainties.
