@@ -86,7 +86,45 @@ fn by_levels(values: &[f64], step: f64) -> (f64, f64) {
     let slope = levels.iter().map(|(k, v)| (*k as f64 - middle) * (v - level)).sum::<f64>() / square;
     let off = |(k, v): (&i64, &f64)| (v - level - slope * (*k as f64 - middle)).abs();
     let largest = levels.iter().map(off).fold(0.0, f64::max);
-    // Errors of rounding are bounded: no slope that differs by more keeps within twice the largest of them.
+    // Errors of rounding are bounded: no slope that differs by more keeps within twice the largest of them. A few levels can be
+    // rounded alike, and then a digit of the file is what they leave open.
     let span = levels.keys().last().zip(levels.keys().next()).map_or(1, |(a, b)| a - b) as f64;
-    (slope, (4.0 * largest / span).max(1e-9 * slope.abs()))
+    let open = (4.0 * largest).max(last_digit(levels.values()).unwrap_or(0.0)) / span;
+    (slope, open.max(1e-9 * slope.abs()))
+}
+
+/// The last decimal digit that some values are written with, in deg/h or in deg/s; `None` where they fill the digits that a
+/// number holds.
+fn last_digit<'a>(values: impl Iterator<Item = &'a f64> + Clone) -> Option<f64> {
+    const PER_SECOND: f64 = 3600.0;
+    let whole = |digit: f64| {
+        values.clone().all(|v| {
+            let times = v / digit;
+            times.abs() < 1e9 && (times - times.round()).abs() < 1e-6
+        })
+    };
+    let digits = (0..12).flat_map(|d| [PER_SECOND, 1.0].map(|unit| unit * 10f64.powi(-d)));
+    digits.filter(|digit| whole(*digit)).reduce(f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_levels_leave_a_digit_of_the_file_open() {
+        // Steps of 0.2912695 deg/h, written with five decimals: each of these levels is a multiple of 0.29127.
+        let levels: Vec<f64> = (-5..=5).map(|k| (f64::from(k) * 0.291_269_5 * 1e5).round() / 1e5).collect();
+        let (step, open) = by_levels(&levels, 0.29127);
+        assert!((step - 0.291_269_5).abs() <= open, "{step} ± {open}");
+        assert!(open < 2e-6, "{open}");
+    }
+
+    #[test]
+    fn the_last_digit_is_found_in_the_unit_of_the_file() {
+        let close = |found: Option<f64>, digit: f64| found.is_some_and(|f| (f / digit - 1.0).abs() < 1e-9);
+        assert!(close(last_digit([12.345, -0.2, 7.0].iter()), 1e-3));
+        assert!(close(last_digit([0.000_12 * 3600.0, -0.000_05 * 3600.0].iter()), 0.036));
+        assert_eq!(last_digit([std::f64::consts::PI, 2f64.sqrt()].iter()), None);
+    }
 }
