@@ -84,11 +84,10 @@ pub fn evaluate(
     let spans: Vec<(usize, usize)> = found.list.iter().map(|i| i.blocks).collect();
     let cut = cut(blocks, &spans, gyro)?;
     let n = cut.rows.len();
-    let off: Vec<bool> = found.list.iter().map(|i| found.is_off(i)).collect();
-    if off.iter().all(|o| *o) || !off.iter().any(|o| *o) {
+    let states = states(found);
+    if states.list.is_empty() || states.of.iter().all(Option::is_some) {
         return None;
     }
-    let states = states(found, &off);
     let middle = cut.rows.mid_s.iter().sum::<f64>() / n as f64;
     let length =
         cut.rows.mid_s.iter().fold(0.0, |m: f64, t| m.max((t - middle).abs())).max(f64::MIN_POSITIVE);
@@ -107,7 +106,7 @@ pub fn evaluate(
             let drive = |l: f64| test.influence.drive(l) - test.influence.drive(found.reference);
             DVector::from_fn(n, |i, _| {
                 let interval = cut.of[i];
-                if off[interval] { 0.0 } else { drive(found.list[interval].levels[a]) }
+                if states.is_off(interval) { 0.0 } else { drive(found.list[interval].levels[a]) }
             })
         })
         .collect();
@@ -149,7 +148,7 @@ pub fn evaluate(
         intervals: means(blocks, found, &states, &cut, drift.then_some(&time))?,
         drift,
         scatter,
-        temperature_difference: temperature(&cut, &off, drift.then_some(&time)),
+        temperature_difference: temperature(&cut, &states, drift.then_some(&time)),
         test: test.clone(),
     })
 }
@@ -164,11 +163,18 @@ struct States {
     of: Vec<Option<usize>>,
 }
 
-fn states(found: &Intervals, off: &[bool]) -> States {
+impl States {
+    /// True for an interval without the influence.
+    fn is_off(&self, interval: usize) -> bool {
+        self.of[interval].is_none()
+    }
+}
+
+fn states(found: &Intervals) -> States {
     let mut groups: Vec<(usize, Vec<f64>)> = Vec::new();
     let mut of = Vec::new();
-    for (interval, off) in found.list.iter().zip(off) {
-        if *off {
+    for interval in &found.list {
+        if found.is_off(interval) {
             of.push(None);
             continue;
         }
@@ -235,7 +241,6 @@ fn means(
     time: Option<&DVector<f64>>,
 ) -> Option<Vec<IntervalMean>> {
     let (n, count) = (cut.rows.len(), found.list.len());
-    let is_off = |k: usize| states.of[k].is_none();
     // Time within an interval belongs to the noise here: the drift is taken from the means of those without.
     let x = DMatrix::from_fn(n, count, |i, j| f64::from(cut.of[i] == j));
     let fit = gls::lean(&cut.y, &x, &known(cut), &noise(cut, states))?;
@@ -243,14 +248,14 @@ fn means(
         let of: Vec<f64> = (0..n).filter(|i| cut.of[*i] == k).map(v).collect();
         of.iter().sum::<f64>() / of.len().max(1) as f64
     };
-    let without: Vec<usize> = (0..count).filter(|k| is_off(*k)).collect();
+    let without: Vec<usize> = (0..count).filter(|k| states.is_off(*k)).collect();
     let t: Vec<f64> = (0..count).map(|k| time.map_or(0.0, |time| middle(k, &|i| time[i]))).collect();
     let m = without.len() as f64;
     let t0 = without.iter().map(|k| t[*k]).sum::<f64>() / m;
     let stt: f64 = without.iter().map(|k| (t[*k] - t0).powi(2)).sum();
     let list = found.list.iter().enumerate().map(|(k, interval)| {
         let weights = DVector::from_fn(count, |j, _| {
-            let line = if !is_off(j) {
+            let line = if !states.is_off(j) {
                 0.0
             } else if stt > 0.0 {
                 1.0 / m + (t[k] - t0) * (t[j] - t0) / stt
@@ -267,8 +272,8 @@ fn means(
             span_s: (span_s(blocks, first).0, span_s(blocks, last).1),
             row: first.first_row,
             level: interval.levels[axis],
-            axis: if is_off(k) { String::new() } else { found.axes[axis].clone() },
-            off: is_off(k),
+            axis: if states.is_off(k) { String::new() } else { found.axes[axis].clone() },
+            off: states.is_off(k),
             mean: fit.combine(&weights),
             temperature: middle(k, &|i| cut.temperature[i]),
         }
@@ -277,14 +282,14 @@ fn means(
 }
 
 /// How much the temperature differs with the influence, degC.
-fn temperature(cut: &Cut, off: &[bool], time: Option<&DVector<f64>>) -> Option<f64> {
+fn temperature(cut: &Cut, states: &States, time: Option<&DVector<f64>>) -> Option<f64> {
     let n = cut.rows.len();
     if cut.temperature.iter().any(|t| !t.is_finite()) {
         return None;
     }
     let mut columns = vec![DVector::from_element(n, 1.0)];
     columns.extend(time.cloned());
-    columns.push(DVector::from_fn(n, |i, _| f64::from(!off[cut.of[i]])));
+    columns.push(DVector::from_fn(n, |i, _| f64::from(!states.is_off(cut.of[i]))));
     let at = columns.len() - 1;
     let x = DMatrix::from_columns(&columns);
     let normal = Cholesky::new(x.transpose() * &x)?;

@@ -158,8 +158,8 @@ impl Normal {
         let rows: Vec<Vec<f64>> = (0..q)
             .into_par_iter()
             .map(|i| {
-                let against = (0..=p + i).into_par_iter().map(|j| inner(new[i], known(j), powers));
-                against.chain(rayon::iter::once(inner(new[i], data, powers))).collect()
+                let against = (0..=p + i).map(|j| inner(new[i], known(j), powers));
+                against.chain(std::iter::once(inner(new[i], data, powers))).collect()
             })
             .collect();
         for (i, row) in rows.into_iter().enumerate() {
