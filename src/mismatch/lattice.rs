@@ -1,6 +1,7 @@
 //! Whether the values of a recording lie on a lattice, and its step as an angle increment.
 
 use super::regular::Regular;
+use crate::numeric::decimal::multiples;
 use std::collections::BTreeMap;
 
 /// Values looked at.
@@ -97,14 +98,8 @@ fn by_levels(values: &[f64], step: f64) -> (f64, f64) {
 /// number holds.
 fn last_digit<'a>(values: impl Iterator<Item = &'a f64> + Clone) -> Option<f64> {
     const PER_SECOND: f64 = 3600.0;
-    let whole = |digit: f64| {
-        values.clone().all(|v| {
-            let times = v / digit;
-            times.abs() < 1e9 && (times - times.round()).abs() < 1e-6
-        })
-    };
     let digits = (0..12).flat_map(|d| [PER_SECOND, 1.0].map(|unit| unit * 10f64.powi(-d)));
-    digits.filter(|digit| whole(*digit)).reduce(f64::max)
+    digits.filter(|digit| multiples(values.clone(), *digit)).reduce(f64::max)
 }
 
 #[cfg(test)]

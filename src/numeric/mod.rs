@@ -2,6 +2,7 @@
 
 pub(crate) mod compensated;
 pub mod cosine;
+pub mod decimal;
 mod inverse;
 pub mod range;
 pub mod reml;

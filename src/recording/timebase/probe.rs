@@ -2,6 +2,7 @@
 
 use super::bunched;
 use super::{Cadence, Clock, ClockError, FALLING_SHARE, Step, Tracker, tidy};
+use crate::numeric::decimal::multiples;
 
 /// Share of equal consecutive stamps beyond which the stamps are coarser than the sample interval.
 pub(super) const COARSE_SHARE: f64 = 0.05;
@@ -237,10 +238,7 @@ fn resolution(t: &[f64], interval_s: f64) -> f64 {
         .rev()
         .map(|e| 10f64.powi(e))
         .filter(|q| *q <= 1.01 * interval_s && *q > 0.01 * interval_s && largest / q < 1e14)
-        .find(|q| {
-            let allowed = 1e-6 + 4.0 * f64::EPSILON * largest / q;
-            allowed < 0.1 && t.iter().all(|v| (v / q - (v / q).round()).abs() <= allowed)
-        })
+        .find(|q| multiples(t.iter(), *q))
         .unwrap_or(0.0)
 }
 
