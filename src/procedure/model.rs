@@ -340,6 +340,13 @@ pub struct ReportSpec {
     pub show_reference: bool,
 }
 
+impl ReportSpec {
+    /// Whether a figure is asked for.
+    pub fn shows(&self, figure: &str) -> bool {
+        self.figures.as_ref().is_none_or(|list| list.contains(&figure))
+    }
+}
+
 /// A waiver and the unit it is for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waiver {

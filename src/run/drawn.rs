@@ -9,7 +9,7 @@ use crate::recording::{Channel, Role};
 
 /// Every figure that the report asks for.
 pub(super) fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
-    let wanted = |id: &str| request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id));
+    let wanted = |id: &str| request.procedure.report.shows(id);
     let mut drawn = Vec::new();
     let time_series_wanted = wanted("rate") || wanted("temperature");
     for gyro in &found.gyros {
@@ -51,7 +51,7 @@ pub(super) fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
 
 /// Every gyro channel over time, for tests that are not evaluated sample by sample.
 pub(super) fn over_time(request: &Request<'_>, found: &Found) -> Vec<Figure> {
-    let wanted = |id: &str| request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id));
+    let wanted = |id: &str| request.procedure.report.shows(id);
     if !wanted("rate") && !wanted("temperature") {
         return vec![];
     }

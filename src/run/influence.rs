@@ -60,7 +60,7 @@ fn rows(
 }
 
 fn wanted(request: &Request<'_>, id: &str) -> bool {
-    request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id))
+    request.procedure.report.shows(id)
 }
 
 fn finish(

@@ -69,7 +69,7 @@ pub(super) fn execute(
         );
     }
     let mut drawn = draw(request, &run, &evaluated);
-    let shown = |id: &str| procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id));
+    let shown = |id: &str| procedure.report.shows(id);
     if shown("dead_zone") {
         let several = evaluated.len() > 1;
         let zones = others.iter().filter_map(|o| o.zone.as_ref());
@@ -276,7 +276,7 @@ fn facts(
 }
 
 fn draw(request: &Request<'_>, run: &TableRun, evaluated: &[(usize, Option<ScaleFactor>)]) -> Vec<Figure> {
-    let wanted = |id: &str| request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&id));
+    let wanted = |id: &str| request.procedure.report.shows(id);
     let several = evaluated.len() > 1;
     let mut drawn = Vec::new();
     for channel in evaluated.iter().filter_map(|(_, c)| c.as_ref()) {

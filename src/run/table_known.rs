@@ -83,7 +83,7 @@ pub(super) fn finish(
             }
         }
     }
-    let shown = request.procedure.report.figures.as_ref().is_none_or(|list| list.contains(&"positions"));
+    let shown = request.procedure.report.shows("positions");
     let drawn: Vec<_> = positions
         .iter()
         .filter(|_| shown)
