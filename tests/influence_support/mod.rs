@@ -1,10 +1,10 @@
 //! A gyro at rest that is switched off and on, or put under an influence. Uses nothing of the program under test.
 #![allow(dead_code)]
 
-#[path = "../thermal_support/mod.rs"]
-mod thermal_support;
+#[path = "../thermal_study/chamber/mod.rs"]
+mod chamber;
 
-pub use thermal_support::{Chance, Noise, noise};
+pub use chamber::{Chance, Noise, noise};
 
 /// What was recorded: time, rate, temperature, level.
 #[derive(Clone, Debug, Default)]

@@ -1,0 +1,82 @@
+//! Hard records as files: through the program, and no value that is no number in anything that it writes.
+
+use crate::reference::records::{Record, hard_records};
+use crate::support;
+use crate::support::{both, files, result};
+use rayon::prelude::*;
+use std::fmt::Write;
+use tempfile::tempdir;
+
+/// Numbers as words that a careless sum would print; none of these records holds a figure of such size.
+const OVERFLOWN: [&str; 5] = ["1e308", "1.7976931348623157e308", "1e+308", "e307", "e308"];
+
+fn assert_sound(folder: &std::path::Path, name: &str) {
+    for (path, bytes) in files(folder) {
+        let text = String::from_utf8(bytes).unwrap();
+        for word in OVERFLOWN {
+            assert!(!text.contains(word), "{name}: `{word}` in {}", path.display());
+        }
+        let minus_zero =
+            text.split([' ', ',', '\n', '>', '<', '"', ':']).any(|w| ["-0", "-0.0", "−0"].contains(&w));
+        assert!(!minus_zero, "{name}: a negative zero in {}", path.display());
+    }
+}
+
+#[test]
+fn hard_records_give_figures_or_a_refusal_and_never_a_word() {
+    let evaluated = |record: &Record| {
+        let mut text = String::from("time_s,rate_deg_h,temp_degC\n");
+        for (first, y) in &record.stretches {
+            for (i, v) in y.iter().enumerate() {
+                writeln!(text, "{},{v:e},20", first + i as u64).unwrap();
+            }
+        }
+        let dir = tempdir().unwrap();
+        std::fs::write(dir.path().join("r.csv"), text).unwrap();
+        let (analysed, run) = both(dir.path(), "r.csv");
+        for (said, out) in [(&analysed, "a"), (&run, "r")] {
+            assert!(said.code != 1, "{}: {said:?}", record.name);
+            if said.code == 2 {
+                assert_eq!(said.err.matches("error: ").count(), 1, "{}: {said:?}", record.name);
+            }
+            if dir.path().join(out).is_dir() {
+                assert_sound(&dir.path().join(out), record.name);
+            }
+        }
+        if analysed.code != 0 {
+            assert!(record.samples().count() < 2, "{}: {analysed:?}", record.name);
+            return false;
+        }
+        let found = result(&dir.path().join("a"));
+        if record.range() == 0.0 {
+            // Nothing moves: no noise term is claimed.
+            let terms = found["noise_models"][0]["terms"].as_array().unwrap();
+            assert!(terms.is_empty(), "{}: {terms:?}", record.name);
+        }
+        true
+    };
+    let evaluated = hard_records().into_par_iter().filter(|r| evaluated(r)).count();
+    assert!(evaluated >= 20, "{evaluated}");
+}
+
+#[test]
+fn records_beyond_the_range_are_refused_or_zero() {
+    for (name, text) in
+        [("1e308", "1e308"), ("-1e308", "-1e308"), ("nan", "nan"), ("1e-310", "1e-310"), ("-0.0", "-0.0")]
+    {
+        let mut rows = String::from("time_s,rate_deg_h,temp_degC\n");
+        (0..1000).for_each(|i| writeln!(rows, "{i},{text},20").unwrap());
+        let dir = tempdir().unwrap();
+        std::fs::write(dir.path().join("r.csv"), rows).unwrap();
+        let (analysed, _) = both(dir.path(), "r.csv");
+        if ["1e-310", "-0.0"].contains(&name) {
+            assert_eq!(analysed.code, 0, "{name}: {analysed:?}");
+            assert_sound(&dir.path().join("a"), name);
+            let bias = support::measurand(&result(&dir.path().join("a")), "static_bias")["value"].as_f64();
+            assert_eq!(bias.map(f64::to_bits), Some(0), "{name}");
+        } else {
+            assert_eq!(analysed.code, 2, "{name}: {analysed:?}");
+            assert_eq!(analysed.err.matches("error: ").count(), 1, "{name}: {analysed:?}");
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Noise: its evidence, its identification, its description, the classical read-outs.
+
+mod described_noise;
+mod evidence;
+mod identification;
+mod readouts;

@@ -1,6 +1,0 @@
-//! Studies of the noise by the library alone.
-
-mod described_noise;
-mod evidence;
-mod identification;
-mod readouts;

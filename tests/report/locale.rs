@@ -1,0 +1,172 @@
+//! Every word of a report stands in the locale tables: none is missing, none idle.
+
+use crate::fixture;
+use sagnac::measurand::ids::MEASURANDS;
+use sagnac::report::render::TEMPLATES;
+use sagnac::report::{Renderer, render_html, render_markdown};
+use sagnac::text::{Lang, table};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Ids that a record may hold where its documentation lists them.
+const LISTED: &[(&str, &[&str])] = &[
+    (
+        "fault",
+        &[
+            "gap",
+            "duplicate_timestamp",
+            "backward_timestamp",
+            "non_finite",
+            "unparsable",
+            "outlier",
+            "saturated",
+            "stuck",
+            "repeated",
+            "interpolated",
+            "rollover",
+            "timestamp_disagreement",
+        ],
+    ),
+    ("excluded", &["warm_up", "declared", "gap"]),
+    ("clause", &["here", "elsewhere", "not_applicable"]),
+    ("status", &["ok", "remark", "invalid"]),
+    ("calibration", &["ok", "remark", "invalid"]),
+    // Of each channel: the id goes on with its name.
+    ("condition", &["steadiness"]),
+    ("verdict", &["none", "pass", "indeterminate", "fail", "error"]),
+];
+
+/// Tables whose ids come from other parts of the program: a key is in use when its id stands in a source file.
+const OPEN: &[&str] = &[
+    "how",
+    "condition",
+    "observed",
+    "option",
+    "role",
+    "term",
+    "unit",
+    "convention",
+    "test",
+    "table_doc",
+    "option_value",
+    "effect_view",
+];
+
+/// A table that the tests of the command line hold against the command itself.
+const HELP: &str = "help";
+
+/// Dotted names in the sources that only look like keys: tables of procedures.
+const NO_KEYS: &[&str] = &["measurand.options"];
+
+fn sources(folder: &Path, out: &mut Vec<String>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, out);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            out.push(std::fs::read_to_string(&path).unwrap());
+        }
+    }
+}
+
+/// Every text between a pair of quotation marks on one line.
+fn quoted(text: &str, mark: char) -> impl Iterator<Item = &str> {
+    text.lines().flat_map(move |line| line.split(mark).skip(1).step_by(2))
+}
+
+fn is_key(text: &str, tables: &BTreeSet<String>) -> bool {
+    let file = [".html", ".md", ".css", ".toml", ".json", ".csv", ".svg"].iter().any(|e| text.ends_with(e));
+    let plain = text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '.');
+    let first = text.split('.').next().unwrap_or_default();
+    plain && !file && text.contains('.') && !text.ends_with('.') && tables.contains(first)
+}
+
+/// All keys that templates and sources name in full, and all short texts of the sources.
+fn used() -> (BTreeSet<String>, BTreeSet<String>) {
+    let tables: BTreeSet<String> =
+        table(Lang::En).keys().filter_map(|k| k.split('.').next()).map(str::to_owned).collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut code = vec![];
+    sources(&root.join("src"), &mut code);
+    let mut fixtures = vec![];
+    sources(&root.join("tests/report/fixture"), &mut fixtures);
+    let mut keys = BTreeSet::new();
+    for text in &code {
+        keys.extend(quoted(text, '"').filter(|k| is_key(k, &tables)).map(str::to_owned));
+    }
+    for (_, text) in TEMPLATES {
+        for mark in ['"', '\''] {
+            keys.extend(quoted(text, mark).filter(|k| is_key(k, &tables)).map(str::to_owned));
+        }
+    }
+    let words = code
+        .iter()
+        .chain(&fixtures)
+        .flat_map(|t| quoted(t, '"'))
+        .flat_map(|t| t.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')))
+        .map(str::to_owned)
+        .collect();
+    (keys, words)
+}
+
+#[test]
+fn no_key_is_missing() {
+    let (keys, _) = used();
+    assert!(keys.len() > 100, "the search for keys found only {}", keys.len());
+    let known = table(Lang::En);
+    let missing: Vec<&String> =
+        keys.iter().filter(|k| !known.contains_key(*k) && !NO_KEYS.contains(&k.as_str())).collect();
+    assert!(missing.is_empty(), "not in the table: {missing:?}");
+    for (prefix, ids) in LISTED {
+        for id in *ids {
+            assert!(known.contains_key(&format!("{prefix}.{id}")), "{prefix}.{id}");
+        }
+    }
+}
+
+#[test]
+fn no_key_is_idle() {
+    let (keys, words) = used();
+    let idle: Vec<&String> = table(Lang::En)
+        .keys()
+        .filter(|key| {
+            let Some((prefix, id)) = key.split_once('.') else { return true };
+            let listed = LISTED.iter().any(|(p, ids)| *p == prefix && ids.contains(&id));
+            let measurand = prefix == "measurand" && MEASURANDS.iter().any(|m| m.id == id);
+            let open = OPEN.contains(&prefix) && words.contains(id);
+            // Built from the ids of the methods and of the figures.
+            let built = (prefix == "methods"
+                && sagnac::report::methods::METHODS
+                    .iter()
+                    .any(|m| id == format!("{}.title", m.id) || id == format!("{}.text", m.id)))
+                || (key.starts_with("figure.") && words.contains(key.as_str()))
+                || key.strip_prefix("figure.legend.").is_some_and(|term| words.contains(term))
+                || (key.starts_with("axis.") && words.contains(key.as_str()))
+                || key
+                    .strip_prefix("figure.caption.")
+                    .is_some_and(|f| words.contains(&format!("figure.title.{f}")));
+            !(prefix == HELP || keys.contains(*key) || listed || measurand || open || built)
+        })
+        .collect();
+    assert!(idle.is_empty(), "in the table, but nothing uses them: {idle:?}");
+}
+
+#[test]
+fn no_report_shows_a_key() {
+    let tables: BTreeSet<String> =
+        table(Lang::En).keys().filter_map(|k| k.split('.').next()).map(str::to_owned).collect();
+    for record in [fixture::pass(), fixture::three_channels(), fixture::error(), fixture::analysis()] {
+        let figures = fixture::figures::all();
+        for text in [
+            render_html(&record, &figures, Lang::En, &Renderer::new()).unwrap(),
+            render_markdown(&record, &figures, Lang::En, &Renderer::new()).unwrap(),
+        ] {
+            let shown: Vec<&str> = text
+                .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '.'))
+                .map(|w| w.trim_end_matches('.'))
+                .filter(|w| is_key(w, &tables))
+                .collect();
+            assert!(shown.is_empty(), "{shown:?}");
+        }
+    }
+}
