@@ -12,6 +12,7 @@ pub mod phases;
 pub mod power;
 pub mod reading;
 pub mod schema;
+pub mod site;
 pub mod tables;
 mod tables_conditions;
 mod tables_influence;

@@ -3,6 +3,7 @@
 use super::diagnostics::{Problem, SourceText, Span};
 use super::limits::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
+use super::site::Site;
 use crate::ids::MeasurandId;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::ingest::ReadOptions;
@@ -216,39 +217,6 @@ pub struct Exclusion {
     pub to_s: f64,
     /// Why.
     pub reason: String,
-}
-
-/// Direction of an input axis. Uncertainties are standard uncertainties.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Orientation {
-    /// Heading from true north, positive to the east, deg. 0 for a vertical axis, where it has no meaning.
-    pub heading_deg: f64,
-    /// Its uncertainty, deg.
-    pub heading_uncertainty_deg: f64,
-    /// Elevation above the horizon, deg.
-    pub elevation_deg: f64,
-    /// Its uncertainty, deg.
-    pub elevation_uncertainty_deg: f64,
-}
-
-/// Where the unit stands.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Site {
-    /// Latitude, deg, positive north.
-    pub latitude_deg: f64,
-    /// Its standard uncertainty, deg.
-    pub latitude_uncertainty_deg: f64,
-    /// Direction of the input axis of every channel without an entry of its own.
-    pub orientation: Orientation,
-    /// Directions of single channels.
-    pub axes: Vec<(String, Orientation)>,
-}
-
-impl Site {
-    /// Direction of the input axis of a channel.
-    pub fn orientation_of(&self, channel: &str) -> Orientation {
-        self.axes.iter().find(|(id, _)| id == channel).map_or(self.orientation, |(_, o)| *o)
-    }
 }
 
 /// An instrument.

@@ -4,11 +4,12 @@ use super::diagnostics::{Problems, SourceText};
 use super::limits::{self, LimitsFile};
 use super::model::{
     Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, ExplainSpec, FaultBudget, Instrument,
-    MeasurandSpec, Orientation, Procedure, RecordingSpec, ReportSpec, Site, SupplyCondition, Taus,
-    TemperatureCondition, UnitSpec, Waiver,
+    MeasurandSpec, Procedure, RecordingSpec, ReportSpec, SupplyCondition, Taus, TemperatureCondition,
+    UnitSpec, Waiver,
 };
 use super::reader::{Reader, checked};
 use super::section::{Entry, Section};
+use super::site::{Orientation, Site};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use super::{channel, reading, validate};

@@ -12,7 +12,6 @@ use crate::influence::cut::FileSpan;
 use crate::influence::intervals;
 use crate::influence::repeatability::{self, Repeatability};
 use crate::influence::{ComparisonTest, RepeatabilityTest, runs};
-use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::procedure::Procedure;
 use crate::rate_table::blocks::Collector;
 use crate::record::{ConditionRecord, IntervalMeanRecord, OptionRecord};
@@ -29,15 +28,7 @@ fn files(found: &Found) -> Vec<FileSpan> {
 
 /// Earth rate along a channel, deg/h; 0 without a site.
 fn earth(procedure: &Procedure, channel: &str) -> f64 {
-    let Some(site) = &procedure.site else { return 0.0 };
-    let o = site.orientation_of(channel);
-    let uncertain = |value, uncertainty| Uncertain { value, uncertainty };
-    earth_rate(&Orientation {
-        latitude_deg: uncertain(site.latitude_deg, site.latitude_uncertainty_deg),
-        heading_deg: uncertain(o.heading_deg, o.heading_uncertainty_deg),
-        elevation_deg: uncertain(o.elevation_deg, o.elevation_uncertainty_deg),
-    })
-    .value
+    procedure.site.as_ref().map_or(0.0, |site| site.earth_rate_along(channel).value)
 }
 
 /// Rows of the measurands in the order of the procedure.
