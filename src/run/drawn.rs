@@ -11,20 +11,8 @@ use crate::recording::{Channel, Role};
 pub(super) fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
     let wanted = |id: &str| request.procedure.report.shows(id);
     let mut drawn = Vec::new();
-    let time_series_wanted = wanted("rate") || wanted("temperature");
     for gyro in &found.gyros {
-        let slot = found.channels.iter().position(|c| c.id == gyro.channel);
-        if let Some(envelope) = slot.and_then(|s| found.envelopes.get(&s)).filter(|_| time_series_wanted) {
-            let below = if wanted("temperature") { below(request.procedure, found) } else { vec![] };
-            drawn.push(figures::time_series::figure(
-                gyro.figure_id("time_series"),
-                gyro.figure_channel(),
-                envelope,
-                &below,
-                &found.window,
-                found.tau0_s,
-            ));
-        }
+        drawn.extend(channel_over_time(request, found, &gyro.channel, gyro.several));
         drawn.extend(figures::thermal::figures(gyro, found.schedule.as_ref(), request.procedure, &wanted));
         if !found.at_rest() {
             continue;
@@ -51,25 +39,27 @@ pub(super) fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
 
 /// Every gyro channel over time, for tests that are not evaluated sample by sample.
 pub(super) fn over_time(request: &Request<'_>, found: &Found) -> Vec<Figure> {
-    let wanted = |id: &str| request.procedure.report.shows(id);
-    if !wanted("rate") && !wanted("temperature") {
-        return vec![];
-    }
     let gyros: Vec<&Channel> = found.channels.iter().filter(|c| c.role.is_gyro()).collect();
     let several = gyros.len() > 1;
-    let one = |channel: &&Channel| {
-        let slot = found.channels.iter().position(|c| c.id == channel.id)?;
-        let below = if wanted("temperature") { below(request.procedure, found) } else { vec![] };
-        Some(figures::time_series::figure(
-            if several { format!("time_series_{}", channel.id) } else { "time_series".to_owned() },
-            if several { channel.id.clone() } else { String::new() },
-            found.envelopes.get(&slot)?,
-            &below,
-            &found.window,
-            found.tau0_s,
-        ))
-    };
-    gyros.iter().filter_map(one).collect()
+    gyros.iter().filter_map(|channel| channel_over_time(request, found, &channel.id, several)).collect()
+}
+
+/// One channel over time, where the report asks for it.
+fn channel_over_time(request: &Request<'_>, found: &Found, channel: &str, several: bool) -> Option<Figure> {
+    let wanted = |id: &str| request.procedure.report.shows(id);
+    if !wanted("rate") && !wanted("temperature") {
+        return None;
+    }
+    let slot = found.channels.iter().position(|c| c.id == channel)?;
+    let below = if wanted("temperature") { below(request.procedure, found) } else { vec![] };
+    Some(figures::time_series::figure(
+        if several { format!("time_series_{channel}") } else { "time_series".to_owned() },
+        if several { channel.to_owned() } else { String::new() },
+        found.envelopes.get(&slot)?,
+        &below,
+        &found.window,
+        found.tau0_s,
+    ))
 }
 
 /// The other channels drawn under the rate, with the bands that they must keep.

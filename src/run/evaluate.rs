@@ -1,12 +1,13 @@
 //! From a recording to the outcome.
 
 use super::pass::{Collected, HeldKey, Inside, Overview};
+use super::reading::{about, channels, plan, read_at_measured_interval, settle_integrity, tidy, window};
 use super::{
     Outcome, Request, RunError, drawn, gyro_facts, power, settle, sigma_tau, thermal, verdict, warm_up,
 };
 use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
-use crate::ingest::{Plan, Source, StreamReport, TimeBaseSpec, prepare};
+use crate::ingest::{Plan, StreamReport};
 use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
 use crate::noise::composite::Sampling;
 use crate::noise::digest::RateDigest;
@@ -17,15 +18,14 @@ use crate::noise::intervals::BoundedPoint;
 use crate::noise::lines::{SpectralLine, find_lines};
 use crate::noise::residual::GoodnessOfFit;
 use crate::noise::spectral_record::SpectralRecord;
-use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::{EarthRate, Taus};
-use crate::record::{FaultRecord, Integrity, Window};
-use crate::recording::window::{WindowSpec, Windowed};
+use crate::record::Window;
+use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
 use crate::temperature::findings::Schedule;
-use crate::text::{Arg, Note};
+use crate::text::Arg;
 use std::collections::BTreeMap;
 
 /// Everything that was found, before verdicts.
@@ -124,17 +124,9 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
             Inside::new(procedure, &channels, &grid, Estimator::ALL, exact, tidy(nominal_s), plan.start_s());
         let mut windowed = Windowed::new(inside, window(procedure), plan.start_s(), nominal_s);
         let report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
-        Ok((overview, windowed, report))
+        Ok(((overview, windowed), report))
     };
-    let mut found = read(&plan)?;
-    // Rates from angles are divided by the interval of the first rows; where the whole recording measures another one,
-    // they are made again with that.
-    let measured_s = found.2.tau0_measured_s;
-    if plan.reads_angles() && (measured_s / nominal_s - 1.0).abs() > 1e-6 {
-        plan.set_increment_interval(measured_s);
-        found = read(&plan)?;
-    }
-    let (overview, windowed, mut report) = found;
+    let ((overview, windowed), mut report) = read_at_measured_interval(&mut plan, &mut read)?;
     let (inside, window) = windowed.finish();
     let Collected { gyros, held, means } = inside.finish();
     let tau0_s = tidy(report.tau0_measured_s);
@@ -156,92 +148,15 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
                 .with("length", Arg::decimals(report.duration_s, 6))
         }));
     }
-    let mut saturated = overview.saturated();
-    saturated.iter_mut().for_each(|f| crate::ingest::locate(&report.files, f));
-    declare_rails(&mut report.integrity, saturated);
-    tidy_integrity(&mut report.integrity, tau0_s, &gyros);
+    settle_integrity(&mut report, &overview, tau0_s, &gyros);
     let envelopes = overview.finish();
     Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact, schedule })
-}
-
-/// How the channels of a procedure are read.
-///
-/// # Errors
-/// [`RunError::Nothing`] without a gyro among them; what keeps the recording from being read.
-pub(super) fn plan<'a>(request: &Request<'a>, channels: &'a [Channel]) -> Result<Plan<'a>, RunError> {
-    let procedure = request.procedure;
-    if !channels.iter().any(|c| c.role.is_gyro()) {
-        return Err(RunError::Nothing(about(request, "run_error.no_gyro")));
-    }
-    let declared = |role: Role| procedure.channels.iter().find(|c| c.channel.role == role)?.rollover;
-    let spec = TimeBaseSpec {
-        declared_sample_rate_hz: procedure.sample_rate_hz,
-        use_stamps: request.use_stamps,
-        rollover_s: declared(Role::Time),
-        counter_modulus: declared(Role::Counter),
-    };
-    let mut plan = prepare(request.source, channels, spec)?;
-    for c in &procedure.channels {
-        if let Some(period) = c.rollover {
-            plan.set_angle_period(&c.channel.id, period);
-        }
-    }
-    Ok(plan)
-}
-
-/// The part of the recording that a procedure evaluates.
-pub(super) fn window(procedure: &Procedure) -> WindowSpec {
-    WindowSpec {
-        from_s: procedure.conditions.warm_up_s,
-        to_s: None,
-        exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
-    }
 }
 
 /// The longest gap in what was evaluated, s.
 pub(super) fn longest_gap_s(window: &Window) -> f64 {
     let gaps = window.excluded.iter().filter(|s| s.reason == "gap");
     gaps.map(|s| s.to_s - s.from_s).fold(0.0, f64::max)
-}
-
-/// A sentence about the recording.
-pub(super) fn about(request: &Request<'_>, key: &'static str) -> Note {
-    Note::new(key).with("path", request.source.path().display().to_string())
-}
-
-/// Saturation at declared rails takes the place of what was guessed for the same channel.
-pub(super) fn declare_rails(integrity: &mut Integrity, declared: Vec<FaultRecord>) {
-    for fault in declared {
-        let same = |f: &FaultRecord| f.kind == fault.kind && f.channel == fault.channel;
-        let guessed: u64 = integrity.faults.iter().filter(|f| same(f)).map(|f| f.count).sum();
-        integrity.faults.retain(|f| !same(f));
-        integrity.saturated = integrity.saturated.saturating_sub(guessed) + fault.count;
-        integrity.faults.push(fault);
-    }
-}
-
-/// Leaves out what is rounding of the file and not a property of the recording.
-pub(super) fn tidy_integrity(integrity: &mut Integrity, tau0_s: f64, gyros: &[GyroEvidence]) {
-    integrity.timestamp_jitter_s =
-        integrity.timestamp_jitter_s.map(|j| if j < 1e-7 * tau0_s { 0.0 } else { j });
-    let least = gyros.iter().map(|g| g.digest.histogram.standard_deviation).fold(f64::INFINITY, f64::min);
-    // A lattice far finer than the noise is the number of decimals in the file.
-    integrity.quantization_step_deg_h = integrity.quantization_step_deg_h.filter(|q| *q > 0.01 * least);
-}
-
-/// A measured interval without the rounding of its last digits: 0.001 and not 0.00100000000003.
-pub(super) fn tidy(interval_s: f64) -> f64 {
-    format!("{interval_s:.9e}").parse().unwrap_or(interval_s)
-}
-
-/// The channels to read: those of the procedure, without optional ones that the file lacks.
-pub(super) fn channels(procedure: &Procedure, source: &Source) -> Vec<Channel> {
-    procedure
-        .channels
-        .iter()
-        .filter(|c| c.required || source.resolve(&c.channel.column).is_ok())
-        .map(|c| c.channel.clone())
-        .collect()
 }
 
 /// Lines of a channel, and its noise with the lines left out.
@@ -299,13 +214,7 @@ fn evidence(
     let goodness = goodness(&digest, &lines, &identification, &octaves, tau0_s);
     let longest_stretch_s = digest.deviations.stretches.longest() as f64 * tau0_s;
     let earth = procedure.site.as_ref().map(|site| {
-        let o = site.orientation_of(&channel);
-        let uncertain = |value, uncertainty| Uncertain { value, uncertainty };
-        let rate = earth_rate(&Orientation {
-            latitude_deg: uncertain(site.latitude_deg, site.latitude_uncertainty_deg),
-            heading_deg: uncertain(o.heading_deg, o.heading_uncertainty_deg),
-            elevation_deg: uncertain(o.elevation_deg, o.elevation_uncertainty_deg),
-        });
+        let rate = site.earth_rate_along(&channel);
         Earth { rate_deg_h: rate.value, uncertainty_deg_h: rate.uncertainty }
     });
     GyroEvidence {

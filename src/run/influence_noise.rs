@@ -1,6 +1,7 @@
 //! The angle random walk without and with an influence: each state is identified from its own samples.
 
 use super::evaluate::{self, Found};
+use super::reading;
 use super::{Request, RunError};
 use crate::estimate::{Estimate, Spread, normal_quantile};
 use crate::influence::intervals::Intervals;
@@ -103,7 +104,7 @@ pub(super) fn find(
         let (first, last) = (&blocks.list[interval.blocks.0], &blocks.list[interval.blocks.1 - 1]);
         spans.push((first.first_index, last.first_index + u64::from(last.samples), state));
     }
-    let mut plan = evaluate::plan(request, &found.channels)?;
+    let mut plan = reading::plan(request, &found.channels)?;
     if plan.reads_angles() {
         plan.set_increment_interval(found.report.tau0_measured_s);
     }

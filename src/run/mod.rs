@@ -18,6 +18,7 @@ mod interval_means;
 mod pass;
 pub mod phases;
 pub mod power;
+mod reading;
 mod settle;
 mod sigma_tau;
 mod steadiness;

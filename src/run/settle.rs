@@ -147,11 +147,7 @@ fn recording(request: &Request<'_>, found: &Found) -> Vec<RecordingFile> {
             sha256: f.facts.sha256.clone(),
             bytes: f.facts.bytes,
             samples: f.facts.rows,
-            sample_interval_s: if several {
-                super::evaluate::tidy(f.sample_interval_s)
-            } else {
-                found.tau0_s
-            },
+            sample_interval_s: if several { super::reading::tidy(f.sample_interval_s) } else { found.tau0_s },
             sample_interval_uncertainty_s: used(report.clock.map(|c| c.uncertainty_s)),
             clock_drift_ppm: used(report.clock.and_then(|c| c.drift)).map(|d| d * 1e6),
             phase: f.phase.clone(),

@@ -1,7 +1,8 @@
 //! A procedure for a rate table applied to a recording: one pass into blocks, then steps, response, rows, figures.
 
-use super::evaluate::{self, Found, tidy};
+use super::evaluate::{self, Found};
 use super::pass::{Inside, Overview};
+use super::reading::{self, tidy};
 use super::table_others::Others;
 use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
 use crate::condition::table::{ChannelFact, TableFacts, judge};
@@ -9,7 +10,6 @@ use crate::condition::{Facts, judge_all};
 use crate::estimate::{Estimate, Spread};
 use crate::figure::Figure;
 use crate::ingest::Plan;
-use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::ChannelSpec;
@@ -90,13 +90,7 @@ fn without_earth(procedure: &Procedure, channel: &ScaleFactor, mut estimate: Est
     let Some(site) = procedure.site.as_ref().filter(|_| estimate.id == "scale_factor_bias") else {
         return estimate;
     };
-    let o = site.orientation_of(&channel.channel);
-    let uncertain = |value, uncertainty| Uncertain { value, uncertainty };
-    let earth = earth_rate(&Orientation {
-        latitude_deg: uncertain(site.latitude_deg, site.latitude_uncertainty_deg),
-        heading_deg: uncertain(o.heading_deg, o.heading_uncertainty_deg),
-        elevation_deg: uncertain(o.elevation_deg, o.elevation_uncertainty_deg),
-    });
+    let earth = site.earth_rate_along(&channel.channel);
     estimate.value = estimate.value.map(|v| v - channel.factor * earth.value);
     if let Spread::StudentT { standard_uncertainty, dof } = &mut estimate.spread {
         let total = standard_uncertainty.hypot(earth.uncertainty);
@@ -178,33 +172,24 @@ pub(super) fn collect_blocks(
     collector: &dyn Fn(&[Channel], f64) -> Collector,
 ) -> Result<(Found, Blocks), RunError> {
     let procedure = request.procedure;
-    let channels = evaluate::channels(procedure, request.source);
-    let mut plan = evaluate::plan(request, &channels)?;
+    let channels = reading::channels(procedure, request.source);
+    let mut plan = reading::plan(request, &channels)?;
     let nominal_s = plan.clock().interval_s;
     let mut read = |plan: &Plan<'_>| -> Result<_, RunError> {
         let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
         let grid = TauGrid::Octave;
         let inside = Inside::new(procedure, &channels, &grid, &[], false, tidy(nominal_s), plan.start_s());
-        let window = evaluate::window(procedure);
+        let window = reading::window(procedure);
         let mut held = Windowed::new(inside.held_only(), window.clone(), plan.start_s(), nominal_s);
         let mut blocks = Windowed::new(collector(&channels, nominal_s), window, plan.start_s(), nominal_s);
         let report = plan.stream(&mut [&mut overview, &mut held, &mut blocks], progress)?;
-        Ok((overview, held, blocks, report))
+        Ok(((overview, held, blocks), report))
     };
-    let mut found = read(&plan)?;
-    let measured_s = found.3.tau0_measured_s;
-    if plan.reads_angles() && (measured_s / nominal_s - 1.0).abs() > 1e-6 {
-        plan.set_increment_interval(measured_s);
-        found = read(&plan)?;
-    }
-    let (overview, held, blocks, mut report) = found;
+    let ((overview, held, blocks), mut report) = reading::read_at_measured_interval(&mut plan, &mut read)?;
     let (held, window) = held.finish();
     let (blocks, _) = blocks.finish();
     let tau0_s = tidy(report.tau0_measured_s);
-    let mut saturated = overview.saturated();
-    saturated.iter_mut().for_each(|f| crate::ingest::locate(&report.files, f));
-    evaluate::declare_rails(&mut report.integrity, saturated);
-    evaluate::tidy_integrity(&mut report.integrity, tau0_s, &[]);
+    reading::settle_integrity(&mut report, &overview, tau0_s, &[]);
     let blocks = blocks.finish(report.tau0_measured_s);
     let found = Found {
         channels,

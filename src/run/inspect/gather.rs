@@ -10,7 +10,8 @@ use crate::noise::envelope::EnvelopeAccumulator;
 use crate::noise::identification::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::recording::{Channel, Role, Sink, Slab};
-use crate::run::evaluate::{spectral, tidy};
+use crate::run::evaluate::spectral;
+use crate::run::reading::tidy;
 use crate::text::{Arg, Note};
 
 /// Time over which temperatures are smoothed, s.
