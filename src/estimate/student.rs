@@ -4,6 +4,7 @@
 //! The library that gives the probabilities inverts them by an iteration that need not end, so the inverse is here.
 
 use super::{normal_probability, normal_quantile};
+use crate::numeric::bracket::halved;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Degrees of freedom from which the expansion about the normal distribution is used: its error is below 1e-9 there.
@@ -41,17 +42,7 @@ pub(super) fn quantile(probability: f64, dof: f64) -> f64 {
     while upper_tail(high, dof) > tail && high < 1e300 {
         (low, high) = (high, 2.0 * high);
     }
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if upper_tail(middle, dof) > tail {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let (low, high) = halved(low, high, 80, |t| upper_tail(t, dof) > tail);
     let t = 0.5 * (low + high);
     if p < 0.5 { -t } else { t }
 }

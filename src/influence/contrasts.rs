@@ -5,6 +5,7 @@
 //! as there are contrasts, whatever C is (Viechtbauer 2007, "Q profile"; Paule and Mandel 1982 for the value).
 
 use crate::estimate::{Spread, chi_square_quantile, chi_square_tail, normal_probability};
+use crate::numeric::bracket::halved;
 use crate::numeric::reml::Combination;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -71,11 +72,8 @@ impl Contrasts {
         if total <= 0.0 || self.q(0.0) <= target {
             return 0.0;
         }
-        let (mut low, mut high) = (0.0, total / target.max(f64::MIN_POSITIVE));
-        for _ in 0..200 {
-            let middle = 0.5 * (low + high);
-            if self.q(middle) > target { low = middle } else { high = middle }
-        }
+        let most = total / target.max(f64::MIN_POSITIVE);
+        let (low, high) = halved(0.0, most, 200, |v| self.q(v) > target);
         0.5 * (low + high)
     }
 

@@ -9,6 +9,7 @@ use super::contrasts::{Contrasts, Means};
 use super::cut::Cut;
 use super::gls;
 use crate::estimate::{Spread, normal_probability};
+use crate::numeric::bracket::halved;
 use crate::numeric::reml;
 use nalgebra::{DMatrix, DVector};
 
@@ -84,11 +85,7 @@ fn mean(list: &[Possible]) -> (f64, Spread) {
         if below(0.0) >= share {
             return 0.0;
         }
-        let (mut low, mut high) = (0.0, most);
-        for _ in 0..100 {
-            let middle = 0.5 * (low + high);
-            if below(middle) < share { low = middle } else { high = middle }
-        }
+        let (low, high) = halved(0.0, most, 100, |x| below(x) < share);
         0.5 * (low + high)
     };
     let points = (-35..=35).map(|i| f64::from(i) / 10.0).map(|z| (z, at(normal_probability(z)))).collect();

@@ -1,5 +1,6 @@
 //! Numerical tools that know no gyro.
 
+pub mod bracket;
 pub(crate) mod compensated;
 pub mod cosine;
 pub mod decimal;

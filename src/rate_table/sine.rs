@@ -6,6 +6,7 @@
 use super::model::{slope_of, stands_out};
 use super::noise::Rows;
 use super::steps::Steps;
+use crate::numeric::bracket::least;
 use crate::numeric::reml::{self, Fit};
 use nalgebra::{DMatrix, DVector};
 
@@ -184,13 +185,7 @@ fn search(cost: impl Fn(f64) -> f64) -> f64 {
     let (from, to) = PHASES;
     let at = |i: usize| from * (to / from).powf(i as f64 / (GRID - 1) as f64);
     let best = (0..GRID).min_by(|a, b| cost(at(*a)).total_cmp(&cost(at(*b)))).unwrap_or(0);
-    let (mut low, mut high) = (at(best.saturating_sub(1)), at((best + 1).min(GRID - 1)));
-    let ratio = 0.5 * (5f64.sqrt() - 1.0);
-    for _ in 0..60 {
-        let (a, b) = (high - ratio * (high - low), low + ratio * (high - low));
-        if cost(a) < cost(b) { high = b } else { low = a }
-    }
-    0.5 * (low + high)
+    least(at(best.saturating_sub(1)), at((best + 1).min(GRID - 1)), 60, cost)
 }
 
 #[cfg(test)]

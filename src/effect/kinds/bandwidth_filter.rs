@@ -6,6 +6,7 @@ use crate::effect::{
 };
 use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode};
 use crate::noise::data::NoiseType;
+use crate::numeric::bracket::halved;
 use std::f64::consts::PI;
 
 pub struct BandwidthFilter;
@@ -92,12 +93,7 @@ fn of_samples(fitted: &[f64], dt_s: f64) -> Option<LowPass> {
 fn average_cutoff_hz(samples: usize, dt_s: f64) -> f64 {
     let n = samples as f64;
     let response = |x: f64| ((n * x).sin() / (n * x.sin())).powi(2);
-    let (mut low, mut high) = (1e-9, PI / (n + 0.5));
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if response(middle) > 0.5 { low = middle } else { high = middle }
-    }
-    low / (PI * dt_s)
+    halved(1e-9, PI / (n + 0.5), 60, |x| response(x) > 0.5).0 / (PI * dt_s)
 }
 
 /// The moving average whose cutoff is nearest.

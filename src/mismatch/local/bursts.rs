@@ -6,6 +6,7 @@
 use super::{Flat, cumulated, lattice_step, median, varies};
 use crate::mismatch::candidates::Tried;
 use crate::mismatch::problem::Problem;
+use crate::numeric::bracket::halved;
 use statrs::distribution::{Binomial, DiscreteCDF, Poisson};
 use statrs::function::beta::checked_beta_reg;
 
@@ -72,12 +73,7 @@ impl Scan {
 
     /// The ratio that a window of some length reaches with probability `p`.
     fn bound(&self, length: usize, p: f64) -> f64 {
-        let (mut low, mut high) = (0.0f64, 12.0f64);
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if self.p_value(length, middle.exp()) > p { low = middle } else { high = middle }
-        }
-        high.exp()
+        halved(0.0, 12.0, 40, |x| self.p_value(length, x.exp()) > p).1.exp()
     }
 }
 

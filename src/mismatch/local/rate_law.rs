@@ -1,6 +1,7 @@
 //! Variance that grows with the size of the input rate: σ² = σ₀² (1 + (ratio² − 1)(|Ω|/max)^q).
 
 use super::gamma::{Group, mean_square};
+use crate::numeric::bracket::{halved, least};
 
 /// The law, fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +29,7 @@ pub fn rate_law(groups: &[Group], sizes: &[f64], largest: f64) -> Option<RateLaw
         let value = |log_ratio: f64| likelihood(groups, &shares, log_ratio);
         let steps = (0..=40).map(|i| WIDEST * (f64::from(i) / 20.0 - 1.0));
         let start = steps.max_by(|a, b| value(*a).total_cmp(&value(*b)))?;
-        let at = maximum(value, start - 0.25, start + 0.25);
+        let at = least(start - 0.25, start + 0.25, 40, |x| -value(x));
         let top = value(at);
         // χ²₁ at 95 % is 3.841.
         let end = |side: f64| crossing(value, at, side * 2.0 * WIDEST, top - 0.5 * 3.841_459);
@@ -49,25 +50,11 @@ fn likelihood(groups: &[Group], shares: &[f64], log_ratio: f64) -> f64 {
     -0.5 * logs - 0.5 * dof * mean_square(&scaled).max(1e-300).ln()
 }
 
-/// Golden section.
-fn maximum(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    for _ in 0..40 {
-        let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        if value(a) > value(b) { high = b } else { low = a }
-    }
-    0.5 * (low + high)
-}
-
 /// Where the value falls to `down` between `at` and `at + reach`.
 fn crossing(value: impl Fn(f64) -> f64, at: f64, reach: f64, down: f64) -> f64 {
-    let (mut inside, mut outside) = (at, at + reach);
+    let outside = at + reach;
     if value(outside) > down {
         return outside;
     }
-    for _ in 0..50 {
-        let middle = 0.5 * (inside + outside);
-        if value(middle) > down { inside = middle } else { outside = middle }
-    }
-    inside
+    halved(at, outside, 50, |x| value(x) > down).0
 }
