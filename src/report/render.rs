@@ -14,6 +14,7 @@ use std::path::Path;
 /// The built-in templates by name.
 pub const TEMPLATES: &[(&str, &str)] = &[
     ("report.html", include_str!("../../templates/report.html")),
+    ("meta.html", include_str!("../../templates/meta.html")),
     ("top.html", include_str!("../../templates/top.html")),
     ("style.css", include_str!("../../templates/style.css")),
     ("head.html", include_str!("../../templates/head.html")),
