@@ -1,8 +1,8 @@
 //! Every effect of the catalogue, tried as an addition to a hypothesis.
 
 use super::hypothesis::{
-    CourseIn, Fit, Hypothesis, Normal, PartModes, columns, fit, kept, less_fixed, part_modes, residual,
-    subtract,
+    CourseIn, Fit, Hypothesis, Normal, PartModes, columns, fit, kept, less_fixed, part_modes,
+    part_modes_of_averages, residual, subtract,
 };
 use super::noise_fit::{self, Noise, SpectrumIn, base_index};
 use super::options::Options;
@@ -16,6 +16,9 @@ use std::borrow::Cow;
 
 /// Samples above which a course at the sample rate is tried by itself.
 const LONG: usize = 1 << 20;
+
+/// Gain of a fit over that of its shapes, the noise held, from which the noise stood for the course.
+const STOOD_FOR: f64 = 1.5;
 
 /// The two resolutions a problem is looked at.
 pub struct Scenes {
@@ -35,6 +38,14 @@ impl Scenes {
         match (pace, &self.slow) {
             (Pace::Slow, Some(slow)) => slow,
             _ => &self.full,
+        }
+    }
+
+    /// Modes of courses on the scene that one of some pace is looked for on.
+    pub fn part_modes(&self, pace: Pace, courses: &[CourseIn]) -> Vec<PartModes> {
+        match (pace, &self.slow) {
+            (Pace::Slow, Some(slow)) => part_modes_of_averages(slow, &self.full, courses),
+            _ => part_modes(&self.full, courses),
         }
     }
 }
@@ -140,8 +151,10 @@ struct Grounds<'a> {
 
 impl<'a> Grounds<'a> {
     fn new(before: &'a Tried, scenes: &'a Scenes) -> Grounds<'a> {
-        let slow = scenes.slow.as_ref().map(|s| Ground::new(before, s));
-        Grounds { full: Ground::new(before, &scenes.full), slow }
+        let courses = &before.hypothesis.courses;
+        let ground = |scene, pace| Ground::new(before, scene, scenes.part_modes(pace, courses));
+        let slow = scenes.slow.as_ref().map(|slow| ground(slow, Pace::Slow));
+        Grounds { full: ground(&scenes.full, Pace::Fast), slow }
     }
 
     fn of(&self, pace: Pace) -> &Ground<'a> {
@@ -166,8 +179,7 @@ struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    fn new(before: &'a Tried, scene: &'a Scene) -> Ground<'a> {
-        let parts = part_modes(scene, &before.hypothesis.courses);
+    fn new(before: &'a Tried, scene: &'a Scene, parts: Vec<PartModes>) -> Ground<'a> {
         let densities = before.hypothesis.noise.densities(scene);
         let powers = scene.powers(&densities);
         let data = less_fixed(scene, &parts);
@@ -262,11 +274,33 @@ fn try_course(
     let free_shape = free_numbers(course, &bounds);
     let parameters = before.parameters + parts.free.len() + parts.beside.len() + free_shape;
     let odds = course.odds(&shape, &scene.drivers) + own_odds(effect);
-    let mut hypothesis = before.hypothesis.clone();
-    hypothesis.courses.push(CourseIn { effect, shape, coefficients: vec![] });
+    let with = |shape: &[f64], noise: &Noise| {
+        let mut hypothesis = Hypothesis { noise: noise.clone(), ..before.hypothesis.clone() };
+        hypothesis.courses.push(CourseIn { effect, shape: shape.to_vec(), coefficients: vec![] });
+        hypothesis
+    };
+    let mut hypothesis = with(&shape, &before.hypothesis.noise);
     // The noise, fitted anew, can give at most about as much again.
     let worth = 4.0 * gain - (parameters - before.parameters) as f64 * (scenes.rows as f64).ln();
-    let fit = if worth > 0.0 { fit(&mut hypothesis, &scenes.full) } else { before.fit.raised(gain) };
+    let fit_of = |hypothesis: &mut Hypothesis| fit(hypothesis, &scenes.full);
+    let mut fit = if worth > 0.0 { fit_of(&mut hypothesis) } else { before.fit.raised(gain) };
+    // Noise that had to stand for the course weighed the samples wrongly while its shape was sought.
+    if !shape.is_empty() && fit.log_likelihood - before.fit.log_likelihood > STOOD_FOR * gain {
+        let quieter = Tried {
+            hypothesis: Hypothesis { noise: hypothesis.noise.clone(), ..before.hypothesis.clone() },
+            ..before.clone()
+        };
+        let ground = Ground::new(&quieter, scene, ground.parts.clone());
+        let columns = ground.columns(Some(course));
+        let normal = Normal::new(&columns, &ground.data, &ground.powers);
+        let search = ShapeSearch { course, ground: &ground, columns, normal };
+        let (shape, _) = refine(&shape, &bounds, &steps, 60, |x| search.gain(x));
+        let mut again = with(&shape, &hypothesis.noise);
+        let better = fit_of(&mut again);
+        if better.log_likelihood > fit.log_likelihood {
+            (hypothesis, fit) = (again, better);
+        }
+    }
     let tried = Tried { hypothesis, fit, parameters, odds: before.odds + odds };
     Some(rated(effect, tried, before, starts.looked, scenes.rows))
 }

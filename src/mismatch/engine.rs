@@ -17,7 +17,7 @@ use super::regular::{Irregular, Regular};
 use super::samples::{self, Named};
 use super::select::{self, Selection, Slot};
 use crate::claim::Claim;
-use crate::effect::{Column, EFFECTS, Effect, Model, number};
+use crate::effect::{Column, Domain, EFFECTS, Effect, Model, number};
 use crate::series::Series;
 use crate::text::Note;
 use std::collections::BTreeMap;
@@ -49,13 +49,15 @@ pub fn explain(
     let before = tests(&problem, &base, problem.level.as_deref());
     let mut held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
-    let filtered = filtered::behind(&problem, &base, options);
-    let filtered = filtered.filter(|f| problem.see_behind(&base, f)).map(|f| refitted(&f, &problem));
-    if filtered.is_some() {
+    // What the table does at low frequencies looks like a filter of the noise while no course says so.
+    let mut moved = with_table_courses(&base, &problem.scenes, options);
+    let filtered = filtered::behind(&problem, &moved, options);
+    let filtered = filtered.filter(|f| problem.see_behind(&moved, f)).map(|f| refitted(&f, &problem));
+    if let Some(filtered) = filtered {
         base = refitted(&base, &problem);
         held_base = Halves::new(&problem).judge(&base);
+        moved = with_table_courses(&filtered, &problem.scenes, options);
     }
-    let moved = moved(filtered.as_ref().unwrap_or(&base), &problem.scenes, options);
     let mut start = take_bursts(&mut problem, &base, &moved, &mut found, options);
     if problem.level.is_none() {
         let moved = moved_again(&moved, &start, &problem);
@@ -178,20 +180,25 @@ impl Found {
 
 /// What single samples are judged on: the claim with the courses of a moving table that it leaves out. Their corners,
 /// as of a delay, look like bursts and like a changing level; a smooth course does not.
-fn moved(base: &Tried, scenes: &Scenes, options: &Options) -> Tried {
+fn with_table_courses(base: &Tried, scenes: &Scenes, options: &Options) -> Tried {
     const COURSES: usize = 2;
     let table = [Column::TableRate, Column::TableAngle, Column::OuterRate];
-    let follows = |e: &dyn Effect| options.allows(e.kind()) && e.needs().iter().any(|c| table.contains(c));
-    if !EFFECTS
-        .iter()
-        .any(|e| follows(*e) && e.needs().iter().all(|c| scenes.full.drivers.column(*c).is_some()))
-    {
+    // A delay of the claimed mean needs no column of its own, but moves only with the table.
+    let delays = |e: &dyn Effect| e.needs().is_empty() && e.domain() == Domain::Lag;
+    let follows = |e: &dyn Effect| {
+        options.allows(e.kind()) && (e.needs().iter().any(|c| table.contains(c)) || delays(e))
+    };
+    let drivers = &scenes.full.drivers;
+    let applies = |e: &dyn Effect| {
+        let there = e.needs().iter().all(|c| drivers.column(*c).is_some());
+        follows(e) && there && matches!(e.model(), Model::Course(c) if c.applies(drivers))
+    };
+    if !EFFECTS.iter().any(|e| applies(*e)) {
         return base.clone();
     }
     let mut out = base.clone();
     for _ in 0..COURSES {
-        let candidates =
-            candidates::among(&out, scenes, |e| follows(e) && matches!(e.model(), Model::Course(_)));
+        let candidates = candidates::among(&out, scenes, applies);
         let family = EFFECTS.len() as f64;
         match candidates.into_iter().next() {
             Some(leader) if select::passes(&leader, family, options.alpha) => out = leader.tried,

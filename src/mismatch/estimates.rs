@@ -3,7 +3,7 @@
 use super::candidates::{Scenes, Tried};
 use super::contribution::summed;
 use super::finding::ParameterValue;
-use super::hypothesis::{CourseIn, Normal, PartModes, kept, part_modes};
+use super::hypothesis::{CourseIn, Normal, PartModes, kept};
 use super::instant;
 use super::noise_fit::Which;
 use super::process;
@@ -68,7 +68,7 @@ impl<'a> Placed<'a> {
     fn new(course: &'static dyn Course, index: usize, best: &'a Tried, scenes: &'a Scenes) -> Placed<'a> {
         let scene = scenes.of(course.pace());
         let powers = scene.powers(&best.hypothesis.noise.densities(scene));
-        let parts = part_modes(scene, &best.hypothesis.courses);
+        let parts = scenes.part_modes(course.pace(), &best.hypothesis.courses);
         let mut data = scene.modes.clone();
         let mut columns: Vec<(Vec<f64>, f64)> =
             kept(scene, &best.hypothesis.courses).iter().map(|n| (n.modes.clone(), n.deviation)).collect();

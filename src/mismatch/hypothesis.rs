@@ -3,7 +3,7 @@
 
 use super::noise_fit::{self, Noise, NoiseFit};
 use super::scene::{NuisanceColumn, Scene};
-use crate::effect::{Course, Effect, Model, Parts};
+use crate::effect::{Course, Effect, Model, Pace, Parts, averages};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -273,6 +273,30 @@ pub fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
 pub fn part_modes(scene: &Scene, courses: &[CourseIn]) -> Vec<PartModes> {
     let one = |c: &CourseIn| {
         c.course().map(|x| PartModes::of(x.parts(&c.shape, &scene.drivers), scene)).unwrap_or_default()
+    };
+    courses.iter().map(one).collect()
+}
+
+/// As [`part_modes`] on a scene of averages. A fast course is worked out sample by sample and averaged then: that of averaged
+/// columns is another one.
+pub fn part_modes_of_averages(scene: &Scene, full: &Scene, courses: &[CourseIn]) -> Vec<PartModes> {
+    let samples_each = scene.drivers.averaged / full.drivers.averaged.max(1);
+    let averaged = |column: Vec<f64>| {
+        let mut means = averages(&column, samples_each);
+        means.truncate(scene.length);
+        means
+    };
+    let all = |columns: Vec<Vec<f64>>| columns.into_iter().map(averaged).collect();
+    let one = |c: &CourseIn| {
+        let Some(course) = c.course() else { return PartModes::default() };
+        let parts = match course.pace() {
+            Pace::Slow => course.parts(&c.shape, &scene.drivers),
+            Pace::Fast => {
+                let parts = course.parts(&c.shape, &full.drivers);
+                Parts { fixed: parts.fixed.map(averaged), free: all(parts.free), beside: all(parts.beside) }
+            }
+        };
+        PartModes::of(parts, scene)
     };
     courses.iter().map(one).collect()
 }

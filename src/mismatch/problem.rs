@@ -43,7 +43,7 @@ pub struct Problem {
 impl Problem {
     /// Brings a recording and a claim together.
     pub fn new(regular: &Regular, claim: &Claim) -> Problem {
-        let drivers = Arc::new(drivers(regular, claim));
+        let mut drivers = drivers(regular, claim);
         let mean = drivers.claimed_mean();
         let mut residual: Vec<f64> = regular.rate.iter().zip(&mean).map(|(y, m)| y - m).collect();
         for stated in &claim.effects {
@@ -56,6 +56,10 @@ impl Problem {
             }
         }
         let mut usable = regular.grid.present.clone();
+        // What follows the sensed rate follows the bias that the gyro has, of which the claim knows only so much.
+        let seen = residual.iter().zip(&usable).filter(|(_, u)| **u).map(|(r, _)| r);
+        drivers.claim.bias_deg_h = seen.sum::<f64>() / usable.iter().filter(|u| **u).count().max(1) as f64;
+        let drivers = Arc::new(drivers);
         let level = level(claim, &drivers);
         let mut claim = claim.clone();
         if let Some((_, rms)) = &level {

@@ -9,9 +9,15 @@ pub(super) fn moves(drivers: &Drivers) -> bool {
     (rate || angle) && drivers.samples >= 32
 }
 
-/// A series at a place between its samples; `None` outside. A cubic where the series is smooth on the scale of its
-/// samples, else a straight line: that is exact for means over the sample interval of a rate that changes at the edges
-/// of samples.
+/// Fourth differences over second ones, and so on, above which a series is not smooth on the scale of its samples: a corner
+/// has twice, a step three times.
+const SMOOTH: f64 = 1.5;
+/// Even differences that are used at most: the eighth.
+const LEVELS: usize = 4;
+
+/// A series at a place between its samples; `None` outside. A straight line with Everett's corrections as far as the series
+/// is smooth on the scale of its samples: the line alone is exact for means over the sample interval of a rate that
+/// changes at the edges of samples.
 fn between(series: &[f64], at: f64) -> Option<f64> {
     let last = series.len().checked_sub(1)?;
     if !(at >= 0.0 && at <= last as f64) {
@@ -19,21 +25,53 @@ fn between(series: &[f64], at: f64) -> Option<f64> {
     }
     let i = (at as usize).min(last.saturating_sub(1));
     let (a, b) = (series[i], *series.get(i + 1)?);
-    let x = at - i as f64;
-    let line = a + (b - a) * x;
-    if i < 2 || i + 3 > last {
-        return Some(line);
+    let (x, y) = (at - i as f64, (i + 1) as f64 - at);
+    let line = y * a + x * b;
+    let reach = (LEVELS + 1).min(i).min((last - i).saturating_sub(1));
+    if reach < 2 {
+        return Some(at_an_end(series, at).unwrap_or(line));
     }
-    let s = &series[i - 2..=i + 3];
-    let second: [f64; 4] = std::array::from_fn(|k| s[k] - 2.0 * s[k + 1] + s[k + 2]);
-    let largest = second.iter().map(|d| d.abs()).fold(0.0, f64::max);
-    let fourth = (0..2).map(|k| (second[k] - 2.0 * second[k + 1] + second[k + 2]).abs()).fold(0.0, f64::max);
-    if fourth >= 0.5 * largest {
-        return Some(line);
+    // Differences of even order; those at the two samples about the place stand in the middle.
+    let mut row = [0.0; 2 * LEVELS + 4];
+    let count = 2 * reach + 2;
+    row[..count].copy_from_slice(&series[i - reach..i + reach + 2]);
+    let differ = |row: &mut [f64], count: usize| {
+        for k in 0..count - 2 {
+            row[k] = row[k] - 2.0 * row[k + 1] + row[k + 2];
+        }
+    };
+    let size = |row: &[f64], middle: usize| row[middle].abs().max(row[middle + 1].abs());
+    differ(&mut row, count);
+    let (mut value, mut near, mut far) = (line, y, x);
+    for level in 1..reach {
+        let middle = reach - level;
+        let (before, after, largest) = (row[middle], row[middle + 1], size(&row, middle));
+        differ(&mut row, 2 * middle + 2);
+        if size(&row, middle - 1) >= SMOOTH * largest {
+            break;
+        }
+        let (square, order) = ((level * level) as f64, (2 * level * (2 * level + 1)) as f64);
+        (near, far) = (near * (y * y - square) / order, far * (x * x - square) / order);
+        value += near * before + far * after;
     }
-    // Lagrange through four points, written as a correction of the line.
-    let (left, right) = (second[1], second[2]);
-    Some(line - x * (1.0 - x) / 6.0 * (left * (2.0 - x) + right * (1.0 + x)))
+    Some(value)
+}
+
+/// As [`between`] within two samples of an end: the cubic through the four samples there, where it is smooth.
+fn at_an_end(series: &[f64], at: f64) -> Option<f64> {
+    let last = series.len().checked_sub(1)?;
+    let from_end = at > 0.5 * last as f64;
+    let sample = |k: usize| series.get(if from_end { last.checked_sub(k)? } else { k }).copied();
+    let s = [sample(0)?, sample(1)?, sample(2)?, sample(3)?, sample(4)?];
+    let x = if from_end { last as f64 - at } else { at };
+    let second: [f64; 3] = std::array::from_fn(|k| s[k] - 2.0 * s[k + 1] + s[k + 2]);
+    let fourth = (second[0] - 2.0 * second[1] + second[2]).abs();
+    let smooth = fourth < SMOOTH * second[0].abs().max(second[1].abs());
+    let newton = || {
+        let cubic = x * (x - 1.0) * (x - 2.0) / 6.0 * (second[1] - second[0]);
+        s[0] + x * (s[1] - s[0]) + x * (x - 1.0) / 2.0 * second[0] + cubic
+    };
+    smooth.then(newton)
 }
 
 /// `m(t − lag) − m(t)` for a lag in samples that may differ from sample to sample; zero at samples whose driver lies
@@ -169,10 +207,16 @@ mod tests {
         let wave: Vec<f64> = (0..400).map(|i| 36_000.0 * (0.063 * f64::from(i)).sin()).collect();
         let (course, lost) = shifted(&wave, |_| 0.5);
         assert_eq!(lost.iter().filter(|l| **l).count(), 1);
-        let worst = (3..397)
-            .map(|i| (course[i] + wave[i] - 36_000.0 * (0.063 * (i as f64 - 0.5)).sin()).abs())
-            .fold(0.0, f64::max);
-        assert!(worst < 0.02, "{worst}");
+        let off = |i: usize| (course[i] + wave[i] - 36_000.0 * (0.063 * (i as f64 - 0.5)).sin()).abs();
+        let worst = |range: std::ops::Range<usize>| range.map(off).fold(0.0, f64::max);
+        assert!(worst(6..394) < 1e-6, "{}", worst(6..394));
+        // A cubic at the ends, where a line would be off by 18.
+        assert!(worst(1..400) < 0.5, "{}", worst(1..400));
+        // Seven samples a period.
+        let wave: Vec<f64> = (0..400).map(|i| 36_000.0 * (0.9 * f64::from(i)).sin()).collect();
+        let (course, _) = shifted(&wave, |_| 0.03);
+        let off = |i: usize| (course[i] + wave[i] - 36_000.0 * (0.9 * (i as f64 - 0.03)).sin()).abs();
+        assert!((6..394).map(off).fold(0.0, f64::max) < 2.0);
         let step: Vec<f64> = (0..60).map(|i| if i < 30 { 0.0 } else { 100.0 }).collect();
         let (course, _) = shifted(&step, |_| 0.25);
         // A quarter of the sample after the edge still shows the old level.

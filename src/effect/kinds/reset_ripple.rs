@@ -165,10 +165,10 @@ impl Course for ResetRipple {
     fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
         let n = drivers.samples;
         let none = Starts { shapes: vec![], looked: 1.0 };
-        if n < 64 || look.score.len() != n || look.powers.len() != n || look.modes.len() != n {
+        if n < 64 || look.score.len() != n || look.powers.len() != n {
             return none;
         }
-        let fitted = drivers.claim.bias_deg_h + look.modes[0] / (n as f64).sqrt();
+        let fitted = drivers.claim.bias_deg_h;
         // The mean of slow noise is known no better than its slowest waves are small.
         let deviation = (look.powers[1] / n as f64).sqrt();
         let Some(angles) = sensed(fitted, drivers) else { return none };
