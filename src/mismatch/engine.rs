@@ -7,7 +7,7 @@ use super::departures::{self, Departure};
 use super::filtered;
 use super::heldout::Halves;
 use super::hypothesis::fit;
-use super::lattice::{self, Lattice};
+use super::lattice::Lattice;
 use super::local;
 use super::noise_fit::SpectrumIn;
 use super::options::{Options, Progress};
@@ -119,36 +119,55 @@ fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Op
     let as_effect = claim.effects.iter().filter(|e| e.effect.kind() == "quantization");
     let as_effect = as_effect.filter_map(|e| number(&e.values, "lsb_arcsec")).fold(0.0, f64::max);
     let stated = claim.quantization_lsb_arcsec.max(as_effect);
-    let lsb = if stated > 0.0 { Some(stated) } else { problem.scenes.lattice_arcsec };
+    let lattice = problem.lattice.filter(|_| options.allows("quantization"));
+    let lsb = if stated > 0.0 { Some(stated) } else { lattice.map(|l| l.increment_arcsec) };
     let m = lsb.map_or(1, |lsb| coarse::group(lsb, &problem.claim, problem.residual.len()));
-    let Some(lsb) = lsb.filter(|_| m > 1) else { return problem };
     let mut claim = claim.clone();
-    if stated <= 0.0 {
-        if !options.allows("quantization") {
-            return problem;
-        }
-        claim.quantization_lsb_arcsec = lsb;
-        claim.noise.q = lsb / 12f64.sqrt();
-        let with = Problem::new(regular, &claim).baseline();
-        let gain = with.fit.log_likelihood - problem.baseline().fit.log_likelihood;
-        match samples::worth(
-            gain,
-            1,
-            crate::estimate::chi_square_tail(2.0 * gain, 1.0),
-            problem.scenes.rows,
-            options.alpha,
-        ) {
-            Some(delta_bic) => {
-                let lattice = lattice::of(regular)
-                    .unwrap_or(Lattice { increment_arcsec: lsb, open_arcsec: 1e-6 * lsb });
-                found.named.extend(samples::quantization(lattice, gain, delta_bic, &problem));
-            }
+    let unlike = lattice.filter(|l| (l.increment_arcsec - stated).abs() > 0.01 * stated);
+    if let Some(lattice) = unlike.filter(|_| m == 1 || stated <= 0.0) {
+        claim.quantization_lsb_arcsec = lattice.increment_arcsec;
+        claim.noise.q = lattice.increment_arcsec / 12f64.sqrt();
+        let with = Problem::new(regular, &claim);
+        match as_rounded(lattice, &problem, &with, m > 1, options) {
+            Some(named) => found.named.push(named),
             None => return problem,
         }
+        if m == 1 {
+            return with;
+        }
+    }
+    if m == 1 {
+        return problem;
     }
     claim.sample_rate_hz = problem.claim.sample_rate_hz / m as f64;
     let expected = |r: &Regular| drivers(r, &claim).claimed_mean();
     Problem::new(&coarse::about_the_claim(regular, m, expected), &claim)
+}
+
+/// Rounding that the claim does not state, as a finding. In a record that `needs` it known before anything else the
+/// spectrum decides; elsewhere the spectrum will have its say among the other effects, and the values decide where it would
+/// say too little. `with` is the problem with the rounding in the claim.
+fn as_rounded(
+    lattice: Lattice,
+    problem: &Problem,
+    with: &Problem,
+    needed: bool,
+    options: &Options,
+) -> Option<Named> {
+    let rows = problem.scenes.rows;
+    let gain = with.baseline().fit.log_likelihood - problem.baseline().fit.log_likelihood;
+    let chance = |gain: f64| crate::estimate::chi_square_tail(2.0 * gain.max(0.0), 1.0);
+    let worth = |total: f64| samples::worth(total, 1, chance(total), rows, options.alpha);
+    let by_spectrum = worth(gain);
+    if needed {
+        return samples::quantization(lattice, gain, by_spectrum?, chance(gain), problem);
+    }
+    let dt_s = problem.grid.dt_s;
+    let by_values = gain + lattice.gain(rows, 60.0 * problem.claim.noise.n * dt_s.sqrt());
+    if by_spectrum.is_some() || gain <= 0.0 {
+        return None;
+    }
+    samples::quantization(lattice, gain, worth(by_values)?, chance(by_values), problem)
 }
 
 /// What was found in single samples.

@@ -14,6 +14,20 @@ pub struct Lattice {
     pub increment_arcsec: f64,
     /// What the digits that the file writes leave open of it, either way, arcsec.
     pub open_arcsec: f64,
+    /// Values that the digits of the file could write in one step.
+    pub digits_in_step: f64,
+}
+
+impl Lattice {
+    /// Least variance of the rounding over that of the noise of a sample from which the lattice is more than digits.
+    const COARSE: f64 = 0.01;
+
+    /// Log-likelihood of so many values on the lattice over values that could be any which the file can write; nothing for a
+    /// lattice so fine beside white noise of some deviation that a simulation may leave it out.
+    pub fn gain(&self, rows: usize, noise_arcsec: f64) -> f64 {
+        let fine = self.increment_arcsec.powi(2) / 12.0 < Lattice::COARSE * noise_arcsec.powi(2);
+        if fine { 0.0 } else { rows as f64 * self.digits_in_step.max(1.0).ln() }
+    }
 }
 
 /// The lattice that the values lie on. `None` where there is none, or where it is no more than the last digit that the
@@ -67,13 +81,17 @@ pub fn of(regular: &Regular) -> Option<Lattice> {
     if share <= 0.99 || distinct >= 2000.0 {
         return None;
     }
-    let (step, open) = by_levels(&values, step);
+    let large: Vec<f64> = values.iter().copied().filter(|v| v.abs() > 0.1 * largest).collect();
+    // Digits that nothing is known of are those that a number holds.
+    let digit = last_digit(large.iter()).unwrap_or(1e-15 * largest);
+    let (step, open) = by_levels(&values, step, digit);
     let dt_s = regular.grid.dt_s;
-    Some(Lattice { increment_arcsec: step * dt_s, open_arcsec: open * dt_s })
+    Some(Lattice { increment_arcsec: step * dt_s, open_arcsec: open * dt_s, digits_in_step: step / digit })
 }
 
-/// The step as the slope of the levels that occur, each of which was rounded once, and what their rounding leaves open.
-fn by_levels(values: &[f64], step: f64) -> (f64, f64) {
+/// The step as the slope of the levels that occur, each of which was rounded once to the last digit of the file, and what
+/// their rounding leaves open.
+fn by_levels(values: &[f64], step: f64, digit: f64) -> (f64, f64) {
     let first = values.first().copied().unwrap_or(0.0);
     let levels: BTreeMap<i64, f64> =
         values.iter().map(|v| (((v - first) / step).round() as i64, *v)).collect();
@@ -90,7 +108,7 @@ fn by_levels(values: &[f64], step: f64) -> (f64, f64) {
     // Errors of rounding are bounded: no slope that differs by more keeps within twice the largest of them. A few levels can be
     // rounded alike, and then a digit of the file is what they leave open.
     let span = levels.keys().last().zip(levels.keys().next()).map_or(1, |(a, b)| a - b) as f64;
-    let open = (4.0 * largest).max(last_digit(levels.values()).unwrap_or(0.0)) / span;
+    let open = (4.0 * largest).max(digit) / span;
     (slope, open.max(1e-9 * slope.abs()))
 }
 
@@ -105,14 +123,33 @@ fn last_digit<'a>(values: impl Iterator<Item = &'a f64> + Clone) -> Option<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mismatch::regular::Grid;
 
     #[test]
     fn a_few_levels_leave_a_digit_of_the_file_open() {
         // Steps of 0.2912695 deg/h, written with five decimals: each of these levels is a multiple of 0.29127.
         let levels: Vec<f64> = (-5..=5).map(|k| (f64::from(k) * 0.291_269_5 * 1e5).round() / 1e5).collect();
-        let (step, open) = by_levels(&levels, 0.29127);
+        let (step, open) = by_levels(&levels, 0.29127, 1e-5);
         assert!((step - 0.291_269_5).abs() <= open, "{step} ± {open}");
         assert!(open < 2e-6, "{open}");
+    }
+
+    #[test]
+    fn digits_of_the_file_are_no_lattice_and_coarse_steps_are() {
+        let dt_s = 0.5;
+        let of = |step: f64, digit: f64| {
+            let value = |i: u64| {
+                let x = ((i * 7919) % 1009) as f64 / 1009.0 + ((i * 104_729) % 997) as f64 / 997.0 - 1.0;
+                ((4.0 * x / step).round() * step / digit).round() * digit
+            };
+            let rate: Vec<f64> = (0..4000).map(value).collect();
+            let grid = Grid { dt_s, start_s: 0.0, present: vec![true; 4000], gaps: vec![], disordered: 0 };
+            super::of(&Regular { grid, rate, columns: std::collections::BTreeMap::new() }).expect("a lattice")
+        };
+        assert!(of(0.1, 0.1).gain(4000, 0.5) < 1e-6);
+        let coarse = of(0.291_27, 1e-5);
+        assert!(coarse.gain(4000, 0.5) > 4000.0 * 29_000f64.ln() && coarse.gain(4000, 5.0) == 0.0);
+        assert!((coarse.increment_arcsec / dt_s - 0.291_27).abs() <= coarse.open_arcsec / dt_s);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::candidates::{Scenes, Tried};
 use super::hypothesis::{Hypothesis, fit};
 use super::impute;
-use super::lattice;
+use super::lattice::{self, Lattice};
 use super::noise_fit::{Noise, SpectrumIn};
 use super::regular::{Grid, Regular, fast_length};
 use super::scene::{Scene, smoothed};
@@ -34,6 +34,8 @@ pub struct Problem {
     pub usable: Vec<bool>,
     /// Level of the noise that the claim states, of each sample over that of the record.
     pub level: Option<Vec<f64>>,
+    /// The lattice that the values lie on.
+    pub lattice: Option<Lattice>,
     /// The filters, stated or found, for which the ends of the record were drawn.
     filters: Vec<SpectrumIn>,
     /// Both resolutions.
@@ -65,7 +67,8 @@ impl Problem {
         if let Some((_, rms)) = &level {
             claim.noise = scaled(claim.noise, *rms);
         }
-        let lattice_arcsec = lattice::of(regular).map(|l| l.increment_arcsec);
+        let lattice = lattice::of(regular);
+        let lattice_arcsec = lattice.map(|l| l.increment_arcsec);
         let rows = usable.iter().filter(|u| **u).count();
         let noise = Noise::of(&claim);
         let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
@@ -75,7 +78,17 @@ impl Problem {
         impute::fill(&mut residual, &usable, &powers, SEED);
         let scenes = scenes(&drivers, &claim, &residual, &filters, lattice_arcsec, rows);
         let level = level.map(|(level, _)| level);
-        Problem { grid: regular.grid.clone(), claim, drivers, residual, usable, level, filters, scenes }
+        Problem {
+            grid: regular.grid.clone(),
+            claim,
+            drivers,
+            residual,
+            usable,
+            level,
+            lattice,
+            filters,
+            scenes,
+        }
     }
 
     /// Size of the jumps (deg/h) and mean time at a level (s) where the claim states jumps between two levels without

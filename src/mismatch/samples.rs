@@ -43,7 +43,13 @@ fn value(value: f64, unit: &str, ci95: [f64; 2]) -> ParameterValue {
 }
 
 /// Rounding in steps that the values themselves show, as a finding.
-pub fn quantization(lattice: Lattice, gain: f64, delta_bic: f64, problem: &Problem) -> Option<Named> {
+pub fn quantization(
+    lattice: Lattice,
+    gain: f64,
+    delta_bic: f64,
+    p_value: f64,
+    problem: &Problem,
+) -> Option<Named> {
     let (lsb_arcsec, open) = (lattice.increment_arcsec, lattice.open_arcsec);
     let ci95 = [lsb_arcsec - open, lsb_arcsec + open];
     let step = lsb_arcsec / problem.grid.dt_s;
@@ -62,7 +68,7 @@ pub fn quantization(lattice: Lattice, gain: f64, delta_bic: f64, problem: &Probl
         equivalents: vec![],
         places: vec![Place { domain: Domain::Amplitude, from: 0.0, to: step }],
         delta_bic,
-        p_value: crate::estimate::chi_square_tail(2.0 * gain, 1.0),
+        p_value,
         improvement: None,
         local_gain: gain,
     })
