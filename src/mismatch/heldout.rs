@@ -1,9 +1,9 @@
-//! Held-out figures: ten blocks of equal time, the parameters from blocks 1, 3, 5, 7, 9, judged on 2, 4, 6, 8, 10. Each
-//! block is looked at about its own mean.
+//! Held-out figures: ten blocks of equal time, the parameters from blocks 1, 3, 5, 7, 9, judged on 2, 4, 6, 8, 10. The
+//! likelihood of each block is that about its own mean, the rms is about the mean of all that are held out.
 
 use super::candidates::Tried;
 use super::hypothesis::{
-    Hypothesis, LeastSquares, Normal, PartModes, columns, fit, kept, less_fixed, part_modes,
+    Hypothesis, LeastSquares, Normal, PartModes, columns, fit, kept, less_fixed, part_modes, subtract,
 };
 use super::noise_fit::whittle;
 use super::problem::Problem;
@@ -29,6 +29,8 @@ pub struct HeldOut {
 pub struct Halves {
     train: Scene,
     test: Scene,
+    /// Mean residual of each block of the second, deg/h.
+    means: Vec<f64>,
     bin: usize,
 }
 
@@ -43,7 +45,9 @@ impl Halves {
             Scene::of_blocks(drivers, &problem.residual, &deviations, blocks, length)
                 .with_states(&problem.claim)
         };
-        Halves { train: scene(0), test: scene(1), bin: (length / BINS).max(1) }
+        let test = scene(1);
+        let means = test.block_means(&problem.residual);
+        Halves { train: scene(0), test, means, bin: (length / BINS).max(1) }
     }
 
     /// Length of the bins, s.
@@ -56,33 +60,38 @@ impl Halves {
         let mut hypothesis = tried.hypothesis.clone();
         refine_shapes(&mut hypothesis, &self.train);
         let trained = fit(&mut hypothesis, &self.train);
-        let mut residual = self.test.modes.clone();
+        let (mut residual, mut means) = (self.test.modes.clone(), self.means.clone());
         let known = known(&trained.mean, &tried.fit.mean);
         let mut coefficients = known.iter();
-        let mut subtract = |column: &[f64], c: f64| {
-            residual.iter_mut().zip(column).for_each(|(r, z)| *r -= c * z);
+        let mut coefficient = || coefficients.next().copied().unwrap_or(0.0);
+        let mut take = |modes: &[f64], block_means: &[f64], c: f64| {
+            subtract(&mut residual, modes, c);
+            subtract(&mut means, block_means, c);
         };
         for nuisance in kept(&self.test, &hypothesis.courses) {
-            subtract(&nuisance.modes, coefficients.next().copied().unwrap_or(0.0));
+            take(&nuisance.modes, &nuisance.block_means, coefficient());
         }
-        for part in part_modes(&self.test, &hypothesis.courses) {
-            if let Some(fixed) = &part.fixed {
-                subtract(fixed, 1.0);
+        for course in &hypothesis.courses {
+            let Some(model) = course.course() else { continue };
+            let parts = model.parts(&course.shape, &self.test.drivers);
+            if let Some(fixed) = &parts.fixed {
+                take(&self.test.transform(fixed), &self.test.block_means(fixed), 1.0);
             }
-            for column in part.free.iter().chain(&part.beside) {
-                subtract(column, coefficients.next().copied().unwrap_or(0.0));
+            for column in parts.free.iter().chain(&parts.beside) {
+                take(&self.test.transform(column), &self.test.block_means(column), coefficient());
             }
         }
         let densities = hypothesis.noise.densities(&self.test);
         let log_likelihood = whittle(&self.test, &self.test.observed(&residual), &densities);
-        HeldOut { log_likelihood, rms_deg_h: self.rms(&residual) }
+        HeldOut { log_likelihood, rms_deg_h: self.rms(&residual, &means) }
     }
 
-    fn rms(&self, residual: &[f64]) -> f64 {
-        let bins: Vec<f64> = residual
-            .chunks_exact(self.test.length)
-            .flat_map(|block| crate::effect::averages(&inverse_dct2(block), self.bin))
-            .collect();
+    fn rms(&self, residual: &[f64], means: &[f64]) -> f64 {
+        let blocks = residual.chunks_exact(self.test.length).zip(means);
+        let in_bins = |(block, mean): (&[f64], &f64)| -> Vec<f64> {
+            crate::effect::averages(&inverse_dct2(block), self.bin).into_iter().map(|b| b + mean).collect()
+        };
+        let bins: Vec<f64> = blocks.flat_map(in_bins).collect();
         let n = bins.len().max(1) as f64;
         let mean = bins.iter().sum::<f64>() / n;
         (bins.iter().map(|b| (b - mean).powi(2)).sum::<f64>() / n).sqrt()

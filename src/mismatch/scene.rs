@@ -26,6 +26,8 @@ pub struct NuisanceColumn {
     pub nuisance: Nuisance,
     /// Its modes, deg/h for a coefficient of 1.
     pub modes: Vec<f64>,
+    /// Its mean in each block, deg/h for a coefficient of 1.
+    pub block_means: Vec<f64>,
     /// Stated standard deviation of the coefficient.
     pub deviation: f64,
 }
@@ -121,7 +123,8 @@ impl Scene {
             .filter_map(|(nuisance, deviation)| {
                 let column = nuisance_column(*nuisance, &drivers)?;
                 let modes = transform(&column, &blocks, length);
-                Some(NuisanceColumn { nuisance: *nuisance, modes, deviation: *deviation })
+                let block_means = block_means(&column, &blocks, length);
+                Some(NuisanceColumn { nuisance: *nuisance, modes, block_means, deviation: *deviation })
             })
             .collect();
         Scene { drivers, modes, blocks, length, bins, units, nuisances }
@@ -132,9 +135,12 @@ impl Scene {
         for stated in &claim.effects {
             let Model::Course(course) = stated.effect.model() else { continue };
             for column in course.beside(&stated.values, &self.drivers) {
-                let modes = self.transform(&column);
-                let deviation = f64::INFINITY;
-                self.nuisances.push(NuisanceColumn { nuisance: Nuisance::InitialState, modes, deviation });
+                self.nuisances.push(NuisanceColumn {
+                    nuisance: Nuisance::InitialState,
+                    modes: self.transform(&column),
+                    block_means: self.block_means(&column),
+                    deviation: f64::INFINITY,
+                });
             }
         }
         self
@@ -181,6 +187,11 @@ impl Scene {
     /// Cosine modes of a series on the grid of the drivers, block after block.
     pub fn transform(&self, series: &[f64]) -> Vec<f64> {
         transform(series, &self.blocks, self.length)
+    }
+
+    /// Mean of a series on the grid of the drivers in each block.
+    pub fn block_means(&self, series: &[f64]) -> Vec<f64> {
+        block_means(series, &self.blocks, self.length)
     }
 
     /// Mean square of modes in each bin as a density, (deg/h)²/Hz.
@@ -230,6 +241,13 @@ fn transform(series: &[f64], blocks: &[usize], length: usize) -> Vec<f64> {
         out.extend(modes);
     }
     out
+}
+
+fn block_means(series: &[f64], blocks: &[usize], length: usize) -> Vec<f64> {
+    let mean = |first: &usize| {
+        series.get(*first..first + length).unwrap_or_default().iter().sum::<f64>() / length.max(1) as f64
+    };
+    blocks.iter().map(mean).collect()
 }
 
 /// The column that a nuisance multiplies, deg/h for a coefficient of 1.

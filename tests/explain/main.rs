@@ -1,6 +1,7 @@
 //! The verb `explain`, as a user runs it.
 
 mod in_run;
+mod on_table;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -276,4 +277,50 @@ fn the_guide_names_every_option() {
     for option in options {
         assert!(guide.contains(option), "{option} is not in the guide");
     }
+}
+
+#[test]
+fn rounding_that_every_value_shows_is_named_where_the_spectrum_hardly_does() {
+    let dir = tempdir().unwrap();
+    let lsb = 0.217_3;
+    let mut text = String::from("time_s,rate_deg_h\n");
+    let (mut angle, mut before) = (0.0, 0.0);
+    for i in 0..4000usize {
+        angle += 5.0 + 60.0 * N * white(31, i as u64);
+        let rounded = (angle / lsb).round() * lsb;
+        let _ = writeln!(text, "{i},{:.7}", rounded - before);
+        before = rounded;
+    }
+    std::fs::write(dir.path().join("r.csv"), text).unwrap();
+    std::fs::write(dir.path().join("model.toml"), MODEL).unwrap();
+    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
+    let all = json(&dir.path().join("e/explain.json"));
+    assert_eq!(all["effects"][0]["kind"], "quantization", "{all}");
+    let ci = &all["effects"][0]["parameters"]["lsb_arcsec"]["ci95"];
+    assert!(ci[0].as_f64().unwrap() <= lsb && lsb <= ci[1].as_f64().unwrap(), "{ci}");
+    let again = sagnac(dir.path(), &["explain", "r.csv", "--model", "e/augmented.toml", "--out", "f"]);
+    assert_eq!(again.code, 0, "{again:?}");
+}
+
+#[test]
+fn held_out_rms_can_be_computed_again_from_the_recording() {
+    let dir = tempdir().unwrap();
+    let ramp = |i: usize| 1.5e-4 * i as f64;
+    with(dir.path(), "r.csv", 23, ramp);
+    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    assert_eq!(said.code, 1, "{said:?}");
+    let fit = json(&dir.path().join("e/explain.json"))["fit"].clone();
+    let each = fit["heldout_tau_s"].as_f64().unwrap() as usize;
+    let rate = |i: usize| 60.0 * N * white(23, i as u64) + ramp(i);
+    let bins: Vec<f64> = (1..10)
+        .step_by(2)
+        .flat_map(|block| (0..400 / each).map(move |bin| 400 * block + each * bin))
+        .map(|first| (first..first + each).map(rate).sum::<f64>() / each as f64)
+        .collect();
+    let mean = bins.iter().sum::<f64>() / bins.len() as f64;
+    let rms = (bins.iter().map(|b| (b - mean).powi(2)).sum::<f64>() / bins.len() as f64).sqrt();
+    let told = |side: &str| fit[side]["heldout_rms_deg_h"].as_f64().unwrap();
+    assert!((told("baseline") / rms - 1.0).abs() < 1e-4, "{} {rms}", told("baseline"));
+    assert!(told("augmented") < 0.97 * told("baseline"), "{fit}");
 }

@@ -7,6 +7,7 @@ use crate::effect::{
 };
 use rayon::prelude::*;
 use realfft::{RealFftPlanner, RealToComplex};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 pub struct ResetRipple;
@@ -50,7 +51,7 @@ const SHORTEST: f64 = 0.5;
 /// Most cells of angle in a search.
 const LONGEST: usize = 1 << 20;
 /// Cells and samples that a search of one octave of periods may go through.
-const EFFORT: f64 = 1.2e7;
+const EFFORT: f64 = 4e7;
 /// What a bias may be off from the claimed one, deg/h.
 const WIDE: f64 = 100.0;
 /// Deviations of the fitted bias within which the true one is looked for.
@@ -169,8 +170,8 @@ impl Course for ResetRipple {
             return none;
         }
         let fitted = drivers.claim.bias_deg_h;
-        // The mean of slow noise is known no better than its slowest waves are small.
-        let deviation = (look.powers[1] / n as f64).sqrt();
+        // The mean of a random walk is off from where it began by π²/3 times the variance of its slowest wave.
+        let deviation = PI * (look.powers[1] / (3.0 * n as f64)).sqrt();
         let Some(angles) = sensed(fitted, drivers) else { return none };
         let (low, high) = crate::numeric::range::ends(&angles.0);
         let level = fast_level(look);

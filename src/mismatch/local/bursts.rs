@@ -21,6 +21,8 @@ const ROUGH: usize = 8;
 const WIDE: usize = 64;
 /// Humps up to which they are a course.
 const HUMPS: usize = 2;
+/// Rough groups beside which a hump as short is a group.
+const SEVERAL: usize = 3;
 /// Groups by size of the table rate.
 const RATES: usize = 8;
 /// Efficiency of the median of absolute values as an estimate of a deviation.
@@ -259,8 +261,16 @@ fn isolated(
     // One or two humps are a course; many of one sign are outliers of one sign.
     let humps = smooth.iter().filter(|s| **s).count() <= HUMPS;
     let stretched = |g: &(usize, usize)| g.1 > longest || (g.1 >= WIDE && !rises(g, scan, n));
-    let others: Vec<(usize, usize)> =
-        groups.iter().zip(&smooth).filter(|(g, s)| stretched(g) || (humps && **s)).map(|(g, _)| *g).collect();
+    // A few samples of a burst are of one sign by chance: among several bursts one as short is another.
+    let rough = groups.iter().zip(&smooth).filter(|(g, s)| !**s && !stretched(g)).map(|(g, _)| g.1);
+    let (several, widest) = (rough.clone().count() >= SEVERAL, rough.max().unwrap_or(0));
+    let hump = |g: &(usize, usize)| humps && !(several && g.1 <= 2 * widest);
+    let others: Vec<(usize, usize)> = groups
+        .iter()
+        .zip(&smooth)
+        .filter(|(g, s)| stretched(g) || (**s && hump(g)))
+        .map(|(g, _)| *g)
+        .collect();
     let near =
         |g: &(usize, usize)| others.iter().any(|s| g.0 < s.0 + 2 * s.1 + 16 && g.0 + g.1 + s.1 + 16 > s.0);
     Some(groups.into_iter().filter(|g| !near(g)).collect())

@@ -1,0 +1,82 @@
+//! Effects of realistic size on a moving table, thousands of times the noise: nothing is to be named beside them.
+
+use super::json;
+use crate::support::sagnac;
+use crate::support::synthetic::white;
+use serde_json::Value;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+use std::path::Path;
+use tempfile::tempdir;
+
+/// N of the recordings, deg/√h.
+const N: f64 = 0.003;
+const RATE_HZ: f64 = 5.0;
+
+/// A sweep of the table from slow to fast, deg/s; its phase is cubic in time.
+fn sweep(t: f64) -> f64 {
+    6.0 * (TAU * (0.01 + 4.0e-5 * t) * t).sin()
+}
+
+/// A recording of a table's rate with what a gyro makes of it, deg/h, and its claim: the bias known to 0.05 deg/h.
+fn recorded(folder: &Path, samples: usize, table: impl Fn(f64) -> f64, gyro: impl Fn(f64) -> f64) -> Value {
+    let mut text = String::from("time_s,rate_deg_h,table_rate_deg_s\n");
+    for i in 0..samples {
+        let t = i as f64 / RATE_HZ;
+        let rate = gyro(t) + 60.0 * N * RATE_HZ.sqrt() * white(77, i as u64);
+        let _ = writeln!(text, "{t:.3},{rate:.6},{:.9}", table(t));
+    }
+    std::fs::write(folder.join("r.csv"), text).unwrap();
+    let model = format!(
+        "[recording]\ncase = \"t\"\nsample_rate_hz = {RATE_HZ}\n[noise]\nN_deg_rt_h = {N}\n[bias]\nvalue_deg_h = 1.0\n\
+         [scale_factor]\nerror_ppm = 0.0\n[uncertainty]\nN_rel = 0.02\nbias_deg_h = 0.05\nscale_factor_ppm = 2.0\n"
+    );
+    std::fs::write(folder.join("model.toml"), model).unwrap();
+    let said = sagnac(folder, &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
+    json(&folder.join("e/explain.json"))
+}
+
+fn kinds(all: &Value) -> Vec<&str> {
+    all["effects"].as_array().unwrap().iter().filter_map(|e| e["kind"].as_str()).collect()
+}
+
+/// The one parameter named, within so many of its half intervals.
+fn near(all: &Value, effect: usize, name: &str, truth: f64) {
+    let of = &all["effects"][effect]["parameters"][name];
+    let (value, low, high) =
+        (of["value"].as_f64().unwrap(), of["ci95"][0].as_f64().unwrap(), of["ci95"][1].as_f64().unwrap());
+    assert!((value - truth).abs() < (high - low).max(1e-9 * truth.abs()), "{name} {truth}: {of}");
+}
+
+#[test]
+fn a_delay_of_milliseconds_beside_an_error_of_the_scale_factor() {
+    let dir = tempdir().unwrap();
+    let gyro = |t: f64| 1.02 + 3600.0 * (1.0 - 60e-6) * sweep(t - 0.005);
+    let all = recorded(dir.path(), 8000, sweep, gyro);
+    assert_eq!(kinds(&all), ["time_offset", "sf_error"], "{all}");
+    near(&all, 0, "lag_s", 0.005);
+    near(&all, 1, "error_ppm", -60.0);
+}
+
+#[test]
+fn a_limit_that_a_slow_sine_exceeds() {
+    let dir = tempdir().unwrap();
+    let table = |t: f64| 12.0 * (TAU * t / 900.0).sin();
+    let all = recorded(dir.path(), 8000, table, |t| 1.02 + 3600.0 * table(t).clamp(-11.7, 11.7));
+    assert_eq!(kinds(&all), ["saturation"], "{all}");
+    near(&all, 0, "limit_deg_s", 11.7);
+}
+
+#[test]
+fn a_ripple_follows_the_bias_that_the_gyro_has() {
+    let dir = tempdir().unwrap();
+    let (period, bias) = (4.2, 1.0 + 0.09);
+    // Slow rates: a sample covers a fraction of a period.
+    let table = |t: f64| 6e-4 * (PI * t / 800.0).sin();
+    let angle = |t: f64| 3600.0 * 6e-4 * 800.0 / PI * (1.0 - (PI * t / 800.0).cos()) + bias * t;
+    let gyro = |t: f64| bias + 3600.0 * table(t) + 0.08 * (TAU * angle(t) / period).cos();
+    let all = recorded(dir.path(), 8000, table, gyro);
+    assert_eq!(kinds(&all), ["reset_ripple"], "{all}");
+    near(&all, 0, "period_arcsec", period);
+}
