@@ -85,18 +85,17 @@ impl Course for Saturation {
         beyond(number(values, PARAMS[0].name)?, drivers)
     }
 
-    /// The rates beyond the limit, those of the sign that is there.
+    /// The rates beyond the limit, those of the sign of which more is cut off.
     fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let (Some(limit), Some(rate)) = (shape.first(), &drivers.table_rate) else { return vec![] };
         let (low, high) = ends(rate);
-        let up = Place { domain: Domain::InputRate, from: *limit, to: high };
-        let down = Place { domain: Domain::InputRate, from: low, to: -limit };
-        match (high > *limit, low < -*limit) {
-            (true, true) => vec![Place { domain: Domain::InputRate, from: low, to: high }],
-            (true, false) => vec![up],
-            (false, true) => vec![down],
-            (false, false) => vec![],
+        let cut = |sign: f64| rate.iter().map(|r| (sign * r - limit).max(0.0)).sum::<f64>();
+        let (down, up) = (cut(-1.0), cut(1.0));
+        if down.max(up) <= 0.0 {
+            return vec![];
         }
+        let (from, to) = if up >= down { (*limit, high) } else { (low, -limit) };
+        vec![Place { domain: Domain::InputRate, from, to }]
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {

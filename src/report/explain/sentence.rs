@@ -25,7 +25,8 @@ pub fn phrase(finding: &Finding, explanation: &Explanation, words: Words) -> Str
     let pattern = words.t(saying.key);
     let known = places(&pattern).all(|name| given.iter().any(|g| g.0 == name));
     if !known {
-        return title(finding.effect_id(), words);
+        let title = title(finding.effect_id(), words);
+        return words.with("explain.sentence.bare", &[("title", &title)]);
     }
     let given: Vec<(&str, &str)> = given.iter().map(|(a, b)| (*a, b.as_str())).collect();
     words.with(saying.key, &given)
@@ -86,8 +87,10 @@ fn rest(all: &Explanation, words: Words) -> Vec<String> {
     }
     let mut out = vec![];
     out.extend(share.map(|s| words.with("explain.sentence.removes", &[("share", &s)])));
-    let key = if unnamed {
+    let key = if unnamed && after < all.alpha {
         "explain.sentence.rest_unexplained"
+    } else if unnamed {
+        "explain.sentence.rest_unnamed"
     } else if after < all.alpha {
         "explain.sentence.rest_faint"
     } else if named.len() > 1 {
@@ -107,10 +110,10 @@ pub fn verdict(explanation: &Explanation, words: Words) -> Vec<String> {
         let alpha = digits(explanation.alpha, 1, words.lang);
         let (rows, length) = (count(r.rows as u64, words.lang), duration(r.length_s, words.lang));
         let given = [("rows", rows.as_str()), ("length", &length), ("p", &p), ("alpha", &alpha)];
-        let key = if explanation.verdict == "consistent" {
-            "explain.sentence.consistent"
-        } else {
-            "explain.sentence.unlocated"
+        let key = match explanation.verdict == "consistent" {
+            true if explanation.family_p_value < explanation.alpha => "explain.sentence.consistent_faint",
+            true => "explain.sentence.consistent",
+            false => "explain.sentence.unlocated",
         };
         return vec![words.with(key, &given)];
     }
