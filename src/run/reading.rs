@@ -44,6 +44,9 @@ pub(super) fn window(procedure: &Procedure) -> WindowSpec {
     }
 }
 
+/// What reading gave, and what was met on the way.
+type Read<T> = Result<(T, StreamReport), RunError>;
+
 /// Reads a recording once, or twice where it holds angles.
 ///
 /// Rates from angles are divided by the interval of the first rows; where the whole recording measures another one, they
@@ -53,8 +56,8 @@ pub(super) fn window(procedure: &Procedure) -> WindowSpec {
 /// Those of reading.
 pub(super) fn read_at_measured_interval<'a, T>(
     plan: &mut Plan<'a>,
-    read: &mut dyn FnMut(&Plan<'a>) -> Result<(T, StreamReport), RunError>,
-) -> Result<(T, StreamReport), RunError> {
+    read: &mut dyn FnMut(&Plan<'a>) -> Read<T>,
+) -> Read<T> {
     let nominal_s = plan.clock().interval_s;
     let found = read(plan)?;
     let measured_s = found.1.tau0_measured_s;

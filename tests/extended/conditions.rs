@@ -1,9 +1,9 @@
 //! Time base, temperature track, faults, closed forms and long records against references that lose no digit.
 
-use crate::reference;
-use crate::reference::arithmetic::X;
-use crate::reference::reference as slow;
-use crate::reference::worst::Worst;
+use crate::exact;
+use crate::exact::arithmetic::X;
+use crate::exact::reference as slow;
+use crate::exact::worst::Worst;
 use crate::support::synthetic::white;
 use sagnac::condition::temperature_track::TemperatureTrack;
 use sagnac::noise::allan::{AllanAccumulator, AllanPlan};
@@ -46,14 +46,14 @@ fn intervals_and_jitter_are_right_for_hard_stamps() {
         let steps: Vec<X> = stamps.windows(2).map(|w| X::from(w[1]) - X::from(w[0])).collect();
         let n = X::from(steps.len());
         let mean = (X::from(stamps[4999]) - X::from(stamps[0])) / &n;
-        let squares = reference::arithmetic::sum(steps.iter().map(|d| (d - &mean).square()));
+        let squares = exact::arithmetic::sum(steps.iter().map(|d| (d - &mean).square()));
         let expected = (squares / &n / X::from(2.0)).sqrt().to_f64();
         // The interval is the slope of the stamps over their numbers, by least squares.
         let middle = X::from(2499.5);
         let about = |i: usize| X::from(i) - &middle;
         let products = (0..5000).map(|i| about(i) * (X::from(stamps[i]) - X::from(stamps[0])));
-        let slope = reference::arithmetic::sum(products)
-            / reference::arithmetic::sum((0..5000).map(|i| about(i).square()));
+        let slope =
+            exact::arithmetic::sum(products) / exact::arithmetic::sum((0..5000).map(|i| about(i).square()));
         worst.compare("tracker interval", name, "", tracker.mean_interval_s(), slope.to_f64(), 0.0);
         worst.compare("tracker jitter", name, "", tracker.jitter_s().unwrap(), expected, 0.0);
     }

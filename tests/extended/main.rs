@@ -1,8 +1,8 @@
 //! Estimators, conditions and files against the same computed in extended precision.
 
 mod conditions;
+mod exact;
 mod files;
 mod precision;
-mod reference;
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,9 +1,9 @@
 //! Every estimator against a slow reference of 704 bits on records that spoil careless sums.
 
-use crate::reference::arithmetic::{X, sum};
-use crate::reference::records::{Record, hard_records};
-use crate::reference::reference as slow;
-use crate::reference::worst::{ALLOWED, FLOOR, Worst};
+use crate::exact::arithmetic::{X, sum};
+use crate::exact::records::{Record, hard_records};
+use crate::exact::reference as slow;
+use crate::exact::worst::{ALLOWED, FLOOR, Worst};
 use sagnac::noise::autocorrelation::{of_series, of_spectrum};
 use sagnac::noise::block_series::BlockSeriesAccumulator;
 use sagnac::noise::data::NoiseType;
