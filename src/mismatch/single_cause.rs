@@ -37,9 +37,12 @@ enum Family {
     Jump,
 }
 
-fn family(kind: &str) -> Option<Family> {
-    match kind {
+fn family(named: &Named) -> Option<Family> {
+    // Rounding that the values themselves show is no part of the shape of a spectrum.
+    let in_spectrum = frequency(named).is_some();
+    match named.effect.kind() {
         "line" => Some(Family::Line),
+        "quantization" if !in_spectrum => None,
         "excess_arw" | "excess_flicker" | "excess_rrw" | "markov_short" | "markov_long"
         | "quasi_periodic" | "bandwidth_filter" | "quantization" => Some(Family::Spectrum),
         "bias_step" | "heading_change" => Some(Family::Jump),
@@ -84,8 +87,7 @@ fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
 
 /// Positions of the only two jumps, by time, if the second takes back what the first brought.
 fn there_and_back(named: &[Named]) -> Option<[usize; 2]> {
-    let jumps: Vec<usize> =
-        (0..named.len()).filter(|i| family(named[*i].effect.kind()) == Some(Family::Jump)).collect();
+    let jumps: Vec<usize> = (0..named.len()).filter(|i| family(&named[*i]) == Some(Family::Jump)).collect();
     // A gyro that was turned and turned back changed its heading twice.
     let steps = jumps.iter().all(|i| named[*i].effect.kind() == "bias_step");
     let [a, b] = jumps[..] else { return None };
@@ -146,7 +148,7 @@ pub(super) fn together(named: &[Named], allowed: usize) -> Vec<Together> {
     // Where more findings were allowed than one family took, it was not cut short: each is what it is named.
     let many = MANY.max(allowed);
     let of = |wanted: Family| -> Vec<usize> {
-        (0..named.len()).filter(|i| family(named[*i].effect.kind()) == Some(wanted)).collect()
+        (0..named.len()).filter(|i| family(&named[*i]) == Some(wanted)).collect()
     };
     let mut groups: Vec<Vec<usize>> = vec![];
     let lines = of(Family::Line);

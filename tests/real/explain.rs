@@ -86,3 +86,22 @@ fn a_ring_laser_unit_is_told_where_its_lines_are() {
     assert!(spans.iter().any(|(from, to)| *from < 9.3 && *to > 29.8), "{spans:?}");
     assert!(heldout_gain(&report) > 1000.0);
 }
+
+#[test]
+fn a_ring_laser_unit_has_its_lines_and_its_quantisation_named_where_more_effects_are_allowed() {
+    let Some(report) = ring_laser(&["--max-effects", "5"]) else { return };
+    let effects = report["effects"].as_array().unwrap();
+    // The digits of the output are a step as well, of 0.007 arcsec, which the values show and the spectrum does not.
+    let in_spectrum = |e: &&Value| e["where"].as_array().unwrap().iter().any(|w| w["domain"] == "frequency");
+    let mut quantised = effects.iter().filter(|e| e["kind"] == "quantization");
+    let steps = quantised.find(in_spectrum).expect("quantisation");
+    // Noise of the angle that is white up to 32 Hz: 400 to 500 (deg/h)²/Hz there is a Q of 0.8 arcsec, a step of 2.6.
+    let arcsec = steps["parameters"]["lsb_arcsec"]["value"].as_f64().unwrap();
+    assert!((2.0..3.2).contains(&arcsec), "{arcsec}");
+    let spans = places(&report, "frequency");
+    for line_hz in [9.2, 19.08, 20.7, 29.94] {
+        let near = |(from, to): &(f64, f64)| to - from < 1.0 && from - 0.1 < line_hz && line_hz < to + 0.1;
+        assert!(spans.iter().any(near), "{line_hz} Hz: {spans:?}");
+    }
+    assert!(heldout_gain(&report) > 10_000.0);
+}
