@@ -193,6 +193,7 @@ catalogue! {
     column_curve::ColumnCurve,
     drifting_line::DriftingLine,
     power_law_noise::PowerLawNoise,
+    repeated_samples::RepeatedSamples,
 }
 
 /// True for an effect of this catalogue that the format of explanations has no kind for.

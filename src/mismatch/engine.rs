@@ -14,6 +14,7 @@ use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::problem::{Problem, drivers};
 use super::regular::{Irregular, Regular};
+use super::repeats;
 use super::samples::{self, Named};
 use super::select::{self, Selection, Slot};
 use crate::claim::Claim;
@@ -38,9 +39,10 @@ pub fn explain(
     let length_s =
         series.time_s.last().copied().unwrap_or(0.0) - series.time_s.first().copied().unwrap_or(0.0);
     let recorded = Recorded { rows: series.time_s.len(), length_s };
-    let regular = on_grid(series, claim, options)?;
+    let mut regular = on_grid(series, claim, options)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
     let mut found = Found::default();
+    take_repeats(&mut regular, claim, &mut found, options);
     let mut problem = uncoarsened(&regular, claim, &mut found, options);
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
     drop(regular);
@@ -105,6 +107,25 @@ fn on_grid(series: Series, claim: &Claim, options: &Options) -> Result<Regular, 
         .map(|(c, v)| (*c, v.as_slice()))
         .collect();
     Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)
+}
+
+/// Sets samples aside that repeat the one before them: they say nothing of the rate.
+fn take_repeats(regular: &mut Regular, claim: &Claim, found: &mut Found, options: &Options) {
+    let stated = claim.effects.iter().any(|e| e.effect.kind() == "repeated_samples");
+    if !stated && !options.allows("repeated_samples") {
+        return;
+    }
+    let Some(repeats) = repeats::of(regular) else { return };
+    let rows = regular.grid.present.iter().filter(|p| **p).count();
+    let Some(delta_bic) = samples::worth(repeats.gain, 1, repeats.chance, rows, options.alpha) else {
+        return;
+    };
+    for row in &repeats.rows {
+        regular.grid.present[*row] = false;
+    }
+    if !stated {
+        found.named.extend(samples::repeats(&repeats, delta_bic, &regular.grid));
+    }
 }
 
 /// What departs from a hypothesis.

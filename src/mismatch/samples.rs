@@ -7,6 +7,8 @@ use super::improvement::Improvement;
 use super::lattice::Lattice;
 use super::local::{Bursts, Law, Level, Telegraph};
 use super::problem::Problem;
+use super::regular::Grid;
+use super::repeats::Repeats;
 use super::select::ENOUGH;
 use crate::effect::{Domain, Effect, Place, Value, find};
 use std::collections::BTreeMap;
@@ -111,6 +113,43 @@ pub fn bursts(found: &Bursts, delta_bic: f64, removed: &[f64], problem: &Problem
         places,
         delta_bic,
         p_value: found.p_value,
+        improvement: None,
+        local_gain: found.gain,
+    })
+}
+
+/// Samples that repeat the one before them as a finding.
+pub fn repeats(found: &Repeats, delta_bic: f64, grid: &Grid) -> Option<Named> {
+    /// Runs that a claim lists one by one.
+    const LISTED: usize = 256;
+    let runs = found.runs();
+    let (k, n) = (found.rows.len() as f64, found.of.max(1) as f64);
+    let share = k / n;
+    let each = k / runs.len().max(1) as f64;
+    // Rows of one run repeat together.
+    let half = 1.96 * (share * (1.0 - share) * each / n).sqrt();
+    let ci95 = [(share - half).max(0.0), (share + half).min(1.0)];
+    let time_s = |row: usize| grid.start_s + row as f64 * grid.dt_s;
+    let mut stated = BTreeMap::from([
+        ("repeated_share".to_owned(), Value::Number(share)),
+        ("repeated_rows_each".to_owned(), Value::Number(each)),
+    ]);
+    if runs.len() <= LISTED {
+        let times = runs.iter().map(|r| time_s(r.0)).collect();
+        stated.insert("repeats_time_s".to_owned(), Value::List(times));
+        stated.insert("repeats_rows".to_owned(), Value::List(runs.iter().map(|r| r.1 as f64).collect()));
+    }
+    let (first, last) = found.stretch()?;
+    Some(Named {
+        effect: find("repeated_samples")?,
+        estimated: Estimated {
+            reported: BTreeMap::from([("repeated_share".to_owned(), value(share, "", ci95))]),
+            stated,
+        },
+        equivalents: vec![],
+        places: vec![Place { domain: Domain::Time, from: time_s(first - 1), to: time_s(last) }],
+        delta_bic,
+        p_value: found.chance,
         improvement: None,
         local_gain: found.gain,
     })

@@ -304,6 +304,34 @@ fn rounding_that_every_value_shows_is_named_where_the_spectrum_hardly_does() {
 }
 
 #[test]
+fn samples_that_repeat_the_one_before_them_are_unknown_by_name_and_the_loop_closes() {
+    let dir = tempdir().unwrap();
+    case(dir.path(), "good.csv", 31, 0.0);
+    let good = std::fs::read_to_string(dir.path().join("good.csv")).unwrap();
+    let mut rows: Vec<Vec<&str>> = good.lines().map(|l| l.split(',').collect()).collect();
+    for i in (2..rows.len()).filter(|i| (1000..3000).contains(i) && white(77, *i as u64) > 1.9) {
+        rows[i][1] = rows[i - 1][1];
+    }
+    let text: String = rows.iter().map(|r| r.join(",") + "\n").collect();
+    std::fs::write(dir.path().join("r.csv"), text).unwrap();
+    let explain = |model: &str, out: &str| {
+        let said = sagnac(dir.path(), &["explain", "r.csv", "--model", model, "--out", out]);
+        (said.code, json(&dir.path().join(out).join("explain.json")), said.out)
+    };
+    let (code, all, out) = explain("model.toml", "e");
+    assert_eq!(code, 3, "{out}");
+    let [first] = all["effects"].as_array().unwrap().as_slice() else { panic!("{out}") };
+    assert_eq!(
+        (first["kind"].as_str(), first["effect"].as_str()),
+        (Some("unknown"), Some("repeated_samples"))
+    );
+    let place = &first["where"][0];
+    let (from, to) = (place["from"].as_f64().unwrap(), place["to"].as_f64().unwrap());
+    assert!(place["domain"] == "time" && from > 995.0 && to < 3001.0 && to - from > 1500.0, "{place}");
+    assert_eq!(explain("e/augmented.toml", "again").0, 0);
+}
+
+#[test]
 fn held_out_rms_can_be_computed_again_from_the_recording() {
     let dir = tempdir().unwrap();
     let ramp = |i: usize| 1.5e-4 * i as f64;

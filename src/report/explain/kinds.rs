@@ -60,6 +60,7 @@ pub const SAYINGS: &[Saying] = &[
     adds("column_curve", "explain.saying.column_curve"),
     adds("drifting_line", "explain.saying.drifting_line"),
     adds("power_law_noise", "explain.saying.power_law_noise"),
+    adds("repeated_samples", "explain.saying.repeated_samples"),
     adds("dropped_samples", "explain.saying.dropped_samples"),
     adds("time_offset", "explain.saying.time_offset"),
     adds("clock_drift", "explain.saying.clock_drift"),
@@ -102,6 +103,7 @@ pub const PARAMETERS: &[(&str, &str)] = &[
     ("limit_deg_s", "explain.parameter.limit"),
     ("misalignment_mrad", "explain.parameter.misalignment"),
     ("missing_rows", "explain.parameter.missing_rows"),
+    ("repeated_share", "explain.parameter.repeated_share"),
     ("lag_s", "explain.parameter.lag"),
     ("drift_ppm", "explain.parameter.drift"),
 ];
