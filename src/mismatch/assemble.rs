@@ -5,12 +5,12 @@ use super::candidates::{Candidate as Fitted, Tried};
 use super::contribution;
 use super::departures::{self, Departure};
 use super::draw::{self, Drawn};
-use super::engine::Found;
 use super::estimates;
 use super::experiment;
 use super::finding::{
     Candidate, Explanation, Finding, Fit, FitFigures, ParameterValue, PlaceRecord, RecordingFacts, Test,
 };
+use super::found::Found;
 use super::heldout::{Halves, HeldOut};
 use super::improvement;
 use super::nuisances::nuisances;

@@ -5,26 +5,24 @@ use super::candidates::{self, Scenes, Tried};
 use super::coarse;
 use super::departures::{self, Departure};
 use super::filtered;
+use super::found::Found;
 use super::heldout::Halves;
 use super::hypothesis::fit;
+use super::jumps::{take_telegraph, with_stated_jumps};
 use super::lattice::Lattice;
 use super::local;
-use super::noise_fit::SpectrumIn;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::problem::{Problem, drivers};
 use super::regular::{Irregular, Regular};
 use super::repeats;
 use super::samples::{self, Named};
-use super::select::{self, Selection, Slot};
+use super::select;
 use crate::claim::Claim;
 use crate::effect::{Column, Domain, EFFECTS, Effect, Model, number};
 use crate::series::Series;
 use crate::text::Note;
 use std::collections::BTreeMap;
-
-/// Samples at a level below which jumps are not told from a process.
-const FEWEST_AT_A_LEVEL: f64 = 6.0;
 
 /// Explains a recording against a claim.
 ///
@@ -191,33 +189,6 @@ fn as_rounded(
     samples::quantization(lattice, gain, worth(by_values)?, chance(by_values), problem)
 }
 
-/// What was found in single samples.
-#[derive(Default)]
-pub(super) struct Found {
-    /// What was named.
-    pub named: Vec<Named>,
-    /// Deviation of the noise of each sample over that of the record.
-    pub level: Option<Vec<f64>>,
-    /// What was taken out of the residual, deg/h.
-    pub taken: Option<Vec<f64>>,
-    /// What the fits without it gained, which counts it as known.
-    pub gained_in_fit: f64,
-}
-
-impl Found {
-    fn take(&mut self, course: Vec<f64>) {
-        match &mut self.taken {
-            Some(sum) => sum.iter_mut().zip(course).for_each(|(s, c)| *s += c),
-            None => self.taken = Some(course),
-        }
-    }
-
-    /// Gain that the fits in cosine modes do not hold.
-    pub fn local_gain(&self) -> f64 {
-        self.named.iter().map(|n| n.local_gain).sum::<f64>() - self.gained_in_fit
-    }
-}
-
 /// What single samples are judged on: the claim with the courses of a moving table that it leaves out. Their corners,
 /// as of a delay, look like bursts and like a changing level; a smooth course does not.
 fn with_table_courses(base: &Tried, scenes: &Scenes, options: &Options) -> Tried {
@@ -289,106 +260,6 @@ fn take_bursts(
         found.take(removed);
     }
     refitted(base, problem)
-}
-
-/// Jumps between two levels on one of the hypotheses that they may stand beside.
-struct Jumps {
-    telegraph: local::Telegraph,
-    delta_bic: f64,
-    /// True when nothing else explains nearly as much.
-    told: bool,
-    /// What the selection gains on the same hypothesis.
-    rival: f64,
-    /// The process that the selection has in their place.
-    instead: Option<&'static str>,
-}
-
-/// The best of jumps on the claim alone, and beside what else was chosen in place of each of its processes: they have the
-/// spectrum of a slow process, and with another effect in the record neither the one nor the other alone comes near a pair.
-fn jumps(problem: &Problem, start: &Tried, selection: &Selection, alpha: f64) -> Option<Jumps> {
-    let rows = problem.scenes.rows;
-    let several = selection.chosen.len() > 1;
-    let processes = selection.chosen.iter().filter(|c| several && matches!(c.slot, Slot::Spectrum(_)));
-    let single = selection.chosen.iter().find(|_| !several).map(|c| c.effect.kind());
-    let grounds =
-        std::iter::once((start, single)).chain(processes.map(|c| (&c.without, Some(c.effect.kind()))));
-    let judged = grounds.filter_map(|(tried, instead)| {
-        let telegraph = local::telegraph(problem, tried)?;
-        // Jumps every few samples are what a short Markov process looks like, even ones a periodic course.
-        if telegraph.mean_dwell_s < FEWEST_AT_A_LEVEL * problem.drivers.dt_s || telegraph.regular {
-            return None;
-        }
-        let (gain, parameters) = (telegraph.gain, telegraph.parameters);
-        let delta_bic = samples::worth(gain, parameters, telegraph.chance, rows, alpha)?;
-        let told = samples::worth(gain, parameters, telegraph.p_value, rows, alpha).is_some();
-        let rival = tried.bic(rows) - selection.best.bic(rows);
-        Some(Jumps { telegraph, delta_bic, told, rival, instead })
-    });
-    judged.max_by(|a, b| (a.delta_bic - a.rival).total_cmp(&(b.delta_bic - b.rival)))
-}
-
-/// The claim's own fit where it states jumps between two levels: they are taken out where they are found as they are
-/// stated, and stand as the Markov process that has their spectrum where they cannot be told one by one.
-fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> Tried {
-    const AS_STATED: f64 = 2.0;
-    let base = problem.baseline();
-    let Some((amplitude, dwell_s)) = problem.stated_telegraph() else { return base };
-    let alone = Selection { best: base.clone(), chosen: vec![], first: vec![] };
-    if let Some(Jumps { telegraph, .. }) = jumps(problem, &base, &alone, alpha).filter(|j| j.told) {
-        let [low, high] = telegraph.amplitude_ci95;
-        if (telegraph.amplitude_deg_h - amplitude).abs() < 0.5 * AS_STATED * (high - low) {
-            problem.take(&telegraph.course);
-            return problem.baseline();
-        }
-    }
-    let markov = crate::effect::find("markov_long");
-    let same = markov.map(|effect| SpectrumIn {
-        effect,
-        fitted: vec![0.5 * dwell_s, 0.5 * amplitude],
-        stated: true,
-    });
-    problem.baseline_with(same)
-}
-
-/// Takes out jumps between two levels where they explain more than anything else does; where they explain about as much,
-/// they are an equivalent.
-fn take_telegraph(
-    problem: &mut Problem,
-    start: &Tried,
-    selection: &mut Selection,
-    found: &mut Found,
-    options: &Options,
-) {
-    let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "random_telegraph");
-    if stated || selection.chosen.is_empty() || !options.allows("random_telegraph") {
-        return;
-    }
-    let Some(Jumps { telegraph, delta_bic, told, rival, instead }) =
-        jumps(problem, start, selection, options.alpha)
-    else {
-        return;
-    };
-    if !told || delta_bic < rival {
-        if delta_bic > rival - select::ENOUGH {
-            let replaced = selection.chosen.iter_mut().find(|c| Some(c.effect.kind()) == instead);
-            replaced.into_iter().for_each(|c| c.beside = Some("random_telegraph"));
-        }
-        return;
-    }
-    problem.take(&telegraph.course);
-    let mut base = problem.baseline();
-    if start.hypothesis.noise.freed[0] {
-        base = samples::with_free_level(&base, problem);
-    }
-    if let Some(mut named) = samples::telegraph(&telegraph, delta_bic, problem) {
-        named.equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
-        found.gained_in_fit += base.fit.log_likelihood - start.fit.log_likelihood;
-        found.named.push(named);
-        found.take(telegraph.course);
-    }
-    // What was tried on the claim alone is what the jumps stood against.
-    let first = std::mem::take(&mut selection.first);
-    *selection = Selection { first, ..select::select(&base, &problem.scenes, options) };
 }
 
 fn note(why: Irregular) -> Note {

@@ -1,0 +1,114 @@
+//! A change of the noise's spectrum as an addition.
+
+use super::{Candidate, Scenes, Tried, own_odds, rated};
+use crate::effect::{Effect, SpectralLook, Spectrum, SpectrumAct};
+use crate::mismatch::hypothesis::fit;
+use crate::mismatch::noise_fit::{self, Noise, SpectrumIn, base_index};
+use crate::mismatch::scene::Scene;
+
+/// The best addition of a process, a filter or a coefficient set free.
+pub(super) fn try_spectrum(
+    effect: &'static dyn Effect,
+    spectrum: &'static dyn Spectrum,
+    before: &Tried,
+    scenes: &Scenes,
+) -> Option<Candidate> {
+    let scene = &scenes.full;
+    let act = spectrum.act();
+    let observed = &before.fit.observed;
+    let look = SpectralLook {
+        bins: &scene.bins,
+        observed,
+        expected: &before.fit.densities,
+        lattice_arcsec: scenes.lattice_arcsec,
+    };
+    if let SpectrumAct::Frees(term) = act {
+        let i = base_index(term)?;
+        if before.hypothesis.noise.freed[i] {
+            return None;
+        }
+        return free_base(effect, i, before, scenes, observed);
+    }
+    let repeated =
+        before.hypothesis.noise.spectra.iter().any(|s| !s.stated && s.effect.kind() == effect.kind());
+    if repeated && effect.kind() != "quasi_periodic" {
+        return None;
+    }
+    let starts = spectrum.starts(&look);
+    let bounds = spectrum.bounds(&look);
+    let begun = starts.iter().map(|start| {
+        let mut noise = before.hypothesis.noise.clone();
+        let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
+        noise.spectra.push(SpectrumIn { effect, fitted, stated: false });
+        noise
+    });
+    let noise = best_of(begun.collect(), scene, observed)?;
+    if noise.spectra.last().is_some_and(|s| !spectrum.plausible(&s.fitted)) {
+        return None;
+    }
+    let parameters = before.parameters + noise.spectra.last().map_or(0, |s| s.fitted.len());
+    finish_spectrum(effect, noise, parameters, spectrum.looked(&look), before, scenes)
+}
+
+/// The best fit of several beginnings: all for a few steps, then the leading two to the end.
+fn best_of(begun: Vec<Noise>, scene: &Scene, observed: &[f64]) -> Option<Noise> {
+    const FEW: usize = 5;
+    let mut fits: Vec<(Noise, f64)> = begun
+        .into_iter()
+        .map(|mut noise| {
+            let value = noise_fit::fit_in(&mut noise, scene, observed, FEW).log_likelihood;
+            (noise, value)
+        })
+        .collect();
+    fits.sort_by(|a, b| b.1.total_cmp(&a.1));
+    fits.truncate(2);
+    for (noise, value) in &mut fits {
+        *value = noise_fit::fit(noise, scene, observed).log_likelihood;
+    }
+    fits.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(noise, _)| noise)
+}
+
+/// N, B or K set free, begun at the claim and well above it: a strong prior traps a fit that begins beside it.
+fn free_base(
+    effect: &'static dyn Effect,
+    i: usize,
+    before: &Tried,
+    scenes: &Scenes,
+    observed: &[f64],
+) -> Option<Candidate> {
+    let scene = &scenes.full;
+    let noise = &before.hypothesis.noise;
+    // A coefficient claimed to be zero begins where it would be a tenth of the spectrum somewhere.
+    let smallest = scene
+        .units
+        .iter()
+        .zip(&before.fit.densities)
+        .map(|(u, s)| (0.1 * s / u[i]).sqrt())
+        .fold(f64::INFINITY, f64::min);
+    let begin = if noise.base[i] > 0.0 { noise.base[i] } else { smallest };
+    let fits = [1.0, 5.75, 33.0, 0.2].map(|factor| {
+        let mut noise = noise.clone();
+        noise.freed[i] = true;
+        noise.base[i] = begin * factor;
+        noise.spectra.push(SpectrumIn { effect, fitted: vec![begin * factor], stated: false });
+        noise
+    });
+    let noise = best_of(fits.to_vec(), scene, observed)?;
+    finish_spectrum(effect, noise, before.parameters + 1, 1.0, before, scenes)
+}
+
+fn finish_spectrum(
+    effect: &'static dyn Effect,
+    noise: Noise,
+    parameters: usize,
+    looked: f64,
+    before: &Tried,
+    scenes: &Scenes,
+) -> Option<Candidate> {
+    let mut hypothesis = before.hypothesis.clone();
+    hypothesis.noise = noise;
+    let fit = fit(&mut hypothesis, &scenes.full);
+    let odds = before.odds + own_odds(effect);
+    let candidate = rated(effect, Tried { hypothesis, fit, parameters, odds }, before, looked, scenes.rows);
+    (candidate.gain > 0.5).then_some(candidate)
+}
