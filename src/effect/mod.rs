@@ -308,6 +308,12 @@ pub trait Course: Sync {
         &[]
     }
 
+    /// Samples of which averaged columns do not tell the course, since it bends within them; `parameters` in the order of
+    /// [`Effect::params`].
+    fn bends_within(&self, _parameters: &[f64], _drivers: &Drivers) -> Vec<usize> {
+        vec![]
+    }
+
     /// Columns that stay free when a claim states the effect: a state before the record that no claim can know.
     fn beside(&self, _values: &Values, _drivers: &Drivers) -> Vec<Vec<f64>> {
         vec![]

@@ -24,6 +24,9 @@ use crate::series::Series;
 use crate::text::Note;
 use std::collections::BTreeMap;
 
+/// Rounds of setting samples aside that a course bends within, and of finding it without them.
+const ROUNDS: usize = 3;
+
 /// Explains a recording against a claim.
 ///
 /// # Errors
@@ -51,6 +54,15 @@ pub fn explain(
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
     let mut moved = with_table_courses(&base, &problem.scenes, options);
+    for _ in 0..ROUNDS {
+        // What is drawn for them follows the course as it was found with them, so it is found again.
+        if !problem.without_bends(&moved) {
+            break;
+        }
+        base = refitted(&base, &problem);
+        moved = with_table_courses(&base, &problem.scenes, options);
+        held_base = Halves::new(&problem).judge(&base);
+    }
     let filtered = filtered::behind(&problem, &moved, options);
     let filtered = filtered.filter(|f| problem.see_behind(&moved, f)).map(|f| refitted(&f, &problem));
     if let Some(filtered) = filtered {

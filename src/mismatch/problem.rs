@@ -1,14 +1,14 @@
 //! Recording and claim brought together: residual, scenes, and the claim's own fit.
 
 use super::candidates::{Scenes, Tried};
-use super::hypothesis::{Hypothesis, fit};
+use super::hypothesis::{CourseIn, Hypothesis, fit};
 use super::impute;
 use super::lattice::{self, Lattice};
 use super::noise_fit::{Noise, SpectrumIn};
 use super::regular::{Grid, Regular, fast_length};
 use super::scene::{Scene, smoothed};
 use crate::claim::{Claim, Stated};
-use crate::effect::{Column, Drivers, Model, Nuisance, number};
+use crate::effect::{Column, Drivers, Effect, Model, Nuisance, Param, number};
 use crate::noise::model::NoiseModel;
 use crate::numeric::cosine::inverse_dct2;
 use std::sync::Arc;
@@ -58,9 +58,16 @@ impl Problem {
             }
         }
         let mut usable = regular.grid.present.clone();
+        for stated in &claim.effects {
+            let named = |p: &Param| number(&stated.values, p.name).unwrap_or(f64::NAN);
+            let parameters: Vec<f64> = stated.effect.params().iter().map(named).collect();
+            let aside = bends_within(stated.effect, &parameters, &drivers);
+            aside.into_iter().for_each(|i| usable[i] = false);
+        }
+        let rows = usable.iter().filter(|u| **u).count();
         // What follows the sensed rate follows the bias that the gyro has, of which the claim knows only so much.
         let seen = residual.iter().zip(&usable).filter(|(_, u)| **u).map(|(r, _)| r);
-        drivers.claim.bias_deg_h = seen.sum::<f64>() / usable.iter().filter(|u| **u).count().max(1) as f64;
+        drivers.claim.bias_deg_h = seen.sum::<f64>() / rows.max(1) as f64;
         let drivers = Arc::new(drivers);
         let level = level(claim, &drivers);
         let mut claim = claim.clone();
@@ -69,7 +76,6 @@ impl Problem {
         }
         let lattice = lattice::of(regular);
         let lattice_arcsec = lattice.map(|l| l.increment_arcsec);
-        let rows = usable.iter().filter(|u| **u).count();
         let noise = Noise::of(&claim);
         let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
         let even_ends = set_ends_aside(&mut usable, &filters, drivers.dt_s);
@@ -154,6 +160,21 @@ impl Problem {
         self.look_again();
     }
 
+    /// Sets the samples aside of which the columns do not tell the courses of a hypothesis; true where there are any.
+    pub fn without_bends(&mut self, tried: &Tried) -> bool {
+        let of = |course: &CourseIn| {
+            let Model::Course(model) = course.effect.model() else { return vec![] };
+            let parameters = model.parameters(&course.shape, &course.coefficients, &self.drivers);
+            bends_within(course.effect, &parameters, &self.drivers)
+        };
+        let aside: Vec<usize> = tried.hypothesis.courses.iter().flat_map(of).collect();
+        if aside.is_empty() {
+            return false;
+        }
+        self.without(&aside, tried);
+        true
+    }
+
     /// Stated deviations of the nuisances that have a column.
     pub fn deviations(&self) -> [(Nuisance, f64); 2] {
         deviations(&self.claim)
@@ -172,6 +193,14 @@ impl Problem {
         let fit = fit(&mut hypothesis, &self.scenes.full);
         Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
     }
+}
+
+/// Samples of which averaged columns do not tell the course of an effect; none where that would be a good part of the record.
+fn bends_within(effect: &dyn Effect, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
+    const MOST: f64 = 0.05;
+    let Model::Course(course) = effect.model() else { return vec![] };
+    let samples = course.bends_within(parameters, drivers);
+    if samples.len() as f64 > MOST * drivers.samples as f64 { vec![] } else { samples }
 }
 
 /// Samples at either end that filters make unlike noise that is even about the ends.

@@ -69,6 +69,21 @@ fn a_limit_that_a_slow_sine_exceeds() {
 }
 
 #[test]
+fn a_limit_that_is_passed_within_single_samples_has_no_bursts_beside_it() {
+    // Steps of the table's rate, and what a sample of either signal is: its mean over the interval.
+    let steps = |t: f64| (8.0 * ((t / 37.0).sin() * 3.0)).clamp(-10.0, 10.0);
+    let mean = |f: &dyn Fn(f64) -> f64, t: f64| {
+        (0..400).map(|k| f(t + ((f64::from(k) + 0.5) / 400.0 - 0.5) / RATE_HZ)).sum::<f64>() / 400.0
+    };
+    let dir = tempdir().unwrap();
+    let limited = |t: f64| steps(t).clamp(-9.95, 9.95);
+    let gyro = |t: f64| 1.02 + 3600.0 * mean(&limited, t);
+    let all = recorded(dir.path(), 8000, |t| mean(&steps, t), gyro);
+    assert_eq!(kinds(&all), ["saturation"], "{all}");
+    near(&all, 0, "limit_deg_s", 9.95);
+}
+
+#[test]
 fn a_ripple_follows_the_bias_that_the_gyro_has() {
     let dir = tempdir().unwrap();
     let (period, bias) = (4.2, 1.0 + 0.09);

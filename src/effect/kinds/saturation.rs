@@ -101,4 +101,32 @@ impl Course for Saturation {
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {
         vec![1e-3 * largest(drivers)]
     }
+
+    /// Where the rate passes the limit on its way from one neighbour to the other: how long it was beyond within the sample,
+    /// its mean does not say. None where too few samples lie beyond altogether to do without them.
+    fn bends_within(&self, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
+        let (Some(limit), Some(rate)) = (parameters.first(), &drivers.table_rate) else { return vec![] };
+        let passes = |i: &usize| {
+            let around = &rate[i.saturating_sub(1)..(i + 2).min(rate.len())];
+            let (low, high) = ends(around);
+            (low < *limit && *limit < high) || (low < -*limit && -*limit < high)
+        };
+        let bent: Vec<usize> = (0..rate.len()).filter(passes).collect();
+        let beyond = rate.iter().filter(|r| r.abs() > *limit).count();
+        if 3 * bent.len() > beyond { vec![] } else { bent }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_in_which_the_rate_passes_the_limit_are_told() {
+        let rate = vec![0.0, 2.0, 4.0, 5.0, 5.0, 5.0, 3.0, -3.0, -5.0, -5.0, 0.0];
+        let drivers =
+            Drivers { dt_s: 1.0, samples: rate.len(), table_rate: Some(rate), ..Drivers::default() };
+        assert_eq!(Saturation.bends_within(&[4.5], &drivers), [2, 3, 5, 6, 7, 8, 9, 10]);
+        assert_eq!(Saturation.bends_within(&[6.0], &drivers), []);
+    }
 }
