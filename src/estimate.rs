@@ -260,6 +260,16 @@ pub struct Limit {
     pub source: String,
 }
 
+impl Limit {
+    /// Largest magnitude that it allows; `None` where it allows any.
+    pub fn largest_magnitude(&self) -> Option<f64> {
+        match (self.min, self.max) {
+            (Some(low), Some(high)) => Some(low.abs().max(high.abs())),
+            (one, other) => one.or(other).map(f64::abs),
+        }
+    }
+}
+
 /// The verdict of a row or of a whole run. Worst wins, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

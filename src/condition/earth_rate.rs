@@ -5,6 +5,9 @@
 //! from the Earth rate by no more than twice the bound and three standard uncertainties. Where it does not, single
 //! mistakes are tried; one that brings it within the bound itself explains it, and the test is not valid. A bias that no
 //! mistake explains is a bias: it fails by its limit.
+//!
+//! Where no bound of the bias is known, a mean of another size than the Earth rate which one of the usual exchanges of
+//! unit (deg/h, deg/s, rad/s) brings to within an eighth of it is taken for that exchange; nothing else is judged.
 
 use super::{Condition, Facts, GyroFact, id_of, mistakes, noise_level, record};
 use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
@@ -16,6 +19,10 @@ pub(super) struct EarthRate;
 
 /// How many times the bound of the bias the Earth rate must be.
 const PLAIN: f64 = 5.0;
+/// Least Earth rate along the axis that a unit is told by where nothing is known of the bias, deg/h.
+const LEAST_DEG_H: f64 = 1.0;
+/// Share of the Earth rate within which an exchange of unit brings the mean then.
+const USUAL: f64 = 0.125;
 /// Times the typical bias that a unit is still thought to have.
 const TYPICAL: f64 = 3.0;
 
@@ -32,11 +39,7 @@ pub(super) fn bias_bound(gyro: &GyroFact, facts: &Facts<'_>) -> Option<f64> {
     if kept {
         return None;
     }
-    let limit = facts.limits.limit("static_bias", &gyro.channel).map(|l| &l.limit);
-    let bound = limit.and_then(|l| match (l.min, l.max) {
-        (Some(low), Some(high)) => Some(low.abs().max(high.abs())),
-        (one, other) => one.or(other).map(f64::abs),
-    });
+    let bound = facts.limits.limit("static_bias", &gyro.channel).and_then(|l| l.limit.largest_magnitude());
     let typical = || facts.limits.expected("static_bias").map(|e| TYPICAL * e.abs());
     bound.or_else(typical).filter(|b| *b > 0.0)
 }
@@ -51,8 +54,8 @@ pub(super) fn agrees(gyro: &GyroFact, facts: &Facts<'_>) -> Option<bool> {
 
 fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let (earth, _) = gyro.earth_deg_h?;
+    let Some(bound) = bias_bound(gyro, facts) else { return exchanged_unit(gyro, earth, facts) };
     let agrees = agrees(gyro, facts)?;
-    let bound = bias_bound(gyro, facts)?;
     let mistakes = if agrees { vec![] } else { explain(gyro, earth, bound, facts) };
     let (status, key) = match (agrees, mistakes.is_empty()) {
         (true, _) => (ConditionStatus::Ok, "earth_rate.seen"),
@@ -70,6 +73,34 @@ fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let observed = [("mean_deg_h", gyro.mean_deg_h), ("difference_deg_h", gyro.mean_deg_h - earth)];
     let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
     Some(record(id_of("earth_rate", &gyro.channel, facts), status, &observed, Some(required), note))
+}
+
+/// One of the usual exchanges of unit, where nothing is known of the bias but that it will not cancel the Earth rate.
+fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let moved = facts.procedure.rate_table.is_some();
+    let shown = |rate: f64, share: f64| (rate - earth).abs() <= share * earth.abs();
+    if moved || earth.abs() < LEAST_DEG_H || shown(gyro.mean_deg_h, 0.5) {
+        return None;
+    }
+    let declared = &facts.procedure.channel(&gyro.channel)?.unit_in_file;
+    let usual = mistakes::rate_factors(declared).into_iter().filter(mistakes::is_usual);
+    let fits = |m: &mistakes::Mistake| {
+        let slack = 3.0 * m.factor.abs() * gyro.mean_uncertainty_deg_h;
+        slack <= USUAL * earth.abs()
+            && shown(gyro.mean_deg_h * m.factor, USUAL)
+            && !noise_level::is_far(gyro, m.factor, facts)
+    };
+    let why = mistakes::either(usual.filter(fits).map(|m| m.note).collect())?;
+    let note = Note::new("earth_rate.mistake")
+        .with("channel", gyro.channel.clone())
+        .with("mean", gyro.mean_deg_h)
+        .with("earth", earth)
+        .with("difference", gyro.mean_deg_h - earth)
+        .with("why", why);
+    let observed = [("mean_deg_h", gyro.mean_deg_h), ("difference_deg_h", gyro.mean_deg_h - earth)];
+    let required = Note::new("earth_rate.required_alone").with("earth", earth);
+    let id = id_of("earth_rate", &gyro.channel, facts);
+    Some(record(id, ConditionStatus::Invalid, &observed, Some(required), note))
 }
 
 /// The single mistakes that bring the mean into agreement.

@@ -58,6 +58,13 @@ pub(super) fn rate_factors(declared: &str) -> Vec<Mistake> {
     list
 }
 
+/// Whether a mistake is an exchange of the units that rates are mostly written in.
+pub(super) fn is_usual(mistake: &Mistake) -> bool {
+    const USUAL: [&str; 3] = ["deg/s", "deg/h", "rad/s"];
+    mistake.note.id == "mistake.unit"
+        && USUAL.iter().any(|u| mistake.note.args.get("unit") == Some(&(*u).into()))
+}
+
 /// The mistakes that stamps in seconds can have: factor from the time as read to the time that was meant.
 pub(super) fn time_factors() -> Vec<Mistake> {
     let one =

@@ -93,7 +93,9 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
     });
     let too_few = up < test.ramps_each_way || down < test.ramps_each_way;
     let complete = !missed_low && !missed_high && !too_few;
-    let (status, note) = if complete {
+    let (status, note) = if let Some(key) = other_scale((low, high), test) {
+        (ConditionStatus::Invalid, Note::new(key).with("low", c(low)).with("high", c(high)))
+    } else if complete {
         (ConditionStatus::Ok, Note::new("schedule.ends").with("low", c(low)).with("high", c(high)))
     } else if let Some(s) = aborted {
         let end = if s.kind == SegmentKind::Heating { test.high_deg_c } else { test.low_deg_c };
@@ -118,6 +120,23 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
         (ConditionStatus::Invalid, note)
     };
     record("temperature_course", status, &observed, Some(required), note)
+}
+
+/// A course whose ends are those asked for on another scale, and not in degrees Celsius.
+fn other_scale((low, high): (f64, f64), test: &TemperatureTest) -> Option<&'static str> {
+    let slack = 3.0 * test.end_tolerance_deg_c;
+    let fits = |celsius: &dyn Fn(f64) -> f64| {
+        (celsius(low) - test.low_deg_c).abs() <= slack && (celsius(high) - test.high_deg_c).abs() <= slack
+    };
+    if fits(&|t| t) {
+        None
+    } else if fits(&|t| t - 273.15) {
+        Some("schedule.kelvin")
+    } else if fits(&|t| (t - 32.0) / 1.8) {
+        Some("schedule.fahrenheit")
+    } else {
+        None
+    }
 }
 
 fn overshoot(run: &Run, test: &TemperatureTest, allowed: f64) -> ConditionRecord {

@@ -28,6 +28,9 @@ pub struct TableFacts {
     pub tolerance: f64,
     /// Largest relative difference between the angle and the rate of the table, with the rate at which it was, deg/h.
     pub disagreement: Option<(f64, f64)>,
+    /// Mean rate of the inner axis during the step of the outer one in which it is largest beside it, and the rate of the
+    /// step, deg/h.
+    pub inner_during_step: Option<(f64, f64)>,
     /// The channels.
     pub channels: Vec<ChannelFact>,
 }
@@ -43,18 +46,75 @@ pub struct ChannelFact {
     pub factor: Option<f64>,
     /// Standard uncertainty of it.
     pub standard: f64,
+    /// What the line leaves at rest once the Earth rate along the axis is taken out, deg/h, and that Earth rate, where the
+    /// site tells it.
+    pub bias_and_earth: Option<(f64, f64)>,
+    /// Largest bias that the limits allow, deg/h.
+    pub bias_limit: Option<f64>,
 }
 
 /// Factors that a unit may have, a dead zone or a bent response included; mistakes of unit lie beyond.
 const FOLLOWS: std::ops::RangeInclusive<f64> = 0.3..=2.0;
+
+/// Degrees in a radian.
+const RADIAN: f64 = 180.0 / std::f64::consts::PI;
+/// Times full scale from which the value stated for it, or the unit of the table, is wrong.
+const BEYOND: f64 = 3.0;
+/// Rate of the inner axis beside that of the outer one from which it does not rest: a misalignment of 0.3 mrad.
+const RESTS: f64 = 3e-4;
+/// Share of the Earth rate within which a bias is twice that of the other sign.
+const TWICE: f64 = 0.05;
+/// Least Earth rate along the axis by which that is told, deg/h.
+const LEAST_EARTH: f64 = 3.0;
 
 /// Judges a test on a table.
 pub fn judge(facts: &TableFacts) -> Vec<ConditionRecord> {
     let mut all = vec![steps(facts)];
     all.extend(reached(facts));
     all.extend(agreement(facts));
-    all.extend(facts.channels.iter().map(|c| follows(c, facts)));
+    all.extend(still(facts));
+    all.extend(facts.channels.iter().filter_map(|c| follows(c, facts)));
+    all.extend(facts.channels.iter().filter_map(|c| earth_sign(c, facts)));
     all
+}
+
+/// The id of a condition on a channel: the channel is named where there are several.
+fn id_of(id: &str, channel: &ChannelFact, facts: &TableFacts) -> String {
+    if facts.channels.len() > 1 { format!("{id}.{}", channel.channel) } else { id.to_owned() }
+}
+
+/// Whether the inner axis rested while the outer one turned.
+fn still(facts: &TableFacts) -> Option<ConditionRecord> {
+    let (inner, outer) = facts.inner_during_step.filter(|_| facts.about_outer)?;
+    let moves = (inner / outer).abs() > RESTS;
+    let (status, key) = if moves {
+        (ConditionStatus::Invalid, "on_table.inner_moves")
+    } else {
+        (ConditionStatus::Ok, "on_table.inner_rests")
+    };
+    let note = Note::new(key)
+        .with("inner", Arg::figures(inner / 3600.0, 3))
+        .with("outer", Arg::figures(outer / 3600.0, 4));
+    let required = Note::new("on_table.required.inner_rests");
+    Some(record("inner_axis_still", status, &[("inner_deg_h", inner)], Some(required), note))
+}
+
+/// A bias that is the Earth rate taken out with the wrong sign, twice.
+fn earth_sign(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
+    let (bias, earth) =
+        channel.bias_and_earth.filter(|(_, e)| !facts.about_outer && e.abs() >= LEAST_EARTH)?;
+    let within = channel.bias_limit.unwrap_or(0.0).clamp(TWICE * earth.abs(), 0.5 * earth.abs());
+    if (bias + 2.0 * earth).abs() > within {
+        return None;
+    }
+    // Without a limit on the bias nothing that is judged rests on it.
+    let status =
+        if channel.bias_limit.is_some() { ConditionStatus::Invalid } else { ConditionStatus::Remark };
+    let note = Note::new("on_table.earth_sign")
+        .with("bias", Arg::figures(bias, 4))
+        .with("earth", Arg::figures(earth, 4));
+    let id = id_of("table_earth_rate", channel, facts);
+    Some(record(id, status, &[("bias_deg_h", bias)], Some(Note::new("on_table.required.earth_sign")), note))
 }
 
 fn per_second(rate_deg_h: f64) -> Arg {
@@ -68,6 +128,9 @@ fn steps(facts: &TableFacts) -> ConditionRecord {
         (true, _) => (ConditionStatus::Ok, "on_table.steps_found"),
         (false, 0) if facts.too_short > 0 => (ConditionStatus::Invalid, "on_table.steps_too_short"),
         (false, 0) => (ConditionStatus::Invalid, "on_table.steps_none"),
+        (false, found) if facts.too_short > found => {
+            (ConditionStatus::Invalid, "on_table.steps_mostly_short")
+        }
         (false, _) => (ConditionStatus::Invalid, "on_table.steps_one"),
     };
     let note = Note::new(key)
@@ -83,7 +146,7 @@ fn steps(facts: &TableFacts) -> ConditionRecord {
 
 /// Whether full scale was reached, on every side that was turned to.
 fn reached(facts: &TableFacts) -> Option<ConditionRecord> {
-    let full = facts.full_scale?;
+    let full = facts.full_scale.filter(|_| facts.steps > 0)?;
     let least = full * (1.0 - facts.tolerance);
     let sides = [facts.highest, -facts.lowest];
     let turned = sides.iter().filter(|s| **s > 0.0);
@@ -92,6 +155,8 @@ fn reached(facts: &TableFacts) -> Option<ConditionRecord> {
     let worst = if worst.is_finite() { worst } else { 0.0 };
     let (status, key) = if worst < least {
         (ConditionStatus::Invalid, "on_table.not_reached")
+    } else if sides.iter().any(|s| *s > BEYOND * full) {
+        (ConditionStatus::Invalid, "on_table.beyond")
     } else if one_side {
         (ConditionStatus::Remark, "on_table.one_side")
     } else {
@@ -116,6 +181,8 @@ fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
         "on_table.agrees"
     } else if (factor + 1.0).abs() <= facts.tolerance {
         "on_table.angle_reversed"
+    } else if (factor * RADIAN - 1.0).abs() <= facts.tolerance.max(0.01) {
+        "on_table.angle_in_radians"
     } else if factor.abs() < 0.98 {
         "on_table.fell_short"
     } else {
@@ -131,52 +198,59 @@ fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
     Some(record("table_agreement", status, &[("difference", difference)], Some(required), note))
 }
 
-/// Whether the output follows the table: its factor is near 1, and otherwise what is wrong.
-fn follows(channel: &ChannelFact, facts: &TableFacts) -> ConditionRecord {
-    let id = if facts.channels.len() > 1 {
-        format!("table_response.{}", channel.channel)
-    } else {
-        "table_response".to_owned()
-    };
+/// Whether the output follows the table: its factor is near 1, and otherwise what is wrong. Where the input axis is square to
+/// the axis that turns, nothing but a turn of the inner axis tells.
+fn follows(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
+    let id = id_of("table_response", channel, facts);
     let required = Some(Note::new("on_table.required.response"));
     let Some(factor) = channel.factor else {
         let note = Note::new("on_table.no_line");
-        return record(id, ConditionStatus::Invalid, &[], required, note);
+        return (!facts.about_outer).then(|| record(id, ConditionStatus::Invalid, &[], required, note));
     };
     let observed = [("factor", factor)];
     if FOLLOWS.contains(&factor) {
         let note = Note::new("on_table.follows").with("factor", Arg::figures(factor, 5));
-        return record(id, ConditionStatus::Ok, &observed, required, note);
+        return Some(record(id, ConditionStatus::Ok, &observed, required, note));
     }
+    let note = does_not_follow(channel, factor, facts);
+    Some(record(id, ConditionStatus::Invalid, &observed, required, note))
+}
+
+/// What is wrong with an output that does not follow the table.
+fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> Note {
     let shown = Arg::figures(factor, 4);
+    let mistakes = mistakes::rate_factors(&channel.unit);
+    let mistaken = |why: Note| {
+        Note::new("on_table.mistaken").with("factor", shown.clone()).with("mistake", Arg::from(why))
+    };
+    // An exchange of unit leaves next to nothing of the output, which is known well all the same.
+    let resolved = factor.abs() > 10.0 * channel.standard;
+    let exchanged = |m: &&mistakes::Mistake| mistakes::is_usual(m) && FOLLOWS.contains(&(m.factor * factor));
+    if let Some(exchange) = mistakes.iter().find(exchanged).filter(|_| resolved) {
+        return mistaken(exchange.note.clone());
+    }
     let other = facts
         .channels
         .iter()
         .find(|c| c.channel != channel.channel && c.factor.is_some_and(|f| FOLLOWS.contains(&f.abs())));
-    let note = if factor.abs() < 0.1 && factor.abs() < 20.0 * channel.standard.max(0.005) {
-        match other {
+    if factor.abs() < 0.1 && factor.abs() < 20.0 * channel.standard.max(0.005) {
+        return match other {
             Some(other) => Note::new("on_table.another_axis")
                 .with("channel", channel.channel.as_str())
                 .with("other", other.channel.as_str())
                 .with("factor", shown),
             None => Note::new("on_table.does_not_follow").with("factor", shown),
-        }
-    } else if FOLLOWS.contains(&-factor) {
-        Note::new("on_table.reversed").with("factor", shown)
-    } else {
-        let known = mistakes::rate_factors(&channel.unit)
-            .into_iter()
-            .map(|m| ((m.factor * factor.abs()).ln().abs(), m))
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .filter(|(off, _)| *off < 0.1);
-        match known {
-            Some((_, mistake)) => {
-                Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note))
-            }
-            None => Note::new("on_table.off").with("factor", shown),
-        }
-    };
-    record(id, ConditionStatus::Invalid, &observed, required, note)
+        };
+    }
+    if FOLLOWS.contains(&-factor) {
+        return Note::new("on_table.reversed").with("factor", shown);
+    }
+    let off = |m: &mistakes::Mistake| (m.factor * factor.abs()).ln().abs();
+    let nearest = mistakes.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|m| off(m) < 0.1);
+    match nearest {
+        Some(mistake) => mistaken(mistake.note),
+        None => Note::new("on_table.off").with("factor", shown),
+    }
 }
 
 /// What a channel makes of the Earth's rotation in several positions.
@@ -244,23 +318,25 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
     if (fact.factor + 1.0).abs() <= allowed.max(0.02) {
         return invalid(Note::new("known.reversed").with("factor", shown));
     }
-    if fact.factor.abs() <= allowed.max(0.02) {
+    // A factor that is not known to a tenth says nothing of units, nor of a latitude.
+    let known = allowed <= 0.1 * fact.factor.abs();
+    let units = || mistakes::rate_factors(&fact.unit).into_iter().filter(|_| known);
+    let off = |m: &mistakes::Mistake| (m.factor * fact.factor - 1.0).abs();
+    let usual = units().any(|m| mistakes::is_usual(&m) && off(&m) <= 0.02);
+    if fact.factor.abs() <= allowed.max(0.02) && !usual {
         return invalid(Note::new("known.not_turned").with("factor", shown));
     }
-    let mistake = mistakes::rate_factors(&fact.unit)
-        .into_iter()
-        .filter(|m| (m.factor * fact.factor - 1.0).abs() <= (allowed / fact.factor.abs()).max(0.02))
-        .min_by(|a, b| {
-            let off = |m: &mistakes::Mistake| (m.factor * fact.factor).ln().abs();
-            off(a).total_cmp(&off(b))
-        });
+    let mistake = units().filter(|m| off(m) <= (allowed / fact.factor.abs()).max(0.02)).min_by(|a, b| {
+        let off = |m: &mistakes::Mistake| (m.factor * fact.factor).ln().abs();
+        off(a).total_cmp(&off(b))
+    });
     if let Some(mistake) = mistake {
         let note =
             Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note));
         return invalid(note);
     }
     let sine = fact.latitude_deg.map(|l| l.to_radians().sin() * fact.factor);
-    match sine.filter(|s| s.abs() <= 1.0) {
+    match sine.filter(|s| s.abs() <= 1.0 && known) {
         Some(sine) => invalid(
             Note::new("known.latitude")
                 .with("factor", shown)

@@ -14,6 +14,7 @@ use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::ChannelSpec;
 use crate::rate_table::blocks::{Blocks, Collector};
+use crate::rate_table::inner_axis::InnerAxis;
 use crate::rate_table::scale_factor::{self, ScaleFactor};
 use crate::rate_table::{Setup, TableRun};
 use crate::record::{ConditionRecord, OptionRecord};
@@ -38,10 +39,10 @@ pub(super) fn execute(
             (gyro, scale_factor::evaluate(&run, gyro, setup, unit, &wanted))
         })
         .collect();
-    let mut conditions = judge(&facts(procedure, &run, setup, &evaluated));
+    let mut conditions = judge(&facts(request, &run, setup, &evaluated));
     if setup.known.is_empty() && wants_alignment(procedure) {
         // The input axis is square to the axis that is turned about: its output follows by the tilt only.
-        conditions.retain(|c| !c.id.starts_with("table_response") && c.id != "table_reached");
+        conditions.retain(|c| c.id != "table_reached");
     }
     conditions.extend(usual_conditions(request, &found));
     let others: Vec<Others> = evaluated
@@ -207,12 +208,13 @@ pub(super) fn collect_blocks(
 }
 
 fn facts(
-    procedure: &Procedure,
+    request: &Request<'_>,
     run: &TableRun,
     setup: &Setup,
     evaluated: &[(usize, Option<ScaleFactor>)],
 ) -> TableFacts {
-    let steps = &run.steps;
+    let (procedure, steps) = (request.procedure, &run.steps);
+    let inner = InnerAxis::of(&run.blocks);
     // Where the input axis is square to the axis that is turned about, that is the other one.
     let about_outer = wants_alignment(procedure);
     let rates = || steps.list.iter().map(|s| if about_outer { s.outer } else { s.rate });
@@ -233,6 +235,10 @@ fn facts(
                 .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
         })
         .flatten();
+    let disagreement = match inner.angle_per_rate {
+        Some(factor) if about_outer => Some((factor - 1.0, inner.largest)),
+        _ => disagreement,
+    };
     TableFacts {
         steps: steps.list.len(),
         too_short: steps.too_short,
@@ -244,20 +250,37 @@ fn facts(
         full_scale: setup.full_scale_deg_h,
         tolerance: setup.rate_tolerance,
         disagreement,
+        inner_during_step: inner.during_step,
         channels: evaluated
             .iter()
             .filter_map(|(gyro, channel)| {
-                let id = run.blocks.gyros.get(*gyro)?;
-                let spec = procedure.channel(id)?;
-                Some(ChannelFact {
-                    channel: id.clone(),
-                    unit: spec.unit_in_file.clone(),
-                    factor: channel.as_ref().map(|c| c.factor),
-                    standard: channel.as_ref().map_or(0.0, ScaleFactor::factor_uncertainty),
-                })
+                let along_outer = || inner.output_per_rate.get(*gyro).copied().flatten();
+                let by_steps = || channel.as_ref().map(|c| (c.factor, c.factor_uncertainty()));
+                let factor = if about_outer { along_outer() } else { by_steps() };
+                channel_fact(request, run.blocks.gyros.get(*gyro)?, channel.as_ref(), factor)
             })
             .collect(),
     }
+}
+
+fn channel_fact(
+    request: &Request<'_>,
+    id: &str,
+    channel: Option<&ScaleFactor>,
+    factor: Option<(f64, f64)>,
+) -> Option<ChannelFact> {
+    const BIAS: &str = "scale_factor_bias";
+    let spec = request.procedure.channel(id)?;
+    let earth = request.procedure.site.as_ref().map(|site| site.earth_rate_along(id).value);
+    let at_rest = channel.zip(earth).map(|(c, earth)| (c.bias - c.factor * earth, earth));
+    Some(ChannelFact {
+        channel: id.to_owned(),
+        unit: spec.unit_in_file.clone(),
+        factor: factor.map(|f| f.0),
+        standard: factor.map_or(0.0, |f| f.1),
+        bias_and_earth: at_rest,
+        bias_limit: request.limits.limit(BIAS, id).and_then(|l| l.limit.largest_magnitude()),
+    })
 }
 
 fn draw(request: &Request<'_>, run: &TableRun, evaluated: &[(usize, Option<ScaleFactor>)]) -> Vec<Figure> {

@@ -141,12 +141,82 @@ fn mistakes_name_themselves() {
     let software = mistaken("multi-position", &[], "multi-position-software", keep);
     assert!(names(&software, "known.software"), "{software:?}");
 
+    let per_second = mistaken("multi-position", &[], "multi-position-pass", |v| v[1] /= 3600.0);
+    assert!(
+        per_second.iter().any(|(id, said)| id == "on_table.mistaken" && said.contains("deg/s")),
+        "{per_second:?}"
+    );
+
+    let southern = mistaken(
+        "multi-position",
+        &[("latitude = \"55.98 deg\"", "latitude = \"-55.98 deg\"")],
+        "multi-position-pass",
+        keep,
+    );
+    assert!(southern.iter().any(|(_, said)| said.contains("of the latitude")), "{southern:?}");
+
     let lying = mistaken("multi-position", &[], "multi-position-pass", |v| {
         if ((v[0] / 600.0) as u32) % 2 == 1 {
             v[1] += 2.0 * 12.467;
         }
     });
     assert!(names(&lying, "known.not_turned"), "{lying:?}");
+}
+
+#[test]
+fn a_full_scale_far_below_the_rates_and_an_exchanged_unit_are_named() {
+    let low = mistaken(
+        "scale-factor",
+        &[("full_scale = \"100 deg/s\"", "full_scale = \"10 deg/s\"")],
+        "scale-factor-pass",
+        |_| {},
+    );
+    assert!(names(&low, "on_table.beyond"), "{low:?}");
+    // A dead zone takes a part of the output away, and the unit is told all the same.
+    let unit = mistaken("threshold", &[], "threshold-pass", |v| v[1] /= 3600.0);
+    assert!(unit.iter().any(|(id, said)| id == "on_table.mistaken" && said.contains("deg/s")), "{unit:?}");
+}
+
+#[test]
+fn the_inner_axis_of_a_misalignment_test_shows_mistakes_of_its_own() {
+    let (rate, inner_rate, angle, outer) = (1, 2, 3, 4);
+    let of = |row: &dyn Fn(&mut Vec<f64>)| mistaken("misalignment", &[], "misalignment-pass", row);
+    let unit = of(&|v| v[rate] /= 3600.0);
+    assert!(unit.iter().any(|(id, said)| id == "on_table.mistaken" && said.contains("deg/s")), "{unit:?}");
+    let backwards = of(&|v| v[angle] = -v[angle]);
+    assert!(names(&backwards, "on_table.angle_reversed"), "{backwards:?}");
+    let radians = of(&|v| v[angle] = v[angle].to_radians());
+    assert!(names(&radians, "on_table.angle_in_radians"), "{radians:?}");
+    let creeps = of(&|v| {
+        if v[outer].abs() > 1.0 {
+            v[inner_rate] += 0.5;
+        }
+    });
+    assert!(names(&creeps, "on_table.inner_moves"), "{creeps:?}");
+}
+
+#[test]
+fn twice_the_earth_rate_with_the_opposite_sign_is_no_bias() {
+    use sagnac::condition::table::{ChannelFact, TableFacts, judge};
+    use sagnac::record::ConditionStatus;
+    let status = |bias: f64, limit: Option<f64>| {
+        let channel = ChannelFact {
+            channel: "z".into(),
+            unit: "deg/h".into(),
+            factor: Some(1.0),
+            standard: 1e-6,
+            bias_and_earth: Some((bias, -12.467)),
+            bias_limit: limit,
+        };
+        let facts = TableFacts { steps: 20, levels: 10, channels: vec![channel], ..TableFacts::default() };
+        judge(&facts).into_iter().find(|c| c.id == "table_earth_rate").map(|c| c.status)
+    };
+    assert_eq!(status(25.25, Some(0.5)), Some(ConditionStatus::Invalid));
+    assert_eq!(status(25.25, None), Some(ConditionStatus::Remark));
+    assert_eq!(
+        (status(0.3, Some(0.5)), status(3.1, Some(0.5)), status(-25.0, Some(0.5))),
+        (None, None, None)
+    );
 }
 
 #[test]
@@ -157,6 +227,8 @@ fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
         unit: "deg/s".into(),
         factor: Some(factor),
         standard: 1e-5,
+        bias_and_earth: None,
+        bias_limit: None,
     };
     let facts = TableFacts {
         steps: 20,

@@ -167,6 +167,15 @@ fn likely_mistakes_are_named() {
     says(&flat, "was the chamber not started");
     let none = complaints(|f| Some(format!("{},{},", f[0], f[1])));
     says(&none, "was the column left out");
+    let scaled = |f: &[&str], scale: &dyn Fn(f64) -> f64| {
+        Some(format!("{},{},{:.4}", f[0], f[1], scale(f[2].parse().unwrap())))
+    };
+    says(&complaints(|f| scaled(f, &|t| t + 273.15)), "look like kelvin");
+    says(&complaints(|f| scaled(f, &|t| 1.8 * t + 32.0)), "look like degrees Fahrenheit");
+    // The mean is 1/3600 of the Earth rate along the axis, and nothing else would have said so.
+    let per_second =
+        complaints(|f| Some(format!("{},{},{}", f[0], f[1].parse::<f64>().unwrap() / 3600.0, f[2])));
+    says(&per_second, "look like deg/s");
     let one_way = complaints(|f| (f[0].parse::<f64>().unwrap() < 14_000.0).then(|| f.join(",")));
     says(&one_way, "temperature_course");
     // The time in minutes taken for seconds: ramps sixty times too fast.

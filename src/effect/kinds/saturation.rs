@@ -123,10 +123,16 @@ mod tests {
 
     #[test]
     fn samples_in_which_the_rate_passes_the_limit_are_told() {
-        let rate = vec![0.0, 2.0, 4.0, 5.0, 5.0, 5.0, 3.0, -3.0, -5.0, -5.0, 0.0];
-        let drivers =
-            Drivers { dt_s: 1.0, samples: rate.len(), table_rate: Some(rate), ..Drivers::default() };
-        assert_eq!(Saturation.bends_within(&[4.5], &drivers), [2, 3, 5, 6, 7, 8, 9, 10]);
-        assert_eq!(Saturation.bends_within(&[6.0], &drivers), []);
+        let told = |mut rate: Vec<f64>, limit: f64| {
+            rate.extend([5.0; 20]);
+            let samples = rate.len();
+            let drivers = Drivers { dt_s: 1.0, samples, table_rate: Some(rate), ..Drivers::default() };
+            Saturation.bends_within(&[limit], &drivers)
+        };
+        let steps = vec![0.0, 2.0, 4.0, 5.0, 5.0, 5.0, 3.0, -3.0, -5.0, -5.0, -5.0];
+        assert_eq!(told(steps.clone(), 4.5), [2, 3, 5, 6, 7, 8, 10, 11]);
+        assert!(told(steps, 6.0).is_empty());
+        let tops = [0.0, 5.0].repeat(40);
+        assert!(told(tops, 4.5).is_empty());
     }
 }
