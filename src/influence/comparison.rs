@@ -311,10 +311,15 @@ fn off_line(each: &Fit, first: usize, drives: &[Vec<f64>]) -> Option<f64> {
     Some(chi_square_tail(rest.dot(&factor.solve(&rest)), dof as f64))
 }
 
+/// A level as rows and limits name it: three figures, so that a mean of 0.9998 is the 1 that was set.
+pub fn level_name(level: f64) -> String {
+    format!("{level:.2e}").parse::<f64>().map_or_else(|_| level.to_string(), |rounded| rounded.to_string())
+}
+
 impl Comparison {
     /// The channel with an axis and a level, as rows name it.
     fn place(&self, axis: &str, level: Option<f64>) -> String {
-        let level = level.map(|l| ((l * 1e4).round() / 1e4).to_string());
+        let level = level.map(level_name);
         let parts: Vec<String> =
             [Some(axis.to_owned()).filter(|a| !a.is_empty()), level].into_iter().flatten().collect();
         if parts.is_empty() { self.channel.clone() } else { format!("{}@{}", self.channel, parts.join(":")) }
@@ -356,5 +361,16 @@ impl Comparison {
             }
             _ => e,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::level_name;
+
+    #[test]
+    fn levels_are_named_as_they_were_set() {
+        let names = [0.9998, 10.0004, -0.50003, 27.5, 0.0, 120_004.0].map(level_name);
+        assert_eq!(names, ["1", "10", "-0.5", "27.5", "0", "120000"]);
     }
 }

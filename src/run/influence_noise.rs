@@ -4,6 +4,7 @@ use super::evaluate::{self, Found};
 use super::reading;
 use super::{Request, RunError};
 use crate::estimate::{Estimate, Spread, normal_quantile};
+use crate::influence::comparison::level_name;
 use crate::influence::intervals::Intervals;
 use crate::noise::digest::{DigestPlan, RateAccumulator};
 use crate::rate_table::blocks::Blocks;
@@ -136,7 +137,7 @@ pub(super) fn find(
         let without = states.iter().find(|s| s.level.is_none()).and_then(|s| s.n);
         for state in &states {
             let Some((axis, level)) = &state.level else { continue };
-            let level = ((level * 1e4).round() / 1e4).to_string();
+            let level = level_name(*level);
             let place = if axis.is_empty() { level } else { format!("{axis}:{level}") };
             let channel_at = format!("{channel}@{place}");
             changes.push(ChangeOfNoise {
