@@ -2,6 +2,7 @@
 
 use super::Block;
 use super::accumulated::{Angles, Wrapped};
+use super::pauses::Paused;
 use super::plan::Plan;
 use super::stream::nano;
 use crate::numeric::range::settled;
@@ -31,6 +32,7 @@ pub(super) struct State<'a> {
     pub checks: ValueChecks,
     pub log: FaultLog,
     pub integrity: Integrity,
+    pub pauses: Paused,
     /// Grid position of the next sample.
     pub index: u64,
     pub used: u64,
@@ -59,6 +61,7 @@ impl<'a> State<'a> {
             checks: ValueChecks::new(plan.channels, plan.clock.interval_s),
             log: FaultLog::default(),
             integrity: Integrity::default(),
+            pauses: Paused::new(plan.pauses),
             index: 0,
             used: 0,
             connected: false,
@@ -141,6 +144,7 @@ impl<'a> State<'a> {
             slot.and_then(|t| block.columns.get(t)?.iter().copied().find(|v| v.is_finite()))
         };
         let contiguous = self.plan.source.is_contiguous();
+        let pause = self.pauses.file_begins();
         if self.plan.counter.is_some() {
             if first(self.plan.counter).is_some_and(|count| self.counter.join(count)) {
                 self.unknown_gap(row, None, Note::new("time_base.joint_counter").with("file", name));
@@ -156,12 +160,15 @@ impl<'a> State<'a> {
                 self.shift_s = if beyond { shift } else { 0.0 };
             }
             Some(stamp) => {
-                if let Some(back_s) = self.tracker.join(stamp) {
-                    self.integrity.backward_timestamps += 1;
+                let restarted = pause && self.begins_again(stamp);
+                if let Some(back_s) = self.tracker.join(stamp, restarted) {
                     let at = Some(self.tracker.on_scale(stamp));
-                    let note =
-                        Note::new("time_base.joint_back").with("file", name).with("back_s", nano(back_s));
-                    self.log.push("backward_timestamp", Some("clock"), at, row, 1, || note);
+                    if !pause {
+                        self.integrity.backward_timestamps += 1;
+                        let note =
+                            Note::new("time_base.joint_back").with("file", name).with("back_s", nano(back_s));
+                        self.log.push("backward_timestamp", Some("clock"), at, row, 1, || note);
+                    }
                     self.unknown_gap(row, at, Note::new("fault_note.gap_set_back"));
                     self.joined = true;
                 }
@@ -174,13 +181,27 @@ impl<'a> State<'a> {
         }
     }
 
+    /// True when the stamps of another file begin before the middle of the file before: a clock of its own, or files in
+    /// another order. What overlaps by less are rows recorded twice.
+    fn begins_again(&self, stamp: f64) -> bool {
+        let before = self.spans.last().map(|s| 0.5 * (s.first_s + s.last_s));
+        before.is_some_and(|middle| self.tracker.on_scale(stamp) < middle)
+    }
+
     /// Samples are missing before a row, nobody knows how many; one place of the grid is left free.
     fn unknown_gap(&mut self, row: u64, at: Option<f64>, note: Note) {
-        self.integrity.gaps += 1;
-        self.integrity.missing_samples += 1;
-        self.index += 1;
+        self.missing(1, None, row, at, note);
+    }
+
+    /// Samples are missing before a row, over a time where it is known: a pause of the test, or a gap.
+    fn missing(&mut self, samples: u64, step_s: Option<f64>, row: u64, at: Option<f64>, note: Note) {
+        if !self.pauses.takes(step_s) {
+            self.integrity.gaps += 1;
+            self.integrity.missing_samples += samples;
+            self.log.push("gap", None, at, row, samples, || note);
+        }
+        self.index += samples;
         self.connected = false;
-        self.log.push("gap", None, at, row, 1, || note);
     }
 
     fn stamped(&mut self, columns: &[Vec<f64>], time: usize, first_row: u64, sinks: &mut [&mut dyn Sink]) {
@@ -246,12 +267,9 @@ impl<'a> State<'a> {
             CounterStep::Next => return true,
             CounterStep::Unusable => {}
             CounterStep::Gap { missing } => {
-                self.integrity.gaps += 1;
-                self.integrity.missing_samples += missing;
-                self.index += missing;
-                self.connected = false;
-                let note = || Note::new("time_base.counter_gap").with("missing", missing);
-                self.log.push("gap", None, at, row, missing, note);
+                let note = Note::new("time_base.counter_gap").with("missing", missing);
+                let step_s = (missing as f64 + 1.0) * self.plan.clock.interval_s;
+                self.missing(missing, Some(step_s), row, at, note);
                 return true;
             }
             CounterStep::Restart => {
@@ -274,29 +292,19 @@ impl<'a> State<'a> {
 
     /// Counts and lists what a step means; true when its row is used.
     fn account(&mut self, step: Step, row: u64, stamp: f64) -> bool {
-        let integrity = &mut self.integrity;
         let at = Some(self.tracker.on_scale(stamp)).filter(|t| t.is_finite());
         match step {
             Step::Next => return true,
             Step::Unusable => {}
             Step::Gap { missing, step_s, clock_set } => {
-                integrity.gaps += 1;
-                integrity.missing_samples += missing;
-                self.index += missing;
-                self.connected = false;
-                self.log.push("gap", None, at, row, missing, || {
-                    let note = if clock_set { "fault_note.clock_ahead" } else { "fault_note.gap" };
-                    Note::new(note).with("step_s", nano(step_s)).with("missing", missing)
-                });
+                let key = if clock_set { "fault_note.clock_ahead" } else { "fault_note.gap" };
+                let note = Note::new(key).with("step_s", nano(step_s)).with("missing", missing);
+                self.missing(missing, Some(step_s), row, at, note);
                 return true;
             }
             Step::SetBack { back_s } => {
-                integrity.backward_timestamps += 1;
-                integrity.gaps += 1;
-                integrity.missing_samples += 1;
-                self.index += 1;
-                self.connected = false;
-                self.log.push("gap", None, at, row, 1, || Note::new("fault_note.gap_set_back"));
+                self.integrity.backward_timestamps += 1;
+                self.unknown_gap(row, at, Note::new("fault_note.gap_set_back"));
                 // One entry of its own, or it would be added to the rows set aside before it.
                 self.log.push("backward_timestamp", Some("clock"), at, row, 1, || {
                     Note::new("fault_note.set_back").with("back_s", nano(back_s))
@@ -304,17 +312,17 @@ impl<'a> State<'a> {
                 return true;
             }
             Step::Duplicate => {
-                integrity.duplicate_timestamps += 1;
+                self.integrity.duplicate_timestamps += 1;
                 self.log.push("duplicate_timestamp", None, at, row, 1, || Note::new("fault_note.duplicate"));
             }
             Step::Backward { back_s } => {
-                integrity.backward_timestamps += 1;
+                self.integrity.backward_timestamps += 1;
                 self.log.push("backward_timestamp", None, at, row, 1, || {
                     Note::new("fault_note.backward").with("back_s", nano(back_s))
                 });
             }
             Step::Stray { ahead_s } => {
-                integrity.backward_timestamps += 1;
+                self.integrity.backward_timestamps += 1;
                 self.log.push("backward_timestamp", None, at, row, 1, || {
                     Note::new("fault_note.stray").with("ahead_s", nano(ahead_s))
                 });
@@ -389,6 +397,7 @@ impl<'a> State<'a> {
 
     fn pass_on(&mut self, values: &[Vec<f64>], first_row: u64, time_s: f64, sinks: &mut [&mut dyn Sink]) {
         let slab = Slab { first_index: self.index, first_row, time_s, continues: self.connected, values };
+        self.pauses.passed(time_s - self.plan.start_s());
         self.checks.push(&slab);
         for sink in sinks {
             sink.push(&slab);

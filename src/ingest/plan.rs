@@ -1,5 +1,6 @@
 //! What must be known before a recording is read: its columns, the units of its channels, its clock.
 
+use super::pauses::Pauses;
 use super::{IngestError, IngestErrorKind, Source};
 use crate::recording::timebase::{Clock, ClockError, Unwrapper, moduli};
 use crate::recording::{Channel, Role};
@@ -53,6 +54,7 @@ pub struct Plan<'a> {
     pub(super) increment_s: f64,
     /// Angle after which an accumulated one starts again, arcsec, by channel.
     pub(super) angle_periods: Vec<Option<f64>>,
+    pub(super) pauses: Pauses,
     start_s: f64,
 }
 
@@ -132,6 +134,7 @@ pub fn prepare<'a>(
         counter_modulus,
         increment_s,
         angle_periods,
+        pauses: Pauses::default(),
         start_s,
     };
     plan.rates_from_angles(1.0, increment_s);
@@ -244,6 +247,11 @@ impl Plan<'_> {
         if let Some(place) = slot.and_then(|s| self.angle_periods.get_mut(s)) {
             *place = Some(period);
         }
+    }
+
+    /// Says where the recording may pause.
+    pub fn set_pauses(&mut self, pauses: Pauses) {
+        self.pauses = pauses;
     }
 
     /// The nominal clock.

@@ -72,6 +72,8 @@ pub struct StreamReport {
     pub clock: Option<Measured>,
     /// What must be known of the time base.
     pub notes: Vec<Note>,
+    /// Times at which samples go on after a pause of the test, s from the start of the recording.
+    pub pauses_end_s: Vec<f64>,
     /// The files, in order: one, unless several were joined.
     pub files: Vec<FileReport>,
     /// Rows of the recording.
@@ -169,6 +171,7 @@ impl State<'_> {
             start: plan.absolute_start(first),
             clock,
             notes,
+            pauses_end_s: std::mem::take(&mut self.pauses.ends_s),
             files,
             rows_used: self.used,
             channels,
@@ -192,6 +195,10 @@ impl State<'_> {
         }
         if rollovers > 0 {
             notes.push(Note::new("time_base.rollovers").with("count", rollovers));
+        }
+        let pauses = self.pauses.ends_s.len();
+        if pauses > 0 {
+            notes.push(Note::new("time_base.pauses").with("count", pauses));
         }
         let off = measured / nominal - 1.0;
         if off.abs() > 1e-6

@@ -172,7 +172,7 @@ pub struct ExcludedSpan {
     pub from_s: f64,
     /// End, s from the start of the recording.
     pub to_s: f64,
-    /// `warm_up`, `declared`, `gap`.
+    /// `warm_up`, `declared`, `gap`, `pause`.
     pub reason: String,
 }
 

@@ -2,10 +2,10 @@
 
 use super::pass::Overview;
 use super::{Request, RunError};
-use crate::ingest::{Plan, Source, StreamReport, TimeBaseSpec, locate, prepare};
+use crate::ingest::{Pauses, Plan, Source, StreamReport, TimeBaseSpec, locate, prepare};
 use crate::measurand::GyroEvidence;
 use crate::procedure::Procedure;
-use crate::record::{FaultRecord, Integrity};
+use crate::record::{FaultRecord, Integrity, Window};
 use crate::recording::window::WindowSpec;
 use crate::recording::{Channel, Role};
 use crate::text::Note;
@@ -27,12 +27,33 @@ pub(super) fn plan<'a>(request: &Request<'a>, channels: &'a [Channel]) -> Result
         counter_modulus: declared(Role::Counter),
     };
     let mut plan = prepare(request.source, channels, spec)?;
+    plan.set_pauses(pauses(procedure));
     for c in &procedure.channels {
         if let Some(period) = c.rollover {
             plan.set_angle_period(&c.channel.id, period);
         }
     }
     Ok(plan)
+}
+
+/// Where a test may pause: one that is made of stretches between its files, a series of switching off and on wherever the
+/// unit was off.
+fn pauses(procedure: &Procedure) -> Pauses {
+    let runs = procedure.repeatability_test.as_ref();
+    let of_stretches =
+        procedure.rate_table.is_some() || procedure.comparison_test.is_some() || runs.is_some();
+    Pauses { between_files: of_stretches, from_s: runs.map(|test| test.off_s) }
+}
+
+/// Gaps of the account that are pauses of the test.
+pub(super) fn name_pauses(window: &mut Window, report: &StreamReport) {
+    let is_pause =
+        |to_s: f64| report.pauses_end_s.iter().any(|end| (end - to_s).abs() < 1e-9 * end.abs().max(1.0));
+    for span in window.excluded.iter_mut().filter(|s| s.reason == "gap") {
+        if is_pause(span.to_s) {
+            span.reason = "pause".to_owned();
+        }
+    }
 }
 
 /// The part of the recording that a procedure evaluates.

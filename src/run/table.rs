@@ -187,7 +187,8 @@ pub(super) fn collect_blocks(
         Ok(((overview, held, blocks), report))
     };
     let ((overview, held, blocks), mut report) = reading::read_at_measured_interval(&mut plan, &mut read)?;
-    let (held, window) = held.finish();
+    let (held, mut window) = held.finish();
+    reading::name_pauses(&mut window, &report);
     let (blocks, _) = blocks.finish();
     let tau0_s = tidy(report.tau0_measured_s);
     reading::settle_integrity(&mut report, &overview, tau0_s, &[]);

@@ -2,6 +2,7 @@
 
 mod bench;
 mod judged;
+mod pauses;
 mod runs;
 
 use bench::{Bench, EARTH, Recorded, SmallRates, TwoAxes};

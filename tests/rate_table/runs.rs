@@ -9,7 +9,7 @@ fn root(path: &str) -> PathBuf {
 }
 
 /// Runs a procedure on a recording; gives the exit code and the result.
-fn run(procedure: &Path, recording: &Path) -> (i32, Value) {
+pub fn run(procedure: &Path, recording: &Path) -> (i32, Value) {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("report");
     let status = Command::new(env!("CARGO_BIN_EXE_sagnac"))

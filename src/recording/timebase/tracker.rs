@@ -166,10 +166,12 @@ impl Tracker {
     }
 
     /// The stamps of another file begin with `stamp`. One that is earlier than every stamp so far starts a stretch after
-    /// a gap of unknown length; how far back it is, then.
-    pub fn join(&mut self, stamp: f64) -> Option<f64> {
+    /// a gap of unknown length, and so does any that is not later than the latest where the clock is known to have started
+    /// again; how far back it is, then.
+    pub fn join(&mut self, stamp: f64, restarted: bool) -> Option<f64> {
         let (first, latest) = (self.first?, self.latest?);
-        if !(stamp.is_finite() && stamp <= first.min(latest)) {
+        let bound = if restarted { latest } else { first.min(latest) };
+        if !(stamp.is_finite() && stamp <= bound) {
             return None;
         }
         self.set_back(stamp);

@@ -69,7 +69,7 @@ fn layers(
     let mut layers: Vec<Layer> = window
         .excluded
         .iter()
-        .filter(|span| span.reason != "gap")
+        .filter(|span| span.reason != "gap" && span.reason != "pause")
         .map(|span| Layer::Span {
             from: span.from_s,
             to: span.to_s,
