@@ -12,7 +12,7 @@ use crate::procedure::phases::{Phase, Phased, load_phased};
 use crate::record::{RunRecord, UnitUnderTest};
 use crate::report::view::PhasePart;
 use crate::report::{Renderer, render_phases, svg};
-use crate::run::phases::{Done, combine, figures, folder};
+use crate::run::phases::{Done, combine, failure, figures, folder};
 use crate::run::{Outcome, Request, execute, failed, session};
 use crate::text::{Lang, Note};
 use chrono::Utc;
@@ -93,6 +93,12 @@ pub fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let who = who.unwrap_or_default();
     let record = combine(&phased, &done, unit, who);
     write_whole(&record, &done, &staged, &renderer, lang)?;
+    for phase in &record.phases {
+        if let Some(why) = failure(phase) {
+            let note = Note::new("phases.error").with("title", phase.title.as_str()).with("why", why.clone());
+            place::complain(&place::error(&note, lang));
+        }
+    }
     let place = staged.publish().map_err(|e| error(e.note()))?;
     place::print(&summary(&record, &place, lang));
     Ok(code(record.verdict))

@@ -33,9 +33,12 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         vec![]
     };
     let of_phase = |p: &PhaseRecord| {
-        Note::new("phases.verdict")
-            .with("title", p.title.as_str())
-            .with("verdict", Arg::key("verdict", p.verdict.id()))
+        let verdict = Arg::key("verdict", p.verdict.id());
+        match failure(p) {
+            Some(why) => Note::new("phases.failed").with("verdict", verdict).with("why", why.clone()),
+            None => Note::new("phases.verdict").with("verdict", verdict),
+        }
+        .with("title", p.title.as_str())
     };
     let summary = errors.iter().cloned().chain(phases.iter().map(of_phase)).collect();
     let records: Vec<&RunRecord> =
@@ -82,6 +85,11 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         phases,
         errors,
     }
+}
+
+/// Why a phase could not be carried out; `None` of one that was.
+pub fn failure(phase: &PhaseRecord) -> Option<&Note> {
+    phase.summary.first().filter(|_| phase.verdict == Verdict::Error)
 }
 
 fn of(done: &Done<'_>) -> PhaseRecord {

@@ -135,6 +135,30 @@ fn a_phase_without_a_recording_is_an_error_in_the_report() {
 }
 
 #[test]
+fn a_phase_that_fails_says_why_on_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("report");
+    let all = manifest(
+        folder.path(),
+        &[
+            ("bias-repeatability-pass.csv", Some("repeatability")),
+            ("scale-factor-pass.csv", Some("scale-factor")),
+            ("misalignment-pass.csv", Some("alignment")),
+        ],
+    );
+    let sample = folder.path().join("scale-factor-pass.csv");
+    let text = std::fs::read_to_string(&sample).unwrap().replacen("counts", "turns", 1);
+    std::fs::write(&sample, text).unwrap();
+    let done = sagnac(&["run", &acceptance(), &all, "--lang", "en"], &out);
+    assert_eq!(done.status.code(), Some(2), "{}", said(&done));
+    let shown = String::from_utf8_lossy(&done.stdout).into_owned();
+    let line = shown.lines().find(|l| l.contains("Scale factor")).unwrap_or_else(|| panic!("{shown}"));
+    assert!(line.contains("error") && line.contains("counts"), "{line}");
+    let stderr = said(&done);
+    assert!(stderr.contains("error: Scale factor") && stderr.contains("counts"), "{stderr}");
+}
+
+#[test]
 fn phases_within_a_phase_reach_its_procedure() {
     let folder = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(root("procedures/bias-repeatability.toml")).unwrap();

@@ -172,6 +172,8 @@ const SAME: &[&str] = &[
     "figure_positions.name",
     "figure_polar.angle",
     "phases.verdict",
+    "phases.failed",
+    "phases.error",
     "ingest.parts.and",
     "ingest.raw.hint.help",
     "ingest.raw.problem",
