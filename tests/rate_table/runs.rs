@@ -220,6 +220,35 @@ fn twice_the_earth_rate_with_the_opposite_sign_is_no_bias() {
 }
 
 #[test]
+fn a_recording_that_repeats_itself_is_invalid() {
+    for (name, sample) in [
+        ("scale-factor", "scale-factor-pass"),
+        ("threshold", "threshold-pass"),
+        ("misalignment", "misalignment-pass"),
+        ("multi-position", "multi-position-pass"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let text = std::fs::read_to_string(root(&format!("samples/{sample}.csv"))).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let stamp = |line: &str| line.split(',').next().and_then(|t| t.parse::<f64>().ok());
+        let length =
+            stamp(lines[lines.len() - 1]).unwrap() + stamp(lines[2]).unwrap() - stamp(lines[1]).unwrap();
+        let mut twice = text.clone();
+        for line in &lines[1..] {
+            let (at, rest) = line.split_once(',').unwrap();
+            let later = at.parse::<f64>().unwrap() + length - stamp(lines[1]).unwrap();
+            twice.push_str(&format!("{later:.4},{rest}\n"));
+        }
+        let data = folder.path().join("recording.csv");
+        std::fs::write(&data, twice).unwrap();
+        let (code, result) = run(&root(&format!("procedures/{name}.toml")), &data);
+        let conditions = result["conditions"].as_array().unwrap();
+        let repeated = conditions.iter().any(|c| c["id"] == "repeated" && c["status"] == "invalid");
+        assert!(code == 3 && repeated, "{name}: {:#}", result["summary"]);
+    }
+}
+
+#[test]
 fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
     use sagnac::condition::table::{ChannelFact, TableFacts, judge};
     let channel = |name: &str, factor: f64| ChannelFact {
