@@ -79,6 +79,32 @@ fn number_length(text: &str) -> usize {
     end
 }
 
+/// Units that an output per input has: of samples that are rates or angles already, of counts an interval, of counts of rate.
+pub const AS_RECORDED: [&str; 3] = ["1", "count/arcsec", "count/(deg/h)"];
+
+/// Reads an output per input: the number in the one of [`AS_RECORDED`] that its unit fits, and that unit. A number alone
+/// is a pure one.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_as_recorded(text: &str) -> Result<(f64, &'static str), QuantityError> {
+    let (_, unit_text) = split(text)?;
+    let whole = || 0..text.len();
+    if unit_text.is_empty() {
+        return parse(text, "1", false, true).map(|value| (value, "1"));
+    }
+    let given =
+        Unit::parse(unit_text).map_err(|e| QuantityError { span: whole(), message: e.note(), help: None })?;
+    let fits = |unit: &&&str| Unit::parse(unit).is_ok_and(|u| u.same_dimension(&given));
+    match AS_RECORDED.iter().find(fits) {
+        Some(unit) => parse(text, unit, true, true).map(|value| (value, *unit)),
+        None => {
+            let message = Note::new("keyed_more.no_output_per_input").with("unit", unit_text);
+            Err(QuantityError { span: whole(), message, help: None })
+        }
+    }
+}
+
 /// Reads a quantity and converts it to `unit`.
 ///
 /// A `difference` is scaled only; otherwise the offset of a temperature scale counts too. For a pure number

@@ -155,7 +155,7 @@ impl Reader<'_> {
         for (described, by, value) in dependent {
             let entry = dependent_unit(&section, by)
                 .and_then(|unit| values::quantity_by(self, described, &unit, value.get_ref(), &value.span()));
-            let entry = entry.map_or(Entry::Flag(false), Entry::Number);
+            let entry = entry.unwrap_or(Entry::Flag(false));
             section.entries.insert(described.name, (entry, value.span()));
         }
         section
@@ -297,7 +297,9 @@ impl Reader<'_> {
         for (name, value) in table.iter() {
             let Some(id) = self.measurand(name.get_ref(), &name.span()) else { continue };
             if let Some(number) = values::quantity_by(self, key, id.unit, value.get_ref(), &value.span()) {
-                found.push((id, number, name.span()));
+                if let Entry::Number(number) | Entry::AsRecorded(number, _) = number {
+                    found.push((id, number, name.span()));
+                }
             }
         }
         found

@@ -13,6 +13,8 @@ pub(crate) enum Entry {
     Text(String),
     Flag(bool),
     Number(f64),
+    /// A number in one of the units that a quantity has as it was recorded.
+    AsRecorded(f64, &'static str),
     Numbers(Vec<f64>),
     Values(Vec<Named>),
     Date(NaiveDate),
@@ -120,7 +122,15 @@ impl Section {
 
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.entry(key) {
-            Some(Entry::Number(number)) => Some(*number),
+            Some(Entry::Number(number) | Entry::AsRecorded(number, _)) => Some(*number),
+            _ => None,
+        }
+    }
+
+    /// The unit of a number whose unit is as recorded.
+    pub fn recorded_unit(&self, key: &str) -> Option<&'static str> {
+        match self.entry(key) {
+            Some(Entry::AsRecorded(_, unit)) => Some(unit),
             _ => None,
         }
     }

@@ -315,8 +315,27 @@ pub(crate) fn quantity_by(
     unit: &str,
     value: &DeValue<'_>,
     span: &Span,
-) -> Option<f64> {
-    quantity_text(reader, key, unit, false, value, span)
+) -> Option<Entry> {
+    if !unit.is_empty() {
+        return quantity_text(reader, key, unit, false, value, span).map(Entry::Number);
+    }
+    let DeValue::String(text) = value else {
+        reader.error(span, Note::new("keyed.no_unit").with("name", key.name), Some(as_recorded_help()));
+        return None;
+    };
+    match quantity::parse_as_recorded(text) {
+        Ok((number, unit)) => Some(Entry::AsRecorded(number, unit)),
+        Err(QuantityError { message, help, .. }) => {
+            let at = inside_quotes(reader, text, span);
+            reader.error(&at, message, Some(help.unwrap_or_else(as_recorded_help)));
+            None
+        }
+    }
+}
+
+/// How a quantity is written whose unit is as recorded.
+fn as_recorded_help() -> Note {
+    Note::new("keyed_more.help.as_recorded").with("units", quantity::AS_RECORDED.join(", "))
 }
 
 fn quantity_text(

@@ -2,6 +2,7 @@
 
 use super::diagnostics::{Problem, SourceText, Span};
 use super::model::{Loaded, Procedure};
+use super::quantity::AS_RECORDED;
 use super::reader::Reader;
 use super::section::{Entry, Section};
 use crate::estimate::{Limit, Rule};
@@ -29,6 +30,8 @@ pub struct LimitSpec {
     pub channel: Option<String>,
     /// The limit, in the unit of the measurand.
     pub limit: Limit,
+    /// The unit of the limit where that of the measurand is as recorded.
+    pub recorded_unit: Option<&'static str>,
     /// Where it is declared, in the file `limit.source`.
     pub span: Span,
 }
@@ -174,6 +177,8 @@ fn not_measured(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Vec<Problem
                 .with("procedure", procedure.id.as_str())
                 .with("channel", channel);
             warnings.push(file.source.warning(&limit.span, message));
+        } else if let Some(message) = recorded::other_unit(procedure, limit) {
+            warnings.push(file.source.warning(&limit.span, message));
         }
     }
     warnings
@@ -232,7 +237,8 @@ fn by_factor(measurand: &MeasurandId, factor: f64, typical: f64) -> Option<(Opti
 
 /// Makes a limit of every first reference value that has no limit of its own.
 fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
-    for reference in &set.references {
+    // A multiple of an output per input bounds nothing that anybody means.
+    for reference in set.references.iter().filter(|r| !r.measurand.unit.is_empty()) {
         let taken = |l: &LimitSpec| {
             l.measurand == reference.measurand && (l.channel.is_none() || l.channel == reference.channel)
         };
@@ -242,6 +248,7 @@ fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
             measurand: reference.measurand,
             channel: reference.channel.clone(),
             limit: Limit { min, max, rule: Rule::GuardBand, risk: 0.05, source: source.to_owned() },
+            recorded_unit: None,
             span: reference.span.clone(),
         });
     }
@@ -285,6 +292,13 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
             return None;
         }
         (min, max) = (Some(-bound), Some(bound));
+    }
+    let units: Vec<&'static str> =
+        ["min", "max", "max_abs"].into_iter().filter_map(|key| section.recorded_unit(key)).collect();
+    if units.windows(2).any(|pair| pair[0] != pair[1]) || factor.is_some() && measurand.unit.is_empty() {
+        let help = Note::new("keyed_more.help.as_recorded").with("units", AS_RECORDED.join(", "));
+        reader.error(&section.span, about("check.limit_as_recorded", measurand), Some(help));
+        return None;
     }
     if let Some(factor) = factor {
         let matching =
@@ -332,7 +346,8 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
     let rule = if section.word("rule") == Some("simple") { Rule::Simple } else { Rule::GuardBand };
     let risk = section.number("risk").unwrap_or(0.05);
     let limit = Limit { min, max, rule, risk, source: reader.source.name.clone() };
-    Some(LimitSpec { measurand, channel, limit, span: section.span.clone() })
+    let recorded_unit = units.first().copied();
+    Some(LimitSpec { measurand, channel, limit, recorded_unit, span: section.span.clone() })
 }
 
 /// Two limits for the same measurand and channel contradict each other.

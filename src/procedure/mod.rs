@@ -11,6 +11,7 @@ mod parse;
 pub mod phases;
 pub mod power;
 pub mod reading;
+pub mod recorded;
 pub mod schema;
 pub mod site;
 pub mod tables;

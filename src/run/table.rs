@@ -12,7 +12,7 @@ use crate::figure::Figure;
 use crate::ingest::Plan;
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
-use crate::procedure::model::ChannelSpec;
+use crate::procedure::recorded::scale_factor_unit;
 use crate::rate_table::blocks::{Blocks, Collector};
 use crate::rate_table::inner_axis::InnerAxis;
 use crate::rate_table::scale_factor::{self, ScaleFactor};
@@ -35,7 +35,7 @@ pub(super) fn execute(
     let wanted = |id: &str| procedure.measurands.iter().any(|m| m.id.id == id);
     let evaluated: Vec<(usize, Option<ScaleFactor>)> = (0..run.blocks.gyros.len())
         .map(|gyro| {
-            let unit = procedure.channel(&run.blocks.gyros[gyro]).map_or(("1", 1.0), as_recorded);
+            let unit = scale_factor_unit(procedure, &run.blocks.gyros[gyro]);
             (gyro, scale_factor::evaluate(&run, gyro, setup, unit, &wanted))
         })
         .collect();
@@ -136,22 +136,6 @@ pub(super) fn usual_conditions(request: &Request<'_>, found: &Found) -> Vec<Cond
         today: request.now.date_naive(),
         schedule: None,
     })
-}
-
-/// Unit of the scale factor of a channel, and its size at K = 1: counts per input where the file holds counts.
-pub(super) fn as_recorded(channel: &ChannelSpec) -> (&'static str, f64) {
-    let counts = matches!(channel.unit_in_file.as_str(), "count" | "counts");
-    let role = channel.channel.role;
-    let Some(inside) = role.internal_unit().and_then(|u| crate::units::Unit::parse(u).ok()) else {
-        return ("1", 1.0);
-    };
-    match channel.channel.unit.factor_to(&inside) {
-        Ok(factor) if counts && factor * channel.channel.scale != 0.0 => {
-            let per_inside = 1.0 / (factor * channel.channel.scale);
-            if role == Role::Rate { ("count/(deg/h)", per_inside) } else { ("count/arcsec", per_inside) }
-        }
-        _ => ("1", 1.0),
-    }
 }
 
 fn collect(

@@ -4,6 +4,7 @@ use super::Request;
 use crate::estimate::{Estimate, Spread};
 use crate::noise::static_bias::EARTH_RATE_DEG_H;
 use crate::procedure::model::MeasurandSpec;
+use crate::procedure::recorded::scale_factor_unit;
 use crate::rate_table::alignment::{self, Alignment};
 use crate::rate_table::dead_zone::{self, DeadZone};
 use crate::rate_table::scale_factor::ScaleFactor;
@@ -51,7 +52,7 @@ impl Others {
             .map_or(0.0, |s| EARTH_RATE_DEG_H * s.latitude_deg.to_radians().sin());
         let highest = run.steps.list.iter().fold(0.0, |m: f64, s| m.max(s.rate.abs()));
         Others {
-            as_recorded: request.procedure.channel(&channel).map_or(("1", 1.0), super::table::as_recorded),
+            as_recorded: scale_factor_unit(request.procedure, &channel),
             full_scale: setup.full_scale_deg_h.unwrap_or(highest),
             sine: setup.sine.then(|| sine::fit(&run.steps, gyro)).flatten(),
             zone: any(dead_zone::IDS)

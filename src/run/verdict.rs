@@ -7,8 +7,18 @@ use crate::text::{Arg, Note};
 
 /// Judges one estimate.
 pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure) -> MeasurandRecord {
-    let limit = limits.limit(estimate.id, &estimate.channel).map(|l| &l.limit);
-    let judgement = limit.map(|l| judge(estimate, l));
+    let spec = limits.limit(estimate.id, &estimate.channel);
+    let limit = spec.map(|l| &l.limit);
+    // A limit in another unit than the value decides nothing.
+    let other = spec.and_then(|l| l.recorded_unit).filter(|unit| *unit != estimate.unit);
+    let judgement = limit.map(|l| match other {
+        Some(_) => judge(&Estimate::not_identifiable(estimate.id, "", None, estimate.unit, ""), l),
+        None => judge(estimate, l),
+    });
+    let mut notes = estimate.notes.clone();
+    notes.extend(
+        other.map(|unit| Note::new("note.limit_other_unit").with("given", unit).with("unit", estimate.unit)),
+    );
     let reference = limits
         .reference(estimate.id, &estimate.channel)
         .filter(|_| procedure.report.show_reference)
@@ -23,12 +33,14 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         identifiable: estimate.value.is_some(),
         upper_limit: estimate.upper_limit,
         method: estimate.method.to_owned(),
-        limit: limit.zip(judgement.as_ref()).map(|(l, j)| LimitRecord::new(l, estimate.unit, j)),
+        limit: limit
+            .zip(judgement.as_ref())
+            .map(|(l, j)| LimitRecord::new(l, other.unwrap_or(estimate.unit), j)),
         reference,
         verdict: judgement.as_ref().map_or(Verdict::None, |j| j.verdict),
         margin: judgement.as_ref().and_then(|j| j.margin),
         specific_risk: judgement.as_ref().and_then(|j| j.specific_risk),
-        notes: estimate.notes.clone(),
+        notes,
     }
 }
 

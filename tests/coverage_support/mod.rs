@@ -90,6 +90,7 @@ fn limits(truths: &[(&'static str, f64)]) -> EffectiveLimits {
     let mut limits = EffectiveLimits::default();
     for (id, truth) in truths {
         limits.set.limits.push(LimitSpec {
+            recorded_unit: None,
             measurand: ids::find(id).expect("a measurand"),
             channel: None,
             limit: Limit {
