@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, SourceText, Span};
 use super::model::{Loaded, Procedure};
 use super::quantity::AS_RECORDED;
 use super::reader::Reader;
+use super::recorded;
 use super::section::{Entry, Section};
 use crate::estimate::{Limit, Rule};
 use crate::ids::MeasurandId;
@@ -103,9 +104,14 @@ pub struct EffectiveLimits {
 }
 
 impl EffectiveLimits {
-    /// The limit of a measurand on a channel: one for that channel goes before one for every channel.
+    /// The limit of a measurand on a channel: one for that channel goes before one for every channel. Rows by zone, axis
+    /// or level (`rate@-40`, `x<-y`) are judged by the limit of the gyro whose they are.
     pub fn limit(&self, measurand: &str, channel: &str) -> Option<&LimitSpec> {
-        best(self.set.limits.iter().map(|l| (l, l.measurand.id, l.channel.as_deref())), measurand, channel)
+        let of = |channel: &str| {
+            let limits = self.set.limits.iter().map(|l| (l, l.measurand.id, l.channel.as_deref()));
+            best(limits, measurand, channel)
+        };
+        of(channel).filter(|l| l.channel.is_some()).or_else(|| of(gyro_of(channel)))
     }
 
     /// The reference value of a measurand on a channel; the first where there are several.
@@ -121,6 +127,12 @@ impl EffectiveLimits {
     pub fn expected(&self, measurand: &str) -> Option<f64> {
         self.set.expected.iter().find(|e| e.measurand.id == measurand).map(|e| e.value)
     }
+}
+
+/// The gyro channel of a row: `rate` of `rate@-40`, `x` of `x<-y`.
+pub fn gyro_of(channel: &str) -> &str {
+    let end = channel.find('@').or_else(|| channel.find("<-")).unwrap_or(channel.len());
+    channel.get(..end).unwrap_or(channel)
 }
 
 /// The first entry for the channel, or else the first for every channel.

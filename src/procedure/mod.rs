@@ -7,6 +7,7 @@ pub mod guide;
 pub mod limits;
 mod load;
 pub mod model;
+pub mod obtainable;
 mod parse;
 pub mod phases;
 pub mod power;

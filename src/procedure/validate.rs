@@ -42,6 +42,13 @@ pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceTex
             found.push(source.warning(&channel.span, message));
         }
     }
+    for section in root.tables("measurand") {
+        let Some(measurand) = section.measurand("id") else { continue };
+        let asked = procedure.measurands.iter().find(|m| m.id.id == measurand.id);
+        let Some(why) = asked.and_then(|spec| super::obtainable::never(procedure, spec)) else { continue };
+        let message = Note::new("check.never_shown").with("id", measurand.id).with("why", why);
+        found.push(source.warning(&section.span_of("id"), message));
+    }
     if root.table("conditions").is_none_or(|c| c.entry("minimum_duration").is_none()) {
         let at = root.table("conditions").map_or(0..0, |c| c.span.clone());
         found.push(source.warning(&at, "check.no_minimum_duration").help("check.help.minimum_duration"));

@@ -8,6 +8,9 @@ use crate::numeric::reml::{self, Combination, Fit};
 use crate::text::{Arg, Note};
 use nalgebra::{DMatrix, DVector};
 
+/// Least difference of the Earth rate between positions from which a line is taken, deg/h.
+pub const LEAST_SPAN_DEG_H: f64 = 0.1;
+
 /// Parts that all stretches of a channel are cut into.
 const PARTS: usize = 200;
 
@@ -187,7 +190,7 @@ pub fn positions(
         .collect();
     let span = inputs.iter().map(|i| i.0).fold(f64::NEG_INFINITY, f64::max)
         - inputs.iter().map(|i| i.0).fold(f64::INFINITY, f64::min);
-    if own.len() < 2 || span.is_nan() || span <= 0.1 {
+    if own.len() < 2 || span.is_nan() || span <= LEAST_SPAN_DEG_H {
         return None;
     }
     let cut = cut(blocks, &own, channel)?;

@@ -27,6 +27,7 @@ mod table_known;
 mod table_others;
 mod table_steps;
 mod thermal;
+mod unshown;
 mod verdict;
 mod warm_up;
 

@@ -21,6 +21,7 @@ pub(super) fn record(
     figures: &[Figure],
 ) -> RunRecord {
     let errors = errors(request);
+    let rows = super::unshown::complete(request, &found.channels, rows);
     let (verdict, summary) = verdict::whole(&rows, &conditions, &errors);
     // What is said of noise at rest has no meaning while the temperature moves.
     let resting = || found.gyros.iter().filter(|_| found.at_rest());

@@ -58,9 +58,7 @@ impl Others {
             zone: any(dead_zone::IDS)
                 .then(|| line.and_then(|l| dead_zone::evaluate(&l.response, &channel, setup)))
                 .flatten(),
-            alignment: any(alignment::IDS)
-                .then(|| alignment::evaluate(&run.steps, &run.blocks.gyros, gyro, vertical))
-                .flatten(),
+            alignment: any(alignment::IDS).then(|| alignment::evaluate(&run.steps, &channel, gyro, vertical)),
             channel,
         }
     }

@@ -1,0 +1,83 @@
+//! What a procedure asks for and no evaluation gave a row: a limit on it would be met by saying nothing.
+
+use super::{Request, verdict};
+use crate::estimate::Estimate;
+use crate::ids::{MeasurandId, Test};
+use crate::procedure::limits::gyro_of;
+use crate::procedure::model::{MeasurandSpec, Procedure};
+use crate::procedure::obtainable;
+use crate::procedure::recorded::scale_factor_unit;
+use crate::record::MeasurandRecord;
+use crate::recording::Channel;
+use crate::text::Note;
+
+/// Adds a row that says why to everything asked for that has none, in the order of the procedure.
+pub(super) fn complete(
+    request: &Request<'_>,
+    channels: &[Channel],
+    mut rows: Vec<MeasurandRecord>,
+) -> Vec<MeasurandRecord> {
+    // An analysis shows what the recording has; nobody asked for one value by name.
+    if request.kind != "run" {
+        return rows;
+    }
+    let procedure = request.procedure;
+    for spec in &procedure.measurands {
+        for channel in asked(request, spec, channels) {
+            let given = rows.iter().any(|r| r.id == spec.id.id && gyro_of(&r.channel) == channel);
+            if !given {
+                let estimate = not_shown(procedure, spec.id, channel);
+                rows.push(verdict::row(&estimate, request.limits, procedure));
+            }
+        }
+    }
+    let place = |row: &MeasurandRecord| {
+        let of = |m: &MeasurandSpec| {
+            m.id.id == row.id && m.channel.as_deref().is_none_or(|c| c == gyro_of(&row.channel))
+        };
+        procedure.measurands.iter().position(of).unwrap_or(usize::MAX)
+    };
+    rows.sort_by_key(place);
+    rows
+}
+
+/// The channels that a measurand is asked for: the one named, or every gyro that was read and those that a limit names.
+fn asked<'a>(request: &'a Request<'_>, spec: &'a MeasurandSpec, channels: &'a [Channel]) -> Vec<&'a str> {
+    if let Some(own) = &spec.channel {
+        return vec![own];
+    }
+    let mut list: Vec<&str> = channels.iter().filter(|c| c.role.is_gyro()).map(|c| c.id.as_str()).collect();
+    let limited = request.limits.set.limits.iter().filter(|l| l.measurand.id == spec.id.id);
+    for channel in limited.filter_map(|l| l.channel.as_deref()) {
+        // A limits file may serve procedures with other channels.
+        if request.procedure.channel(channel).is_some() && !list.contains(&channel) {
+            list.push(channel);
+        }
+    }
+    list
+}
+
+fn not_shown(procedure: &Procedure, measurand: &'static MeasurandId, channel: &str) -> Estimate {
+    let id = measurand.id;
+    let unit = match measurand.unit {
+        "" => scale_factor_unit(procedure, channel).0,
+        unit => unit,
+    };
+    let why = obtainable::why_not(procedure, id, channel)
+        .unwrap_or_else(|| Note::new(general(procedure, measurand)));
+    Estimate::not_identifiable(id, channel, None, unit, "not_evaluated").note(why)
+}
+
+/// What a test lacks where the evaluation of a channel gave nothing at all.
+fn general(procedure: &Procedure, measurand: &MeasurandId) -> &'static str {
+    match measurand.test {
+        Test::RateTable => match &procedure.rate_table {
+            Some(setup) if setup.known.is_empty() => "unshown.no_line",
+            _ => "unshown.few_positions",
+        },
+        Test::Influence if procedure.repeatability_test.is_some() => "unshown.few_runs",
+        Test::Influence => "unshown.no_intervals",
+        Test::Temperature => "unshown.no_course",
+        Test::Static => "unshown.nothing",
+    }
+}
