@@ -63,6 +63,15 @@ pub struct UpperLimit {
     pub coverage: f64,
 }
 
+/// A one-sided bound from below for a quantity that the record cannot show.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LowerLimit {
+    /// The quantity is at least this much.
+    pub value: f64,
+    /// Probability with which such bounds lie below the true value.
+    pub coverage: f64,
+}
+
 /// The confidence distribution of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Spread {
@@ -173,6 +182,8 @@ pub struct Estimate {
     pub spread: Spread,
     /// Bound, where the value is `None`.
     pub upper_limit: Option<UpperLimit>,
+    /// Bound from below, where the value is `None`.
+    pub lower_limit: Option<LowerLimit>,
     /// How it was obtained, short and stable: `whittle`, `overlapping_allan`, ...
     pub method: &'static str,
     /// What a reader must know with it: conventions, averaging times, numbers of clusters.
@@ -197,6 +208,7 @@ impl Estimate {
             unit,
             spread,
             upper_limit: None,
+            lower_limit: None,
             method,
             notes: vec![],
         }
@@ -217,6 +229,7 @@ impl Estimate {
             unit,
             spread: Spread::Unknown,
             upper_limit,
+            lower_limit: None,
             method,
             notes: vec![],
         }
@@ -226,6 +239,13 @@ impl Estimate {
     #[must_use]
     pub fn note(mut self, note: Note) -> Self {
         self.notes.push(note);
+        self
+    }
+
+    /// Adds what a quantity that the record cannot show is at least.
+    #[must_use]
+    pub fn at_least(mut self, limit: Option<LowerLimit>) -> Self {
+        self.lower_limit = limit;
         self
     }
 
@@ -316,9 +336,9 @@ pub struct Judgement {
 
 /// Decides one row.
 ///
-/// A quantity that the record cannot show passes when its upper limit is inside the limit and is otherwise
-/// indeterminate, never failed. A lower limit is met by what cannot lie below it, whatever the record shows, and cannot
-/// be shown for a quantity that can be negative.
+/// A quantity that the record cannot show passes when its upper bound is inside the limit, fails when its lower bound is
+/// beyond an upper limit, and is otherwise indeterminate. A lower limit is met by what cannot lie below it, whatever the
+/// record shows, and cannot be shown for a quantity that can be negative.
 pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
     let Some(value) = estimate.value else {
         let signed = crate::ids::find(estimate.id).is_some_and(|m| m.signed);
@@ -328,8 +348,19 @@ pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
                 (Some(_), None) => false,
                 (None, _) => limit.min.is_some(),
             };
-        let margin = limit.max.zip(estimate.upper_limit).map(|(max, bound)| max - bound.value);
-        let verdict = if inside { Verdict::Pass } else { Verdict::Indeterminate };
+        let beyond = limit
+            .max
+            .zip(estimate.lower_limit)
+            .filter(|(max, bound)| bound.value > *max && bound.coverage >= 1.0 - limit.risk - 1e-9);
+        let margin = match beyond {
+            Some((max, bound)) => Some(max - bound.value),
+            None => limit.max.zip(estimate.upper_limit).map(|(max, bound)| max - bound.value),
+        };
+        let verdict = match beyond {
+            Some(_) => Verdict::Fail,
+            None if inside => Verdict::Pass,
+            None => Verdict::Indeterminate,
+        };
         return Judgement {
             verdict,
             acceptance_max: None,

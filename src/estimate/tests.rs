@@ -79,3 +79,16 @@ fn worst_wins_in_the_stated_order() {
     use Verdict::{Error, Fail, Indeterminate, None, Pass};
     assert!(None < Pass && Pass < Indeterminate && Indeterminate < Fail && Fail < Error);
 }
+
+#[test]
+fn a_quantity_known_to_be_beyond_its_limit_fails_though_it_has_no_value() {
+    let at_least = |value: f64, coverage: f64| {
+        Estimate::not_identifiable("warm_up_time", "rate", None, "s", "decays_gls")
+            .at_least(Some(LowerLimit { value, coverage }))
+    };
+    let limit = limit(9000.0, Rule::GuardBand);
+    let fails = judge(&at_least(10_000.0, 0.95), &limit);
+    assert_eq!((fails.verdict, fails.margin), (Verdict::Fail, Some(-1000.0)));
+    assert_eq!(judge(&at_least(8000.0, 0.95), &limit).verdict, Verdict::Indeterminate);
+    assert_eq!(judge(&at_least(10_000.0, 0.5), &limit).verdict, Verdict::Indeterminate);
+}

@@ -1,7 +1,8 @@
 //! Warm-up: how far the bias is off at switching on, and how long until it stays within its band.
 
 use super::{GyroEvidence, Measurand, Options};
-use crate::estimate::{Estimate, UpperLimit};
+use crate::estimate::{Estimate, LowerLimit, UpperLimit};
+use crate::temperature::settled::SHOWN;
 use crate::temperature::warm_up::WarmUpFindings;
 use crate::text::{Arg, Note};
 
@@ -32,10 +33,18 @@ pub fn warm_up(found: &WarmUpFindings, channel: &str) -> Vec<Estimate> {
 fn time(found: &WarmUpFindings, channel: &str, described: Note) -> Estimate {
     let id = "warm_up_time";
     let r = &found.time;
-    if found.too_short {
+    if found.too_short || found.drifts_on() {
         let hours = Arg::figures(found.length_s / 3600.0, 3);
-        return Estimate::not_identifiable(id, channel, None, "s", METHOD)
-            .note(Note::new("thermal.warm_up_too_short").with("hours", hours));
+        let note = if found.drifts_on() {
+            Note::new("thermal.not_settled")
+                .with("hours", hours)
+                .with("band", Arg::Stated(found.test.band_deg_h))
+        } else {
+            Note::new("thermal.warm_up_too_short").with("hours", hours)
+        };
+        let least = found.settled.at_least_s;
+        let limit = (least > 0.0).then_some(LowerLimit { value: least, coverage: SHOWN });
+        return Estimate::not_identifiable(id, channel, None, "s", METHOD).at_least(limit).note(note);
     }
     if r.value <= 0.0 {
         let limit = r.spread.bound(r.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });

@@ -29,7 +29,7 @@ pub use origin::{ColumnRecord, LimitsFile, ProcedureRecord, Program, RecordingFi
 pub use phase::PhaseRecord;
 pub use table_step::TableStepRecord;
 
-use crate::estimate::{Interval, Judgement, Rule, UpperLimit, Verdict};
+use crate::estimate::{Interval, Judgement, LowerLimit, Rule, UpperLimit, Verdict};
 use crate::text::Note;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -196,6 +196,9 @@ pub struct MeasurandRecord {
     pub identifiable: bool,
     /// Bound where it cannot.
     pub upper_limit: Option<UpperLimit>,
+    /// Bound from below where it cannot, and where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lower_limit: Option<LowerLimit>,
     /// How it was obtained.
     pub method: String,
     /// The limit it was judged by.

@@ -32,6 +32,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         interval: estimate.interval95(),
         identifiable: estimate.value.is_some(),
         upper_limit: estimate.upper_limit,
+        lower_limit: estimate.lower_limit,
         method: estimate.method.to_owned(),
         limit: limit
             .zip(judgement.as_ref())
@@ -112,6 +113,7 @@ mod tests {
             interval: None,
             identifiable: true,
             upper_limit: None,
+            lower_limit: None,
             method: "mean".into(),
             limit: None,
             reference: None,

@@ -15,6 +15,7 @@ pub mod read;
 pub mod sampler;
 pub mod segments;
 pub mod separate;
+pub mod settled;
 mod test;
 pub mod track;
 pub mod warm_up;

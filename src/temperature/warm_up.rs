@@ -6,6 +6,7 @@
 use super::gls::{Fitted, Modes};
 use super::read::{self, Reading};
 use super::sampler::{self, Draw, Range};
+use super::settled::{Settled, settled};
 use super::test::WarmUpTest;
 use super::track::{Means, bridged};
 
@@ -39,6 +40,15 @@ pub struct WarmUpFindings {
     pub final_deg_h: f64,
     /// True when the end of the record is not long enough after the transient to show a final value.
     pub too_short: bool,
+    /// What the transient has still to go at the end of the record.
+    pub settled: Settled,
+}
+
+impl WarmUpFindings {
+    /// True when what the transient has still to go may leave the band: the end of the record is no final value.
+    pub fn drifts_on(&self) -> bool {
+        self.settled.at_most_deg_h > self.test.band_deg_h
+    }
 }
 
 /// The transient as decays of given time constants at the middle of each block.
@@ -68,13 +78,14 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest) -> Option<WarmUpFindi
     if draws.is_empty() {
         return None;
     }
+    let settled = settled((&modes, &data), &of, (&shape, &fitted), (low, length_s), test.band_deg_h)?;
     let from = ((1.0 - test.final_share) * n as f64) as usize;
     let end = times.get(from..)?;
     let rest = |constant: f64| end.iter().map(|t| (-t / constant).exp()).sum::<f64>() / end.len() as f64;
     let at = |draw: &Draw, c: &nalgebra::DVector<f64>, t: f64| -> f64 {
         draw.shape.iter().zip(c.iter()).map(|(k, a)| a * ((-t / k).exp() - rest(*k))).sum()
     };
-    let settled = |draw: &Draw, c: &nalgebra::DVector<f64>| -> f64 {
+    let until = |draw: &Draw, c: &nalgebra::DVector<f64>| -> f64 {
         let offset: f64 = draw.shape.iter().zip(c.iter()).map(|(k, a)| a * rest(*k)).sum();
         let beyond = |t: f64| {
             let f: f64 = draw.shape.iter().zip(c.iter()).map(|(k, a)| a * (-t / k).exp()).sum();
@@ -91,7 +102,7 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest) -> Option<WarmUpFindi
         }
         0.5 * (a + b)
     };
-    let time = read::drawn(&draws, settled);
+    let time = read::drawn(&draws, until);
     let transient = read::drawn(&draws, |d, c| at(d, c, 0.0));
     let best_columns = columns(&times, &shape);
     let c = &fitted.solved.coefficients;
@@ -105,6 +116,7 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest) -> Option<WarmUpFindi
         test: test.clone(),
         always_inside: upper <= 0.0,
         too_short: upper > (1.0 - test.final_share) * length_s,
+        settled,
         time,
         transient,
         time_constants_s: shape,

@@ -5,6 +5,7 @@
 
 mod chamber;
 mod samples;
+mod settling;
 mod tally;
 
 use chamber::warm_up as switched_on;

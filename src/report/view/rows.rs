@@ -86,6 +86,16 @@ pub fn value(m: &MeasurandRecord, words: Words) -> String {
                 ("coverage", &limit_digits(100.0 * u.coverage, 3, words.lang)),
             ],
         ),
+        None if m.lower_limit.is_some() => {
+            let least = m.lower_limit.map_or((0.0, 0.0), |l| (l.value, l.coverage));
+            words.with(
+                "report.at_least",
+                &[
+                    ("value", &bound(least.0, false, words.lang)),
+                    ("coverage", &limit_digits(100.0 * least.1, 3, words.lang)),
+                ],
+            )
+        }
         None if searched(m) => words.t("row_hint.not_found"),
         None => words.t("report.not_identifiable"),
     }

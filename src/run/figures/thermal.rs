@@ -256,7 +256,9 @@ fn warm_up(w: &WarmUpFindings) -> Panel {
         horizontal(w.final_deg_h - w.test.band_deg_h),
         horizontal(w.final_deg_h + w.test.band_deg_h),
     ];
-    if let Some(i) = w.time.spread.interval(w.time.value, 0.95).filter(|i| i.high > 0.0 && !w.too_short) {
+    if let Some(i) =
+        w.time.spread.interval(w.time.value, 0.95).filter(|i| i.high > 0.0 && !w.too_short && !w.drifts_on())
+    {
         layers.insert(
             0,
             Layer::Span {
