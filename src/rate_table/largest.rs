@@ -2,10 +2,14 @@
 //!
 //! The largest observed one is too large on average, and its interval is not that of one point. The truth is taken to
 //! have the shape of what was observed and some size s; the confidence of a size is the probability that errors would
-//! leave a smaller largest one than was observed. The covariance comes from the record as well: every draw of the errors is
+//! leave a smaller largest one than was observed. Near the noise the observed shape is noise itself, and says too little:
+//! upper ends are therefore never below what they are for any shape. Wherever the largest truth is, the one observed there
+//! is too small by more than z standard deviations in a share 1 − Φ(z) of all tests; so the truth is at most the largest of
+//! |v| + z·u in all but that share, whatever the others are. The covariance comes from the record as well: every draw of the errors is
 //! stretched as the scale of such a covariance is uncertain, so that one value alone has Student's interval. Draws are fixed,
 //! so that a result repeats to the bit.
 
+use crate::estimate::{Spread, normal_probability};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
@@ -58,9 +62,20 @@ pub fn largest(values: &[f64], covariance: &DMatrix<f64>, dof: &dyn Fn(usize) ->
         let i = (x.floor() as usize).min(DRAWS - 2);
         sizes[i] + (x - i as f64) * (sizes[i + 1] - sizes[i])
     };
+    let any_shape = |p: f64| {
+        let bounds = values.iter().enumerate().filter_map(|(i, v)| {
+            let standard_uncertainty = covariance[(i, i)].max(0.0).sqrt();
+            Spread::StudentT { standard_uncertainty, dof }.bound(v.abs(), p)
+        });
+        bounds.fold(0.0, f64::max)
+    };
     let curve: Vec<(f64, f64)> = SCORES
         .map(|z| 0.25 * f64::from(z))
-        .map(|z| (z, quantile(crate::estimate::normal_probability(z)) * observed))
+        .map(|z| {
+            let p = normal_probability(z);
+            let of_shape = quantile(p) * observed;
+            (z, if z > 0.0 { of_shape.max(any_shape(p)) } else { of_shape })
+        })
         .collect();
     let value = quantile(0.5) * observed;
     Some(Largest { at, value, curve, by_chance: chance })
@@ -111,6 +126,36 @@ mod tests {
         // Student's quantile at Φ(2) with four degrees of freedom is 2.869.
         let at = |z: f64| found.curve.iter().find(|p| p.0 == z).unwrap().1;
         assert!((at(2.0) - 10.287).abs() < 0.04 && (at(-2.0) - 9.713).abs() < 0.04, "{}", at(2.0));
+    }
+
+    /// Shares of tests with a truth at or below the one-sided bound of 95 %, and the least bound.
+    fn bounded(truth: &[f64], seed: u64) -> (f64, f64) {
+        let n = truth.len();
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let most = truth.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let (mut held, mut least, runs) = (0, f64::INFINITY, 200);
+        for _ in 0..runs {
+            let values: Vec<f64> =
+                truth.iter().map(|t| t + Distribution::<f64>::sample(&StandardNormal, &mut rng)).collect();
+            let found = largest(&values, &DMatrix::identity(n, n), &|_| 1e9).unwrap();
+            let bound = Spread::Curve(found.curve).bound(found.value, 0.95).unwrap();
+            held += usize::from(most <= bound);
+            least = least.min(bound);
+        }
+        (held as f64 / f64::from(runs), least)
+    }
+
+    #[test]
+    fn bounds_hold_where_the_shape_is_noise_and_are_never_zero() {
+        // Nothing, a cubic of one and of three deviations, one rate that stands out.
+        let cubic = |size: f64| (-5..=5).map(|i| size * f64::from(i).powi(3) / 125.0).collect::<Vec<f64>>();
+        let mut one = vec![0.0; 11];
+        one[3] = 2.0;
+        for (seed, truth) in [vec![0.0; 11], cubic(1.0), cubic(3.0), one].iter().enumerate() {
+            let (held, least) = bounded(truth, 31 + seed as u64);
+            assert!(held >= 0.93, "{truth:?}: {held}");
+            assert!(least > 1.6, "{truth:?}: {least}");
+        }
     }
 
     #[test]
