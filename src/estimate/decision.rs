@@ -86,12 +86,10 @@ pub struct Judgement {
 /// Decides one row.
 ///
 /// A quantity that the record cannot show passes when its upper bound is inside the limit, fails when its lower bound is
-/// beyond an upper limit, and is otherwise indeterminate. A lower limit is met by what cannot lie below it, whatever the
-/// record shows, and cannot be shown for a quantity that can be negative.
+/// beyond an upper limit, and is otherwise indeterminate; a lower limit cannot be shown by it.
 pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
     let Some(value) = estimate.value else {
-        let signed = crate::ids::find(estimate.id).is_some_and(|m| m.signed);
-        let inside = limit.min.is_none_or(|m| m <= 0.0 && !signed)
+        let inside = limit.min.is_none_or(|m| m <= 0.0)
             && match (limit.max, estimate.upper_limit) {
                 (Some(max), Some(bound)) => bound.value <= max && bound.coverage >= 1.0 - limit.risk - 1e-9,
                 (Some(_), None) => false,

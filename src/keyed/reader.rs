@@ -296,10 +296,9 @@ impl Reader<'_> {
         let mut found = vec![];
         for (name, value) in table.iter() {
             let Some(id) = self.measurand(name.get_ref(), &name.span()) else { continue };
-            if let Some(number) = values::quantity_by(self, key, id.unit, value.get_ref(), &value.span()) {
-                if let Entry::Number(number) | Entry::AsRecorded(number, _) = number {
-                    found.push((id, number, name.span()));
-                }
+            let read = values::quantity_by(self, key, id.unit, value.get_ref(), &value.span());
+            if let Some(Entry::Number(number) | Entry::AsRecorded(number, _)) = read {
+                found.push((id, number, name.span()));
             }
         }
         found

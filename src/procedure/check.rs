@@ -81,7 +81,10 @@ pub fn check_report_with(
                     Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
                     Checked::Manifest(m) => (manifest_sentence(m), vec![]),
                     Checked::Layout(l) => (layout_sentence(l), vec![]),
-                    Checked::Phased(p) => (phased_sentence(p), vec![]),
+                    Checked::Phased(p) => {
+                        let own = p.phases.iter().flat_map(|phase| phase.procedure.warnings.clone());
+                        (phased_sentence(p), own.collect())
+                    }
                 };
                 for warning in warnings {
                     report.text.push_str(&format!("{}\n", warning.say(lang)));

@@ -81,3 +81,37 @@ fn general(procedure: &Procedure, measurand: &MeasurandId) -> &'static str {
         Test::Static => "unshown.nothing",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::{Limit, Rule};
+    use crate::procedure::EffectiveLimits;
+    use crate::procedure::limits::LimitSpec;
+
+    #[test]
+    fn the_limit_of_a_gyro_judges_its_rows_by_zone_and_axis() {
+        let mut limits = EffectiveLimits::default();
+        for (channel, max) in [(None, 1.0), (Some("rate"), 2.0), (Some("rate@20"), 3.0)] {
+            limits.set.limits.push(LimitSpec {
+                measurand: crate::ids::find("angle_random_walk_at_temperature").unwrap(),
+                channel: channel.map(str::to_owned),
+                limit: Limit {
+                    min: None,
+                    max: Some(max),
+                    rule: Rule::GuardBand,
+                    risk: 0.05,
+                    source: String::new(),
+                },
+                recorded_unit: None,
+                span: 0..0,
+            });
+        }
+        let of = |channel: &str| limits.limit("angle_random_walk_at_temperature", channel).unwrap().limit.max;
+        assert_eq!(
+            [of("rate@-40"), of("rate@20"), of("rate"), of("x@-40")].map(Option::unwrap),
+            [2.0, 3.0, 2.0, 1.0]
+        );
+        assert_eq!([gyro_of("x<-y"), gyro_of("rate@x:0.5"), gyro_of("rate")], ["x", "rate", "rate"]);
+    }
+}

@@ -11,9 +11,15 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
     let limit = spec.map(|l| &l.limit);
     // A limit in another unit than the value decides nothing.
     let other = spec.and_then(|l| l.recorded_unit).filter(|unit| *unit != estimate.unit);
-    let judgement = limit.map(|l| match other {
-        Some(_) => judge(&Estimate::not_identifiable(estimate.id, "", None, estimate.unit, ""), l),
-        None => judge(estimate, l),
+    let nothing = Estimate::not_identifiable(estimate.id, "", None, estimate.unit, "");
+    // Of what can be negative and is not shown, no lower limit is known to be met.
+    let signed = crate::ids::find(estimate.id).is_some_and(|m| m.signed);
+    let judgement = limit.map(|l| {
+        let mut judged = judge(if other.is_some() { &nothing } else { estimate }, l);
+        if other.is_some() || estimate.value.is_none() && signed && l.min.is_some() {
+            judged.verdict = Verdict::Indeterminate;
+        }
+        judged
     });
     let mut notes = estimate.notes.clone();
     notes.extend(

@@ -27,7 +27,7 @@ const LISTED: &[(&str, &[&str])] = &[
             "timestamp_disagreement",
         ],
     ),
-    ("excluded", &["warm_up", "declared", "gap"]),
+    ("excluded", &["warm_up", "declared", "gap", "pause"]),
     ("clause", &["here", "elsewhere", "not_applicable"]),
     ("status", &["ok", "remark", "invalid"]),
     ("calibration", &["ok", "remark", "invalid"]),
