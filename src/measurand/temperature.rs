@@ -92,11 +92,21 @@ fn zones(channel: &str, found: &Findings) -> Vec<Estimate> {
     let unit = "deg/sqrt(h)";
     let one = |z: &crate::temperature::zones::Zone| {
         let name = format!("{channel}@{}", z.deg_c);
-        match z.n {
+        match &z.n {
+            Some(n) if z.by_slow_noise => {
+                let limit = n.spread.bound(n.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
+                Estimate::not_identifiable(id, &name, limit, unit, "second_differences")
+                    .note(Note::new("thermal.zone_slow").with("average_s", z.average_s))
+            }
             Some(n) => {
-                let spread = Spread::ChiSquare { dof: z.dof };
-                Estimate::measured(id, &name, n, unit, spread, "second_differences")
-                    .note(Note::new("thermal.zone").with("average_s", z.average_s))
+                let e = Estimate::measured(id, &name, n.value, unit, n.spread.clone(), "second_differences")
+                    .note(Note::new("thermal.zone").with("average_s", z.average_s));
+                // A part that rounds to nothing is not worth a word.
+                if z.slow_share < 0.005 {
+                    return e;
+                }
+                let percent = Arg::figures(100.0 * z.slow_share, 2);
+                e.note(Note::new("thermal.zone_without_slow").with("percent", percent))
             }
             None => Estimate::not_identifiable(id, &name, None, unit, "second_differences")
                 .note(Note::new("thermal.zone_empty")),

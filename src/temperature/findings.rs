@@ -130,7 +130,10 @@ pub fn findings(
     test: &TemperatureTest,
 ) -> Findings {
     let analysis = schedule.as_ref().and_then(|s| analyse(means, rate, temperature, s, test));
-    let zones = zones::zones(means, rate, temperature, test);
+    let slow = analysis
+        .as_ref()
+        .map_or((&[][..], 0.0), |a| (&a.posterior.draws[..], a.posterior.best.fitted.log_deviation[1]));
+    let zones = zones::zones(means, (rate, temperature), slow, test);
     Findings { test: test.clone(), schedule, analysis, zones }
 }
 
