@@ -179,6 +179,7 @@ const SAME: &[&str] = &[
     "ingest.raw.problem",
     "time_base.fault_in",
     "report.sha256",
+    "report.at_least",
     "report.at_most",
     "report.interval",
     "report.unit_coverage",
