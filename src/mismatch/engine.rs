@@ -43,13 +43,14 @@ pub fn explain(
     let mut regular = on_grid(series, claim, options)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
     let mut found = Found::default();
-    take_repeats(&mut regular, claim, &mut found, options);
+    let repeated = take_repeats(&mut regular, claim, &mut found, options);
     let mut problem = uncoarsened(&regular, claim, &mut found, options);
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
     drop(regular);
     let rows = problem.scenes.rows;
     let mut base = with_stated_jumps(&mut problem, options.alpha);
-    let before = tests(&problem, &base, problem.level.as_deref());
+    let mut before = tests(&problem, &base, problem.level.as_deref());
+    before.extend(repeated);
     let mut held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
@@ -119,23 +120,31 @@ fn on_grid(series: Series, claim: &Claim, options: &Options) -> Result<Regular, 
     Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)
 }
 
-/// Sets samples aside that repeat the one before them: they say nothing of the rate.
-fn take_repeats(regular: &mut Regular, claim: &Claim, found: &mut Found, options: &Options) {
+/// Sets samples aside that repeat the one before them: they say nothing of the rate. The test that they fail, where the
+/// claim does not state them.
+fn take_repeats(
+    regular: &mut Regular,
+    claim: &Claim,
+    found: &mut Found,
+    options: &Options,
+) -> Option<Departure> {
     let stated = claim.effects.iter().any(|e| e.effect.kind() == "repeated_samples");
     if !stated && !options.allows("repeated_samples") {
-        return;
+        return None;
     }
-    let Some(repeats) = repeats::of(regular) else { return };
+    let repeats = repeats::of(regular)?;
     let rows = regular.grid.present.iter().filter(|p| **p).count();
-    let Some(delta_bic) = samples::worth(repeats.gain, 1, repeats.chance, rows, options.alpha) else {
-        return;
-    };
+    let delta_bic = samples::worth(repeats.gain, 1, repeats.chance, rows, options.alpha)?;
     for row in &repeats.rows {
         regular.grid.present[*row] = false;
     }
-    if !stated {
-        found.named.extend(samples::repeats(&repeats, delta_bic, &regular.grid));
+    if stated {
+        return None;
     }
+    let named = samples::repeats(&repeats, delta_bic, &regular.grid)?;
+    let place = *named.places.first()?;
+    found.named.push(named);
+    Some(Departure { test: "repeats", place, beside: None, ln_p: -repeats.gain })
 }
 
 /// What departs from a hypothesis.

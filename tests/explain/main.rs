@@ -328,6 +328,9 @@ fn samples_that_repeat_the_one_before_them_are_unknown_by_name_and_the_loop_clos
     let place = &first["where"][0];
     let (from, to) = (place["from"].as_f64().unwrap(), place["to"].as_f64().unwrap());
     assert!(place["domain"] == "time" && from > 995.0 && to < 3001.0 && to - from > 1500.0, "{place}");
+    assert!(all["family_p_value"].as_f64().unwrap() < 1e-6, "{all}");
+    let report = std::fs::read_to_string(dir.path().join("e/report.md")).unwrap();
+    assert!(report.contains("Values equal to the one before"), "{report}");
     assert_eq!(explain("e/augmented.toml", "again").0, 0);
 }
 

@@ -148,6 +148,7 @@ pub const TESTS: &[(&str, &str)] = &[
     ("column_mean", "explain.test.column_mean"),
     ("size", "explain.test.size"),
     ("product", "explain.test.product"),
+    ("repeats", "explain.test.repeats"),
 ];
 
 /// Where a mismatch shows, its unit, and the phrase with a `{place}`.
