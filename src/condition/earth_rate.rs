@@ -62,17 +62,29 @@ fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
         (false, true) => (ConditionStatus::Remark, "earth_rate.not_seen"),
         (false, false) => (ConditionStatus::Invalid, "earth_rate.mistake"),
     };
+    let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
+    Some(told(gyro, earth, (status, key, mistakes), required, facts))
+}
+
+/// The record of a mean beside the Earth rate, with the mistakes that explain their difference.
+fn told(
+    gyro: &GyroFact,
+    earth: f64,
+    (status, key, mistakes): (ConditionStatus, &'static str, Vec<Note>),
+    required: Note,
+    facts: &Facts<'_>,
+) -> ConditionRecord {
+    let difference = gyro.mean_deg_h - earth;
     let mut note = Note::new(key)
         .with("channel", gyro.channel.clone())
         .with("mean", gyro.mean_deg_h)
         .with("earth", earth)
-        .with("difference", gyro.mean_deg_h - earth);
+        .with("difference", difference);
     if let Some(why) = mistakes::either(mistakes) {
         note = note.with("why", why);
     }
-    let observed = [("mean_deg_h", gyro.mean_deg_h), ("difference_deg_h", gyro.mean_deg_h - earth)];
-    let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
-    Some(record(id_of("earth_rate", &gyro.channel, facts), status, &observed, Some(required), note))
+    let observed = [("mean_deg_h", gyro.mean_deg_h), ("difference_deg_h", difference)];
+    record(id_of("earth_rate", &gyro.channel, facts), status, &observed, Some(required), note)
 }
 
 /// One of the usual exchanges of unit, where nothing is known of the bias but that it will not cancel the Earth rate.
@@ -90,17 +102,12 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
             && shown(gyro.mean_deg_h * m.factor, USUAL)
             && !noise_level::is_far(gyro, m.factor, facts)
     };
-    let why = mistakes::either(usual.filter(fits).map(|m| m.note).collect())?;
-    let note = Note::new("earth_rate.mistake")
-        .with("channel", gyro.channel.clone())
-        .with("mean", gyro.mean_deg_h)
-        .with("earth", earth)
-        .with("difference", gyro.mean_deg_h - earth)
-        .with("why", why);
-    let observed = [("mean_deg_h", gyro.mean_deg_h), ("difference_deg_h", gyro.mean_deg_h - earth)];
+    let found: Vec<Note> = usual.filter(fits).map(|m| m.note).collect();
+    if found.is_empty() {
+        return None;
+    }
     let required = Note::new("earth_rate.required_alone").with("earth", earth);
-    let id = id_of("earth_rate", &gyro.channel, facts);
-    Some(record(id, ConditionStatus::Invalid, &observed, Some(required), note))
+    Some(told(gyro, earth, (ConditionStatus::Invalid, "earth_rate.mistake", found), required, facts))
 }
 
 /// The single mistakes that bring the mean into agreement.

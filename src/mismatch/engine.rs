@@ -51,7 +51,6 @@ pub fn explain(
     let mut base = with_stated_jumps(&mut problem, options.alpha);
     let mut before = tests(&problem, &base, problem.level.as_deref());
     before.extend(repeated);
-    let mut held_base = Halves::new(&problem).judge(&base);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
     let mut moved = with_table_courses(&base, &problem.scenes, options);
@@ -62,8 +61,8 @@ pub fn explain(
         }
         base = refitted(&base, &problem);
         moved = with_table_courses(&base, &problem.scenes, options);
-        held_base = Halves::new(&problem).judge(&base);
     }
+    let mut held_base = Halves::new(&problem).judge(&base);
     let filtered = filtered::behind(&problem, &moved, options);
     let filtered = filtered.filter(|f| problem.see_behind(&moved, f)).map(|f| refitted(&f, &problem));
     if let Some(filtered) = filtered {

@@ -38,13 +38,13 @@ impl InnerAxis {
         if largest < LEAST {
             return out;
         }
-        let turning = || blocks.list.iter().filter(|b| b.table_rate.abs() > TURNS * largest);
+        let turns = |b: &Block| b.table_rate.abs() > TURNS * largest;
+        let turning = || blocks.list.iter().filter(|b| turns(b));
         let lasts_s = turning().map(|b| f64::from(b.samples)).sum::<f64>() * blocks.interval_s;
         if lasts_s < LEAST_S {
             return out;
         }
         if blocks.has_angle {
-            let turns = |b: &Block| b.table_rate.abs() > TURNS * largest;
             let pairs = blocks.list.windows(2).filter(|w| w[1].continues && turns(&w[0]) && turns(&w[1]));
             // 1 deg/h is 1 arcsec/s.
             let moved = |w: &[Block]| {
