@@ -15,49 +15,94 @@ const SMOOTH: f64 = 1.5;
 /// Even differences that are used at most: the eighth.
 const LEVELS: usize = 4;
 
-/// A series at a place between its samples; `None` outside. A straight line with Everett's corrections as far as the series
-/// is smooth on the scale of its samples: the line alone is exact for means over the sample interval of a rate that
-/// changes at the edges of samples.
-fn between(series: &[f64], at: f64) -> Option<f64> {
-    let last = series.len().checked_sub(1)?;
-    if !(at >= 0.0 && at <= last as f64) {
-        return None;
-    }
-    let i = (at as usize).min(last.saturating_sub(1));
-    let (a, b) = (series[i], *series.get(i + 1)?);
-    let (x, y) = (at - i as f64, (i + 1) as f64 - at);
-    let line = y * a + x * b;
-    let reach = (LEVELS + 1).min(i).min((last - i).saturating_sub(1));
-    if reach < 2 {
-        return Some(at_an_end(series, at).unwrap_or(line));
-    }
-    // Differences of even order; those at the two samples about the place stand in the middle.
-    let mut row = [0.0; 2 * LEVELS + 4];
-    let count = 2 * reach + 2;
-    row[..count].copy_from_slice(&series[i - reach..i + reach + 2]);
-    let differ = |row: &mut [f64], count: usize| {
-        for k in 0..count - 2 {
-            row[k] = row[k] - 2.0 * row[k + 1] + row[k + 2];
-        }
-    };
-    let size = |row: &[f64], middle: usize| row[middle].abs().max(row[middle + 1].abs());
-    differ(&mut row, count);
-    let (mut value, mut near, mut far) = (line, y, x);
-    for level in 1..reach {
-        let middle = reach - level;
-        let (before, after, largest) = (row[middle], row[middle + 1], size(&row, middle));
-        differ(&mut row, 2 * middle + 2);
-        if size(&row, middle - 1) >= SMOOTH * largest {
-            break;
-        }
-        let (square, order) = ((level * level) as f64, (2 * level * (2 * level + 1)) as f64);
-        (near, far) = (near * (y * y - square) / order, far * (x * x - square) / order);
-        value += near * before + far * after;
-    }
-    Some(value)
+/// A series between two of its samples. A straight line with Everett's corrections as far as the series is smooth on the
+/// scale of its samples: the line alone is exact for means over the sample interval of a rate that changes at the edges
+/// of samples.
+struct Gap<'a> {
+    series: &'a [f64],
+    /// The sample before.
+    at: usize,
+    /// Even differences at the two samples, from the second up; those in use.
+    differences: [(f64, f64); LEVELS],
+    used: usize,
+    /// Within two samples of an end.
+    near_end: bool,
 }
 
-/// As [`between`] within two samples of an end: the cubic through the four samples there, where it is smooth.
+impl<'a> Gap<'a> {
+    /// The gap of a place; `None` outside the series.
+    fn of(series: &'a [f64], place: f64) -> Option<Gap<'a>> {
+        let last = series.len().checked_sub(1).filter(|last| *last > 0)?;
+        if !(place >= 0.0 && place <= last as f64) {
+            return None;
+        }
+        let at = (place as usize).min(last - 1);
+        let reach = (LEVELS + 1).min(at).min(last - at - 1);
+        let mut out = Gap { series, at, differences: [(0.0, 0.0); LEVELS], used: 0, near_end: reach < 2 };
+        if out.near_end {
+            return Some(out);
+        }
+        // Differences of even order; those at the two samples stand in the middle.
+        let mut row = [0.0; 2 * LEVELS + 4];
+        let count = 2 * reach + 2;
+        row[..count].copy_from_slice(&series[at - reach..at + reach + 2]);
+        let differ = |row: &mut [f64], count: usize| {
+            for k in 0..count - 2 {
+                row[k] = row[k] - 2.0 * row[k + 1] + row[k + 2];
+            }
+        };
+        let size = |row: &[f64], middle: usize| row[middle].abs().max(row[middle + 1].abs());
+        // Most series are not smooth at all, which six samples tell.
+        let mut few = [0.0; 6];
+        few.copy_from_slice(&row[reach - 2..reach + 4]);
+        differ(&mut few, 6);
+        let second = size(&few, 1);
+        differ(&mut few, 4);
+        if size(&few, 0) >= SMOOTH * second {
+            return Some(out);
+        }
+        differ(&mut row, count);
+        for level in 1..reach {
+            let middle = reach - level;
+            let (pair, largest) = ((row[middle], row[middle + 1]), size(&row, middle));
+            differ(&mut row, 2 * middle + 2);
+            if size(&row, middle - 1) >= SMOOTH * largest {
+                break;
+            }
+            out.differences[out.used] = pair;
+            out.used += 1;
+        }
+        Some(out)
+    }
+
+    /// Whether a place lies in the gap.
+    fn holds(&self, place: f64) -> bool {
+        place >= self.at as f64 && place < (self.at + 1) as f64
+    }
+
+    /// The series at a place in the gap.
+    fn value(&self, place: f64) -> f64 {
+        let (x, y) = (place - self.at as f64, (self.at + 1) as f64 - place);
+        let line = y * self.series[self.at] + x * self.series[self.at + 1];
+        if self.near_end {
+            return at_an_end(self.series, place).unwrap_or(line);
+        }
+        let (mut value, mut near, mut far) = (line, y, x);
+        for (level, (before, after)) in (1..).zip(&self.differences[..self.used]) {
+            let (square, order) = ((level * level) as f64, (2 * level * (2 * level + 1)) as f64);
+            (near, far) = (near * (y * y - square) / order, far * (x * x - square) / order);
+            value += near * before + far * after;
+        }
+        value
+    }
+}
+
+/// A series at a place between its samples; `None` outside.
+fn between(series: &[f64], at: f64) -> Option<f64> {
+    Gap::of(series, at).map(|gap| gap.value(at))
+}
+
+/// The same within two samples of an end: the cubic through the four samples there, where it is smooth.
 fn at_an_end(series: &[f64], at: f64) -> Option<f64> {
     let last = series.len().checked_sub(1)?;
     let from_end = at > 0.5 * last as f64;
@@ -142,19 +187,29 @@ pub(super) fn follow(
     for _ in 0..8 {
         let mut sums = Sums::default();
         for i in (0..until).step_by(stride) {
-            let place = |x: f64| between(mean, i as f64 - x * lag(i));
-            let (Some(here), Some(more), Some(less)) = (place(at), place(at + step), place(at - step)) else {
-                continue;
-            };
+            let place = |x: f64| i as f64 - x * lag(i);
+            let Some(gap) = Gap::of(mean, place(at)) else { continue };
+            let of =
+                |place: f64| if gap.holds(place) { Some(gap.value(place)) } else { between(mean, place) };
+            let (Some(more), Some(less)) = (of(place(at + step)), of(place(at - step))) else { continue };
+            let here = gap.value(place(at));
             sums.add(mean[i], (more - less) / (2.0 * step), residual[i] - (here - mean[i]));
         }
         match sums.coefficient() {
-            Some(change) => at += change,
+            Some(change) => {
+                at += change;
+                if change.abs() < SETTLED * step {
+                    break;
+                }
+            }
             None => break,
         }
     }
     at
 }
+
+/// Change of the number, in steps of its derivative, at which it has settled.
+const SETTLED: f64 = 1e-5;
 
 /// Sums of a regression on a column beside a constant and a mean.
 #[derive(Default)]

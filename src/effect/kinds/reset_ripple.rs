@@ -6,7 +6,8 @@ use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
 use rayon::prelude::*;
-use realfft::{RealFftPlanner, RealToComplex};
+use realfft::num_complex::Complex;
+use rustfft::{Fft, FftPlanner};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -48,8 +49,8 @@ describe! {
 
 /// Shortest period that is looked for, arcsec.
 const SHORTEST: f64 = 0.5;
-/// Most cells of angle in a search.
-const LONGEST: usize = 1 << 20;
+/// Most periods of angle in a search.
+const LONGEST: usize = 1 << 18;
 /// Cells and samples that a search of one octave of periods may go through.
 const EFFORT: f64 = 4e7;
 /// What a bias may be off from the claimed one, deg/h.
@@ -87,21 +88,46 @@ fn columns(period: f64, bias: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
     }
 }
 
-/// A search of the periods between one and twice that: the score put on a grid of angles and transformed. Only samples that
-/// cover less than a period count.
+/// A search of the periods between one and twice that: the score is turned back at the middle of their frequencies, put on
+/// a grid of angles a period wide and transformed. Only samples that cover less than a period count.
 struct Octave {
     period: f64,
-    /// Angle (arcsec), time since the first sample (s) and score of each sample that counts.
-    samples: Vec<(f64, f64, f64)>,
+    samples: Vec<Sample>,
     low: f64,
     range: f64,
-    size: usize,
-    plan: Arc<dyn RealToComplex<f64>>,
+    dt_s: f64,
+    plan: Arc<dyn Fft<f64>>,
+}
+
+/// A sample that counts.
+struct Sample {
+    /// Since the first of the record.
+    number: usize,
+    angle_arcsec: f64,
+    /// Score, turned back for the angle.
+    score: Complex<f64>,
+}
+
+/// What one bias needs room for.
+#[derive(Default)]
+struct Room {
+    grid: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+    gains: Vec<f64>,
+}
+
+/// The smallest product of twos and threes from `least` up: transforms of such sizes are quick.
+fn quick_size(least: usize) -> usize {
+    let of_threes = |threes: u32| {
+        let three = 3usize.pow(threes);
+        three * least.div_ceil(three).next_power_of_two()
+    };
+    (0..6).map(of_threes).min().unwrap_or(least)
 }
 
 impl Octave {
-    /// Cells of angle in a period.
-    const CELLS: f64 = 4.0;
+    /// Middle of the frequencies that are looked at, in cycles a period.
+    const MIDDLE: f64 = 0.75;
 
     /// `margin` is what biases turn the angle by, arcsec.
     fn new(
@@ -112,42 +138,60 @@ impl Octave {
         look: &Look<'_>,
     ) -> Option<Octave> {
         let used = (0..middles.len()).filter(|i| steps[*i].abs() < period);
-        let samples: Vec<(f64, f64, f64)> =
-            used.map(|i| (middles[i], i as f64 * dt_s, look.score[i])).collect();
-        let (low, high) =
-            samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (s.0.min(a), s.0.max(b)));
+        let sample = |number: usize| {
+            let angle_arcsec = middles[number];
+            let turned = Complex::cis(-2.0 * PI * (Octave::MIDDLE * angle_arcsec / period).fract());
+            Sample { number, angle_arcsec, score: turned * look.score[number] }
+        };
+        let samples: Vec<Sample> = used.map(sample).collect();
+        let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| {
+            (s.angle_arcsec.min(a), s.angle_arcsec.max(b))
+        });
         let (low, high) = (low - margin, high + margin);
-        let cells = (high - low) / period * Octave::CELLS;
+        let cells = (high - low) / period;
         if samples.len() < 32 || !cells.is_finite() || cells >= LONGEST as f64 {
             return None;
         }
         // Twice the range, so that periods between the cycles of the range are seen too.
-        let size = (2 * (cells as usize + 1)).next_power_of_two();
-        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
-        Some(Octave { period, samples, low, range: high - low, size, plan })
+        let size = quick_size((2 * (cells as usize + 1)).max(8));
+        let plan = FftPlanner::<f64>::new().plan_fft_forward(size);
+        Some(Octave { period, samples, low, range: high - low, dt_s, plan })
     }
 
-    /// Gains for one bias by their frequency, and the step of that, cycles an arcsec. `level` is that of the noise.
-    fn gains(&self, bias_deg_h: f64, level: f64) -> Option<(Vec<f64>, f64)> {
-        let cell = self.period / Octave::CELLS;
-        let mut grid = vec![0.0; self.size];
-        for (angle, time_s, score) in &self.samples {
-            // A degree an hour is an arcsecond a second.
-            let at = (angle + bias_deg_h * time_s - self.low) / cell;
-            if let Some(cell) = grid.get_mut(at as usize) {
-                *cell += score;
+    /// Gains for one bias by their frequency into `room`; the frequency of the first and the step, cycles an arcsec.
+    /// `level` is that of the noise.
+    fn gains(&self, bias_deg_h: f64, level: f64, room: &mut Room) -> (f64, f64) {
+        let size = self.plan.len();
+        room.grid.clear();
+        room.grid.resize(size, Complex::default());
+        // A degree an hour is an arcsecond a second.
+        let a_sample = bias_deg_h * self.dt_s;
+        let turn = |samples: f64| {
+            Complex::cis(-2.0 * PI * (Octave::MIDDLE * a_sample * samples / self.period).fract())
+        };
+        let (next, mut turned, mut expected) = (turn(1.0), Complex::default(), usize::MAX);
+        for sample in &self.samples {
+            turned = if sample.number == expected { turned * next } else { turn(sample.number as f64) };
+            expected = sample.number + 1;
+            let at = (sample.angle_arcsec + a_sample * sample.number as f64 - self.low) / self.period;
+            if let Some(cell) = room.grid.get_mut(at as usize) {
+                *cell += sample.score * turned;
             }
         }
-        let mut spectrum = self.plan.make_output_vec();
-        self.plan.process(&mut grid, &mut spectrum).ok()?;
-        let step = 1.0 / (self.size as f64 * cell);
-        let inside = |j: usize| {
-            let f = j as f64 * step;
-            f > 0.5 / self.period && f <= 1.0 / self.period && f * self.range >= 3.0
-        };
+        room.scratch.resize(self.plan.get_inplace_scratch_len(), Complex::default());
+        self.plan.process_with_scratch(&mut room.grid, &mut room.scratch);
+        let step = 1.0 / (size as f64 * self.period);
+        let (quarter, middle) = (size / 4, Octave::MIDDLE / self.period);
         let scale = level / self.samples.len() as f64;
-        let gains = spectrum.iter().enumerate();
-        Some((gains.map(|(j, w)| if inside(j) { w.norm_sqr() * scale } else { 0.0 }).collect(), step))
+        let first = middle - quarter as f64 * step;
+        let gain = |j: usize| {
+            let f = first + j as f64 * step;
+            let w = room.grid[(j + size - quarter) % size];
+            if f * self.range >= 3.0 { w.norm_sqr() * scale } else { 0.0 }
+        };
+        room.gains.clear();
+        room.gains.extend((0..=2 * quarter).map(gain));
+        (first, step)
     }
 }
 
@@ -187,16 +231,17 @@ impl Course for ResetRipple {
                 period *= 2.0;
                 continue;
             };
-            let of_bias = |k: i32| {
+            let of_bias = |room: &mut Room, k: i32| {
                 let other = f64::from(k) * per_turn;
-                let (gains, frequency) = octave.gains(other, level)?;
+                let (first, step) = octave.gains(other, level, room);
                 let shape = |j: usize| {
-                    let f = (j as f64 + summit(&gains, j)) * frequency;
-                    (gains[j], vec![1.0 / f, fitted + other])
+                    let f = first + (j as f64 + summit(&room.gains, j)) * step;
+                    (room.gains[j], vec![1.0 / f, fitted + other])
                 };
-                Some(peaks(&gains, 2, 6).into_iter().map(shape).collect::<Vec<_>>())
+                peaks(&room.gains, 2, 6).into_iter().map(shape).collect::<Vec<_>>()
             };
-            let seen: Vec<Vec<_>> = (-turns..=turns).into_par_iter().filter_map(of_bias).collect();
+            let seen: Vec<Vec<_>> =
+                (-turns..=turns).into_par_iter().map_init(Room::default, of_bias).collect();
             looked += seen.len() as f64 * (high - low) / period * 0.5;
             found.extend(seen.into_iter().flatten());
             period *= 2.0;
