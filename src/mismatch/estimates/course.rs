@@ -1,0 +1,132 @@
+//! Parameters of a course.
+
+use super::placed::Placed;
+use super::{Estimated, INSTANT, TWO_SIDED_95, interval};
+use crate::effect::{Course, Effect, Value};
+use crate::mismatch::candidates::{Scenes, Tried};
+use crate::mismatch::contribution::summed;
+use crate::mismatch::finding::ParameterValue;
+use crate::mismatch::instant;
+use nalgebra::DMatrix;
+
+/// Standard deviation of a course over the record.
+fn rms(sum: &[f64]) -> f64 {
+    let n = sum.len().max(1) as f64;
+    let mean = sum.iter().sum::<f64>() / n;
+    (sum.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
+/// As the noise at hand and the columns beside the course tell them.
+pub(super) fn of_course(
+    effect: &'static dyn Effect,
+    course: &'static dyn Course,
+    index: usize,
+    best: &Tried,
+    scenes: &Scenes,
+) -> Estimated {
+    let placed = Placed::new(course, index, best, scenes);
+    let drivers = &placed.scene.drivers;
+    let shape = &placed.inside.shape;
+    let (_, coefficients) = placed.log_likelihood(shape);
+    let covariance = placed.covariance(&coefficients);
+    let free = placed.free_number();
+    let deviation_of_shape = free.map_or(f64::NAN, |i| covariance[(i, i)].sqrt());
+    let profile = placed.profile(deviation_of_shape);
+    let at = |x: f64| free.map_or_else(|| shape.clone(), |i| placed.shape_at(i, x));
+    let values = course.parameters(shape, &coefficients, drivers);
+    let parts = course.parts(shape, drivers);
+    let series = summed(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
+    let spread = rms(&series);
+    // Everything that is a function of shape and coefficients, with the rms last.
+    let all = |shape: &[f64], coefficients: &[f64]| {
+        let mut out = course.parameters(shape, coefficients, drivers);
+        let parts = course.parts(shape, drivers);
+        out.push(rms(&summed(&parts.free, coefficients, parts.fixed.as_ref(), drivers.samples)));
+        out
+    };
+    let deviations = propagate(shape, &coefficients, &covariance, all);
+    let mut out = Estimated::default();
+    for (i, (param, value)) in effect.params().iter().zip(&values).enumerate() {
+        if !value.is_finite() {
+            continue;
+        }
+        out.stated.insert(param.name.to_owned(), Value::Number(*value));
+        if !param.reported {
+            continue;
+        }
+        // A parameter that the shape alone determines takes the interval of the shape.
+        let by_shape = profile.and_then(|ends| {
+            let moved = ends.map(|x| course.parameters(&at(x), &coefficients, drivers).get(i).copied());
+            let (Some(a), Some(b)) = (moved[0], moved[1]) else { return None };
+            let still =
+                course.parameters(shape, &coefficients.iter().map(|c| 1.01 * c).collect::<Vec<_>>(), drivers);
+            (still.get(i) == Some(value) && a != b).then_some([a.min(b), a.max(b)])
+        });
+        let Some(mut ci95) = by_shape.or_else(|| interval(param, *value, deviations[i])) else { continue };
+        if param.name == INSTANT
+            && let Some([from, to]) = instant::interval(placed.inside, best, scenes)
+        {
+            ci95 = [from.min(*value), to.max(*value)];
+        }
+        let unit = param.unit.to_owned();
+        out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
+    }
+    for (name, list) in course.lists(shape, &coefficients, drivers) {
+        out.stated.insert(name.to_owned(), Value::List(list));
+    }
+    let deviation = deviations.last().copied().unwrap_or(f64::NAN).hypot(placed.nuisance_deviation(&series));
+    if spread.is_finite() && deviation.is_finite() && spread > 0.0 {
+        let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();
+        // A course without coefficients is as large as its shape makes it, by a model of what goes on within a sample that
+        // is no truer than the recording can tell its size.
+        let told = (TWO_SIDED_95 * placed.size_deviation(&series)).min(30.0).exp();
+        let by_shape = profile.filter(|_| coefficients.is_empty()).map(|ends| {
+            let of = |x: f64| all(&at(x), &[]).last().copied().unwrap_or(spread);
+            let (a, b) = (of(ends[0]), of(ends[1]));
+            [a.min(b).min(spread / told), a.max(b).max(spread * told)]
+        });
+        let ci95 = by_shape.unwrap_or([spread / factor, spread * factor]);
+        out.reported
+            .insert("rms_deg_h".to_owned(), ParameterValue { value: spread, unit: "deg/h".to_owned(), ci95 });
+    }
+    out
+}
+
+/// Standard deviations of functions of shape and coefficients by their numerical derivatives.
+fn propagate(
+    shape: &[f64],
+    coefficients: &[f64],
+    covariance: &DMatrix<f64>,
+    functions: impl Fn(&[f64], &[f64]) -> Vec<f64>,
+) -> Vec<f64> {
+    let (d, p) = (shape.len(), shape.len() + coefficients.len());
+    let mut slopes: Vec<Vec<f64>> = vec![];
+    for i in 0..p {
+        let deviation = covariance[(i, i)].max(0.0).sqrt();
+        let value = if i < d { shape[i] } else { coefficients[i - d] };
+        let step = if deviation > 0.0 { 0.05 * deviation } else { 1e-6 * value.abs().max(1e-9) };
+        let moved = |sign: f64| {
+            let (mut s, mut c) = (shape.to_vec(), coefficients.to_vec());
+            if i < d {
+                s[i] += sign * step
+            } else {
+                c[i - d] += sign * step
+            }
+            functions(&s, &c)
+        };
+        let (up, down) = (moved(1.0), moved(-1.0));
+        slopes.push(up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * step)).collect());
+    }
+    let count = slopes.first().map_or_else(|| functions(shape, coefficients).len(), Vec::len);
+    (0..count)
+        .map(|k| {
+            let mut sum = 0.0;
+            for i in 0..p {
+                for j in 0..p {
+                    sum += slopes[i][k] * covariance[(i, j)] * slopes[j][k];
+                }
+            }
+            sum.max(0.0).sqrt()
+        })
+        .collect()
+}

@@ -1,0 +1,184 @@
+//! One course among the columns of its hypothesis: how well its numbers are told, the noise held.
+
+use super::DROP_95;
+use crate::effect::Course;
+use crate::mismatch::candidates::{Scenes, Tried};
+use crate::mismatch::hypothesis::{CourseIn, Normal, PartModes, kept};
+use crate::mismatch::scene::Scene;
+use nalgebra::DMatrix;
+
+/// The course, what stands beside it, and the data less what is fixed.
+pub struct Placed<'a> {
+    pub scene: &'a Scene,
+    course: &'static dyn Course,
+    pub inside: &'a CourseIn,
+    columns: Vec<(Vec<f64>, f64)>,
+    data: Vec<f64>,
+    powers: Vec<f64>,
+}
+
+impl<'a> Placed<'a> {
+    /// The course at some place of a fitted hypothesis.
+    pub fn new(course: &'static dyn Course, index: usize, best: &'a Tried, scenes: &'a Scenes) -> Placed<'a> {
+        let scene = scenes.of(course.pace());
+        let powers = scene.powers(&best.hypothesis.noise.densities(scene));
+        let parts = scenes.part_modes(course.pace(), &best.hypothesis.courses);
+        let mut data = scene.modes.clone();
+        let mut columns: Vec<(Vec<f64>, f64)> =
+            kept(scene, &best.hypothesis.courses).iter().map(|n| (n.modes.clone(), n.deviation)).collect();
+        for (j, part) in parts.into_iter().enumerate() {
+            if j == index {
+                continue;
+            }
+            if let Some(fixed) = &part.fixed {
+                data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+            }
+            columns.extend(part.free.into_iter().chain(part.beside).map(|c| (c, f64::INFINITY)));
+        }
+        Placed { scene, course, inside: &best.hypothesis.courses[index], columns, data, powers }
+    }
+
+    fn parts(&self, shape: &[f64]) -> PartModes {
+        PartModes::of(self.course.parts(shape, &self.scene.drivers), self.scene)
+    }
+
+    /// Penalised sum of squares over −2 for a shape: the log-likelihood with the noise held.
+    pub fn log_likelihood(&self, shape: &[f64]) -> (f64, Vec<f64>) {
+        let parts = self.parts(shape);
+        let mut data = self.data.clone();
+        if let Some(fixed) = &parts.fixed {
+            data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
+        }
+        let mut columns: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, s)| (c.as_slice(), *s)).collect();
+        let others = columns.len();
+        columns.extend(parts.free.iter().chain(&parts.beside).map(|c| (c.as_slice(), f64::INFINITY)));
+        let (coefficients, _, left) = Normal::new(&columns, &data, &self.powers).solve();
+        (-0.5 * left, coefficients[others..others + parts.free.len()].to_vec())
+    }
+
+    /// Covariance of shape and coefficients of the free columns, everything else free beside.
+    pub fn covariance(&self, coefficients: &[f64]) -> DMatrix<f64> {
+        let shape = &self.inside.shape;
+        let parts = self.parts(shape);
+        let bounds = self.course.bounds(&self.scene.drivers);
+        let slopes: Vec<Vec<f64>> = (0..shape.len()).map(|i| self.slope(i, &bounds, coefficients)).collect();
+        // A number that is whole, or held by its bounds, has no derivative and no part in the uncertainty.
+        let moves = |i: &usize| !self.course.whole().contains(i) && slopes[*i].iter().any(|s| *s != 0.0);
+        let active: Vec<usize> = (0..shape.len()).filter(moves).collect();
+        let columns: Vec<(&[f64], f64)> = active
+            .iter()
+            .map(|i| &slopes[*i])
+            .chain(&parts.free)
+            .chain(&parts.beside)
+            .map(|c| (c.as_slice(), f64::INFINITY))
+            .chain(self.columns.iter().map(|(c, s)| (c.as_slice(), *s)))
+            .collect();
+        let (_, covariance, _) = Normal::new(&columns, &self.data, &self.powers).solve();
+        let wanted = shape.len() + parts.free.len();
+        let places: Vec<usize> = active.iter().copied().chain(shape.len()..wanted).collect();
+        let mut out = DMatrix::zeros(wanted, wanted);
+        for (a, i) in places.iter().enumerate() {
+            for (b, j) in places.iter().enumerate() {
+                out[(*i, *j)] = covariance[(a, b)];
+            }
+        }
+        out
+    }
+
+    /// Standard deviation that the rms of a course has from a nuisance of the claim that the course takes over: how much
+    /// of the two is the claim's own is known no better than the claim states it.
+    pub fn nuisance_deviation(&self, series: &[f64]) -> f64 {
+        let Some(replaced) = self.course.replaces() else { return 0.0 };
+        let Some(nuisance) = self.scene.nuisances.iter().find(|n| n.nuisance == replaced) else { return 0.0 };
+        let modes = self.scene.transform(series);
+        let square: f64 = modes.iter().map(|x| x * x).sum();
+        let both: f64 = modes.iter().zip(&nuisance.modes).map(|(a, b)| a * b).sum();
+        let n = self.scene.drivers.samples.max(1) as f64;
+        if square > 0.0 { nuisance.deviation * both.abs() / (square * n).sqrt() } else { 0.0 }
+    }
+
+    /// Relative standard deviation of the size of a course, were a factor on it free.
+    pub fn size_deviation(&self, series: &[f64]) -> f64 {
+        let beside = self.parts(&self.inside.shape).beside;
+        let size = self.scene.transform(series);
+        let columns: Vec<(&[f64], f64)> = [&size]
+            .into_iter()
+            .chain(&beside)
+            .map(|c| (c.as_slice(), f64::INFINITY))
+            .chain(self.columns.iter().map(|(c, s)| (c.as_slice(), *s)))
+            .collect();
+        Normal::new(&columns, &self.data, &self.powers).solve().1[(0, 0)].max(0.0).sqrt()
+    }
+
+    /// Derivative of the course by a number of its shape, in modes.
+    fn slope(&self, i: usize, bounds: &[(f64, f64)], coefficients: &[f64]) -> Vec<f64> {
+        let (low, high) = bounds.get(i).copied().unwrap_or((f64::MIN, f64::MAX));
+        let shape = &self.inside.shape;
+        let step = (1e-3 * shape[i].abs()).max(1e-6 * (high - low).min(1e12)).max(1e-12);
+        let at = |x: f64| {
+            let mut moved = shape.clone();
+            moved[i] = x.clamp(low, high);
+            let parts = self.parts(&moved);
+            let mut sum = parts.fixed.unwrap_or_else(|| vec![0.0; self.data.len()]);
+            for (column, c) in parts.free.iter().zip(coefficients) {
+                sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
+            }
+            (sum, moved[i])
+        };
+        let ((up, a), (down, b)) = (at(shape[i] + step), at(shape[i] - step));
+        if a <= b {
+            return vec![0.0; up.len()];
+        }
+        up.iter().zip(&down).map(|(u, d)| (u - d) / (a - b)).collect()
+    }
+
+    /// Position of the only number of a shape that is not whole.
+    pub fn free_number(&self) -> Option<usize> {
+        let mut free = (0..self.inside.shape.len()).filter(|i| !self.course.whole().contains(i));
+        free.next().filter(|_| free.next().is_none())
+    }
+
+    /// The shape with that number in its place.
+    pub fn shape_at(&self, i: usize, x: f64) -> Vec<f64> {
+        let mut shape = self.inside.shape.clone();
+        shape[i] = x;
+        shape
+    }
+
+    /// Ends of the interval of the only number of a shape that is not whole, at which the profile log-likelihood has
+    /// dropped.
+    pub fn profile(&self, deviation: f64) -> Option<[f64; 2]> {
+        let i = self.free_number()?;
+        let at = self.inside.shape[i];
+        let (low, high) = *self.course.bounds(&self.scene.drivers).get(i)?;
+        if high <= low {
+            return None;
+        }
+        let top = self.log_likelihood(&self.inside.shape).0;
+        let drop = |x: f64| top - self.log_likelihood(&self.shape_at(i, x)).0;
+        let first = if deviation.is_finite() && deviation > 0.0 { deviation } else { 0.01 * (high - low) };
+        let side = |sign: f64| {
+            let (mut inside, mut step) = (at, first);
+            let mut outside = None;
+            for _ in 0..24 {
+                let x = (at + sign * step).clamp(low, high);
+                if drop(x) >= DROP_95 {
+                    outside = Some(x);
+                    break;
+                }
+                inside = x;
+                if x == low || x == high {
+                    break;
+                }
+                step *= 1.7;
+            }
+            let Some(mut outside) = outside else { return inside };
+            for _ in 0..10 {
+                let middle = 0.5 * (inside + outside);
+                if drop(middle) >= DROP_95 { outside = middle } else { inside = middle }
+            }
+            0.5 * (inside + outside)
+        };
+        Some([side(-1.0), side(1.0)])
+    }
+}
