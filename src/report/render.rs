@@ -227,7 +227,7 @@ impl Renderer {
             v => Value::from(Serde(view)),
             locale => Value::from(Serde(table(lang))),
         };
-        template.render(context).map_err(|e| wrong(&e, name))
+        finished(&template, context, name)
     }
 
     fn render(
@@ -255,8 +255,21 @@ impl Renderer {
             run => Value::from(Serde(record)),
             locale => Value::from(Serde(table(lang))),
         };
-        template.render(context).map_err(|e| wrong(&e, name))
+        finished(template, context, name)
     }
+}
+
+/// What a template makes of a context, its last line ended.
+fn finished(
+    template: &minijinja::Template<'_, '_>,
+    context: Value,
+    name: &str,
+) -> Result<String, ReportError> {
+    let mut text = template.render(context).map_err(|e| wrong(&e, name))?;
+    if !text.ends_with('\n') {
+        text.push('\n');
+    }
+    Ok(text)
 }
 
 /// Renders the HTML report: one file that needs no other.
