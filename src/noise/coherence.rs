@@ -65,6 +65,7 @@ mod tests {
             false_alarm_probability: 0.0,
             harmonic_of: None,
             harmonic_order: 1,
+            sinusoid: None,
         }
     }
 

@@ -8,6 +8,7 @@
 //! spectrum bends more than a power law over many bins can.
 
 use super::data::WelchSpectrum;
+use super::sinusoids::Sinusoid;
 use crate::estimate::normal_probability;
 use statrs::function::beta::beta_reg;
 
@@ -46,6 +47,8 @@ pub struct SpectralLine {
     pub harmonic_of: Option<usize>,
     /// Multiple of that line's frequency; 1 where there is none.
     pub harmonic_order: u32,
+    /// The line fitted to the whole record, which then gives its frequency and amplitude.
+    pub sinusoid: Option<Sinusoid>,
 }
 
 /// The result of a search.
@@ -126,6 +129,7 @@ fn line(
         false_alarm_probability,
         harmonic_of: None,
         harmonic_order: 1,
+        sinusoid: None,
     }
 }
 

@@ -30,6 +30,7 @@ pub mod profile;
 pub mod residual;
 pub mod russian;
 pub mod simulate;
+pub mod sinusoids;
 pub mod slope;
 pub mod slow_terms;
 pub mod spectral_record;

@@ -76,13 +76,19 @@ fn scattering(model: &Composite) -> Composite {
     out
 }
 
-/// Variance of s² from the products of lines with noise that their amplitudes do not share, (deg/h)⁴: a window mean folds
-/// noise of other frequencies onto that of a line.
-fn crossed(model: &Composite, window_s: f64, windows: u64, noise_variance: f64) -> f64 {
+/// Variance of s² from the products of lines with noise, (deg/h)⁴, of which `part` counts for the share of a line's power
+/// that window means pass.
+fn crossed(
+    model: &Composite,
+    window_s: f64,
+    windows: u64,
+    noise_variance: f64,
+    part: impl Fn(f64) -> f64,
+) -> f64 {
     let of = |line: &Line| {
         let x = PI * line.frequency_hz * window_s;
         let passed = if x.abs() < 1e-9 { 1.0 } else { (x.sin() / x).powi(2) };
-        4.0 * 0.5 * line.amplitude_deg_h.powi(2) * passed * (1.0 - passed) * noise_variance
+        4.0 * 0.5 * line.amplitude_deg_h.powi(2) * passed * part(passed) * noise_variance
     };
     model.lines.iter().map(of).sum::<f64>() / windows.max(1) as f64
 }
@@ -133,13 +139,17 @@ impl WindowPrediction {
         let shifted = ((u_total * u_total - u_noise * u_noise) / (total * total)).max(0.0);
         let left = (scatter - known).max(LEAST_LEFT * scatter) + UNSHARED * shifted;
         let phased = phased(&described.model, window_s, windows) / (total * total);
-        let left =
-            left + crossed(&described.model, window_s, windows, noise_total) / (total * total) + phased;
+        let products = |part: fn(f64) -> f64| {
+            crossed(&described.model, window_s, windows, noise_total, part) / (total * total)
+        };
+        // What the fitted amplitude of a line shares with s² cannot be tested; a window mean folds noise of other
+        // frequencies onto that of the line.
+        let left = left + products(|passed| 1.0 - passed) + phased;
         Some(WindowPrediction {
             sigma: total.sqrt(),
             shares,
             uncertainty: 0.5 * u_total / total.sqrt(),
-            scatter_dof: 2.0 / (scatter + phased),
+            scatter_dof: 2.0 / (scatter + products(|_| 1.0) + phased),
             ratio_dof: 2.0 / left,
         })
     }

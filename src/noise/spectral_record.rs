@@ -4,12 +4,14 @@
 //! averaged periodogram, whose segments are short, cannot tell them apart; the modes of the whole record can.
 
 use super::coherence::is_coherent;
-use super::composite::{Damped, Line, Sampling};
+use super::composite::{Damped, Described, Line, Parameter, Sampling};
 use super::data::{BlockSeries, WelchSpectrum};
 use super::evidence::{Evidence, Mask};
 use super::fit_range::{RangedIdentification, describe_in_range, identify_over};
 use super::joint::MaximumLikelihood;
 use super::lines::{SpectralLine, retain};
+use super::sinusoids;
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 /// What one pass left of a channel, as identification needs it.
@@ -49,7 +51,15 @@ impl SpectralRecord<'_> {
 
     /// The evidence with lines left out.
     pub fn evidence(&self, lines: &[SpectralLine]) -> Evidence {
-        Evidence::new(self.blocks, self.welch, self.tau0_s, &masks_of(lines))
+        Evidence::new(&self.without_lines(lines), self.welch, self.tau0_s, &masks_of(lines))
+    }
+
+    /// The block means with the sinusoids of lines taken out.
+    pub fn without_lines(&self, lines: &[SpectralLine]) -> Cow<'_, BlockSeries> {
+        if lines.iter().all(|l| l.sinusoid.is_none()) {
+            return Cow::Borrowed(self.blocks);
+        }
+        Cow::Owned(sinusoids::without(self.blocks, self.tau0_s, lines))
     }
 
     /// Identifies the noise.
@@ -57,13 +67,14 @@ impl SpectralRecord<'_> {
         let method = MaximumLikelihood { sampling: self.sampling, ..Default::default() };
         let whole = self.evidence(&[]);
         let mut lines = retain(self.lines, |l| is_coherent(&whole, l));
+        sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
         let nyquist_hz = 0.5 / self.tau0_s;
         let mut ranged = describe_in_range(&method, channel, &self.evidence(&lines), nyquist_hz);
         for _ in 0..ROUNDS {
             let found = &ranged.identification.described.model.quasi_periodic;
             // A peak that is neither coherent nor explained is a line after all; so is a disturbance that hardly decays.
             let left = retain(self.lines, |l| {
-                !lines.iter().any(|k| k.frequency_hz == l.frequency_hz)
+                !lines.iter().any(|k| (k.frequency_hz - l.frequency_hz).abs() < l.resolution_hz)
                     && !found.iter().any(|q| explains(q, l))
             });
             let steady: Vec<SpectralLine> = found
@@ -77,15 +88,12 @@ impl SpectralRecord<'_> {
             lines = retain(&[lines, left, steady].concat(), |_| true);
             lines.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
             lines = retain(&lines, |_| true);
+            sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
             ranged = describe_in_range(&method, channel, &self.evidence(&lines), nyquist_hz);
         }
         let evidence = self.evidence(&lines);
         let mut noise = RecordNoise { ranged: identify_over(&method, channel, &evidence, &ranged), lines };
-        noise.ranged.identification.described.model.lines = noise
-            .lines
-            .iter()
-            .map(|l| Line { amplitude_deg_h: l.amplitude_deg_h, frequency_hz: l.frequency_hz })
-            .collect();
+        describe_lines(&mut noise.ranged.identification.described, &noise.lines);
         noise
     }
 
@@ -105,13 +113,41 @@ impl SpectralRecord<'_> {
             false_alarm_probability: 0.0,
             harmonic_of: None,
             harmonic_order: 1,
+            sinusoid: None,
         }
     }
 }
 
+/// Puts lines into a description, the uncertainty of their amplitudes among its parameters.
+fn describe_lines(described: &mut Described, lines: &[SpectralLine]) {
+    let line = |l: &SpectralLine| Line { amplitude_deg_h: l.amplitude_deg_h, frequency_hz: l.frequency_hz };
+    described.model.lines = lines.iter().map(line).collect();
+    if described.covariance.len() != described.parameters.len() {
+        return;
+    }
+    for (i, sinusoid) in lines.iter().enumerate().filter_map(|(i, l)| Some((i, l.sinusoid?))) {
+        described.parameters.push(Parameter::LineAmplitude(i));
+        let count = described.parameters.len();
+        described.covariance.iter_mut().for_each(|row| row.push(0.0));
+        let mut row = vec![0.0; count];
+        row[count - 1] = sinusoid.amplitude_deviation_deg_h.powi(2);
+        described.covariance.push(row);
+    }
+}
+
 fn masks_of(lines: &[SpectralLine]) -> Vec<Mask> {
-    let mask = |l: &SpectralLine| Mask { frequency_hz: l.frequency_hz, half_width_hz: 2.0 * l.resolution_hz };
-    lines.iter().map(mask).collect()
+    lines.iter().map(mask_of).collect()
+}
+
+/// Two bins to each side; in a periodogram as far as the flanks of a Hann window, which fall as 1/(πk³)² from the peak,
+/// stand above a twentieth of the floor.
+fn mask_of(line: &SpectralLine) -> Mask {
+    let bins = (20.0 * line.excess.max(0.0) / (PI * PI)).powf(1.0 / 6.0).max(2.0);
+    Mask {
+        frequency_hz: line.frequency_hz,
+        half_width_hz: 2.0 * line.resolution_hz,
+        windowed_half_width_hz: bins * line.resolution_hz,
+    }
 }
 
 /// Half width at half power, Hz.

@@ -169,6 +169,7 @@ fn parameter(p: Parameter, model: &Composite) -> ParameterRecord {
         // The coherence time of the contract is that of the line: the decay time of the autocovariance.
         Parameter::QuasiPeriodicTime(i) => ("quasi_periodic_coherence_time", i, "s"),
         Parameter::FilterTime => ("filter_time", 0, "s"),
+        Parameter::LineAmplitude(i) => ("line_amplitude", i, "deg/h"),
     };
     ParameterRecord { id: id.into(), index, value: model.value(p), unit: unit.into() }
 }

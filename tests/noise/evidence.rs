@@ -157,7 +157,7 @@ fn a_masked_line_leaves_no_trace() {
     assert!(open.misfit.probability < 1e-6 && open.misfit.worst_probability < 1e-6);
     let worst = open.misfit.worst_band_hz.unwrap();
     assert!(worst[0] <= line && line <= worst[1], "{worst:?}");
-    let mask = Mask { frequency_hz: line, half_width_hz: 0.001 };
+    let mask = Mask { frequency_hz: line, half_width_hz: 0.001, windowed_half_width_hz: 0.001 };
     let masked = identify(&Evidence::new(&blocks(&y, 1), None, tau0_s, &[mask]));
     assert!(masked.misfit.probability > 0.001, "{:?}", masked.misfit);
     assert!((masked.model.n / model.n - 1.0).abs() < 0.02);

@@ -20,6 +20,8 @@ pub enum Parameter {
     QuasiPeriodicTime(usize),
     /// Time constant of a first-order filter, s.
     FilterTime,
+    /// Amplitude of a line, deg/h.
+    LineAmplitude(usize),
 }
 
 /// What a record says about its noise: the best description and how well its parameters are known.
@@ -49,6 +51,7 @@ impl Composite {
                 Some(super::Bandwidth::FirstOrder { time_constant_s }) => time_constant_s,
                 _ => 0.0,
             },
+            Parameter::LineAmplitude(i) => self.lines.get(i).map_or(0.0, |l| l.amplitude_deg_h),
         }
     }
 
@@ -61,6 +64,11 @@ impl Composite {
             Parameter::FilterTime => {
                 if let Some(super::Bandwidth::FirstOrder { time_constant_s }) = &mut out.bandwidth {
                     *time_constant_s = value;
+                }
+            }
+            Parameter::LineAmplitude(i) => {
+                if let Some(line) = out.lines.get_mut(i) {
+                    line.amplitude_deg_h = value;
                 }
             }
             Parameter::MarkovSigma(i) | Parameter::MarkovTime(i) => {

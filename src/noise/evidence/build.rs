@@ -118,13 +118,8 @@ impl<'a> Builder<'a> {
         self.evidence.pieces.len() - 1
     }
 
-    fn masked(&self, frequency_hz: f64, step_hz: f64, tau_s: f64) -> bool {
-        self.masks.iter().any(|mask| {
-            // Means over tau fold a line back about multiples of 1/tau.
-            let turns = mask.frequency_hz * tau_s;
-            let folded = (turns - turns.round()).abs() / tau_s;
-            (frequency_hz - folded).abs() <= mask.half_width_hz + step_hz
-        })
+    fn masked(&self, frequency_hz: f64, step_hz: f64, tau_s: f64, windowed: bool) -> bool {
+        self.masks.iter().any(|mask| mask.hides(frequency_hz, step_hz, tau_s, windowed))
     }
 
     pub(super) fn add_series(&mut self, series: &Series, top: f64) {
@@ -204,7 +199,7 @@ impl<'a> Builder<'a> {
         let Some(&Piece { tau_s, step_hz, .. }) = self.evidence.pieces.get(piece) else { return };
         for (k, (c, r)) in modes.iter().zip(ramp).enumerate().skip(1) {
             let f = k as f64 * step_hz;
-            if f <= from || f > to * (1.0 + 1e-9) || self.masked(f, step_hz, tau_s) {
+            if f <= from || f > to * (1.0 + 1e-9) || self.masked(f, step_hz, tau_s, false) {
                 continue;
             }
             let alone = single && k <= SINGLE_MODES;
@@ -222,7 +217,7 @@ impl<'a> Builder<'a> {
         let nyquist = welch.segment_len / 2;
         for (k, density) in welch.density.iter().enumerate().take(nyquist).skip(2) {
             let f = k as f64 * step_hz;
-            if f <= from || self.masked(f, 2.0 * step_hz, tau0_s) {
+            if f <= from || self.masked(f, 2.0 * step_hz, tau0_s, true) {
                 continue;
             }
             self.add_bin(piece, k, dof, [density * tau0_s, 0.0, 0.0], false);

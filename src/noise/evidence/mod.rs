@@ -22,8 +22,21 @@ use std::sync::Arc;
 pub struct Mask {
     /// Frequency of the line, Hz.
     pub frequency_hz: f64,
-    /// Half width of the range left out, Hz; one resolution step of the transform is added to it.
+    /// Half width of the range left out of modes, Hz; one resolution step of the transform is added to it.
     pub half_width_hz: f64,
+    /// The same of an averaged periodogram, Hz.
+    pub windowed_half_width_hz: f64,
+}
+
+impl Mask {
+    /// Whether a mode of means over `tau_s` is left out, or a bin of a periodogram: the line, folded back about multiples
+    /// of 1/τ, lies near.
+    pub fn hides(&self, frequency_hz: f64, step_hz: f64, tau_s: f64, windowed: bool) -> bool {
+        let turns = self.frequency_hz * tau_s;
+        let folded = (turns - turns.round()).abs() / tau_s;
+        let half_width_hz = if windowed { self.windowed_half_width_hz } else { self.half_width_hz };
+        (frequency_hz - folded).abs() <= half_width_hz + step_hz
+    }
 }
 
 /// One transform that contributes modes or bins.

@@ -8,7 +8,7 @@ use super::super::spectral_record::SpectralRecord;
 use super::grid::Grid;
 use super::null::{Fitted, at_most_bonferroni};
 use super::spectrum::ModelSpectrum;
-use super::whiten::{Whitened, masked};
+use super::whiten::Whitened;
 use super::{Departure, Judged, View};
 use crate::noise::model::{Bin, Spectral};
 use realfft::RealFftPlanner;
@@ -109,7 +109,8 @@ pub(super) fn of_samples(
         .map(|k| {
             let frequency_hz = k as f64 * step_hz;
             // The lowest bins lost power with the mean of each segment; the last one has one degree of freedom.
-            if k < 3 || k == last || masked(&masks, frequency_hz, 2.0 * step_hz, tau0_s) {
+            if k < 3 || k == last || masks.iter().any(|m| m.hides(frequency_hz, 2.0 * step_hz, tau0_s, true))
+            {
                 return Complex::new(0.0, 0.0);
             }
             let bin = Bin { frequency_hz, tau_s: tau0_s, filling: 1.0, mode: 0, blocks: 0, segment: 0 };

@@ -1,7 +1,6 @@
 //! The record with everything that the model explains taken out: cosine modes of its block means over the root of
 //! their expected power, transformed back.
 
-use super::super::evidence::Mask;
 use super::super::spectral_record::SpectralRecord;
 use super::spectrum::ModelSpectrum;
 use crate::noise::composite::Composite;
@@ -29,7 +28,7 @@ pub struct Whitened {
 
 /// Whitens the longest stretch of a record; `None` when that is too short or the model has no power.
 pub fn whitened(record: &SpectralRecord<'_>, model: &Composite) -> Option<Whitened> {
-    let blocks = record.blocks;
+    let blocks = record.without_lines(record.lines);
     let full = blocks.block_len.max(1) as f64;
     let means = blocks.about_first();
     let present: Vec<bool> = means
@@ -57,7 +56,8 @@ pub fn whitened(record: &SpectralRecord<'_>, model: &Composite) -> Option<Whiten
     let mut used = 0;
     for (k, c) in modes.iter_mut().enumerate() {
         let expected = k.checked_sub(1).and_then(|i| power.get(i)).map_or(0.0, |p| p / step_s);
-        let left_out = expected <= 0.0 || masked(&masks, k as f64 * step_hz, step_hz, step_s);
+        let left_out =
+            expected <= 0.0 || masks.iter().any(|m| m.hides(k as f64 * step_hz, step_hz, step_s, false));
         *c = if left_out { 0.0 } else { *c / expected.sqrt() };
         used += usize::from(!left_out);
     }
@@ -86,15 +86,6 @@ fn longest(present: &[bool]) -> std::ops::Range<usize> {
         }
     }
     best
-}
-
-/// Whether a line lies at a frequency, also where means over `tau_s` fold it back.
-pub(super) fn masked(masks: &[Mask], frequency_hz: f64, step_hz: f64, tau_s: f64) -> bool {
-    masks.iter().any(|mask| {
-        let turns = mask.frequency_hz * tau_s;
-        let folded = (turns - turns.round()).abs() / tau_s;
-        (frequency_hz - folded).abs() <= mask.half_width_hz + step_hz
-    })
 }
 
 #[cfg(test)]

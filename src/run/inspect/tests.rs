@@ -167,6 +167,7 @@ fn line(frequency_hz: f64, resolution_hz: f64) -> SpectralLine {
         false_alarm_probability: 1e-9,
         harmonic_of: None,
         harmonic_order: 1,
+        sinusoid: None,
     }
 }
 

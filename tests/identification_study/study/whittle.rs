@@ -191,6 +191,7 @@ impl Layout {
             | Parameter::QuasiPeriodicTime(i) => {
                 rows.map(|row| self.damped(&model.quasi_periodic[i], row)).collect()
             }
+            Parameter::LineAmplitude(_) => rows.map(|_| 0.0).collect(),
             Parameter::FilterTime => {
                 rows.map(|row| (0..SPECTRAL).map(|t| self.term(model, t, row)).sum()).collect()
             }
