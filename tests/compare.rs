@@ -240,3 +240,101 @@ fn the_guide_names_every_column_of_the_table() {
     }
     assert!(root().join("docs/methods-compare.md").is_file());
 }
+
+/// Rates of white noise of N = 0.002 deg/√h with something added, as a file.
+fn written(folder: &Path, name: &str, interval_s: f64, rows: usize, more: impl Fn(f64) -> f64) {
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(41);
+    let white = 60.0 * 0.002 / interval_s.sqrt();
+    let mut text = "time_s,rate_deg_h\n".to_owned();
+    for i in 0..rows {
+        let t = i as f64 * interval_s;
+        let noise: f64 = StandardNormal.sample(&mut rng);
+        text.push_str(&format!("{t},{}\n", white * noise + more(t)));
+    }
+    std::fs::write(folder.join(name), text).unwrap();
+}
+
+#[test]
+fn each_file_of_a_pattern_is_a_unit() {
+    let dir = tempdir().unwrap();
+    written(dir.path(), "u1.csv", 1.0, 1500, |_| 5.0);
+    written(dir.path(), "u2.csv", 1.0, 1500, |_| -3.0);
+    let (_, all) = compare(dir.path(), &["u*.csv"]);
+    let names: Vec<&str> =
+        all["units"].as_array().unwrap().iter().map(|u| u["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["u1", "u2"]);
+}
+
+#[test]
+fn samples_that_make_no_windows_of_100_or_10_s_have_no_such_figure() {
+    let dir = tempdir().unwrap();
+    written(dir.path(), "slow.csv", 30.0, 1200, |_| 0.0);
+    written(dir.path(), "twenty.csv", 20.0, 1200, |_| 0.0);
+    let (said, all) = compare(dir.path(), &["slow.csv", "twenty.csv"]);
+    let value = |unit: usize, id: &str| {
+        let rows = all["units"][unit]["quantities"].as_array().unwrap();
+        rows.iter().find(|q| q["id"] == id).unwrap()["value"].clone()
+    };
+    assert_eq!(value(0, "russian_arw_10s"), Value::Null);
+    assert_eq!(value(0, "russian_drift_100s"), Value::Null);
+    assert!(said.contains("slow: The record gives no two means of 100 s"), "{said}");
+    // Five samples of 20 s make 100 s.
+    let drift = value(1, "russian_drift_100s").as_f64().unwrap();
+    assert!((drift / 0.012 - 1.0).abs() < 0.15, "{drift}");
+    assert_eq!(value(1, "russian_arw_10s"), Value::Null);
+    assert!(said.contains("twenty: The record gives no two means of 10 s"), "{said}");
+}
+
+#[test]
+fn a_strong_line_is_one_line_and_explains_the_drift() {
+    let dir = tempdir().unwrap();
+    written(dir.path(), "line.csv", 1.0, 36_000, |t| (std::f64::consts::TAU * 0.0033 * t + 0.4).sin());
+    let (_, all) = compare(dir.path(), &["line.csv"]);
+    let model = &all["units"][0]["detail"]["model"];
+    let lines = model["lines"].as_array().unwrap();
+    assert_eq!(lines.len(), 1, "{model}");
+    assert!((lines[0][0].as_f64().unwrap() - 1.0).abs() < 0.01, "{model}");
+    assert!((lines[0][1].as_f64().unwrap() - 0.0033).abs() < 1e-6, "{model}");
+    assert_eq!(field(dir.path(), 1, "agreement"), "consistent");
+    assert_eq!(field(dir.path(), 1, "largest_part"), "line");
+    let (low, high) = (number(dir.path(), 1, "n_low"), number(dir.path(), 1, "n_high"));
+    assert!(low < 0.002 && 0.002 < high, "{low} {high}");
+}
+
+#[test]
+fn an_output_rounded_far_above_its_noise_bounds_n_truly() {
+    let dir = tempdir().unwrap();
+    // An angle output of half an arcsecond: the noise moves it by two steps in a minute.
+    let noise = tempdir().unwrap();
+    written(noise.path(), "fine.csv", 0.1, 108_000, |_| 12.4832);
+    let text = std::fs::read_to_string(noise.path().join("fine.csv")).unwrap();
+    let (mut angle, mut before) = (0.0f64, 0.0f64);
+    let mut rounded = "time_s,rate_deg_h\n".to_owned();
+    for row in text.lines().skip(1) {
+        let (time, rate) = row.split_once(',').unwrap();
+        let rate: f64 = rate.parse().unwrap();
+        angle += 0.1 * rate;
+        let shown = (angle / 0.5).floor() * 0.5;
+        rounded.push_str(&format!("{time},{}\n", (10.0 * (shown - before)).round()));
+        before = shown;
+    }
+    std::fs::write(dir.path().join("coarse.csv"), rounded).unwrap();
+    let (_, all) = compare(dir.path(), &["coarse.csv"]);
+    let n = all["units"][0]["quantities"].as_array().unwrap().iter();
+    let n = n.clone().find(|q| q["id"] == "angle_random_walk").unwrap().clone();
+    let limit = n["upper_limit"]["value"].as_f64().or_else(|| n["interval"]["high"].as_f64()).unwrap();
+    let low = n["interval"]["low"].as_f64().unwrap_or(0.0);
+    assert!(low < 0.002 && 0.002 < limit && limit < 0.01, "{n}");
+}
+
+#[test]
+fn faults_of_a_recording_and_a_model_that_fails_are_told() {
+    let dir = tempdir().unwrap();
+    written(dir.path(), "spikes.csv", 1.0, 7200, |t| if t == 2000.0 || t == 5000.0 { 150.0 } else { 0.0 });
+    let (said, all) = compare(dir.path(), &["spikes.csv"]);
+    assert!(said.contains("The check of the recording found: Outliers: 2."), "{said}");
+    assert!(said.contains("consistent, indicative"), "{said}");
+    assert_eq!(all["units"][0]["indicative"], true);
+}

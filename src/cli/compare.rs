@@ -5,7 +5,7 @@ use super::{AnalyzeArgs, CompareArgs, GridArgs, analyze, exit, place, run};
 use crate::compare::published::checked;
 use crate::compare::{Comparison, Origin, Unit, csv, figures, tell_repeated, units_of};
 use crate::figure::Figure;
-use crate::ingest::open_recording;
+use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
 use crate::procedure::{EffectiveLimits, load_limits};
 use crate::record::UnitUnderTest;
@@ -55,8 +55,11 @@ fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
         Err(problems) => return Err(problems.say(lang)),
     };
     let mut units: Vec<Unit> = vec![];
-    for path in &args.recording {
-        units.extend(read(args, path, &limits, now, lang)?);
+    for given in &args.recording {
+        // Each file of a pattern is a unit; one recording in several files is a manifest.
+        for path in each_of(given).map_err(|e| RecordingError::from(e).say(lang))? {
+            units.extend(read(args, &path, &limits, now, lang)?);
+        }
     }
     tell_repeated(&mut units);
     let drawn = figures::all(&units);

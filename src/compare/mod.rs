@@ -4,6 +4,7 @@
 //! a figure cannot depend on where it came from. Nothing is measured here.
 
 pub mod csv;
+mod faults;
 pub mod figures;
 mod parts;
 pub mod published;

@@ -15,6 +15,12 @@ const UNBELIEVABLE: f64 = 1e-3;
 /// thousand.
 const NEAR: f64 = 1.7;
 
+/// Id of the note that a Markov process does as well as flicker.
+const MARKOV_ALIKE: &str = "slow_alike.markov";
+
+/// The window of the drift, s.
+const WINDOW_S: f64 = 100.0;
+
 /// Angle random walk, as a part of a model.
 const WHITE: &str = "angle_random_walk";
 
@@ -27,7 +33,6 @@ fn window(detail: &ComparisonRecord, window_s: f64) -> Option<&WindowRecord> {
 pub(super) fn sentences(unit: &Unit) -> Vec<Note> {
     let Some(detail) = &unit.detail else { return vec![] };
     let mut out = vec![];
-    out.extend(misfit(detail));
     if let Some(w) = window(detail, 100.0) {
         out.extend(made_of(w));
         out.extend(agreement(w, "100"));
@@ -37,7 +42,7 @@ pub(super) fn sentences(unit: &Unit) -> Vec<Note> {
     }
     out.extend(by_chance(detail));
     out.extend(null(detail));
-    out.extend(floor(detail));
+    out.extend(floor(unit, detail));
     out
 }
 
@@ -85,7 +90,7 @@ fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {
 }
 
 /// Said when the model is no description of the record.
-fn misfit(detail: &ComparisonRecord) -> Option<Note> {
+pub(super) fn misfit(detail: &ComparisonRecord) -> Option<Note> {
     let (misfit, p) = (detail.model.misfit?, detail.model.misfit_probability?);
     (p < UNBELIEVABLE).then(|| Note::new("compare.says.misfit").with("misfit", Arg::rounded(misfit, 2)))
 }
@@ -101,10 +106,10 @@ fn by_chance(detail: &ComparisonRecord) -> Option<Note> {
     detail.windows.iter().any(|w| near(w) == Some(true)).then(|| Note::new("compare.more.by_chance"))
 }
 
-/// Share of angle random walk in σ100 as predicted.
-fn white_share(detail: &ComparisonRecord) -> f64 {
-    let white = |w: &WindowRecord| w.shares.iter().find(|s| s.part == WHITE).map(|s| s.share);
-    window(detail, 100.0).and_then(white).unwrap_or(0.0)
+/// Share of angle random walk in σ100 as predicted; `None` without a prediction.
+fn white_share(detail: &ComparisonRecord) -> Option<f64> {
+    let shares = &window(detail, WINDOW_S).filter(|w| w.predicted.is_some())?.shares;
+    Some(shares.iter().find(|s| s.part == WHITE).map_or(0.0, |s| s.share))
 }
 
 fn null(detail: &ComparisonRecord) -> Option<Note> {
@@ -115,7 +120,7 @@ fn null(detail: &ComparisonRecord) -> Option<Note> {
         "compare.says.null_below"
     } else if ratio > high {
         "compare.says.null_above"
-    } else if white >= 0.5 {
+    } else if white.is_none_or(|white| white >= 0.5) {
         "compare.says.null_inside"
     } else {
         "compare.more.null_inside_of_other_noise"
@@ -128,26 +133,38 @@ fn null(detail: &ComparisonRecord) -> Option<Note> {
             .with("median", Arg::rounded(median, 2))
             .with("high", Arg::rounded(high, 2))
             .with("ratio", Arg::figures(ratio, 3))
-            .with("share", percent(white)),
+            .with("share", percent(white.unwrap_or(1.0))),
     )
 }
 
-fn floor(detail: &ComparisonRecord) -> Option<Note> {
+fn floor(unit: &Unit, detail: &ComparisonRecord) -> Option<Note> {
     let f = detail.floor.as_ref()?;
+    let notes = unit.quantity("bias_instability").map_or(&[][..], |q| &q.notes);
+    let markov = notes.iter().any(|n| n.id == MARKOV_ALIKE);
     let key = match (f.is_limit, f.identifiable_h) {
+        (false, Some(_)) if markov => "compare.says.floor_or_markov",
         (false, Some(h)) if h * 3600.0 <= detail.length_s => "compare.says.floor_shown",
+        (true, Some(h)) if h * 3600.0 <= detail.length_s => "compare.says.floor_limit_here",
         (false, Some(_)) => "compare.says.floor_early",
         (true, Some(_)) => "compare.says.floor_limit",
         (_, None) => "compare.says.floor_never",
     };
+    let b = if f.is_limit { rounded_up(f.b_deg_h) } else { f.b_deg_h };
     let note = Note::new(key)
-        .with("b", Arg::rounded(f.b_deg_h, 3))
+        .with("b", Arg::rounded(b, 3))
         .with("crossover", time(f.crossover_s))
         .with("longest_h", crate::noise::identifiable::LONGEST_H);
     Some(match f.identifiable_h {
         Some(h) => note.with("needed", time(h * 3600.0)),
         None => note,
     })
+}
+
+/// An upper limit to three digits, never below itself.
+fn rounded_up(limit: f64) -> f64 {
+    let place = 10f64.powf(limit.abs().log10().floor() - 2.0);
+    let up = (limit / place * (1.0 - 1e-12)).ceil() * place;
+    if up.is_finite() { up } else { limit }
 }
 
 /// A time in the unit that reads well.
@@ -164,8 +181,14 @@ fn time(seconds: f64) -> Note {
 pub(super) fn missing(unit: &Unit) -> Vec<Note> {
     let mut out = vec![];
     let drift = unit.quantity("russian_drift_100s");
+    if drift.and_then(|d| d.value) == Some(0.0) {
+        return vec![Note::new("compare.missing.constant")];
+    }
     match (&unit.detail, drift.and_then(|d| d.value), unit.origin) {
         (Some(detail), _, _) => {
+            for w in detail.windows.iter().filter(|w| w.predicted.is_none()) {
+                out.push(Note::new("compare.missing.beyond").with("window", w.window_s));
+            }
             if detail.octaves.is_none() {
                 out.push(Note::new("compare.missing.octaves"));
             }
@@ -173,9 +196,15 @@ pub(super) fn missing(unit: &Unit) -> Vec<Note> {
                 out.push(Note::new("compare.missing.null"));
             }
         }
+        (None, None, _) if unit.length_s.is_some_and(|t| t >= 2.0 * WINDOW_S) => {
+            out.push(Note::new("compare.missing.windows"));
+        }
         (None, None, _) => out.push(Note::new("compare.missing.short")),
         (None, Some(_), Origin::Result) => out.push(Note::new("compare.missing.detail")),
         (None, Some(_), Origin::Recording) => out.push(Note::new("compare.missing.model")),
+    }
+    if unit.detail.is_some() && unit.quantity("russian_arw_10s").is_some_and(|q| q.value.is_none()) {
+        out.push(Note::new("compare.missing.ten"));
     }
     if drift.is_none() {
         out.push(Note::new("compare.missing.drift"));

@@ -1,5 +1,6 @@
 //! One channel of one unit, read from a result.
 
+use super::faults;
 use super::rules::{RuleRow, rules};
 use super::says;
 use crate::estimate::{Interval, UpperLimit};
@@ -39,6 +40,17 @@ pub struct Quantity {
     /// What was decided.
     #[serde(default)]
     pub verdict: String,
+    /// What its notes say, by their ids.
+    #[serde(default, skip_serializing)]
+    pub notes: Vec<NoteId>,
+}
+
+/// The id of a note of a result.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+pub struct NoteId {
+    /// Its id.
+    #[serde(default)]
+    pub id: String,
 }
 
 /// A limit as a result holds it.
@@ -78,6 +90,8 @@ pub struct Unit {
     pub rules: Vec<RuleRow>,
     /// Window statistics, predictions, octaves, null; absent where the result lacks them.
     pub detail: Option<ComparisonRecord>,
+    /// True where the model departs from the record, so that what it predicts is indicative.
+    pub indicative: bool,
     /// What it all says.
     pub says: Vec<Note>,
     /// What could not be compared, and why.
@@ -165,11 +179,16 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
             quantities: quantities.iter().filter(|q| q.channel == *channel).cloned().collect(),
             rules: vec![],
             detail: details.iter().find(|d| d.channel == *channel).cloned(),
-            says: vec![],
+            indicative: false,
+            says: faults::of_recording(result),
             missing: vec![],
         };
         unit.rules = rules(&unit);
-        unit.says = says::sentences(&unit);
+        let departs = faults::of_model(result, channel);
+        let misfit = unit.detail.as_ref().and_then(says::misfit);
+        unit.indicative = departs.is_some() || misfit.is_some();
+        unit.says.extend(misfit.or(departs));
+        unit.says.extend(says::sentences(&unit));
         unit.missing = says::missing(&unit);
         unit
     };

@@ -125,6 +125,17 @@ pub fn open_files(
     }
 }
 
+/// The files that a path names one by one: those of a pattern in their order, else the path itself.
+///
+/// # Errors
+/// [`IngestError`] of a pattern that is wrong or names nothing.
+pub fn each_of(path: &Path) -> Result<Vec<PathBuf>, IngestError> {
+    match pattern(path) {
+        Some(pattern) => expand(path, &pattern),
+        None => Ok(vec![path.to_owned()]),
+    }
+}
+
 /// The text of a path that is a pattern and no file.
 fn pattern(path: &Path) -> Option<String> {
     let text = path.to_str()?;

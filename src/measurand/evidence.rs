@@ -56,9 +56,14 @@ impl GyroEvidence {
         self.digest.samples as f64 * self.tau0_s
     }
 
-    /// The window statistics of a window length in s.
+    /// The window statistics of a window length in s, where the record has two such windows.
     pub fn windows(&self, window_s: f64) -> Option<&WindowStatistics> {
-        self.digest.windows.iter().find(|w| w.window_s == window_s && w.n >= 2)
+        self.digest.windows.iter().find(|w| w.window_s == window_s && w.n >= 2 && w.fits(self.tau0_s))
+    }
+
+    /// Whether whole samples make windows of a length in s.
+    pub fn samples_fit(&self, window_s: f64) -> bool {
+        self.digest.windows.iter().filter(|w| w.window_s == window_s).all(|w| w.fits(self.tau0_s))
     }
 
     /// σ of 100-s means, deg/h.

@@ -32,7 +32,7 @@ impl Measurand for Russian {
         let method = "standard_deviation_of_means";
         let Some(windows) = gyro.windows(window_s) else {
             let none = Estimate::not_identifiable(id, &gyro.channel, None, unit, method);
-            return Some(none.note(Note::new("note.russian_too_short").with("window_s", window_s)));
+            return Some(none.note(no_windows(gyro, window_s)));
         };
         let dof = degrees_of_freedom(gyro, windows);
         let value = windows.standard_deviation * factor;
@@ -41,15 +41,23 @@ impl Measurand for Russian {
                 Note::new("note.russian_windows")
                     .with("n", windows.n)
                     .with("window_s", window_s)
-                    .with("hours", windows.n as f64 * window_s / 3600.0)
+                    .with("hours", windows.n as f64 * windows.exact_s(gyro.tau0_s) / 3600.0)
                     .with("dof", dof),
             );
-        let exact_s = windows.samples as f64 * gyro.tau0_s;
+        let exact_s = windows.exact_s(gyro.tau0_s);
         if (exact_s / window_s - 1.0).abs() > 1e-3 {
             estimate = estimate.note(Note::new("note.russian_window_rounded").with("exact_s", exact_s));
         }
         Some(estimate)
     }
+}
+
+/// Why there are no windows of a length.
+pub(super) fn no_windows(gyro: &GyroEvidence, window_s: f64) -> Note {
+    if gyro.samples_fit(window_s) {
+        return Note::new("note.russian_too_short").with("window_s", window_s);
+    }
+    Note::new("note.russian_window_unfit").with("window_s", window_s).with("interval_s", gyro.tau0_s)
 }
 
 /// Share of its upper limit that random walk is taken to have where the record does not show it (by simulation: so

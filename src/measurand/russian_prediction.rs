@@ -1,7 +1,7 @@
 //! What the identified noise predicts for the Russian drift, and the ratios of Russian to Allan values.
 
 use super::allan_minimum::{lowest, minimum_edf};
-use super::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S, degrees_of_freedom};
+use super::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S, degrees_of_freedom, no_windows};
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread, chi_square_quantile, normal_probability};
 use crate::noise::composite::{Parameter, Part};
@@ -39,13 +39,20 @@ fn scores() -> impl Iterator<Item = f64> {
     (-16..=16).map(|i| 0.25 * f64::from(i))
 }
 
-/// The prediction for a window length with the spread of its σ; `None` where the record has no two windows or no model.
+/// Frequencies that make up window means, in cycles a window: a model that ends below says too little of them.
+const NEEDED: f64 = 2.0;
+
+/// The prediction for a window length with the spread of its σ; `None` where the record has no two windows, no model, or
+/// one that ends below the frequencies that make up such means.
 ///
 /// Upwards the spread holds what flicker and random walk would add at their upper limits where the model lacks them.
 pub fn predicted(gyro: &GyroEvidence, window_s: f64) -> Option<(WindowPrediction, Spread)> {
     let windows = gyro.windows(window_s)?;
-    let exact_s = windows.samples as f64 * gyro.tau0_s;
+    let exact_s = windows.exact_s(gyro.tau0_s);
     let found = &gyro.identification;
+    if found.highest_hz.is_some_and(|hz| hz < NEEDED / exact_s) {
+        return None;
+    }
     let p = WindowPrediction::of(&found.described, exact_s, windows.n, gyro.tau0_s)?;
     let present = found.described.model.parts();
     let unseen =
@@ -73,7 +80,12 @@ fn drift_predicted(gyro: &GyroEvidence) -> Estimate {
     let (id, method) = ("russian_drift_100s_predicted", "whittle");
     let Some((p, spread)) = predicted(gyro, DRIFT_WINDOW_S) else {
         let none = Estimate::not_identifiable(id, &gyro.channel, None, "deg/h", method);
-        return none.note(Note::new("note.russian_too_short").with("window_s", DRIFT_WINDOW_S));
+        let note = if gyro.windows(DRIFT_WINDOW_S).is_some() {
+            Note::new("note.beyond_model").with("window_s", DRIFT_WINDOW_S)
+        } else {
+            no_windows(gyro, DRIFT_WINDOW_S)
+        };
+        return none.note(note);
     };
     Estimate::measured(id, &gyro.channel, p.sigma, "deg/h", spread, method)
 }

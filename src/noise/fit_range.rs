@@ -34,6 +34,8 @@ pub struct RangedIdentification {
     pub identification: Identification,
     /// Highest frequency used, Hz; `None`: all.
     pub highest_hz: Option<f64>,
+    /// Highest frequency at which coarse rounding lets the noise be seen, Hz; `None`: all.
+    pub rounded_above_hz: Option<f64>,
     /// Factor by which intervals were widened; 1 where the model fits.
     pub widened: f64,
 }
@@ -73,7 +75,8 @@ pub fn describe_in_range(
         let fits = identification.misfit.probability >= LEAST_PROBABILITY
             || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS;
         let highest_hz = (octave > 0).then_some(highest_hz);
-        let candidate = RangedIdentification { identification, highest_hz, widened: 1.0 };
+        let candidate =
+            RangedIdentification { identification, highest_hz, rounded_above_hz: None, widened: 1.0 };
         if fits {
             return candidate;
         }
@@ -85,6 +88,7 @@ pub fn describe_in_range(
     let mut best = best.unwrap_or_else(|| RangedIdentification {
         identification: method.describe(channel, evidence),
         highest_hz: None,
+        rounded_above_hz: None,
         widened: 1.0,
     });
     best.widened = best.identification.misfit.per_dof.sqrt().max(1.0);
@@ -98,10 +102,11 @@ pub fn identify_over(
     evidence: &Evidence,
     range: &RangedIdentification,
 ) -> RangedIdentification {
-    let identification = match range.highest_hz {
+    let mut identification = match range.highest_hz {
         Some(highest_hz) => method.complete(channel, &evidence.up_to(highest_hz), &range.identification),
         None => method.complete(channel, evidence, &range.identification),
     };
+    identification.highest_hz = range.highest_hz;
     annotated(stated(RangedIdentification { identification, ..*range }, evidence.tau0_s))
 }
 
@@ -145,12 +150,15 @@ fn stated(mut ranged: RangedIdentification, tau0_s: f64) -> RangedIdentification
 /// Puts the notes on the estimates, and the widening on their spreads.
 fn annotated(mut ranged: RangedIdentification) -> RangedIdentification {
     let misfit = ranged.identification.misfit;
-    let (highest_hz, widened) = (ranged.highest_hz, ranged.widened);
+    let RangedIdentification { highest_hz, rounded_above_hz, widened, .. } = ranged;
     for row in &mut ranged.identification.described.covariance {
         row.iter_mut().for_each(|c| *c *= widened * widened);
     }
     for estimate in ranged.identification.every_estimate_mut() {
-        if let Some(highest_hz) = highest_hz {
+        if let Some(highest_hz) = rounded_above_hz {
+            estimate.notes.push(Note::new("note.fit_coarse").with("highest_hz", highest_hz));
+        }
+        if let Some(highest_hz) = highest_hz.filter(|_| highest_hz != rounded_above_hz) {
             estimate.notes.push(Note::new("note.fit_restricted").with("highest_hz", highest_hz));
         }
         if widened > 1.0 {

@@ -1,9 +1,11 @@
 //! From what length of record on a term can be identified at all.
 
+use super::composite::{Composite, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, Structure, position};
 use super::model::{NoiseModel, TERMS};
+use nalgebra::{DMatrix, DVector};
 
 /// Relative standard deviation at the Cramér-Rao bound up to which a term counts as identifiable.
 pub const IDENTIFIABLE: f64 = 0.20;
@@ -30,7 +32,11 @@ pub fn relative_bound(term: NoiseType, model: &NoiseModel, hours: f64, tau0_s: f
 
 /// Shortest record, h, in which a term of `model` is identifiable; `None` when [`LONGEST_H`] do not suffice.
 pub fn hours_until_identifiable(term: NoiseType, model: &NoiseModel, tau0_s: f64) -> Option<f64> {
-    let enough = |h: f64| relative_bound(term, model, h, tau0_s).is_some_and(|r| r <= IDENTIFIABLE);
+    shortest(|h| relative_bound(term, model, h, tau0_s))
+}
+
+fn shortest(bound: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    let enough = |h: f64| bound(h).is_some_and(|r| r <= IDENTIFIABLE);
     let (mut low, mut high) = (0.0, 1.0);
     while !enough(high) {
         low = high;
@@ -46,8 +52,56 @@ pub fn hours_until_identifiable(term: NoiseType, model: &NoiseModel, tau0_s: f64
     Some(high)
 }
 
+/// Frequencies at which a model is looked at for an octave.
+const AN_OCTAVE: f64 = 24.0;
+
+/// As [`relative_bound`], of a description with Markov processes and disturbances, everything in `parameters` unknown:
+/// the Fisher information of Whittle's likelihood, summed over the modes of the record.
+fn relative_bound_among(
+    wanted: Parameter,
+    model: &Composite,
+    parameters: &[Parameter],
+    hours: f64,
+    tau0_s: f64,
+) -> Option<f64> {
+    let at = parameters.iter().position(|p| *p == wanted)?;
+    let length_s = hours * 3600.0;
+    let (lowest_hz, highest_hz) = (0.5 / length_s, 0.5 / tau0_s);
+    let steps = ((highest_hz / lowest_hz).log2() * AN_OCTAVE).ceil();
+    if !(steps >= 1.0 && steps.is_finite()) || length_s < 64.0 * tau0_s {
+        return None;
+    }
+    let ratio = (highest_hz / lowest_hz).powf(1.0 / steps);
+    let mut information = DMatrix::<f64>::zeros(parameters.len(), parameters.len());
+    for i in 0..steps as usize {
+        let from = lowest_hz * ratio.powi(i as i32);
+        let (f, modes) = (from * ratio.sqrt(), 2.0 * length_s * from * (ratio - 1.0));
+        let slope = |p: &Parameter| {
+            let value = model.value(*p);
+            let of = |x: f64| model.with(*p, x).density(f, tau0_s).max(f64::MIN_POSITIVE).ln();
+            // By the logarithm of the parameter: the scales of the parameters differ by many orders.
+            (of(1.001 * value) - of(0.999 * value)) / 0.002
+        };
+        let slopes = DVector::from_iterator(parameters.len(), parameters.iter().map(slope));
+        information += 0.5 * modes * &slopes * slopes.transpose();
+    }
+    let bound = information.try_inverse()?[(at, at)].sqrt();
+    bound.is_finite().then_some(bound)
+}
+
+/// As [`hours_until_identifiable`], of a description with Markov processes and disturbances.
+pub fn hours_until_identifiable_among(
+    wanted: Parameter,
+    model: &Composite,
+    parameters: &[Parameter],
+    tau0_s: f64,
+) -> Option<f64> {
+    shortest(|h| relative_bound_among(wanted, model, parameters, h, tau0_s))
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::composite::Damped;
     use super::*;
 
     #[test]
@@ -57,6 +111,23 @@ mod tests {
         assert!((r * (2.0 * 3600.0f64).sqrt() - 1.0).abs() < 0.02, "{r}");
         assert_eq!(relative_bound(NoiseType::Flicker, &model, 1.0, 1.0), None);
         assert_eq!(hours_until_identifiable(NoiseType::Flicker, &model, 1.0), None);
+    }
+
+    #[test]
+    fn a_markov_process_beside_it_makes_flicker_need_longer() {
+        let terms = NoiseModel { n: 0.002, b: 0.006, ..Default::default() };
+        let flicker = Parameter::Coefficient(NoiseType::Flicker);
+        let of = |markov: Vec<Damped>| {
+            let mut parameters = vec![Parameter::Coefficient(NoiseType::AngleRandomWalk), flicker];
+            parameters
+                .extend(markov.iter().flat_map(|_| [Parameter::MarkovSigma(0), Parameter::MarkovTime(0)]));
+            let model = Composite { terms, markov, ..Default::default() };
+            hours_until_identifiable_among(flicker, &model, &parameters, 1.0).unwrap()
+        };
+        let (alone, exact) = (of(vec![]), hours_until_identifiable(NoiseType::Flicker, &terms, 1.0).unwrap());
+        assert!((alone / exact - 1.0).abs() < 0.2, "{alone} {exact}");
+        let beside = of(vec![Damped { rms_deg_h: 0.01, frequency_hz: 0.0, decay_time_s: 300.0 }]);
+        assert!(beside > 2.0 * alone, "{beside} {alone}");
     }
 
     #[test]

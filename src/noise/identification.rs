@@ -55,6 +55,8 @@ pub struct Identification {
     pub quasi_periodic: Vec<QuasiPeriodicFound>,
     /// −3 dB cut-off of the measurement, Hz, where the record shows a filter.
     pub cutoff: Option<Estimate>,
+    /// Highest frequency that the model rests on, Hz; `None`: all.
+    pub highest_hz: Option<f64>,
     /// Where the search for further parts ended; `None` where a second search might end elsewhere.
     pub(super) searched: Option<Extras>,
 }
@@ -183,6 +185,7 @@ impl Identification {
             markov: vec![],
             quasi_periodic: vec![],
             cutoff: None,
+            highest_hz: None,
             searched: None,
         }
     }

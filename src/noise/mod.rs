@@ -3,6 +3,7 @@
 pub mod allan;
 pub mod autocorrelation;
 pub mod block_series;
+pub mod coarse;
 pub mod coherence;
 pub mod composite;
 pub mod data;

@@ -64,16 +64,27 @@ impl SpectralRecord<'_> {
 
     /// Identifies the noise.
     pub fn identify(&self, channel: &str) -> RecordNoise {
+        self.identify_up_to(channel, None)
+    }
+
+    /// Identifies the noise of an output that is rounded so coarsely that only frequencies up to `rounded_above_hz` tell
+    /// of it.
+    pub fn identify_up_to(&self, channel: &str, rounded_above_hz: Option<f64>) -> RecordNoise {
         let method = MaximumLikelihood { sampling: self.sampling, ..Default::default() };
         let whole = self.evidence(&[]);
-        let mut lines = retain(self.lines, |l| is_coherent(&whole, l));
+        let nyquist_hz = rounded_above_hz.unwrap_or(0.5 / self.tau0_s);
+        let seen = retain(self.lines, |l| l.frequency_hz <= nyquist_hz);
+        let evidence = |lines: &[SpectralLine]| match rounded_above_hz {
+            Some(highest_hz) => self.evidence(lines).up_to(highest_hz),
+            None => self.evidence(lines),
+        };
+        let mut lines = retain(&seen, |l| is_coherent(&whole, l));
         sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
-        let nyquist_hz = 0.5 / self.tau0_s;
-        let mut ranged = describe_in_range(&method, channel, &self.evidence(&lines), nyquist_hz);
+        let mut ranged = describe_in_range(&method, channel, &evidence(&lines), nyquist_hz);
         for _ in 0..ROUNDS {
             let found = &ranged.identification.described.model.quasi_periodic;
             // A peak that is neither coherent nor explained is a line after all; so is a disturbance that hardly decays.
-            let left = retain(self.lines, |l| {
+            let left = retain(&seen, |l| {
                 !lines.iter().any(|k| (k.frequency_hz - l.frequency_hz).abs() < l.resolution_hz)
                     && !found.iter().any(|q| explains(q, l))
             });
@@ -89,10 +100,12 @@ impl SpectralRecord<'_> {
             lines.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
             lines = retain(&lines, |_| true);
             sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
-            ranged = describe_in_range(&method, channel, &self.evidence(&lines), nyquist_hz);
+            ranged = describe_in_range(&method, channel, &evidence(&lines), nyquist_hz);
         }
-        let evidence = self.evidence(&lines);
-        let mut noise = RecordNoise { ranged: identify_over(&method, channel, &evidence, &ranged), lines };
+        ranged.rounded_above_hz = rounded_above_hz;
+        ranged.highest_hz = ranged.highest_hz.or(rounded_above_hz);
+        let ranged = identify_over(&method, channel, &self.evidence(&lines), &ranged);
+        let mut noise = RecordNoise { ranged, lines };
         describe_lines(&mut noise.ranged.identification.described, &noise.lines);
         noise
     }

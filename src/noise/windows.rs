@@ -25,6 +25,21 @@ pub struct WindowStatistics {
     pub per_stretch: Vec<u64>,
 }
 
+/// Largest relative difference of a window of whole samples from the one asked for: 1 % in a standard deviation.
+const FITTING: f64 = 0.02;
+
+impl WindowStatistics {
+    /// What the windows hold, s.
+    pub fn exact_s(&self, tau0_s: f64) -> f64 {
+        self.samples as f64 * tau0_s
+    }
+
+    /// Whether whole samples make the window that was asked for. A figure of other windows is another figure.
+    pub fn fits(&self, tau0_s: f64) -> bool {
+        (self.exact_s(tau0_s) / self.window_s - 1.0).abs() <= FITTING
+    }
+}
+
 /// Streaming window means of one length.
 #[derive(Debug, Clone)]
 pub struct WindowMeans {

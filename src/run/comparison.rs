@@ -6,7 +6,7 @@ use crate::measurand::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S};
 use crate::measurand::{GyroEvidence, russian_prediction};
 use crate::noise::composite::{Composite, Parameter, Part};
 use crate::noise::data::NoiseType;
-use crate::noise::identifiable::hours_until_identifiable;
+use crate::noise::identifiable::hours_until_identifiable_among;
 use crate::noise::prediction::Agreement;
 use crate::noise::russian::{null_minimum, octave_identity};
 use crate::record::{
@@ -128,13 +128,17 @@ fn floor(gyro: &GyroEvidence) -> Option<FloorRecord> {
     if b <= 0.0 {
         return None;
     }
-    let mut model = found.described.model.terms;
-    (model.n, model.b) = (n, b);
+    let mut model = Composite { lines: vec![], ..found.described.model.without_ramp() };
+    (model.terms.n, model.terms.b) = (n, b);
+    let flicker = Parameter::Coefficient(NoiseType::Flicker);
+    let own = [Parameter::Coefficient(NoiseType::AngleRandomWalk), flicker];
+    let beside = found.described.parameters.iter().filter(|p| model.value(**p) > 0.0 && !own.contains(p));
+    let parameters: Vec<Parameter> = own.iter().chain(beside).copied().collect();
     Some(FloorRecord {
         b_deg_h: b,
         is_limit,
         crossover_s: 3600.0 * (n / (FLICKER_FLOOR * b)).powi(2),
-        identifiable_h: hours_until_identifiable(NoiseType::Flicker, &model, gyro.tau0_s),
+        identifiable_h: hours_until_identifiable_among(flicker, &model, &parameters, gyro.tau0_s),
     })
 }
 

@@ -9,6 +9,7 @@ use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::ingest::{Plan, StreamReport};
 use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
+use crate::noise::coarse;
 use crate::noise::composite::Sampling;
 use crate::noise::digest::RateDigest;
 use crate::noise::envelope::Envelope;
@@ -135,7 +136,8 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
         .into_iter()
         .filter_map(|(slot, digest)| {
             let channel = channels.get(slot)?.id.clone();
-            Some(evidence(procedure, channel, several, tau0_s, digest))
+            let step_deg_h = report.channels.get(slot).and_then(|c| c.values.quantization_step);
+            Some(evidence(procedure, channel, several, tau0_s, digest, step_deg_h))
         })
         .collect();
     let (gyros, schedule) = thermal::examine(procedure, &channels, gyros, means.as_ref());
@@ -159,12 +161,13 @@ pub(super) fn longest_gap_s(window: &Window) -> f64 {
     gaps.map(|s| s.to_s - s.from_s).fold(0.0, f64::max)
 }
 
-/// Lines of a channel, and its noise with the lines left out.
+/// Lines of a channel, and its noise with the lines left out. `step_deg_h` is the step of its output.
 pub(super) fn spectral(
     channel: &str,
     digest: &RateDigest,
     tau0_s: f64,
     line_false_alarm: f64,
+    step_deg_h: Option<f64>,
 ) -> (Vec<SpectralLine>, Identification) {
     let lines = find_lines(&digest.welch.spectrum, tau0_s, line_false_alarm).lines;
     let record = SpectralRecord {
@@ -174,7 +177,11 @@ pub(super) fn spectral(
         lines: &lines,
         sampling: Sampling::Averaging,
     };
-    let noise = record.identify(channel);
+    let curve = digest.octaves.as_ref().unwrap_or(&digest.deviations).curve(Estimator::Allan);
+    let points: Vec<(u64, f64)> =
+        curve.map(|c| c.points.iter().map(|p| (p.m, p.deviation)).collect()).unwrap_or_default();
+    let rounded_above_hz = step_deg_h.and_then(|step| coarse::highest_hz(step, tau0_s, &points));
+    let noise = record.identify_up_to(channel, rounded_above_hz);
     (noise.lines, noise.ranged.identification)
 }
 
@@ -203,8 +210,10 @@ fn evidence(
     several: bool,
     tau0_s: f64,
     digest: RateDigest,
+    step_deg_h: Option<f64>,
 ) -> GyroEvidence {
-    let (lines, identification) = spectral(&channel, &digest, tau0_s, procedure.analysis.line_false_alarm);
+    let alarm = procedure.analysis.line_false_alarm;
+    let (lines, identification) = spectral(&channel, &digest, tau0_s, alarm, step_deg_h);
     let model = &identification.described.model;
     let sigma_tau = sigma_tau::allan_points(&digest.deviations, model, tau0_s);
     let octaves = digest

@@ -121,6 +121,7 @@ pub(super) fn find(
     plan.stream(&mut [&mut collector], progress)?;
     let mut changes = Vec::new();
     for (slot, digests) in collector.gyros {
+        let step_deg_h = found.report.channels.get(slot).and_then(|c| c.values.quantization_step);
         let channel = found.channels.get(slot).map_or_else(String::new, |c| c.id.clone());
         let states: Vec<State> = digests
             .into_iter()
@@ -128,7 +129,7 @@ pub(super) fn find(
             .map(|(digest, level)| {
                 let digest = digest.finish();
                 let alarm = request.procedure.analysis.line_false_alarm;
-                let (_, noise) = evaluate::spectral(&channel, &digest, found.tau0_s, alarm);
+                let (_, noise) = evaluate::spectral(&channel, &digest, found.tau0_s, alarm, step_deg_h);
                 let n = &noise.angle_random_walk;
                 let half = n.interval95().map(|i| 0.5 * (i.high - i.low) / normal_quantile(0.975));
                 State { level: level.clone(), n: n.value.zip(half) }

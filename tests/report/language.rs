@@ -171,6 +171,7 @@ const SAME: &[&str] = &[
     "figure_influence.axis_name",
     "figure_positions.name",
     "figure_polar.angle",
+    "compare.more.fault",
     "phases.verdict",
     "phases.failed",
     "phases.error",

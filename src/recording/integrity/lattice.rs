@@ -61,7 +61,7 @@ impl Lattice {
         sorted.dedup();
         self.state = State::None;
         let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return };
-        if sorted.len() < 3 {
+        if sorted.len() < 2 {
             return;
         }
         self.origin = low;

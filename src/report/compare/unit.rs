@@ -184,6 +184,11 @@ impl UnitView {
             Some(_) => (words.t("compare.agreement.below"), "remark"),
             None => (String::new(), "none"),
         };
+        let (agreement, agreement_class) = if unit.indicative && !agreement.is_empty() {
+            (words.with("compare.more.indicative", &[("verdict", &agreement)]), "remark")
+        } else {
+            (agreement, agreement_class)
+        };
         let arw_ratio = unit.quantity("ratio_russian_to_allan_arw");
         UnitView {
             label: unit.label(),

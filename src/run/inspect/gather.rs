@@ -225,7 +225,7 @@ impl Pass {
         let with = |track: GyroTrack| {
             let name = channels.get(track.slot)?.id.clone();
             let digest = track.digest.finish();
-            let (lines, identification) = spectral(&name, &digest, tau0_s, FALSE_ALARM_RATE);
+            let (lines, identification) = spectral(&name, &digest, tau0_s, FALSE_ALARM_RATE, None);
             let quietest_deg_h = track.quietest.finish();
             Some(Gyro {
                 slot: track.slot,

@@ -1,0 +1,91 @@
+//! What the check of a recording and of its model found: the figures of a unit rest on both.
+
+use crate::text::{Arg, Note};
+use serde_json::Value;
+
+/// Counts of a check with the names of what they count.
+const COUNTED: &[(&str, &str)] = &[
+    ("gaps", "condition.gaps"),
+    ("missing_samples", "condition.missing_samples"),
+    ("duplicate_timestamps", "condition.duplicate_timestamps"),
+    ("backward_timestamps", "condition.backward_timestamps"),
+    ("unparsable", "condition.unparsable"),
+    ("non_finite", "condition.non_finite"),
+    ("outliers", "condition.outliers"),
+    ("saturated", "condition.saturated"),
+    ("stuck", "condition.stuck"),
+    ("repeated", "condition.repeated"),
+];
+
+/// Views of the residual in which a model can fail, with their names.
+const VIEWS: &[(&str, &str)] = &[
+    ("frequency", "goodness.view.frequency"),
+    ("lag", "goodness.view.lag"),
+    ("averaging_time", "goodness.view.averaging_time"),
+    ("amplitude", "goodness.view.amplitude"),
+];
+
+/// Bad samples and gaps of the recording, and a test that was not valid.
+pub(super) fn of_recording(result: &Value) -> Vec<Note> {
+    let mut out = vec![];
+    let count = |name: &str| result.pointer("/integrity")?.get(name)?.as_u64().filter(|n| *n > 0);
+    let found: Vec<Arg> = COUNTED
+        .iter()
+        .filter_map(|(name, key)| Some((count(name)?, *key)))
+        .map(|(n, key)| {
+            let fault = Note::new("compare.more.fault").with("kind", Arg::Key(key.into())).with("count", n);
+            Arg::from(fault)
+        })
+        .collect();
+    if !found.is_empty() {
+        out.push(Note::new("compare.more.faults").with("found", Arg::Several(found, ", ")));
+    }
+    let conditions = result.get("conditions").and_then(Value::as_array);
+    if conditions.into_iter().flatten().any(|c| c.get("status").and_then(Value::as_str) == Some("invalid")) {
+        out.push(Note::new("compare.more.invalid"));
+    }
+    out
+}
+
+/// Keys of the views in which the model of a channel departs from the record.
+fn departing(result: &Value, channel: &str) -> Vec<&'static str> {
+    let rows = result.get("goodness_of_fit").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let departs = |view: &str| {
+        rows.iter().any(|r| {
+            r.get("channel").and_then(Value::as_str) == Some(channel)
+                && r.get("view").and_then(Value::as_str) == Some(view)
+                && r.get("departs").and_then(Value::as_bool) == Some(true)
+        })
+    };
+    VIEWS.iter().filter(|(view, _)| departs(view)).map(|(_, key)| *key).collect()
+}
+
+/// Said where the model of a channel departs from the record.
+pub(super) fn of_model(result: &Value, channel: &str) -> Option<Note> {
+    let views = departing(result, channel);
+    let names: Vec<Arg> = views.into_iter().map(|key| Arg::Key(key.into())).collect();
+    (!names.is_empty()).then(|| Note::new("compare.more.departs").with("views", Arg::Several(names, ", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn faults_and_departures_are_told_and_clean_results_say_nothing() {
+        let result = json!({
+            "integrity": {"gaps": 2, "outliers": 0, "stuck": 40},
+            "conditions": [{"status": "met"}, {"status": "invalid"}],
+            "goodness_of_fit": [
+                {"channel": "x", "view": "amplitude", "departs": true},
+                {"channel": "y", "view": "lag", "departs": true},
+            ],
+        });
+        let said: Vec<String> = of_recording(&result).iter().map(ToString::to_string).collect();
+        assert!(said[0].contains("Gaps: 2, Stuck samples: 40") && said.len() == 2, "{said:?}");
+        let model = of_model(&result, "x").unwrap().to_string();
+        assert!(model.contains("by amplitude") && !model.contains("by lag"), "{model}");
+        assert_eq!((of_recording(&json!({})), of_model(&result, "z")), (vec![], None));
+    }
+}
