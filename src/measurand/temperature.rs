@@ -33,6 +33,8 @@ const IDS: &[&str] = &[
 const METHOD: &str = "thermal_gls";
 /// Twice a log-likelihood ratio from which a lag counts as seen: χ² with one degree of freedom at 5 %.
 const SEEN: f64 = 3.84;
+/// Probability of as large a range by chance from which the curve counts as flat.
+const FLAT: f64 = 0.05;
 /// Arguments at which a curve over temperature is read.
 const POINTS: usize = 81;
 /// Share of the range of lags beyond which a lag is not bounded.
@@ -149,17 +151,14 @@ impl Row<'_> {
                     Note::new("thermal.steepest").with("deg_c", Arg::figures(p.span.temperature(at), 3));
                 Some(self.measured(reading.scaled(sign)).note(note))
             }
-            "bias_over_temperature_peak_to_peak" => {
-                let reading = read::bent(&p.draws, |_, c| {
-                    let values = grid().map(|x| value(c, order, x));
-                    let (low, high) =
-                        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-                    high - low
-                });
-                Some(self.measured(positive(reading)).note(self.span_note(a)))
-            }
-            "bias_over_temperature_rms" => Some(self.measured(rms(a)).note(self.span_note(a))),
-            "bias_over_temperature_3sigma" => Some(self.measured(rms(a).scaled(3.0)).note(self.span_note(a))),
+            "bias_over_temperature_peak_to_peak" => Some(self.range(a, 1.0, &|c| {
+                let values = grid().map(|x| value(c, order, x));
+                let (low, high) =
+                    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+                high - low
+            })),
+            "bias_over_temperature_rms" => Some(self.range(a, 1.0, &|c| rms(c, order))),
+            "bias_over_temperature_3sigma" => Some(self.range(a, 3.0, &|c| rms(c, order))),
             "bias_loop_width" => self.loop_width(a),
             "bias_temperature_rate_sensitivity" => self.rate_sensitivity(a),
             "thermal_lag" => self.lag(a),
@@ -177,6 +176,19 @@ impl Row<'_> {
         Estimate::not_identifiable(self.id, self.channel, upper_limit, self.unit, METHOD)
     }
 
+    /// A number that says how far from flat the curve is: near zero noise makes it, and only a bound can be given.
+    fn range(&self, a: &Analysis, times: f64, of: &dyn Fn(&DVector<f64>) -> f64) -> Estimate {
+        let draws = &a.posterior.draws;
+        if read::by_chance(draws, of) > FLAT {
+            let drawn = read::drawn(draws, |_, c| times * of(c));
+            let limit =
+                drawn.spread.bound(drawn.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
+            return self.none(limit).note(Note::new("thermal_flat.curve")).note(self.span_note(a));
+        }
+        let reading = positive(read::bent(draws, |_, c| of(c))).scaled(times);
+        self.measured(reading).note(self.span_note(a))
+    }
+
     fn span_note(&self, a: &Analysis) -> Note {
         Note::new("thermal.span")
             .with("low", Arg::figures(a.posterior.span.low, 3))
@@ -184,7 +196,8 @@ impl Row<'_> {
     }
 
     fn model_note(&self, a: &Analysis) -> Note {
-        let order = a.posterior.terms.order;
+        // The draws hold higher orders too, the table and this sentence one.
+        let order = a.order;
         match a.orders.iter().find(|t| t.order == order) {
             Some(t) => {
                 Note::new("thermal.order").with("order", order).with("rms", Arg::figures(t.held_out_rms, 3))
@@ -294,13 +307,10 @@ fn steepest(a: &Analysis) -> f64 {
 }
 
 /// Root of the mean square about the mean, each temperature with the same weight: Σ cₖ²/(2k + 1).
-fn rms(a: &Analysis) -> Reading {
-    let order = a.posterior.terms.order;
-    positive(read::bent(&a.posterior.draws, |_, c| {
-        let square: f64 =
-            c.iter().take(order).enumerate().map(|(k, c)| c * c / (2.0 * (k + 1) as f64 + 1.0)).sum();
-        square.sqrt()
-    }))
+fn rms(c: &DVector<f64>, order: usize) -> f64 {
+    let square: f64 =
+        c.iter().take(order).enumerate().map(|(k, c)| c * c / (2.0 * (k + 1) as f64 + 1.0)).sum();
+    square.sqrt()
 }
 
 /// A reading of what cannot be negative.

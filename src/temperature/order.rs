@@ -2,8 +2,9 @@
 //!
 //! Each ramp with the dwell behind it is held out in turn. With Q = P⁻¹ − P⁻¹X(XᵀP⁻¹X)⁻¹XᵀP⁻¹ the prediction error of a
 //! held-out stretch from all the rest, coefficients fitted and slow noise carried over from it, is Q_BB⁻¹(Qy)_B, with
-//! covariance Q_BB⁻¹ (deletion formula of best linear unbiased prediction). The order with the largest predictive density
-//! is taken, or a lower one that predicts hardly worse.
+//! covariance Q_BB⁻¹ (deletion formula of best linear unbiased prediction). The lowest order is taken whose predictive density
+//! falls short of the largest by no more than one standard error of the difference, told by its scatter over the stretches
+//! (Breiman et al. 1984).
 
 use super::course::{Course, Span, Terms};
 use super::gls::{Modes, Solved};
@@ -18,12 +19,14 @@ pub const HIGHEST: usize = 6;
 const BLOCKS: usize = 480;
 
 /// One order and how it predicts what it was not fitted to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
     /// Order.
     pub order: usize,
     /// Sum of the logarithms of the predictive densities of all stretches.
     pub log_score: f64,
+    /// The same of every stretch.
+    pub scores: Vec<f64>,
     /// Rms of the prediction errors, deg/h.
     pub held_out_rms: f64,
     /// Length of the means that were predicted, s.
@@ -39,28 +42,39 @@ pub fn try_orders(
     highest: usize,
 ) -> Vec<Tried> {
     let coarse = course.merged(course.len().div_ceil(BLOCKS));
+    let modes = Modes::new(coarse.len(), coarse.block_s);
+    let data = modes.of(&coarse.rate_deg_h);
     (1..=highest.min(HIGHEST))
         .filter_map(|order| {
             let terms = terms(order);
             let (best, _) = posterior::best(&coarse, terms, span)?;
-            let modes = Modes::new(coarse.len(), coarse.block_s);
-            let data = modes.of(&coarse.rate_deg_h);
             let columns: Vec<Vec<f64>> =
                 coarse.columns(&terms, &best.shape, &span).iter().map(|c| modes.of(c)).collect();
-            score(&coarse, &data, &columns, &best.fitted.solved, folds).map(|(log_score, held_out_rms)| {
-                Tried { order, log_score, held_out_rms, average_s: coarse.block_s }
-            })
+            let (scores, held_out_rms) = score(&coarse, &data, &columns, &best.fitted.solved, folds)?;
+            let log_score = scores.iter().sum();
+            Some(Tried { order, log_score, scores, held_out_rms, average_s: coarse.block_s })
         })
         .collect()
 }
 
-/// Loss of score, in natural logarithms, that a lower order may cost: the scatter of a score of a few ramps.
+/// Loss of score, in natural logarithms, that a lower order may cost in any case.
 const WITHIN: f64 = 1.5;
 
-/// The lowest order whose score is near the largest.
-pub fn choose(tried: &[Tried]) -> Option<Tried> {
-    let best = tried.iter().map(|t| t.log_score).fold(f64::NEG_INFINITY, f64::max);
-    tried.iter().copied().find(|t| t.log_score >= best - WITHIN)
+/// The lowest order that predicts the stretches as well as the best one does, within one standard error of the difference.
+pub fn choose(tried: &[Tried]) -> Option<&Tried> {
+    let best = tried.iter().max_by(|a, b| a.log_score.total_cmp(&b.log_score))?;
+    tried.iter().find(|t| {
+        let losses: Vec<f64> = best.scores.iter().zip(&t.scores).map(|(b, t)| b - t).collect();
+        losses.iter().sum::<f64>() <= standard_error(&losses).max(WITHIN)
+    })
+}
+
+/// Standard error of a sum of numbers by their scatter.
+fn standard_error(values: &[f64]) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    if n > 1.0 { (squares * n / (n - 1.0)).sqrt() } else { 0.0 }
 }
 
 fn score(
@@ -69,7 +83,7 @@ fn score(
     columns: &[Vec<f64>],
     solved: &Solved,
     folds: &[(f64, f64)],
-) -> Option<(f64, f64)> {
+) -> Option<(Vec<f64>, f64)> {
     let n = course.len();
     let inverse: Vec<f64> = solved.powers.iter().map(|p| 1.0 / p).collect();
     let back = |modes: &dyn Fn(usize) -> f64| {
@@ -84,7 +98,7 @@ fn score(
     let projected = back(&|k| inverse[k] * residual(k));
     let influence: Vec<Vec<f64>> = columns.iter().map(|c| back(&|k| inverse[k] * c[k])).collect();
     let kernel = kernel(&inverse, n);
-    let (mut log_score, mut squares, mut count) = (0.0, 0.0, 0usize);
+    let (mut scores, mut squares, mut count) = (vec![], 0.0, 0usize);
     for (from_s, to_s) in folds {
         let at = |t: f64| (((t - course.first_s) / course.block_s).round().max(0.0) as usize).min(n);
         let (from, to) = (at(*from_s), at(*to_s));
@@ -104,11 +118,11 @@ fn score(
         let factor = (q + DMatrix::identity(m, m) * ridge).cholesky()?;
         let errors = factor.solve(&right);
         let log_determinant: f64 = factor.l_dirty().diagonal().iter().map(|d| 2.0 * d.ln()).sum();
-        log_score += 0.5 * log_determinant - 0.5 * errors.dot(&right);
+        scores.push(0.5 * log_determinant - 0.5 * errors.dot(&right));
         squares += errors.norm_squared();
         count += m;
     }
-    (count > 0).then(|| (log_score, (squares / count as f64).sqrt()))
+    (count > 0).then(|| (scores, (squares / count as f64).sqrt()))
 }
 
 /// (2/n) Σₖ wₖ cos(πkm/n) for m = 0 … 2n − 1.
@@ -146,6 +160,26 @@ mod tests {
         let beta = (xr.transpose() * &srr * &yr)[0] / (xr.transpose() * &srr * &xr)[0];
         let carried = pick(&held, &rest) * &srr * (&yr - &xr * beta);
         held.iter().enumerate().map(|(i, h)| y[*h] - x[*h] * beta - carried[i]).collect()
+    }
+
+    fn tried(order: usize, scores: [f64; 4]) -> Tried {
+        let log_score = scores.iter().sum();
+        Tried { order, log_score, scores: scores.to_vec(), held_out_rms: 0.0, average_s: 60.0 }
+    }
+
+    #[test]
+    fn the_lowest_order_within_one_standard_error_is_taken() {
+        let curve = [
+            tried(1, [180.0, 182.0, 470.0, 470.0]),
+            tried(3, [204.4, 220.8, 514.4, 506.9]),
+            tried(5, [202.0, 224.4, 516.0, 506.4]),
+        ];
+        // Ahead by 2.3, with a standard error of 4.8.
+        assert_eq!(choose(&curve).unwrap().order, 3);
+        // Ahead by 8 at every stretch alike.
+        let ahead = [tried(3, [204.4, 220.8, 514.4, 506.9]), tried(5, [206.4, 222.8, 516.4, 508.9])];
+        assert_eq!(choose(&ahead).unwrap().order, 5);
+        assert_eq!(choose(&[]), None);
     }
 
     #[test]

@@ -112,6 +112,24 @@ pub fn drawn(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Readin
     from_values(values)
 }
 
+/// Probability that errors alone leave as large a value of a number that is zero where all coefficients are, and grows with
+/// their size.
+pub fn by_chance(draws: &[Draw], of: impl Fn(&DVector<f64>) -> f64) -> f64 {
+    let Some(size) = draws.first().map(|d| d.coefficients.len()) else { return 1.0 };
+    let mean = draws.iter().fold(DVector::zeros(size), |sum, d| sum + &d.coefficients) / draws.len() as f64;
+    let found = of(&mean);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x666c_6174);
+    let mut as_large = 0usize;
+    for draw in draws {
+        let factor = factor(&draw.covariance);
+        for _ in 0..EACH {
+            let z = DVector::from_fn(size, |_, _| normal(&mut rng));
+            as_large += usize::from(of(&(&draw.coefficients - &mean + &factor * z)) >= found);
+        }
+    }
+    as_large as f64 / (draws.len() * EACH) as f64
+}
+
 /// A reading from draws.
 pub fn from_values(mut values: Vec<f64>) -> Reading {
     values.retain(|v| v.is_finite());
