@@ -4,6 +4,7 @@
 use super::{Condition, Facts, record};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::temperature::findings::{LEAST_SPAN_DEG_C, Schedule as Run};
+use crate::temperature::segments::Segment;
 use crate::temperature::{SegmentKind, TemperatureTest};
 use crate::text::{Arg, Note};
 
@@ -70,27 +71,17 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
     let last = run.segments.last();
     let cut =
         last.filter(|s| s.kind.is_ramp() && facts.duration_s - s.to_s < CUT_S.max(0.005 * facts.duration_s));
-    let aborted = cut.filter(|s| {
-        let end = if s.kind == SegmentKind::Heating { test.high_deg_c } else { test.low_deg_c };
-        (end - s.ends_deg_c).abs() > test.end_tolerance_deg_c
-    });
-    // A ramp that broke off is none of those asked for.
+    let aborted = cut.filter(|s| left(s, test) > test.end_tolerance_deg_c);
+    let turned: Vec<&Segment> = turned_back(run, test).collect();
+    // A ramp that broke off or turned back is none of those asked for.
     let count = |kind| {
         let of_kind = run.segments.iter().filter(|s| s.kind == kind).count();
-        of_kind - usize::from(aborted.is_some_and(|s| s.kind == kind))
+        let broken = turned.iter().copied().chain(aborted).filter(|s| s.kind == kind).count();
+        of_kind.saturating_sub(broken)
     };
     let (up, down) = (count(SegmentKind::Heating), count(SegmentKind::Cooling));
     let observed =
         [("min_deg_c", low), ("max_deg_c", high), ("heating", up as f64), ("cooling", down as f64)];
-    // A ramp that turned or stopped half way.
-    let turned = run.segments.iter().zip(run.segments.iter().skip(1)).find(|(s, next)| {
-        let short = |end: f64| (end - s.ends_deg_c).abs() > 3.0 * test.end_tolerance_deg_c;
-        match s.kind {
-            SegmentKind::Heating => next.kind == SegmentKind::Cooling && short(test.high_deg_c),
-            SegmentKind::Cooling => next.kind == SegmentKind::Heating && short(test.low_deg_c),
-            _ => false,
-        }
-    });
     let too_few = up < test.ramps_each_way || down < test.ramps_each_way;
     let complete = !missed_low && !missed_high && !too_few;
     let (status, note) = if let Some(key) = other_scale((low, high), test) {
@@ -104,7 +95,7 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
             .with("end", Arg::Stated(end))
             .with("time_h", Arg::figures(s.to_s / 3600.0, 4));
         (ConditionStatus::Invalid, note)
-    } else if let Some((s, _)) = turned {
+    } else if let Some(s) = turned.first() {
         let note = Note::new("schedule.turned")
             .with("at", c(s.ends_deg_c))
             .with("time_h", Arg::figures(s.to_s / 3600.0, 4));
@@ -120,6 +111,24 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
         (ConditionStatus::Invalid, note)
     };
     record("temperature_course", status, &observed, Some(required), note)
+}
+
+/// What a ramp had still to go to the end of its direction, degC.
+fn left(ramp: &Segment, test: &TemperatureTest) -> f64 {
+    if ramp.kind == SegmentKind::Heating {
+        test.high_deg_c - ramp.ends_deg_c
+    } else {
+        ramp.ends_deg_c - test.low_deg_c
+    }
+}
+
+/// Ramps far from their end that one in the other direction follows, a rest between them or not.
+fn turned_back<'a>(run: &'a Run, test: &'a TemperatureTest) -> impl Iterator<Item = &'a Segment> {
+    let ramps = || run.segments.iter().filter(|s| s.kind.is_ramp());
+    ramps()
+        .zip(ramps().skip(1))
+        .filter(|(s, next)| next.kind != s.kind && left(s, test) > 3.0 * test.end_tolerance_deg_c)
+        .map(|(s, _)| s)
 }
 
 /// A course whose ends are those asked for on another scale, and not in degrees Celsius.
@@ -162,9 +171,7 @@ fn rates(run: &Run, test: &TemperatureTest) -> ConditionRecord {
     let inside = |rate: f64| (rate - low).min(high - rate);
     let guard = |u: f64| test.coverage_factor * u;
     let worst = ramps.iter().min_by(|a, b| {
-        let margin = |s: &crate::temperature::segments::Segment| {
-            inside(s.rate_deg_c_h.abs()) - guard(s.rate_uncertainty_deg_c_h)
-        };
+        let margin = |s: &Segment| inside(s.rate_deg_c_h.abs()) - guard(s.rate_uncertainty_deg_c_h);
         margin(a).total_cmp(&margin(b))
     });
     let Some(worst) = worst else {
@@ -201,10 +208,19 @@ fn dwells(run: &Run, test: &TemperatureTest, least_s: f64) -> ConditionRecord {
         let Some(next) = run.segments.get(i + 1) else { continue };
         let (length, drift) =
             if next.kind.is_ramp() { (0.0, 0.0) } else { (next.length_s(), next.rate_deg_c_h) };
-        let last = i + 2 >= run.segments.len();
+        // A ramp that turned back is said to have done so.
+        if turned_back(run, test).any(|t| t == ramp) {
+            continue;
+        }
+        let last = !next.kind.is_ramp() && i + 2 >= run.segments.len();
         if !last && shortest.is_none_or(|s| length < s.0) {
             shortest = Some((length, drift, ramp.to_s));
         }
+    }
+    let none = run.segments.iter().all(|s| s.kind != SegmentKind::Dwell);
+    if none && shortest.is_some() {
+        let note = Note::new("schedule_dwell.none");
+        return record("dwell", ConditionStatus::Invalid, &[("shortest_s", 0.0)], Some(required), note);
     }
     let Some((length, _, at)) = shortest else {
         let note = Note::new("schedule.no_dwell");
@@ -229,4 +245,82 @@ fn dwells(run: &Run, test: &TemperatureTest, least_s: f64) -> ConditionRecord {
         .with("time_h", Arg::figures(at / 3600.0, 4))
         .with("drift", Arg::figures(restless, 2));
     record("dwell", status, &[("shortest_s", length), ("drift_deg_c_h", restless)], Some(required), note)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::temperature::course::Span;
+
+    /// Ramps of an hour from temperature to temperature, with a dwell behind those that are marked.
+    fn run(ways: &[(f64, f64, bool)]) -> Run {
+        let mut segments = vec![];
+        let mut time = 0.0;
+        for (from, to, rests) in ways {
+            let kind = if to > from { SegmentKind::Heating } else { SegmentKind::Cooling };
+            let segment = |kind, from_s: f64, begins: f64| Segment {
+                kind,
+                from_s,
+                to_s: from_s + 3600.0,
+                begins_deg_c: begins,
+                ends_deg_c: *to,
+                rate_deg_c_h: if kind == SegmentKind::Dwell { 0.0 } else { to - from },
+                rate_uncertainty_deg_c_h: 0.01,
+            };
+            segments.push(segment(kind, time, *from));
+            time += 3600.0;
+            if *rests {
+                segments.push(segment(SegmentKind::Dwell, time, *to));
+                time += 3600.0;
+            }
+        }
+        let reached = Span { low: -40.0, high: 60.0 };
+        Run { segments, reached, last_deg_c: 0.0, temperature: vec![], command: None, missing: 0.0 }
+    }
+
+    fn asked() -> TemperatureTest {
+        TemperatureTest {
+            channel: "temp".into(),
+            command: None,
+            low_deg_c: -40.0,
+            high_deg_c: 60.0,
+            end_tolerance_deg_c: 2.0,
+            overshoot_deg_c: None,
+            ramp_rate_deg_c_h: None,
+            ramp_rate_tolerance: 0.1,
+            slowest_deg_c_h: 4.0,
+            fastest_deg_c_h: 110.0,
+            dwell_s: Some(2700.0),
+            dwell_drift_deg_c_h: 1.0,
+            ramps_each_way: 2,
+            sensor_uncertainty_deg_c: 0.1,
+            coverage_factor: 2.0,
+            zones_deg_c: vec![],
+            residual_average_s: 100.0,
+            highest_order: 6,
+            segments: vec![],
+        }
+    }
+
+    #[test]
+    fn a_ramp_that_turned_before_its_end_is_told_and_its_dwell_is_not_missed() {
+        let turned =
+            run(&[(-40.0, 60.0, true), (60.0, -40.0, true), (-40.0, 20.0, false), (20.0, -40.0, true)]);
+        let found: Vec<f64> = turned_back(&turned, &asked()).map(|s| s.ends_deg_c).collect();
+        assert_eq!(found, [20.0]);
+        assert_eq!(dwells(&turned, &asked(), 2700.0).status, ConditionStatus::Ok);
+        let rested = run(&[(-40.0, 60.0, true), (60.0, 0.0, true), (0.0, 60.0, true)]);
+        assert_eq!(turned_back(&rested, &asked()).count(), 1);
+        // Steps on one way are no turn.
+        let steps = run(&[(-40.0, 0.0, true), (0.0, 60.0, true), (60.0, -40.0, true)]);
+        assert_eq!(turned_back(&steps, &asked()).count(), 0);
+    }
+
+    #[test]
+    fn a_ramp_beyond_its_end_has_nothing_left_to_go() {
+        let beyond = run(&[(-40.0, 64.0, false), (64.0, -44.0, false)]);
+        assert!(beyond.segments.iter().all(|s| left(s, &asked()) < 0.0));
+        let none = dwells(&beyond, &asked(), 2700.0);
+        assert_eq!(none.message.map(|m| m.id), Some("schedule_dwell.none"));
+    }
 }
