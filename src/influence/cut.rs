@@ -96,6 +96,25 @@ pub struct Cut {
     pub temperature: Vec<f64>,
 }
 
+impl Cut {
+    /// The same with every stretch beginning where the one before ended. What a unit does while it is off belongs to its
+    /// repeatability, and stamps that restart in every file do not tell how long that was.
+    #[must_use]
+    pub fn without_pauses(mut self) -> Cut {
+        let mut ends = 0.0;
+        let mut shift = 0.0;
+        for i in 0..self.of.len() {
+            let half = 0.5 * self.rows.length_s[i];
+            if i == 0 || self.of[i] != self.of[i - 1] {
+                shift = ends - (self.rows.mid_s[i] - half);
+            }
+            self.rows.mid_s[i] += shift;
+            ends = self.rows.mid_s[i] + half;
+        }
+        self
+    }
+}
+
 /// Cuts stretches into rows; `None` when they do not leave more rows than stretches.
 pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option<Cut> {
     let total: usize = stretches.iter().map(|s| s.1 - s.0).sum();
@@ -127,4 +146,28 @@ pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option
     }
     let whole = (0..stretches.len()).all(|s| of.contains(&s));
     (whole && y.len() > stretches.len()).then(|| Cut { y: DVector::from_vec(y), rows, of, temperature })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pauses_do_not_matter_where_they_are_taken_out() {
+        let runs = |starts: [f64; 3]| {
+            let mut rows = Rows::default();
+            for (step, start) in starts.into_iter().enumerate() {
+                for k in 0..4 {
+                    rows.mid_s.push(start + 25.0 + 50.0 * f64::from(k));
+                    rows.length_s.push(50.0);
+                    rows.step.push(step);
+                }
+            }
+            let of = rows.step.clone();
+            Cut { y: DVector::zeros(12), rows, of, temperature: vec![f64::NAN; 12] }.without_pauses().rows
+        };
+        let apart = runs([60.0, 4000.0, 90_000.0]);
+        assert_eq!(apart, runs([60.0, 320.0, 580.0]));
+        assert_eq!((apart.mid_s[0], apart.mid_s[4]), (25.0, 225.0));
+    }
 }

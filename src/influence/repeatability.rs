@@ -77,7 +77,7 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     if count < 2 {
         return None;
     }
-    let cut = cut(blocks, &spans, gyro)?;
+    let cut = cut(blocks, &spans, gyro)?.without_pauses();
     let n = cut.rows.len();
     let x = DMatrix::from_fn(n, count, |i, j| if cut.of[i] == j { 1.0 } else { 0.0 });
     let fixed = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
