@@ -133,6 +133,7 @@ pub const MEASURANDS: &[MeasurandId] = &[
     signed(table("misalignment_y", "mrad", "tilt of the input axis about the second reference axis")),
     signed(table("cross_axis", "1", "output of one axis per rate about another")),
     table("dead_zone", "deg/h", "half width of the zone without response"),
+    table("dead_zone_noise", "deg/h", "standard deviation of the rate noise inside the loop, which rounds the dead zone off"),
     table("threshold", "deg/h", "smallest rate that is shown"),
     table("resolution", "deg/h", "smallest change of rate that is shown"),
     table("table_harmonic_1", "deg/h", "error once per revolution"),

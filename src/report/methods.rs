@@ -78,7 +78,11 @@ pub const METHODS: &[Method] = &[
     },
     Method {
         id: "table_dead_zone",
-        formulas: &["D = sgn(x)·max(|x| − δ, 0)", "D = x·[|x| > δ]"],
+        formulas: &[
+            "D = sgn(x)·max(|x| − δ, 0)",
+            "D = x·[|x| > δ]",
+            "D = (x − δ)·Φ((x − δ)/σ) + (x + δ)·Φ(−(x + δ)/σ) + σ·[φ((x − δ)/σ) − φ((x + δ)/σ)]",
+        ],
         source: "IEEE Std 952, 12.10; IEEE Std 647",
         applies: |r| measures(r, &["dead_zone", "threshold"]),
     },

@@ -5,15 +5,15 @@ mod judged;
 mod pauses;
 mod runs;
 mod unshown;
+mod zones;
 
 use bench::{Bench, EARTH, Recorded, SmallRates, TwoAxes};
 use judged::{Count, told, truths};
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use sagnac::estimate::{Estimate, normal_probability};
+use sagnac::estimate::Estimate;
 use sagnac::ids;
 use sagnac::rate_table::blocks::Collector;
-use sagnac::rate_table::{Setup, TableRun, alignment, dead_zone, scale_factor};
+use sagnac::rate_table::{Setup, TableRun, alignment, scale_factor};
 use sagnac::recording::{Channel, ColumnRef, Role, Sink, Slab};
 use sagnac::units::Unit;
 use std::path::PathBuf;
@@ -228,99 +228,6 @@ fn long_study_of_intervals() {
         println!("{name}");
         for (id, count) in study(&bench, asked("SAGNAC_RUNS", 1000), asked("SAGNAC_FIRST", 1_000_000)) {
             count.say(id);
-        }
-    }
-}
-
-fn zone_of(bench: &SmallRates, known: Option<f64>) -> Estimate {
-    let r = bench.record();
-    let setup = Setup {
-        settling_s: 2.0,
-        minimum_step_s: 60.0,
-        by_angle: true,
-        whole_turns: false,
-        scale_factor_uncertainty: known,
-        angle_uncertainty_arcsec: bench.reading_arcsec,
-        ..Setup::default()
-    };
-    let channels = [
-        (Role::Rate, r.rate_deg_h),
-        (Role::TableRate, r.table_rate_deg_h),
-        (Role::TableAngle, r.table_angle_arcsec),
-    ];
-    let run = run_of(&channels, 1.0 / bench.hz, &setup);
-    let line = scale_factor::evaluate(&run, 0, &setup, ("1", 1.0), &|_| false).expect("a line");
-    let zone = dead_zone::evaluate(&line.response, "rate", &setup).expect("enough rates");
-    zone.estimate("dead_zone", "deg/h").unwrap()
-}
-
-fn zones(half_width: f64, subtractive: bool, known: Option<f64>, runs: u64, first: u64) -> Count {
-    let mut count = Count::default();
-    let found =
-        |seed: u64| zone_of(&SmallRates { half_width, subtractive, seed, ..SmallRates::default() }, known);
-    for zone in (first..first + runs).into_par_iter().map(found).collect::<Vec<_>>() {
-        count.take(&zone, half_width, None);
-    }
-    count
-}
-
-#[test]
-fn a_dead_zone_is_found_with_its_width_and_otherwise_bounded() {
-    let wide = zones(0.3, true, None, 10, 400);
-    assert_eq!(wide.errors.len(), 10);
-    assert!(wide.held >= 7, "{}", wide.held);
-    let gap = zones(0.3, false, None, 10, 400);
-    assert_eq!(gap.errors.len(), 10);
-    assert!(gap.held >= 7, "{}", gap.held);
-    let none = zones(0.0, true, None, 10, 400);
-    assert!(none.errors.is_empty(), "{} zones where none is", none.errors.len());
-}
-
-/// Power at one false claim in a hundred of the likelihood ratio of the true zone to the line, told everything but the
-/// offset and what is not known of the slope: no test has more.
-fn power_told(bench: &SmallRates, known: Option<f64>) -> f64 {
-    let x: Vec<f64> = (-bench.each_side..=bench.each_side).map(|i| f64::from(i) * bench.spacing).collect();
-    let length = bench.dwell_s - 2.0;
-    let step = (bench.n.powi(2) * 3600.0 / length + 2.0 * (bench.reading_arcsec / length).powi(2)).sqrt();
-    // There and back: the outermost rate has one step.
-    let visits = |i: usize| if i + 1 == x.len() { 1.0f64 } else { 2.0 };
-    let n = x.len();
-    let row = |i: usize, v: f64| if i < n { v * visits(i).sqrt() / step } else { 0.0 };
-    let certain = known.map_or(0.0, |u| 1.0 / u);
-    let line = DMatrix::from_fn(n + 1, 2, |i, j| match (i == n, j) {
-        (true, 1) => certain,
-        (true, _) => 0.0,
-        (_, 1) => row(i, x[i]),
-        _ => row(i, 1.0),
-    });
-    let zone = |v: f64| v.signum() * (v.abs() - bench.half_width).max(0.0);
-    let y = DVector::from_fn(n + 1, |i, _| if i == n { certain } else { row(i, zone(x[i])) });
-    let fit = (line.transpose() * &line).cholesky().unwrap().solve(&(line.transpose() * &y));
-    normal_probability((y - line * fit).norm() - 2.326)
-}
-
-#[test]
-fn a_zone_as_small_as_the_noise_of_a_step_is_found_where_the_scale_factor_is_known() {
-    let small = zones(0.016, true, Some(5e-4), 12, 400);
-    assert!(small.errors.len() >= 11 && small.held >= 9, "{} {}", small.errors.len(), small.held);
-    let bench = SmallRates { half_width: 0.016, ..SmallRates::default() };
-    assert!(power_told(&bench, Some(5e-4)) > 0.99 && power_told(&bench, None) < 0.75);
-}
-
-#[test]
-#[ignore = "SAGNAC_RUNS=n cargo test --release --test rate_table -- --ignored --nocapture long_study"]
-fn long_study_of_dead_zones() {
-    let (runs, first) = (asked("SAGNAC_RUNS", 1000), asked("SAGNAC_FIRST", 1_000_000));
-    for (subtractive, known) in [(true, Some(5e-4)), (true, None), (false, Some(5e-4))] {
-        for half_width in [0.0, 0.008, 0.016, 0.03, 0.06, 0.3] {
-            // A gap that no rate but the centre falls into is a line.
-            if !subtractive && half_width < 0.125 {
-                continue;
-            }
-            let bench = SmallRates { half_width, ..SmallRates::default() };
-            println!("power of a test that is told the zone {:.3}", power_told(&bench, known));
-            let count = zones(half_width, subtractive, known, runs, first);
-            count.say(&format!("subtractive {subtractive}, known {known:?}, {half_width} deg/h"));
         }
     }
 }

@@ -246,6 +246,8 @@ pub struct SmallRates {
     /// Half width of the dead zone, deg/h, and whether the output is short by it outside.
     pub half_width: f64,
     pub subtractive: bool,
+    /// Standard deviation of the rate noise inside the loop, which moves the input in and out of the zone, deg/h.
+    pub loop_noise: f64,
     /// N, deg/sqrt(h).
     pub n: f64,
     /// Bias behind the zone, deg/h.
@@ -267,6 +269,7 @@ impl Default for SmallRates {
         SmallRates {
             half_width: 0.3,
             subtractive: true,
+            loop_noise: 0.0,
             n: 0.003,
             bias: 0.08,
             error_ppm: 60.0,
@@ -299,12 +302,22 @@ impl SmallRates {
         for (i, rate) in rates.iter().enumerate() {
             while t < (i + 1) as f64 * self.dwell_s - 0.5 * dt {
                 let input = rate - self.centre();
-                let zone = if self.subtractive {
-                    input.signum() * (input.abs() - self.half_width).max(0.0)
-                } else if input.abs() > self.half_width {
-                    input
+                let behind = |input: f64| {
+                    if self.subtractive {
+                        input.signum() * (input.abs() - self.half_width).max(0.0)
+                    } else if input.abs() > self.half_width {
+                        input
+                    } else {
+                        0.0
+                    }
+                };
+                let zone = if self.loop_noise > 0.0 {
+                    let turns = 200;
+                    let sum: f64 =
+                        (0..turns).map(|_| behind(input + self.loop_noise * normal(&mut rng))).sum();
+                    sum / f64::from(turns)
                 } else {
-                    0.0
+                    behind(input)
                 };
                 let y = (1.0 + 1e-6 * self.error_ppm) * zone
                     + self.bias

@@ -1,0 +1,190 @@
+//! Means of the rates with their covariance, and how well a response with a zone fits them.
+
+use super::shape::{Kind, Shape};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Centres tried.
+pub const CENTRES: usize = 41;
+
+/// Probability of such a gain by chance above which a zone is not claimed.
+const CLAIMED_BELOW: f64 = 0.01;
+
+/// Gains of −2 ln L below and above which no draws are needed.
+const SURE: (f64, f64) = (6.0, 40.0);
+
+/// Tests without a zone that are drawn to tell it.
+const DRAWS: usize = 1000;
+
+/// What one zone leaves.
+#[derive(Debug, Clone, Copy)]
+pub struct Left {
+    /// The zone.
+    pub shape: Shape,
+    /// −2 ln L at the best centre.
+    pub least: f64,
+    /// That centre, and slope and offset there.
+    pub centre: f64,
+    pub slope: f64,
+    pub offset: f64,
+    /// −2 ln of the mean likelihood over all centres: at its best centre a zone of any width follows the noise.
+    pub over_centres: f64,
+}
+
+pub struct Points {
+    pub x: Vec<f64>,
+    /// Output about its mean slope times rate.
+    y: DVector<f64>,
+    factor: Cholesky<f64, Dyn>,
+    /// Relative standard uncertainty of the scale factor about the nominal one, where it is known.
+    slope_known: Option<f64>,
+    /// Output and a constant, over their standard uncertainty and free of correlation.
+    of_y: DVector<f64>,
+    of_one: DVector<f64>,
+}
+
+impl Points {
+    /// `None` with a covariance that is none.
+    pub fn new(
+        x: Vec<f64>,
+        y: DVector<f64>,
+        covariance: DMatrix<f64>,
+        slope_known: Option<f64>,
+    ) -> Option<Points> {
+        let factor = Cholesky::new(covariance)?;
+        let of_y = factor.l_dirty().solve_lower_triangular(&y)?;
+        let of_one = factor.l_dirty().solve_lower_triangular(&DVector::from_element(x.len(), 1.0))?;
+        Some(Points { x, y, factor, slope_known, of_y, of_one })
+    }
+
+    /// Middle of the rates and half their range.
+    pub fn range(&self) -> (f64, f64) {
+        let low = self.x.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = self.x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (0.5 * (low + high), 0.5 * (high - low))
+    }
+
+    /// Smallest rate beside the middle, and the widest distance of neighbours where centres are tried.
+    pub fn spacing(&self) -> (f64, f64) {
+        let (middle, largest) = self.range();
+        let apart = |w: &[f64]| w[1] - w[0];
+        let inner = |w: &&[f64]| (0.5 * (w[0] + w[1]) - middle).abs() <= 0.5 * largest;
+        let widest = self.x.windows(2).filter(inner).map(apart).fold(0.0, f64::max);
+        let beside = self.x.iter().map(|x| (x - middle).abs()).filter(|d| *d > 1e-3 * largest);
+        (beside.fold(f64::INFINITY, f64::min), widest)
+    }
+
+    /// Offset and response, each over its standard uncertainty and free of correlation; what is known of the slope is one
+    /// more row.
+    fn design(&self, d: impl Fn(f64) -> f64) -> Option<DMatrix<f64>> {
+        let n = self.x.len();
+        let a = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { d(self.x[i]) });
+        let w = self.factor.l_dirty().solve_lower_triangular(&a)?;
+        let known = self.slope_known.map_or(0.0, |u| 1.0 / u);
+        Some(w.insert_row(n, 0.0)).map(|mut w| {
+            w[(n, 1)] = known;
+            w
+        })
+    }
+
+    fn data(&self) -> Option<DVector<f64>> {
+        let w = self.factor.l_dirty().solve_lower_triangular(&self.y)?;
+        Some(w.push(self.slope_known.map_or(0.0, |u| 1.0 / u)))
+    }
+
+    /// −2 ln L, slope and offset of a response given up to slope and offset.
+    pub fn cost(&self, d: impl Fn(f64) -> f64) -> (f64, f64, f64) {
+        let mut w = DVector::from_iterator(self.x.len(), self.x.iter().map(|x| d(*x)));
+        let known = self.slope_known.map_or(0.0, |u| u.powi(-2));
+        let solved = self.factor.l_dirty().solve_lower_triangular_mut(&mut w);
+        let (aa, ad) = (self.of_one.norm_squared(), self.of_one.dot(&w));
+        let dd = w.norm_squared() + known;
+        let (ay, dy) = (self.of_one.dot(&self.of_y), w.dot(&self.of_y) + known);
+        let determinant = aa * dd - ad * ad;
+        if !solved || determinant.is_nan() || determinant <= 1e-12 * aa * dd {
+            return (f64::INFINITY, 0.0, 0.0);
+        }
+        let offset = (dd * ay - ad * dy) / determinant;
+        let slope = (aa * dy - ad * ay) / determinant;
+        let left: f64 =
+            (0..w.len()).map(|i| (self.of_y[i] - offset * self.of_one[i] - slope * w[i]).powi(2)).sum();
+        (left + known * (1.0 - slope).powi(2), slope, offset)
+    }
+
+    /// A zone at the centre that suits it best, sought where the inner half of the rates lies.
+    pub fn at_any_centre(&self, shape: Shape) -> Left {
+        let (middle, largest) = self.range();
+        let at = |c: f64| {
+            let (cost, slope, offset) = self.cost(|x| shape.of(x - c));
+            (cost, c, slope, offset)
+        };
+        let mut tried: Vec<(f64, f64, f64, f64)> = (0..CENTRES)
+            .map(|i| at(middle + 0.5 * largest * (2.0 * i as f64 / (CENTRES - 1) as f64 - 1.0)))
+            .collect();
+        let least = |t: &[(f64, f64, f64, f64)]| {
+            t.iter().copied().fold((f64::INFINITY, 0.0, 0.0, 0.0), |m, v| if v.0 < m.0 { v } else { m })
+        };
+        let mut step = 0.5 * largest / (CENTRES - 1) as f64;
+        for _ in 0..6 {
+            let middle = least(&tried).1;
+            tried.extend([middle - step, middle + step].map(at));
+            step *= 0.5;
+        }
+        let best = least(&tried);
+        tried.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let weight = |v: &(f64, f64, f64, f64)| (-0.5 * (v.0 - best.0)).exp();
+        let area: f64 =
+            tried.windows(2).map(|p| 0.5 * (weight(&p[0]) + weight(&p[1])) * (p[1].1 - p[0].1)).sum();
+        let over_centres = best.0 - 2.0 * (area / largest).max(f64::MIN_POSITIVE).ln();
+        Left { shape, least: best.0, centre: best.1, slope: best.2, offset: best.3, over_centres }
+    }
+
+    /// Whether a line would gain as much from some zone by chance in too few tests to be believed.
+    pub fn shows_a_zone(&self, gain: f64, widths: &[f64]) -> Option<bool> {
+        if gain < SURE.0 || gain > SURE.1 {
+            return Some(gain > SURE.1);
+        }
+        let (middle, largest) = self.range();
+        let line = self.design(|x| x)?;
+        let data = self.data()?;
+        let rows = data.len();
+        let normal = Cholesky::new(line.transpose() * &line)?;
+        let fitted = &line * normal.solve(&(line.transpose() * &data));
+        let basis = |a: DMatrix<f64>| -> Option<[DVector<f64>; 2]> {
+            let first = a.column(0).clone_owned().try_normalize(0.0)?;
+            let rest = a.column(1) - &first * first.dot(&a.column(1));
+            Some([first, rest.try_normalize(1e-12)?])
+        };
+        let of_line = basis(line)?;
+        // Centres as close as the search takes them, every fourth width.
+        let fine = 4 * (CENTRES - 1);
+        let centre = |i: usize| middle + 0.5 * largest * (2.0 * i as f64 / fine as f64 - 1.0);
+        let of_zones: Vec<_> = [Kind::Subtractive, Kind::Gap]
+            .into_iter()
+            .flat_map(|k| widths.iter().skip(1).step_by(4).map(move |w| (k, *w)))
+            .flat_map(|(k, w)| (0..=fine).map(move |i| (k, w, centre(i))))
+            .filter_map(|(k, w, c)| basis(self.design(|x| Shape::clean(k, w).of(x - c))?))
+            .collect();
+        let explained =
+            |b: &[DVector<f64>; 2], r: &DVector<f64>| b.iter().map(|q| q.dot(r).powi(2)).sum::<f64>();
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x7a6f_6e65);
+        let free = rows - usize::from(self.slope_known.is_none());
+        let most = (CLAIMED_BELOW * DRAWS as f64) as usize;
+        let mut as_large = 0;
+        for _ in 0..DRAWS {
+            let mut r = fitted.clone();
+            for v in r.iter_mut().take(free) {
+                let z: f64 = StandardNormal.sample(&mut rng);
+                *v += z;
+            }
+            let enough = gain + explained(&of_line, &r);
+            as_large += usize::from(of_zones.iter().any(|b| explained(b, &r) >= enough));
+            if as_large >= most {
+                return Some(false);
+            }
+        }
+        Some(true)
+    }
+}

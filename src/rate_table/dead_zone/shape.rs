@@ -1,0 +1,124 @@
+//! Static responses with a dead zone.
+
+use crate::estimate::normal_probability;
+
+/// Beyond so many deviations noise rounds nothing off.
+const ROUNDED: f64 = 8.0;
+
+/// Kind of a dead zone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The output is short by the half width.
+    Subtractive,
+    /// The output is none inside and whole outside.
+    Gap,
+    /// Subtractive, with noise inside the loop that carries the input in and out of the zone.
+    Rounded,
+}
+
+/// A dead zone about zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// Its kind.
+    pub kind: Kind,
+    /// Half width, deg/h.
+    pub half_width: f64,
+    /// Standard deviation of the noise inside the loop, deg/h; 0 of the kinds without.
+    pub noise: f64,
+}
+
+impl Shape {
+    /// A zone without noise inside the loop.
+    pub fn clean(kind: Kind, half_width: f64) -> Shape {
+        Shape { kind, half_width, noise: 0.0 }
+    }
+
+    /// Mean output at an input.
+    pub fn of(&self, x: f64) -> f64 {
+        let delta = self.half_width;
+        match self.kind {
+            Kind::Subtractive => x.signum() * (x.abs() - delta).max(0.0),
+            Kind::Gap => {
+                if x.abs() > delta {
+                    x
+                } else {
+                    0.0
+                }
+            }
+            Kind::Rounded => {
+                let part = |u: f64| self.noise * beyond(u / self.noise);
+                part(x - delta) - part(-x - delta)
+            }
+        }
+    }
+
+    /// The input at which half comes through; 0 where half of any does.
+    pub fn threshold(&self) -> f64 {
+        match self.kind {
+            Kind::Subtractive => 2.0 * self.half_width,
+            Kind::Gap => self.half_width,
+            Kind::Rounded => {
+                // The share that comes through grows with the input, and is a half at twice the half width at the latest.
+                let (mut low, mut high) = (0.0, 2.0 * self.half_width);
+                if 2.0 * normal_probability(-self.half_width / self.noise) >= 0.5 {
+                    return 0.0;
+                }
+                for _ in 0..50 {
+                    let middle = 0.5 * (low + high);
+                    if self.of(middle) < 0.5 * middle { low = middle } else { high = middle }
+                }
+                0.5 * (low + high)
+            }
+        }
+    }
+}
+
+/// Mean of what a normal value about `u` of unit variance has above zero.
+fn beyond(u: f64) -> f64 {
+    if u.abs() > ROUNDED {
+        return u.max(0.0);
+    }
+    u * normal_probability(u) + (-0.5 * u * u).exp() / std::f64::consts::TAU.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rounded(half_width: f64, noise: f64) -> Shape {
+        Shape { kind: Kind::Rounded, half_width, noise }
+    }
+
+    #[test]
+    fn a_rounded_zone_is_the_mean_over_the_noise_by_quadrature() {
+        let (delta, sigma) = (0.12, 0.07);
+        for x in [-0.5, -0.1, 0.0, 0.03, 0.12, 0.3] {
+            let clean = Shape::clean(Kind::Subtractive, delta);
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for i in -8000..=8000 {
+                let z = f64::from(i) * 1e-3;
+                let w = (-0.5 * z * z).exp();
+                sum += w * clean.of(x + sigma * z);
+                weights += w;
+            }
+            assert!((rounded(delta, sigma).of(x) - sum / weights).abs() < 1e-6, "{x}");
+        }
+    }
+
+    #[test]
+    fn a_rounded_zone_has_the_slope_at_null_and_the_offset_of_the_closed_form() {
+        let slope = |delta: f64, sigma: f64| rounded(delta, sigma).of(1e-6) / 1e-6;
+        assert!((slope(1.0, 3.0) - 2.0 * normal_probability(-1.0 / 3.0)).abs() < 1e-6);
+        assert!((rounded(0.2, 0.1).of(5.0) - 4.8).abs() < 1e-12);
+        assert!((rounded(0.2, 1e-9).of(0.3) - 0.1).abs() < 1e-9);
+    }
+
+    #[test]
+    fn half_comes_through_at_the_threshold() {
+        let zone = rounded(0.2, 0.1);
+        let t = zone.threshold();
+        assert!((zone.of(t) - 0.5 * t).abs() < 1e-9 && t > 0.2 && t < 0.4, "{t}");
+        assert_eq!(rounded(0.1, 0.2).threshold(), 0.0);
+        assert_eq!(Shape::clean(Kind::Subtractive, 0.1).threshold(), 0.2);
+    }
+}
