@@ -20,6 +20,7 @@ mod schedule;
 mod steadiness;
 mod supply;
 pub mod table;
+pub mod table_motion;
 mod temperature;
 pub mod temperature_track;
 mod unit_named;

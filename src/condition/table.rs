@@ -1,6 +1,7 @@
 //! What a test on a rate table must have been: steps found, the rates reached, the angle in agreement, and an output that
 //! follows the table. A mistake of sign, unit or axis is named.
 
+use super::table_motion::{self, Settling};
 use super::{mistakes, record};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::text::{Arg, Note};
@@ -8,6 +9,10 @@ use crate::text::{Arg, Note};
 /// What was found of the table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TableFacts {
+    /// Time by the angle of the table over time by the stamps.
+    pub time_factor: Option<f64>,
+    /// Steps that are evaluated from too early on.
+    pub settling: Settling,
     /// Steps that were evaluated.
     pub steps: usize,
     /// Stretches that were too short.
@@ -40,6 +45,8 @@ pub struct TableFacts {
 pub struct ChannelFact {
     /// Channel.
     pub channel: String,
+    /// Whether something is asked of it.
+    pub asked: bool,
     /// Unit declared for it.
     pub unit: String,
     /// Output per input; `None` where no line could be drawn.
@@ -70,11 +77,23 @@ const LEAST_EARTH: f64 = 3.0;
 /// Judges a test on a table.
 pub fn judge(facts: &TableFacts) -> Vec<ConditionRecord> {
     let mut all = vec![steps(facts)];
-    all.extend(reached(facts));
-    all.extend(agreement(facts));
+    // With stamps in a wrong unit every rate is wrong, and nothing else is worth a word.
+    if let Some(wrong) = table_motion::stamps(facts) {
+        all.push(wrong);
+        return all;
+    }
+    // A table that was not at its rate yet falls short of it, and its angle of its rate.
+    let settling = table_motion::settling(facts);
+    if settling.as_ref().is_none_or(|s| s.status != ConditionStatus::Invalid) {
+        all.extend(reached(facts));
+        all.extend(agreement(facts));
+    }
+    all.extend(settling);
     all.extend(still(facts));
-    all.extend(facts.channels.iter().filter_map(|c| follows(c, facts)));
-    all.extend(facts.channels.iter().filter_map(|c| earth_sign(c, facts)));
+    // A channel of which nothing is asked may lie across the axis that turns.
+    let asked = || facts.channels.iter().filter(|c| c.asked);
+    all.extend(asked().filter_map(|c| follows(c, facts)));
+    all.extend(asked().filter_map(|c| earth_sign(c, facts)));
     all
 }
 
@@ -96,7 +115,7 @@ fn still(facts: &TableFacts) -> Option<ConditionRecord> {
         .with("inner", Arg::figures(inner / 3600.0, 3))
         .with("outer", Arg::figures(outer / 3600.0, 4));
     let required = Note::new("on_table.required.inner_rests");
-    Some(record("inner_axis_still", status, &[("inner_deg_h", inner)], Some(required), note))
+    Some(record("inner_axis_still", status, &[("inner_deg_s", inner / 3600.0)], Some(required), note))
 }
 
 /// A bias that is the Earth rate taken out with the wrong sign, twice.
@@ -169,7 +188,7 @@ fn reached(facts: &TableFacts) -> Option<ConditionRecord> {
     let required = Note::new("on_table.required.reached")
         .with("full", per_second(full))
         .with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
-    Some(record("table_reached", status, &[("worst_deg_h", worst)], Some(required), note))
+    Some(record("table_reached", status, &[("worst_deg_s", worst / 3600.0)], Some(required), note))
 }
 
 /// Whether angle and rate of the table tell the same.
@@ -235,6 +254,10 @@ fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> No
         .find(|c| c.channel != channel.channel && c.factor.is_some_and(|f| FOLLOWS.contains(&f.abs())));
     if factor.abs() < 0.1 && factor.abs() < 20.0 * channel.standard.max(0.005) {
         return match other {
+            Some(other) if facts.channels.len() > 2 => Note::new("table_motion.one_axis")
+                .with("channel", channel.channel.as_str())
+                .with("other", other.channel.as_str())
+                .with("factor", shown),
             Some(other) => Note::new("on_table.another_axis")
                 .with("channel", channel.channel.as_str())
                 .with("other", other.channel.as_str())

@@ -14,7 +14,9 @@ mod largest;
 pub mod model;
 pub mod noise;
 pub mod scale_factor;
+pub mod settling;
 pub mod sine;
+pub mod stamps;
 pub mod steps;
 
 use blocks::Blocks;

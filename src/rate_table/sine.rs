@@ -229,6 +229,7 @@ mod tests {
                 approach: 0,
                 cycle: 0,
                 parts: vec![part],
+                unsettled: None,
             });
         }
         let found = fit(&steps, 0).unwrap();

@@ -2,6 +2,7 @@
 
 use super::Setup;
 use super::blocks::{Block, Blocks, TURN_ARCSEC};
+use super::settling::{self, Unsettled};
 
 /// Parts of all steps together: correlated noise is handled as a matrix over them.
 const PARTS: usize = 260;
@@ -59,6 +60,8 @@ pub struct Step {
     pub cycle: usize,
     /// Its parts.
     pub parts: Vec<Part>,
+    /// Where the table was not at its rate yet when the evaluated part begins.
+    pub unsettled: Option<Unsettled>,
 }
 
 /// The steps of a recording.
@@ -138,7 +141,13 @@ pub fn find(blocks: &Blocks, setup: &Setup) -> Steps {
         });
         before = Some(nominal);
         match step(blocks, setup, (from, to), (nominal, outer), parts_each) {
-            Some(step) => steps.list.push(Step { approach, outer, ..step }),
+            Some((first, step)) => {
+                let looked = !setup.rows_are_steps && blocks.has_angle;
+                let unsettled = looked
+                    .then(|| settling::of_step(list, (from, first, to), blocks.interval_s, largest))
+                    .flatten();
+                steps.list.push(Step { approach, outer, unsettled, ..step });
+            }
             None => steps.too_short += 1,
         }
     }
@@ -191,7 +200,7 @@ fn step(
     (from, to): (usize, usize),
     (nominal, outer): (f64, f64),
     parts_each: usize,
-) -> Option<Step> {
+) -> Option<(usize, Step)> {
     let list = &blocks.list;
     let dt = blocks.interval_s;
     let begins = list[from].first_index as f64 * dt;
@@ -235,7 +244,7 @@ fn step(
     let total = parts.iter().map(|p| p.length_s).sum::<f64>();
     let gyros = last.gyro.len();
     let mean = |f: &dyn Fn(&Part) -> f64| parts.iter().map(|p| f(p) * p.length_s).sum::<f64>() / total;
-    Some(Step {
+    let evaluated = Step {
         from_s: list[first].first_index as f64 * dt,
         to_s: ends(end - 1),
         first_row: list[first].first_row,
@@ -250,7 +259,9 @@ fn step(
         approach: 0,
         cycle: 0,
         parts,
-    })
+        unsettled: None,
+    };
+    Some((first, evaluated))
 }
 
 /// Mean rate of the table over blocks, deg/h: turned angle over time where the angle was recorded.

@@ -6,6 +6,7 @@ use super::reading::{self, tidy};
 use super::table_others::Others;
 use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
 use crate::condition::table::{ChannelFact, TableFacts, judge};
+use crate::condition::table_motion::Settling;
 use crate::condition::{Facts, judge_all};
 use crate::estimate::{Estimate, Spread};
 use crate::figure::Figure;
@@ -16,7 +17,8 @@ use crate::procedure::recorded::scale_factor_unit;
 use crate::rate_table::blocks::{Blocks, Collector};
 use crate::rate_table::inner_axis::InnerAxis;
 use crate::rate_table::scale_factor::{self, ScaleFactor};
-use crate::rate_table::{Setup, TableRun};
+use crate::rate_table::settling::Unsettled;
+use crate::rate_table::{Setup, TableRun, stamps};
 use crate::record::{ConditionRecord, OptionRecord};
 use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
@@ -224,7 +226,15 @@ fn facts(
         Some(factor) if about_outer => Some((factor - 1.0, inner.largest)),
         _ => disagreement,
     };
+    let unsettled: Vec<&Unsettled> = steps.list.iter().filter_map(|s| s.unsettled.as_ref()).collect();
     TableFacts {
+        time_factor: if about_outer { None } else { stamps::time_factor(run) },
+        settling: Settling {
+            steps: unsettled.len(),
+            stated_s: setup.settling_s,
+            needed_s: unsettled.iter().fold(0.0, |m: f64, u| m.max(u.needed_s)),
+            off: unsettled.iter().fold(0.0, |m: f64, u| m.max((u.off / u.rate).abs())),
+        },
         steps: steps.list.len(),
         too_short: steps.too_short,
         minimum_step_s: setup.minimum_step_s,
@@ -260,6 +270,7 @@ fn channel_fact(
     let at_rest = channel.zip(earth).map(|(c, earth)| (c.bias - c.factor * earth, earth));
     Some(ChannelFact {
         channel: id.to_owned(),
+        asked: request.procedure.measurands.iter().any(|m| m.channel.as_deref().is_none_or(|c| c == id)),
         unit: spec.unit_in_file.clone(),
         factor: factor.map(|f| f.0),
         standard: factor.map_or(0.0, |f| f.1),

@@ -2,6 +2,7 @@
 
 mod bench;
 mod judged;
+mod motion;
 mod pauses;
 mod runs;
 mod unshown;

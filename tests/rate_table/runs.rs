@@ -202,6 +202,7 @@ fn twice_the_earth_rate_with_the_opposite_sign_is_no_bias() {
     let status = |bias: f64, limit: Option<f64>| {
         let channel = ChannelFact {
             channel: "z".into(),
+            asked: true,
             unit: "deg/h".into(),
             factor: Some(1.0),
             standard: 1e-6,
@@ -253,6 +254,7 @@ fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
     use sagnac::condition::table::{ChannelFact, TableFacts, judge};
     let channel = |name: &str, factor: f64| ChannelFact {
         channel: name.into(),
+        asked: name != "unasked",
         unit: "deg/s".into(),
         factor: Some(factor),
         standard: 1e-5,
@@ -269,4 +271,12 @@ fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
     };
     let said: Vec<&str> = judge(&facts).iter().map(|c| c.message.as_ref().map_or("", |m| m.id)).collect();
     assert!(said.contains(&"on_table.another_axis") && said.contains(&"on_table.follows"), "{said:?}");
+    // Of three channels one lies along the axis; one of which nothing is asked may lie across.
+    let triad = TableFacts {
+        channels: vec![channel("x", 0.004), channel("unasked", -0.002), channel("z", 1.0001)],
+        ..facts
+    };
+    let said: Vec<&str> = judge(&triad).iter().map(|c| c.message.as_ref().map_or("", |m| m.id)).collect();
+    let one_axis = said.iter().filter(|s| **s == "table_motion.one_axis").count();
+    assert!(one_axis == 1 && said.contains(&"on_table.follows"), "{said:?}");
 }

@@ -28,6 +28,7 @@ const ENDINGS: &[(&str, &str)] = &[
     ("_deg_c_h", "degC/h"),
     ("_deg_c", "degC"),
     ("_deg_h", "deg/h"),
+    ("_deg_s", "deg/s"),
     ("_hz", "Hz"),
     ("_s", "s"),
     ("_h", "h"),
