@@ -265,6 +265,13 @@ fn each_file_of_a_pattern_is_a_unit() {
     let names: Vec<&str> =
         all["units"].as_array().unwrap().iter().map(|u| u["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["u1", "u2"]);
+    // Files of one name in two folders are told apart by their paths.
+    std::fs::create_dir(dir.path().join("other")).unwrap();
+    std::fs::copy(dir.path().join("u2.csv"), dir.path().join("other/u1.csv")).unwrap();
+    let (_, all) = compare(dir.path(), &["u1.csv", "other/u1.csv", "u2.csv"]);
+    let names: Vec<&str> =
+        all["units"].as_array().unwrap().iter().map(|u| u["name"].as_str().unwrap()).collect();
+    assert_eq!(names[1..], ["other/u1.csv", "u2"]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::progress::Progress;
 use super::{AnalyzeArgs, CompareArgs, GridArgs, analyze, exit, place, run};
 use crate::compare::published::checked;
-use crate::compare::{Comparison, Origin, Unit, csv, figures, tell_repeated, units_of};
+use crate::compare::{Comparison, Origin, Unit, csv, figures, tell_apart, tell_repeated, units_of};
 use crate::figure::Figure;
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
@@ -61,6 +61,7 @@ fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
             units.extend(read(args, &path, &limits, now, lang)?);
         }
     }
+    tell_apart(&mut units);
     tell_repeated(&mut units);
     let drawn = figures::all(&units);
     let rows = csv::units(&units);

@@ -23,6 +23,7 @@ const VIEWS: &[(&str, &str)] = &[
     ("lag", "goodness.view.lag"),
     ("averaging_time", "goodness.view.averaging_time"),
     ("amplitude", "goodness.view.amplitude"),
+    ("jump", "goodness.view.jump"),
 ];
 
 /// Bad samples and gaps of the recording, and a test that was not valid.

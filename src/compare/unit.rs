@@ -195,6 +195,23 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
     Ok(channels.iter().map(unit).collect())
 }
 
+/// Tells units of the same name apart: by the name of their file, and where that is the same too, by their path.
+pub fn tell_apart(units: &mut [Unit]) {
+    let file = |u: &Unit| {
+        let name = std::path::Path::new(&u.path).file_name();
+        name.map_or_else(|| u.path.clone(), |n| n.to_string_lossy().into_owned())
+    };
+    for by in [file, |u: &Unit| u.path.clone()] {
+        let shared: Vec<bool> =
+            units.iter().map(|u| units.iter().any(|o| o.path != u.path && o.label() == u.label())).collect();
+        for (unit, shared) in units.iter_mut().zip(shared) {
+            if shared {
+                unit.name = by(unit);
+            }
+        }
+    }
+}
+
 /// Says of each unit that an earlier one comes from the same recording and channel: it is no second piece of evidence.
 pub fn tell_repeated(units: &mut [Unit]) {
     let first: Vec<Option<String>> = units

@@ -1,6 +1,7 @@
 //! The strongest spectral line.
 //!
-//! Its power stands over white noise of the level of the local floor. To first order its variance over half-overlapping
+//! Where block means follow it, it is a sinusoid fitted to the whole record, with the Cramér-Rao variances of one in noise of
+//! the level about it. Elsewhere it comes from the averaged periodogram. Its power stands over white noise of the level of the local floor. To first order its variance over half-overlapping
 //! Hann segments is that of an efficient estimate, with the square of the noise added for weak lines. Its frequency has
 //! the Cramér-Rao variance of a sinusoid in white noise for each segment, over the number of averages, with a factor
 //! for the interpolation between bins. Validated by simulation from 5 to 1000 times the floor.
@@ -34,10 +35,12 @@ impl Measurand for SpectralLine {
         };
         let averages = gyro.spectrum().effective_averages;
         let value = if frequency { line.frequency_hz } else { line.amplitude_deg_h };
-        let standard_uncertainty = if frequency {
-            frequency_uncertainty_hz(line, averages)
-        } else {
-            amplitude_uncertainty(line, averages)
+        let (standard_uncertainty, method) = match (line.sinusoid.filter(|s| s.skirt_deg_h == 0.0), frequency)
+        {
+            (Some(fitted), true) => (fitted.frequency_deviation_hz, "sinusoid"),
+            (Some(fitted), false) => (fitted.amplitude_deviation_deg_h, "sinusoid"),
+            (None, true) => (frequency_uncertainty_hz(line, averages), "welch"),
+            (None, false) => (amplitude_uncertainty(line, averages), "welch"),
         };
         let estimate = Estimate::measured(
             id,
@@ -45,7 +48,7 @@ impl Measurand for SpectralLine {
             value,
             unit,
             Spread::Normal { standard_uncertainty },
-            "welch",
+            method,
         );
         Some(estimate.note(Note::new("note.line").with("resolution_hz", line.resolution_hz)))
     }

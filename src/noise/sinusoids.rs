@@ -21,8 +21,12 @@ const MOST: usize = 24;
 const REACH: f64 = 0.6;
 /// Share of the power over the floor that a sinusoid must hold to stand for a line: less is no coherent line.
 const LEAST_SHARE: f64 = 0.5;
-/// Modes to each side of a line, from the third on, whose power is the noise about it.
-const RING: usize = 10;
+/// Modes to each side of a line over which it spreads where it wanders a little.
+const SKIRT: usize = 8;
+/// Modes beyond whose power is the noise about it.
+const RING: usize = 12;
+/// Standard deviations by which the power of the skirt must stand above the noise.
+const WANDERS: f64 = 5.0;
 
 /// A sinusoid in block means.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +39,8 @@ pub struct Sinusoid {
     pub amplitude_deviation_deg_h: f64,
     /// Standard deviation of the frequency, Hz.
     pub frequency_deviation_hz: f64,
+    /// Rms times √2 of what a line that wanders a little has beside it, deg/h; 0 for one that does not.
+    pub skirt_deg_h: f64,
 }
 
 /// Turns by a constant angle, one after the other.
@@ -163,13 +169,21 @@ impl Means {
             coefficients_deg_h,
             amplitude_deviation_deg_h: 0.0,
             frequency_deviation_hz: 0.0,
+            skirt_deg_h: 0.0,
         };
         self.subtract(&out);
         let mode = 2.0 * PI / self.values.len() as f64;
-        let ring = (3..3 + RING).flat_map(|k| [turn - k as f64 * mode, turn + k as f64 * mode]);
-        let ring: Vec<f64> = ring.filter(|t| *t > mode && *t < PI).map(|t| self.power(t)).collect();
+        let beside = |from: usize, to: usize| -> Vec<f64> {
+            let turns = (from..to).flat_map(|k| [turn - k as f64 * mode, turn + k as f64 * mode]);
+            turns.filter(|t| *t > mode && *t < PI).map(|t| self.power(t)).collect()
+        };
+        let (skirt, ring) = (beside(1, 1 + SKIRT), beside(1 + SKIRT, 1 + SKIRT + RING));
         let noise = ring.iter().sum::<f64>() / ring.len().max(1) as f64;
         let n = self.count() as f64;
+        let more = skirt.iter().map(|p| p - noise).sum::<f64>();
+        if more > WANDERS * noise * (skirt.len() as f64).sqrt() {
+            out.skirt_deg_h = (4.0 * more / n).sqrt();
+        }
         out.amplitude_deviation_deg_h = (2.0 * noise / n).sqrt();
         let span = self.values.len() as f64;
         let turn_deviation = (24.0 * noise / n).sqrt() / (amplitude * span);
@@ -209,14 +223,15 @@ pub fn fit(blocks: &BlockSeries, tau0_s: f64, lines: &mut [SpectralLine]) {
         let share = found.map(|s| {
             let [a, b] = s.coefficients_deg_h;
             let kept = kept(s.frequency_hz, blocks.block_len, tau0_s);
-            (s, a.hypot(b) / kept, kept)
+            (s, a.hypot(b).hypot(s.skirt_deg_h) / kept, kept)
         });
         match share {
             Some((s, amplitude, kept)) if amplitude > LEAST_SHARE.sqrt() * line.amplitude_deg_h => {
                 line.frequency_hz = s.frequency_hz;
                 line.amplitude_deg_h = amplitude;
-                let amplitude_deviation_deg_h = s.amplitude_deviation_deg_h / kept;
-                line.sinusoid = Some(Sinusoid { amplitude_deviation_deg_h, ..s });
+                let (amplitude_deviation_deg_h, skirt_deg_h) =
+                    (s.amplitude_deviation_deg_h / kept, s.skirt_deg_h / kept);
+                line.sinusoid = Some(Sinusoid { amplitude_deviation_deg_h, skirt_deg_h, ..s });
             }
             _ => means.values = before,
         }

@@ -69,6 +69,10 @@ fn departure(judged: &Judged, fit: &GoodnessOfFit) -> Note {
             let note = Note::new(key).with("from_s", figure(place.from)).with("percent", percent);
             if place.from < place.to { note.with("to_s", figure(place.to)) } else { note }
         }
+        View::Jump => Note::new("goodness.jump")
+            .with("time_s", figure(0.5 * (place.from + place.to)))
+            .with("size", Arg::Figures { value: place.excess, digits: 3, zeros: true })
+            .with("deviations", Arg::Figures { value: judged.statistic.abs(), digits: 2, zeros: true }),
         View::Amplitude => {
             let found = fit.amplitude.as_ref();
             Note::new("goodness.amplitude")

@@ -1,4 +1,5 @@
-//! Goodness of fit: the record with the model taken out of it, judged in frequency, lag, averaging time and amplitude.
+//! Goodness of fit: the record with the model taken out of it, judged in frequency, lag, averaging time, amplitude, and by
+//! jumps of its level.
 //!
 //! Every view gives a probability that counts the search within the view and what fitted parameters took, and says
 //! where and by how much the record departs most. Measured on simulated records (`tests/goodness_of_fit.rs`).
@@ -7,6 +8,7 @@ mod amplitude;
 mod averaging;
 mod frequency;
 mod grid;
+mod jump;
 mod lag;
 mod null;
 mod spectrum;
@@ -15,6 +17,7 @@ mod whiten;
 pub use amplitude::{Amplitude, TAIL};
 pub use averaging::{OctaveRatio, degrees_of_freedom};
 pub use frequency::BandRatio;
+pub use jump::Jump;
 pub use lag::ResidualCorrelation;
 pub use whiten::{Whitened, whitened};
 
@@ -36,11 +39,13 @@ pub enum View {
     AveragingTime,
     /// Distribution of the values.
     Amplitude,
+    /// Jumps of the level.
+    Jump,
 }
 
 impl View {
     /// Every view, in the order of reports.
-    pub const ALL: [View; 4] = [View::Frequency, View::Lag, View::AveragingTime, View::Amplitude];
+    pub const ALL: [View; 5] = [View::Frequency, View::Lag, View::AveragingTime, View::Amplitude, View::Jump];
 
     /// Id in results.
     pub fn id(self) -> &'static str {
@@ -49,6 +54,7 @@ impl View {
             View::Lag => "lag",
             View::AveragingTime => "averaging_time",
             View::Amplitude => "amplitude",
+            View::Jump => "jump",
         }
     }
 }
@@ -56,12 +62,12 @@ impl View {
 /// Where a record departs most from its model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Departure {
-    /// Begin: Hz, s, s, or standard deviations, by view.
+    /// Begin: Hz, s, s, standard deviations, or s since the record began, by view.
     pub from: f64,
     /// End, same unit.
     pub to: f64,
     /// Size: power over model less 1; autocorrelation; deviation over model less 1; values beyond four standard
-    /// deviations over expected ones less 1.
+    /// deviations over expected ones less 1; deg/h.
     pub excess: f64,
 }
 
@@ -126,7 +132,9 @@ impl GoodnessOfFit {
         let looks: Vec<&ResidualCorrelation> = sample_correlation.iter().chain(&correlation).collect();
         let amplitude = whitened.as_ref().and_then(amplitude::of);
         let (octaves, averaging) = averaging::judge(octaves, &described, &grid, tau0_s);
-        let views = [bands.judge(), lag::judge(&looks), averaging, amplitude.as_ref().map(amplitude::judge)];
+        let jump = whitened.as_ref().and_then(|w| Some(jump::judge(w.jump.as_ref()?, w.step_s, w.from_s)));
+        let amplitudes = amplitude.as_ref().map(amplitude::judge);
+        let views = [bands.judge(), lag::judge(&looks), averaging, amplitudes, jump];
         GoodnessOfFit {
             views: views.into_iter().flatten().collect(),
             bands: bands.bands,

@@ -2,6 +2,7 @@
 //! their expected power, transformed back.
 
 use super::super::spectral_record::SpectralRecord;
+use super::jump::{self, Jump};
 use super::spectrum::ModelSpectrum;
 use crate::noise::composite::Composite;
 use crate::numeric::cosine::{dct2, inverse_dct2};
@@ -24,6 +25,10 @@ pub struct Whitened {
     pub share: f64,
     /// The block means of the same stretch less their mean, deg/h.
     pub means: Vec<f64>,
+    /// Begin of the stretch since the first block, s.
+    pub from_s: f64,
+    /// Its largest jump beside the noise of the model.
+    pub jump: Option<Jump>,
 }
 
 /// Whitens the longest stretch of a record; `None` when that is too short or the model has no power.
@@ -51,13 +56,18 @@ pub fn whitened(record: &SpectralRecord<'_>, model: &Composite) -> Option<Whiten
     let series: Vec<f64> = series.iter().map(|v| v - mean).collect();
     let power = ModelSpectrum { model, tau0_s: record.tau0_s }.modes(count, step_s);
     let mut modes = dct2(&series);
+    let plain = modes.clone();
     let masks = record.masks();
     let step_hz = 0.5 / (count as f64 * step_s);
     let mut used = 0;
+    let mut powers = vec![0.0; count];
     for (k, c) in modes.iter_mut().enumerate() {
         let expected = k.checked_sub(1).and_then(|i| power.get(i)).map_or(0.0, |p| p / step_s);
         let left_out =
             expected <= 0.0 || masks.iter().any(|m| m.hides(k as f64 * step_hz, step_hz, step_s, false));
+        if !left_out {
+            powers[k] = expected;
+        }
         *c = if left_out { 0.0 } else { *c / expected.sqrt() };
         used += usize::from(!left_out);
     }
@@ -72,6 +82,8 @@ pub fn whitened(record: &SpectralRecord<'_>, model: &Composite) -> Option<Whiten
         modes: used,
         share: count as f64 / total.max(1) as f64,
         means: series,
+        from_s: from as f64 * step_s,
+        jump: jump::largest(&plain, &powers),
     })
 }
 

@@ -40,6 +40,7 @@ fn view(id: &str) -> &'static str {
         "frequency" => "goodness.view.frequency",
         "lag" => "goodness.view.lag",
         "averaging_time" => "goodness.view.averaging_time",
+        "jump" => "goodness.view.jump",
         _ => "goodness.view.amplitude",
     }
 }
