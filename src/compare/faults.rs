@@ -68,6 +68,22 @@ pub(super) fn of_model(result: &Value, channel: &str) -> Option<Note> {
     (!names.is_empty()).then(|| Note::new("compare.more.departs").with("views", Arg::Several(names, ", ")))
 }
 
+/// The jump of the level that the model of a channel does not make: when, and how large.
+pub(super) fn jump(result: &Value, channel: &str) -> Option<Note> {
+    let rows = result.get("goodness_of_fit")?.as_array()?;
+    let row = rows.iter().find(|r| {
+        r.get("channel").and_then(Value::as_str) == Some(channel)
+            && r.get("view").and_then(Value::as_str) == Some("jump")
+            && r.get("departs").and_then(Value::as_bool) == Some(true)
+    })?;
+    let number = |name: &str| row.pointer(&format!("/message/args/{name}"))?.as_f64();
+    let note = Note::new("goodness.jump")
+        .with("time_s", Arg::rounded(number("time_s")?, 6))
+        .with("size", Arg::figures(number("size")?, 3))
+        .with("deviations", Arg::rounded(number("deviations")?, 2));
+    Some(note)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,12 +97,17 @@ mod tests {
             "goodness_of_fit": [
                 {"channel": "x", "view": "amplitude", "departs": true},
                 {"channel": "y", "view": "lag", "departs": true},
+                {"channel": "y", "view": "jump", "departs": true,
+                 "message": {"args": {"time_s": 18000.0, "size": 0.997, "deviations": 26.3}}},
             ],
         });
         let said: Vec<String> = of_recording(&result).iter().map(ToString::to_string).collect();
         assert!(said[0].contains("Gaps: 2, Stuck samples: 40") && said.len() == 2, "{said:?}");
         let model = of_model(&result, "x").unwrap().to_string();
         assert!(model.contains("by amplitude") && !model.contains("by lag"), "{model}");
+        let jumped = jump(&result, "y").unwrap().to_string();
+        assert!(jumped.contains("0.997") && jumped.contains("18000 s"), "{jumped}");
+        assert_eq!(jump(&result, "x"), None);
         assert_eq!((of_recording(&json!({})), of_model(&result, "z")), (vec![], None));
     }
 }

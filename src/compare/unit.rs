@@ -188,6 +188,7 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
         let misfit = unit.detail.as_ref().and_then(says::misfit);
         unit.indicative = departs.is_some() || misfit.is_some();
         unit.says.extend(misfit.or(departs));
+        unit.says.extend(faults::jump(result, channel));
         unit.says.extend(says::sentences(&unit));
         unit.missing = says::missing(&unit);
         unit
