@@ -316,6 +316,24 @@ mod tests {
     }
 
     #[test]
+    fn a_line_that_wanders_a_little_keeps_its_whole_power() {
+        let mut blocks = record(9, &[]);
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(10);
+        let mut phase = 0.3;
+        for (i, mean) in blocks.mean.iter_mut().enumerate() {
+            let step: f64 = StandardNormal.sample(&mut rng);
+            phase += 0.008 * step;
+            *mean += 20.0 * (2.0 * PI * 0.0421 * i as f64 + phase).cos();
+        }
+        let mut lines = [line(0.0421, 20.0)];
+        fit(&blocks, 1.0, &mut lines);
+        let s = lines[0].sinusoid.unwrap();
+        let alone = s.coefficients_deg_h[0].hypot(s.coefficients_deg_h[1]);
+        assert!(alone < 19.5 && s.skirt_deg_h > 3.0, "{s:?}");
+        assert!((lines[0].amplitude_deg_h / 20.0 - 1.0).abs() < 0.01, "{lines:?}");
+    }
+
+    #[test]
     fn what_is_no_sinusoid_keeps_what_was_said_of_it() {
         let mut lines = [line(0.1, 3.0), line(0.49, 1.0), line(0.0001, 1.0)];
         fit(&record(6, &[]), 1.0, &mut lines);
