@@ -4,7 +4,7 @@ mod support;
 
 use serde_json::Value;
 use std::path::Path;
-use support::{result, root, sagnac, sample, shipped};
+use support::{procedure, result, root, sagnac, sample, shipped};
 use tempfile::tempdir;
 
 fn json(path: &Path) -> Value {
@@ -112,6 +112,36 @@ fn a_limit_is_judged_against_the_figure_it_names() {
     assert_eq!(verdict("bias_instability"), "pass");
     assert_eq!(verdict("bias_instability_minimum"), "none");
     assert!(table.contains("fail") && table.contains("pass"), "{table}");
+}
+
+#[test]
+fn a_limit_on_what_is_not_compared_is_told_to_be_left_out() {
+    let dir = tempdir().unwrap();
+    let text = "format = \"limits/1\"\n[limits]\nid = \"x\"\ntitle = \"X\"\nrevision = \"A\"\n\
+        [[limit]]\nmeasurand = \"static_bias\"\nmax = \"0.01 deg/h\"\n\
+        [[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.01 deg/h\"\n";
+    std::fs::write(dir.path().join("l.toml"), text).unwrap();
+    compare(dir.path(), &[&sample("pass"), "--limits", "l.toml"]);
+    let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
+    assert!(page.contains("Limits on Static bias are not judged here"), "{page}");
+    // A result says so of the limits it was judged by.
+    let run = ["run", &procedure(), &sample("pass"), "--limits", "l.toml", "--serial", "7", "--out", "r"];
+    sagnac(dir.path(), &run);
+    compare(dir.path(), &["r"]);
+    let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
+    assert!(page.contains("are not judged here") && page.contains("Static bias"), "{page}");
+}
+
+#[test]
+fn a_unit_against_the_name_of_the_column_is_told() {
+    let dir = tempdir().unwrap();
+    compare(dir.path(), &[&sample("pass"), "--unit", "deg/s"]);
+    let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
+    assert!(page.contains("states deg/h and is read in deg/s"), "{page}");
+    let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--unit", "deg/s", "--out", "a"]);
+    assert!(said.err.contains("column `rate_deg_h` states deg/h"), "{}", said.err);
+    let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--unit", "°/h", "--out", "b"]);
+    assert!(!said.err.contains("states"), "{}", said.err);
 }
 
 #[test]

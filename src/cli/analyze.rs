@@ -38,6 +38,9 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
     let channels = channels(args, &source).map_err(say)?;
+    for note in named_otherwise(&channels, &source) {
+        place::complain(&format!("{}\n", note.say(lang)));
+    }
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     let declared = args.sample_rate;
     let sample_rate = if use_stamps { declared } else { source.rate_without_stamps_hz(declared) };
@@ -146,6 +149,23 @@ pub(super) fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channe
         }
     }
     Ok(channels)
+}
+
+/// Said of each gyro channel whose column states another unit than it is read in: `--unit` counts, and may be wrong.
+pub(super) fn named_otherwise(channels: &[Channel], source: &Source) -> Vec<Note> {
+    let gyro = channels.iter().filter(|c| c.role.is_gyro());
+    gyro.filter_map(|channel| {
+        let column = source.columns().get(source.resolve(&channel.column).ok()?)?;
+        let stated = column.guess();
+        let factor = stated.unit.factor_to(&channel.unit).unwrap_or(f64::NAN);
+        (stated.unit_is_named && factor != 1.0).then(|| {
+            Note::new("cli.unit_otherwise")
+                .with("column", column.name.as_str())
+                .with("stated", stated.unit.text())
+                .with("unit", channel.unit.text())
+        })
+    })
+    .collect()
 }
 
 fn time(source: &Source, name: &str) -> Result<Channel, Note> {

@@ -3,10 +3,13 @@
 use super::progress::Progress;
 use super::{AnalyzeArgs, CompareArgs, GridArgs, analyze, exit, place, run};
 use crate::compare::published::checked;
-use crate::compare::{Comparison, Origin, Unit, csv, figures, tell_apart, tell_repeated, units_of};
+use crate::compare::{
+    Comparison, Origin, Unit, csv, figures, not_compared, tell_apart, tell_repeated, units_of,
+};
 use crate::figure::Figure;
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
+use crate::procedure::limits::LimitSpec;
 use crate::procedure::{EffectiveLimits, load_limits};
 use crate::record::UnitUnderTest;
 use crate::recording::Role;
@@ -90,6 +93,7 @@ fn read(
 ) -> Result<Vec<Unit>, String> {
     let say = |note: Note| place::error(&note, lang);
     let shown = path.display().to_string();
+    let mut otherwise = vec![];
     let (value, name, origin) = match result_file(path) {
         Some(file) => {
             let bytes = std::fs::read(&file).map_err(|e| {
@@ -116,11 +120,21 @@ fn read(
             return Err(say(Note::new("compare.more.no_result_in").with("path", shown)));
         }
         None => {
-            let (value, name) = analysed(args, path, limits, now, lang)?;
-            (value, name, Origin::Recording)
+            let analysed = analysed(args, path, limits, now, lang)?;
+            otherwise = analysed.otherwise;
+            (analysed.result, analysed.name, Origin::Recording)
         }
     };
-    units_of(&value, &shown, &name, origin).map_err(|e| say(e.0))
+    let mut units = units_of(&value, &shown, &name, origin).map_err(|e| say(e.0))?;
+    if origin == Origin::Recording {
+        for unit in &mut units {
+            let of_unit = |l: &&LimitSpec| l.channel.as_ref().is_none_or(|c| *c == unit.channel);
+            let ids = limits.set.limits.iter().filter(of_unit).map(|l| l.measurand.id);
+            unit.missing.extend(not_compared(ids));
+            unit.missing.extend(otherwise.iter().cloned());
+        }
+    }
+    Ok(units)
 }
 
 /// The result that a path stands for.
@@ -132,14 +146,23 @@ fn result_file(path: &Path) -> Option<PathBuf> {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")).then(|| path.to_owned())
 }
 
-/// The result of a recording, as `analyze` makes it, and the name of its unit.
+/// A recording that was analysed.
+struct Analysed {
+    /// The result, as `analyze` makes it.
+    result: Value,
+    /// Name of the unit.
+    name: String,
+    /// Columns that were read in another unit than their names state.
+    otherwise: Vec<Note>,
+}
+
 fn analysed(
     args: &CompareArgs,
     path: &Path,
     limits: &EffectiveLimits,
     now: DateTime<Utc>,
     lang: Lang,
-) -> Result<(Value, String), String> {
+) -> Result<Analysed, String> {
     let say = |note: Note| place::error(&note, lang);
     let as_analyze = AnalyzeArgs {
         recording: vec![path.to_owned()],
@@ -158,6 +181,7 @@ fn analysed(
     let recording = open_recording(&as_analyze.recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
     let channels = analyze::channels(&as_analyze, &source).map_err(say)?;
+    let otherwise = analyze::named_otherwise(&channels, &source);
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     let stated = source.stated_sample_rate_hz().filter(|_| !use_stamps);
     let sample_rate = args.sample_rate.or(stated);
@@ -184,9 +208,9 @@ fn analysed(
     let outcome = execute(&request, &mut |done, total| progress.update(&reading, done, total));
     progress.finish();
     let outcome = outcome.map_err(|e| say(e.note()))?;
-    let value = serde_json::to_value(&outcome.record)
+    let result = serde_json::to_value(&outcome.record)
         .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
-    Ok((value, stem(path)))
+    Ok(Analysed { result, name: stem(path), otherwise })
 }
 
 /// Writes the folder and prints the table.

@@ -15,7 +15,7 @@ mod unit;
 
 pub use parts::{part_key, part_name};
 pub use rules::{RULES, RuleRow};
-pub use unit::{Origin, Quantity, Unit, UnitError, tell_apart, tell_repeated, units_of};
+pub use unit::{Origin, Quantity, Unit, UnitError, not_compared, tell_apart, tell_repeated, units_of};
 
 use crate::record::Program;
 use serde::Serialize;

@@ -5,7 +5,7 @@ use super::rules::{RuleRow, rules};
 use super::says;
 use crate::estimate::{Interval, UpperLimit};
 use crate::record::ComparisonRecord;
-use crate::text::Note;
+use crate::text::{Arg, Note};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -191,9 +191,23 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
         unit.says.extend(faults::jump(result, channel));
         unit.says.extend(says::sentences(&unit));
         unit.missing = says::missing(&unit);
+        let limited = |r: &&Value| {
+            r.get("channel").and_then(Value::as_str) == Some(channel)
+                && r.get("limit").is_some_and(|l| !l.is_null())
+        };
+        let ids = rows.iter().filter(limited).filter_map(|r| r.get("id").and_then(Value::as_str));
+        unit.missing.extend(not_compared(ids));
         unit
     };
     Ok(channels.iter().map(unit).collect())
+}
+
+/// Said of limits on what no comparison holds.
+pub fn not_compared<'a>(limited: impl Iterator<Item = &'a str>) -> Option<Note> {
+    let mut ids: Vec<&str> = limited.filter(|id| !COMPARED.contains(id)).collect();
+    ids.dedup();
+    let names: Vec<Arg> = ids.into_iter().map(|id| Arg::Key(format!("measurand.{id}"))).collect();
+    (!names.is_empty()).then(|| Note::new("compare.more.limits").with("names", Arg::Several(names, ", ")))
 }
 
 /// Tells units of the same name apart: by the name of their file, and where that is the same too, by their path.

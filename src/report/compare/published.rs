@@ -3,6 +3,7 @@
 use crate::compare::published::{Checked, CheckedRow, Row1};
 use crate::report::number::{digits, limit};
 use crate::report::view::Words;
+use crate::text::Lang;
 use crate::text::decimal;
 use serde::Serialize;
 
@@ -62,14 +63,14 @@ impl PublishedView {
         let lang = words.lang;
         let first = |r: &Row1| {
             [
-                r.device.clone(),
+                device(&r.device, words.lang),
                 decimal(&r.bias_instability, lang),
                 decimal(&r.n, lang),
                 lengths(&r.coil, words),
             ]
         };
         PublishedView {
-            source: checked.source.clone(),
+            source: words.t("compare.published.cited"),
             rows: checked.rows.iter().map(|r| row(r, words)).collect(),
             table1: checked.table1.iter().map(first).collect(),
             null: checked
@@ -94,12 +95,27 @@ fn lengths(printed: &str, words: Words) -> String {
     named(text, "mm", "compare.more.mm")
 }
 
+/// The name of a device: Russian ones have Latin letters in the data alone.
+fn device(name: &str, lang: Lang) -> String {
+    let spelt = [
+        ("OIUS", "ОИУС"),
+        ("TIUS", "ТИУС"),
+        ("BChE", "БЧЭ"),
+        ("Optolink", "Оптолинк"),
+        ("Fizoptika", "Физоптика"),
+    ];
+    match lang {
+        Lang::En => name.to_owned(),
+        Lang::Ru => spelt.iter().fold(name.to_owned(), |name, (latin, own)| name.replace(latin, own)),
+    }
+}
+
 fn row(r: &CheckedRow, words: Words) -> RowView {
     let printed = |text: &str| decimal(text, words.lang);
     let p = &r.printed;
     let computed = |v: f64| digits(v, 3, words.lang);
     RowView {
-        device: r.device.clone(),
+        device: device(&r.device, words.lang),
         sigma100: printed(&p.sigma100),
         bias_instability: printed(&p.bias_instability),
         ratio_printed: printed(&p.bias_ratio),
