@@ -21,6 +21,9 @@ const MOST: usize = 24;
 const REACH: f64 = 0.6;
 /// Share of the power over the floor that a sinusoid must hold to stand for a line: less is no coherent line.
 const LEAST_SHARE: f64 = 0.5;
+/// Standard deviations of its amplitude from which a sinusoid stands for a line that was taken to be stronger: noise alone
+/// reaches them in one of 10¹³ modes.
+const ALONE: f64 = 8.0;
 /// Modes to each side of a line over which it spreads where it wanders a little.
 const SKIRT: usize = 8;
 /// Modes beyond whose power is the noise about it.
@@ -41,6 +44,15 @@ pub struct Sinusoid {
     pub frequency_deviation_hz: f64,
     /// Rms times √2 of what a line that wanders a little has beside it, deg/h; 0 for one that does not.
     pub skirt_deg_h: f64,
+}
+
+impl Sinusoid {
+    /// True when it stands far above the noise about it and leaves nothing beside: a line then, however strong it was
+    /// taken to be. A disturbance that hardly decays shows in a single mode, which tells its rms by a factor of two.
+    fn stands_alone(&self) -> bool {
+        let [a, b] = self.coefficients_deg_h;
+        self.skirt_deg_h == 0.0 && a.hypot(b) > ALONE * self.amplitude_deviation_deg_h
+    }
 }
 
 /// Turns by a constant angle, one after the other.
@@ -226,7 +238,9 @@ pub fn fit(blocks: &BlockSeries, tau0_s: f64, lines: &mut [SpectralLine]) {
             (s, a.hypot(b).hypot(s.skirt_deg_h) / kept, kept)
         });
         match share {
-            Some((s, amplitude, kept)) if amplitude > LEAST_SHARE.sqrt() * line.amplitude_deg_h => {
+            Some((s, amplitude, kept))
+                if amplitude > LEAST_SHARE.sqrt() * line.amplitude_deg_h || s.stands_alone() =>
+            {
                 line.frequency_hz = s.frequency_hz;
                 line.amplitude_deg_h = amplitude;
                 let (amplitude_deviation_deg_h, skirt_deg_h) =
@@ -331,6 +345,20 @@ mod tests {
         let alone = s.coefficients_deg_h[0].hypot(s.coefficients_deg_h[1]);
         assert!(alone < 19.5 && s.skirt_deg_h > 3.0, "{s:?}");
         assert!((lines[0].amplitude_deg_h / 20.0 - 1.0).abs() < 0.01, "{lines:?}");
+    }
+
+    #[test]
+    fn a_line_that_was_taken_to_be_too_strong_has_its_own_amplitude() {
+        let mut lines = [line(0.0421, 0.4)];
+        fit(&record(11, &[(0.0421, 0.25)]), 1.0, &mut lines);
+        assert!(lines[0].sinusoid.is_some() && (lines[0].amplitude_deg_h - 0.25).abs() < 0.06, "{lines:?}");
+        // Noise alone stands so high nowhere.
+        let none = (0..200).all(|seed| {
+            let mut lines = [line(0.0421, 0.4)];
+            fit(&record(300 + seed, &[]), 1.0, &mut lines);
+            lines[0].sinusoid.is_none()
+        });
+        assert!(none);
     }
 
     #[test]

@@ -117,12 +117,14 @@ impl SpectralRecord<'_> {
             Some(welch) => 1.0 / (welch.segment_len as f64 * self.tau0_s),
             None => 4.0 * evidence.resolution_hz(q.frequency_hz),
         };
+        let resolution_hz = resolution_hz.min(0.25 * q.frequency_hz);
+        // Of a Hann window: A²/(6 S) a bin.
+        let in_a_bin = 2.0 * q.rms_deg_h.powi(2) / (6.0 * resolution_hz);
         SpectralLine {
             frequency_hz: q.frequency_hz,
-            resolution_hz: resolution_hz.min(0.25 * q.frequency_hz),
+            resolution_hz,
             amplitude_deg_h: q.rms_deg_h * 2f64.sqrt(),
-            excess: q.density(q.frequency_hz, evidence.tau0_s, Sampling::Averaging)
-                / evidence.power_near(q.frequency_hz).max(f64::MIN_POSITIVE),
+            excess: 1.0 + in_a_bin / evidence.power_near(q.frequency_hz).max(f64::MIN_POSITIVE),
             false_alarm_probability: 0.0,
             harmonic_of: None,
             harmonic_order: 1,
