@@ -1,12 +1,12 @@
-//! Whether quantisation can be told from what else bends the spectrum near its upper end.
+//! Whether quantisation or a filter can be told from what else bends the spectrum near its upper end.
 
 use super::search::all_free;
-use super::{ExtraThresholds, Joint, JointPoint, Variable, parameter_covariance};
+use super::{ExtraThresholds, Free, Joint, JointPoint, Shape, Variable, parameter_covariance};
 
 /// Place of quantisation among the variances.
 pub(super) const QUANTIZATION: usize = 3;
-/// Growth of the uncertainty of N by letting quantisation in from which the two count as confounded: a needless
-/// quantisation then displaces N by several of the deviations it would have without.
+/// Growth of the uncertainty of N by letting a part in from which the two count as confounded: a needless part then
+/// displaces N by several of the deviations it would have without.
 const CONFOUNDED: f64 = 2.0;
 
 /// What quantisation costs at a maximum.
@@ -29,15 +29,39 @@ pub(super) fn quantization_price(
 /// True when N is several times less certain with quantisation free than with it held.
 fn confounds_white(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> bool {
     let mut free = all_free(&point.shape, ramp, true);
-    let mut sigma_of_white = |quantization: bool| {
+    let mut sigma = |quantization: bool| {
         free.variance[QUANTIZATION] = quantization;
-        let (variables, covariance) = parameter_covariance(joint, point, &free);
-        let at = variables.iter().position(|v| *v == Variable::Variance(0))?;
-        Some(covariance.get(at)?.get(at)?.max(0.0).sqrt())
+        sigma_of_white(joint, point, &free)
     };
-    match (sigma_of_white(true), sigma_of_white(false)) {
+    match (sigma(true), sigma(false)) {
         (Some(with), Some(without)) => with > CONFOUNDED * without,
         // Where N has vanished, quantisation stands in its place.
         _ => point.variance.get(QUANTIZATION).is_some_and(|v| *v > 0.0) && !point.shape.is_plain(),
     }
+}
+
+/// What a filter costs at a maximum. Beside a short Markov process it falls where the process does, and the white level
+/// under the process is then told by the filter alone.
+pub(super) fn filter_price(
+    joint: &Joint<'_>,
+    point: &JointPoint,
+    ramp: bool,
+    thresholds: &ExtraThresholds,
+) -> f64 {
+    let sigma = |shape: Shape| {
+        let mut free = all_free(&shape, ramp, true);
+        free.variance[QUANTIZATION] = point.variance.get(QUANTIZATION).is_some_and(|v| *v > 0.0);
+        sigma_of_white(joint, &JointPoint { shape, ..point.clone() }, &free)
+    };
+    let without = Shape { filter: None, ..point.shape.clone() };
+    match (sigma(point.shape.clone()), sigma(without)) {
+        (Some(with), Some(without)) if with > CONFOUNDED * without => thresholds.filter_confounded,
+        _ => thresholds.filter,
+    }
+}
+
+fn sigma_of_white(joint: &Joint<'_>, point: &JointPoint, free: &Free) -> Option<f64> {
+    let (variables, covariance) = parameter_covariance(joint, point, free);
+    let at = variables.iter().position(|v| *v == Variable::Variance(0))?;
+    Some(covariance.get(at)?.get(at)?.max(0.0).sqrt())
 }

@@ -1,5 +1,6 @@
 //! Parts of a model that a later part made needless.
 
+use super::confounded::filter_price;
 use super::search::{all_free, best_of};
 use super::slow::Slow;
 use super::{BASE, ExtraThresholds, Extras, Joint, JointPoint, Kind, Shape};
@@ -54,7 +55,7 @@ pub(super) fn needless(
         reached - full.deviance - threshold
     };
     let excess = |part: Part| match part {
-        Part::Filter => less_by(part, thresholds.filter),
+        Part::Filter => less_by(part, filter_price(joint, full, ramp, thresholds)),
         Part::Damped(i) => match shape.damped.get(i) {
             Some((Kind::Markov, _)) => {
                 // Flicker or random walk may stand in its place, each at its own price.

@@ -15,6 +15,8 @@ use std::f64::consts::PI;
 pub struct ExtraThresholds {
     /// A filter of the output.
     pub filter: f64,
+    /// A filter beside a Markov process that together make N uncertain.
+    pub filter_confounded: f64,
     /// A Markov process. More than for a filter: white noise behind a filter is a Markov process as well, and is to be
     /// called by its simpler name.
     pub markov: f64,
@@ -34,6 +36,7 @@ impl Default for ExtraThresholds {
     fn default() -> Self {
         ExtraThresholds {
             filter: 14.0,
+            filter_confounded: 20.0,
             markov: 17.0,
             quantization_beside_filter: 20.0,
             quantization: 11.0,
