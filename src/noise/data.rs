@@ -26,15 +26,18 @@ impl BlockSeries {
     }
 }
 
-/// Averaged periodogram (Welch: Hann window, half overlap, mean of each segment removed).
+/// Averaged periodogram (Welch: Hann window, three quarters overlap, mean of each segment removed).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct WelchSpectrum {
     /// Samples in a segment.
     pub segment_len: usize,
     /// Number of segments averaged.
     pub segments: u64,
-    /// Equivalent number of independent averages in each bin (half overlap of a Hann window counted).
+    /// Equivalent number of independent averages in each bin.
     pub effective_averages: f64,
+    /// Averages that each bin adds to a sum over many: less, since neighbouring bins of a Hann window share power, and at
+    /// most what makes all bins together weigh as the samples.
+    pub averages_in_sums: f64,
     /// Two-sided density in units of (deg/h)² × sample interval: multiply by τ0 in s for (deg/h)²/Hz.
     /// Bin k lies at frequency k / (segment_len τ0), k = 0 ..= segment_len / 2.
     pub density: Vec<f64>,

@@ -141,7 +141,12 @@ fn tails_of_the_f_distribution() {
 #[test]
 fn odd_spectra_are_no_trouble() {
     assert_eq!(find_lines(&WelchSpectrum::default(), 1.0, 0.01), LineSearch::default());
-    let flat =
-        WelchSpectrum { segment_len: 64, segments: 3, effective_averages: 2.9, density: vec![0.0; 33] };
+    let flat = WelchSpectrum {
+        segment_len: 64,
+        segments: 3,
+        effective_averages: 2.9,
+        density: vec![0.0; 33],
+        ..Default::default()
+    };
     assert!(find_lines(&flat, 1.0, 0.01).lines.is_empty());
 }

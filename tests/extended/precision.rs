@@ -163,7 +163,7 @@ fn spectrum_and_autocorrelation_are_right_on_hard_records() {
         if spectrum.segments > 0 {
             let peak = spectrum.density.iter().copied().fold(0.0, f64::max);
             let last = spectrum.segment_len / 2;
-            let bins = [0, 1, 2, 3, 5, 8, 13, last / 2, last - 1, last];
+            let bins = [0, 1, 2, 5, 13, last / 2, last];
             let expected = slow::welch(&slices(&record), spectrum.segment_len, &bins);
             for (k, expected) in bins.iter().zip(expected) {
                 // A transform is known to the rounding of its largest values (Higham 2002, theorem 24.2).

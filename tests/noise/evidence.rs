@@ -41,7 +41,9 @@ fn welch(samples: &[f64], segment_len: usize) -> WelchSpectrum {
         from += segment_len / 2;
     }
     density.iter_mut().for_each(|d| *d /= segments as f64);
-    WelchSpectrum { segment_len, segments, effective_averages: 0.947 * segments as f64, density }
+    // Half overlap.
+    let averages = 0.947 * segments as f64;
+    WelchSpectrum { segment_len, segments, effective_averages: averages, averages_in_sums: averages, density }
 }
 
 fn identify(evidence: &Evidence) -> Identification {

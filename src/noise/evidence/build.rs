@@ -211,9 +211,7 @@ impl<'a> Builder<'a> {
         let tau0_s = self.evidence.tau0_s;
         let step_hz = 1.0 / (welch.segment_len as f64 * tau0_s);
         let piece = self.piece(Piece { tau_s: tau0_s, step_hz, blocks: 0, filling: 1.0 });
-        // Neighbouring bins of a Hann window share power, so that each adds half of its 2·averages: together the
-        // bins then weigh as the fourth power of the window does (0.947 of the samples).
-        let dof = welch.effective_averages.max(1.0);
+        let dof = welch.averages_in_sums.max(1.0);
         let nyquist = welch.segment_len / 2;
         for (k, density) in welch.density.iter().enumerate().take(nyquist).skip(2) {
             let f = k as f64 * step_hz;

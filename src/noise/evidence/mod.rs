@@ -171,12 +171,16 @@ impl Evidence {
         let mut top = 0.5 / tau_s;
         if block_len > 1 {
             let segment_len = (64 * block_len) as usize;
-            let segments = (2 * samples / segment_len as u64).max(2) - 1;
+            let averages = 2.0 * samples as f64 / segment_len as f64;
             top *= 0.5;
-            let flat = vec![1.0; segment_len / 2 + 1];
-            let effective_averages = 0.947 * segments as f64;
-            builder
-                .add_welch(&WelchSpectrum { segment_len, segments, effective_averages, density: flat }, top);
+            let spectrum = WelchSpectrum {
+                segment_len,
+                segments: (2.0 * averages) as u64,
+                effective_averages: averages,
+                averages_in_sums: averages,
+                density: vec![1.0; segment_len / 2 + 1],
+            };
+            builder.add_welch(&spectrum, top);
         }
         if count >= LEAST_STRETCH {
             let piece = builder.piece(Piece {

@@ -134,8 +134,7 @@ pub(super) fn of_samples(
     let lags = LAGS.min(welch.segment_len / 16);
     let coefficients: Vec<f64> =
         time.iter().skip(1).take(lags).map(|c| c / welch.segment_len as f64).collect();
-    // Each bin of a Hann window weighs as 0.947 of its samples.
-    let values = welch.effective_averages * used as f64;
+    let values = welch.averages_in_sums * used as f64;
     judged(tau0_s, coefficients, values, grid)
 }
 

@@ -96,7 +96,7 @@ pub fn standard_deviation(values: &[X]) -> f64 {
     (squares / X::from(values.len() - 1)).sqrt().to_f64()
 }
 
-/// Averaged periodogram at some bins: Hann window, half overlap, mean of each segment removed, two-sided, times the
+/// Averaged periodogram at some bins: Hann window, three quarters overlap, mean of each segment removed, two-sided, times the
 /// sample interval.
 pub fn welch(stretches: &[&[f64]], length: usize, bins: &[usize]) -> Vec<f64> {
     let turn = |k: usize| X::from(2.0) * X::pi() * X::from(k) / X::from(length);
@@ -123,7 +123,7 @@ pub fn welch(stretches: &[&[f64]], length: usize, bins: &[usize]) -> Vec<f64> {
                 *total = &*total + &(re.square() + im.square());
             }
             segments += 1;
-            from += length / 2;
+            from += length / 4;
         }
     }
     let scale = power * X::from(segments.max(1));
