@@ -25,6 +25,7 @@ pub mod joint;
 pub mod lines;
 pub mod misfit;
 pub mod model;
+pub mod null_ratio;
 mod phase;
 pub mod prediction;
 pub mod profile;

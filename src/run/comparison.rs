@@ -7,6 +7,7 @@ use crate::measurand::{GyroEvidence, russian_prediction};
 use crate::noise::composite::{Composite, Parameter, Part};
 use crate::noise::data::NoiseType;
 use crate::noise::identifiable::hours_until_identifiable_among;
+use crate::noise::null_ratio::null_ratio;
 use crate::noise::prediction::Agreement;
 use crate::noise::russian::{null_minimum, octave_identity};
 use crate::record::{
@@ -91,11 +92,15 @@ fn octaves(gyro: &GyroEvidence) -> Option<OctavesRecord> {
 
 fn minimum(gyro: &GyroEvidence) -> Option<MinimumRecord> {
     let low = lowest(gyro)?;
-    let largest_tau_s = readable(gyro).last()?.point.m as f64 * gyro.tau0_s;
+    let taus_s: Vec<f64> = readable(gyro).iter().map(|p| p.point.m as f64 * gyro.tau0_s).collect();
+    let largest_tau_s = *taus_s.last()?;
     let w = gyro.windows(DRIFT_WINDOW_S)?;
     // The ratio of the null depends on the record and the rule alone: N cancels.
-    let null = null_minimum(1.0, gyro.usable_s(), largest_tau_s, w.samples as f64 * gyro.tau0_s)
-        .map(|null| scattered(null.ratio, w.n.saturating_sub(1).max(1) as f64));
+    let window_s = w.samples as f64 * gyro.tau0_s;
+    let null = null_ratio(gyro.usable_s(), window_s, &taus_s).or_else(|| {
+        null_minimum(1.0, gyro.usable_s(), largest_tau_s, window_s)
+            .map(|null| scattered(null.ratio, w.n.saturating_sub(1).max(1) as f64))
+    });
     Some(MinimumRecord {
         deviation_deg_h: low.point.deviation,
         tau_s: low.point.m as f64 * gyro.tau0_s,
