@@ -48,34 +48,26 @@ pub(super) fn of_recording(result: &Value) -> Vec<Note> {
     out
 }
 
-/// Keys of the views in which the model of a channel departs from the record.
-fn departing(result: &Value, channel: &str) -> Vec<&'static str> {
-    let rows = result.get("goodness_of_fit").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    let departs = |view: &str| {
-        rows.iter().any(|r| {
-            r.get("channel").and_then(Value::as_str) == Some(channel)
-                && r.get("view").and_then(Value::as_str) == Some(view)
-                && r.get("departs").and_then(Value::as_bool) == Some(true)
-        })
-    };
-    VIEWS.iter().filter(|(view, _)| departs(view)).map(|(_, key)| *key).collect()
+/// What a result says of a view in which the model of a channel departs from the record.
+fn departure<'a>(result: &'a Value, channel: &str, view: &str) -> Option<&'a Value> {
+    let text = |row: &'a Value, name: &str| row.get(name).and_then(Value::as_str);
+    result.get("goodness_of_fit")?.as_array()?.iter().find(|row| {
+        text(row, "channel") == Some(channel)
+            && text(row, "view") == Some(view)
+            && row.get("departs").and_then(Value::as_bool) == Some(true)
+    })
 }
 
 /// Said where the model of a channel departs from the record.
 pub(super) fn of_model(result: &Value, channel: &str) -> Option<Note> {
-    let views = departing(result, channel);
-    let names: Vec<Arg> = views.into_iter().map(|key| Arg::Key(key.into())).collect();
+    let departs = VIEWS.iter().filter(|(view, _)| departure(result, channel, view).is_some());
+    let names: Vec<Arg> = departs.map(|(_, key)| Arg::Key((*key).into())).collect();
     (!names.is_empty()).then(|| Note::new("compare.more.departs").with("views", Arg::Several(names, ", ")))
 }
 
 /// The jump of the level that the model of a channel does not make: when, and how large.
 pub(super) fn jump(result: &Value, channel: &str) -> Option<Note> {
-    let rows = result.get("goodness_of_fit")?.as_array()?;
-    let row = rows.iter().find(|r| {
-        r.get("channel").and_then(Value::as_str) == Some(channel)
-            && r.get("view").and_then(Value::as_str) == Some("jump")
-            && r.get("departs").and_then(Value::as_bool) == Some(true)
-    })?;
+    let row = departure(result, channel, "jump")?;
     let number = |name: &str| row.pointer(&format!("/message/args/{name}"))?.as_f64();
     let note = Note::new("goodness.jump")
         .with("time_s", Arg::rounded(number("time_s")?, 6))

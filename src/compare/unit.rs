@@ -191,8 +191,10 @@ pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Resul
         unit.says.extend(faults::jump(result, channel));
         unit.says.extend(says::sentences(&unit));
         unit.missing = says::missing(&unit);
+        // The limits of a recording are those of the file that came with it, rows or not.
         let limited = |r: &&Value| {
-            r.get("channel").and_then(Value::as_str) == Some(channel)
+            origin == Origin::Result
+                && r.get("channel").and_then(Value::as_str) == Some(channel)
                 && r.get("limit").is_some_and(|l| !l.is_null())
         };
         let ids = rows.iter().filter(limited).filter_map(|r| r.get("id").and_then(Value::as_str));

@@ -1,7 +1,8 @@
 //! The strongest spectral line.
 //!
-//! Where block means follow it, it is a sinusoid fitted to the whole record, with the Cramér-Rao variances of one in noise of
-//! the level about it. Elsewhere it comes from the averaged periodogram. Its power stands over white noise of the level of the local floor. To first order its variance over half-overlapping
+//! Where block means follow it, it is a sinusoid fitted to the whole record, with the Cramér-Rao variances of one in
+//! noise of the level about it. Elsewhere it comes from the averaged periodogram. Its power stands over white noise of the
+//! level of the local floor. To first order its variance over overlapping
 //! Hann segments is that of an efficient estimate, with the square of the noise added for weak lines. Its frequency has
 //! the Cramér-Rao variance of a sinusoid in white noise for each segment, over the number of averages, with a factor
 //! for the interpolation between bins. Validated by simulation from 5 to 1000 times the floor.

@@ -5,6 +5,7 @@
 //! nothing, and their scatters add; in a short one the two share the slowest fluctuations, and their quotient scatters
 //! less. It is simulated there: N cancels, so that record length, window and averaging times are all it depends on.
 
+use super::difference_sums::ending_from;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -59,12 +60,8 @@ pub fn null_ratio(length_s: f64, window_s: f64, taus_s: &[f64]) -> Option<[f64; 
 
 /// Overlapping Allan variance of steps from their running sums.
 fn allan_variance(sums: &[f64], m: usize) -> f64 {
-    let differences = sums.iter().zip(sums.iter().skip(m)).zip(sums.iter().skip(2 * m));
-    let (total, count) = differences.fold((0.0, 0usize), |(total, count), ((a, b), c)| {
-        let d = c - 2.0 * b + a;
-        (total + d * d, count + 1)
-    });
-    total / (2.0 * (m * m * count.max(1)) as f64)
+    let (squares, count) = ending_from(sums, m, 2, 0);
+    squares / (2.0 * (m * m) as f64 * count.max(1) as f64)
 }
 
 /// Variance of the means of consecutive windows.

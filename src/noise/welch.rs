@@ -209,11 +209,11 @@ impl Engine {
         let hop = self.window.len() / OVERLAPPING;
         // Sums over two windows so many quarters apart, each with the pairs of segments that lie so: amplitudes that
         // both hold make a bin of one like that of the other, powers make samples weigh more than once.
-        let (mut alike, mut square) = (count, count * lapped(&self.window, 0, 4));
+        let (mut alike, mut square) = (count, count * lapped(&self.window, 0, 2));
         for (apart, pairs) in (1..).zip(self.pairs) {
             let pairs = 2.0 * pairs as f64;
-            alike += pairs * (lapped(&self.window, apart * hop, 2) / self.power_of_window).powi(2);
-            square += pairs * lapped(&self.window, apart * hop, 4);
+            alike += pairs * (lapped(&self.window, apart * hop, 1) / self.power_of_window).powi(2);
+            square += pairs * lapped(&self.window, apart * hop, 2);
         }
         let samples = (count * self.power_of_window).powi(2) / square;
         let scale = 1.0 / (count * self.power_of_window);
@@ -231,9 +231,9 @@ impl Engine {
     }
 }
 
-/// Sum of the products of a window and itself, moved by so many samples, each to half of a power.
+/// Sum of a power of the products of a window and itself, moved by so many samples.
 fn lapped(window: &[f64], moved: usize, power: i32) -> f64 {
-    window.iter().zip(window.iter().skip(moved)).map(|(a, b)| (a * b).powi(power / 2)).sum()
+    window.iter().zip(window.iter().skip(moved)).map(|(a, b)| (a * b).powi(power)).sum()
 }
 
 #[cfg(test)]

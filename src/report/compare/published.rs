@@ -3,8 +3,7 @@
 use crate::compare::published::{Checked, CheckedRow, Row1};
 use crate::report::number::{digits, limit};
 use crate::report::view::Words;
-use crate::text::Lang;
-use crate::text::decimal;
+use crate::text::{Lang, decimal};
 use serde::Serialize;
 
 /// The tables with their checks.
@@ -63,7 +62,7 @@ impl PublishedView {
         let lang = words.lang;
         let first = |r: &Row1| {
             [
-                device(&r.device, words.lang),
+                device(&r.device, lang),
                 decimal(&r.bias_instability, lang),
                 decimal(&r.n, lang),
                 lengths(&r.coil, words),
