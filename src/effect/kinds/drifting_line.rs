@@ -1,6 +1,6 @@
 //! A sinusoid whose frequency changes steadily. It has no kind of its own in the format of explanations.
 
-use super::sinusoid::{averaged, pair, polar, wave};
+use super::sinusoid::{Sweep, polar, wave};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
@@ -48,6 +48,8 @@ describe! {
 
 /// Samples times sweeps that a search may take: a tenth of a second.
 const BUDGET: f64 = 4e6;
+/// Samples that a sweep is taken out of at a time.
+const BLOCK: usize = 4096;
 /// Fewest samples.
 const FEWEST: usize = 256;
 
@@ -65,11 +67,13 @@ fn middle_s(drivers: &Drivers) -> f64 {
     drivers.start_s + 0.5 * (drivers.samples as f64 - 1.0) * drivers.dt_s
 }
 
+/// A line that sweeps, its frequency that of a moment.
+fn sweep(frequency_hz: f64, drift_hz_s: f64, middle_s: f64, drivers: &Drivers) -> Sweep {
+    Sweep { first_s: drivers.time_s(0) - middle_s, dt_s: drivers.dt_s, frequency_hz, drift_hz_s }
+}
+
 fn columns(frequency: f64, drift: f64, middle_s: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
-    pair(drivers.samples, |i| {
-        let u = drivers.time_s(i) - middle_s;
-        (frequency * u + 0.5 * drift * u * u, averaged((frequency + drift * u) * drivers.dt_s))
-    })
+    sweep(frequency, drift, middle_s, drivers).pair(drivers.samples)
 }
 
 impl Course for DriftingLine {
@@ -91,6 +95,7 @@ impl Course for DriftingLine {
         let plan = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
         let (mut even, mut odd) = (plan.make_input_vec(), plan.make_input_vec());
         let (mut with_cos, mut with_sin) = (plan.make_output_vec(), plan.make_output_vec());
+        let mut turns = [(0.0, 0.0); BLOCK];
         let (middle, step) = (middle_s(drivers), step(drivers));
         let cell = 1.0 / (padded as f64 * drivers.dt_s);
         let (low, high) = self.bounds(drivers)[0];
@@ -100,14 +105,20 @@ impl Course for DriftingLine {
             let drift = r as f64 * step;
             even[n..].fill(0.0);
             odd[n..].fill(0.0);
-            for (i, x) in look.score.iter().enumerate() {
-                let u = drivers.time_s(i) - middle;
-                let (s, c) = (std::f64::consts::PI * drift * u * u).sin_cos();
-                (even[i], odd[i]) = (x * c, x * s);
+            let swept = sweep(0.0, drift, middle, drivers);
+            let blocks =
+                even[..n].chunks_mut(BLOCK).zip(odd[..n].chunks_mut(BLOCK)).zip(look.score.chunks(BLOCK));
+            for (b, ((even, odd), score)) in blocks.enumerate() {
+                swept.turns(b * BLOCK, &mut turns[..score.len()]);
+                for (i, (x, (c, s))) in score.iter().zip(&turns).enumerate() {
+                    (even[i], odd[i]) = (x * c, x * s);
+                }
             }
-            let done = plan.process(&mut even, &mut with_cos).is_ok()
-                && plan.process(&mut odd, &mut with_sin).is_ok();
-            if !done {
+            let (cosines, sines) = rayon::join(
+                || plan.process(&mut even, &mut with_cos),
+                || plan.process(&mut odd, &mut with_sin),
+            );
+            if cosines.is_err() || sines.is_err() {
                 break;
             }
             for k in first..=last {

@@ -1,7 +1,7 @@
 //! A coherent sinusoid.
 
 use super::search::{peaks, summit};
-use super::sinusoid::{averaged, pair, polar, wave};
+use super::sinusoid::{Sweep, polar, wave};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
@@ -47,8 +47,8 @@ describe! {
 
 /// Cosine and sine of a frequency; the phase counts from `time_s` = 0.
 pub(super) fn columns(frequency_hz: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
-    let left = averaged(frequency_hz * drivers.dt_s);
-    pair(drivers.samples, |i| (frequency_hz * drivers.time_s(i), left))
+    let sweep = Sweep { first_s: drivers.time_s(0), dt_s: drivers.dt_s, frequency_hz, drift_hz_s: 0.0 };
+    sweep.pair(drivers.samples)
 }
 
 /// Twice-padded power of the score at the frequencies j/(2n·dt) of a length that transforms fast, as gains of a line,

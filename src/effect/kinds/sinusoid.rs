@@ -6,6 +6,9 @@ use std::f64::consts::PI;
 /// Samples that are worth handing to another core.
 const SHARE: usize = 1 << 14;
 
+/// Samples through which a sinusoid is rotated from one to the next. A share holds whole blocks of them.
+const ROTATED: usize = 64;
+
 /// What a mean over so many cycles leaves of a sinusoid.
 pub(super) fn averaged(cycles: f64) -> f64 {
     let x = PI * cycles;
@@ -21,6 +24,73 @@ pub(super) fn pair(samples: usize, phase: impl Fn(usize) -> (f64, f64) + Sync) -
     };
     let (cosine, sine) = (0..samples).into_par_iter().with_min_len(SHARE).map(of).unzip();
     vec![cosine, sine]
+}
+
+/// A sinusoid whose frequency changes steadily, on a grid of samples.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sweep {
+    /// Time of the first sample, s.
+    pub first_s: f64,
+    /// Sampling interval, s.
+    pub dt_s: f64,
+    /// Frequency at time 0, Hz.
+    pub frequency_hz: f64,
+    /// Change of the frequency, Hz/s.
+    pub drift_hz_s: f64,
+}
+
+impl Sweep {
+    fn time_s(&self, i: usize) -> f64 {
+        self.first_s + i as f64 * self.dt_s
+    }
+
+    /// What the mean of a sample leaves.
+    fn left(&self, i: usize) -> f64 {
+        averaged((self.frequency_hz + self.drift_hz_s * self.time_s(i)) * self.dt_s)
+    }
+
+    /// Cosine and sine of the phase, which is 0 at time 0, for the samples from `first` on. By rotation, which starts anew
+    /// from the phase itself before its rounding tells.
+    pub fn turns(&self, first: usize, out: &mut [(f64, f64)]) {
+        let cis = |cycles: f64| {
+            let (s, c) = (2.0 * PI * cycles.fract()).sin_cos();
+            (c, s)
+        };
+        let turned = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
+        let (f, drift, dt) = (self.frequency_hz, self.drift_hz_s, self.dt_s);
+        let faster = cis(drift * dt * dt);
+        for (b, block) in out.chunks_mut(ROTATED).enumerate() {
+            let t = self.time_s(first + b * ROTATED);
+            let mut at = cis(f * t + 0.5 * drift * t * t);
+            let mut step = cis(f * dt + drift * dt * (t + 0.5 * dt));
+            for place in block {
+                *place = at;
+                at = turned(at, step);
+                step = turned(step, faster);
+            }
+        }
+    }
+
+    /// Cosine and sine of the phase of each sample, with what the sample's own mean leaves of them.
+    pub fn pair(&self, samples: usize) -> Vec<Vec<f64>> {
+        let (mut cosine, mut sine) = (vec![0.0; samples], vec![0.0; samples]);
+        let shares = cosine.par_chunks_mut(SHARE).zip(sine.par_chunks_mut(SHARE)).enumerate();
+        shares.for_each(|(share, (cosine, sine))| {
+            let mut turns = [(0.0, 0.0); ROTATED];
+            let blocks = cosine.chunks_mut(ROTATED).zip(sine.chunks_mut(ROTATED)).enumerate();
+            for (b, (cosine, sine)) in blocks {
+                let (first, n) = (share * SHARE + b * ROTATED, cosine.len());
+                self.turns(first, &mut turns[..n]);
+                // Within a block it changes evenly.
+                let (from, to) = (self.left(first), self.left(first + n));
+                for (i, (c, s)) in turns[..n].iter().enumerate() {
+                    let left = from + (to - from) * i as f64 / n as f64;
+                    (cosine[i], sine[i]) = (left * c, left * s);
+                }
+            }
+        });
+        vec![cosine, sine]
+    }
 }
 
 /// Amplitude and phase, deg, of `a cos x + b sin x` as `A cos(x + φ)`; NaN for other than two coefficients.
@@ -53,6 +123,23 @@ mod tests {
                 .sum::<f64>()
                 / f64::from(steps);
             assert!((averaged(cycles) - mean).abs() < 1e-8, "{cycles}");
+        }
+    }
+
+    #[test]
+    fn a_rotated_sinusoid_is_that_of_its_phase() {
+        for (first_s, dt_s, frequency_hz, drift_hz_s) in
+            [(3e5, 0.01, 49.3, 0.0), (-500.0, 0.01, 21.7, 2.2e-3), (0.0, 1.0, 1e-4, -1e-9)]
+        {
+            let sweep = Sweep { first_s, dt_s, frequency_hz, drift_hz_s };
+            let columns = sweep.pair(100_000);
+            for i in (0..100_000).step_by(997).chain([63, 64, 16_383, 16_384, 99_999]) {
+                let t = first_s + i as f64 * dt_s;
+                let left = averaged((frequency_hz + drift_hz_s * t) * dt_s);
+                let (s, c) = (2.0 * PI * (frequency_hz * t + 0.5 * drift_hz_s * t * t).fract()).sin_cos();
+                let off = (columns[0][i] - left * c).abs().max((columns[1][i] - left * s).abs());
+                assert!(off < 1e-7, "{sweep:?}, {i}: {off}");
+            }
         }
     }
 
