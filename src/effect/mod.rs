@@ -277,6 +277,12 @@ pub trait Course: Sync {
     /// The course for a shape.
     fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts;
 
+    /// Orthonormal cosine modes of the free columns over all samples of the grid, of a course that has nothing but these
+    /// and whose transform is known in closed form.
+    fn modes(&self, _shape: &[f64], _drivers: &Drivers) -> Option<Vec<Vec<f64>>> {
+        None
+    }
+
     /// The parameters in the order of [`Effect::params`], from a shape and the coefficients of `free`; NaN for one that
     /// the fit does not determine.
     fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64>;

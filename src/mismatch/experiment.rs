@@ -95,14 +95,14 @@ fn distance(
 ) -> Option<f64> {
     let scene = scenes.of(own.course()?.pace());
     let powers = scene.powers(&best.hypothesis.noise.densities(scene));
-    let parts = PartModes::of(own.course()?.parts(&own.shape, &scene.drivers), scene);
+    let parts = PartModes::of_shape(own.course()?, &own.shape, scene);
     let mut modes = parts.fixed.unwrap_or_else(|| vec![0.0; scene.modes.len()]);
     for (column, c) in parts.free.iter().zip(&own.coefficients) {
         subtract(&mut modes, column, -c);
     }
     let nuisances = kept(scene, std::slice::from_ref(other));
     let left = |shape: &[f64]| {
-        let rival = PartModes::of(course.parts(shape, &scene.drivers), scene);
+        let rival = PartModes::of_shape(course, shape, scene);
         let mut data = modes.clone();
         if let Some(fixed) = &rival.fixed {
             subtract(&mut data, fixed, 1.0);

@@ -123,7 +123,7 @@ fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
         let others = part_modes(scene, &hypothesis.courses);
         let nuisances = kept(scene, &hypothesis.courses);
         let gain = |shape: &[f64]| {
-            let own = PartModes::of(course.parts(shape, &scene.drivers), scene);
+            let own = PartModes::of_shape(course, shape, scene);
             let parts = || others.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| p).chain([&own]);
             let data = less_fixed(scene, parts());
             -0.5 * Normal::new(&columns(&nuisances, parts()), &data, &powers).solve().2

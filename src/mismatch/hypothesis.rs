@@ -50,8 +50,20 @@ pub struct PartModes {
 }
 
 impl PartModes {
+    /// Modes of a course on a scene.
+    pub fn of_shape(course: &dyn Course, shape: &[f64], scene: &Scene) -> PartModes {
+        let closed = if scene.is_whole() { course.modes(shape, &scene.drivers) } else { None };
+        match closed {
+            Some(mut free) => {
+                free.iter_mut().filter_map(|m| m.first_mut()).for_each(|first| *first = 0.0);
+                PartModes { free, ..PartModes::default() }
+            }
+            None => PartModes::of(course.parts(shape, &scene.drivers), scene),
+        }
+    }
+
     /// Transforms the parts, those of a kind side by side.
-    pub fn of(parts: Parts, scene: &Scene) -> PartModes {
+    fn of(parts: Parts, scene: &Scene) -> PartModes {
         let modes = |column: Vec<f64>| scene.transform(&column);
         PartModes {
             fixed: parts.fixed.map(modes),
@@ -271,9 +283,7 @@ pub fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
 
 /// Modes of every course of a hypothesis on a scene.
 pub fn part_modes(scene: &Scene, courses: &[CourseIn]) -> Vec<PartModes> {
-    let one = |c: &CourseIn| {
-        c.course().map(|x| PartModes::of(x.parts(&c.shape, &scene.drivers), scene)).unwrap_or_default()
-    };
+    let one = |c: &CourseIn| c.course().map(|x| PartModes::of_shape(x, &c.shape, scene)).unwrap_or_default();
     courses.iter().map(one).collect()
 }
 

@@ -18,7 +18,7 @@ const PLACES: usize = 48;
 pub fn interval(inside: &CourseIn, tried: &Tried, scenes: &Scenes) -> Option<[f64; 2]> {
     let scene = &scenes.full;
     let n = scene.drivers.samples;
-    let parts = PartModes::of(inside.course()?.parts(&inside.shape, &scene.drivers), scene);
+    let parts = PartModes::of_shape(inside.course()?, &inside.shape, scene);
     let ([column], [size]) = (parts.free.as_slice(), inside.coefficients.as_slice()) else { return None };
     if n < 16 {
         return None;

@@ -184,6 +184,11 @@ impl Scene {
         Scene { drivers, modes: vec![], blocks: vec![0], length: samples, bins, units, nuisances: vec![] }
     }
 
+    /// True where one block holds all samples.
+    pub fn is_whole(&self) -> bool {
+        self.blocks == [0] && self.length == self.drivers.samples
+    }
+
     /// Cosine modes of a series on the grid of the drivers, block after block.
     pub fn transform(&self, series: &[f64]) -> Vec<f64> {
         transform(series, &self.blocks, self.length)

@@ -2,6 +2,10 @@
 
 use crate::effect::{Course, Drivers};
 
+/// Gain that steps to either side must lose for smaller ones to be worth taking: what is left lies within a hundredth of
+/// a standard deviation then.
+const FLAT: f64 = 1e-4;
+
 /// Numbers of a shape that are searched over. One that is whole has few values: it counts in the p-value alone.
 pub fn free_numbers(course: &dyn Course, bounds: &[(f64, f64)]) -> usize {
     let free = |(i, (low, high)): (usize, &(f64, f64))| high > low && !course.whole().contains(&i);
@@ -18,7 +22,7 @@ pub fn first_steps(course: &dyn Course, drivers: &Drivers) -> Vec<Option<f64>> {
 }
 
 /// Improves a shape by steps along each of its numbers, on a logarithmic scale where its bounds are positive and far
-/// apart, halving the steps.
+/// apart, with ever smaller steps until they tell nothing more.
 ///
 /// `first` are the first steps, on that scale; empty: by the bounds.
 pub fn refine(
@@ -48,7 +52,7 @@ pub fn refine(
         .collect();
     let finest: Vec<f64> = steps.iter().map(|s| s * 1e-5).collect();
     while used < evaluations && steps.iter().zip(&finest).any(|(s, f)| *s > *f) {
-        let mut moved = false;
+        let (mut moved, mut flat) = (false, true);
         for i in 0..at.len() {
             if steps[i] <= 0.0 {
                 continue;
@@ -64,6 +68,7 @@ pub fn refine(
                 let got = gain(&next);
                 used += 1;
                 sides[side] = got;
+                flat &= best - got < FLAT;
                 if got > best {
                     (best, at) = (got, next);
                     moved = true;
@@ -84,6 +89,9 @@ pub fn refine(
                     }
                 }
             }
+        }
+        if !moved && flat {
+            break;
         }
         if !moved {
             steps.iter_mut().for_each(|s| *s *= 0.3);

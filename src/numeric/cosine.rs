@@ -102,9 +102,83 @@ pub fn inverse_dct2(coefficients: &[f64]) -> Vec<f64> {
         .collect()
 }
 
+/// Modes beside that of a sinusoid whose distance is worked out by itself: a difference of squares would lose it.
+const BESIDE: usize = 64;
+
+/// [`dct2`] of cos(β + ω(j+½)) and sin(β + ω(j+½)), j = 0 … n−1, without a transform; 0 < ω < π. With θ_k = πk/n both are
+/// sin(ω/2) cos(θ_k/2)/(sin²(ω/2) − sin²(θ_k/2)) times what the phase is at both ends, in the one sense for even k and in
+/// the other for odd: the geometric series of Dirichlet's kernel.
+pub fn sinusoid_modes(n: usize, omega: f64, phase: f64) -> [Vec<f64>; 2] {
+    let mut modes = [vec![0.0; n], vec![0.0; n]];
+    if n < 2 {
+        return modes.map(|_| (0..n).map(|_| f64::NAN).collect());
+    }
+    let half = 0.5 * omega;
+    let (sin_half, scale) = (half.sin(), (2.0 / n as f64).sqrt());
+    let square = sin_half * sin_half;
+    let (sin_from, cos_from) = phase.sin_cos();
+    let (sin_to, cos_to) = (phase + omega * n as f64).sin_cos();
+    let ends = |sign: f64| {
+        [
+            0.5 * scale * sin_half * (sign * sin_to - sin_from),
+            0.5 * scale * sin_half * (cos_from - sign * cos_to),
+        ]
+    };
+    let ends = [ends(1.0), ends(-1.0)];
+    let plan = plan(n);
+    let [cosines, sines] = &mut modes;
+    let angle = std::f64::consts::PI / (2.0 * n as f64);
+    let mut put = |k: usize, s: f64, c: f64| {
+        let kernel = c / (square - s * s);
+        cosines[k] = ends[k % 2][0] * kernel;
+        sines[k] = ends[k % 2][1] * kernel;
+    };
+    for (k, (s, c)) in plan.turns.iter().enumerate() {
+        put(k, *s, *c);
+        if k > 0 && n - k > k {
+            put(n - k, *c, *s);
+        }
+    }
+    // Σ exp iα(j+½) = exp(iαn/2) sin(αn/2)/sin(α/2), α = ω ± θ.
+    let nearest = (half / angle).round() as usize;
+    for k in nearest.saturating_sub(BESIDE)..(nearest + BESIDE).min(n) {
+        let mut sum = (0.0, 0.0);
+        for at in [half + angle * k as f64, half - angle * k as f64] {
+            let length = if at.abs() < 1e-14 { n as f64 } else { (at * n as f64).sin() / at.sin() };
+            let (s, c) = (phase + at * n as f64).sin_cos();
+            sum = (sum.0 + 0.5 * length * c, sum.1 + 0.5 * length * s);
+        }
+        (cosines[k], sines[k]) = (scale * sum.0, scale * sum.1);
+    }
+    for column in &mut modes {
+        column[0] *= std::f64::consts::FRAC_1_SQRT_2;
+    }
+    modes
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn modes_of_a_sinusoid_are_those_of_its_transform() {
+        for n in [2usize, 3, 64, 257, 10_000] {
+            let resonant = std::f64::consts::PI * (n / 3) as f64 / n as f64;
+            for omega in [1e-4, 0.3, resonant, resonant + 1e-9, 1.7, 3.1].into_iter().filter(|w| *w > 0.0) {
+                let phase = 0.7;
+                let at = |j: usize| phase + omega * (j as f64 + 0.5);
+                let got = sinusoid_modes(n, omega, phase);
+                let wanted = [
+                    dct2(&(0..n).map(|j| at(j).cos()).collect::<Vec<_>>()),
+                    dct2(&(0..n).map(|j| at(j).sin()).collect::<Vec<_>>()),
+                ];
+                for (got, wanted) in got.iter().zip(&wanted) {
+                    let off = got.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                    assert!(off < 1e-8, "{n}, {omega}: {off}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn the_inverse_gives_the_values_back() {

@@ -114,11 +114,10 @@ impl Course for DriftingLine {
                     (even[i], odd[i]) = (x * c, x * s);
                 }
             }
-            let (cosines, sines) = rayon::join(
-                || plan.process(&mut even, &mut with_cos),
-                || plan.process(&mut odd, &mut with_sin),
-            );
-            if cosines.is_err() || sines.is_err() {
+            // One after the other: two at once would need twice the memory beside them.
+            let done = plan.process(&mut even, &mut with_cos).is_ok()
+                && plan.process(&mut odd, &mut with_sin).is_ok();
+            if !done {
                 break;
             }
             for k in first..=last {

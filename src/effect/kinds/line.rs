@@ -1,11 +1,13 @@
 //! A coherent sinusoid.
 
 use super::search::{peaks, summit};
-use super::sinusoid::{Sweep, polar, wave};
+use super::sinusoid::{Sweep, averaged, polar, wave};
 use crate::effect::{
     Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
 };
+use crate::numeric::cosine::sinusoid_modes;
 use realfft::RealFftPlanner;
+use std::f64::consts::TAU;
 
 pub struct Line;
 
@@ -107,6 +109,19 @@ impl Course for Line {
     fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
         let free = shape.first().map_or_else(Vec::new, |f| columns(*f, drivers));
         Parts { free, ..Parts::default() }
+    }
+
+    fn modes(&self, shape: &[f64], drivers: &Drivers) -> Option<Vec<Vec<f64>>> {
+        let frequency = *shape.first()?;
+        let cycles = frequency * drivers.dt_s;
+        if !(cycles > 0.0 && cycles < 0.5) {
+            return None;
+        }
+        let before = frequency * drivers.time_s(0) - 0.5 * cycles;
+        let mut modes = sinusoid_modes(drivers.samples, TAU * cycles, TAU * before.fract());
+        let left = averaged(cycles);
+        modes.iter_mut().flatten().for_each(|x| *x *= left);
+        Some(modes.into())
     }
 
     fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {

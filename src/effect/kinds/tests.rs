@@ -317,6 +317,27 @@ fn nothing_applies_without_its_columns_and_nothing_breaks() {
 }
 
 #[test]
+fn modes_in_closed_form_are_those_of_the_course() {
+    let mut closed = vec![];
+    for effect in EFFECTS {
+        let Model::Course(course) = effect.model() else { continue };
+        let (drivers, _) = truth(effect.kind());
+        let shape: Vec<f64> =
+            course.bounds(&drivers).iter().map(|(low, high)| 0.6 * low + 0.4 * high).collect();
+        let Some(modes) = course.modes(&shape, &drivers) else { continue };
+        let parts = course.parts(&shape, &drivers);
+        assert!(parts.fixed.is_none() && parts.beside.is_empty() && parts.free.len() == modes.len());
+        for (modes, column) in modes.iter().zip(&parts.free) {
+            let wanted = crate::numeric::cosine::dct2(column);
+            let off = modes.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-7, "{}: {off}", effect.kind());
+        }
+        closed.push(effect.kind());
+    }
+    assert!(closed.contains(&"line"), "{closed:?}");
+}
+
+#[test]
 fn averages_see_the_course_that_the_samples_see() {
     // Slow courses are fitted to averages, where the means of the samples must be the same course.
     for effect in EFFECTS {

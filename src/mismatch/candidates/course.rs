@@ -100,7 +100,7 @@ impl<'a> ShapeSearch<'a> {
 
     fn gain(&self, shape: &[f64]) -> f64 {
         let ground = self.ground;
-        let parts = PartModes::of(self.course.parts(shape, &ground.scene.drivers), ground.scene);
+        let parts = PartModes::of_shape(self.course, shape, ground.scene);
         if parts.fixed.is_none() && parts.free.is_empty() {
             return f64::NEG_INFINITY;
         }

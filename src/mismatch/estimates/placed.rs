@@ -39,7 +39,7 @@ impl<'a> Placed<'a> {
     }
 
     fn parts(&self, shape: &[f64]) -> PartModes {
-        PartModes::of(self.course.parts(shape, &self.scene.drivers), self.scene)
+        PartModes::of_shape(self.course, shape, self.scene)
     }
 
     /// Penalised sum of squares over −2 for a shape: the log-likelihood with the noise held.
