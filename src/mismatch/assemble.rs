@@ -7,6 +7,7 @@ use super::departures::{self, Departure};
 use super::draw::{self, Drawn};
 use super::estimates;
 use super::experiment;
+use super::few_swings::driver_beside;
 use super::finding::{
     Candidate, Explanation, Finding, Fit, FitFigures, ParameterValue, PlaceRecord, RecordingFacts, Test,
 };
@@ -78,7 +79,9 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     let held_best = if nothing { held_base } else { halves.judge(&selection.best) };
     for chosen in &selection.chosen {
         let gained = improvement::of(chosen, selection, &scenes.full, &halves, held_best.log_likelihood);
-        found.named.push(Named { improvement: Some(gained), ..named(chosen, &selection.best, problem) });
+        found
+            .named
+            .push(Named { improvement: Some(gained), ..named(chosen, &selection.best, problem, options) });
     }
     if options.allows("unobserved_driver") {
         single_cause::returned(&mut found.named, problem);
@@ -189,7 +192,7 @@ fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
 }
 
 /// A chosen effect with its parameters and places.
-fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
+fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) -> Named {
     let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.scenes);
     if chosen.effect.kind() == "unobserved_driver"
         && let Slot::Spectrum(i) = chosen.slot
@@ -203,16 +206,21 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem) -> Named {
         let [from, to] = [instant.ci95[0] - half, instant.ci95[1] + half];
         places.iter_mut().filter(|p| p.domain == Domain::Time).for_each(|p| (p.from, p.to) = (from, to));
     }
+    let kind = chosen.effect.kind();
+    let fitted: Vec<&str> = chosen.equivalents.iter().map(|e| e.effect.kind()).collect();
+    let driver = driver_beside(kind, &estimated.reported, problem.drivers.length_s(), options);
+    let equivalents = chosen
+        .beside
+        .into_iter()
+        .chain(fitted.iter().copied())
+        .chain(driver.filter(|driver| !fitted.contains(driver)))
+        .filter(|_| chosen.effect.reported_kind() != UNKNOWN)
+        .take(MOST_EQUIVALENTS)
+        .collect();
     Named {
         effect: chosen.effect,
         estimated,
-        equivalents: chosen
-            .beside
-            .into_iter()
-            .chain(chosen.equivalents.iter().map(|e| e.effect.kind()))
-            .filter(|_| chosen.effect.reported_kind() != UNKNOWN)
-            .take(MOST_EQUIVALENTS)
-            .collect(),
+        equivalents,
         places,
         delta_bic: chosen.delta_bic,
         p_value: chosen.p_value,

@@ -12,6 +12,7 @@ pub mod driver;
 pub mod engine;
 pub mod estimates;
 mod experiment;
+mod few_swings;
 pub mod figures;
 pub mod filtered;
 mod found;
