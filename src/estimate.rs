@@ -184,6 +184,8 @@ pub struct Estimate {
     pub spread: Spread,
     /// Bound, where the value is `None`.
     pub upper_limit: Option<UpperLimit>,
+    /// Where the likelihood is largest, where the value is `None`: no claim, and what errors are counted by.
+    pub most_likely: Option<f64>,
     /// Bound from below, where the value is `None`.
     pub lower_limit: Option<LowerLimit>,
     /// How it was obtained, short and stable: `whittle`, `overlapping_allan`, ...
@@ -210,6 +212,7 @@ impl Estimate {
             unit,
             spread,
             upper_limit: None,
+            most_likely: None,
             lower_limit: None,
             method,
             notes: vec![],
@@ -231,6 +234,7 @@ impl Estimate {
             unit,
             spread: Spread::Unknown,
             upper_limit,
+            most_likely: None,
             lower_limit: None,
             method,
             notes: vec![],
@@ -241,6 +245,13 @@ impl Estimate {
     #[must_use]
     pub fn note(mut self, note: Note) -> Self {
         self.notes.push(note);
+        self
+    }
+
+    /// Adds where the likelihood of a quantity that the record cannot show is largest.
+    #[must_use]
+    pub fn most_likely(mut self, value: Option<f64>) -> Self {
+        self.most_likely = value.filter(|v| v.is_finite());
         self
     }
 

@@ -218,7 +218,9 @@ fn estimate(
         .filter_map(|structure| Profile::new(likelihood, &structure, term)?.upper_limit(LIMIT_RISE))
         .max_by(f64::total_cmp);
     let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT_COVERAGE });
-    let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD);
+    let alone = rival_of(term).filter(|r| !claimed[*r]).map_or(structure, |r| toggled(&structure, r, false));
+    let likely = Profile::new(likelihood, &alone, term).map(|p| p.value().abs());
+    let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD).most_likely(likely);
     if ambiguous && term != 0 && supported[term] {
         return estimate.note(low_frequency_note());
     }

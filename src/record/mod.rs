@@ -196,6 +196,9 @@ pub struct MeasurandRecord {
     pub identifiable: bool,
     /// Bound where it cannot.
     pub upper_limit: Option<UpperLimit>,
+    /// Where the likelihood is largest where it cannot: no claim.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub most_likely: Option<f64>,
     /// Bound from below where it cannot, and where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lower_limit: Option<LowerLimit>,

@@ -38,6 +38,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         interval: estimate.interval95(),
         identifiable: estimate.value.is_some(),
         upper_limit: estimate.upper_limit,
+        most_likely: estimate.most_likely,
         lower_limit: estimate.lower_limit,
         method: estimate.method.to_owned(),
         limit: limit
@@ -119,6 +120,7 @@ mod tests {
             interval: None,
             identifiable: true,
             upper_limit: None,
+            most_likely: None,
             lower_limit: None,
             method: "mean".into(),
             limit: None,

@@ -255,7 +255,18 @@ impl Found {
         }
         let limit = limits.into_iter().max_by(f64::total_cmp);
         let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT_COVERAGE });
-        let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD);
+        let mut alone = self.free.clone();
+        let mut start = self.full.clone();
+        if let Some(r) = rival_of(term).filter(|r| !self.claimed[*r]) {
+            alone.variance[r] = false;
+            start.variance[r] = 0.0;
+        }
+        match variable {
+            Variable::Ramp => alone.ramp = true,
+            _ => alone.variance[term] = true,
+        }
+        let likely = joint.maximise(&start, &alone).reported(variable).abs();
+        let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD).most_likely(Some(likely));
         let ambiguous = (0..BASE.len()).any(|i| self.free.variance[i] && !self.claimed[i]);
         let needed = term != 0 && self.free.variance.get(term) == Some(&true) && term != RAMP;
         if ambiguous && needed { estimate.note(low_frequency_note()) } else { estimate }

@@ -79,13 +79,23 @@ pub fn value(m: &MeasurandRecord, words: Words) -> String {
         return rounding(m).show(value, words.lang);
     }
     match m.upper_limit {
-        Some(u) => words.with(
-            "report.at_most",
-            &[
-                ("value", &bound(u.value, true, words.lang)),
-                ("coverage", &limit_digits(100.0 * u.coverage, 3, words.lang)),
-            ],
-        ),
+        Some(u) => {
+            let most = words.with(
+                "report.at_most",
+                &[
+                    ("value", &bound(u.value, true, words.lang)),
+                    ("coverage", &limit_digits(100.0 * u.coverage, 3, words.lang)),
+                ],
+            );
+            match m.most_likely {
+                // What is a hundredth of its bound is nothing.
+                Some(likely) if likely > 0.01 * u.value => {
+                    let likely = limit_digits(likely, 2, words.lang);
+                    words.with("report.most_likely", &[("bound", &most), ("value", &likely)])
+                }
+                _ => most,
+            }
+        }
         None if m.lower_limit.is_some() => {
             let least = m.lower_limit.map_or((0.0, 0.0), |l| (l.value, l.coverage));
             words.with(

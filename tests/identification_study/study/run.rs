@@ -146,10 +146,9 @@ impl Study<'_> {
 
     fn ours(&self, found: &Identification, q: &Quantity) -> Outcome {
         let mut outcome = Outcome::default();
-        let described = q.parameter.map_or(0.0, |p| found.described.model.value(p));
-        outcome.values[1] = (described != 0.0).then(|| q.of_parameter(described) / q.truth);
         let Some(estimate) = estimate_of(found, q, &self.mix.truth) else { return outcome };
         outcome.values[0] = estimate.value.map(|v| v / q.truth);
+        outcome.values[1] = estimate.value.or(estimate.most_likely).map(|v| v / q.truth);
         outcome.interval = estimate
             .interval95()
             .map(|i| (i.low <= q.truth && q.truth <= i.high, (i.high - i.low) / q.truth.abs()));
