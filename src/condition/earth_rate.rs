@@ -95,7 +95,7 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
         return None;
     }
     let declared = &facts.procedure.channel(&gyro.channel)?.unit_in_file;
-    let usual = mistakes::rate_factors(declared).into_iter().filter(mistakes::is_usual);
+    let usual = mistakes::rate_factors(declared).into_iter().filter(|m| m.usual);
     let fits = |m: &mistakes::Mistake| {
         let slack = 3.0 * m.factor.abs() * gyro.mean_uncertainty_deg_h;
         slack <= USUAL * earth.abs()

@@ -8,6 +8,8 @@ use crate::units::Unit;
 pub(super) struct Mistake {
     /// Factor from the value as read to the value that was meant.
     pub factor: f64,
+    /// Whether it is an exchange of the units that rates are mostly written in.
+    pub usual: bool,
     /// What went wrong.
     pub note: Note,
 }
@@ -18,14 +20,17 @@ const UNITS: &[&str] = &[
     "arcsec/h", "arcmin/h", "deg", "rad", "mrad", "urad", "mdeg", "arcsec", "arcmin", "marcsec",
 ];
 
+/// Units that rates are mostly written in.
+const USUAL: [&str; 3] = ["deg/s", "deg/h", "rad/s"];
+
 /// The mistakes that a channel declared in a unit can have.
 pub(super) fn rate_factors(declared: &str) -> Vec<Mistake> {
     let mut list: Vec<Mistake> = Vec::new();
     let Ok(own) = Unit::parse(declared) else { return list };
-    let mut add = |factor: f64, note: Note| {
+    let mut add = |factor: f64, usual: bool, note: Note| {
         let known = |m: &Mistake| (m.factor / factor - 1.0).abs() < 1e-4;
         if factor.is_finite() && (factor - 1.0).abs() > 1e-4 && !list.iter().any(known) {
-            list.push(Mistake { factor, note });
+            list.push(Mistake { factor, usual, note });
         }
     };
     let factors: Vec<(&str, f64)> = UNITS
@@ -35,10 +40,11 @@ pub(super) fn rate_factors(declared: &str) -> Vec<Mistake> {
         .collect();
     for (name, factor) in &factors {
         let digits = factor.log10();
-        let key =
-            if (digits - digits.round()).abs() < 1e-9 { "mistake.unit_or_shift" } else { "mistake.unit" };
+        let shifted = (digits - digits.round()).abs() < 1e-9;
+        let key = if shifted { "mistake.unit_or_shift" } else { "mistake.unit" };
         add(
             *factor,
+            !shifted && USUAL.contains(name),
             Note::new(key)
                 .with("unit", *name)
                 .with("declared", declared)
@@ -49,34 +55,27 @@ pub(super) fn rate_factors(declared: &str) -> Vec<Mistake> {
         for (factor, key) in
             [(10f64.powi(digits), "mistake.shift_right"), (10f64.powi(-digits), "mistake.shift_left")]
         {
-            add(factor, Note::new(key).with("digits", digits.unsigned_abs() as u64));
+            add(factor, false, Note::new(key).with("digits", digits.unsigned_abs() as u64));
         }
     }
     for (name, factor) in &factors {
-        add(1.0 / factor, Note::new("mistake.twice").with("unit", *name).with("declared", declared));
+        add(1.0 / factor, false, Note::new("mistake.twice").with("unit", *name).with("declared", declared));
     }
     list
 }
 
-/// Whether a mistake is an exchange of the units that rates are mostly written in.
-pub(super) fn is_usual(mistake: &Mistake) -> bool {
-    const USUAL: [&str; 3] = ["deg/s", "deg/h", "rad/s"];
-    mistake.note.id == "mistake.unit"
-        && USUAL.iter().any(|u| mistake.note.args.get("unit") == Some(&(*u).into()))
-}
-
 /// The mistakes that stamps in seconds can have: factor from the time as read to the time that was meant.
 pub(super) fn time_factors() -> Vec<Mistake> {
-    let one =
-        |factor: f64, unit: &str| Mistake { factor, note: Note::new("mistake.time_unit").with("unit", unit) };
+    let of = |factor: f64, note: Note| Mistake { factor, usual: false, note };
+    let one = |factor: f64, unit: &str| of(factor, Note::new("mistake.time_unit").with("unit", unit));
     vec![
         one(1e-3, "ms"),
         one(1e-6, "µs"),
         one(1e-9, "ns"),
         one(60.0, "min"),
         one(3600.0, "h"),
-        Mistake { factor: 1e3, note: Note::new("mistake.time_thousandth") },
-        Mistake { factor: 1e6, note: Note::new("mistake.time_millionth") },
+        of(1e3, Note::new("mistake.time_thousandth")),
+        of(1e6, Note::new("mistake.time_millionth")),
     ]
 }
 

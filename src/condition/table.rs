@@ -244,7 +244,7 @@ fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> No
     };
     // An exchange of unit leaves next to nothing of the output, which is known well all the same.
     let resolved = factor.abs() > 10.0 * channel.standard;
-    let exchanged = |m: &&mistakes::Mistake| mistakes::is_usual(m) && FOLLOWS.contains(&(m.factor * factor));
+    let exchanged = |m: &&mistakes::Mistake| m.usual && FOLLOWS.contains(&(m.factor * factor));
     if let Some(exchange) = mistakes.iter().find(exchanged).filter(|_| resolved) {
         return mistaken(exchange.note.clone());
     }
@@ -345,7 +345,7 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
     let known = allowed <= 0.1 * fact.factor.abs();
     let units = || mistakes::rate_factors(&fact.unit).into_iter().filter(|_| known);
     let off = |m: &mistakes::Mistake| (m.factor * fact.factor - 1.0).abs();
-    let usual = units().any(|m| mistakes::is_usual(&m) && off(&m) <= 0.02);
+    let usual = units().any(|m| m.usual && off(&m) <= 0.02);
     if fact.factor.abs() <= allowed.max(0.02) && !usual {
         return invalid(Note::new("known.not_turned").with("factor", shown));
     }
