@@ -29,6 +29,9 @@ pub struct SlowPrices {
     pub markov: f64,
     /// Of a long Markov process and a ramp.
     pub markov_and_ramp: f64,
+    /// What a long Markov process costs more in the place of random walk alone: few modes lie below its corner, and by chance alone
+    /// they are as low in one walk of a hundred that is paid for at the price of flicker.
+    pub markov_for_walk: f64,
 }
 
 impl Default for SlowPrices {
@@ -41,7 +44,7 @@ impl Default for SlowPrices {
         set[B | R] = 13.5;
         set[K | R] = 11.2;
         set[B | K | R] = 18.5;
-        SlowPrices { set, markov: 11.8, markov_and_ramp: 23.0 }
+        SlowPrices { set, markov: 11.8, markov_and_ramp: 23.0, markov_for_walk: 4.0 }
     }
 }
 
@@ -74,6 +77,12 @@ impl SlowPrices {
             .map(|set| SlowChoice { set, cost: deviance[set] + self.set[set] })
             .filter(|c| c.cost.is_finite())
             .min_by(|a, b| a.cost.total_cmp(&b.cost))
+    }
+
+    /// What a long Markov process costs more in the place of these terms than its own price. With flicker among them it
+    /// stands for that, and has to bend nothing that a walk bends by chance.
+    pub fn in_place_of(&self, set: SlowSet) -> f64 {
+        if set & (B | K) == K { self.markov_for_walk } else { 0.0 }
     }
 
     /// By how much the best set without a term of [`super::model::TERMS`] costs more than the one chosen.

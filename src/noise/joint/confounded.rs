@@ -1,7 +1,7 @@
 //! Whether quantisation or a filter can be told from what else bends the spectrum near its upper end.
 
 use super::search::all_free;
-use super::{ExtraThresholds, Free, Joint, JointPoint, Shape, Variable, parameter_covariance};
+use super::{ExtraThresholds, Free, Joint, JointPoint, Kind, Shape, Variable, parameter_covariance};
 
 /// Place of quantisation among the variances.
 pub(super) const QUANTIZATION: usize = 3;
@@ -26,8 +26,12 @@ pub(super) fn quantization_price(
     }
 }
 
-/// True when N is several times less certain with quantisation free than with it held.
+/// True when N is several times less certain with quantisation free than with it held, or stands beside a Markov
+/// process: there the likelihood may have two tops, with quantisation and without, each of which knows its own N well.
 fn confounds_white(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> bool {
+    if point.shape.damped.iter().any(|(kind, _)| *kind == Kind::Markov) {
+        return true;
+    }
     let mut free = all_free(&point.shape, ramp, true);
     let mut sigma = |quantization: bool| {
         free.variance[QUANTIZATION] = quantization;

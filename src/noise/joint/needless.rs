@@ -59,11 +59,11 @@ pub(super) fn needless(
         Part::Damped(i) => match shape.damped.get(i) {
             Some((Kind::Markov, _)) => {
                 // Flicker or random walk may stand in its place, each at its own price.
-                let in_place = Slow::of(joint, &without_shape(shape, part), slow_prices)
-                    .map_or(f64::INFINITY, |s| s.choice.cost);
-                let instead = slow.choice_without_rivals(slow_prices);
-                let kept = (slow.choice.cost + thresholds.markov).min(instead);
-                in_place - kept
+                Slow::of(joint, &without_shape(shape, part), slow_prices).map_or(f64::INFINITY, |in_place| {
+                    let instead = slow.choice_without_rivals(slow_prices)
+                        + slow_prices.in_place_of(in_place.choice.set);
+                    in_place.choice.cost - (slow.choice.cost + thresholds.markov).min(instead)
+                })
             }
             _ => less_by(part, thresholds.quasi_periodic),
         },

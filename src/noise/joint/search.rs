@@ -40,7 +40,7 @@ impl Default for ExtraThresholds {
             markov: 17.0,
             quantization_beside_filter: 20.0,
             quantization: 11.0,
-            quantization_confounded: 20.0,
+            quantization_confounded: 25.0,
             quasi_periodic: 14.0,
         }
     }
@@ -201,7 +201,7 @@ fn filters(
 }
 
 /// A filter is seen by what it does to white noise: what bends flicker and random walk alone is something else.
-fn shows_filter(point: &JointPoint, joint: &Joint<'_>) -> bool {
+pub(super) fn shows_filter(point: &JointPoint, joint: &Joint<'_>) -> bool {
     let (model, tau0_s) = (point.composite(joint.sampling()), joint.evidence().tau0_s);
     let Some(filter) = model.bandwidth else { return false };
     let cutoff_hz = filter.cutoff_hz(tau0_s).min(0.4 / tau0_s);

@@ -146,7 +146,7 @@ pub(super) fn long_markov(
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let time_s = point.shape.damped.last()?.1.decay_time_s;
     let sigma = point.variance.get(BASE.len() + shape.damped.len()).copied().unwrap_or(0.0).max(0.0).sqrt();
-    let excess = cost - choice.cost;
+    let excess = cost + prices.in_place_of(choice.set) - choice.cost;
     let usable = sigma > 0.0 && time_s <= longest_s && excess < NEAR;
     usable.then_some(LongMarkov { shape: point.shape, excess, sigma, time_s })
 }
