@@ -2,6 +2,7 @@
 
 use super::confounded::quantization_price;
 use super::ends::judged;
+use super::filter_alike::with_filter_instead;
 use super::needless::{Part, needless, without};
 use super::search::all_free;
 use super::slow::{Slow, long_markov};
@@ -86,14 +87,28 @@ impl MaximumLikelihood {
             }
         }
         // A part that became needless after a later one is taken out again.
-        let mut turns = TURNS;
+        let (mut turns, mut exchanged) = (TURNS, false);
         loop {
             turns = turns.saturating_sub(1);
             let resolved = judged(evidence, &extras);
             let Some(joint) = Joint::new(&resolved, self.sampling) else { return without_extras(plain) };
             let Some(found) = Found::of(&joint, &extras.shape, self) else { return without_extras(plain) };
             let near = long_markov(&joint, &extras.shape, found.slow.choice, &self.base.slow);
-            match (found.needless, near) {
+            // Where no white noise is seen beneath a Markov process, the process may be white noise behind a filter.
+            let filtered = if found.needless.is_none() && !found.claimed[0] && !exchanged {
+                with_filter_instead(&joint, &extras.shape, &found.slow, &self.base.slow, &self.extras)
+            } else {
+                None
+            };
+            exchanged |= filtered.is_some();
+            // A filter that took the place of a process is not given up for it again.
+            let needless = found.needless.filter(|part| !exchanged || *part != Part::Filter);
+            match (needless, near) {
+                _ if turns > 0
+                    && let Some(shape) = filtered =>
+                {
+                    extras.shape = shape
+                }
                 (Some(part), _) if turns > 0 => extras = without(&extras, part),
                 (None, Some(with)) if turns > 0 && with.excess < 0.0 => extras.shape = with.shape,
                 (_, near) => {
@@ -261,6 +276,8 @@ impl Found {
             alone.variance[r] = false;
             start.variance[r] = 0.0;
         }
+        // White noise that is not claimed is there all the same: without it flicker would have to stand for it.
+        alone.variance[0] = true;
         match variable {
             Variable::Ramp => alone.ramp = true,
             _ => alone.variance[term] = true,

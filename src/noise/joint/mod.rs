@@ -7,6 +7,7 @@
 mod columns;
 mod confounded;
 mod ends;
+mod filter_alike;
 mod identify;
 mod interval;
 mod maximise;
