@@ -3,16 +3,17 @@
 //! Two static models are held against the straight line: *subtractive*, D = sgn(x)·max(|x| − δ, 0), and *gap*,
 //! D = x·[|x| > δ], each about a centre that is fitted too, for the zone lies where the unit believes to be at rest. The
 //! half width δ has the interval of its likelihood over the means of the rates with their covariance, slope and offset at
-//! their best, centre and kind averaged over.
+//! their best, kind averaged over and centre too, over the places where a unit is at rest and any other (`place`).
 //!
 //! Outside a zone the output follows the rate by the scale factor. What a test of scale factor said of it may be used: a
 //! line that may have any slope takes up most of a small zone. A zone is claimed when a line with the noise of this test
-//! would gain as much from a zone in less than one test of a hundred; draws tell.
+//! would make zones as likely on the average in less than one test of a hundred; draws tell.
 //!
 //! Noise inside the loop carries the input in and out of the zone and rounds it off (*rounded*): the subtractive response
 //! is averaged over normal noise σ. Where that fits better than any zone without noise, δ and σ are estimated together;
 //! otherwise σ is bounded, and the interval of δ is averaged over it too.
 
+mod place;
 mod points;
 mod rounded;
 mod shape;
