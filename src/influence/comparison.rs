@@ -5,7 +5,7 @@ use super::gls;
 use super::intervals::Intervals;
 use super::setup::ComparisonTest;
 use crate::estimate::{Estimate, chi_square_tail};
-use crate::numeric::reml::{self, Combination, Fit};
+use crate::numeric::reml::{Combination, Fit};
 use crate::rate_table::blocks::Blocks;
 use crate::rate_table::combine::spread;
 use crate::text::{Arg, Note};
@@ -204,10 +204,14 @@ fn noise(cut: &Cut, states: &States) -> Vec<DMatrix<f64>> {
         }
         v
     };
-    let mut components: Vec<DMatrix<f64>> =
-        std::iter::once(None).chain((0..states.list.len()).map(Some)).map(of).collect();
+    let mut components: Vec<DMatrix<f64>> = (0..levels(states)).map(|k| of(k.checked_sub(1))).collect();
     components.extend([cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()]);
     components
+}
+
+/// How many levels there are, the one without the influence among them.
+fn levels(states: &States) -> usize {
+    1 + states.list.len()
 }
 
 /// A covariance that keeps matrices regular.
@@ -216,15 +220,16 @@ fn known(cut: &Cut) -> DMatrix<f64> {
     DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE)
 }
 
-/// Generalised least squares in the identified noise, with a scatter between intervals where the test speaks for it.
+/// Generalised least squares in the noise that is seen, with a scatter between intervals where the test speaks for it.
 fn solve(cut: &Cut, states: &States, x: &DMatrix<f64>) -> Option<(Fit, bool)> {
     let (fixed, mut components) = (known(cut), noise(cut, states));
-    let fit = reml::fit(&cut.y, x, &fixed, &components)?;
+    let own = levels(states);
+    let fit = gls::lean(&cut.y, x, &fixed, &components, own)?;
     if states.of.len() <= x.ncols() {
         return Some((fit, false));
     }
     components.push(cut.rows.shared(&cut.of));
-    match reml::fit(&cut.y, x, &fixed, &components) {
+    match gls::lean(&cut.y, x, &fixed, &components, own) {
         Some(better) if better.twice_log_likelihood > fit.twice_log_likelihood + TAKEN_FROM => {
             Some((better, true))
         }
@@ -243,7 +248,7 @@ fn means(
     let (n, count) = (cut.rows.len(), found.list.len());
     // Time within an interval belongs to the noise here: the drift is taken from the means of those without.
     let x = DMatrix::from_fn(n, count, |i, j| f64::from(cut.of[i] == j));
-    let fit = gls::lean(&cut.y, &x, &known(cut), &noise(cut, states))?;
+    let fit = gls::lean(&cut.y, &x, &known(cut), &noise(cut, states), levels(states))?;
     let middle = |k: usize, v: &dyn Fn(usize) -> f64| {
         let of: Vec<f64> = (0..n).filter(|i| cut.of[*i] == k).map(v).collect();
         of.iter().sum::<f64>() / of.len().max(1) as f64

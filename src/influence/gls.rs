@@ -7,16 +7,21 @@ use nalgebra::{DMatrix, DVector};
 const SHARE: f64 = 1e-3;
 
 /// Fits a model as [`reml::fit`]; components without a share in the noise are left out of it, and so is the doubt about
-/// them: how slow noise that is not seen might move the mean of the whole record is no part of a single mean.
+/// them: how slow noise that is not seen might move the mean of the whole record is no part of a single mean. The first
+/// `own` components are kept: each is all the noise that some rows have, however small beside that of others.
 pub fn lean(
     y: &DVector<f64>,
     x: &DMatrix<f64>,
     fixed: &DMatrix<f64>,
     components: &[DMatrix<f64>],
+    own: usize,
 ) -> Option<Fit> {
     let fit = reml::fit(y, x, fixed, components)?;
-    let kept: Vec<DMatrix<f64>> =
-        shown(&fit, components).into_iter().map(|k| components[k].clone()).collect();
+    let shown = shown(&fit, components);
+    let kept: Vec<DMatrix<f64>> = (0..components.len())
+        .filter(|k| *k < own || shown.contains(k))
+        .map(|k| components[k].clone())
+        .collect();
     if kept.len() == components.len() || kept.is_empty() {
         return Some(fit);
     }

@@ -82,7 +82,7 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     let x = DMatrix::from_fn(n, count, |i, j| if cut.of[i] == j { 1.0 } else { 0.0 });
     let fixed = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
     let components = [cut.rows.white(), cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()];
-    let fit = gls::lean(&cut.y, &x, &fixed, &components)?;
+    let fit = gls::lean(&cut.y, &x, &fixed, &components, 0)?;
     let temperature = |run: usize| {
         let of: Vec<f64> = (0..n).filter(|i| cut.of[*i] == run).map(|i| cut.temperature[i]).collect();
         of.iter().sum::<f64>() / of.len() as f64

@@ -3,7 +3,7 @@
 //! Flicker moves runs against one another as switching on does, and minutes of a run show it hardly. Every strength of it
 //! gives its own confidence distribution of the spread (see [`super::contrasts`]); what counts is their mean, each weighed
 //! by the restricted likelihood of what happens within the runs, which the spread between them does not enter. A strength
-//! has a density that is flat below what the record can show and falls above as its inverse, as in the tests over temperature.
+//! has a density that is flat below what the record can show and falls above as its inverse.
 
 use super::contrasts::{Contrasts, Means};
 use super::cut::Cut;
