@@ -54,6 +54,19 @@ impl Fit {
         Combination { value: weights.dot(&self.coefficients), standard: variance.sqrt(), dof }
     }
 
+    /// Standard deviation of a sum of noise, and the degrees of freedom of that, from the variance that each component of
+    /// unit strength gives the sum.
+    pub fn noise_of(&self, variances: &[f64]) -> (f64, f64) {
+        let each = DVector::from_iterator(
+            self.strengths.len(),
+            (0..self.strengths.len()).map(|k| variances.get(k).copied().unwrap_or(0.0)),
+        );
+        let variance = each.iter().zip(&self.strengths).map(|(v, s)| v * s).sum::<f64>().max(0.0);
+        let scatter = each.dot(&(&self.strength_covariance * &each));
+        let dof = if scatter > 0.0 { (2.0 * variance * variance / scatter).clamp(1.0, 1e9) } else { 1e9 };
+        (variance.sqrt(), dof)
+    }
+
     /// The fit with columns that were divided by `sizes` before: coefficients of the columns as they were.
     #[must_use]
     pub fn rescaled(mut self, sizes: &[f64]) -> Fit {
@@ -275,6 +288,9 @@ mod tests {
         let slope = f.coefficient(1);
         assert!((slope.standard - (rss / 4.0 / 17.5).sqrt()).abs() < 1e-6);
         assert!((slope.dof - 4.0).abs() < 1e-6);
+        // A mean of four further values: a quarter of the variance, known from the same degrees of freedom.
+        let (standard, dof) = f.noise_of(&[0.25]);
+        assert!((standard - (rss / 16.0).sqrt()).abs() < 1e-6 && (dof - 4.0).abs() < 1e-6);
     }
 
     #[test]

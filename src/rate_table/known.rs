@@ -1,11 +1,11 @@
-//! Inputs that are known without a table: positions against the Earth's rotation, turns by a known angle, rest.
+//! Inputs that are known without a table, and positions against the Earth's rotation.
 
 use super::blocks::{Block, Blocks};
 use super::combine::spread;
 use super::noise::Rows;
 use crate::estimate::{Estimate, Spread};
 use crate::numeric::reml::{self, Combination, Fit};
-use crate::text::{Arg, Note};
+use crate::text::Note;
 use nalgebra::{DMatrix, DVector};
 
 /// Least difference of the Earth rate between positions from which a line is taken, deg/h.
@@ -88,13 +88,13 @@ pub fn stretches(blocks: &Blocks, known: &[Known], phases: &[(String, u64, u64)]
 }
 
 /// Rows of a channel over stretches: outputs with the time they were averaged over, and the stretch of each.
-struct Cut {
-    y: DVector<f64>,
-    rows: Rows,
+pub(super) struct Cut {
+    pub(super) y: DVector<f64>,
+    pub(super) rows: Rows,
     of: Vec<usize>,
 }
 
-fn cut(blocks: &Blocks, stretches: &[&Stretch], channel: usize) -> Option<Cut> {
+pub(super) fn cut(blocks: &Blocks, stretches: &[&Stretch], channel: usize) -> Option<Cut> {
     let total: usize = stretches.iter().map(|s| s.blocks.1 - s.blocks.0).sum();
     let (mut y, mut of) = (vec![], vec![]);
     let mut rows = Rows::default();
@@ -123,11 +123,29 @@ fn cut(blocks: &Blocks, stretches: &[&Stretch], channel: usize) -> Option<Cut> {
     (y.len() > stretches.len()).then(|| Cut { y: DVector::from_vec(y), rows, of })
 }
 
-fn solve(cut: &Cut, x: &DMatrix<f64>) -> Option<Fit> {
+/// Gain of twice the log-likelihood from which noise of the angle is taken for real: by chance it comes about in one test of
+/// ten. It averages out where other noise does not, and taken without need makes means too certain.
+const TAKEN_FROM: f64 = 1.64;
+
+/// Kinds of noise, that of the angle last.
+pub(super) fn noise_components(rows: &Rows) -> [DMatrix<f64>; 4] {
+    [rows.white(), rows.flicker(), rows.random_walk(), rows.angle()]
+}
+
+/// Generalised least squares in the identified noise, with the kinds that its strengths are of.
+pub(super) fn solve(cut: &Cut, x: &DMatrix<f64>) -> Option<(Fit, Vec<usize>)> {
     let n = cut.rows.len();
     let fixed = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
-    let components = [cut.rows.white(), cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()];
-    reml::fit(&cut.y, x, &fixed, &components)
+    let components = noise_components(&cut.rows);
+    let usual = reml::fit(&cut.y, x, &fixed, &components[..3]);
+    let all = reml::fit(&cut.y, x, &fixed, &components);
+    match (usual, all) {
+        (Some(usual), Some(all)) if all.twice_log_likelihood > usual.twice_log_likelihood + TAKEN_FROM => {
+            Some((all, vec![0, 1, 2, 3]))
+        }
+        (Some(usual), _) => Some((usual, vec![0, 1, 2])),
+        (None, all) => Some((all?, vec![0, 1, 2, 3])),
+    }
 }
 
 /// One channel in positions against the Earth's rotation.
@@ -196,7 +214,7 @@ pub fn positions(
     let cut = cut(blocks, &own, channel)?;
     let n = cut.rows.len();
     let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { inputs[cut.of[i]].0 });
-    let fit = solve(&cut, &x)?;
+    let (fit, _) = solve(&cut, &x)?;
     // What a wrong direction does to the line: each position with the weight that it has in an even line.
     let m = inputs.len() as f64;
     let mean = inputs.iter().map(|i| i.0).sum::<f64>() / m;
@@ -205,7 +223,7 @@ pub fn positions(
     let of_bias =
         inputs.iter().map(|i| ((1.0 / m - mean * (i.0 - mean) / sxx) * i.1).powi(2)).sum::<f64>().sqrt();
     let saturated = DMatrix::from_fn(n, own.len(), |i, j| if cut.of[i] == j { 1.0 } else { 0.0 });
-    let each = solve(&cut, &saturated)?;
+    let (each, _) = solve(&cut, &saturated)?;
     let means = own
         .iter()
         .enumerate()
@@ -295,105 +313,5 @@ impl Positions {
             }
         }
         pairs
-    }
-}
-
-/// Turns by known angles: what every channel makes of a turn about the axis of every channel.
-#[derive(Debug, Clone)]
-pub struct Turns {
-    /// (channel of the output, channel whose axis was turned about, output per input, contribution of the angle).
-    pub table: Vec<(String, String, Combination, f64)>,
-}
-
-/// Evaluates turns by known angles; `None` without one.
-pub fn turns(blocks: &Blocks, known: &[Known], stretches: &[Stretch]) -> Option<Turns> {
-    let kind = |s: &&Stretch, rest: bool| match known[s.known].input {
-        Input::Rest => rest,
-        Input::Turn { .. } => !rest,
-        Input::Position { .. } => false,
-    };
-    let rests: Vec<&Stretch> = stretches.iter().filter(|s| kind(s, true)).collect();
-    let mut table = Vec::new();
-    for (channel, output) in blocks.gyros.iter().enumerate() {
-        // Bias, and N from what scatters at rest.
-        let rest = cut(blocks, &rests, channel).and_then(|c| {
-            let x = DMatrix::from_element(c.rows.len(), 1, 1.0);
-            let fit = solve(&c, &x)?;
-            let white = fit.strengths[0];
-            Some((fit.coefficient(0), white))
-        });
-        for axis in &blocks.gyros {
-            let own: Vec<(&Stretch, (f64, f64))> = stretches
-                .iter()
-                .filter(|s| known[s.known].channel.as_ref() == Some(axis))
-                .filter_map(|s| match known[s.known].input {
-                    Input::Turn { angle } => Some((s, angle)),
-                    _ => None,
-                })
-                .collect();
-            if own.is_empty() {
-                continue;
-            }
-            let (bias, white) = rest.unwrap_or((Combination { value: 0.0, standard: 0.0, dof: 1e9 }, 0.0));
-            let square: f64 = own.iter().map(|(_, a)| a.0 * a.0).sum();
-            let (mut sum, mut random, mut length, mut by_angle) = (0.0, 0.0, 0.0, 0.0);
-            let mut each = Vec::new();
-            for (s, angle) in &own {
-                let (turned, hours) = integral(blocks, s, channel);
-                let clean = turned - bias.value * hours;
-                sum += angle.0 * clean;
-                random += angle.0 * angle.0 * white * hours;
-                length += angle.0 * hours;
-                each.push((clean, *angle));
-            }
-            let factor = sum / square;
-            for (_, angle) in &each {
-                by_angle += (factor * angle.0 * angle.1 / square).powi(2);
-            }
-            let noise = (random / (square * square)).sqrt();
-            let of_bias = bias.standard * length.abs() / square;
-            let combined = Combination { value: factor, standard: noise.hypot(of_bias), dof: bias.dof };
-            table.push((output.clone(), axis.clone(), combined, by_angle.sqrt()));
-        }
-    }
-    (!table.is_empty()).then_some(Turns { table })
-}
-
-/// Angle that the output makes of a stretch, deg, and its length, h. Samples that cannot be used count as the mean.
-fn integral(blocks: &Blocks, s: &Stretch, channel: usize) -> (f64, f64) {
-    let list = &blocks.list[s.blocks.0..s.blocks.1];
-    let (mut angle, mut used, mut all) = (0.0, 0.0, 0.0);
-    for b in list {
-        let hours = f64::from(b.samples) * blocks.interval_s / 3600.0;
-        all += hours;
-        if let Some(g) = b.gyro.get(channel).filter(|g| g.is_finite()) {
-            angle += g * hours;
-            used += hours;
-        }
-    }
-    if used > 0.0 { (angle * all / used, all) } else { (0.0, all) }
-}
-
-impl Turns {
-    /// The estimates of one id.
-    pub fn estimates(&self, id: &'static str, unit: &'static str) -> Vec<Estimate> {
-        self.table
-            .iter()
-            .filter_map(|(output, axis, c, by_angle)| {
-                let own = output == axis;
-                let (channel, value, factor) = match (id, own) {
-                    ("scale_factor", true) => (output.clone(), c.value, 1.0),
-                    ("scale_factor_error", true) => (output.clone(), 1e6 * (c.value - 1.0), 1e6),
-                    ("cross_axis", false) => (format!("{output}<-{axis}"), c.value, 1.0),
-                    _ => return None,
-                };
-                let spread = spread(c, factor, &[factor * by_angle]);
-                let mut e = Estimate::measured(id, &channel, value, unit, spread, "known_angles");
-                if id == "scale_factor" {
-                    e.unit = "1";
-                }
-                Some(e.note(Note::new("known.turns").with("axis", Arg::Text(axis.clone()))))
-            })
-            .collect()
     }
 }

@@ -18,6 +18,7 @@ pub mod settling;
 pub mod sine;
 pub mod stamps;
 pub mod steps;
+pub mod turns;
 
 use blocks::Blocks;
 use steps::Steps;

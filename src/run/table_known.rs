@@ -7,6 +7,7 @@ use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::rate_table::Setup;
 use crate::rate_table::blocks::Blocks;
 use crate::rate_table::known::{self, Input, Positions};
+use crate::rate_table::turns;
 
 pub(super) fn finish(
     request: &Request<'_>,
@@ -40,7 +41,7 @@ pub(super) fn finish(
             known::positions(blocks, known, &stretches, gyro, &earth)
         });
     }
-    let turns = known::turns(blocks, &setup.known, &stretches);
+    let turns = turns::turns(blocks, &setup.known, &stretches);
     let vertical = setup.known.iter().all(|k| match k.input {
         Input::Position { elevation, .. } => (elevation.0.abs() - 90.0).abs() < 1e-6,
         _ => true,

@@ -4,6 +4,7 @@ mod bench;
 mod judged;
 mod motion;
 mod pauses;
+mod positions;
 mod runs;
 mod unshown;
 mod zones;
@@ -13,7 +14,7 @@ use judged::{Count, told, truths};
 use rayon::prelude::*;
 use sagnac::estimate::Estimate;
 use sagnac::ids;
-use sagnac::rate_table::blocks::Collector;
+use sagnac::rate_table::blocks::{Blocks, Collector};
 use sagnac::rate_table::{Setup, TableRun, alignment, scale_factor};
 use sagnac::recording::{Channel, ColumnRef, Role, Sink, Slab};
 use sagnac::units::Unit;
@@ -123,20 +124,25 @@ fn write_the_samples() {
 }
 
 fn run_of(channels: &[(Role, Vec<f64>)], dt: f64, setup: &Setup) -> TableRun {
+    let named: Vec<(&str, Role, Vec<f64>)> = channels.iter().map(|(r, v)| (r.id(), *r, v.clone())).collect();
+    TableRun::new(blocks_of(named, dt), setup)
+}
+
+fn blocks_of(channels: Vec<(&str, Role, Vec<f64>)>, dt: f64) -> Blocks {
     let list: Vec<Channel> = channels
         .iter()
-        .map(|(role, _)| Channel {
-            id: role.id().into(),
-            column: ColumnRef::Name(role.id().into()),
+        .map(|(id, role, _)| Channel {
+            id: (*id).into(),
+            column: ColumnRef::Name((*id).into()),
             role: *role,
             unit: Unit::parse(role.internal_unit().unwrap()).unwrap(),
             scale: 1.0,
         })
         .collect();
-    let values: Vec<Vec<f64>> = channels.iter().map(|(_, v)| v.clone()).collect();
+    let values: Vec<Vec<f64>> = channels.into_iter().map(|c| c.2).collect();
     let mut collector = Collector::new(&list, dt, None);
     collector.push(&Slab { first_index: 0, first_row: 1, time_s: 0.0, continues: false, values: &values });
-    TableRun::new(collector.finish(dt), setup)
+    collector.finish(dt)
 }
 
 fn on_bench(bench: &Bench, recorded: &Recorded) -> (TableRun, Setup) {

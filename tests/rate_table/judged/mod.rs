@@ -22,6 +22,15 @@ pub struct Count {
 }
 
 impl Count {
+    pub fn add(&mut self, other: Count) {
+        self.runs += other.runs;
+        self.held += other.held;
+        self.errors.extend(other.errors);
+        self.widths.extend(other.widths);
+        self.bounds = (self.bounds.0 + other.bounds.0, self.bounds.1 + other.bounds.1);
+        self.over_told.extend(other.over_told);
+    }
+
     pub fn take(&mut self, estimate: &Estimate, truth: f64, told: Option<f64>) {
         self.runs += 1;
         match estimate.value {
