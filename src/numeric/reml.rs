@@ -19,6 +19,8 @@ pub struct Fit {
     pub covariance: DMatrix<f64>,
     /// Strengths of the components, one a matrix given.
     pub strengths: Vec<f64>,
+    /// Weight of every value of y in each coefficient.
+    pub weights: DMatrix<f64>,
     /// What the model leaves of y.
     pub residuals: DVector<f64>,
     /// Twice the restricted log-likelihood, but for a constant.
@@ -74,6 +76,7 @@ impl Fit {
             DMatrix::from_diagonal(&DVector::from_iterator(sizes.len(), sizes.iter().map(|s| 1.0 / s)));
         self.coefficients = &back * self.coefficients;
         self.covariance = &back * self.covariance * &back;
+        self.weights = &back * self.weights;
         self.slopes = self.slopes.iter().map(|s| &back * s * &back).collect();
         self
     }
@@ -239,36 +242,64 @@ fn finish(
     components: &[DMatrix<f64>],
     strengths: Vec<f64>,
 ) -> Fit {
-    // A strength at its end of zero is no better known than one above it.
-    let active: Vec<usize> = (0..components.len()).collect();
     let p = projector(&state);
-    let products: Vec<DMatrix<f64>> = active.iter().map(|k| &p * &components[*k]).collect();
-    let information = DMatrix::from_fn(active.len(), active.len(), |i, j| {
+    let products: Vec<DMatrix<f64>> = components.iter().map(|v| &p * v).collect();
+    let information = DMatrix::from_fn(components.len(), components.len(), |i, j| {
         0.5 * products[i].component_mul(&products[j].transpose()).sum()
     });
-    let least = 1e-12 * information.iter().fold(f64::MIN_POSITIVE, |m: f64, v| m.max(v.abs()));
-    let strength_covariance = if active.is_empty() {
-        information
-    } else {
-        information.clone().pseudo_inverse(least).unwrap_or(information)
-    };
-    let slopes = active
+    let slopes = components
         .iter()
-        .map(|k| {
-            let inner = state.weighted.transpose() * &components[*k] * &state.weighted;
+        .map(|v| {
+            let inner = state.weighted.transpose() * v * &state.weighted;
             &state.covariance * inner * &state.covariance
         })
         .collect();
+    let active: Vec<usize> = (0..components.len()).filter(|k| strengths[*k] > 0.0).collect();
     let residuals = y - x * &state.coefficients;
     Fit {
+        covariance: &state.covariance + inflation(&state, components, &products, &information, &active),
+        weights: &state.covariance * state.weighted.transpose(),
         coefficients: state.coefficients,
-        covariance: state.covariance,
         strengths,
         residuals,
         twice_log_likelihood: state.twice_log_likelihood,
         slopes,
-        strength_covariance,
+        // A strength at its end of zero is no better known than one above it.
+        strength_covariance: inverse_of(information),
     }
+}
+
+/// The inverse of information, as far as there is any.
+fn inverse_of(information: DMatrix<f64>) -> DMatrix<f64> {
+    if information.is_empty() {
+        return information;
+    }
+    let least = 1e-12 * information.iter().fold(f64::MIN_POSITIVE, |m: f64, v| m.max(v.abs()));
+    information.clone().pseudo_inverse(least).unwrap_or(information)
+}
+
+/// What the covariance of the coefficients lacks because the strengths, and with them the weights, are estimated: weights
+/// that scatter about the best ones make coefficients less certain, and the covariance at the strengths found is too small
+/// by as much again (Kackar and Harville 1984; Kenward and Roger 1997). Of the strengths that are not at their end of zero,
+/// since those that are do not scatter to both sides. `products` are those of the projector with the components.
+fn inflation(
+    state: &State,
+    components: &[DMatrix<f64>],
+    products: &[DMatrix<f64>],
+    information: &DMatrix<f64>,
+    active: &[usize],
+) -> DMatrix<f64> {
+    let m = active.len();
+    let scatter = inverse_of(DMatrix::from_fn(m, m, |i, j| information[(active[i], active[j])]));
+    let columns = state.covariance.nrows();
+    let mut sum = DMatrix::zeros(columns, columns);
+    for (i, k) in active.iter().enumerate() {
+        let left = state.weighted.transpose() * &components[*k];
+        for (j, l) in active.iter().enumerate() {
+            sum += &left * (&products[*l] * &state.weighted) * scatter[(i, j)];
+        }
+    }
+    &state.covariance * sum * &state.covariance * 2.0
 }
 
 #[cfg(test)]
@@ -308,6 +339,7 @@ mod tests {
         assert!((f.strengths[1] - (between - within) / 2.0).abs() < 1e-3, "{:?}", f.strengths);
         let mean_value = f.coefficient(0);
         assert!((mean_value.standard - (between / 6.0).sqrt()).abs() < 1e-3);
+        assert!(f.weights.iter().all(|w| (w - 1.0 / 6.0).abs() < 1e-9), "{}", f.weights);
         // Two degrees of freedom: three groups.
         assert!((mean_value.dof - 2.0).abs() < 0.05, "{}", mean_value.dof);
     }

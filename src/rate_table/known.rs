@@ -2,6 +2,7 @@
 
 use super::blocks::{Block, Blocks};
 use super::combine::spread;
+use super::model::{TAKEN_FROM, slope_of};
 use super::noise::Rows;
 use crate::estimate::{Estimate, Spread};
 use crate::numeric::reml::{self, Combination, Fit};
@@ -123,19 +124,17 @@ pub(super) fn cut(blocks: &Blocks, stretches: &[&Stretch], channel: usize) -> Op
     (y.len() > stretches.len()).then(|| Cut { y: DVector::from_vec(y), rows, of })
 }
 
-/// Gain of twice the log-likelihood from which noise of the angle is taken for real: by chance it comes about in one test of
-/// ten. It averages out where other noise does not, and taken without need makes means too certain.
-const TAKEN_FROM: f64 = 1.64;
-
 /// Kinds of noise, that of the angle last.
 pub(super) fn noise_components(rows: &Rows) -> [DMatrix<f64>; 4] {
     [rows.white(), rows.flicker(), rows.random_walk(), rows.angle()]
 }
 
-/// Generalised least squares in the identified noise, with the kinds that its strengths are of.
-pub(super) fn solve(cut: &Cut, x: &DMatrix<f64>) -> Option<(Fit, Vec<usize>)> {
+/// Generalised least squares in the identified noise beside a covariance that is known, with the kinds that its strengths
+/// are of. Noise of the angle is only taken where it shows: it averages out where other noise does not, and taken without
+/// need makes means too certain.
+pub(super) fn solve(cut: &Cut, x: &DMatrix<f64>, known: &DMatrix<f64>) -> Option<(Fit, Vec<usize>)> {
     let n = cut.rows.len();
-    let fixed = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
+    let fixed = known + DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
     let components = noise_components(&cut.rows);
     let usual = reml::fit(&cut.y, x, &fixed, &components[..3]);
     let all = reml::fit(&cut.y, x, &fixed, &components);
@@ -153,14 +152,10 @@ pub(super) fn solve(cut: &Cut, x: &DMatrix<f64>) -> Option<(Fit, Vec<usize>)> {
 pub struct Positions {
     /// Channel.
     pub channel: String,
-    /// Output per input.
+    /// Output per input, with what the directions and the latitude contribute.
     pub factor: Combination,
-    /// Contribution of the directions and the latitude to it.
-    pub factor_directions: f64,
-    /// Bias, deg/h.
+    /// Bias, deg/h, likewise.
     pub bias: Combination,
-    /// Contribution of the directions to it, deg/h.
-    pub bias_directions: f64,
     /// Mean output in every position with its standard uncertainty, and the Earth rate expected there with its own, deg/h.
     pub means: Vec<Mean>,
     /// Channel that shows the Earth's rotation between these positions in place of this one, and its factor.
@@ -214,16 +209,16 @@ pub fn positions(
     let cut = cut(blocks, &own, channel)?;
     let n = cut.rows.len();
     let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { inputs[cut.of[i]].0 });
-    let (fit, _) = solve(&cut, &x)?;
-    // What a wrong direction does to the line: each position with the weight that it has in an even line.
-    let m = inputs.len() as f64;
-    let mean = inputs.iter().map(|i| i.0).sum::<f64>() / m;
-    let sxx: f64 = inputs.iter().map(|i| (i.0 - mean) * (i.0 - mean)).sum();
-    let of_slope = inputs.iter().map(|i| ((i.0 - mean) / sxx * i.1).powi(2)).sum::<f64>().sqrt();
-    let of_bias =
-        inputs.iter().map(|i| ((1.0 / m - mean * (i.0 - mean) / sxx) * i.1).powi(2)).sum::<f64>().sqrt();
+    let along: Vec<f64> = cut.of.iter().map(|k| inputs[*k].0).collect();
+    let slope = slope_of(&along, cut.y.as_slice())?;
+    // A direction that is wrong shifts all of its position: known beforehand, it is not taken for drift, and the position
+    // has the weight that its direction allows.
+    let of_directions = DMatrix::from_fn(n, n, |i, j| {
+        if cut.of[i] == cut.of[j] { (slope * inputs[cut.of[i]].1).powi(2) } else { 0.0 }
+    });
+    let (fit, _) = solve(&cut, &x, &of_directions)?;
     let saturated = DMatrix::from_fn(n, own.len(), |i, j| if cut.of[i] == j { 1.0 } else { 0.0 });
-    let (each, _) = solve(&cut, &saturated)?;
+    let (each, _) = solve(&cut, &saturated, &DMatrix::zeros(n, n))?;
     let means = own
         .iter()
         .enumerate()
@@ -242,9 +237,7 @@ pub fn positions(
     Some(Positions {
         channel: id.clone(),
         factor: fit.coefficient(1),
-        factor_directions: of_slope * fit.coefficients[1].abs(),
         bias: fit.coefficient(0),
-        bias_directions: of_bias,
         means,
         turned_instead: None,
     })
@@ -269,26 +262,20 @@ impl Positions {
                 .note(Note::new("known.positions").with("n", self.means.len()))
         };
         Some(match id {
-            "scale_factor_error" => measured(
-                (self.factor.value - 1.0) * 1e6,
-                spread(&self.factor, 1e6, &[1e6 * self.factor_directions]),
-            ),
-            "scale_factor_bias" => {
-                measured(self.bias.value, spread(&self.bias, 1.0, &[self.bias_directions]))
-            }
+            "scale_factor_error" => measured((self.factor.value - 1.0) * 1e6, spread(&self.factor, 1e6, &[])),
+            "scale_factor_bias" => measured(self.bias.value, spread(&self.bias, 1.0, &[])),
             _ => return None,
         })
     }
 
     /// True when the output follows the Earth's rotation as the positions have it, as nearly as the noise tells.
     pub fn follows(&self) -> bool {
-        let u = self.factor.standard.hypot(self.factor_directions);
-        (self.factor.value - 1.0).abs() <= (4.0 * u).max(0.02)
+        (self.factor.value - 1.0).abs() <= (4.0 * self.factor.standard).max(0.02)
     }
 
     /// True when it is plain that it follows.
     pub fn plainly_follows(&self) -> bool {
-        self.follows() && self.factor.standard.hypot(self.factor_directions) < 0.1
+        self.follows() && self.factor.standard < 0.1
     }
 
     /// Pairs of positions between which the output changed its sign with its bias: turned in software and not in space.

@@ -6,9 +6,9 @@ use super::{Setup, blocks::TURN_ARCSEC};
 use crate::numeric::reml::{self, Combination, Fit};
 use nalgebra::{DMatrix, DVector};
 
-/// Gain of twice the log-likelihood from which a difference between steps or cycles is taken for real: by chance it comes
-/// about in one test of ten.
-const TAKEN_FROM: f64 = 1.64;
+/// Gain of twice the log-likelihood from which a kind of noise that is not always there is taken for real: by chance it
+/// comes about in one test of ten.
+pub(super) const TAKEN_FROM: f64 = 1.64;
 
 /// What moves the output beside the rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

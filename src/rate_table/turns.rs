@@ -11,7 +11,7 @@ use crate::estimate::Estimate;
 use crate::numeric::reml::{Combination, Fit};
 use crate::text::{Arg, Note};
 use crate::units::EARTH_RATE_DEG_H;
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 /// Turns by known angles.
 #[derive(Debug, Clone)]
@@ -26,30 +26,26 @@ struct Rest {
     fit: Fit,
     /// Which kinds of noise the strengths of the fit are of.
     kinds: Vec<usize>,
-    /// Weight of each row in the bias, and the bias, deg/h.
-    weights: DVector<f64>,
-    bias: f64,
 }
 
 impl Rest {
     fn of(blocks: &Blocks, rests: &[&Stretch], channel: usize) -> Option<Rest> {
         let cut = cut(blocks, rests, channel)?;
         let n = cut.rows.len();
-        let ones = DMatrix::from_element(n, 1, 1.0);
-        let (fit, kinds) = solve(&cut, &ones)?;
-        let all = noise_components(&cut.rows);
-        let least = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
-        let v = kinds.iter().zip(&fit.strengths).fold(least, |sum, (k, s)| sum + &all[*k] * *s);
-        let solved = Cholesky::new(v)?.solve(&DVector::from_element(n, 1.0));
-        let weights = &solved / solved.sum();
-        Some(Rest { bias: weights.dot(&cut.y), rows: cut.rows, fit, kinds, weights })
+        let (fit, kinds) = solve(&cut, &DMatrix::from_element(n, 1, 1.0), &DMatrix::zeros(n, n))?;
+        Some(Rest { rows: cut.rows, fit, kinds })
+    }
+
+    /// The bias, deg/h.
+    fn bias(&self) -> f64 {
+        self.fit.coefficients[0]
     }
 
     /// Standard deviation and degrees of freedom of Σ wᵢ(ȳᵢ − b) over turns: each its middle and length, s, and weight.
     fn noise_of(&self, turns: &[(f64, f64, f64)]) -> (f64, f64) {
         let mut rows = self.rows.clone();
         let of_bias: f64 = turns.iter().map(|t| t.2).sum();
-        let mut weights: Vec<f64> = self.weights.iter().map(|w| -w * of_bias).collect();
+        let mut weights: Vec<f64> = self.fit.weights.iter().map(|w| -w * of_bias).collect();
         for (i, (mid_s, length_s, weight)) in turns.iter().enumerate() {
             rows.mid_s.push(*mid_s);
             rows.length_s.push(*length_s);
@@ -81,7 +77,7 @@ pub fn turns(blocks: &Blocks, known: &[Known], stretches: &[Stretch]) -> Option<
             if own.is_empty() {
                 continue;
             }
-            let bias = rest.as_ref().map_or(0.0, |r| r.bias);
+            let bias = rest.as_ref().map_or(0.0, Rest::bias);
             let square: f64 = own.iter().map(|(_, a)| a.0 * a.0).sum();
             let (mut sum, mut length, mut weighed) = (0.0, 0.0, vec![]);
             for (s, angle) in &own {

@@ -54,7 +54,7 @@ pub(super) fn finish(
                 several: positions.len() > 1,
                 unit: procedure.channel(&p.channel).map_or_else(String::new, |c| c.unit_in_file.clone()),
                 factor: p.factor.value,
-                standard: p.factor.standard.hypot(p.factor_directions),
+                standard: p.factor.standard,
                 bias: p.bias.value,
                 latitude_deg: latitude.map(|l| l.0).filter(|_| vertical),
                 turned_instead: p.turned_instead.clone(),

@@ -3,9 +3,11 @@
 use super::bench::EARTH;
 use super::judged::Count;
 use super::{asked, blocks_of};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use sagnac::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use sagnac::rate_table::known::{self, Input, Known};
+use sagnac::rate_table::noise::Rows;
 use sagnac::rate_table::turns;
 use sagnac::recording::Role;
 
@@ -68,10 +70,30 @@ fn in_positions(model: Noise, seed: u64) -> [Count; 2] {
     };
     let stretches = known::stretches(&blocks, &list, &[]);
     let found = known::positions(&blocks, &list, &stretches, 0, &expected).expect("positions");
+    let inputs: Vec<(f64, f64)> = positions.iter().map(|(h, e)| expected((*h, OFF.0), (*e, OFF.1))).collect();
+    let [told_bias, told_factor] = told(model, &inputs, EACH_S as f64);
     let mut counts = [Count::default(), Count::default()];
-    counts[0].take(&found.estimate("scale_factor_error", "ppm").unwrap(), error_ppm, None);
-    counts[1].take(&found.estimate("scale_factor_bias", "deg/h").unwrap(), bias + drift, None);
+    let error = found.estimate("scale_factor_error", "ppm").unwrap();
+    counts[0].take(&error, error_ppm, Some(1e6 * told_factor));
+    counts[1].take(&found.estimate("scale_factor_bias", "deg/h").unwrap(), bias + drift, Some(told_bias));
     counts
+}
+
+/// Standard uncertainties of bias and factor of a fit that is told the strengths of the noise. `inputs` have theirs.
+fn told(model: Noise, inputs: &[(f64, f64)], each_s: f64) -> [f64; 2] {
+    let rows = Rows {
+        mid_s: (0..inputs.len()).map(|k| (k as f64 + 0.5) * each_s).collect(),
+        length_s: vec![each_s; inputs.len()],
+        step: (0..inputs.len()).collect(),
+    };
+    let directions = DVector::from_iterator(inputs.len(), inputs.iter().map(|i| i.1 * i.1));
+    let v = rows.white() * model.n.powi(2)
+        + rows.flicker() * model.b.powi(2)
+        + rows.random_walk() * model.k.powi(2)
+        + DMatrix::from_diagonal(&directions);
+    let x = DMatrix::from_fn(inputs.len(), 2, |i, j| if j == 0 { 1.0 } else { inputs[i].0 });
+    let of = (x.transpose() * v.try_inverse().unwrap() * x).try_inverse().unwrap();
+    [of[(0, 0)].sqrt(), of[(1, 1)].sqrt()]
 }
 
 /// A triad that is turned by known angles.
