@@ -223,7 +223,7 @@ fn intervals_hold_the_truth() {
 }
 
 /// A number of the environment.
-fn asked(name: &str, otherwise: u64) -> u64 {
+fn asked<T: std::str::FromStr>(name: &str, otherwise: T) -> T {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
 }
 

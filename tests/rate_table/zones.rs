@@ -167,8 +167,8 @@ fn a_zone_as_small_as_the_noise_of_a_step_is_found_where_the_scale_factor_is_kno
 }
 
 #[test]
-#[ignore = "SAGNAC_RUNS=n [SAGNAC_ZONE='free 0.016'] cargo test --release --test rate_table -- --ignored --nocapture \
-            long_study_of_dead"]
+#[ignore = "SAGNAC_RUNS=n [SAGNAC_ZONE='free 0.016'] [SAGNAC_FLICKER=B] [SAGNAC_WALK=K] cargo test --release --test \
+            rate_table -- --ignored --nocapture long_study_of_dead"]
 fn long_study_of_dead_zones() {
     let (runs, first) = (asked("SAGNAC_RUNS", 1000), asked("SAGNAC_FIRST", 1_000_000));
     let only = std::env::var("SAGNAC_ZONE").unwrap_or_default();
@@ -179,16 +179,18 @@ fn long_study_of_dead_zones() {
                 continue;
             }
             let slope = if known.is_some() { "known" } else { "free" };
-            if !format!("{slope} {half_width}").contains(&only) {
+            if !only.is_empty() && format!("{slope} {half_width}") != only {
                 continue;
             }
-            let bench = SmallRates { half_width, ..SmallRates::default() };
+            let (b, k) = (asked("SAGNAC_FLICKER", 0.0), asked("SAGNAC_WALK", 0.0));
+            let bench = SmallRates { half_width, b, k, ..SmallRates::default() };
             println!("power of a test that is told the zone {:.3}", power_told(&bench, known));
             if known.is_none() && half_width > 0.0 {
                 let [average, middle] = power_told_but_the_centre(&bench);
                 println!("of one that is not told its centre {average:.3}, here {middle:.3}");
             }
-            let count = zones(half_width, subtractive, known, runs, first);
+            let bench = SmallRates { subtractive, ..bench };
+            let [count, _, _] = counted(&bench, known, runs, first);
             count.say(&format!("subtractive {subtractive}, known {known:?}, {half_width} deg/h"));
         }
     }
@@ -217,13 +219,19 @@ fn noise_that_rounds_nothing_off_is_bounded() {
 }
 
 #[test]
-#[ignore = "SAGNAC_RUNS=n cargo test --release --test rate_table -- --ignored --nocapture long_study_of_rounded"]
+#[ignore = "SAGNAC_RUNS=n [SAGNAC_ZONE='known 0.12 0.3'] cargo test --release --test rate_table -- --ignored --nocapture \
+            long_study_of_rounded"]
 fn long_study_of_rounded_zones() {
     let (runs, first) = (asked("SAGNAC_RUNS", 1000), asked("SAGNAC_FIRST", 1_000_000));
+    let only = std::env::var("SAGNAC_ZONE").unwrap_or_default();
     for known in [Some(5e-4), None] {
         for (half_width, noise) in
             [(0.06, 0.06), (0.12, 0.04), (0.12, 0.12), (0.12, 0.3), (0.3, 0.05), (0.3, 0.1), (0.3, 0.3)]
         {
+            let slope = if known.is_some() { "known" } else { "free" };
+            if !only.is_empty() && format!("{slope} {half_width} {noise}") != only {
+                continue;
+            }
             println!("known {known:?}, {half_width} deg/h with noise of {noise}");
             let [width, inside, threshold] = counted(&rounded(half_width, noise), known, runs, first);
             width.say("half width");

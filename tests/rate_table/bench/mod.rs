@@ -1,6 +1,12 @@
 //! A rate table and a gyro on it as geometry and mechanics. Imports nothing of the program under test.
 #![allow(dead_code)]
 
+mod drift;
+mod small;
+
+use drift::Drift;
+pub use small::SmallRates;
+
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -144,11 +150,7 @@ impl Bench {
         let (mut rate, mut angle, mut t) = (0.0f64, 37.0 * 3600.0, 0.0f64);
         let mut last = 0.0;
         let mut side = 0.0;
-        let mut walk = 0.0;
-        // 1/f noise as relaxations, three a decade.
-        let times: Vec<f64> = (0..16).map(|i| 0.3 * 10f64.powf(f64::from(i) / 3.0)).collect();
-        let weight = self.b * (std::f64::consts::LN_10 / 3.0 / (2.0 * std::f64::consts::PI)).sqrt();
-        let mut relax: Vec<f64> = times.iter().map(|_| weight * normal(&mut rng)).collect();
+        let mut drift = Drift::new(self.b, self.k, &mut rng);
         let (sin, cos) = (self.latitude.to_radians().sin(), self.latitude.to_radians().cos());
         let axial = (1.0 - self.tilt * self.tilt).sqrt();
         let mut carry = 0.0;
@@ -189,21 +191,14 @@ impl Bench {
                             + self.ppm_per_c * (temperature - self.reference_c)
                             + cycles_ppm[*cycle]);
                 let full = self.full_scale();
-                walk += self.k * (dt / 3600.0).sqrt() * normal(&mut rng);
-                let mut flicker = 0.0;
-                for (x, tau) in relax.iter_mut().zip(&times) {
-                    let r = (-dt / tau).exp();
-                    *x = r * *x + weight * (1.0 - r * r).sqrt() * normal(&mut rng);
-                    flicker += *x;
-                }
-                out.drift += walk + flicker;
+                let moved = drift.next(dt, &mut rng);
+                out.drift += moved;
                 let mut y = gain * input
                     + self.curve(true_rate)
                     + 1e-6 * self.hysteresis_ppm * full * side
                     + self.bias
                     + self.bias_per_c * (temperature - self.reference_c)
-                    + walk
-                    + flicker
+                    + moved
                     + self.n / (dt / 3600.0).sqrt() * normal(&mut rng);
                 if self.count_arcsec > 0.0 {
                     let angle = y * dt + carry;
@@ -235,102 +230,6 @@ impl Recorded {
                 self.table_angle_arcsec[i] / 3600.0,
                 self.temperature[i]
             ));
-        }
-        out
-    }
-}
-
-/// A gyro at small rates about the vertical: the Earth's rotation is part of the input.
-#[derive(Debug, Clone)]
-pub struct SmallRates {
-    /// Half width of the dead zone, deg/h, and whether the output is short by it outside.
-    pub half_width: f64,
-    pub subtractive: bool,
-    /// Standard deviation of the rate noise inside the loop, which moves the input in and out of the zone, deg/h.
-    pub loop_noise: f64,
-    /// N, deg/sqrt(h).
-    pub n: f64,
-    /// Bias behind the zone, deg/h.
-    pub bias: f64,
-    /// Deviation of the scale factor, ppm.
-    pub error_ppm: f64,
-    pub latitude: f64,
-    /// Distance of the rates and their number to each side, deg/h.
-    pub spacing: f64,
-    pub each_side: i32,
-    pub dwell_s: f64,
-    pub reading_arcsec: f64,
-    pub hz: f64,
-    pub seed: u64,
-}
-
-impl Default for SmallRates {
-    fn default() -> SmallRates {
-        SmallRates {
-            half_width: 0.3,
-            subtractive: true,
-            loop_noise: 0.0,
-            n: 0.003,
-            bias: 0.08,
-            error_ppm: 60.0,
-            latitude: 55.98,
-            spacing: 0.125,
-            each_side: 10,
-            dwell_s: 120.0,
-            reading_arcsec: 0.1,
-            hz: 1.0,
-            seed: 1,
-        }
-    }
-}
-
-impl SmallRates {
-    /// Table rate at which the input is none, deg/h.
-    pub fn centre(&self) -> f64 {
-        -EARTH * self.latitude.to_radians().sin()
-    }
-
-    /// There and back over the rates.
-    pub fn record(&self) -> Recorded {
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(self.seed);
-        let dt = 1.0 / self.hz;
-        let up: Vec<f64> =
-            (-self.each_side..=self.each_side).map(|i| self.centre() + f64::from(i) * self.spacing).collect();
-        let rates: Vec<f64> = up.iter().copied().chain(up.iter().rev().skip(1).copied()).collect();
-        let mut out = Recorded::default();
-        let (mut t, mut angle) = (0.0, 40_000.0);
-        for (i, rate) in rates.iter().enumerate() {
-            while t < (i + 1) as f64 * self.dwell_s - 0.5 * dt {
-                let input = rate - self.centre();
-                let behind = |input: f64| {
-                    if self.subtractive {
-                        input.signum() * (input.abs() - self.half_width).max(0.0)
-                    } else if input.abs() > self.half_width {
-                        input
-                    } else {
-                        0.0
-                    }
-                };
-                let zone = if self.loop_noise > 0.0 {
-                    let turns = 200;
-                    let sum: f64 =
-                        (0..turns).map(|_| behind(input + self.loop_noise * normal(&mut rng))).sum();
-                    sum / f64::from(turns)
-                } else {
-                    behind(input)
-                };
-                let y = (1.0 + 1e-6 * self.error_ppm) * zone
-                    + self.bias
-                    + self.n / (dt / 3600.0).sqrt() * normal(&mut rng);
-                out.time_s.push(t);
-                out.rate_deg_h.push(y);
-                out.table_rate_deg_h.push(*rate);
-                let reading = angle + self.reading_arcsec * normal(&mut rng);
-                out.table_angle_arcsec.push(reading.rem_euclid(ARCSEC_PER_TURN));
-                out.temperature.push(20.0);
-                angle += rate * dt;
-                t += dt;
-            }
         }
         out
     }
