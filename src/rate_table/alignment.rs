@@ -7,7 +7,7 @@
 use super::Setup;
 use super::blocks::TURN_ARCSEC;
 use super::combine::spread;
-use super::model::stands_out;
+use super::design::stands_out;
 use super::noise::Rows;
 use super::steps::{Step, Steps};
 use crate::estimate::Estimate;

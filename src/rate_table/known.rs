@@ -2,7 +2,8 @@
 
 use super::blocks::{Block, Blocks};
 use super::combine::spread;
-use super::model::{TAKEN_FROM, slope_of};
+use super::design::slope_of;
+use super::model::TAKEN_FROM;
 use super::noise::Rows;
 use crate::estimate::{Estimate, Spread};
 use crate::numeric::reml::{self, Combination, Fit};
@@ -70,18 +71,16 @@ pub fn stretches(blocks: &Blocks, known: &[Known], phases: &[(String, u64, u64)]
                 None => vec![(0, u64::MAX)],
             };
             spans.into_iter().filter_map(move |(first, last)| {
-                let inside = |i: usize, b: &Block| {
+                let inside = |b: &Block| {
                     let from = b.first_index as f64 * blocks.interval_s;
                     let to = (b.first_index + u64::from(b.samples)) as f64 * blocks.interval_s;
-                    let _ = i;
                     b.first_row >= first
                         && end_row(b) <= last.saturating_add(1)
                         && k.from_s.is_none_or(|f| from >= f - 1e-9)
                         && k.to_s.is_none_or(|t| to <= t + 1e-9)
                 };
-                let start = blocks.list.iter().enumerate().position(|(i, b)| inside(i, b))?;
-                let count =
-                    blocks.list[start..].iter().enumerate().take_while(|(i, b)| inside(*i, b)).count();
+                let start = blocks.list.iter().position(inside)?;
+                let count = blocks.list[start..].iter().take_while(|b| inside(b)).count();
                 (count > 0).then_some(Stretch { known: at, blocks: (start, start + count) })
             })
         })

@@ -8,6 +8,7 @@ pub mod alignment;
 pub mod blocks;
 pub mod combine;
 pub mod dead_zone;
+pub mod design;
 pub mod inner_axis;
 pub mod known;
 mod largest;

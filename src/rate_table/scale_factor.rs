@@ -374,7 +374,7 @@ impl ScaleFactor {
                 y.push(r.residual + self.bias + self.factor * rate);
             }
             if x.len() >= 2
-                && let Some(slope) = model::slope_of(&x, &y)
+                && let Some(slope) = super::design::slope_of(&x, &y)
             {
                 factors.push(slope);
             }

@@ -3,7 +3,7 @@
 //! y = A·[1 + α(T − T̄)]·sin(κ(Ω − Ω₀)) + b + β(T − T̄), where κΩ is the phase of Sagnac. κ changes with the wavelength of
 //! the source, and with it with temperature. κ is sought; all else is linear once κ is given.
 
-use super::model::{slope_of, stands_out};
+use super::design::{slope_of, stands_out};
 use super::noise::Rows;
 use super::steps::Steps;
 use crate::numeric::bracket::least;

@@ -56,7 +56,9 @@ impl Others {
             full_scale: setup.full_scale_deg_h.unwrap_or(highest),
             sine: setup.sine.then(|| sine::fit(&run.steps, gyro)).flatten(),
             zone: any(dead_zone::IDS)
-                .then(|| line.and_then(|l| dead_zone::evaluate(&l.response, &channel, setup)))
+                .then(|| {
+                    line.and_then(|l| dead_zone::evaluate(&run.steps, gyro, &l.response, &channel, setup))
+                })
                 .flatten(),
             alignment: any(alignment::IDS).then(|| alignment::evaluate(&run.steps, &channel, gyro, vertical)),
             channel,

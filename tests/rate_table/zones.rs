@@ -31,7 +31,7 @@ fn found(bench: &SmallRates, known: Option<f64>) -> DeadZone {
     ];
     let run = run_of(&channels, 1.0 / bench.hz, &setup);
     let line = scale_factor::evaluate(&run, 0, &setup, ("1", 1.0), &|_| false).expect("a line");
-    dead_zone::evaluate(&line.response, "rate", &setup).expect("enough rates")
+    dead_zone::evaluate(&run.steps, 0, &line.response, "rate", &setup).expect("enough rates")
 }
 
 /// Half width, noise inside the loop and threshold of many tests.

@@ -3,7 +3,8 @@
 //! Two static models are held against the straight line: *subtractive*, D = sgn(x)·max(|x| − δ, 0), and *gap*,
 //! D = x·[|x| > δ], each about a centre that is fitted too, for the zone lies where the unit believes to be at rest. The
 //! half width δ has the interval of its likelihood over the means of the rates with their covariance, slope and offset at
-//! their best, kind averaged over and centre too, over the places where a unit is at rest and any other (`place`).
+//! their best, kind averaged over and centre too, over the places where a unit is at rest and any other (`place`). The
+//! noise is that about the zone that suits best (`about`), of all strengths that the test allows.
 //!
 //! Outside a zone the output follows the rate by the scale factor. What a test of scale factor said of it may be used: a
 //! line that may have any slope takes up most of a small zone. A zone is claimed when a line with the noise of this test
@@ -13,6 +14,7 @@
 //! is averaged over normal noise σ. Where that fits better than any zone without noise, δ and σ are estimated together;
 //! otherwise σ is bounded, and the interval of δ is averaged over it too.
 
+mod about;
 mod place;
 mod points;
 mod rounded;
@@ -20,10 +22,12 @@ mod shape;
 mod widths;
 
 use super::Setup;
+use super::design::Design;
 use super::model::Response;
+use super::steps::Steps;
 use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::text::{Arg, Note};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use points::{Left, Points};
 use rounded::Rounded;
 use shape::{Kind, Shape};
@@ -76,22 +80,32 @@ pub struct DeadZone {
     pub points: Vec<(f64, f64, f64)>,
 }
 
-/// Evaluates the response of a channel; `None` with fewer than five rates.
-pub fn evaluate(response: &Response, channel: &str, setup: &Setup) -> Option<DeadZone> {
-    let x = response.levels.clone();
+/// Evaluates the response of the gyro of this number to the steps it was fitted to; `None` with fewer than five rates.
+pub fn evaluate(
+    steps: &Steps,
+    gyro: usize,
+    response: &Response,
+    channel: &str,
+    setup: &Setup,
+) -> Option<DeadZone> {
+    let x = &response.levels;
     let n = x.len();
     if n < 5 {
         return None;
     }
-    let mut covariance = response.level_covariance();
-    let floor = 1e-9 * (covariance.trace() / n as f64).max(f64::MIN_POSITIVE);
-    for i in 0..n {
-        covariance[(i, i)] += floor;
-    }
-    let y =
-        DVector::from_iterator(n, response.level_means().iter().zip(&x).map(|(m, x)| m + response.slope * x));
-    let of_points = (0..n).map(|i| (x[i], y[i], covariance[(i, i)].sqrt())).collect();
-    let points = Points::new(x, y, covariance, setup.scale_factor_uncertainty)?;
+    let points = |means: &DVector<f64>, mut covariance: DMatrix<f64>| {
+        let floor = 1e-9 * (covariance.trace() / n as f64).max(f64::MIN_POSITIVE);
+        for i in 0..n {
+            covariance[(i, i)] += floor;
+        }
+        let y = DVector::from_iterator(n, means.iter().zip(x).map(|(m, x)| m + response.slope * x));
+        let shown = (0..n).map(|i| (x[i], y[i], covariance[(i, i)].sqrt())).collect();
+        Some((Points::new(x.clone(), y, covariance, setup.scale_factor_uncertainty)?, shown))
+    };
+    let design = Design::new(steps, gyro, setup, &response.extras)?;
+    let about = about::means(&design, |means, covariance| Some(points(means, covariance)?.0))?;
+    let (points, of_points): (Points, Vec<_>) = points(&about.means, about.covariance)?;
+    let points = points.drawn_with(&about.likely)?;
     let (line, _, _) = points.cost(|x| x);
     let widths = Widths::new(&points)?;
     let shown = points.shows_a_zone(line - widths.least_clean(), widths.tried())?;

@@ -3,7 +3,7 @@
 use super::place::Place;
 use super::shape::{Kind, Shape};
 use nalgebra::{Cholesky, DMatrix, DVector};
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -46,6 +46,9 @@ pub struct Points {
     of_y: DVector<f64>,
     of_one: DVector<f64>,
     place: Place,
+    /// Noises that the test may have: makes draws that are white and one those of the noise, on the scale of the data, with
+    /// the share of the confidence up to and with it.
+    noises: Vec<(f64, DMatrix<f64>)>,
 }
 
 impl Points {
@@ -62,13 +65,36 @@ impl Points {
         let of_y = &whitening * &y;
         let of_one = &whitening * DVector::from_element(x.len(), 1.0);
         let place = Place { at_rest: [0.0; 2], standard: 1.0, half: 1.0 };
-        let mut points = Points { x, whitening, slope_known, of_y, of_one, place };
+        let mut points = Points { x, whitening, slope_known, of_y, of_one, place, noises: vec![] };
         let (middle, largest) = points.range();
         let (_, slope, offset) = points.cost(|x| x);
         let (_, apart) = points.spacing();
         let tried = largest / (CENTRES - 1) as f64;
         points.place = Place::new(middle, 0.5 * largest, -offset / slope, noise / slope.abs(), apart, tried);
         Some(points)
+    }
+
+    /// The points with the noises that they may have, each with its share of the confidence; without, their noise is that
+    /// of the covariance. `None` with a covariance that is none.
+    pub fn drawn_with(mut self, likely: &[(f64, DMatrix<f64>)]) -> Option<Points> {
+        let mut below = 0.0;
+        for (share, covariance) in likely {
+            let floor = 1e-9 * covariance.trace() / self.x.len() as f64;
+            let sure = covariance + DMatrix::identity(self.x.len(), self.x.len()) * floor;
+            below += share;
+            self.noises.push((below, &self.whitening * Cholesky::new(sure)?.l()));
+        }
+        Some(self)
+    }
+
+    /// A draw of the noise of the data.
+    fn noise(&self, rng: &mut Xoshiro256PlusPlus) -> DVector<f64> {
+        let n = self.x.len();
+        let at: f64 = rng.random();
+        let even = DVector::from_fn(n, |_, _| StandardNormal.sample(rng));
+        let of = self.noises.iter().find(|(below, _)| at < *below).or(self.noises.last());
+        let of_slope = if self.slope_known.is_some() { StandardNormal.sample(rng) } else { 0.0 };
+        of.map_or_else(|| even.clone(), |(_, scale)| scale * &even).push(of_slope)
     }
 
     /// Middle of the rates and half their range.
@@ -159,7 +185,6 @@ impl Points {
         let (middle, largest) = self.range();
         let line = self.design(|x| x);
         let data = self.data();
-        let rows = data.len();
         let normal = Cholesky::new(line.transpose() * &line)?;
         let fitted = &line * normal.solve(&(line.transpose() * &data));
         let basis = |a: DMatrix<f64>| -> Option<[DVector<f64>; 2]> {
@@ -189,15 +214,10 @@ impl Points {
         };
         let observed = mean_ratio(&data);
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x7a6f_6e65);
-        let free = rows - usize::from(self.slope_known.is_none());
         let most = (CLAIMED_BELOW * DRAWS as f64) as usize;
         let mut as_large = 0;
         for _ in 0..DRAWS {
-            let mut r = fitted.clone();
-            for v in r.iter_mut().take(free) {
-                let z: f64 = StandardNormal.sample(&mut rng);
-                *v += z;
-            }
+            let r = &fitted + self.noise(&mut rng);
             as_large += usize::from(mean_ratio(&r) >= observed);
             if as_large >= most {
                 return Some(false);

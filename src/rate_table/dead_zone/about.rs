@@ -1,0 +1,216 @@
+//! The noise of the rates about a response with a zone.
+//!
+//! Where every rate may have a mean of its own, only what differs between visits tells the noise, and half of a test's
+//! steps are spent on the means. About the zone that suits the test best there are twice as many. They still hardly tell
+//! drift: one strength that fits best is often none where there is some. So every kind of noise beside the white one is
+//! weighed over a range of strengths, and each that is likely enough goes into what is drawn to judge a zone.
+
+use super::points::Points;
+use super::shape::{Kind, Shape};
+use crate::numeric::reml;
+use crate::rate_table::design::{Design, stands_out};
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Share of the confidence that white noise alone has before the test.
+const WHITE_ALONE: f64 = 0.5;
+
+/// Least share of a further kind of noise in the variance of the rows, over that of the white one; each tried is twice the
+/// one before.
+const LEAST: f64 = 1e-3;
+
+/// Strengths of a kind that share its confidence before the test, and the most that are tried where drift is stronger.
+const STRENGTHS: (usize, usize) = (14, 40);
+
+/// Log-likelihood below the best of its kind from which no greater strength is tried.
+const BEYOND: f64 = 12.0;
+
+/// Share of the confidence below which a noise is left out.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Half widths tried, in parts of half the range of the rates.
+const WIDTHS: usize = 40;
+
+/// What the levels are with the noise that is expected.
+pub struct Means {
+    /// Means about the slope of the design, deg/h.
+    pub means: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// The covariance that each noise gives these means, and its share of the confidence.
+    pub likely: Vec<(f64, DMatrix<f64>)>,
+}
+
+/// Means of the levels; `points` makes means and covariance ready for the search of a zone.
+pub fn means(
+    design: &Design,
+    points: impl Fn(&DVector<f64>, DMatrix<f64>) -> Option<Points>,
+) -> Option<Means> {
+    let free: Vec<DVector<f64>> = design.of_levels.iter().chain(&design.of_extras).cloned().collect();
+    let free = DMatrix::from_columns(&free);
+    let levels = design.levels.len();
+    let of_levels = |m: &DMatrix<f64>| m.view((0, 0), (levels, levels)).into_owned();
+    let white: Vec<DMatrix<f64>> = design.quick.iter().take(1).map(|k| k.1.clone()).collect();
+    let mut fit = reml::fit(&design.left, &free, &design.fixed, &white)?;
+    let strength = *fit.strengths.first()?;
+    // A zone that is sought with drift in the noise leaves of another what looks like drift: drift has to show about the
+    // zone that is found without. Then its own is sought.
+    loop {
+        let first = fit.strengths.len() == 1;
+        let y = fit.coefficients.rows(0, levels).into_owned();
+        let columns = with_zone(design, &points(&y, of_levels(&fit.covariance))?)?;
+        let noises = noises(design, &DMatrix::from_columns(&columns), strength)?;
+        let mean = noises.iter().fold(DMatrix::zeros(free.nrows(), free.nrows()), |sum, (p, v)| sum + v * *p);
+        fit = reml::fit(&design.left, &free, &mean, &[])?;
+        if !first || noises[0].0 > 0.5 {
+            let of = |v: &DMatrix<f64>| of_levels(&(&fit.weights * v * fit.weights.transpose()));
+            return Some(Means {
+                means: fit.coefficients.rows(0, levels).into_owned(),
+                covariance: of_levels(&fit.covariance),
+                likely: noises.iter().map(|(p, v)| (*p, of(v))).collect(),
+            });
+        }
+    }
+}
+
+/// Covariances of the rows and their shares of the confidence, that of white noise alone first. The noise about the columns
+/// has one further kind at most; the strength of all together is that of the restricted likelihood.
+fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<(f64, DMatrix<f64>)>> {
+    let of_white = &design.quick.first()?.1;
+    let white = white.max(1e-3 * design.fixed.trace() / of_white.trace()).max(f64::MIN_POSITIVE);
+    let alone = of_white + &design.fixed / white;
+    let dof = (x.nrows() - x.ncols()) as f64;
+    let likelihood = |shape: DMatrix<f64>| -> Option<(f64, f64)> {
+        let factor = Cholesky::new(shape)?;
+        let weighted = factor.solve(x);
+        let normal = Cholesky::new(x.transpose() * &weighted)?;
+        let fitted = normal.solve(&(weighted.transpose() * &design.left));
+        let left = &design.left - x * fitted;
+        let scale = left.dot(&factor.solve(&left)) / dof;
+        let log_det = |l: &DMatrix<f64>| l.diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        let log = -0.5 * dof * scale.ln() - log_det(factor.l_dirty()) - log_det(normal.l_dirty());
+        log.is_finite().then_some((log, scale))
+    };
+    let (log, scale) = likelihood(alone.clone())?;
+    let mut found = vec![(WHITE_ALONE.ln() + log, scale, None)];
+    let kinds: Vec<&DMatrix<f64>> =
+        design.quick.iter().skip(1).chain(&design.slow).chain(&design.further).map(|k| &k.1).collect();
+    let prior = ((1.0 - WHITE_ALONE) / (kinds.len() * STRENGTHS.0) as f64).ln();
+    for kind in kinds {
+        let unit = LEAST * of_white.trace() / kind.trace().max(f64::MIN_POSITIVE);
+        let mut most = f64::NEG_INFINITY;
+        for i in 0..STRENGTHS.1 {
+            let ratio = unit * 2f64.powi(i as i32);
+            let Some((log, scale)) = likelihood(&alone + kind * ratio) else { break };
+            found.push((prior + log, scale, Some((kind, ratio))));
+            most = most.max(log);
+            if log < most - BEYOND {
+                break;
+            }
+        }
+    }
+    let most = found.iter().map(|f| f.0).fold(f64::NEG_INFINITY, f64::max);
+    let total: f64 = found.iter().map(|f| (f.0 - most).exp()).sum();
+    let shares = found.iter().map(|f| (f.0 - most).exp() / total);
+    let kept: Vec<_> = shares
+        .zip(&found)
+        .enumerate()
+        .filter(|(i, (p, _))| *i == 0 || *p > NEGLIGIBLE)
+        .map(|(_, k)| k)
+        .collect();
+    let total: f64 = kept.iter().map(|k| k.0).sum();
+    let covariance = |(p, (_, scale, further)): (f64, &(f64, f64, Option<(&DMatrix<f64>, f64)>))| {
+        let shape = further.map_or(alone.clone(), |(kind, ratio)| &alone + kind * ratio);
+        (p / total, shape * *scale)
+    };
+    Some(kept.into_iter().map(covariance).collect())
+}
+
+/// Columns of a line and of what the zone that suits the rates best takes from it.
+fn with_zone(design: &Design, points: &Points) -> Option<Vec<DVector<f64>>> {
+    let (_, largest) = points.range();
+    let tried = (1..WIDTHS).map(|i| 0.7 * largest * (i as f64 / (WIDTHS - 1) as f64).powi(2));
+    let zone = tried
+        .flat_map(|w| [Kind::Subtractive, Kind::Gap].map(|kind| points.at_any_centre(Shape::clean(kind, w))))
+        .min_by(|a, b| a.least.total_cmp(&b.least))?;
+    let n = design.rate.len();
+    let lost = |r: &f64| zone.shape.of(r - zone.centre) - (r - zone.centre);
+    let mut columns = vec![
+        DVector::from_element(n, 1.0),
+        DVector::from_column_slice(&design.rate),
+        DVector::from_iterator(n, design.rate.iter().map(lost)),
+    ];
+    if !stands_out(&columns[2], &columns[..2]) {
+        columns.pop();
+    }
+    columns.extend(design.of_extras.iter().cloned());
+    Some(columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rate_table::noise::Rows;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    /// A test that visits eleven rates there and back, five rows each, with noise of N² = 1 and drift of K² = `walk`.
+    fn design(walk: f64, seed: u64) -> Design {
+        let (rates, rows) = (11, 110);
+        let level = |i: usize| {
+            let visit = i / 5;
+            if visit < rates { visit } else { 2 * rates - 1 - visit }
+        };
+        let grid = Rows {
+            mid_s: (0..rows).map(|i| 30.0 * i as f64 + 15.0).collect(),
+            length_s: vec![30.0; rows],
+            step: (0..rows).map(|i| i / 5).collect(),
+        };
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let even = DVector::from_fn(rows, |_, _| StandardNormal.sample(&mut rng));
+        let covariance = grid.white() + grid.random_walk() * walk + DMatrix::identity(rows, rows) * 1e-9;
+        let noise = Cholesky::new(covariance).unwrap().l() * even;
+        let rate: Vec<f64> = (0..rows).map(|i| 40.0 * (level(i) as f64 - 5.0)).collect();
+        Design {
+            of_levels: (0..rates)
+                .map(|l| DVector::from_fn(rows, |i, _| f64::from(u8::from(level(i) == l))))
+                .collect(),
+            of_extras: vec![],
+            levels: (0..rates).map(|l| 40.0 * (l as f64 - 5.0)).collect(),
+            step: grid.step.clone(),
+            slope: 1.0,
+            left: noise,
+            extras: vec![],
+            hidden: vec![],
+            temperature: 20.0,
+            temperature_range: 0.0,
+            fixed: DMatrix::identity(rows, rows) * 1e-9,
+            quick: vec![("white", grid.white())],
+            slow: vec![("flicker", grid.flicker()), ("random_walk", grid.random_walk())],
+            further: vec![],
+            rate,
+        }
+    }
+
+    fn shares(walk: f64, seed: u64) -> Vec<f64> {
+        let design = design(walk, seed);
+        let points = |y: &DVector<f64>, v| {
+            let output = DVector::from_fn(y.len(), |i, _| y[i] + design.levels[i]);
+            Points::new(design.levels.clone(), output, v, None)
+        };
+        let found = means(&design, points).unwrap();
+        let expected = found.likely.iter().fold(DMatrix::zeros(11, 11), |sum, (p, v)| sum + v * *p);
+        assert!((expected - &found.covariance).norm() < 1e-6 * found.covariance.norm());
+        found.likely.into_iter().map(|(p, _)| p).collect()
+    }
+
+    #[test]
+    fn white_noise_alone_is_believed_unless_drift_shows() {
+        let without: Vec<Vec<f64>> = (0..20).map(|seed| shares(0.0, seed)).collect();
+        assert!(without.iter().all(|s| (s.iter().sum::<f64>() - 1.0).abs() < 1e-9));
+        assert!(without.iter().filter(|s| s[0] > 0.5).count() >= 17);
+        // Over the hour of the test the walk moves the rate by ten times the noise of a step.
+        let with: Vec<Vec<f64>> = (0..20).map(|seed| shares(2e4, seed)).collect();
+        assert!(with.iter().all(|s| s[0] < 0.01));
+    }
+}
