@@ -47,13 +47,7 @@ pub struct Design {
 impl Design {
     /// `None` when the steps do not determine a response.
     pub fn new(steps: &Steps, channel: usize, setup: &Setup, wanted: &[Extra]) -> Option<Design> {
-        let rows: Vec<(usize, &Part)> = steps
-            .list
-            .iter()
-            .enumerate()
-            .flat_map(|(s, step)| step.parts.iter().map(move |p| (s, p)))
-            .filter(|(_, p)| p.gyro.get(channel).is_some_and(|g| g.is_finite()) && p.rate.is_finite())
-            .collect();
+        let rows = steps.rows_of(channel);
         let n = rows.len();
         let y: Vec<f64> = rows.iter().map(|(_, p)| p.gyro[channel]).collect();
         let rate: Vec<f64> = rows.iter().map(|(_, p)| p.rate).collect();

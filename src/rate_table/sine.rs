@@ -103,13 +103,7 @@ fn scale(mut x: DMatrix<f64>) -> DMatrix<f64> {
 
 /// Fits a sine to the steps of a channel; `None` where the response does not bend.
 pub fn fit(steps: &Steps, channel: usize) -> Option<Sine> {
-    let rows: Vec<(usize, &super::steps::Part)> = steps
-        .list
-        .iter()
-        .enumerate()
-        .flat_map(|(s, step)| step.parts.iter().map(move |p| (s, p)))
-        .filter(|(_, p)| p.gyro.get(channel).is_some_and(|g| g.is_finite()) && p.rate.is_finite())
-        .collect();
+    let rows = steps.rows_of(channel);
     let rate: Vec<f64> = rows.iter().map(|(_, p)| p.rate).collect();
     let outputs: Vec<f64> = rows.iter().map(|(_, p)| p.gyro[channel]).collect();
     let mean_slope = slope_of(&rate, &outputs)?;

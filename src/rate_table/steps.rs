@@ -77,6 +77,14 @@ pub struct Steps {
     pub too_short: usize,
 }
 
+impl Steps {
+    /// The parts of all steps, each with its step, of which the table's rate and the output of this gyro are known.
+    pub fn rows_of(&self, gyro: usize) -> Vec<(usize, &Part)> {
+        let parts = self.list.iter().enumerate().flat_map(|(s, step)| step.parts.iter().map(move |p| (s, p)));
+        parts.filter(|(_, p)| p.gyro.get(gyro).is_some_and(|g| g.is_finite()) && p.rate.is_finite()).collect()
+    }
+}
+
 /// The rate by which steps are found, a value a block: that of the rate channel, or the derivative of the angle.
 fn guide(blocks: &Blocks) -> Vec<f64> {
     let list = &blocks.list;

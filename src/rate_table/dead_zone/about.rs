@@ -91,7 +91,7 @@ fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<(f64, DMa
         log.is_finite().then_some((log, scale))
     };
     let (log, scale) = likelihood(alone.clone())?;
-    let mut found = vec![(WHITE_ALONE.ln() + log, scale, None)];
+    let mut tried = vec![Tried { log: WHITE_ALONE.ln() + log, scale, further: None }];
     let kinds: Vec<&DMatrix<f64>> =
         design.quick.iter().skip(1).chain(&design.slow).chain(&design.further).map(|k| &k.1).collect();
     let prior = ((1.0 - WHITE_ALONE) / (kinds.len() * STRENGTHS.0) as f64).ln();
@@ -101,28 +101,33 @@ fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<(f64, DMa
         for i in 0..STRENGTHS.1 {
             let ratio = unit * 2f64.powi(i as i32);
             let Some((log, scale)) = likelihood(&alone + kind * ratio) else { break };
-            found.push((prior + log, scale, Some((kind, ratio))));
+            tried.push(Tried { log: prior + log, scale, further: Some((kind, ratio)) });
             most = most.max(log);
             if log < most - BEYOND {
                 break;
             }
         }
     }
-    let most = found.iter().map(|f| f.0).fold(f64::NEG_INFINITY, f64::max);
-    let total: f64 = found.iter().map(|f| (f.0 - most).exp()).sum();
-    let shares = found.iter().map(|f| (f.0 - most).exp() / total);
-    let kept: Vec<_> = shares
-        .zip(&found)
-        .enumerate()
-        .filter(|(i, (p, _))| *i == 0 || *p > NEGLIGIBLE)
-        .map(|(_, k)| k)
-        .collect();
-    let total: f64 = kept.iter().map(|k| k.0).sum();
-    let covariance = |(p, (_, scale, further)): (f64, &(f64, f64, Option<(&DMatrix<f64>, f64)>))| {
-        let shape = further.map_or(alone.clone(), |(kind, ratio)| &alone + kind * ratio);
-        (p / total, shape * *scale)
+    let most = tried.iter().map(|t| t.log).fold(f64::NEG_INFINITY, f64::max);
+    let weight = |t: &Tried| (t.log - most).exp();
+    let all: f64 = tried.iter().map(weight).sum();
+    tried.retain(|t| t.further.is_none() || weight(t) > NEGLIGIBLE * all);
+    let kept: f64 = tried.iter().map(weight).sum();
+    let covariance = |t: &Tried| {
+        let shape = t.further.map_or(alone.clone(), |(kind, ratio)| &alone + kind * ratio);
+        (weight(t) / kept, shape * t.scale)
     };
-    Some(kept.into_iter().map(covariance).collect())
+    Some(tried.iter().map(covariance).collect())
+}
+
+/// A noise of the rows.
+struct Tried<'a> {
+    /// Logarithm of its confidence, but for a constant.
+    log: f64,
+    /// Strength of all of it.
+    scale: f64,
+    /// The further kind, and its strength over that of the white one.
+    further: Option<(&'a DMatrix<f64>, f64)>,
 }
 
 /// Columns of a line and of what the zone that suits the rates best takes from it.
