@@ -36,8 +36,36 @@ pub struct Means {
     pub means: DVector<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
-    /// The covariance that each noise gives these means, and its share of the confidence.
-    pub likely: Vec<(f64, DMatrix<f64>)>,
+    /// The noises that the test may have.
+    pub likely: Vec<Likely>,
+    /// The steps as wholes.
+    pub steps: Wholes,
+}
+
+/// A noise that the test may have.
+pub struct Likely {
+    /// Share of the confidence.
+    pub share: f64,
+    /// Logarithm of its confidence before the test.
+    pub before: f64,
+    /// Covariance of the steps.
+    pub of_steps: DMatrix<f64>,
+}
+
+/// The steps as wholes, each the mean of its rows.
+pub struct Wholes {
+    /// Slope that outputs are taken about.
+    pub slope: f64,
+    /// Outputs about it, deg/h.
+    pub left: DVector<f64>,
+    /// Rates, deg/h.
+    pub rate: DVector<f64>,
+    /// Rates of the levels, deg/h.
+    pub levels: DVector<f64>,
+    /// Columns of the levels and of the extras.
+    pub free: DMatrix<f64>,
+    /// Those of the extras alone.
+    pub of_extras: Vec<DVector<f64>>,
 }
 
 /// Means of the levels; `points` makes means and covariance ready for the search of a zone.
@@ -59,22 +87,58 @@ pub fn means(
         let y = fit.coefficients.rows(0, levels).into_owned();
         let columns = with_zone(design, &points(&y, of_levels(&fit.covariance))?)?;
         let noises = noises(design, &DMatrix::from_columns(&columns), strength)?;
-        let mean = noises.iter().fold(DMatrix::zeros(free.nrows(), free.nrows()), |sum, (p, v)| sum + v * *p);
+        let none = DMatrix::zeros(free.nrows(), free.nrows());
+        let mean = noises.iter().fold(none, |sum, (share, _, v)| sum + v * *share);
         fit = reml::fit(&design.left, &free, &mean, &[])?;
         if !first || noises[0].0 > 0.5 {
-            let of = |v: &DMatrix<f64>| of_levels(&(&fit.weights * v * fit.weights.transpose()));
+            let whole = whole(&design.step);
+            let of = |(share, before, v): (f64, f64, DMatrix<f64>)| Likely {
+                share,
+                before,
+                of_steps: &whole * v * whole.transpose(),
+            };
             return Some(Means {
                 means: fit.coefficients.rows(0, levels).into_owned(),
                 covariance: of_levels(&fit.covariance),
-                likely: noises.iter().map(|(p, v)| (*p, of(v))).collect(),
+                likely: noises.into_iter().map(of).collect(),
+                steps: wholes(design, &whole),
             });
         }
     }
 }
 
-/// Covariances of the rows and their shares of the confidence, that of white noise alone first. The noise about the columns
-/// has one further kind at most; the strength of all together is that of the restricted likelihood.
-fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<(f64, DMatrix<f64>)>> {
+/// The steps as wholes. Extras that differ within steps only are none of theirs.
+fn wholes(design: &Design, whole: &DMatrix<f64>) -> Wholes {
+    let mut free: Vec<DVector<f64>> = design.of_levels.iter().map(|c| whole * c).collect();
+    for extra in design.of_extras.iter().map(|c| whole * c) {
+        if free.len() < whole.nrows() && stands_out(&extra, &free) {
+            free.push(extra);
+        }
+    }
+    Wholes {
+        slope: design.slope,
+        left: whole * &design.left,
+        rate: whole * DVector::from_column_slice(&design.rate),
+        levels: DVector::from_column_slice(&design.levels),
+        of_extras: free[design.levels.len()..].to_vec(),
+        free: DMatrix::from_columns(&free),
+    }
+}
+
+/// What makes steps of rows: their means.
+fn whole(step: &[usize]) -> DMatrix<f64> {
+    let mut present = step.to_vec();
+    present.dedup();
+    let rows = |s: usize| step.iter().filter(|t| **t == s).count() as f64;
+    DMatrix::from_fn(present.len(), step.len(), |i, j| {
+        if step[j] == present[i] { 1.0 / rows(present[i]) } else { 0.0 }
+    })
+}
+
+/// Shares of the confidence, its logarithm before the test and covariances of the rows, those of white noise alone first.
+/// The noise about the columns has one further kind at most; the strength of all together is that of the restricted
+/// likelihood.
+fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<(f64, f64, DMatrix<f64>)>> {
     let of_white = &design.quick.first()?.1;
     let white = white.max(1e-3 * design.fixed.trace() / of_white.trace()).max(f64::MIN_POSITIVE);
     let alone = of_white + &design.fixed / white;
@@ -115,7 +179,8 @@ fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<(f64, DMa
     let kept: f64 = tried.iter().map(weight).sum();
     let covariance = |t: &Tried| {
         let shape = t.further.map_or(alone.clone(), |(kind, ratio)| &alone + kind * ratio);
-        (weight(t) / kept, shape * t.scale)
+        let before = if t.further.is_some() { prior } else { WHITE_ALONE.ln() };
+        (weight(t) / kept, before, shape * t.scale)
     };
     Some(tried.iter().map(covariance).collect())
 }
@@ -204,9 +269,8 @@ mod tests {
             Points::new(design.levels.clone(), output, v, None)
         };
         let found = means(&design, points).unwrap();
-        let expected = found.likely.iter().fold(DMatrix::zeros(11, 11), |sum, (p, v)| sum + v * *p);
-        assert!((expected - &found.covariance).norm() < 1e-6 * found.covariance.norm());
-        found.likely.into_iter().map(|(p, _)| p).collect()
+        assert_eq!(found.steps.left.len(), 22);
+        found.likely.into_iter().map(|l| l.share).collect()
     }
 
     #[test]

@@ -8,13 +8,14 @@
 //!
 //! Outside a zone the output follows the rate by the scale factor. What a test of scale factor said of it may be used: a
 //! line that may have any slope takes up most of a small zone. A zone is claimed when a line with the noise of this test
-//! would make zones as likely on the average in less than one test of a hundred; draws tell.
+//! would make zones as likely on the average in less than one test of a hundred; draws tell (`chance`).
 //!
 //! Noise inside the loop carries the input in and out of the zone and rounds it off (*rounded*): the subtractive response
 //! is averaged over normal noise σ. Where that fits better than any zone without noise, δ and σ are estimated together;
 //! otherwise σ is bounded, and the interval of δ is averaged over it too.
 
 mod about;
+mod chance;
 mod place;
 mod points;
 mod rounded;
@@ -93,7 +94,7 @@ pub fn evaluate(
     if n < 5 {
         return None;
     }
-    let points = |means: &DVector<f64>, mut covariance: DMatrix<f64>| {
+    let made = |means: &DVector<f64>, mut covariance: DMatrix<f64>| {
         let floor = 1e-9 * (covariance.trace() / n as f64).max(f64::MIN_POSITIVE);
         for i in 0..n {
             covariance[(i, i)] += floor;
@@ -103,12 +104,13 @@ pub fn evaluate(
         Some((Points::new(x.clone(), y, covariance, setup.scale_factor_uncertainty)?, shown))
     };
     let design = Design::new(steps, gyro, setup, &response.extras)?;
-    let about = about::means(&design, |means, covariance| Some(points(means, covariance)?.0))?;
-    let (points, of_points): (Points, Vec<_>) = points(&about.means, about.covariance)?;
-    let points = points.drawn_with(&about.likely)?;
+    let about = about::means(&design, |means, covariance| Some(made(means, covariance)?.0))?;
+    let (points, of_points): (Points, Vec<_>) = made(&about.means, about.covariance.clone())?;
     let (line, _, _) = points.cost(|x| x);
     let widths = Widths::new(&points)?;
-    let shown = points.shows_a_zone(line - widths.least_clean(), widths.tried())?;
+    let gain = line - widths.least_clean();
+    let known = setup.scale_factor_uncertainty;
+    let shown = chance::shows_a_zone(&about, known, |m, v| Some(made(m, v)?.0), gain, widths.tried())?;
     let closer = if shown { rounded::closer(&points, &widths.with_noise) } else { None };
     let with_noise = closer.as_ref().filter(|r| r.shown(widths.least_clean()));
     let (value, curve, Left { mut shape, centre, slope, offset, .. }) = match with_noise {

@@ -3,21 +3,9 @@
 use super::place::Place;
 use super::shape::{Kind, Shape};
 use nalgebra::{Cholesky, DMatrix, DVector};
-use rand::{RngExt, SeedableRng};
-use rand_distr::{Distribution, StandardNormal};
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Centres tried.
 pub const CENTRES: usize = 41;
-
-/// Probability of such a gain by chance above which a zone is not claimed.
-const CLAIMED_BELOW: f64 = 0.01;
-
-/// Gain of −2 ln L above which no draws are needed.
-const SURE: f64 = 40.0;
-
-/// Tests without a zone that are drawn to tell it.
-const DRAWS: usize = 1000;
 
 /// What one zone leaves.
 #[derive(Debug, Clone, Copy)]
@@ -46,9 +34,6 @@ pub struct Points {
     of_y: DVector<f64>,
     of_one: DVector<f64>,
     place: Place,
-    /// Noises that the test may have: makes draws that are white and one those of the noise, on the scale of the data, with
-    /// the share of the confidence up to and with it.
-    noises: Vec<(f64, DMatrix<f64>)>,
 }
 
 impl Points {
@@ -65,36 +50,13 @@ impl Points {
         let of_y = &whitening * &y;
         let of_one = &whitening * DVector::from_element(x.len(), 1.0);
         let place = Place { at_rest: [0.0; 2], standard: 1.0, half: 1.0 };
-        let mut points = Points { x, whitening, slope_known, of_y, of_one, place, noises: vec![] };
+        let mut points = Points { x, whitening, slope_known, of_y, of_one, place };
         let (middle, largest) = points.range();
         let (_, slope, offset) = points.cost(|x| x);
         let (_, apart) = points.spacing();
         let tried = largest / (CENTRES - 1) as f64;
         points.place = Place::new(middle, 0.5 * largest, -offset / slope, noise / slope.abs(), apart, tried);
         Some(points)
-    }
-
-    /// The points with the noises that they may have, each with its share of the confidence; without, their noise is that
-    /// of the covariance. `None` with a covariance that is none.
-    pub fn drawn_with(mut self, likely: &[(f64, DMatrix<f64>)]) -> Option<Points> {
-        let mut below = 0.0;
-        for (share, covariance) in likely {
-            let floor = 1e-9 * covariance.trace() / self.x.len() as f64;
-            let sure = covariance + DMatrix::identity(self.x.len(), self.x.len()) * floor;
-            below += share;
-            self.noises.push((below, &self.whitening * Cholesky::new(sure)?.l()));
-        }
-        Some(self)
-    }
-
-    /// A draw of the noise of the data.
-    fn noise(&self, rng: &mut Xoshiro256PlusPlus) -> DVector<f64> {
-        let n = self.x.len();
-        let at: f64 = rng.random();
-        let even = DVector::from_fn(n, |_, _| StandardNormal.sample(rng));
-        let of = self.noises.iter().find(|(below, _)| at < *below).or(self.noises.last());
-        let of_slope = if self.slope_known.is_some() { StandardNormal.sample(rng) } else { 0.0 };
-        of.map_or_else(|| even.clone(), |(_, scale)| scale * &even).push(of_slope)
     }
 
     /// Middle of the rates and half their range.
@@ -174,55 +136,62 @@ impl Points {
         Left { shape, least: best.0, centre: best.1, slope: best.2, offset: best.3, over_centres }
     }
 
-    /// Whether a line would by chance make a zone as likely in too few tests to be believed.
-    ///
-    /// What is compared is the mean likelihood ratio over kinds, the logarithm of the half width and the places where a zone
-    /// may lie. The ratio at the best of them rests on how many were tried, and finds fewer zones.
-    pub fn shows_a_zone(&self, gain: f64, widths: &[f64]) -> Option<bool> {
-        if gain > SURE {
-            return Some(true);
-        }
-        let (middle, largest) = self.range();
-        let line = self.design(|x| x);
-        let data = self.data();
+    /// The line that fits best, over the standard uncertainties.
+    pub fn line(&self) -> Option<DVector<f64>> {
+        let (line, data) = (self.design(|x| x), self.data());
         let normal = Cholesky::new(line.transpose() * &line)?;
-        let fitted = &line * normal.solve(&(line.transpose() * &data));
+        Some(&line * normal.solve(&(line.transpose() * data)))
+    }
+
+    /// Outputs over their standard uncertainty and free of correlation, with what is known of the slope.
+    pub fn whitened(&self, outputs: &DVector<f64>, of_slope: f64) -> DVector<f64> {
+        (&self.whitening * outputs).push(of_slope)
+    }
+
+    /// What a line and zones of all kinds, half widths and places explain of data.
+    pub fn ratios(&self, widths: &[f64]) -> Option<Ratios> {
+        let (middle, largest) = self.range();
         let basis = |a: DMatrix<f64>| -> Option<[DVector<f64>; 2]> {
             let first = a.column(0).clone_owned().try_normalize(0.0)?;
             let rest = a.column(1) - &first * first.dot(&a.column(1));
             Some([first, rest.try_normalize(1e-12)?])
         };
-        let of_line = basis(line)?;
-        let fine = 2 * (CENTRES - 1);
+        let fine = CENTRES - 1;
         let centre = |i: usize| middle + 0.5 * largest * (2.0 * i as f64 / fine as f64 - 1.0);
         // Tried half widths grow with the square of their number.
-        let of_zones: Vec<(f64, [DVector<f64>; 2])> = [Kind::Subtractive, Kind::Gap]
+        let (weights, columns): (Vec<f64>, Vec<[DVector<f64>; 2]>) = [Kind::Subtractive, Kind::Gap]
             .into_iter()
             .flat_map(|k| {
-                widths.iter().enumerate().skip(1).step_by(4).map(move |(i, w)| (k, *w, 1.0 / i as f64))
+                widths.iter().enumerate().skip(1).step_by(8).map(move |(i, w)| (k, *w, 1.0 / i as f64))
             })
             .flat_map(|(k, w, weight)| (0..=fine).map(move |i| (k, w, weight, centre(i))))
             .filter_map(|(k, w, weight, c)| {
                 Some((weight * self.place.density(c), basis(self.design(|x| Shape::clean(k, w).of(x - c)))?))
             })
-            .collect();
-        let explained =
-            |b: &[DVector<f64>; 2], r: &DVector<f64>| b.iter().map(|q| q.dot(r).powi(2)).sum::<f64>();
-        let mean_ratio = |r: &DVector<f64>| {
-            let line = explained(&of_line, r);
-            of_zones.iter().map(|(weight, b)| weight * (0.5 * (explained(b, r) - line)).exp()).sum::<f64>()
-        };
-        let observed = mean_ratio(&data);
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x7a6f_6e65);
-        let most = (CLAIMED_BELOW * DRAWS as f64) as usize;
-        let mut as_large = 0;
-        for _ in 0..DRAWS {
-            let r = &fitted + self.noise(&mut rng);
-            as_large += usize::from(mean_ratio(&r) >= observed);
-            if as_large >= most {
-                return Some(false);
-            }
-        }
-        Some(true)
+            .unzip();
+        Some(Ratios {
+            line: DMatrix::from_columns(&basis(self.design(|x| x))?),
+            zones: DMatrix::from_columns(&columns.into_iter().flatten().collect::<Vec<_>>()),
+            weights,
+        })
+    }
+}
+
+/// Directions in which a line and zones lie.
+pub struct Ratios {
+    line: DMatrix<f64>,
+    /// Two columns a zone.
+    zones: DMatrix<f64>,
+    weights: Vec<f64>,
+}
+
+impl Ratios {
+    /// The mean ratio of the likelihood of zones to that of the line, over kinds, the logarithm of the half width and the
+    /// places where a zone may lie. The ratio at the best of them rests on how many were tried, and finds fewer zones.
+    pub fn mean(&self, data: &DVector<f64>) -> f64 {
+        let line = self.line.tr_mul(data).norm_squared();
+        let zones = self.zones.tr_mul(data);
+        let explained = zones.as_slice().chunks_exact(2).map(|p| p[0] * p[0] + p[1] * p[1]);
+        explained.zip(&self.weights).map(|(of, weight)| weight * (0.5 * (of - line)).exp()).sum()
     }
 }
