@@ -30,6 +30,9 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// Half widths tried, in parts of half the range of the rates.
 const WIDTHS: usize = 40;
 
+/// Noises inside the loop that are tried, in parts of the half width.
+const NOISES: [f64; 5] = [0.35, 0.7, 1.4, 2.8, 5.6];
+
 /// What the levels are with the noise that is expected.
 pub struct Means {
     /// Means about the slope of the design, deg/h.
@@ -200,7 +203,12 @@ fn with_zone(design: &Design, points: &Points) -> Option<Vec<DVector<f64>>> {
     let (_, largest) = points.range();
     let tried = (1..WIDTHS).map(|i| 0.7 * largest * (i as f64 / (WIDTHS - 1) as f64).powi(2));
     let zone = tried
-        .flat_map(|w| [Kind::Subtractive, Kind::Gap].map(|kind| points.at_any_centre(Shape::clean(kind, w))))
+        .flat_map(|w| {
+            // What noise inside the loop rounds off is no drift either.
+            let rounded = NOISES.map(|n| Shape { kind: Kind::Rounded, half_width: w, noise: n * w });
+            [Kind::Subtractive, Kind::Gap].map(|kind| Shape::clean(kind, w)).into_iter().chain(rounded)
+        })
+        .map(|shape| points.at_any_centre(shape))
         .min_by(|a, b| a.least.total_cmp(&b.least))?;
     let n = design.rate.len();
     let lost = |r: &f64| zone.shape.of(r - zone.centre) - (r - zone.centre);
