@@ -217,6 +217,25 @@ fn evaluate(
     })
 }
 
+/// A covariance of given shape at its best strength.
+#[derive(Debug, Clone, Copy)]
+pub struct Scaled {
+    /// That strength.
+    pub scale: f64,
+    /// Restricted log-likelihood there, but for a constant.
+    pub log_likelihood: f64,
+}
+
+/// The strength of all of a covariance of which the shape is known; `None` as with [`fit`].
+pub fn scaled(y: &DVector<f64>, x: &DMatrix<f64>, shape: &DMatrix<f64>) -> Option<Scaled> {
+    let dof = x.nrows().checked_sub(x.ncols()).filter(|d| *d > 0)? as f64;
+    let state = evaluate(y, x, shape, &[], &[])?;
+    let square = y.dot(&state.projected);
+    let scale = square / dof;
+    let log_likelihood = 0.5 * (state.twice_log_likelihood + square - dof * scale.ln());
+    log_likelihood.is_finite().then_some(Scaled { scale, log_likelihood })
+}
+
 /// P = V⁻¹ − V⁻¹X (X'V⁻¹X)⁻¹ X'V⁻¹.
 fn projector(state: &State) -> DMatrix<f64> {
     inverse(&state.factor) - &state.weighted * &state.covariance * state.weighted.transpose()
@@ -342,5 +361,18 @@ mod tests {
         assert!(f.weights.iter().all(|w| (w - 1.0 / 6.0).abs() < 1e-9), "{}", f.weights);
         // Two degrees of freedom: three groups.
         assert!((mean_value.dof - 2.0).abs() < 0.05, "{}", mean_value.dof);
+    }
+
+    #[test]
+    fn the_scale_of_a_known_shape_is_that_of_a_fit_of_one_component() {
+        let x = DMatrix::from_fn(8, 2, |i, j| if j == 0 { 1.0 } else { i as f64 });
+        let y = DVector::from_fn(8, |i, _| [0.3, -1.1, 0.8, 2.0, -0.4, 0.1, 1.7, -0.9][i]);
+        let shape = DMatrix::from_fn(8, 8, |i, j| 0.6f64.powi((i as i32 - j as i32).abs()));
+        let fitted = fit(&y, &x, &DMatrix::zeros(8, 8), &[shape.clone()]).unwrap();
+        let found = scaled(&y, &x, &shape).unwrap();
+        assert!((found.scale / fitted.strengths[0] - 1.0).abs() < 1e-4);
+        // The quadratic form at the best scale is the number of degrees of freedom.
+        assert!((2.0 * found.log_likelihood - 6.0 - fitted.twice_log_likelihood).abs() < 1e-6);
+        assert!(scaled(&y.rows(0, 2).into_owned(), &x.rows(0, 2).into_owned(), &shape).is_none());
     }
 }

@@ -7,9 +7,10 @@
 
 use super::points::Points;
 use super::shape::{Kind, Shape};
-use crate::numeric::reml;
+use super::widths;
+use crate::numeric::reml::{self, Scaled};
 use crate::rate_table::design::{Design, stands_out};
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 /// Share of the confidence that white noise alone has before the test.
 const WHITE_ALONE: f64 = 0.5;
@@ -39,7 +40,7 @@ pub struct Means {
     pub means: DVector<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
-    /// The noises that the test may have.
+    /// The noises that the steps may have.
     pub likely: Vec<Likely>,
     /// The steps as wholes.
     pub steps: Wholes,
@@ -51,8 +52,8 @@ pub struct Likely {
     pub share: f64,
     /// Logarithm of its confidence before the test.
     pub before: f64,
-    /// Covariance of the steps.
-    pub of_steps: DMatrix<f64>,
+    /// Its covariance.
+    pub covariance: DMatrix<f64>,
 }
 
 /// The steps as wholes, each the mean of its rows.
@@ -91,19 +92,15 @@ pub fn means(
         let columns = with_zone(design, &points(&y, of_levels(&fit.covariance))?)?;
         let noises = noises(design, &DMatrix::from_columns(&columns), strength)?;
         let none = DMatrix::zeros(free.nrows(), free.nrows());
-        let mean = noises.iter().fold(none, |sum, (share, _, v)| sum + v * *share);
+        let mean = noises.iter().fold(none, |sum, l| sum + &l.covariance * l.share);
         fit = reml::fit(&design.left, &free, &mean, &[])?;
-        if !first || noises[0].0 > 0.5 {
+        if !first || noises[0].share > 0.5 {
             let whole = whole(&design.step);
-            let of = |(share, before, v): (f64, f64, DMatrix<f64>)| Likely {
-                share,
-                before,
-                of_steps: &whole * v * whole.transpose(),
-            };
+            let of_steps = |l: Likely| Likely { covariance: &whole * l.covariance * whole.transpose(), ..l };
             return Some(Means {
                 means: fit.coefficients.rows(0, levels).into_owned(),
                 covariance: of_levels(&fit.covariance),
-                likely: noises.into_iter().map(of).collect(),
+                likely: noises.into_iter().map(of_steps).collect(),
                 steps: wholes(design, &whole),
             });
         }
@@ -138,37 +135,28 @@ fn whole(step: &[usize]) -> DMatrix<f64> {
     })
 }
 
-/// Shares of the confidence, its logarithm before the test and covariances of the rows, those of white noise alone first.
-/// The noise about the columns has one further kind at most; the strength of all together is that of the restricted
-/// likelihood.
-fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<(f64, f64, DMatrix<f64>)>> {
+/// The noises that the rows may have, white noise alone first. The noise about the columns has one further kind at most; the
+/// strength of all together is that of the restricted likelihood.
+fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<Likely>> {
     let of_white = &design.quick.first()?.1;
     let white = white.max(1e-3 * design.fixed.trace() / of_white.trace()).max(f64::MIN_POSITIVE);
     let alone = of_white + &design.fixed / white;
-    let dof = (x.nrows() - x.ncols()) as f64;
-    let likelihood = |shape: DMatrix<f64>| -> Option<(f64, f64)> {
-        let factor = Cholesky::new(shape)?;
-        let weighted = factor.solve(x);
-        let normal = Cholesky::new(x.transpose() * &weighted)?;
-        let fitted = normal.solve(&(weighted.transpose() * &design.left));
-        let left = &design.left - x * fitted;
-        let scale = left.dot(&factor.solve(&left)) / dof;
-        let log_det = |l: &DMatrix<f64>| l.diagonal().iter().map(|d| d.ln()).sum::<f64>();
-        let log = -0.5 * dof * scale.ln() - log_det(factor.l_dirty()) - log_det(normal.l_dirty());
-        log.is_finite().then_some((log, scale))
+    let try_it = |before: f64, further: Option<(&DMatrix<f64>, f64)>| -> Option<Tried> {
+        let shape = further.map_or(alone.clone(), |(kind, ratio)| &alone + kind * ratio);
+        let Scaled { scale, log_likelihood } = reml::scaled(&design.left, x, &shape)?;
+        Some(Tried { before, log: before + log_likelihood, covariance: shape * scale })
     };
-    let (log, scale) = likelihood(alone.clone())?;
-    let mut tried = vec![Tried { log: WHITE_ALONE.ln() + log, scale, further: None }];
+    let mut tried = vec![try_it(WHITE_ALONE.ln(), None)?];
     let kinds: Vec<&DMatrix<f64>> =
         design.quick.iter().skip(1).chain(&design.slow).chain(&design.further).map(|k| &k.1).collect();
-    let prior = ((1.0 - WHITE_ALONE) / (kinds.len() * STRENGTHS.0) as f64).ln();
+    let before = ((1.0 - WHITE_ALONE) / (kinds.len() * STRENGTHS.0) as f64).ln();
     for kind in kinds {
         let unit = LEAST * of_white.trace() / kind.trace().max(f64::MIN_POSITIVE);
         let mut most = f64::NEG_INFINITY;
         for i in 0..STRENGTHS.1 {
-            let ratio = unit * 2f64.powi(i as i32);
-            let Some((log, scale)) = likelihood(&alone + kind * ratio) else { break };
-            tried.push(Tried { log: prior + log, scale, further: Some((kind, ratio)) });
+            let Some(found) = try_it(before, Some((kind, unit * 2f64.powi(i as i32)))) else { break };
+            let log = found.log;
+            tried.push(found);
             most = most.max(log);
             if log < most - BEYOND {
                 break;
@@ -178,31 +166,28 @@ fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<(f64, f64
     let most = tried.iter().map(|t| t.log).fold(f64::NEG_INFINITY, f64::max);
     let weight = |t: &Tried| (t.log - most).exp();
     let all: f64 = tried.iter().map(weight).sum();
-    tried.retain(|t| t.further.is_none() || weight(t) > NEGLIGIBLE * all);
+    let mut first = true;
+    tried.retain(|t| std::mem::take(&mut first) || weight(t) > NEGLIGIBLE * all);
     let kept: f64 = tried.iter().map(weight).sum();
-    let covariance = |t: &Tried| {
-        let shape = t.further.map_or(alone.clone(), |(kind, ratio)| &alone + kind * ratio);
-        let before = if t.further.is_some() { prior } else { WHITE_ALONE.ln() };
-        (weight(t) / kept, before, shape * t.scale)
-    };
-    Some(tried.iter().map(covariance).collect())
+    let likely = |t: Tried| Likely { share: weight(&t) / kept, before: t.before, covariance: t.covariance };
+    Some(tried.into_iter().map(likely).collect())
 }
 
 /// A noise of the rows.
-struct Tried<'a> {
-    /// Logarithm of its confidence, but for a constant.
+struct Tried {
+    /// Logarithm of its confidence before the test.
+    before: f64,
+    /// The same with what the test says of it, but for a constant.
     log: f64,
-    /// Strength of all of it.
-    scale: f64,
-    /// The further kind, and its strength over that of the white one.
-    further: Option<(&'a DMatrix<f64>, f64)>,
+    /// Its covariance.
+    covariance: DMatrix<f64>,
 }
 
 /// Columns of a line and of what the zone that suits the rates best takes from it.
 fn with_zone(design: &Design, points: &Points) -> Option<Vec<DVector<f64>>> {
     let (_, largest) = points.range();
-    let tried = (1..WIDTHS).map(|i| 0.7 * largest * (i as f64 / (WIDTHS - 1) as f64).powi(2));
-    let zone = tried
+    let zone = widths::tried(largest, WIDTHS)
+        .skip(1)
         .flat_map(|w| {
             // What noise inside the loop rounds off is no drift either.
             let rounded = NOISES.map(|n| Shape { kind: Kind::Rounded, half_width: w, noise: n * w });
@@ -228,6 +213,7 @@ fn with_zone(design: &Design, points: &Points) -> Option<Vec<DVector<f64>>> {
 mod tests {
     use super::*;
     use crate::rate_table::noise::Rows;
+    use nalgebra::Cholesky;
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
     use rand_xoshiro::Xoshiro256PlusPlus;

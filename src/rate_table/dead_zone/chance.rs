@@ -127,7 +127,7 @@ fn noises<'a>(
         .likely
         .iter()
         .map(|likely| {
-            let noise = &likely.of_steps;
+            let noise = &likely.covariance;
             let factor = Cholesky::new(noise.clone())?;
             let weighted = factor.solve(&steps.free);
             let covariance = Cholesky::new(steps.free.transpose() * &weighted)?.inverse();

@@ -33,7 +33,8 @@ pub struct Points {
     /// Output and a constant, over their standard uncertainty and free of correlation.
     of_y: DVector<f64>,
     of_one: DVector<f64>,
-    place: Place,
+    /// Noise of a mean, deg/h.
+    noise: f64,
 }
 
 impl Points {
@@ -49,14 +50,16 @@ impl Points {
         let whitening = factor.l_dirty().solve_lower_triangular(&DMatrix::identity(x.len(), x.len()))?;
         let of_y = &whitening * &y;
         let of_one = &whitening * DVector::from_element(x.len(), 1.0);
-        let place = Place { at_rest: [0.0; 2], standard: 1.0, half: 1.0 };
-        let mut points = Points { x, whitening, slope_known, of_y, of_one, place };
-        let (middle, largest) = points.range();
-        let (_, slope, offset) = points.cost(|x| x);
-        let (_, apart) = points.spacing();
+        Some(Points { x, whitening, slope_known, of_y, of_one, noise })
+    }
+
+    /// Where a zone may lie.
+    fn place(&self) -> Place {
+        let (middle, largest) = self.range();
+        let (_, slope, offset) = self.cost(|x| x);
+        let (_, apart) = self.spacing();
         let tried = largest / (CENTRES - 1) as f64;
-        points.place = Place::new(middle, 0.5 * largest, -offset / slope, noise / slope.abs(), apart, tried);
-        Some(points)
+        Place::new(middle, 0.5 * largest, -offset / slope, self.noise / slope.abs(), apart, tried)
     }
 
     /// Middle of the rates and half their range.
@@ -128,8 +131,9 @@ impl Points {
             step *= 0.5;
         }
         let best = least(&tried);
+        let place = self.place();
         tried.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let weight = |v: &(f64, f64, f64, f64)| (-0.5 * (v.0 - best.0)).exp() * self.place.density(v.1);
+        let weight = |v: &(f64, f64, f64, f64)| (-0.5 * (v.0 - best.0)).exp() * place.density(v.1);
         let mean: f64 =
             tried.windows(2).map(|p| 0.5 * (weight(&p[0]) + weight(&p[1])) * (p[1].1 - p[0].1)).sum();
         let over_centres = best.0 - 2.0 * mean.max(f64::MIN_POSITIVE).ln();
@@ -159,6 +163,7 @@ impl Points {
         let fine = CENTRES - 1;
         let centre = |i: usize| middle + 0.5 * largest * (2.0 * i as f64 / fine as f64 - 1.0);
         // Tried half widths grow with the square of their number.
+        let place = self.place();
         let (weights, columns): (Vec<f64>, Vec<[DVector<f64>; 2]>) = [Kind::Subtractive, Kind::Gap]
             .into_iter()
             .flat_map(|k| {
@@ -166,7 +171,7 @@ impl Points {
             })
             .flat_map(|(k, w, weight)| (0..=fine).map(move |i| (k, w, weight, centre(i))))
             .filter_map(|(k, w, weight, c)| {
-                Some((weight * self.place.density(c), basis(self.design(|x| Shape::clean(k, w).of(x - c)))?))
+                Some((weight * place.density(c), basis(self.design(|x| Shape::clean(k, w).of(x - c)))?))
             })
             .unzip();
         Some(Ratios {

@@ -21,12 +21,16 @@ pub struct Widths {
     best: usize,
 }
 
+/// So many half widths from none up to a part of half the range of the rates, the closer the smaller they are.
+pub fn tried(largest: f64, count: usize) -> impl Iterator<Item = f64> {
+    (0..count).map(move |i| 0.7 * largest * (i as f64 / (count - 1) as f64).powi(2))
+}
+
 impl Widths {
     /// Tries all half widths.
     pub fn new(points: &Points) -> Option<Widths> {
         let (_, largest) = points.range();
-        let widths: Vec<f64> =
-            (0..WIDTHS).map(|i| 0.7 * largest * (i as f64 / (WIDTHS - 1) as f64).powi(2)).collect();
+        let widths: Vec<f64> = tried(largest, WIDTHS).collect();
         let clean = [Kind::Subtractive, Kind::Gap]
             .map(|kind| widths.iter().map(|w| points.at_any_centre(Shape::clean(kind, *w))).collect());
         let (over_noise, with_noise) = rounded::over_noise(points, &widths);
