@@ -5,6 +5,7 @@ use super::table_motion::{self, Settling};
 use super::{mistakes, record};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::text::{Arg, Note};
+use crate::units::RateUnit;
 
 /// What was found of the table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -112,8 +113,8 @@ fn still(facts: &TableFacts) -> Option<ConditionRecord> {
         (ConditionStatus::Ok, "on_table.inner_rests")
     };
     let note = Note::new(key)
-        .with("inner", Arg::figures(inner / 3600.0, 3))
-        .with("outer", Arg::figures(outer / 3600.0, 4));
+        .with("inner", RateUnit::up_to(outer).figures(inner, 3))
+        .with("outer", RateUnit::up_to(outer).figures(outer, 4));
     let required = Note::new("on_table.required.inner_rests");
     Some(record("inner_axis_still", status, &[("inner_deg_s", inner / 3600.0)], Some(required), note))
 }
@@ -136,8 +137,11 @@ fn earth_sign(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionReco
     Some(record(id, status, &[("bias_deg_h", bias)], Some(Note::new("on_table.required.earth_sign")), note))
 }
 
-fn per_second(rate_deg_h: f64) -> Arg {
-    Arg::figures(rate_deg_h / 3600.0, 5)
+impl TableFacts {
+    /// A rate of the table, in the unit that its highest one reads well in.
+    fn rate(&self, rate_deg_h: f64) -> Arg {
+        RateUnit::up_to(self.highest.abs().max(self.lowest.abs())).figures(rate_deg_h, 5)
+    }
 }
 
 fn steps(facts: &TableFacts) -> ConditionRecord {
@@ -157,8 +161,8 @@ fn steps(facts: &TableFacts) -> ConditionRecord {
         .with("levels", facts.levels)
         .with("short", facts.too_short)
         .with("least", Arg::figures(facts.minimum_step_s, 3))
-        .with("low", per_second(facts.lowest))
-        .with("high", per_second(facts.highest));
+        .with("low", facts.rate(facts.lowest))
+        .with("high", facts.rate(facts.highest));
     let observed = [("steps", facts.steps as f64), ("levels", facts.levels as f64)];
     record("table_steps", status, &observed, Some(Note::new("on_table.required.steps")), note)
 }
@@ -182,11 +186,11 @@ fn reached(facts: &TableFacts) -> Option<ConditionRecord> {
         (ConditionStatus::Ok, "on_table.reached")
     };
     let note = Note::new(key)
-        .with("low", per_second(facts.lowest))
-        .with("high", per_second(facts.highest))
-        .with("full", per_second(full));
+        .with("low", facts.rate(facts.lowest))
+        .with("high", facts.rate(facts.highest))
+        .with("full", facts.rate(full));
     let required = Note::new("on_table.required.reached")
-        .with("full", per_second(full))
+        .with("full", facts.rate(full))
         .with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
     Some(record("table_reached", status, &[("worst_deg_s", worst / 3600.0)], Some(required), note))
 }
@@ -210,8 +214,8 @@ fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
     let status = if agrees { ConditionStatus::Ok } else { ConditionStatus::Invalid };
     let note = Note::new(key)
         .with("percent", Arg::figures(100.0 * difference, 3))
-        .with("angle", per_second(rate * factor))
-        .with("rate", per_second(rate));
+        .with("angle", facts.rate(rate * factor))
+        .with("rate", facts.rate(rate));
     let required =
         Note::new("on_table.required.agreement").with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
     Some(record("table_agreement", status, &[("difference", difference)], Some(required), note))

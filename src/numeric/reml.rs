@@ -368,7 +368,7 @@ mod tests {
         let x = DMatrix::from_fn(8, 2, |i, j| if j == 0 { 1.0 } else { i as f64 });
         let y = DVector::from_fn(8, |i, _| [0.3, -1.1, 0.8, 2.0, -0.4, 0.1, 1.7, -0.9][i]);
         let shape = DMatrix::from_fn(8, 8, |i, j| 0.6f64.powi((i as i32 - j as i32).abs()));
-        let fitted = fit(&y, &x, &DMatrix::zeros(8, 8), &[shape.clone()]).unwrap();
+        let fitted = fit(&y, &x, &DMatrix::zeros(8, 8), std::slice::from_ref(&shape)).unwrap();
         let found = scaled(&y, &x, &shape).unwrap();
         assert!((found.scale / fitted.strengths[0] - 1.0).abs() < 1e-4);
         // The quadratic form at the best scale is the number of degrees of freedom.

@@ -11,6 +11,7 @@ use super::{Setup, TableRun, model};
 use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::numeric::reml::Combination;
 use crate::text::{Arg, Note};
+use crate::units::RateUnit;
 use nalgebra::{DMatrix, DVector};
 
 /// Ids that this evaluation gives.
@@ -214,21 +215,13 @@ impl ScaleFactor {
                 spread(&slope, 1e6, &systematic.map(|u| u * self.factor.abs())),
             ),
             "scale_factor_bias" => measured(self.bias, spread(&self.of_line(0), 1.0, &[])),
-            "scale_factor_nonlinearity" => self.most(id, unit, self.largest.as_ref(), of_full_scale).note(
-                Note::new("on_table.largest_at").with(
-                    "rate",
-                    Arg::figures(
-                        self.largest.as_ref().map_or(0.0, |l| self.response.levels[l.at]) / 3600.0,
-                        4,
-                    ),
-                ),
-            ),
+            "scale_factor_nonlinearity" => self
+                .most(id, unit, self.largest.as_ref(), of_full_scale)
+                .note(self.largest_at(self.largest.as_ref().map_or(0.0, |l| self.response.levels[l.at]))),
             "scale_factor_nonlinearity_of_rate" => {
                 let found = self.largest_of_rate.as_ref();
-                self.most(id, unit, found.map(|f| &f.0), ppm).note(
-                    Note::new("on_table.largest_at")
-                        .with("rate", Arg::figures(found.map_or(0.0, |f| f.1) / 3600.0, 4)),
-                )
+                self.most(id, unit, found.map(|f| &f.0), ppm)
+                    .note(self.largest_at(found.map_or(0.0, |f| f.1)))
             }
             "scale_factor_residual" => self.rms(id, unit, of_full_scale),
             "scale_factor_asymmetry" => match self.asymmetry() {
@@ -289,6 +282,11 @@ impl ScaleFactor {
     }
 
     /// The largest residual, or its bound where chance explains it.
+    fn largest_at(&self, rate_deg_h: f64) -> Note {
+        let highest = self.response.levels.iter().fold(0.0, |m: f64, l| m.max(l.abs()));
+        Note::new("on_table.largest_at").with("rate", RateUnit::up_to(highest).figures(rate_deg_h, 4))
+    }
+
     fn most(&self, id: &'static str, unit: &'static str, found: Option<&Largest>, factor: f64) -> Estimate {
         let Some(found) = found else {
             return Estimate::not_identifiable(id, &self.channel, None, unit, METHOD)

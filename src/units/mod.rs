@@ -18,10 +18,12 @@
 mod describe;
 mod error;
 mod parse;
+mod rate;
 mod symbols;
 
 pub use error::UnitError;
 use parse::Parser;
+pub use rate::RateUnit;
 use std::fmt;
 use symbols::{CELSIUS, FAHRENHEIT};
 

@@ -280,3 +280,28 @@ fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
     let one_axis = said.iter().filter(|s| **s == "table_motion.one_axis").count();
     assert!(one_axis == 1 && said.contains(&"on_table.follows"), "{said:?}");
 }
+
+#[test]
+fn rates_are_shown_in_the_unit_that_they_read_well_in() {
+    for (name, lang, sentence, column) in [
+        ("threshold", "en", "from −13.717 °/h to −11.216 °/h", "Rate, °/h"),
+        ("threshold", "ru", "от −13,717 град/ч до −11,216 град/ч", "Скорость, град/ч"),
+        ("scale-factor", "en", "from −100.00 °/s to 100.00 °/s", "Rate, °/s"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("report");
+        let status = Command::new(env!("CARGO_BIN_EXE_sagnac"))
+            .arg("run")
+            .arg(root(&format!("procedures/{name}.toml")))
+            .arg(root(&format!("samples/{name}-pass.csv")))
+            .args(["--serial", "SN-1", "--lang", lang, "--out"])
+            .arg(&out)
+            .output()
+            .unwrap();
+        assert_eq!(status.status.code(), Some(0));
+        let text = std::fs::read_to_string(out.join("report.md")).unwrap();
+        assert!(text.contains(sentence) && text.contains(column), "{name} {lang}: {text}");
+        let figure = std::fs::read_to_string(out.join("figures/table_steps.svg")).unwrap();
+        assert!(figure.contains(column.rsplit(' ').next().unwrap()), "{name} {lang}");
+    }
+}

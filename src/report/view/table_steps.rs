@@ -3,6 +3,7 @@
 use super::Words;
 use crate::record::{RunRecord, TableStepRecord};
 use crate::report::number::{Rounding, digits, limit_digits};
+use crate::units::RateUnit;
 use serde::Serialize;
 
 /// Steps that a report lists; the rest stands in the table beside it.
@@ -13,6 +14,8 @@ const SHOWN: usize = 80;
 pub struct TableSteps {
     /// Channel.
     pub channel: String,
+    /// Unit of the rates.
+    pub rate_unit: &'static str,
     /// The steps.
     pub rows: Vec<TableStep>,
     /// How many of them are shown; empty when all are.
@@ -26,7 +29,7 @@ pub struct TableStep {
     pub from: String,
     /// Length, s.
     pub length: String,
-    /// Rate, deg/s.
+    /// Rate.
     pub rate: String,
     /// Turns.
     pub turns: String,
@@ -44,7 +47,8 @@ pub struct TableStep {
 
 pub(super) fn table_steps(record: &RunRecord, words: Words) -> Vec<TableSteps> {
     let mut tables: Vec<TableSteps> = vec![];
-    let highest = record.table_steps.iter().fold(0.0, |m: f64, s| m.max(s.rate_deg_h.abs())) / 3600.0;
+    let highest = record.table_steps.iter().fold(0.0, |m: f64, s| m.max(s.rate_deg_h.abs()));
+    let unit = RateUnit::up_to(highest);
     let count = |channel: &str| record.table_steps.iter().filter(|s| s.channel == channel).count();
     for step in &record.table_steps {
         if tables.last().is_none_or(|t| t.channel != step.channel) {
@@ -55,10 +59,11 @@ pub(super) fn table_steps(record: &RunRecord, words: Words) -> Vec<TableSteps> {
             } else {
                 String::new()
             };
-            tables.push(TableSteps { channel: step.channel.clone(), rows: vec![], shown });
+            let channel = step.channel.clone();
+            tables.push(TableSteps { channel, rate_unit: unit.text(), rows: vec![], shown });
         }
         if let Some(table) = tables.last_mut().filter(|t| t.rows.len() < SHOWN) {
-            table.rows.push(one(step, highest, words));
+            table.rows.push(one(step, unit, unit.of(highest), words));
         }
     }
     tables
@@ -74,7 +79,7 @@ fn to_grid(value: f64, highest: f64) -> f64 {
     }
 }
 
-fn one(step: &TableStepRecord, highest: f64, words: Words) -> TableStep {
+fn one(step: &TableStepRecord, unit: RateUnit, highest: f64, words: Words) -> TableStep {
     let lang = words.lang;
     let u = 1.96 * step.standard_uncertainty_deg_h * step.residual_ppm.abs()
         / step.residual_deg_h.abs().max(f64::MIN_POSITIVE);
@@ -84,7 +89,7 @@ fn one(step: &TableStepRecord, highest: f64, words: Words) -> TableStep {
         from: limit_digits(step.from_s, 6, lang),
         length: limit_digits(step.to_s - step.from_s, 4, lang),
         // A rest is not exactly none by an angle that is read with errors.
-        rate: limit_digits(to_grid(step.rate_deg_h / 3600.0, highest), 6, lang),
+        rate: limit_digits(to_grid(unit.of(step.rate_deg_h), highest), 6, lang),
         turns: limit_digits((step.turns * 1000.0).round() / 1000.0, 4, lang),
         temperature: step.temperature_deg_c.map_or_else(String::new, |t| digits(t, 4, lang)),
         approach: match step.approach {

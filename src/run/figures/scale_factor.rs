@@ -5,22 +5,24 @@ use crate::estimate::{Limit, normal_quantile};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::rate_table::TableRun;
 use crate::rate_table::scale_factor::ScaleFactor;
+use crate::units::RateUnit;
 
 /// Draws the residuals in ppm of full scale: levels with their intervals, and single steps by the way they were reached.
 pub fn residuals(run: &TableRun, channel: &ScaleFactor, limit: Option<&Limit>, several: bool) -> Figure {
     let ppm = 1e6 / (channel.factor * channel.full_scale).abs();
+    let unit = unit_of(channel);
     let k = normal_quantile(0.975);
     let levels = channel.response.levels.iter().zip(&channel.levels);
     let band =
-        levels.clone().map(|(rate, (r, u))| (rate / 3600.0, (r - k * u) * ppm, (r + k * u) * ppm)).collect();
-    let points: Vec<(f64, f64)> = levels.map(|(rate, (r, _))| (rate / 3600.0, r * ppm)).collect();
+        levels.clone().map(|(rate, (r, u))| (unit.of(*rate), (r - k * u) * ppm, (r + k * u) * ppm)).collect();
+    let points: Vec<(f64, f64)> = levels.map(|(rate, (r, _))| (unit.of(*rate), r * ppm)).collect();
     let reached = |from_below: bool| -> Vec<(f64, f64)> {
         channel
             .steps
             .iter()
             .filter_map(|r| {
                 let step = run.steps.list.get(r.step)?;
-                ((step.approach >= 0) == from_below).then_some((step.rate / 3600.0, r.residual * ppm))
+                ((step.approach >= 0) == from_below).then_some((unit.of(step.rate), r.residual * ppm))
             })
             .collect()
     };
@@ -46,7 +48,7 @@ pub fn residuals(run: &TableRun, channel: &ScaleFactor, limit: Option<&Limit>, s
         channel,
         several,
         vec![Panel {
-            x: axis("figure_table.axis_rate", "deg/s", Scale::Linear),
+            x: axis("figure_table.axis_rate", unit.text(), Scale::Linear),
             y: axis("figure_table.axis_residual", "ppm", Scale::Linear),
             layers,
         }],
@@ -56,18 +58,19 @@ pub fn residuals(run: &TableRun, channel: &ScaleFactor, limit: Option<&Limit>, s
 /// Draws rate and residual of the steps over time.
 pub fn over_time(run: &TableRun, channel: &ScaleFactor, several: bool) -> Figure {
     let ppm = 1e6 / (channel.factor * channel.full_scale).abs();
+    let unit = unit_of(channel);
     let mut rate = Vec::new();
     let mut residual = Vec::new();
     for r in &channel.steps {
         let Some(step) = run.steps.list.get(r.step) else { continue };
-        rate.extend([(step.from_s / 60.0, step.rate / 3600.0), (step.to_s / 60.0, step.rate / 3600.0)]);
+        rate.extend([(step.from_s / 60.0, unit.of(step.rate)), (step.to_s / 60.0, unit.of(step.rate))]);
         rate.push((step.to_s / 60.0, f64::NAN));
         residual.push((0.5 * (step.from_s + step.to_s) / 60.0, r.residual * ppm));
     }
     let mut panels = vec![
         Panel {
             x: axis("axis.time", "min", Scale::Linear),
-            y: axis("figure_table.axis_rate", "deg/s", Scale::Linear),
+            y: axis("figure_table.axis_rate", unit.text(), Scale::Linear),
             layers: vec![line(rate, Style::Data, "figure_table.table")],
         },
         Panel {
@@ -90,6 +93,11 @@ pub fn over_time(run: &TableRun, channel: &ScaleFactor, several: bool) -> Figure
         });
     }
     figure("table_steps", "figure.title.table_steps", channel, several, panels)
+}
+
+/// Unit that the rates of the table read well in.
+fn unit_of(channel: &ScaleFactor) -> RateUnit {
+    RateUnit::up_to(channel.response.levels.iter().fold(0.0, |m: f64, l| m.max(l.abs())))
 }
 
 fn figure(id: &str, title: &'static str, channel: &ScaleFactor, several: bool, panels: Vec<Panel>) -> Figure {

@@ -1,6 +1,7 @@
 //! Quantities with a unit that reads well.
 
 use crate::text::{Arg, Note};
+use crate::units::RateUnit;
 
 fn amount(key: &'static str, value: f64, digits: usize) -> Arg {
     Note::new(key).with("value", plain(value, digits)).into()
@@ -8,21 +9,14 @@ fn amount(key: &'static str, value: f64, digits: usize) -> Arg {
 
 /// A rate, given in deg/h: in deg/s from 0.1 deg/s on.
 pub(super) fn rate(deg_h: f64) -> Arg {
-    if deg_h.abs() >= 360.0 {
-        amount("amount.deg_s", deg_h / 3600.0, 4)
-    } else {
-        amount("amount.deg_h", deg_h, 4)
-    }
+    let unit = RateUnit::up_to(deg_h);
+    unit.with(plain(unit.of(deg_h), 4))
 }
 
 /// Two rates, given in deg/h, in one unit.
 pub(super) fn rates(low_deg_h: f64, high_deg_h: f64) -> (Arg, Arg, Arg) {
-    let (factor, unit) = if low_deg_h.abs().max(high_deg_h.abs()) >= 360.0 {
-        (1.0 / 3600.0, "amount.unit_deg_s")
-    } else {
-        (1.0, "amount.unit_deg_h")
-    };
-    (plain(low_deg_h * factor, 4), plain(high_deg_h * factor, 4), Note::new(unit).into())
+    let unit = RateUnit::up_to(low_deg_h.abs().max(high_deg_h.abs()));
+    (plain(unit.of(low_deg_h), 4), plain(unit.of(high_deg_h), 4), Note::new(unit.name()).into())
 }
 
 /// A length of time, given in s.
