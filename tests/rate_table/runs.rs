@@ -282,11 +282,11 @@ fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
 }
 
 #[test]
-fn rates_are_shown_in_the_unit_that_they_read_well_in() {
-    for (name, lang, sentence, column) in [
-        ("threshold", "en", "from −13.717 °/h to −11.216 °/h", "Rate, °/h"),
-        ("threshold", "ru", "от −13,717 град/ч до −11,216 град/ч", "Скорость, град/ч"),
-        ("scale-factor", "en", "from −100.00 °/s to 100.00 °/s", "Rate, °/s"),
+fn steps_are_shown_with_the_unit_that_reads_well_and_what_was_recorded() {
+    for (name, lang, sentence, column, temperatures) in [
+        ("threshold", "en", "from −13.717 °/h to −11.216 °/h", "Rate, °/h", false),
+        ("threshold", "ru", "от −13,717 град/ч до −11,216 град/ч", "Скорость, град/ч", false),
+        ("scale-factor", "en", "from −100.00 °/s to 100.00 °/s", "Rate, °/s", true),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("report");
@@ -301,6 +301,7 @@ fn rates_are_shown_in_the_unit_that_they_read_well_in() {
         assert_eq!(status.status.code(), Some(0));
         let text = std::fs::read_to_string(out.join("report.md")).unwrap();
         assert!(text.contains(sentence) && text.contains(column), "{name} {lang}: {text}");
+        assert_eq!(text.contains("Temperature, °C |") || text.contains("Температура, °C |"), temperatures);
         let figure = std::fs::read_to_string(out.join("figures/table_steps.svg")).unwrap();
         assert!(figure.contains(column.rsplit(' ').next().unwrap()), "{name} {lang}");
     }

@@ -16,6 +16,8 @@ pub struct TableSteps {
     pub channel: String,
     /// Unit of the rates.
     pub rate_unit: &'static str,
+    /// True when a step has a temperature.
+    pub has_temperatures: bool,
     /// The steps.
     pub rows: Vec<TableStep>,
     /// How many of them are shown; empty when all are.
@@ -50,6 +52,7 @@ pub(super) fn table_steps(record: &RunRecord, words: Words) -> Vec<TableSteps> {
     let highest = record.table_steps.iter().fold(0.0, |m: f64, s| m.max(s.rate_deg_h.abs()));
     let unit = RateUnit::up_to(highest);
     let count = |channel: &str| record.table_steps.iter().filter(|s| s.channel == channel).count();
+    let has_temperatures = record.table_steps.iter().any(|s| s.temperature_deg_c.is_some());
     for step in &record.table_steps {
         if tables.last().is_none_or(|t| t.channel != step.channel) {
             let n = count(&step.channel);
@@ -60,7 +63,13 @@ pub(super) fn table_steps(record: &RunRecord, words: Words) -> Vec<TableSteps> {
                 String::new()
             };
             let channel = step.channel.clone();
-            tables.push(TableSteps { channel, rate_unit: unit.text(), rows: vec![], shown });
+            tables.push(TableSteps {
+                channel,
+                rate_unit: unit.text(),
+                has_temperatures,
+                rows: vec![],
+                shown,
+            });
         }
         if let Some(table) = tables.last_mut().filter(|t| t.rows.len() < SHOWN) {
             table.rows.push(one(step, unit, unit.of(highest), words));
