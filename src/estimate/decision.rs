@@ -149,7 +149,12 @@ pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
         };
     };
     // A spread that grows with the value (a deviation) moves the limit by a factor, any other by a difference.
-    let scales = matches!(estimate.spread, Spread::ChiSquare { .. } | Spread::Curve(_)) && value > 0.0;
+    let scales = value > 0.0
+        && match &estimate.spread {
+            Spread::ChiSquare { .. } => true,
+            Spread::Curve(points) => points.first().is_some_and(|p| p.1 >= 0.0),
+            _ => false,
+        };
     let shift = |limit: f64, bound: f64| {
         // A limit on the other side of zero is no multiple of the value.
         if scales && bound > 0.0 && limit > 0.0 { limit * value / bound } else { limit - (bound - value) }

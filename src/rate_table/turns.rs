@@ -4,7 +4,7 @@
 //! difference is that of a turn against the rests, with flicker and random walk as the rests show them.
 
 use super::blocks::Blocks;
-use super::combine::spread;
+use super::combine::{evenly, spread};
 use super::known::{Input, Known, Stretch, cut, noise_components, solve};
 use super::noise::Rows;
 use crate::estimate::Estimate;
@@ -16,8 +16,23 @@ use nalgebra::{DMatrix, DVector};
 /// Turns by known angles.
 #[derive(Debug, Clone)]
 pub struct Turns {
-    /// (channel of the output, channel whose axis was turned about, output per input, contribution of the angle).
-    pub table: Vec<(String, String, Combination, f64)>,
+    /// One a channel and axis.
+    pub table: Vec<Turned>,
+}
+
+/// What a channel made of the turns about an axis.
+#[derive(Debug, Clone)]
+pub struct Turned {
+    /// Channel of the output.
+    pub output: String,
+    /// Channel whose axis was turned about.
+    pub axis: String,
+    /// Output per input, with the noise.
+    pub factor: Combination,
+    /// Standard uncertainty from that of the angles.
+    by_angle: f64,
+    /// Most that the Earth's rotation across the axis adds to either side.
+    by_earth: f64,
 }
 
 /// What the rests tell of a channel.
@@ -90,13 +105,16 @@ pub fn turns(blocks: &Blocks, known: &[Known], stretches: &[Stretch]) -> Option<
             let by_angle: f64 = own.iter().map(|(_, a)| (factor * a.0 * a.1 / square).powi(2)).sum();
             let (noise, dof) = rest.as_ref().map_or((0.0, 1e9), |r| r.noise_of(&weighed));
             // What the Earth's rotation adds across the axis stands in the bias at rest and turns with the unit; along the
-            // axis it stays. Attitude and latitude are not asked for: any direction is as likely.
-            let across = if output == axis { 0.0 } else { EARTH_RATE_DEG_H / 3f64.sqrt() };
-            let standard = noise.hypot(across * length / square);
-            // Welch and Satterthwaite: only the noise is known from so few degrees of freedom.
-            let dof = if noise > 0.0 { (dof * (standard / noise).powi(4)).min(1e9) } else { 1e9 };
-            let combined = Combination { value: factor, standard, dof };
-            table.push((output.clone(), axis.clone(), combined, by_angle.sqrt()));
+            // axis it stays. Attitude and latitude are not asked for: any direction is as likely, and with it any component
+            // up to the whole.
+            let across = if output == axis { 0.0 } else { EARTH_RATE_DEG_H };
+            table.push(Turned {
+                output: output.clone(),
+                axis: axis.clone(),
+                factor: Combination { value: factor, standard: noise, dof },
+                by_angle: by_angle.sqrt(),
+                by_earth: (across * length / square).abs(),
+            });
         }
     }
     (!table.is_empty()).then_some(Turns { table })
@@ -126,7 +144,7 @@ impl Turns {
     pub fn estimates(&self, id: &'static str, unit: &'static str) -> Vec<Estimate> {
         self.table
             .iter()
-            .filter_map(|(output, axis, c, by_angle)| {
+            .filter_map(|Turned { output, axis, factor: c, by_angle, by_earth }| {
                 let own = output == axis;
                 let (channel, value, factor) = match (id, own) {
                     ("scale_factor", true) => (output.clone(), c.value, 1.0),
@@ -134,7 +152,7 @@ impl Turns {
                     ("cross_axis", false) => (format!("{output}<-{axis}"), c.value, 1.0),
                     _ => return None,
                 };
-                let spread = spread(c, factor, &[factor * by_angle]);
+                let spread = evenly(spread(c, factor, &[factor * by_angle]), value, factor * by_earth);
                 let mut e = Estimate::measured(id, &channel, value, unit, spread, "known_angles");
                 if id == "scale_factor" {
                     e.unit = "1";
