@@ -1,4 +1,5 @@
-//! Modules depend downwards only. The table is the architecture; a module that reaches up fails here.
+//! Modules depend downwards only: the table is the architecture, a module that reaches up fails here. Documents name what
+//! there is.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -87,4 +88,38 @@ fn every_module_stands_on_a_floor_and_looks_down_only() {
     }
     assert!(checked > 50, "the search found only {checked} uses");
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// The documents, and the folder that each target of cargo has its file in.
+const DOCUMENTS: &[&str] = &["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "samples/README.md", "docs"];
+const TARGETS: &[(&str, &str)] = &[("--test ", "tests"), ("--bench ", "benches"), ("--example ", "examples")];
+
+#[test]
+fn documents_name_tests_that_there_are() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut documents = Vec::new();
+    for name in DOCUMENTS.iter().map(|d| root.join(d)) {
+        if name.is_dir() {
+            documents.extend(fs::read_dir(&name).unwrap().flatten().map(|e| e.path()));
+        } else {
+            documents.push(name);
+        }
+    }
+    let (mut named, mut missing) = (0, Vec::new());
+    for document in documents.iter().filter(|d| d.extension().is_some_and(|e| e == "md")) {
+        // A command may go on in the next line.
+        let text = fs::read_to_string(document).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
+        for (option, folder) in TARGETS {
+            for rest in text.split(option).skip(1) {
+                let target: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                let at = root.join(folder).join(&target);
+                named += 1;
+                if target.is_empty() || !(at.with_extension("rs").exists() || at.join("main.rs").exists()) {
+                    missing.push(format!("{}: {option}{target}", document.display()));
+                }
+            }
+        }
+    }
+    assert!(named > 30, "the search found only {named} commands");
+    assert!(missing.is_empty(), "{missing:#?}");
 }

@@ -4,3 +4,4 @@ mod described_noise;
 mod evidence;
 mod identification;
 mod readouts;
+mod unit_samples;
