@@ -1,7 +1,7 @@
 //! A gyro at rest that is switched off and on, or put under an influence. Uses nothing of the program under test.
 #![allow(dead_code)]
 
-#[path = "../thermal_study/chamber/mod.rs"]
+#[path = "../../thermal_study/chamber/mod.rs"]
 mod chamber;
 
 pub use chamber::{Chance, Noise, noise};
