@@ -7,6 +7,7 @@ pub mod compare;
 pub mod explain;
 pub mod methods;
 pub mod number;
+mod prose;
 pub mod render;
 pub mod svg;
 pub mod unit;

@@ -1,6 +1,7 @@
 //! Templates: the built-in ones, each of which a file of the same name in a folder of the user's replaces.
 
 use super::number;
+use super::prose::{self, prose};
 use super::view::{PhasePart, View, Words};
 use crate::figure::Figure;
 use crate::record::RunRecord;
@@ -176,7 +177,7 @@ impl Renderer {
             let escaped = match state.auto_escape() {
                 _ if value.is_safe() => text,
                 AutoEscape::Html => super::svg::escape(&text),
-                AutoEscape::Custom(kind) if kind == "md" => escape_markdown(&text),
+                AutoEscape::Custom(kind) if kind == "md" => prose::markdown(&text),
                 _ => text,
             };
             out.write_str(&escaped).map_err(minijinja::Error::from)
@@ -199,6 +200,7 @@ impl Renderer {
         env.add_filter("count", move |v: u64| number::count(v, lang));
         env.add_filter("duration", move |v: f64| number::duration(v, lang));
         env.add_filter("date", |v: String| number::date_time(&v));
+        env.add_filter("prose", prose);
         env.add_filter("say", move |note: Value| say(&note, words));
         for (name, source) in TEMPLATES {
             if !self.overrides.contains_key(*name) {
@@ -348,26 +350,6 @@ fn say(note: &Value, words: Words) -> String {
     })
 }
 
-/// Text in which Markdown sees no markup and a table cell does not end.
-fn escape_markdown(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\\' | '`' | '*' | '[' | ']' | '|' | '~' => {
-                out.push('\\');
-                out.push(c);
-            }
-            '_' => out.push_str("\\_"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '&' => out.push_str("&amp;"),
-            '\n' | '\r' => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 /// A quoted string of CSS in which nothing can end the string or the style sheet.
 fn css_string(text: &str) -> String {
     let mut out = String::from("\"");
@@ -385,11 +367,6 @@ fn css_string(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn markdown_cells_stay_whole() {
-        assert_eq!(escape_markdown("a|b*c<d>\ne_f"), "a\\|b\\*c&lt;d&gt; e\\_f");
-    }
 
     #[test]
     fn css_strings_cannot_be_left() {

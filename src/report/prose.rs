@@ -1,0 +1,74 @@
+//! Sentences in the kind of file they stand in: names between backticks become code.
+
+use super::svg;
+use minijinja::value::Value;
+use minijinja::{AutoEscape, State};
+
+/// A sentence, escaped for the file. Backticks that do not pair, and pairs with nothing between them, stay as they are.
+pub fn prose(state: &State, sentence: &str) -> Value {
+    match state.auto_escape() {
+        AutoEscape::Html => Value::from_safe_string(parted(sentence, svg::escape, |name| {
+            format!("<code>{}</code>", svg::escape(name))
+        })),
+        AutoEscape::Custom(kind) if kind == "md" => {
+            // Within code nothing is markup but the bar that ends a cell.
+            let name = |name: &str| format!("`{}`", name.replace('|', "\\|").replace(['\n', '\r'], " "));
+            Value::from_safe_string(parted(sentence, markdown, name))
+        }
+        _ => Value::from(sentence),
+    }
+}
+
+/// Escapes what stands between pairs of backticks and around them.
+fn parted(sentence: &str, escape: impl Fn(&str) -> String, code: impl Fn(&str) -> String) -> String {
+    let parts: Vec<&str> = sentence.split('`').collect();
+    if parts.len().is_multiple_of(2) || parts.iter().skip(1).step_by(2).any(|name| name.is_empty()) {
+        return escape(sentence);
+    }
+    let each = parts.iter().enumerate();
+    each.map(|(i, part)| if i % 2 == 1 { code(part) } else { escape(part) }).collect()
+}
+
+/// Text of a Markdown file in which nothing is markup.
+pub fn markdown(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\\' | '`' | '*' | '[' | ']' | '|' | '~' => {
+                out.push('\\');
+                out.push(c);
+            }
+            '_' => out.push_str("\\_"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            '\n' | '\r' => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markdown_cells_stay_whole() {
+        assert_eq!(markdown("a|b*c<d>\ne_f"), "a\\|b\\*c&lt;d&gt; e\\_f");
+    }
+
+    #[test]
+    fn names_become_code_and_what_does_not_pair_stays() {
+        let html = |s: &str| parted(s, svg::escape, |name| format!("<code>{}</code>", svg::escape(name)));
+        assert_eq!(html("channel `a<b`, x < 1"), "channel <code>a&lt;b</code>, x &lt; 1");
+        assert_eq!(html("`a` and `"), "`a` and `");
+        assert_eq!(html("an empty field ``"), "an empty field ``");
+        let mut env = minijinja::Environment::new();
+        env.set_auto_escape_callback(|_| AutoEscape::Custom("md".into()));
+        env.add_filter("prose", prose);
+        env.set_formatter(|out, _, value| Ok(out.write_str(&value.to_string())?));
+        let said = env.render_str("{{ s | prose }}", minijinja::context! { s => "column_a: `rate_deg|h`" });
+        assert_eq!(said.unwrap(), "column\\_a: `rate_deg\\|h`");
+    }
+}
