@@ -8,7 +8,8 @@
 //!
 //! Outside a zone the output follows the rate by the scale factor. What a test of scale factor said of it may be used: a
 //! line that may have any slope takes up most of a small zone. A zone is claimed when a line with the noise of this test
-//! would make zones as likely on the average in less than one test of a hundred; draws tell (`chance`).
+//! would make zones as likely on the average in less than one test of a hundred, of four hundred where the slope is known;
+//! draws tell (`chance`).
 //!
 //! Noise inside the loop carries the input in and out of the zone and rounds it off (*rounded*): the subtractive response
 //! is averaged over normal noise σ. Where that fits better than any zone without noise, δ and σ are estimated together;
