@@ -173,7 +173,7 @@ fn long_study_of_dead_zones() {
     let (runs, first) = (asked("SAGNAC_RUNS", 1000), asked("SAGNAC_FIRST", 1_000_000));
     let only = std::env::var("SAGNAC_ZONE").unwrap_or_default();
     for (subtractive, known) in [(true, Some(5e-4)), (true, None), (false, Some(5e-4))] {
-        for half_width in [0.0, 0.008, 0.016, 0.03, 0.06, 0.3] {
+        for half_width in [0.0, 0.008, 0.016, 0.0166, 0.03, 0.06, 0.3] {
             // A gap that no rate but the centre falls into is a line.
             if !subtractive && half_width < 0.125 {
                 continue;
