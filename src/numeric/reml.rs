@@ -5,6 +5,7 @@
 //! with the degrees of freedom of Satterthwaite (Giesbrecht and Burns 1985).
 
 use super::inverse::inverse;
+use super::log_determinant::log_determinant;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Steps of the climb.
@@ -202,8 +203,7 @@ fn evaluate(
     let normal = Cholesky::new(x.transpose() * &weighted)?;
     let coefficients = normal.solve(&(weighted.transpose() * y));
     let projected = factor.solve(&(y - x * &coefficients));
-    let log_det = |c: &Cholesky<f64, Dyn>| 2.0 * c.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>();
-    let twice_log_likelihood = -log_det(&factor) - log_det(&normal) - y.dot(&projected);
+    let twice_log_likelihood = -log_determinant(&factor) - log_determinant(&normal) - y.dot(&projected);
     if !twice_log_likelihood.is_finite() {
         return None;
     }

@@ -20,22 +20,20 @@ const POINTS: (usize, usize) = (400, 160);
 
 /// The spread of a value with one more contribution, of which all values up to `most` to either side are as likely. Twice the
 /// standard uncertainty would be more than there can be of it.
-pub fn evenly(spread: Spread, value: f64, most: f64) -> Spread {
-    let Spread::StudentT { standard_uncertainty: u, dof } = spread else { return spread };
-    let standard = u.hypot(most / 3f64.sqrt());
+pub fn evenly(rest: Spread, value: f64, most: f64) -> Spread {
+    let Spread::StudentT { standard_uncertainty: u, dof } = rest else { return rest };
     if most <= HARDLY_EVEN * u {
-        // Welch and Satterthwaite: the rest alone is known from so few degrees of freedom.
-        let dof = if u > 0.0 { (dof * (standard / u).powi(4)).min(1e9) } else { 1e9 };
-        return Spread::StudentT { standard_uncertainty: standard, dof };
+        return spread(&Combination { value, standard: u, dof }, 1.0, &[most / 3f64.sqrt()]);
     }
     let (fine, count) = POINTS;
     let shift = |i: usize| most * ((2 * i + 1) as f64 / fine as f64 - 1.0);
-    let rest = Spread::StudentT { standard_uncertainty: u.max(most / fine as f64), dof };
+    let u = u.max(most / fine as f64);
+    let rest = Spread::StudentT { standard_uncertainty: u, dof };
     let below = |at: f64| -> f64 {
         let each = (0..fine).map(|i| 1.0 - rest.probability_above(shift(i), at).unwrap_or(0.5));
         each.sum::<f64>() / fine as f64
     };
-    let end = most + 6.0 * u.max(most / fine as f64);
+    let end = most + 6.0 * u;
     let half: Vec<(f64, f64)> = (1..=count)
         .map(|i| end * i as f64 / count as f64)
         .map(|at| (normal_quantile(below(at)), at))

@@ -282,9 +282,13 @@ impl ScaleFactor {
     }
 
     /// The largest residual, or its bound where chance explains it.
+    /// Unit that the rates of the table read well in.
+    pub fn rate_unit(&self) -> RateUnit {
+        RateUnit::up_to(self.response.levels.iter().fold(0.0, |m: f64, l| m.max(l.abs())))
+    }
+
     fn largest_at(&self, rate_deg_h: f64) -> Note {
-        let highest = self.response.levels.iter().fold(0.0, |m: f64, l| m.max(l.abs()));
-        Note::new("on_table.largest_at").with("rate", RateUnit::up_to(highest).figures(rate_deg_h, 4))
+        Note::new("on_table.largest_at").with("rate", self.rate_unit().figures(rate_deg_h, 4))
     }
 
     fn most(&self, id: &'static str, unit: &'static str, found: Option<&Largest>, factor: f64) -> Estimate {

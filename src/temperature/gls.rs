@@ -8,6 +8,7 @@
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_mode_variance;
 use crate::numeric::cosine::dct2;
+use crate::numeric::log_determinant::log_determinant;
 use nalgebra::{DMatrix, DVector};
 
 /// Terms of the noise: N in deg/sqrt(h), B in deg/h, K in deg/h/sqrt(h).
@@ -64,7 +65,7 @@ impl Solved {
     /// Logarithm of the determinant of the information of the coefficients; `None` where they are collinear.
     pub fn log_information(&self) -> Option<f64> {
         let factor = self.covariance.clone().cholesky()?;
-        Some(-factor.l_dirty().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>())
+        Some(-log_determinant(&factor))
     }
 }
 
@@ -134,8 +135,7 @@ impl Modes {
         let factor = matrix.cholesky()?;
         let solution = factor.solve(&right);
         let left = total - right.dot(&solution);
-        let log_determinant: f64 = factor.l_dirty().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>()
-            + scale.iter().map(|s| 2.0 * s.ln()).sum::<f64>();
+        let log_determinant: f64 = log_determinant(&factor) + scale.iter().map(|s| 2.0 * s.ln()).sum::<f64>();
         let mut covariance = factor.inverse();
         for i in 0..p {
             for j in 0..p {

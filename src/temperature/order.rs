@@ -10,6 +10,7 @@ use super::course::{Course, Span, Terms};
 use super::gls::{Modes, Solved};
 use super::posterior;
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::log_determinant::log_determinant;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -117,7 +118,7 @@ fn score(
         let ridge = 1e-12 * q.diagonal().max();
         let factor = (q + DMatrix::identity(m, m) * ridge).cholesky()?;
         let errors = factor.solve(&right);
-        let log_determinant: f64 = factor.l_dirty().diagonal().iter().map(|d| 2.0 * d.ln()).sum();
+        let log_determinant = log_determinant(&factor);
         scores.push(0.5 * log_determinant - 0.5 * errors.dot(&right));
         squares += errors.norm_squared();
         count += m;

@@ -6,6 +6,8 @@
 
 use super::about::Means;
 use super::points::{Points, Ratios};
+use crate::numeric::inverse::inverse;
+use crate::numeric::log_determinant::log_determinant;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -116,9 +118,6 @@ fn noises<'a>(
 ) -> Option<Vec<Noise<'a>>> {
     let steps = &about.steps;
     let m = steps.left.len();
-    let log_det = |c: &Cholesky<f64, nalgebra::Dyn>| -> f64 {
-        2.0 * c.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>()
-    };
     let mut of_line = vec![DVector::from_element(m, 1.0)];
     if slope_known.is_none() {
         of_line.push(steps.rate.clone());
@@ -141,12 +140,12 @@ fn noises<'a>(
             let with_slope = Cholesky::new(noise + &steps.rate * steps.rate.transpose() * (slope * slope))?;
             let weighted = with_slope.solve(&of_line);
             let normal = Cholesky::new(of_line.transpose() * &weighted)?;
-            let left = with_slope.inverse() - &weighted * normal.solve(&weighted.transpose());
+            let left = inverse(&with_slope) - &weighted * normal.solve(&weighted.transpose());
             below += likely.share;
             Some(Noise {
                 below,
                 factor: factor.l(),
-                before: 2.0 * likely.before - log_det(&with_slope) - log_det(&normal),
+                before: 2.0 * likely.before - log_determinant(&with_slope) - log_determinant(&normal),
                 left,
                 levels,
                 line: points.line()?,

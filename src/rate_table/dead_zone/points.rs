@@ -3,6 +3,7 @@
 use super::place::Place;
 use super::shape::{Kind, Shape};
 use nalgebra::{Cholesky, DMatrix, DVector};
+use std::cell::OnceCell;
 
 /// Centres tried.
 pub const CENTRES: usize = 41;
@@ -35,6 +36,8 @@ pub struct Points {
     of_one: DVector<f64>,
     /// Noise of a mean, deg/h.
     noise: f64,
+    /// Where a zone may lie, once it is asked for: the line that tells it is a fit to these points.
+    place: OnceCell<Place>,
 }
 
 impl Points {
@@ -50,16 +53,18 @@ impl Points {
         let whitening = factor.l_dirty().solve_lower_triangular(&DMatrix::identity(x.len(), x.len()))?;
         let of_y = &whitening * &y;
         let of_one = &whitening * DVector::from_element(x.len(), 1.0);
-        Some(Points { x, whitening, slope_known, of_y, of_one, noise })
+        Some(Points { x, whitening, slope_known, of_y, of_one, noise, place: OnceCell::new() })
     }
 
     /// Where a zone may lie.
     fn place(&self) -> Place {
-        let (middle, largest) = self.range();
-        let (_, slope, offset) = self.cost(|x| x);
-        let (_, apart) = self.spacing();
-        let tried = largest / (CENTRES - 1) as f64;
-        Place::new(middle, 0.5 * largest, -offset / slope, self.noise / slope.abs(), apart, tried)
+        *self.place.get_or_init(|| {
+            let (middle, largest) = self.range();
+            let (_, slope, offset) = self.cost(|x| x);
+            let (_, apart) = self.spacing();
+            let tried = largest / (CENTRES - 1) as f64;
+            Place::new(middle, 0.5 * largest, -offset / slope, self.noise / slope.abs(), apart, tried)
+        })
     }
 
     /// Middle of the rates and half their range.

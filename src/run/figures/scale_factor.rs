@@ -5,12 +5,11 @@ use crate::estimate::{Limit, normal_quantile};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::rate_table::TableRun;
 use crate::rate_table::scale_factor::ScaleFactor;
-use crate::units::RateUnit;
 
 /// Draws the residuals in ppm of full scale: levels with their intervals, and single steps by the way they were reached.
 pub fn residuals(run: &TableRun, channel: &ScaleFactor, limit: Option<&Limit>, several: bool) -> Figure {
     let ppm = 1e6 / (channel.factor * channel.full_scale).abs();
-    let unit = unit_of(channel);
+    let unit = channel.rate_unit();
     let k = normal_quantile(0.975);
     let levels = channel.response.levels.iter().zip(&channel.levels);
     let band =
@@ -58,7 +57,7 @@ pub fn residuals(run: &TableRun, channel: &ScaleFactor, limit: Option<&Limit>, s
 /// Draws rate and residual of the steps over time.
 pub fn over_time(run: &TableRun, channel: &ScaleFactor, several: bool) -> Figure {
     let ppm = 1e6 / (channel.factor * channel.full_scale).abs();
-    let unit = unit_of(channel);
+    let unit = channel.rate_unit();
     let mut rate = Vec::new();
     let mut residual = Vec::new();
     for r in &channel.steps {
@@ -93,11 +92,6 @@ pub fn over_time(run: &TableRun, channel: &ScaleFactor, several: bool) -> Figure
         });
     }
     figure("table_steps", "figure.title.table_steps", channel, several, panels)
-}
-
-/// Unit that the rates of the table read well in.
-fn unit_of(channel: &ScaleFactor) -> RateUnit {
-    RateUnit::up_to(channel.response.levels.iter().fold(0.0, |m: f64, l| m.max(l.abs())))
 }
 
 fn figure(id: &str, title: &'static str, channel: &ScaleFactor, several: bool, panels: Vec<Panel>) -> Figure {
