@@ -75,6 +75,15 @@ fn acceptance_lies_inside_limits_on_both_sides_of_zero() {
 }
 
 #[test]
+fn a_curve_through_zero_moves_the_limit_by_a_difference() {
+    // A value that may have either sign is no deviation: by a factor the limit would be 0.17 here.
+    let points = (-40..=40).map(|i| (f64::from(i) / 10.0, 0.1 + 0.03 * f64::from(i))).collect();
+    let e = Estimate { spread: Spread::Curve(points), ..normal(0.1, 0.3) };
+    let j = judge(&e, &limit(1.0, Rule::GuardBand));
+    assert!((j.acceptance_max.unwrap() - (1.0 - 0.3 * 1.644_854)).abs() < 1e-3, "{:?}", j.acceptance_max);
+}
+
+#[test]
 fn worst_wins_in_the_stated_order() {
     use Verdict::{Error, Fail, Indeterminate, None, Pass};
     assert!(None < Pass && Pass < Indeterminate && Indeterminate < Fail && Fail < Error);
