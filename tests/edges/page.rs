@@ -1,0 +1,93 @@
+//! Keeps the results of the full study and writes the table in `docs/VALIDATION.md`.
+
+use crate::case::{Case, Family, Standing};
+use crate::study::Tally;
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+const BEGIN: &str = "<!-- edges: begin; written by the study -->";
+const END: &str = "<!-- edges: end -->";
+
+/// One case with its tallies, as it is kept.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    case: String,
+    edges: Vec<crate::case::Edge>,
+    tallies: Vec<Tally>,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn file(family: &Family) -> PathBuf {
+    root().join("docs/validation").join(format!("edges-{}.json", family.name))
+}
+
+/// Keeps the results of a family.
+pub fn keep(family: &Family, results: &[(&Case, Vec<Tally>)]) {
+    let kept: Vec<Kept> = results
+        .iter()
+        .map(|(case, tallies)| Kept {
+            case: case.name.to_string(),
+            edges: case.edges.to_vec(),
+            tallies: tallies.clone(),
+        })
+        .collect();
+    let path = file(family);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(path, serde_json::to_string_pretty(&kept).unwrap() + "\n").unwrap();
+}
+
+/// Writes the table of every family that has been kept: the misses first, then everything.
+pub fn write(families: &[&Family]) {
+    let mut missed = String::new();
+    let mut whole = String::new();
+    for family in families {
+        let Ok(text) = std::fs::read_to_string(file(family)) else { continue };
+        let kept: Vec<Kept> = serde_json::from_str(&text).unwrap();
+        let _ = write!(whole, "\n#### {}\n\n{HEAD}", family.name);
+        for case in &kept {
+            for tally in &case.tallies {
+                let row = row(case, tally);
+                whole += &row;
+                if !tally.misses().is_empty() {
+                    missed += &row;
+                }
+            }
+        }
+    }
+    let missed = if missed.is_empty() { "Nothing misses.\n".to_string() } else { format!("{HEAD}{missed}") };
+    let section = format!("{BEGIN}\n### Misses\n\n{missed}\n### Every case\n{whole}{END}");
+    let page = root().join("docs/VALIDATION.md");
+    let text = std::fs::read_to_string(&page).unwrap();
+    let (before, rest) = text.split_once(BEGIN).expect("docs/VALIDATION.md has no place for the table");
+    let (_, after) = rest.split_once(END).expect("the place of the table has no end");
+    std::fs::write(page, format!("{before}{section}{after}")).unwrap();
+}
+
+const HEAD: &str = "| measurand | case | records | with a value | bounded | coverage | width over oracle | units | passed | failed | missed |\n\
+                    |---|---|---|---|---|---|---|---|---|---|---|\n";
+
+fn row(case: &Kept, tally: &Tally) -> String {
+    let share = |count: usize| format!("{:.3}", count as f64 / tally.records.max(1) as f64);
+    let coverage =
+        if tally.given() == 0 { "withheld".to_string() } else { format!("{:.3}", tally.coverage()) };
+    let width = tally.width.map_or_else(|| "–".to_string(), |w| format!("{w:.2}"));
+    let (units, passed, failed) = match tally.standing {
+        Standing::Unlimited => ("–", "–".to_string(), "–".to_string()),
+        Standing::Good => ("good", share(tally.passed), share(tally.failed)),
+        Standing::AtLimit => ("at the limit", share(tally.passed), share(tally.failed)),
+        Standing::Bad => ("bad", share(tally.passed), share(tally.failed)),
+    };
+    format!(
+        "| {} | {} | {} | {} | {} | {coverage} | {width} | {units} | {passed} | {failed} | {} |\n",
+        tally.id,
+        case.case,
+        tally.records,
+        share(tally.stated),
+        share(tally.bounded),
+        tally.misses().join(", "),
+    )
+}
