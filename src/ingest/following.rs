@@ -9,7 +9,9 @@ use crate::numeric::range::settled;
 use crate::record::Integrity;
 use crate::recording::faults::FaultLog;
 use crate::recording::integrity::ValueChecks;
-use crate::recording::timebase::{CounterStep, CounterTracker, Measured, Rollover, Step, Tracker, Unwrapper};
+use crate::recording::timebase::{
+    Cadence, CounterStep, CounterTracker, Measured, Rollover, Step, Tracker, Unwrapper,
+};
 use crate::recording::{Sink, Slab};
 use crate::text::Note;
 
@@ -48,6 +50,8 @@ pub(super) struct State<'a> {
     angles: Angles,
     /// The next slab of differences begins a stretch.
     broken: bool,
+    /// Losses of the plan that were told.
+    lost: usize,
 }
 
 impl<'a> State<'a> {
@@ -72,6 +76,7 @@ impl<'a> State<'a> {
             joined: false,
             angles: Angles::new(plan),
             broken: false,
+            lost: 0,
         }
     }
 
@@ -217,6 +222,7 @@ impl<'a> State<'a> {
         for i in 0..rows {
             let Some(&stamp) = stamps.get(i) else { break };
             let joined = self.joined && stamp.is_finite();
+            self.lose(first_row + i as u64);
             self.joined &= !joined;
             let step = if joined { Step::Next } else { self.tracker.step(stamp, stamps.get(i + 1).copied()) };
             if step == Step::Next && (self.connected || start < i) {
@@ -227,6 +233,14 @@ impl<'a> State<'a> {
             start_s = self.tracker.on_scale(stamps.get(start).copied().unwrap_or(stamp));
         }
         self.part(columns, first_row, start_s, start..rows, sinks);
+    }
+
+    /// Tells the tracker of samples that are missing before a row.
+    fn lose(&mut self, row: u64) {
+        while let Some(loss) = self.plan.losses.get(self.lost).filter(|l| l.row <= row) {
+            self.tracker.lose(loss.samples);
+            self.lost += 1;
+        }
     }
 
     /// Rows by a counter; stamps beside it are fitted and compared.
@@ -355,6 +369,12 @@ impl<'a> State<'a> {
 
     /// Passes rows on; of accumulated angles, their differences.
     fn emit(&mut self, values: &[Vec<f64>], first_row: u64, time_s: f64, sinks: &mut [&mut dyn Sink]) {
+        let time_s = match self.plan.clock.cadence {
+            Cadence::Buffered { .. } if self.plan.counter.is_none() => {
+                self.plan.start_s() + self.index as f64 * self.plan.clock.interval_s
+            }
+            _ => time_s,
+        };
         if values.first().is_none_or(Vec::is_empty) {
             return;
         }

@@ -2,7 +2,7 @@
 
 use super::pauses::Pauses;
 use super::{IngestError, IngestErrorKind, Source};
-use crate::recording::timebase::{Clock, ClockError, Unwrapper, moduli};
+use crate::recording::timebase::{Batches, Cadence, Clock, ClockError, Loss, Unwrapper, moduli};
 use crate::recording::{Channel, Role};
 use crate::text::{Arg, Note};
 use crate::units::Unit;
@@ -55,6 +55,8 @@ pub struct Plan<'a> {
     /// Angle after which an accumulated one starts again, arcsec, by channel.
     pub(super) angle_periods: Vec<Option<f64>>,
     pub(super) pauses: Pauses,
+    /// Where samples are missing, by the row of the recording, from 1, where the batches of the recording tell it.
+    pub(super) losses: Vec<Loss>,
     start_s: f64,
 }
 
@@ -109,7 +111,7 @@ pub fn prepare<'a>(
                 Some(interval_s) => Clock::declared(1.0 / interval_s),
                 None => Clock::probe_with(&stamps, spec.declared_sample_rate_hz),
             };
-            (clock.map_err(|e| no_clock(e, "ingest.hint.check_time"))?, start_s)
+            (clock.map_err(|e| no_clock(e, hint(&e)))?, start_s)
         }
         None => {
             let rate = source.rate_without_stamps_hz(spec.declared_sample_rate_hz).ok_or_else(|| {
@@ -118,6 +120,15 @@ pub fn prepare<'a>(
             })?;
             (Clock::declared(rate).map_err(|e| no_clock(e, "ingest.hint.rate_in_hz"))?, 0.0)
         }
+    };
+    let (clock, losses) = match (clock.cadence, stamped) {
+        (Cadence::Buffered { .. }, Some((column, map))) if counter.is_none() => {
+            batches(source, column, map, clock).map_err(|e| match e {
+                Unread::File(e) => e,
+                Unread::Clock(e) => no_clock(e, "ingest.hint.declare_batches"),
+            })?
+        }
+        _ => (clock, Vec::new()),
     };
     let rollover = unwrapper(clock.gap_limit_s);
     let counter_modulus = spec.counter_modulus;
@@ -135,10 +146,58 @@ pub fn prepare<'a>(
         increment_s,
         angle_periods,
         pauses: Pauses::default(),
+        losses,
         start_s,
     };
     plan.rates_from_angles(1.0, increment_s);
     Ok(plan)
+}
+
+/// Why batches tell no clock.
+enum Unread {
+    File(IngestError),
+    Clock(ClockError),
+}
+
+/// The clock of stamps in batches and where samples are missing, from the stamps of all rows. A file that follows another
+/// is one of its own.
+fn batches(
+    source: &Source,
+    column: usize,
+    map: (f64, f64),
+    found: Clock,
+) -> Result<(Clock, Vec<Loss>), Unread> {
+    let (mut parts, mut rows) = (Vec::new(), 0u64);
+    source
+        .read(&[column], &mut |block| {
+            if parts.len() <= block.part {
+                parts.resize_with(block.part + 1, || (rows, Batches::new(found.interval_s)));
+            }
+            let values = block.columns.first().map(Vec::as_slice).unwrap_or_default();
+            rows += values.len() as u64;
+            if let Some((_, batches)) = parts.last_mut() {
+                values.iter().for_each(|v| batches.push(v * map.0 + map.1));
+            }
+            ControlFlow::Continue(())
+        })
+        .map_err(Unread::File)?;
+    let mut clock = None;
+    let mut losses = Vec::new();
+    for (before, batches) in parts {
+        let unclear = Unread::Clock(ClockError::Batches { rate_hz: 1.0 / found.interval_s });
+        let part = batches.clock().ok_or(unclear)?;
+        losses.extend(part.losses.iter().map(|l| Loss { row: before + l.row + 1, samples: l.samples }));
+        clock.get_or_insert_with(|| Clock::buffered(&part));
+    }
+    Ok((clock.unwrap_or(found), losses))
+}
+
+/// What to do about stamps that cannot serve.
+fn hint(error: &ClockError) -> &'static str {
+    match error {
+        ClockError::Batches { .. } | ClockError::Coarse { .. } => "ingest.hint.declare_batches",
+        _ => "ingest.hint.check_time",
+    }
 }
 
 /// Longest step across a roll-over before the clock is known: three middle steps.
@@ -190,6 +249,9 @@ fn clock_note(error: &ClockError) -> Note {
         ClockError::NotGrowing => Note::new("ingest.clock_not_growing"),
         ClockError::Falling { share } => Note::new("ingest.clock_falling").with("percent", percent(*share)),
         ClockError::Coarse { share } => Note::new("ingest.clock_coarse").with("percent", percent(*share)),
+        ClockError::Batches { rate_hz } => {
+            Note::new("ingest.clock_batches").with("hz", (rate_hz * 1e4).round() / 1e4)
+        }
         ClockError::Rate { rate_hz } => Note::new("ingest.clock_rate").with("rate", rate_hz.to_string()),
     }
 }

@@ -192,6 +192,12 @@ impl State<'_> {
             Cadence::Bunched { period_s, rows } => {
                 notes.push(Note::new("time_base.bunched").with("rows", rows).with("period_s", period_s));
             }
+            Cadence::Buffered { rows, spread_s, .. } => notes.push(
+                Note::new("time_base.buffered")
+                    .with("hz", 1.0 / measured)
+                    .with("rows", rows)
+                    .with("spread_s", spread_s),
+            ),
         }
         if rollovers > 0 {
             notes.push(Note::new("time_base.rollovers").with("count", rollovers));

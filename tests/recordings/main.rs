@@ -1,6 +1,7 @@
 //! Recordings as laboratories have them: formats, dialects, stamps, and what `inspect` says of them.
 
 mod binary;
+mod bursts;
 mod binary_files;
 mod containers;
 mod inspect;

@@ -86,7 +86,14 @@ fn followed(t: &[f64]) -> (f64, u64, Clock) {
     let clock = Clock::probe(&t[..t.len().min(65_536)]).unwrap();
     let mut tracker = Tracker::new(clock);
     let mut missing = 0;
+    let mut losses = Vec::new();
+    if let Cadence::Buffered { .. } = clock.cadence {
+        let mut batches = Batches::new(clock.interval_s);
+        t.iter().for_each(|stamp| batches.push(*stamp));
+        losses = batches.clock().unwrap().losses;
+    }
     for (i, &stamp) in t.iter().enumerate() {
+        losses.iter().filter(|l| l.row == i as u64).for_each(|l| tracker.lose(l.samples));
         match tracker.step(stamp, t.get(i + 1).copied()) {
             Step::Gap { missing: n, .. } => missing += n,
             Step::Next => {}

@@ -3,6 +3,7 @@
 //! [`Clock::probe`] finds the clock from the first stamps, [`Tracker`] follows them through the recording, [`Fit`] measures
 //! the interval by regression, [`Unwrapper`] undoes the roll-over of stamps and counters of limited width.
 
+mod buffered;
 mod bunched;
 mod counter;
 mod fit;
@@ -10,6 +11,7 @@ mod probe;
 mod rollover;
 mod tracker;
 
+pub use buffered::{AnchorRow, Batches, Loss, Uniform};
 pub use counter::{CounterStep, CounterTracker};
 pub use fit::{Fit, Measured};
 pub use rollover::{Rollover, Unwrapper, moduli};
@@ -43,6 +45,12 @@ pub enum ClockError {
         /// Share of equal consecutive stamps.
         share: f64,
     },
+    /// The stamps are those of rows in batches or of a clock that loses most samples, and nothing decides.
+    #[error("the time stamps come in batches, {rate_hz} rows a second on average, and tell no sample clock")]
+    Batches {
+        /// Rows over span, Hz.
+        rate_hz: f64,
+    },
     /// The declared rate is no positive number.
     #[error("the declared sample rate {rate_hz} Hz is not a positive number")]
     Rate {
@@ -66,6 +74,16 @@ pub enum Cadence {
         period_s: f64,
         /// Mean number of rows in a bunch.
         rows: f64,
+    },
+    /// Rows are stamped when their batch is delivered: they are those of a uniform clock, and what is lost is found from
+    /// the batches of the whole recording.
+    Buffered {
+        /// The row of a batch that follows the clock.
+        anchor: AnchorRow,
+        /// Mean number of rows in a batch.
+        rows: f64,
+        /// Largest less least departure of the stamps from the clock, s.
+        spread_s: f64,
     },
 }
 
@@ -100,6 +118,14 @@ impl Clock {
         Ok(Clock::even(interval_s, 0.0, 1.5 * interval_s))
     }
 
+    /// The uniform clock behind stamps in batches, as found in a whole recording.
+    pub fn buffered(found: &Uniform) -> Clock {
+        let mut clock = Clock::even(tidy(found.interval_s), 0.0, 1.5 * found.interval_s);
+        clock.cadence =
+            Cadence::Buffered { anchor: found.anchor, rows: found.rows, spread_s: found.spread_s };
+        clock
+    }
+
     /// Finds the clock from the first stamps, with nothing declared.
     ///
     /// # Errors
@@ -121,6 +147,11 @@ impl Clock {
         } else {
             Err(ClockError::NotGrowing)
         }
+    }
+
+    /// Step between stamps from which a batch ends, s.
+    fn pause_s(&self) -> f64 {
+        buffered::PAUSE * self.interval_s
     }
 
     fn even(interval_s: f64, resolution_s: f64, gap_limit_s: f64) -> Clock {

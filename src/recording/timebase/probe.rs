@@ -1,5 +1,6 @@
 //! The clock from the first stamps of a recording.
 
+use super::buffered::{self, Batches};
 use super::bunched;
 use super::{Cadence, Clock, ClockError, FALLING_SHARE, Step, Tracker, tidy};
 use crate::numeric::decimal::multiples;
@@ -25,6 +26,12 @@ const LAGS: [usize; 5] = [1, 2, 3, 5, 8];
 /// Least share of stamps in step with the base interval.
 const LEAST_SCORE: f64 = 0.12;
 
+/// Share of samples that a clock of lost samples may miss before rows in batches are the likelier reading.
+const DOUBTFUL: f64 = 0.1;
+
+/// Departure from whole multiples of an interval, in intervals, that shows that interval.
+const FINELY: f64 = 0.08;
+
 /// Finds the clock.
 ///
 /// Where the stamps are even but for a few, it is the median interval over 16 rows, which rounding and a few gaps do not
@@ -45,6 +52,23 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
     if falling > FALLING_SHARE {
         return Err(ClockError::Falling { share: falling });
     }
+    let course = buffered::course(&t);
+    let (median, long) = middle(&t);
+    let resolution_s = resolution(&t, median);
+    let rounded = resolution_s > 0.3 * median && straight(&t, resolution_s) >= 0.5;
+    let batches = course.filter(|c| !rounded && buffered::in_batches(c));
+    let steps_of_its_own = batches.and_then(|_| in_step(&t, median, resolution_s));
+    if let Some(course) = batches.filter(|_| steps_of_its_own.is_none()) {
+        let mut batches = Batches::new(course.mean_s);
+        t.iter().for_each(|stamp| batches.push(*stamp));
+        let enough = batches.enough();
+        if let Some(found) = batches.clock() {
+            return Ok(Clock::buffered(&found));
+        }
+        if enough && short_steps(&t, course.mean_s) {
+            return Err(ClockError::Batches { rate_hz: 1.0 / course.mean_s });
+        }
+    }
     if let Some(clock) = bunched::probe(&t) {
         return Ok(clock);
     }
@@ -52,11 +76,8 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
     if share > COARSE_SHARE && equal > 2 {
         return Err(ClockError::Coarse { share });
     }
-    let (median, long) = middle(&t);
-    let resolution_s = resolution(&t, median);
     let coarse = resolution_s > 0.3 * median;
     let odd = steps(&t).filter(|d| (d / median - 1.0).abs() > 0.3).count() as f64 / (t.len() - 1) as f64;
-    let rounded = coarse && straight(&t, resolution_s) >= 0.5;
     let declared_s = declared_hz.map(f64::recip);
     if let Some(n) = every_nth_is_double(&t, resolution_s).filter(|_| rounded) {
         let slower = resolution_s * (1.0 + 1.0 / n as f64);
@@ -68,7 +89,14 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
         }
     }
     if !rounded && (coarse || odd > ODD_SHARE) {
-        return Ok(scored(&t, median, resolution_s).unwrap_or_else(|| plain(&t, median, &long, resolution_s)));
+        let clock =
+            scored(&t, median, resolution_s).unwrap_or_else(|| plain(&t, median, &long, resolution_s));
+        // Many samples lost, and yet as many rows in every stretch: rows in batches fit as well, and nothing decides.
+        let lossy = |c: &buffered::Course| clock.interval_s < (1.0 - DOUBTFUL) * c.mean_s;
+        return match course.filter(|c| c.bounded && lossy(c) && steps_of_its_own.is_none()) {
+            Some(course) => Err(ClockError::Batches { rate_hz: 1.0 / course.mean_s }),
+            None => Ok(clock),
+        };
     }
     let mut clock = plain(&t, median, &long, resolution_s);
     let ratio = clock.interval_s / resolution_s;
@@ -83,6 +111,25 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
         };
     }
     Ok(clock)
+}
+
+/// True where most steps are far shorter than the mean and most of the time passes between few rows, as in batches.
+fn short_steps(t: &[f64], mean_s: f64) -> bool {
+    let long = steps(t).filter(|d| *d > 1.5 * mean_s);
+    let (count, time_s) = long.fold((0.0, 0.0), |(n, sum), d| (n + 1.0, sum + d));
+    let short = steps(t).filter(|d| *d < 0.4 * mean_s).count() as f64;
+    let rows = t.len() as f64;
+    short > 0.4 * rows && count > 0.01 * rows && time_s > 0.5 * rows * mean_s
+}
+
+/// The interval of which nearly every step is a whole multiple, finely: a clock that loses samples, whatever the pattern.
+/// Stamps rounded to steps near that interval show nothing.
+fn in_step(t: &[f64], median: f64, resolution_s: f64) -> Option<f64> {
+    let tau = scored(t, median, resolution_s)?.interval_s;
+    let off = |d: f64| (d / tau - (d / tau).round()).abs();
+    let all = t.len().saturating_sub(1).min(SCORED) as f64;
+    let near = steps(t).take(SCORED).filter(|d| *d > 0.5 * tau && off(*d) <= FINELY).count() as f64;
+    (near >= 0.9 * all && resolution_s <= 0.2 * tau).then_some(tau)
 }
 
 pub(super) fn steps(t: &[f64]) -> impl Iterator<Item = f64> {

@@ -1,7 +1,7 @@
 //! Follows the stamps of a recording row by row.
 
 use super::fit::{Fit, Measured};
-use super::{Cadence, Clock, LARGEST_GAP};
+use super::{AnchorRow, Cadence, Clock, LARGEST_GAP};
 
 /// Rows that were set aside in a row, because their stamps are earlier than one seen before, after which the clock is
 /// taken to have been set back.
@@ -80,6 +80,8 @@ pub struct Tracker {
     course: Course,
     compared: bool,
     largest_s: f64,
+    /// Samples known to be missing before the next row.
+    lost: u64,
 }
 
 impl Tracker {
@@ -99,6 +101,7 @@ impl Tracker {
             course: Course { phase: 0.0, interval: clock.interval_s, n: 1.0, rows: 0.0 },
             compared: false,
             largest_s: 0.0,
+            lost: 0,
         }
     }
 
@@ -131,28 +134,37 @@ impl Tracker {
         true
     }
 
+    /// Says that samples are missing before the next row, as the batches of the recording tell.
+    pub fn lose(&mut self, samples: u64) {
+        self.lost += samples;
+    }
+
     /// Takes one stamp; `next` is the one after it, where known.
     pub fn step(&mut self, stamp: f64, next: Option<f64>) -> Step {
         self.compared = false;
+        let buffered = matches!(self.clock.cadence, Cadence::Buffered { .. });
         if !stamp.is_finite() {
+            // Rows of a batch are counted, whatever their stamps say.
+            self.lost += u64::from(buffered);
             return Step::Unusable;
         }
         let Some(latest) = self.latest else {
             self.first = Some(stamp);
             self.latest = Some(stamp);
             self.course.phase = stamp - self.clock.first_residual_s;
-            if !matches!(self.clock.cadence, Cadence::Bunched { .. }) {
+            if !matches!(self.clock.cadence, Cadence::Bunched { .. } | Cadence::Buffered { .. }) {
                 self.fit.add(stamp, self.x);
             }
             return Step::Next;
         };
         let d = stamp - latest;
-        let bunched = matches!(self.clock.cadence, Cadence::Bunched { .. });
+        let bunched = buffered || matches!(self.clock.cadence, Cadence::Bunched { .. });
         if d == 0.0 && self.set_aside_run == 0 && !bunched {
             return Step::Duplicate;
         }
         if d < 0.0 || d == 0.0 && !(bunched && self.set_aside_run == 0) {
             self.set_aside_run += 1;
+            self.lost += u64::from(buffered);
             if self.set_aside_run <= SET_BACK_AFTER {
                 return Step::Backward { back_s: -d };
             }
@@ -162,6 +174,7 @@ impl Tracker {
             Cadence::Even => self.even(stamp, latest, next),
             Cadence::Uneven => self.uneven(stamp, latest, next),
             Cadence::Bunched { period_s, .. } => self.bunched(stamp, latest, next, period_s),
+            Cadence::Buffered { anchor, .. } => self.buffered(stamp, latest, anchor),
         }
     }
 
@@ -257,6 +270,32 @@ impl Tracker {
         self.one(stamp, latest, next, samples)
     }
 
+    fn buffered(&mut self, stamp: f64, latest: f64, anchor: AnchorRow) -> Step {
+        let missing = std::mem::take(&mut self.lost);
+        let paused = stamp - latest > self.clock.pause_s();
+        if paused {
+            match anchor {
+                AnchorRow::First => {}
+                AnchorRow::Last => self.fit.add(latest, self.x),
+                AnchorRow::Delivery => self.fit.add(self.course.phase, self.x),
+            }
+            self.course.phase = stamp;
+        }
+        self.set_aside_run = 0;
+        self.latest = Some(stamp);
+        self.x += 1.0 + missing as f64;
+        if missing as f64 > COUNTED_GAP {
+            self.fit.break_off();
+        }
+        if paused && anchor == AnchorRow::First {
+            self.fit.add(stamp, self.x);
+        }
+        if missing == 0 {
+            return Step::Next;
+        }
+        Step::Gap { missing, step_s: (missing as f64 + 1.0) * self.clock.interval_s, clock_set: false }
+    }
+
     /// A stamp that is compared with the mean course: `samples` after the last one compared.
     fn one(&mut self, stamp: f64, latest: f64, next: Option<f64>, samples: f64) -> Step {
         let rows = self.course.rows;
@@ -327,6 +366,9 @@ impl Tracker {
 
     /// Latest stamp used, on the scale of [`Tracker::on_scale`].
     pub fn latest_s(&self) -> Option<f64> {
+        if let (Cadence::Buffered { .. }, Some(first)) = (self.clock.cadence, self.first) {
+            return Some(self.on_scale(first + self.x * self.clock.interval_s));
+        }
         // The last row of a bunch is later than its stamp.
         let bunched = matches!(self.clock.cadence, Cadence::Bunched { .. }) && self.course.n > 1.0;
         let latest =
