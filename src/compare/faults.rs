@@ -15,6 +15,8 @@ const COUNTED: &[(&str, &str)] = &[
     ("saturated", "condition.saturated"),
     ("stuck", "condition.stuck"),
     ("repeated", "condition.repeated"),
+    ("implausible", "condition.implausible"),
+    ("cut_off", "condition.cut_off"),
 ];
 
 /// Views of the residual in which a model can fail, with their names.

@@ -24,6 +24,22 @@ impl Condition for Faults {
             ("repeated", found.repeated, budget.repeated),
         ];
         let mut records = Vec::new();
+        // What no sensor shows and what is missing at the end cannot be allowed.
+        for (id, count, what) in
+            [("implausible", found.implausible, "implausible"), ("cut_off", found.cut_off, "cut_off")]
+        {
+            let first = found.faults.iter().find(|f| f.kind == what).and_then(|f| f.message.clone());
+            if count > 0 {
+                let note = Note::new("plausible.condition").with("count", count);
+                let note = match first {
+                    Some(first) => note.with("first", first),
+                    None => note.with("first", ""),
+                };
+                let required = Note::new("note.required.at_most_count").with("count", 0u64);
+                let observed = [("count", count as f64)];
+                records.push(record(id, ConditionStatus::Invalid, &observed, Some(required), note));
+            }
+        }
         for (id, count, allowance) in counted {
             let share = count as f64 / facts.rows.max(1) as f64;
             let Some(allowance) = allowance else {

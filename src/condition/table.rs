@@ -314,6 +314,23 @@ pub fn judge_stretches(stated: usize, missing: usize) -> ConditionRecord {
     record("known_stretches", status, &[("stretches", (stated - missing) as f64)], None, note)
 }
 
+/// Largest scale factor, output per input in the declared units, of a unit that works: the worst MEMS gyro is off by
+/// some per cent, and a wrong unit by a factor of 57 or 3600.
+const LARGEST_SCALE: f64 = 5.0;
+
+/// Judges whether a scale factor is possible; nothing where it is. One that is too small is a fault of the unit.
+pub fn judge_scale(channel: &str, factor: f64) -> Option<ConditionRecord> {
+    if factor.abs() <= LARGEST_SCALE {
+        return None;
+    }
+    let high = || Arg::Stated(LARGEST_SCALE);
+    let note = Note::new("plausible.scale").with("channel", Arg::Text(channel.to_owned()));
+    let note = note.with("value", Arg::figures(factor, 5)).with("high", high());
+    let required = Note::new("plausible.scale_required").with("high", high());
+    let observed = [("factor", factor)];
+    Some(record("table_scale", ConditionStatus::Invalid, &observed, Some(required), note))
+}
+
 /// Judges whether positions show the Earth's rotation as it is.
 pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
     let id = if fact.several { format!("known_earth.{}", fact.channel) } else { "known_earth".to_owned() };

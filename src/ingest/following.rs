@@ -9,6 +9,7 @@ use crate::numeric::range::settled;
 use crate::record::Integrity;
 use crate::recording::faults::FaultLog;
 use crate::recording::integrity::ValueChecks;
+use crate::recording::integrity::plausible::Plausible;
 use crate::recording::timebase::{
     Cadence, CounterStep, CounterTracker, Measured, Rollover, Step, Tracker, Unwrapper,
 };
@@ -32,6 +33,7 @@ pub(super) struct State<'a> {
     rollover: Unwrapper,
     counts: Unwrapper,
     pub checks: ValueChecks,
+    pub plausible: Plausible,
     pub log: FaultLog,
     pub integrity: Integrity,
     pub pauses: Paused,
@@ -63,6 +65,7 @@ impl<'a> State<'a> {
             rollover: plan.rollover.clone(),
             counts: Unwrapper::of_counter(plan.counter_modulus),
             checks: ValueChecks::new(plan.channels, plan.clock.interval_s),
+            plausible: Plausible::new(plan.channels, plan.clock.interval_s),
             log: FaultLog::default(),
             integrity: Integrity::default(),
             pauses: Paused::new(plan.pauses),
@@ -419,6 +422,7 @@ impl<'a> State<'a> {
         let slab = Slab { first_index: self.index, first_row, time_s, continues: self.connected, values };
         self.pauses.passed(time_s - self.plan.start_s());
         self.checks.push(&slab);
+        self.plausible.push(&slab, &mut self.log);
         for sink in sinks {
             sink.push(&slab);
         }

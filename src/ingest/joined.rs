@@ -92,6 +92,7 @@ pub(super) fn open(
     let described = Opened {
         columns,
         rows_estimate: rows,
+        cut_off: parts.iter().flat_map(|p| p.source.cut_off()).cloned().collect(),
         notes,
         metadata,
         stated_sample_rate_hz: stated,

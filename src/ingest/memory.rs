@@ -32,6 +32,7 @@ pub(super) fn open(
     Ok(Opened {
         columns: names.into_iter().map(describe).collect(),
         rows_estimate: Some(rows as u64),
+        cut_off: Vec::new(),
         notes: Vec::new(),
         metadata: Vec::new(),
         stated_sample_rate_hz: None,
@@ -45,6 +46,7 @@ pub(super) fn nothing() -> Opened {
     Opened {
         columns: Vec::new(),
         rows_estimate: Some(0),
+        cut_off: Vec::new(),
         notes: Vec::new(),
         metadata: Vec::new(),
         stated_sample_rate_hz: None,

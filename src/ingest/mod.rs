@@ -189,6 +189,8 @@ pub struct Opened {
     pub columns: Vec<Column>,
     /// Rows, when the format knows or can estimate them cheaply.
     pub rows_estimate: Option<u64>,
+    /// What shows that the end of the file is missing.
+    pub cut_off: Vec<Note>,
     /// What was decided about the file and why.
     pub notes: Vec<Note>,
     /// What the file says of itself, key and value as written: a bounded number of bounded length.

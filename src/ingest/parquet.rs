@@ -52,6 +52,7 @@ impl Format for Parquet {
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
+            cut_off: Vec::new(),
             notes: vec![Note::new("ingest.note.row_groups").with("count", reader.num_row_groups())],
             metadata: Vec::new(),
             stated_sample_rate_hz: None,

@@ -181,6 +181,11 @@ impl Source {
         &self.opened.notes
     }
 
+    /// What shows that the end of a file is missing, one sentence a file.
+    pub fn cut_off(&self) -> &[Note] {
+        &self.opened.cut_off
+    }
+
     /// What the file says of itself, key and value as written.
     pub fn metadata(&self) -> &[(String, String)] {
         &self.opened.metadata

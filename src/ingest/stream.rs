@@ -135,6 +135,13 @@ impl State<'_> {
         integrity.outlier_threshold = faults.outlier_threshold;
         integrity.timestamp_jitter_s = self.jitter_s();
         integrity.quantization_step_deg_h = values.iter().find_map(|v| v.quantization_step);
+        integrity.implausible = self.plausible.count();
+        let cut_off = plan.source.cut_off();
+        integrity.cut_off = cut_off.len() as u64;
+        for note in cut_off {
+            // The end is missing: the place is the last row there is.
+            self.log.push("cut_off", None, None, facts.rows, 1, || note.clone());
+        }
         integrity.faults = std::mem::take(&mut self.log).into_list();
         let files = self.files(&facts, parts, measured);
         for fault in &mut integrity.faults {

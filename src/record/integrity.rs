@@ -31,6 +31,10 @@ pub struct Integrity {
     pub stuck: u64,
     /// Samples in stretches that occurred before, bit for bit.
     pub repeated: u64,
+    /// Samples whose value, or step, no sensor of the kind can show.
+    pub implausible: u64,
+    /// Files of which the end is known to be missing.
+    pub cut_off: u64,
     /// Rms deviation of the stamps from a uniform clock, s.
     pub timestamp_jitter_s: Option<f64>,
     /// Size of a step of the rate output, deg/h, when the values lie on a lattice.
@@ -45,7 +49,7 @@ pub struct Integrity {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FaultRecord {
     /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`,
-    /// `unparsable`, `outlier`, `saturated`, `stuck`, `repeated`, `interpolated`.
+    /// `unparsable`, `outlier`, `saturated`, `stuck`, `repeated`, `interpolated`, `implausible`, `cut_off`.
     pub kind: String,
     /// Channel, when the fault is of one channel.
     pub channel: Option<String>,

@@ -22,7 +22,7 @@ use crate::noise::spectral_record::SpectralRecord;
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
 use crate::procedure::model::{EarthRate, Taus};
-use crate::record::Window;
+use crate::record::{ConditionStatus, Window};
 use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
 use crate::temperature::findings::Schedule;
@@ -67,7 +67,7 @@ pub(super) fn execute(
     // Without a procedure the unit comes from the name of the column, or from a user who knows better.
     let columns = if request.kind == "run" { gyro_facts::columns(request.source, &found) } else { vec![] };
     let stated_serials = request.source.stated_serials();
-    let conditions = judge_all(&Facts {
+    let mut conditions = judge_all(&Facts {
         procedure,
         integrity: &found.report.integrity,
         rows: found.report.rows,
@@ -87,6 +87,12 @@ pub(super) fn execute(
         schedule: found.schedule.as_ref(),
         today: request.now.date_naive(),
     });
+    if request.kind == "analyze" {
+        // An analysis asks nothing of a recording and judges no unit.
+        for c in conditions.iter_mut().filter(|c| c.status == ConditionStatus::Invalid) {
+            c.status = ConditionStatus::Remark;
+        }
+    }
     let rows = measure(request, &found);
     let drawn = drawn::draw(request, &found);
     let compensation = thermal::tables(request, &found);

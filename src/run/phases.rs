@@ -163,6 +163,9 @@ fn together(records: &[&RunRecord]) -> Integrity {
         outliers: sum(|i| i.outliers),
         saturated: sum(|i| i.saturated),
         stuck: sum(|i| i.stuck),
+        repeated: sum(|i| i.repeated),
+        implausible: sum(|i| i.implausible),
+        cut_off: sum(|i| i.cut_off),
         faults: records.iter().flat_map(|r| r.integrity.faults.clone()).collect(),
         ..Integrity::default()
     }

@@ -5,7 +5,7 @@ use super::pass::{Inside, Overview};
 use super::reading::{self, tidy};
 use super::table_others::Others;
 use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
-use crate::condition::table::{ChannelFact, TableFacts, judge};
+use crate::condition::table::{ChannelFact, TableFacts, judge, judge_scale};
 use crate::condition::table_motion::Settling;
 use crate::condition::{Facts, judge_all};
 use crate::estimate::{Estimate, Spread};
@@ -46,6 +46,8 @@ pub(super) fn execute(
         // The input axis is square to the axis that is turned about: its output follows by the tilt only.
         conditions.retain(|c| c.id != "table_reached");
     }
+    let scales = evaluated.iter().filter_map(|(_, c)| c.as_ref());
+    conditions.extend(scales.filter_map(|c| judge_scale(&c.channel, c.factor)));
     conditions.extend(usual_conditions(request, &found));
     let others: Vec<Others> = evaluated
         .iter()

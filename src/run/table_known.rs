@@ -2,7 +2,7 @@
 
 use super::evaluate::Found;
 use super::{Outcome, Request, RunError, settle, table, verdict};
-use crate::condition::table::{EarthFact, judge_earth};
+use crate::condition::table::{EarthFact, judge_earth, judge_scale};
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::rate_table::Setup;
 use crate::rate_table::blocks::Blocks;
@@ -72,6 +72,8 @@ pub(super) fn finish(
         seen.len()
     };
     conditions.insert(0, crate::condition::table::judge_stretches(setup.known.len(), missing));
+    let own = turns.iter().flat_map(|t| &t.table).filter(|t| t.output == t.axis);
+    conditions.extend(own.filter_map(|t| judge_scale(&t.output, t.factor.value)));
     conditions.extend(table::usual_conditions(request, &found));
     let mut rows = Vec::new();
     for spec in &procedure.measurands {

@@ -69,3 +69,19 @@ fn a_damaged_file_is_refused_wherever_it_is_damaged() {
         assert!(said.code == 0 || said.err.contains("b.parquet"), "byte {at}: {said:?}");
     }
 }
+
+#[test]
+fn a_page_whose_bytes_do_not_give_its_checksum_is_refused() {
+    let whole = std::fs::read(shipped("tests/fixtures/containers/checksums.parquet")).unwrap();
+    let dir = tempdir().unwrap();
+    std::fs::write(dir.path().join("whole.parquet"), &whole).unwrap();
+    assert_eq!(sagnac(dir.path(), &["analyze", "whole.parquet", "--out", "a"]).code, 0);
+    // The numbers lie in the first 6400 bytes: 400 of each column, behind a short header.
+    for at in [500, 3100, 3900, 6000] {
+        let mut changed = whole.clone();
+        changed[at] ^= 0x01;
+        std::fs::write(dir.path().join("changed.parquet"), &changed).unwrap();
+        let said = sagnac(dir.path(), &["analyze", "changed.parquet", "--out", "b"]);
+        assert!(said.code == 2 && said.err.contains("CRC"), "byte {at}: {said:?}");
+    }
+}

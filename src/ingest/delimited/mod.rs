@@ -14,6 +14,7 @@ mod rows;
 mod separator;
 mod stamps;
 mod stated;
+mod unfinished;
 
 use super::compressed::Packing;
 use super::error::IngestError;
@@ -34,6 +35,7 @@ impl Format for DelimitedText {
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
         let dialect = dialect::sniff(file)?;
+        let cut_off = unfinished::look(file)?;
         let rows_estimate = (file.packing == Packing::Plain && dialect.mean_line > 0.0).then(|| {
             ((file.bytes as f64 - dialect.data_offset as f64).max(0.0) / dialect.mean_line).round() as u64
         });
@@ -48,6 +50,7 @@ impl Format for DelimitedText {
         Ok(Opened {
             columns: dialect.columns,
             rows_estimate,
+            cut_off,
             notes: dialect.notes,
             metadata: dialect.metadata,
             stated_sample_rate_hz: None,

@@ -92,6 +92,7 @@ impl Format for Hdf5 {
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
+            cut_off: Vec::new(),
             notes,
             metadata: metadata.entries(),
             stated_sample_rate_hz: rate,

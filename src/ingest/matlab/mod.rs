@@ -182,6 +182,7 @@ impl Format for Mat {
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
+            cut_off: Vec::new(),
             notes,
             metadata: found.metadata,
             stated_sample_rate_hz: found.rate_hz,

@@ -63,6 +63,7 @@ impl Format for Npy {
         Ok(Opened {
             columns: list,
             rows_estimate: Some(rows),
+            cut_off: Vec::new(),
             notes,
             metadata: Vec::new(),
             stated_sample_rate_hz: None,

@@ -91,6 +91,7 @@ impl Format for Npz {
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
+            cut_off: Vec::new(),
             notes,
             metadata: found.metadata,
             stated_sample_rate_hz: found.rate_hz,

@@ -75,9 +75,17 @@ impl Format for Raw {
             columns: layout.columns.iter().map(|c| Some(c.field)).collect(),
             framer: framed.then(|| make(layout.clone())),
         };
+        let whole = file.bytes.saturating_sub(layout.header_bytes) % (layout.record_bytes as u64).max(1) == 0;
+        let cut_off = match file.packing {
+            Packing::Plain if !framed && !whole => {
+                vec![Note::new("ingest.raw.cut_off").with("bytes", file.bytes)]
+            }
+            _ => Vec::new(),
+        };
         Ok(Opened {
             columns,
             rows_estimate: (file.packing == Packing::Plain).then_some(rows),
+            cut_off,
             notes,
             metadata: Vec::new(),
             stated_sample_rate_hz: layout.sample_rate_hz,

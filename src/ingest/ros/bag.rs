@@ -103,6 +103,7 @@ impl Container for BagFile {
     ) -> Result<Option<u64>, IngestError> {
         let mut stream = Stream::open(path, MAGIC.len() as u64, bytes)?;
         let (mut header, mut data, mut unpacked) = (Vec::new(), Vec::new(), Vec::new());
+        let mut indexed = false;
         while stream.left() > 0 {
             let at = stream.at;
             let fault = || broken(path, "ingest.ros.record", at);
@@ -110,6 +111,7 @@ impl Container for BagFile {
                 return Ok(Some(at));
             }
             let code = code(&header).ok_or_else(fault)?;
+            indexed |= code == CHUNK_INFO;
             if skip.contains(&at) || !matches!(code, CHUNK | CONNECTION | MESSAGE) {
                 if !pass_over(&mut stream, &mut data)? {
                     return Ok(Some(at));
@@ -141,7 +143,8 @@ impl Container for BagFile {
                 }
             }
         }
-        Ok(None)
+        // A recorder that ends as it should writes where each chunk stands.
+        Ok((!indexed).then_some(bytes))
     }
 }
 

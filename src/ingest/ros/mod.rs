@@ -125,6 +125,10 @@ fn open(file: &Candidate, container: &'static dyn Container) -> Result<Opened, I
     let path = &file.path;
     let catalog = source::catalog(container, path, file.bytes)?;
     if catalog.topics.iter().all(|t| t.messages == 0) {
+        if let Some(at) = catalog.broken_at {
+            let note = Note::new("ingest.ros.broken_before").with("at", at);
+            return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.cut_off"));
+        }
         return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.ros.nothing")
             .hint("ingest.hint.check_written"));
     }
@@ -137,7 +141,9 @@ fn open(file: &Candidate, container: &'static dyn Container) -> Result<Opened, I
     if !catalog.indexed {
         notes.push(Note::new("ingest.ros.no_index"));
     }
-    notes.extend(catalog.broken_at.map(|at| Note::new("ingest.ros.broken").with("at", at)));
+    let cut_off: Vec<Note> =
+        catalog.broken_at.map(|at| Note::new("ingest.ros.broken").with("at", at)).into_iter().collect();
+    notes.extend(cut_off.iter().cloned());
     let skip: BTreeSet<u64> = catalog
         .chunks
         .iter()
@@ -199,6 +205,7 @@ fn open(file: &Candidate, container: &'static dyn Container) -> Result<Opened, I
     Ok(Opened {
         columns,
         rows_estimate: Some(topic.messages),
+        cut_off,
         notes,
         metadata: metadata.entries(),
         stated_sample_rate_hz: None,

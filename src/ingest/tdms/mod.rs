@@ -10,7 +10,7 @@ mod segments;
 mod table;
 
 use super::compressed::io_error;
-use super::error::IngestError;
+use super::error::{IngestError, IngestErrorKind};
 use super::parts::{self, Metadata, Part};
 use super::{Candidate, Column, Format, Opened};
 use crate::recording::Role;
@@ -53,17 +53,24 @@ impl Format for Tdms {
         }
         let (chosen, mut notes) = parts::choose(path, &parts, file.options.part.as_deref())?;
         let part = parts.get(chosen).cloned().unwrap_or_default();
-        let rows = part.common_rows().unwrap_or(0);
+        // A file that breaks off within a block has fewer values of the later channels: the rows that all have are read.
+        let rows = match contents.broken_at {
+            Some(at) => whole_rows(path, &contents, &part, at)?,
+            None => part.common_rows().unwrap_or(0),
+        };
+        let cut = contents.broken_at.is_some();
         let channels: Vec<&Channel> = members
             .get(chosen)
             .map_or(&[][..], Vec::as_slice)
             .iter()
             .filter_map(|&i| contents.channels.get(i))
-            .filter(|c| c.values == rows || !c.kind.is_number())
+            .filter(|c| c.values == rows || cut && c.values > rows || !c.kind.is_number())
             .collect();
         notes.push(Note::new("ingest.tdms.segments").with("count", contents.segments));
-        notes.extend(contents.broken_at.map(|at| Note::new("ingest.tdms.broken").with("at", at)));
-        notes.extend(parts::odd_lengths(&part, rows));
+        let broken = |at| Note::new("ingest.tdms.broken").with("at", at);
+        let cut_off: Vec<Note> = contents.broken_at.map(broken).into_iter().collect();
+        notes.extend(cut_off.iter().cloned());
+        notes.extend(parts::odd_lengths(&part, rows).filter(|_| !cut));
         let group = contents.groups.get(&part.name).cloned().unwrap_or_default();
         let mut columns = Vec::new();
         let mut origins = Vec::new();
@@ -110,11 +117,24 @@ impl Format for Tdms {
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
+            cut_off,
             notes,
             metadata: metadata(&contents.file, &group, &channels),
             stated_sample_rate_hz: rate,
             table: Box::new(TdmsTable { path: path.clone(), bytes: file.bytes, rows, origins }),
         })
+    }
+}
+
+/// Rows that every channel of numbers of a group still has where the file breaks off.
+fn whole_rows(path: &std::path::Path, contents: &Contents, part: &Part, at: u64) -> Result<u64, IngestError> {
+    let of_group = contents.channels.iter().filter(|c| c.group == part.name && c.kind.is_number());
+    match of_group.map(|c| c.values).min() {
+        Some(rows) if rows > 1 => Ok(rows),
+        _ => {
+            let note = Note::new("ingest.tdms.broken_before").with("at", at);
+            Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.cut_off"))
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 mod interpolated;
 mod lattice;
 mod outliers;
+pub mod plausible;
 mod rails;
 mod repeats;
 mod stuck;

@@ -66,7 +66,9 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
             return Ok(Clock::buffered(&found));
         }
         if enough && short_steps(&t, course.mean_s) {
-            return Err(ClockError::Batches { rate_hz: 1.0 / course.mean_s });
+            let share = share(equal);
+            let batches = ClockError::Batches { rate_hz: 1.0 / course.mean_s };
+            return Err(if share > COARSE_SHARE { ClockError::Coarse { share } } else { batches });
         }
     }
     if let Some(clock) = bunched::probe(&t) {

@@ -75,12 +75,18 @@ fn counts(i: &Integrity) -> [(&'static str, u64); 10] {
     ]
 }
 
+/// Counted faults for which there is no budget: id and count.
+fn grave(i: &Integrity) -> [(&'static str, u64); 2] {
+    [("implausible", i.implausible), ("cut_off", i.cut_off)]
+}
+
 /// Faults that are times: id of the condition.
 const TIMED: &[&str] = &["longest_gap", "timestamp_jitter"];
 
 /// True when a condition is about a fault of the recording.
 pub fn is_fault(id: &str) -> bool {
-    TIMED.contains(&id) || counts(&Integrity::default()).iter().any(|c| c.0 == id)
+    let none = Integrity::default();
+    TIMED.contains(&id) || grave(&none).iter().any(|c| c.0 == id) || counts(&none).iter().any(|c| c.0 == id)
 }
 
 impl Faults {
@@ -95,6 +101,10 @@ impl Faults {
             let kind = kind(id, count(n, words.lang), share, condition(id), words);
             if n > 0 || kind.status == "invalid" { found.push(kind) } else { absent.push(kind) }
         }
+        // These are never allowed: they are listed where they were found.
+        for (id, n) in grave(integrity).into_iter().filter(|(_, n)| *n > 0) {
+            found.push(kind(id, count(n, words.lang), String::new(), condition(id), words));
+        }
         for c in TIMED.iter().filter_map(|id| condition(id)) {
             let seconds = c.observed.get("seconds").and_then(serde_json::Value::as_f64).unwrap_or(0.0);
             let kind = kind(&c.id, duration(seconds, words.lang), String::new(), Some(c), words);
@@ -102,7 +112,7 @@ impl Faults {
         }
         let shown = first_of_each_kind(&integrity.faults);
         Faults {
-            faultless: counts(integrity).iter().all(|c| c.1 == 0),
+            faultless: counts(integrity).iter().chain(&grave(integrity)).all(|c| c.1 == 0),
             found_faults: found,
             absent_faults: sentence(&absent, words),
             integrity_facts: facts(integrity, words),

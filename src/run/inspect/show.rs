@@ -292,6 +292,8 @@ fn faults(page: &mut Page, seen: &Seen) {
         (word("fault.saturated"), i.saturated, "inspect.saturated"),
         (word("fault.stuck"), i.stuck, "inspect.stuck"),
         (word("fault.repeated"), i.repeated, "repeated.inspect"),
+        (word("fault.implausible"), i.implausible, "plausible.inspect"),
+        (word("fault.cut_off"), i.cut_off, "plausible.inspect_cut_off"),
     ];
     let gyros = seen.channels.iter().any(|c| c.role.is_gyro());
     if kinds.iter().all(|(_, n, _)| *n == 0) {
@@ -302,7 +304,11 @@ fn faults(page: &mut Page, seen: &Seen) {
     for (label, n, key) in kinds.iter().filter(|(_, n, _)| *n > 0) {
         page.row(label.clone(), Note::new(key).with("n", count(*n)));
     }
-    list(page, seen, &["non_finite", "unparsable", "outlier", "saturated", "stuck", "repeated"]);
+    list(
+        page,
+        seen,
+        &["non_finite", "unparsable", "outlier", "saturated", "stuck", "repeated", "implausible", "cut_off"],
+    );
 }
 
 /// The first faults of some kinds, where they are.

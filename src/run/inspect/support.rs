@@ -196,6 +196,10 @@ fn scale_factor(seen: &Seen) -> Note {
 }
 
 fn known_angle(page: &mut Page, seen: &Seen) {
+    // Numbers that no sensor shows sum up to no angle.
+    if seen.report.integrity.implausible > 0 {
+        return;
+    }
     let moved = |g: &&Gyro| matches!(g.motion, Motion::Moved { .. });
     let swing = |g: &Gyro| g.angle.max_deg - g.angle.min_deg;
     let most = seen.gyros.iter().filter(moved).max_by(|a, b| swing(a).total_cmp(&swing(b)));

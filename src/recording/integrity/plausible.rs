@@ -1,0 +1,165 @@
+//! What no sensor of a role can show: values and steps beyond physical bounds are faults of the recording.
+
+use super::FaultLog;
+use crate::recording::{Channel, Role, Slab};
+use crate::text::{Arg, Note};
+
+/// Bounds of a quantity, in the unit inside.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bound {
+    /// Smallest and largest value that is possible.
+    pub values: (f64, f64),
+    /// Largest change in an hour beyond one turn, of angles: what accumulates is bounded by its rate alone.
+    pub rate: Option<f64>,
+}
+
+/// The bounds of a role, with their reasons; `None` where nothing is known of the quantity.
+pub fn bound(role: Role) -> Option<Bound> {
+    let within = |low: f64, high: f64| Some(Bound { values: (low, high), rate: None });
+    let no_more = |largest: f64| within(-largest, largest);
+    match role {
+        // The fastest spin gyros read 50 000 deg/s; above, a sample is a broken number or has another unit.
+        Role::Rate | Role::AngleIncrement | Role::AccumulatedAngle => no_more(FASTEST_GYRO_DEG_S * 3600.0),
+        // The fastest rate tables turn at 10 000 deg/s.
+        Role::TableRate | Role::OuterRate => no_more(FASTEST_TABLE_DEG_S * 3600.0),
+        // A table turns on and on: only its rate is bounded.
+        Role::TableAngle => Some(Bound {
+            values: (f64::NEG_INFINITY, f64::INFINITY),
+            rate: Some(FASTEST_TABLE_DEG_S * 3600.0 * 3600.0),
+        }),
+        // Absolute zero, and what no electronics survives.
+        Role::Temperature => within(-273.15, 1000.0),
+        // Supplies of gyros are some volts to some tens of volts.
+        Role::Supply => no_more(10_000.0),
+        // 20 T: beyond the largest magnets that hold a unit.
+        Role::MagneticField => no_more(20_000.0),
+        // Rms of an acceleration: no shaker gives 10 000 g. Small negative numbers are the noise of a sensor about zero.
+        Role::Vibration => no_more(10_000.0),
+        Role::Time | Role::Counter | Role::Auxiliary => None,
+    }
+}
+
+/// Fastest gyro, deg/s.
+const FASTEST_GYRO_DEG_S: f64 = 50_000.0;
+
+/// Fastest table, deg/s.
+const FASTEST_TABLE_DEG_S: f64 = 10_000.0;
+
+/// One turn, arcsec: angles start again after it.
+const TURN_ARCSEC: f64 = 1_296_000.0;
+
+/// One channel.
+#[derive(Debug, Clone)]
+struct Watched {
+    id: String,
+    role: Role,
+    bound: Bound,
+    count: u64,
+    latest: Option<f64>,
+}
+
+/// Watches all channels of a recording.
+#[derive(Debug, Clone)]
+pub struct Plausible {
+    channels: Vec<Option<Watched>>,
+    interval_s: f64,
+}
+
+impl Plausible {
+    /// Starts with the channels, at a sample interval, s.
+    pub fn new(channels: &[Channel], interval_s: f64) -> Plausible {
+        let watched = |c: &Channel| {
+            let (id, role, bound) = (c.id.clone(), c.role, bound(c.role)?);
+            Some(Watched { id, role, bound, count: 0, latest: None })
+        };
+        Plausible { channels: channels.iter().map(watched).collect(), interval_s }
+    }
+
+    /// Looks at a slab and lists what is impossible.
+    pub fn push(&mut self, slab: &Slab<'_>, log: &mut FaultLog) {
+        let interval_s = self.interval_s;
+        for (watched, values) in self.channels.iter_mut().zip(slab.values) {
+            let Some(w) = watched else { continue };
+            if !slab.continues {
+                w.latest = None;
+            }
+            let (low, high) = w.bound.values;
+            if w.bound.rate.is_none() && values.iter().all(|v| !(*v < low || *v > high)) {
+                continue;
+            }
+            for (i, &value) in values.iter().enumerate().filter(|(_, v)| v.is_finite()) {
+                let step = w.latest.map_or(0.0, |l| (value - l).abs());
+                // Twice a turn: an angle that starts again while it turns, and readings taken between samples.
+                let most = w.bound.rate.map(|r| 2.0 * TURN_ARCSEC + r * interval_s / 3600.0);
+                w.latest = Some(value);
+                let out = value < low || value > high;
+                if !out && most.is_none_or(|most| step <= most) {
+                    continue;
+                }
+                w.count += 1;
+                let at = slab.time_s + i as f64 * interval_s;
+                log.push("implausible", Some(&w.id), Some(at), slab.first_row + i as u64, 1, || {
+                    if out { beyond(w.role, value, low, high) } else { leap(step, most.unwrap_or(0.0)) }
+                });
+            }
+        }
+    }
+
+    /// Samples that are impossible.
+    pub fn count(&self) -> u64 {
+        self.channels.iter().flatten().map(|w| w.count).sum()
+    }
+}
+
+fn beyond(role: Role, value: f64, low: f64, high: f64) -> Note {
+    Note::new("plausible.value")
+        .with("value", Arg::figures(value, 6))
+        .with("bound", Arg::figures(if value < low { low } else { high }, 6))
+        .with("unit", role.internal_unit().unwrap_or(""))
+}
+
+fn leap(step_arcsec: f64, most_arcsec: f64) -> Note {
+    Note::new("plausible.angle")
+        .with("step_deg", Arg::figures(step_arcsec / 3600.0, 6))
+        .with("most_deg", Arg::figures(most_arcsec / 3600.0, 6))
+        .with("rate_deg_s", FASTEST_TABLE_DEG_S)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recording::ColumnRef;
+    use crate::units::Unit;
+
+    fn watched(role: Role, values: Vec<f64>) -> u64 {
+        let channel = Channel {
+            id: "x".to_owned(),
+            column: ColumnRef::Position(1),
+            role,
+            unit: Unit::parse(role.internal_unit().unwrap()).unwrap(),
+            scale: 1.0,
+        };
+        let mut plausible = Plausible::new(&[channel], 0.01);
+        let values = [values];
+        let slab = Slab { first_index: 0, first_row: 1, time_s: 0.0, continues: false, values: &values };
+        plausible.push(&slab, &mut FaultLog::default());
+        plausible.count()
+    }
+
+    #[test]
+    fn an_angle_may_accumulate_but_not_leap() {
+        let turning = (0..100_000).map(|i| f64::from(i) * 36_000.0).collect();
+        assert_eq!(watched(Role::TableAngle, turning), 0);
+        let again = (0..10_000).map(|i| (f64::from(i) * 36_000.0) % TURN_ARCSEC).collect();
+        assert_eq!(watched(Role::TableAngle, again), 0);
+        assert_eq!(watched(Role::TableAngle, vec![0.0, 1e7, 0.0]), 2);
+    }
+
+    #[test]
+    fn values_that_no_sensor_shows_are_counted() {
+        assert_eq!(watched(Role::Rate, vec![0.0, 1.7e8, 1.9e8, -1e30, f64::NAN]), 2);
+        assert_eq!(watched(Role::TableRate, vec![3.5e7, 3.7e7]), 1);
+        assert_eq!(watched(Role::Temperature, vec![-274.0, -55.0, 125.0]), 1);
+        assert_eq!(watched(Role::Supply, vec![5.0, 28.0, 1e9]), 1);
+    }
+}
