@@ -1,0 +1,66 @@
+//! The shipped samples with their procedures, as `samples/README.md` lists them.
+
+/// A sample and what it is judged by.
+pub struct Pair {
+    /// Name of the sample.
+    pub sample: &'static str,
+    /// Name of the procedure.
+    pub procedure: &'static str,
+    /// Name of the limits, where they do not stand in the procedure.
+    pub limits: Option<&'static str>,
+    /// Serial number.
+    pub serial: &'static str,
+    /// Exit code.
+    pub code: i32,
+    /// The channel of the influence, where the recording has one.
+    pub influence: Option<&'static str>,
+}
+
+const fn pair(
+    sample: &'static str,
+    procedure: &'static str,
+    limits: Option<&'static str>,
+    serial: &'static str,
+    code: i32,
+    influence: Option<&'static str>,
+) -> Pair {
+    Pair { sample, procedure, limits, serial, code, influence }
+}
+
+const UNIT: Option<&str> = Some("sample-unit");
+const OVEN: Option<&str> = Some("sample-temperature");
+const WARM: Option<&str> = Some("sample-warm-up");
+const RATE: Option<&str> = Some("table_rate_deg_s");
+const INNER: Option<&str> = Some("inner_rate_deg_s");
+const TEMP: Option<&str> = Some("temp_degC");
+
+/// Every pair.
+pub const PAIRS: [Pair; 27] = [
+    pair("unit-pass", "static-bias", UNIT, "SN-0001", 0, None),
+    pair("unit-fail", "static-bias", UNIT, "SN-0001", 1, None),
+    pair("unit-indeterminate", "static-bias", UNIT, "SN-0001", 3, None),
+    pair("unit-faults", "static-bias", UNIT, "SN-0001", 3, None),
+    pair("scale-factor-pass", "scale-factor", None, "SN-1", 0, RATE),
+    pair("scale-factor-fail", "scale-factor", None, "SN-1", 1, RATE),
+    pair("threshold-pass", "threshold", None, "SN-1", 0, RATE),
+    pair("threshold-fail", "threshold", None, "SN-1", 1, RATE),
+    pair("misalignment-pass", "misalignment", None, "SN-1", 0, INNER),
+    pair("misalignment-fail", "misalignment", None, "SN-1", 1, INNER),
+    pair("multi-position-pass", "multi-position", None, "SN-1", 0, None),
+    pair("multi-position-software", "multi-position", None, "SN-1", 3, None),
+    pair("temperature-pass", "temperature-ramp", OVEN, "SN-0101", 0, TEMP),
+    pair("temperature-fail", "temperature-ramp", OVEN, "SN-0102", 1, TEMP),
+    pair("temperature-aborted", "temperature-ramp", OVEN, "SN-0103", 3, TEMP),
+    pair("temperature-soak-pass", "temperature-soak", OVEN, "SN-0104", 0, TEMP),
+    pair("temperature-soak-fail", "temperature-soak", OVEN, "SN-0105", 1, TEMP),
+    pair("warm-up-pass", "warm-up", WARM, "SN-0106", 0, None),
+    pair("warm-up-fail", "warm-up", WARM, "SN-0107", 1, None),
+    pair("bias-repeatability-pass", "bias-repeatability", None, "SN-0111", 0, None),
+    pair("bias-repeatability-fail", "bias-repeatability", None, "SN-0112", 1, None),
+    pair("magnetic-sensitivity-pass", "magnetic-sensitivity", None, "SN-0113", 0, None),
+    pair("magnetic-sensitivity-fail", "magnetic-sensitivity", None, "SN-0114", 1, None),
+    pair("supply-sensitivity-pass", "supply-sensitivity", None, "SN-0115", 0, None),
+    pair("supply-sensitivity-fail", "supply-sensitivity", None, "SN-0116", 1, None),
+    pair("vibration-pass", "vibration", None, "SN-0117", 0, None),
+    pair("vibration-fail", "vibration", None, "SN-0118", 1, None),
+];
