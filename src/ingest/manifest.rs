@@ -6,15 +6,16 @@ use super::compressed;
 use super::joined::PartSpec;
 use super::manifest_tables::MANIFEST_FILE;
 use super::options::{ReadOptions, TextOptions};
-use super::reading;
 use super::recording::natural;
+use super::{pattern, reading};
 use crate::keyed::diagnostics::{Problems, Span};
 use crate::keyed::file::{self, Wording};
+use crate::keyed::inside::{self, Inside};
 use crate::keyed::reader::{Reader, checked};
 use crate::keyed::section::Section;
 use crate::text::Note;
 use std::collections::BTreeMap;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// What is said of a manifest that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
@@ -91,8 +92,7 @@ pub fn is_manifest(path: &Path) -> bool {
 /// # Errors
 /// Every problem, each with its place.
 pub fn load(path: &Path) -> Result<Manifest, Problems> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    parse(path, &path.display().to_string(), &file::bytes(path, &WORDING)?, folder)
+    parse(path, &path.display().to_string(), &file::bytes(path, &WORDING)?, inside::folder_of(path))
 }
 
 /// Reads a manifest from its bytes; its files are looked for in `folder`.
@@ -156,7 +156,7 @@ fn by_list(
     for section in listed {
         let Some(text) = section.text("path") else { continue };
         let at = reader.source.inside_quotes(&section.span_of("path"));
-        let Some((path, canonical)) = safe(&text, folder, &at, reader) else { continue };
+        let Some(Inside { path, canonical }) = inside::file(&text, folder, &at, reader) else { continue };
         if let Some(line) = real.get(&canonical) {
             let note = Note::new("manifest.twice").with("path", text.as_str()).with("line", *line);
             complain(reader, &at, note, Some("manifest.help.twice"));
@@ -202,22 +202,17 @@ fn hash_holds(stated: &str, path: &Path, section: &Section, reader: &mut Reader<
 
 fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
     let at = reader.source.inside_quotes(span);
-    if !stays_inside(pattern, &at, reader) {
+    if !inside::stays(pattern, &at, reader) {
         return vec![];
     }
-    let wanted = match glob::Pattern::new(pattern) {
-        Ok(wanted) => wanted,
+    let most = super::joined::MOST_FILES;
+    let mut names = match pattern::files(&inside::joined(folder, ""), pattern, most) {
+        Ok(names) => names,
         Err(e) => {
-            complain(reader, &at, Note::new("manifest.bad_pattern").with("reason", e.msg), None);
+            complain(reader, &at, e.note("manifest.bad_pattern", "manifest.wide_pattern"), None);
             return vec![];
         }
     };
-    let escaped = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(wanted.as_str());
-    let options = glob::MatchOptions { require_literal_separator: true, ..glob::MatchOptions::new() };
-    let matches = glob::glob_with(&escaped.to_string_lossy(), options);
-    let most = super::joined::MOST_FILES;
-    let mut names: Vec<PathBuf> =
-        matches.into_iter().flatten().filter_map(Result::ok).filter(|p| p.is_file()).take(most + 1).collect();
     names.sort_by_cached_key(|f| natural(&f.to_string_lossy()));
     if names.is_empty() {
         let note = Note::new("manifest.no_match").with("folder", folder.display().to_string());
@@ -229,69 +224,17 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
     let mut found = Vec::new();
     for path in names {
         let relative = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().into_owned();
-        if let Some((path, _)) = safe(&relative, folder, &at, reader) {
-            found.push(ManifestFile { path, sha256: None, phase: None });
+        if let Some(file) = inside::file(&relative, folder, &at, reader) {
+            found.push(ManifestFile { path: file.path, sha256: None, phase: None });
         }
     }
     found
 }
 
-/// True when a path as written cannot lead out of the folder of its manifest.
-fn stays_inside(text: &str, at: &Span, reader: &mut Reader<'_>) -> bool {
-    let drive = text.as_bytes().get(1) == Some(&b':');
-    let key = if Path::new(text).is_absolute() || text.starts_with(['/', '\\']) || drive {
-        "manifest.absolute"
-    } else if text.split(['/', '\\']).any(|part| part == "..") {
-        "manifest.leaves"
-    } else if text.contains('\\') {
-        "manifest.backslash"
-    } else if Path::new(text).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir)) {
-        "manifest.leaves"
-    } else {
-        return true;
-    };
-    complain(reader, at, Note::new(key).with("path", text), Some("manifest.help.inside"));
-    false
-}
-
-/// A path of the manifest as it can be opened, and where it really is; `None` when a problem was reported.
-fn safe(text: &str, folder: &Path, at: &Span, reader: &mut Reader<'_>) -> Option<(PathBuf, PathBuf)> {
-    if !stays_inside(text, at, reader) {
-        return None;
-    }
-    let path = if folder == Path::new(".") { PathBuf::from(text) } else { folder.join(text) };
-    let about = |key: &'static str| Note::new(key).with("path", text);
-    let canonical = match path.canonicalize() {
-        Ok(canonical) => canonical,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-            complain(reader, at, about("manifest.missing"), Some("manifest.help.missing"));
-            return None;
-        }
-        Err(e) => {
-            complain(reader, at, about("manifest.unreadable").with("reason", e.to_string()), None);
-            return None;
-        }
-    };
-    let home = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    if !canonical.starts_with(&home) {
-        complain(reader, at, about("manifest.link_leaves"), Some("manifest.help.inside"));
-        return None;
-    }
-    if canonical.is_dir() {
-        complain(reader, at, about("manifest.folder"), Some("manifest.help.folder"));
-        return None;
-    }
-    if !canonical.is_file() {
-        complain(reader, at, about("manifest.no_file"), Some("manifest.help.inside"));
-        return None;
-    }
-    Some((path, canonical))
-}
-
 fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOptions {
     let layout = section.text("layout").and_then(|text| {
         let at = reader.source.inside_quotes(&section.span_of("layout"));
-        safe(&text, folder, &at, reader).map(|(path, _)| path)
+        inside::file(&text, folder, &at, reader).map(|f| f.path)
     });
     ReadOptions { layout, ..reading::options(section, reader) }
 }

@@ -26,6 +26,7 @@ mod numpy;
 mod options;
 mod parquet;
 mod parts;
+mod pattern;
 mod pauses;
 mod plan;
 mod pump;

@@ -145,20 +145,12 @@ fn pattern(path: &Path) -> Option<String> {
 /// The files that a pattern names, part2 before part10.
 fn expand(path: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
     let error = |note: Note| IngestError::new(IngestErrorKind::Io, path, note);
-    let bad = |reason: String| error(Note::new("ingest.joined.bad_pattern").with("reason", reason));
-    let options = glob::MatchOptions { require_literal_separator: true, ..glob::MatchOptions::new() };
-    let found = glob::glob_with(pattern, options).map_err(|e| bad(e.to_string()))?;
-    let mut files = Vec::new();
-    for entry in found {
-        let file = entry.map_err(|e| bad(e.to_string()))?;
-        if file.is_file() {
-            files.push(file);
-        }
-        if files.len() > joined::MOST_FILES {
-            let most = joined::MOST_FILES;
-            let note = Note::new("ingest.joined.too_many").with("count", files.len()).with("most", most);
-            return Err(error(note));
-        }
+    let most = joined::MOST_FILES;
+    let mut files = super::pattern::files(Path::new(""), pattern, most)
+        .map_err(|e| error(e.note("ingest.joined.bad_pattern", "ingest.joined.wide_pattern")))?;
+    if files.len() > most {
+        let note = Note::new("ingest.joined.too_many").with("count", files.len()).with("most", most);
+        return Err(error(note));
     }
     if files.is_empty() {
         return Err(error(Note::new("ingest.joined.no_match")).hint("ingest.joined.hint.quote_pattern"));

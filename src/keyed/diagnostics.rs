@@ -71,6 +71,11 @@ impl Problem {
         }
     }
 
+    /// Something worth knowing of a file as a whole.
+    pub fn remark_on_file(file: &str, message: impl Into<Note>) -> Problem {
+        Problem { severity: Severity::Warning, ..Problem::of_file(file, message, None) }
+    }
+
     /// The same problem with what to do about it.
     #[must_use]
     pub fn help(mut self, help: impl Into<Note>) -> Problem {
@@ -85,19 +90,20 @@ impl Problem {
             Severity::Error => "diagnostic.error",
             Severity::Warning => "diagnostic.warning",
         };
-        let mut out = format!("{}: {}\n", Note::new(key).say(lang), self.message.say(lang));
+        let mut out = format!("{}: {}\n", Note::new(key).say(lang), harmless(&self.message.say(lang)));
         if self.line == 0 {
-            out.push_str(&format!(" --> {}\n", self.file));
+            out.push_str(&format!(" --> {}\n", harmless(&self.file)));
         } else {
             let number = self.line.to_string();
             let margin = " ".repeat(number.len());
             let (indent, carets) = (" ".repeat(self.excerpt.start), "^".repeat(self.excerpt.width));
-            out.push_str(&format!("{margin}--> {}:{}:{}\n", self.file, self.line, self.column));
+            out.push_str(&format!("{margin}--> {}:{}:{}\n", harmless(&self.file), self.line, self.column));
             out.push_str(&format!("{margin} |\n{number} | {}\n", self.excerpt.text.trim_end()));
             out.push_str(&format!("{margin} | {indent}{carets}\n"));
         }
         if let Some(help) = &self.help {
-            out.push_str(&format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang)));
+            let help = harmless(&help.say(lang));
+            out.push_str(&format!("  {}: {help}\n", Note::new("diagnostic.help").say(lang)));
         }
         out
     }
@@ -224,17 +230,18 @@ impl SourceText {
     }
 }
 
+/// A text without what steers a terminal or turns the direction of writing: a value may hold it by an escape of TOML.
+fn harmless(text: &str) -> String {
+    let turns = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    text.chars().map(|c| if c.is_control() || turns(c) { '·' } else { c }).collect()
+}
+
 /// Cuts a long line around the offending text. Control characters are shown as `·`, so that a file cannot steer a
 /// terminal and one character stays one column.
 fn excerpt(line: &str, start: usize, width: usize) -> Excerpt {
     let from = if start > SHOWN / 2 && line.chars().count() > SHOWN { start - SHOWN / 2 } else { 0 };
-    let visible = |c: char| match c {
-        '\t' => ' ',
-        '\r' => ' ',
-        c if c.is_control() => '·',
-        c => c,
-    };
-    let text: String = line.chars().skip(from).take(SHOWN).map(visible).collect();
+    let spaced = line.replace(['\t', '\r'], " ");
+    let text: String = harmless(&spaced).chars().skip(from).take(SHOWN).collect();
     let start = start - from;
     Excerpt { text, start, width: width.clamp(1, SHOWN.saturating_sub(start).max(1)) }
 }

@@ -3,6 +3,7 @@
 
 pub mod diagnostics;
 pub(crate) mod file;
+pub(crate) mod inside;
 pub mod quantity;
 pub(crate) mod reader;
 pub(crate) mod section;

@@ -5,6 +5,7 @@ use super::limits::LimitsFile;
 use super::model::{Loaded, Procedure};
 use super::parse;
 use crate::keyed::file::{self, Wording};
+use crate::keyed::inside;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
@@ -12,12 +13,13 @@ use std::sync::Arc;
 /// What is said of a file that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
 
-/// Reads a procedure.
+/// Reads a procedure; the files that it names must be there.
 ///
 /// # Errors
 /// Every problem of the file, each with its place; a file that cannot be read is one problem without a place.
 pub fn load(path: &Path) -> Result<Loaded<Procedure>, Problems> {
-    parse_procedure(&name_of(path), &file::bytes(path, &WORDING)?)
+    let folder = inside::folder_of(path);
+    loaded(&name_of(path), &file::bytes(path, &WORDING)?, |source| parse::procedure(source, Some(folder)))
 }
 
 /// Reads a limits file.
@@ -28,22 +30,13 @@ pub fn load_limits(path: &Path) -> Result<Loaded<LimitsFile>, Problems> {
     parse_limits(&name_of(path), &file::bytes(path, &WORDING)?)
 }
 
-/// Reads a procedure from the bytes of a file; `name` stands in diagnostics and results.
+/// Reads a procedure from the bytes of a file; `name` stands in diagnostics and results. Whether the files that it names
+/// are there is not asked.
 ///
 /// # Errors
 /// Every problem of the text.
 pub fn parse_procedure(name: &str, bytes: &[u8]) -> Result<Loaded<Procedure>, Problems> {
-    let mut procedure = loaded(name, bytes, parse::procedure)?;
-    // A layout stands beside its procedure, wherever the program is started.
-    if let (Some(layout), Some(folder)) =
-        (&mut procedure.value.recording.read.layout, Path::new(name).parent())
-    {
-        *layout = folder.join(&*layout);
-    }
-    if let (Some(explain), Some(folder)) = (&mut procedure.value.explain, Path::new(name).parent()) {
-        explain.model = folder.join(&explain.model);
-    }
-    Ok(procedure)
+    loaded(name, bytes, |source| parse::procedure(source, None))
 }
 
 /// Reads a limits file from its bytes.
@@ -57,7 +50,7 @@ pub fn parse_limits(name: &str, bytes: &[u8]) -> Result<Loaded<LimitsFile>, Prob
 fn loaded<T>(
     name: &str,
     bytes: &[u8],
-    parse: fn(&SourceText) -> (Option<T>, Problems),
+    parse: impl Fn(&SourceText) -> (Option<T>, Problems),
 ) -> Result<Loaded<T>, Problems> {
     let source = file::source(name, bytes)?;
     match parse(&source) {

@@ -13,18 +13,48 @@ use super::site::{Orientation, Site};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use super::{channel, reading, validate};
+use crate::keyed::inside;
 use crate::record::{ClauseRecord, WaiverRecord};
 use crate::temperature::{SegmentKind, StatedSegment, TemperatureTest, WarmUpTest};
+use std::path::{Path, PathBuf};
 
-/// Reads a procedure from its text. The second value holds every problem, warnings among them.
-pub(super) fn procedure(source: &SourceText) -> (Option<Procedure>, Problems) {
+/// Reads a procedure from its text. The second value holds every problem, warnings among them. With its folder, the
+/// files that it names must be there.
+pub(super) fn procedure(source: &SourceText, folder: Option<&Path>) -> (Option<Procedure>, Problems) {
     checked(source, &PROCEDURE_FILE, |root, reader| {
-        let procedure = build(root, reader);
+        let mut procedure = build(root, reader);
+        let layout = named(root, "recording", "layout", folder, reader);
+        procedure.recording.read.layout = layout;
+        let model = named(root, "explain", "model", folder, reader);
+        if let (Some(spec), Some(model)) = (&mut procedure.explain, model) {
+            spec.model = model;
+        }
         validate::procedure(&procedure, root, reader);
         let warnings = validate::warnings(&procedure, root, reader.source);
         reader.problems.list.extend(warnings);
         procedure
     })
+}
+
+/// The path of a file that a procedure names, as it can be opened: it stands beside the procedure or below, wherever the
+/// program is started.
+fn named(
+    root: &Section,
+    table: &str,
+    key: &str,
+    folder: Option<&Path>,
+    reader: &mut Reader<'_>,
+) -> Option<PathBuf> {
+    let section = root.table(table)?;
+    let text = section.text(key)?;
+    let at = reader.source.inside_quotes(&section.span_of(key));
+    match folder {
+        Some(folder) => inside::file(&text, folder, &at, reader).map(|f| f.path),
+        None => inside::stays(&text, &at, reader).then(|| {
+            let of_name = Path::new(&reader.source.name).parent().unwrap_or(Path::new(""));
+            inside::joined(of_name, &text)
+        }),
+    }
 }
 
 /// Reads a limits file from its text.

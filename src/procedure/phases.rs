@@ -8,10 +8,11 @@ use super::reader::{Reader, checked};
 use super::section::Section;
 use super::tables_phases::PHASES_FILE;
 use crate::keyed::file::{self, Wording};
+use crate::keyed::inside;
 use crate::record::{ClauseRecord, ProcedureRecord};
 use crate::text::Note;
 use sha2::{Digest, Sha256};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
 
@@ -51,8 +52,8 @@ pub struct Phase {
 struct Stated {
     id: String,
     title: Option<String>,
-    procedure: String,
-    limits: Option<String>,
+    procedure: PathBuf,
+    limits: Option<PathBuf>,
 }
 
 /// True when a file states phases.
@@ -68,9 +69,9 @@ pub fn load_phased(path: &Path) -> Result<Phased, Problems> {
     let name = path.display().to_string();
     let bytes = file::bytes(path, &WORDING)?;
     let source = file::source(&name, &bytes)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let folder = inside::folder_of(path);
     let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    let (read, problems) = read(&source, &name, sha256);
+    let (read, problems) = read(&source, &name, sha256, folder);
     let Some((mut phased, stated)) = read else { return Err(problems) };
     let mut found: Option<Problems> = None;
     let mut keep = |problems: Problems| match &mut found {
@@ -78,8 +79,8 @@ pub fn load_phased(path: &Path) -> Result<Phased, Problems> {
         None => found = Some(problems),
     };
     for s in stated {
-        let procedure = load(&folder.join(&s.procedure)).map_err(&mut keep).ok();
-        let limits = s.limits.as_ref().map(|l| load_limits(&folder.join(l)).map_err(&mut keep));
+        let procedure = load(&s.procedure).map_err(&mut keep).ok();
+        let limits = s.limits.as_ref().map(|l| load_limits(l).map_err(&mut keep));
         let (Some(procedure), Some(limits)) = (procedure, limits.transpose().ok()) else { continue };
         let title = s.title.unwrap_or_else(|| procedure.value.title.clone());
         phased.phases.push(Phase { id: s.id, title, procedure, limits });
@@ -90,9 +91,14 @@ pub fn load_phased(path: &Path) -> Result<Phased, Problems> {
     }
 }
 
-fn read(source: &SourceText, path: &str, sha256: String) -> (Option<(Phased, Vec<Stated>)>, Problems) {
+fn read(
+    source: &SourceText,
+    path: &str,
+    sha256: String,
+    folder: &Path,
+) -> (Option<(Phased, Vec<Stated>)>, Problems) {
     checked(source, &PHASES_FILE, |root, reader| {
-        let stated = stated(root, reader);
+        let stated = stated(root, folder, reader);
         let identity = root.table("procedure");
         let text = |key| identity.and_then(|i| i.text(key));
         let unit = root.table("unit_under_test");
@@ -120,10 +126,17 @@ fn read(source: &SourceText, path: &str, sha256: String) -> (Option<(Phased, Vec
     })
 }
 
-fn stated(root: &Section, reader: &mut Reader<'_>) -> Vec<Stated> {
+fn stated(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Stated> {
     let mut list: Vec<Stated> = Vec::new();
     for section in root.tables("phase") {
-        let (Some(id), Some(procedure)) = (section.text("id"), section.text("procedure")) else { continue };
+        let Some(id) = section.text("id") else { continue };
+        let mut named = |key: &str| {
+            let text = section.text(key)?;
+            let at = reader.source.inside_quotes(&section.span_of(key));
+            inside::file(&text, folder, &at, reader).map(|f| f.path)
+        };
+        let (procedure, limits) = (named("procedure"), named("limits"));
+        let procedure = procedure.unwrap_or_default();
         let clash = |other: &Stated| {
             other.id == id
                 || other.id.starts_with(&format!("{id}."))
@@ -133,7 +146,7 @@ fn stated(root: &Section, reader: &mut Reader<'_>) -> Vec<Stated> {
             let message = Note::new("phases.twice").with("id", id.as_str()).with("other", other.id.as_str());
             reader.error(&section.span_of("id"), message, None);
         }
-        list.push(Stated { id, title: section.text("title"), procedure, limits: section.text("limits") });
+        list.push(Stated { id, title: section.text("title"), procedure, limits });
     }
     list
 }

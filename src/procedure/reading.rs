@@ -5,16 +5,14 @@ use super::section::{Entry, Section};
 use crate::ingest::{ReadOptions, StampOptions, StampWriting, reading};
 use crate::recording::{ColumnRef, Role};
 use crate::text::Note;
-use std::path::PathBuf;
 
-/// The decisions of `[recording]` and of the time channels.
+/// The decisions of `[recording]` and of the time channels, but for the layout.
 pub(super) fn options(
     section: Option<&Section>,
     channels: &[Section],
     reader: &mut Reader<'_>,
 ) -> ReadOptions {
     let mut options = section.map(|s| reading::options(s, reader)).unwrap_or_default();
-    options.layout = section.and_then(|s| s.text("layout")).map(PathBuf::from);
     options.text.stamps = channels.iter().filter_map(|c| stamps(c, reader)).collect();
     options
 }
