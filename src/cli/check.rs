@@ -1,6 +1,7 @@
 //! `sagnac check`: procedures and limits without data.
 
 use super::{CheckArgs, exit, place};
+use crate::keyed::diagnostics::Problem;
 use crate::procedure::check::{Checked, check, check_report_with};
 use crate::procedure::power::{questions, warnings};
 use crate::procedure::{LimitsFile, Loaded, effective};
@@ -26,6 +27,8 @@ pub fn main(args: &CheckArgs, lang: Lang) -> u8 {
                 let effective = effective(procedure, file);
                 let asked = questions(&procedure.value, &effective);
                 let mut found = effective.warnings.clone();
+                let idle = effective.idle.clone().zip(file.filter(|f| !f.value.set.limits.is_empty()));
+                found.extend(idle.map(|(note, file)| Problem::remark_on_file(&file.path, note)));
                 found.extend(warnings(&asked, procedure, file, warning));
                 found
             })

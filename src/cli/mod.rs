@@ -39,7 +39,7 @@ pub mod exit {
     version,
     about = "Acceptance tests for precision gyroscopes: a procedure and a recording in, a report out",
     after_help = "Exit codes: 0 pass (or no limits), 1 fail, 2 could not run, 3 indeterminate.\n\n\
-        Example:\n  sagnac run procedures/static-bias.toml recording.csv --limits procedures/limits/oius-501.toml --serial SN-0042"
+        Example:\n  sagnac run procedures/static-bias.toml recording.csv --limits procedures/limits/sample-unit.toml --serial SN-0042"
 )]
 struct Cli {
     /// Language of reports and messages [default: from the locale, else en]

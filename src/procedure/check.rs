@@ -4,7 +4,8 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
-use super::phases::{Phased, is_phased, load_phased};
+use super::phases::{Phase, Phased, is_phased, load_phased};
+use super::slips;
 use crate::ingest::manifest::{self, Manifest, is_manifest};
 use crate::ingest::raw::layout::{self, Layout};
 use crate::keyed::file;
@@ -75,16 +76,14 @@ pub fn check_report_with(
                     Checked::Procedure(p) => {
                         let mut warnings = p.warnings.clone();
                         warnings.extend(effective(p, limits).warnings);
+                        warnings.extend(slips::instruments(p));
                         warnings.extend(extra(p, limits));
                         (procedure_sentence(p), warnings)
                     }
                     Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
                     Checked::Manifest(m) => (manifest_sentence(m), vec![]),
                     Checked::Layout(l) => (layout_sentence(l), vec![]),
-                    Checked::Phased(p) => {
-                        let own = p.phases.iter().flat_map(|phase| phase.procedure.warnings.clone());
-                        (phased_sentence(p), own.collect())
-                    }
+                    Checked::Phased(p) => (phased_sentence(p), p.phases.iter().flat_map(of_phase).collect()),
                 };
                 for warning in warnings {
                     report.text.push_str(&format!("{}\n", warning.say(lang)));
@@ -101,6 +100,22 @@ pub fn check_report_with(
     report
 }
 
+/// What is worth knowing of a phase: what its own files say, and that no verdict can come from them.
+fn of_phase(phase: &Phase) -> Vec<Problem> {
+    let mut found = phase.procedure.warnings.clone();
+    let effective = effective(&phase.procedure, phase.limits.as_ref());
+    found.extend(effective.warnings);
+    found.extend(slips::instruments(&phase.procedure));
+    let unjudged = effective
+        .set
+        .limits
+        .is_empty()
+        .then(|| Note::new("check.no_limits").with("procedure", phase.procedure.value.id.as_str()));
+    let path = phase.limits.as_ref().map_or(phase.procedure.path.as_str(), |l| l.path.as_str());
+    found.extend(effective.idle.or(unjudged).map(|note| Problem::remark_on_file(path, note)));
+    found
+}
+
 /// A count with its noun: one key for one, another for any other number.
 fn count(n: usize, one: &'static str, several: &'static str) -> Note {
     if n == 1 { Note::new(one) } else { Note::new(several).with("n", n) }
@@ -108,7 +123,8 @@ fn count(n: usize, one: &'static str, several: &'static str) -> Note {
 
 fn procedure_sentence(p: &Loaded<Procedure>) -> Note {
     let p = &p.value;
-    Note::new("check.procedure")
+    let key = if p.limits.limits.is_empty() { "check.procedure_no_limits" } else { "check.procedure" };
+    Note::new(key)
         .with("id", p.id.as_str())
         .with("revision", p.revision.as_str())
         .with("channels", count(p.channels.len(), "check.one_channel", "check.channels"))
@@ -118,7 +134,8 @@ fn procedure_sentence(p: &Loaded<Procedure>) -> Note {
 
 fn limits_sentence(l: &Loaded<LimitsFile>) -> Note {
     let l = &l.value;
-    Note::new("check.limits_file")
+    let key = if l.set.limits.is_empty() { "check.limits_file_no_limits" } else { "check.limits_file" };
+    Note::new(key)
         .with("id", l.id.as_str())
         .with("revision", l.revision.as_str())
         .with("limits", count(l.set.limits.len(), "check.one_limit", "check.limits"))

@@ -6,6 +6,7 @@ use super::quantity::AS_RECORDED;
 use super::reader::Reader;
 use super::recorded;
 use super::section::{Entry, Section};
+use super::slips::{self, FastUnit};
 use crate::estimate::{Limit, Rule};
 use crate::ids::MeasurandId;
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
@@ -20,6 +21,8 @@ pub struct LimitSet {
     pub references: Vec<Reference>,
     /// Typical values of the family.
     pub expected: Vec<Expected>,
+    /// Limits that are written per second or in radians.
+    pub fast_units: Vec<FastUnit>,
 }
 
 /// A limit and what it is for.
@@ -101,6 +104,8 @@ pub struct EffectiveLimits {
     pub set: LimitSet,
     /// Things worth knowing, such as limits that this procedure does not measure.
     pub warnings: Vec<Problem>,
+    /// Why no limit of the file that was given can decide anything here.
+    pub idle: Option<Note>,
 }
 
 impl EffectiveLimits {
@@ -154,7 +159,7 @@ fn best<'a, T>(
 pub fn effective(procedure: &Loaded<Procedure>, file: Option<&Loaded<LimitsFile>>) -> EffectiveLimits {
     let own = &procedure.value.limits;
     let Some(file) = file else {
-        return EffectiveLimits { set: own.clone(), warnings: vec![] };
+        return EffectiveLimits { set: own.clone(), ..EffectiveLimits::default() };
     };
     let over = &file.value.set;
     let replaced = |id: &str, channel: &Option<String>, by: &[(&str, &Option<String>)]| {
@@ -170,7 +175,24 @@ pub fn effective(procedure: &Loaded<Procedure>, file: Option<&Loaded<LimitsFile>
     set.expected.extend(
         own.expected.iter().filter(|e| over.expected.iter().all(|o| o.measurand != e.measurand)).cloned(),
     );
-    EffectiveLimits { set, warnings: not_measured(&procedure.value, file) }
+    let mut warnings = not_measured(&procedure.value, file);
+    warnings.extend(slips::against_channels(&procedure.value, over, &file.source));
+    EffectiveLimits { set, warnings, idle: idle(&procedure.value, file) }
+}
+
+/// Why no limit of a file decides anything with a procedure; `None` where one does.
+fn idle(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Option<Note> {
+    let limits = &file.value.set.limits;
+    let applies = |l: &LimitSpec| {
+        procedure.measures(l.measurand.id, l.channel.as_deref())
+            && l.channel.as_deref().is_none_or(|c| procedure.channel(gyro_of(c)).is_some())
+            && recorded::other_unit(procedure, l).is_none()
+    };
+    if limits.iter().any(applies) {
+        return None;
+    }
+    let key = if limits.is_empty() { "check.references_only" } else { "check.none_applies" };
+    Some(Note::new(key).with("path", file.path.as_str()).with("procedure", procedure.id.as_str()))
 }
 
 /// Limits of a file that the procedure does not measure. The file may serve other procedures too, so this is worth
@@ -225,6 +247,7 @@ pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut
     for section in root.tables("limit") {
         if let Some(limit) = read_limit(section, &set.references, reader) {
             set.limits.push(limit);
+            set.fast_units.extend(slips::fast_unit(section, reader));
         }
     }
     if let Some(factor) = general_factor {
@@ -374,7 +397,7 @@ fn duplicates(set: &LimitSet, reader: &mut Reader<'_>) {
 
 /// Says what is worth knowing about limits that can be used.
 pub(super) fn warnings(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
-    let mut found = vec![];
+    let mut found = slips::of_set(set, source);
     for limit in &set.limits {
         let typical = set.references.iter().find(|r| r.measurand == limit.measurand).map(|r| r.record.value);
         let too_tight = matches!((limit.limit.max, typical), (Some(max), Some(value)) if max <= value);

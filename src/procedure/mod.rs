@@ -15,6 +15,7 @@ pub mod reading;
 pub mod recorded;
 pub mod schema;
 pub mod site;
+pub mod slips;
 pub mod tables;
 mod tables_conditions;
 mod tables_influence;

@@ -230,6 +230,8 @@ pub struct Instrument {
     pub calibration_due: Option<NaiveDate>,
     /// True when it makes the test invalid to use it without a valid calibration.
     pub required: bool,
+    /// Where it is declared.
+    pub span: Span,
 }
 
 impl Instrument {
@@ -381,8 +383,13 @@ mod tests {
     #[test]
     fn a_calibration_holds_through_its_last_day() {
         let day = |d| NaiveDate::from_ymd_opt(2027, 3, d).unwrap();
-        let mut instrument =
-            Instrument { name: "t".into(), serial: None, calibration_due: Some(day(1)), required: true };
+        let mut instrument = Instrument {
+            name: "t".into(),
+            serial: None,
+            calibration_due: Some(day(1)),
+            required: true,
+            span: 0..0,
+        };
         assert_eq!(instrument.record_on(day(1)).status, ConditionStatus::Ok);
         assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Invalid);
         instrument.required = false;

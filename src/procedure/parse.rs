@@ -218,6 +218,7 @@ fn instrument(section: &Section) -> Instrument {
         serial: section.text("serial"),
         calibration_due: section.date("calibration_due"),
         required: section.flag("required"),
+        span: section.span.clone(),
     }
 }
 

@@ -26,6 +26,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
 /// What is worth knowing about a procedure that can be used.
 pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceText) -> Vec<Problem> {
     let mut found = super::limits::warnings(&procedure.limits, source);
+    found.extend(super::slips::against_channels(procedure, &procedure.limits, source));
     for section in root.tables("instrument") {
         if section.flag("required") && section.entry("calibration_due").is_none() {
             let warning = source.warning(&section.span, "check.no_calibration_due");

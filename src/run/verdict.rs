@@ -106,6 +106,20 @@ pub fn whole(
     (verdict, reasons)
 }
 
+/// The verdict where a limits file was given: one that decides nothing leaves open what was to be judged by it.
+pub fn with_idle_limits(
+    (verdict, mut reasons): (Verdict, Vec<Note>),
+    idle: Option<&Note>,
+) -> (Verdict, Vec<Note>) {
+    let Some(why) = idle else { return (verdict, reasons) };
+    if verdict == Verdict::None {
+        reasons.clear();
+    }
+    reasons.insert(0, why.clone());
+    let open = matches!(verdict, Verdict::None | Verdict::Pass);
+    (if open { Verdict::Indeterminate } else { verdict }, reasons)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
