@@ -12,6 +12,14 @@ pub(super) const PAUSE: f64 = 1.2;
 /// Largest middle step of stamps in batches, in mean intervals.
 const WITHIN: f64 = 0.8;
 
+/// Steps up to which rows are delivered together, and up to which single rows of a jittering clock would follow one
+/// another as often, in mean intervals.
+const TOGETHER: f64 = 0.15;
+const APART: f64 = 0.45;
+
+/// Share of rows delivered together with the one before from which rows come in batches.
+const DELIVERED: f64 = 0.004;
+
 /// Least number of batches from which the clock is found.
 const LEAST: usize = 24;
 
@@ -349,7 +357,24 @@ pub(super) fn course(t: &[f64]) -> Option<Course> {
     Some(Course { mean_s, middle, bounded: t.len() >= 1024 && long <= 2.0 * short.max(0.5 * mean_s) })
 }
 
-/// True when the middle step is so short that the rows come in batches, if they come from a uniform clock.
-pub(super) fn in_batches(course: &Course) -> bool {
-    course.middle <= WITHIN
+/// True when the rows come in batches, if they come from a uniform clock: the middle step is short, or, where many batches
+/// have one row, the short steps stand apart from the others and make up for the wait before them. Rows that were written
+/// twice make up for nothing.
+pub(super) fn in_batches(t: &[f64], course: &Course) -> bool {
+    if course.middle <= WITHIN {
+        return true;
+    }
+    let (mut together, mut apart, mut made_up) = (0usize, 0usize, 0usize);
+    // The wait before the rows that are delivered now, and how many they are, in mean intervals.
+    let (mut wait, mut rows) = (1.0, 1.0);
+    for step in super::probe::steps(t).map(|d| d / course.mean_s) {
+        if (0.0..TOGETHER).contains(&step) {
+            (together, rows) = (together + 1, rows + 1.0);
+            made_up += usize::from(wait >= rows - 0.6);
+        } else {
+            apart += usize::from((TOGETHER..APART).contains(&step));
+            (wait, rows) = (step, 1.0);
+        }
+    }
+    together as f64 >= DELIVERED * t.len() as f64 && 3 * apart < together && 10 * made_up >= 8 * together
 }

@@ -9,6 +9,9 @@ const WINDOW: usize = 16;
 /// Least number of bunches from which a clock is found.
 const LEAST: usize = 8;
 
+/// Largest departure of the followed interval from that between bunches.
+const FOLLOWED: f64 = 0.05;
+
 /// Share of windows that must do so.
 const REGULAR: f64 = 0.8;
 
@@ -62,7 +65,9 @@ pub(super) fn probe(t: &[f64]) -> Option<Clock> {
     }
     let mut clock = Clock::even(interval_s, 0.0, 1.5 * interval_s);
     clock.cadence = Cadence::Bunched { period_s, rows };
-    Some(refined(clock, t))
+    let clock = refined(clock, t);
+    // Followed through the record, the clock stays what its bunches show, or they are none of a regular number.
+    ((clock.interval_s / interval_s - 1.0).abs() <= FOLLOWED).then_some(clock)
 }
 
 /// Middle number of rows from one bunch to the next, taken as a mean over those within 1 of the median.
