@@ -20,8 +20,10 @@ const NEAR: f64 = 0.06;
 impl Condition for Clock {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
         if !facts.has_stamps {
+            facts.checks.not_made("clock", None, "check_list.no_stamps");
             return vec![];
         }
+        facts.checks.made("clock", None, "clock");
         let rate_hz = 1.0 / facts.sample_interval_s;
         let note = if facts.duration_s > LONGEST_S {
             Note::new("clock.too_long")

@@ -53,6 +53,10 @@ pub(super) fn agrees(gyro: &GyroFact, facts: &Facts<'_>) -> Option<bool> {
 }
 
 fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    match why_not(gyro, facts) {
+        Some(reason) => facts.checks.not_made("earth_rate", Some(&gyro.channel), reason),
+        None => facts.checks.made("earth_rate", Some(&gyro.channel), "earth_rate"),
+    }
     let (earth, _) = gyro.earth_deg_h?;
     let Some(bound) = bias_bound(gyro, facts) else { return exchanged_unit(gyro, earth, facts) };
     let agrees = agrees(gyro, facts)?;
@@ -64,6 +68,17 @@ fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
     };
     let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
     Some(told(gyro, earth, (status, key, mistakes), required, facts))
+}
+
+/// Why sign, axis and unit cannot be told by the Earth rate.
+fn why_not(gyro: &GyroFact, facts: &Facts<'_>) -> Option<&'static str> {
+    if gyro.earth_deg_h.is_none() {
+        return Some("check_list.no_site");
+    }
+    if bias_bound(gyro, facts).is_none() {
+        return Some("check_list.no_bias_bound");
+    }
+    agrees(gyro, facts).is_none().then_some("check_list.small_earth_rate")
 }
 
 /// The record of a mean beside the Earth rate, with the mistakes that explain their difference.

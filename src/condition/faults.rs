@@ -9,6 +9,14 @@ pub(super) struct Faults;
 
 impl Condition for Faults {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        // The pass over the rows counted these on every channel that was read.
+        for id in ["full_scale", "plausible"] {
+            if facts.rows > 0 {
+                facts.checks.made(id, None, "integrity");
+            } else {
+                facts.checks.not_made(id, None, "check_list.not_read");
+            }
+        }
         let budget = &facts.procedure.conditions.faults;
         let found = facts.integrity;
         let counted: [(&str, u64, Option<Allowance>); 10] = [

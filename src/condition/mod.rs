@@ -4,6 +4,7 @@
 //! A condition is met only when it is shown to be met, the sensor's uncertainty included. One that is not makes the
 //! whole indeterminate: a test that was not done right neither passes nor fails a unit.
 
+pub mod checks;
 mod clock;
 mod duration;
 mod earth_rate;
@@ -77,6 +78,8 @@ pub struct Facts<'a> {
     pub schedule: Option<&'a Schedule>,
     /// Day of the test.
     pub today: NaiveDate,
+    /// Where checks tell that they were made, or why not.
+    pub checks: &'a checks::CheckLog,
 }
 
 /// What is left of a warm-up transient at the start of the evaluated window.

@@ -21,6 +21,7 @@ const EXPLAINED: f64 = 3.0;
 impl Condition for NoiseLevel {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
         let Some(typical) = facts.limits.expected("angle_random_walk").filter(|n| *n > 0.0) else {
+            facts.checks.not_made("noise_level", None, "check_list.no_typical_noise");
             return vec![];
         };
         facts.gyros.iter().filter_map(|g| one(g, typical, facts)).collect()
@@ -49,7 +50,12 @@ pub(super) fn is_far(gyro: &GyroFact, factor: f64, facts: &Facts<'_>) -> bool {
 }
 
 fn one(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
-    let (low, high) = white_levels(gyro)?;
+    let levels = white_levels(gyro);
+    match levels {
+        Some(_) => facts.checks.made("noise_level", Some(&gyro.channel), "noise_level"),
+        None => facts.checks.not_made("noise_level", Some(&gyro.channel), "check_list.short"),
+    }
+    let (low, high) = levels?;
     let ratio = if low > FAR * typical {
         low / typical
     } else if high * FAR < typical {

@@ -1,6 +1,7 @@
 //! What a test on a rate table must have been: steps found, the rates reached, the angle in agreement, and an output that
 //! follows the table. A mistake of sign, unit or axis is named.
 
+use super::checks::CheckLog;
 use super::table_motion::{self, Settling};
 use super::{mistakes, record};
 use crate::record::{ConditionRecord, ConditionStatus};
@@ -75,8 +76,40 @@ const TWICE: f64 = 0.05;
 /// Least Earth rate along the axis by which that is told, deg/h.
 const LEAST_EARTH: f64 = 3.0;
 
-/// Judges a test on a table.
-pub fn judge(facts: &TableFacts) -> Vec<ConditionRecord> {
+/// Judges a test on a table, and tells which checks were made.
+pub fn judge(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRecord> {
+    let all = judge_quietly(facts);
+    let made = |id: &str| all.iter().any(|c| c.id.split('.').next() == Some(id));
+    let tell = |id: &str, condition: &str, reason: &'static str| {
+        if made(condition) {
+            checks.made(id, None, condition);
+        } else {
+            checks.not_made(id, None, reason);
+        }
+    };
+    tell("table_response", "table_response", "check_list.no_response");
+    tell("table_reached", "table_reached", "check_list.no_full_scale");
+    tell("table_agreement", "table_agreement", "check_list.angle_or_rate_alone");
+    match facts.time_factor {
+        Some(_) => checks.made("clock_by_turns", None, "table_stamps"),
+        None => checks.not_made("clock_by_turns", None, "check_list.angle_or_rate_alone"),
+    }
+    for c in facts.channels.iter().filter(|c| c.asked) {
+        let reason = match c.bias_and_earth {
+            None => "check_list.no_site",
+            Some(_) if facts.about_outer => "check_list.other_axis",
+            Some((_, earth)) if earth.abs() < LEAST_EARTH => "check_list.small_earth_rate",
+            Some(_) => {
+                checks.made("earth_sign", Some(&c.channel), "table_earth_rate");
+                continue;
+            }
+        };
+        checks.not_made("earth_sign", Some(&c.channel), reason);
+    }
+    all
+}
+
+fn judge_quietly(facts: &TableFacts) -> Vec<ConditionRecord> {
     let mut all = vec![steps(facts)];
     // With stamps in a wrong unit every rate is wrong, and nothing else is worth a word.
     if let Some(wrong) = table_motion::stamps(facts) {

@@ -12,7 +12,14 @@ impl Condition for UnitNamed {
         let named = || facts.stated_serials.iter().filter(|s| !plain(s).is_empty());
         // One foreign number is enough: a file of another unit among those of this one.
         let other = named().find(|s| given.is_none_or(|g| plain(g) != plain(s)));
-        let Some(stated) = other.or_else(|| named().next()) else { return vec![] };
+        let Some(stated) = other.or_else(|| named().next()) else {
+            facts.checks.not_made("serial_number", None, "check_list.no_serial_stated");
+            return vec![];
+        };
+        match given {
+            Some(_) => facts.checks.made("serial_number", None, "unit_named"),
+            None => facts.checks.not_made("serial_number", None, "check_list.no_serial_given"),
+        }
         let (status, key) = match given {
             Some(given) if plain(given) == plain(stated) => (ConditionStatus::Ok, "unit_named.same"),
             Some(_) => (ConditionStatus::Invalid, "unit_named.other"),

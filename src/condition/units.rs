@@ -14,6 +14,9 @@ impl Condition for Units {
         let mut records: Vec<ConditionRecord> =
             facts.procedure.channels.iter().filter_map(|c| named(c, facts)).collect();
         let temperatures = facts.procedure.conditions.temperatures.iter().enumerate();
+        if facts.procedure.conditions.temperatures.is_empty() {
+            facts.checks.not_made("temperature_unit", None, "check_list.no_nominal_temperature");
+        }
         records.extend(temperatures.filter_map(|(position, c)| by_value(position, c, facts)));
         records
     }
@@ -28,7 +31,12 @@ fn invalid(channel: &str, declared: &str, note: Note) -> ConditionRecord {
 fn named(spec: &crate::procedure::model::ChannelSpec, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let column = facts.columns.iter().find(|c| c.channel == spec.channel.id)?;
     let declared = Unit::parse(&spec.unit_in_file).ok()?;
-    let stated = guess::named_unit(&column.name, column.unit.as_deref())?;
+    let stated = guess::named_unit(&column.name, column.unit.as_deref());
+    match &stated {
+        Some(_) => facts.checks.made("column_units", Some(&spec.channel.id), "units"),
+        None => facts.checks.not_made("column_units", Some(&spec.channel.id), "check_list.no_unit_in_column"),
+    }
+    let stated = stated?;
     // A scale that is no mere sign is a conversion that somebody meant.
     if !stated.same_dimension(&declared) || spec.channel.scale.abs() != 1.0 {
         return None;
@@ -47,7 +55,12 @@ fn named(spec: &crate::procedure::model::ChannelSpec, facts: &Facts<'_>) -> Opti
 
 /// A temperature far from nominal that is near it in another unit.
 fn by_value(position: usize, c: &TemperatureCondition, facts: &Facts<'_>) -> Option<ConditionRecord> {
-    let track = facts.held.get(&("temperature".to_owned(), position))?;
+    let track = facts.held.get(&("temperature".to_owned(), position));
+    match track {
+        Some(_) => facts.checks.made("temperature_unit", Some(&c.channel), "units"),
+        None => facts.checks.not_made("temperature_unit", Some(&c.channel), "check_list.no_temperature"),
+    }
+    let track = track?;
     if (track.mean - c.nominal_deg_c).abs() <= 10.0 * c.tolerance_deg_c {
         return None;
     }

@@ -13,7 +13,11 @@ impl Condition for WarmUp {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
         let warm_up_s = facts.procedure.conditions.warm_up_s;
         let mut records = Vec::new();
+        if facts.warm_up.is_empty() {
+            facts.checks.not_made("warm_up", None, "check_list.short");
+        }
         for fact in facts.warm_up {
+            facts.checks.made("warm_up", Some(&fact.channel), "warm_up");
             // A transient matters when it moves the mean by more than a third of the uncertainty of the mean.
             let shift = fact.residual_deg_h * fact.time_constant_s / facts.usable_s.max(fact.time_constant_s);
             let matters = shift.abs() > fact.bias_uncertainty_deg_h / 3.0;

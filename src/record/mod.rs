@@ -5,6 +5,7 @@
 //! template.
 
 mod beside;
+mod check;
 mod comparison;
 mod deviation;
 pub mod explanation;
@@ -16,6 +17,7 @@ mod phase;
 mod table_step;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use check::{CheckRecord, CheckStatus};
 pub use comparison::{
     ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord, OctavesRecord, ParameterRecord,
     ShareRecord, WindowRecord,
@@ -61,6 +63,8 @@ pub struct RunRecord {
     pub summary: Vec<Note>,
     /// Conditions of the test with their evidence.
     pub conditions: Vec<ConditionRecord>,
+    /// Checks that a test of this kind could make, and whether they were made.
+    pub checks: Vec<CheckRecord>,
     /// Faults of the recording.
     pub integrity: Integrity,
     /// The part of the recording that was evaluated, and what was left out of it.

@@ -5,6 +5,7 @@ use super::reading::{about, channels, plan, read_at_measured_interval, settle_in
 use super::{
     Outcome, Request, RunError, drawn, gyro_facts, power, settle, sigma_tau, thermal, verdict, warm_up,
 };
+use crate::condition::checks::CheckLog;
 use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
 use crate::ingest::{Plan, StreamReport};
@@ -42,6 +43,8 @@ pub(super) struct Found {
     pub exact: bool,
     /// The schedule of a test over temperature.
     pub schedule: Option<Schedule>,
+    /// Checks that were made.
+    pub checks: CheckLog,
 }
 
 impl Found {
@@ -86,6 +89,7 @@ pub(super) fn execute(
         serial: request.unit.serial.as_deref(),
         schedule: found.schedule.as_ref(),
         today: request.now.date_naive(),
+        checks: &found.checks,
     });
     if request.kind == "analyze" {
         // An analysis asks nothing of a recording and judges no unit.
@@ -158,7 +162,19 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     }
     settle_integrity(&mut report, &overview, tau0_s, &gyros);
     let envelopes = overview.finish();
-    Ok(Found { channels, report, tau0_s, window, gyros, held, envelopes, grid, exact, schedule })
+    Ok(Found {
+        channels,
+        report,
+        tau0_s,
+        window,
+        gyros,
+        held,
+        envelopes,
+        grid,
+        exact,
+        schedule,
+        checks: CheckLog::default(),
+    })
 }
 
 /// The longest gap in what was evaluated, s.

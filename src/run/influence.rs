@@ -132,6 +132,10 @@ pub(super) fn comparison(
             .chain(noise.iter().filter(|n| n.gyro == channels[at]).filter_map(|n| n.estimate(id, unit)))
             .collect()
     });
+    match evaluated.iter().find_map(|e| e.temperature_difference) {
+        Some(_) => found.checks.made("temperature_in_step", None, "influence_temperature"),
+        None => found.checks.not_made("temperature_in_step", None, "check_list.no_temperature"),
+    }
     let conditions = judge_compared(&ComparedFacts {
         found: series.list.len(),
         with: series.with(),

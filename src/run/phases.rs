@@ -1,11 +1,13 @@
 //! The results of the phases of a test as one.
 
 use super::Outcome;
+use crate::condition::checks::{Kind, none_made};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::procedure::phases::{Phase, Phased};
 use crate::record::{
-    FigureRecord, Integrity, PhaseRecord, Program, RESULT_FORMAT, RunRecord, Session, UnitUnderTest, Window,
+    CheckRecord, FigureRecord, Integrity, PhaseRecord, Program, RESULT_FORMAT, RunRecord, Session,
+    UnitUnderTest, Window,
 };
 use crate::text::{Arg, Note};
 
@@ -60,6 +62,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         verdict: if errors.is_empty() { worst } else { Verdict::Error },
         summary,
         conditions: phases.iter().flat_map(|p| p.conditions.clone()).collect(),
+        checks: checks(done),
         integrity: together(&records),
         window: Window {
             from_s: 0.0,
@@ -85,6 +88,17 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         phases,
         errors,
     }
+}
+
+/// The checks of all phases, each with its phase.
+fn checks(done: &[Done<'_>]) -> Vec<CheckRecord> {
+    let of = |d: &Done<'_>| {
+        let id = d.phase.id.clone();
+        let own = d.outcome.as_ref().map(|o| o.record.checks.clone());
+        let own = own.unwrap_or_else(|| none_made(Kind::of(&d.phase.procedure.value)));
+        own.into_iter().map(move |c| CheckRecord { phase: Some(id.clone()), ..c })
+    };
+    done.iter().flat_map(of).collect()
 }
 
 /// Why a phase could not be carried out; `None` of one that was.

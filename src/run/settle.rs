@@ -2,6 +2,7 @@
 
 use super::evaluate::Found;
 use super::{Request, RunError, described, goodness, session, sigma_tau, verdict};
+use crate::condition::checks::{Kind, none_made};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::measurand::GyroEvidence;
@@ -22,7 +23,8 @@ pub(super) fn record(
 ) -> RunRecord {
     let errors = errors(request);
     let rows = super::unshown::complete(request, &found.channels, rows);
-    let (verdict, summary) = verdict::whole(&rows, &conditions, &errors);
+    let judged = verdict::whole(&rows, &conditions, &errors);
+    let (verdict, summary) = verdict::with_idle_limits(judged, request.limits.idle.as_ref());
     // What is said of noise at rest has no meaning while the temperature moves.
     let resting = || found.gyros.iter().filter(|_| found.at_rest());
     RunRecord {
@@ -30,6 +32,7 @@ pub(super) fn record(
         summary,
         recording: recording(request, found),
         conditions,
+        checks: if request.kind == "run" { found.checks.settle(Kind::of(request.procedure)) } else { vec![] },
         integrity: found.report.integrity.clone(),
         window: found.window.clone(),
         measurands: rows,
@@ -57,6 +60,7 @@ pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
         verdict: Verdict::Error,
         summary: errors.clone(),
         recording: request.source.files().into_iter().map(unread).collect(),
+        checks: if request.kind == "run" { none_made(Kind::of(request.procedure)) } else { vec![] },
         errors,
         ..blank(request)
     }
@@ -86,6 +90,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         verdict: Verdict::None,
         summary: vec![],
         conditions: vec![],
+        checks: vec![],
         integrity: Integrity::default(),
         window: Window::default(),
         measurands: vec![],

@@ -5,6 +5,7 @@ use super::pass::{Inside, Overview};
 use super::reading::{self, tidy};
 use super::table_others::Others;
 use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
+use crate::condition::checks::CheckLog;
 use crate::condition::table::{ChannelFact, TableFacts, judge, judge_scale};
 use crate::condition::table_motion::Settling;
 use crate::condition::{Facts, judge_all};
@@ -41,7 +42,7 @@ pub(super) fn execute(
             (gyro, scale_factor::evaluate(&run, gyro, setup, unit, &wanted))
         })
         .collect();
-    let mut conditions = judge(&facts(request, &run, setup, &evaluated));
+    let mut conditions = judge(&facts(request, &run, setup, &evaluated), &found.checks);
     if setup.known.is_empty() && wants_alignment(procedure) {
         // The input axis is square to the axis that is turned about: its output follows by the tilt only.
         conditions.retain(|c| c.id != "table_reached");
@@ -139,6 +140,7 @@ pub(super) fn usual_conditions(request: &Request<'_>, found: &Found) -> Vec<Cond
         serial: request.unit.serial.as_deref(),
         today: request.now.date_naive(),
         schedule: None,
+        checks: &found.checks,
     })
 }
 
@@ -192,6 +194,7 @@ pub(super) fn collect_blocks(
         grid: TauGrid::Octave,
         exact: false,
         schedule: None,
+        checks: CheckLog::default(),
     };
     Ok((found, blocks))
 }

@@ -41,6 +41,12 @@ pub(super) fn finish(
             known::positions(blocks, known, &stretches, gyro, &earth)
         });
     }
+    if positions.is_empty() {
+        found.checks.not_made("earth_in_positions", None, "check_list.no_positions");
+    }
+    for p in &positions {
+        found.checks.made("earth_in_positions", Some(&p.channel), "known_earth");
+    }
     let turns = turns::turns(blocks, &setup.known, &stretches);
     let vertical = setup.known.iter().all(|k| match k.input {
         Input::Position { elevation, .. } => (elevation.0.abs() - 90.0).abs() < 1e-6,

@@ -1,6 +1,7 @@
 //! What the verdict rests on beside the measured values: conditions, integrity, window, lines, models, power,
 //! instruments, waivers, clauses.
 
+use super::checks;
 use super::conditions::{self, Condition};
 use super::deviations::{self, Deviations};
 use super::faults::Faults;
@@ -21,6 +22,10 @@ pub(super) const MODEL_NOTES: &[&str] = &["note.fit_restricted", "note.model_mis
 pub struct Evidence {
     /// Conditions, without those on faults and instruments, which have tables of their own.
     pub conditions: Vec<Condition>,
+    /// Checks that this kind of test could make and did not.
+    pub checks: Vec<Unmade>,
+    /// The others, in one line; empty where there is none.
+    pub checks_made: String,
     /// Faults of the recording and their budget.
     #[serde(flatten)]
     pub faults: Faults,
@@ -50,6 +55,15 @@ pub struct Evidence {
     pub waivers: Vec<Waiver>,
     /// Clauses.
     pub clauses: Vec<Clause>,
+}
+
+/// A check that was not made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unmade {
+    /// Name, with its channels.
+    pub name: String,
+    /// Why.
+    pub reason: String,
 }
 
 /// A span left out.
@@ -194,6 +208,8 @@ impl Evidence {
         let (lines, lines_shown) = strongest(&record.lines, words);
         Evidence {
             conditions: conditions::conditions(record, words),
+            checks: checks::unmade(record, words),
+            checks_made: checks::made(record, words),
             faults: Faults::new(record, words),
             window: [
                 ("report.window_from", record.window.from_s),

@@ -3,6 +3,7 @@
 //! Everything a template shows by default is a string here, so that HTML and Markdown cannot differ and no template
 //! computes. The record itself is handed to the templates as well, for those that users write.
 
+mod checks;
 mod comparison;
 mod conditions;
 mod deviations;
