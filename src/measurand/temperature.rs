@@ -6,7 +6,7 @@ use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::ids;
 use crate::temperature::course::{legendre, legendre_slopes};
 use crate::temperature::findings::{Analysis, Findings};
-use crate::temperature::lag;
+use crate::temperature::lag::{self, AtLag, Coefficient};
 use crate::temperature::read::{self, Reading};
 use crate::temperature::sampler::Draw;
 use crate::text::{Arg, Note};
@@ -31,14 +31,16 @@ const IDS: &[&str] = &[
 
 /// Name of the method of rows that come from the model over temperature.
 const METHOD: &str = "thermal_gls";
-/// Twice a log-likelihood ratio from which a lag counts as seen: χ² with one degree of freedom at 5 %.
-const SEEN: f64 = 3.84;
+/// Probability of no lag below which a lag counts as seen.
+const SEEN: f64 = 0.025;
 /// Probability of as large a range by chance from which the curve counts as flat.
 const FLAT: f64 = 0.05;
 /// Arguments at which a curve over temperature is read.
 const POINTS: usize = 81;
 /// Share of the range of lags beyond which a lag is not bounded.
 const UNBOUNDED: f64 = 0.9;
+/// Times its uncertainty without a lag that a coefficient's uncertainty is where lags add to it what is worth saying.
+const WIDENED: f64 = 1.5;
 
 impl Measurand for OverTemperature {
     fn ids(&self) -> &'static [&'static str] {
@@ -227,42 +229,63 @@ impl Row<'_> {
     }
 
     fn rate_sensitivity(&self, a: &Analysis) -> Option<Estimate> {
-        let Some(at) = a.posterior.terms.rate_at() else {
+        if a.posterior.terms.rate_at().is_none() {
             return Some(self.none(None).note(Note::new("thermal.one_way")));
-        };
-        let separable = a.separable(|s| s.rate);
-        if !separable {
+        }
+        if !a.parted {
             return Some(self.none(None).note(inseparable(a)));
         }
-        let reading = coefficient(a, at);
-        Some(self.measured(reading).note(separation_note(a)))
+        Some(self.beside_a_lag(a, 1.0, |l| l.rate))
     }
 
     fn hysteresis(&self, a: &Analysis) -> Option<Estimate> {
-        let Some(at) = a.posterior.terms.hysteresis_at() else {
+        if a.posterior.terms.hysteresis_at().is_none() {
             return Some(self.none(None).note(Note::new("thermal.one_way")));
-        };
-        let separable = a.separable(|s| s.hysteresis);
-        if !separable {
+        }
+        if !a.parted {
             return Some(self.none(None).note(inseparable(a)));
         }
-        Some(self.measured(coefficient(a, at).scaled(2.0)).note(separation_note(a)))
+        Some(self.beside_a_lag(a, 2.0, |l| l.hysteresis))
+    }
+
+    /// A coefficient whose interval holds every lag that explains the record as well. Where no lag is shown, the value is
+    /// that without one.
+    fn beside_a_lag(&self, a: &Analysis, times: f64, of: fn(&AtLag) -> Option<Coefficient>) -> Estimate {
+        let lags = &a.posterior.lags;
+        let mut reading = lag::coefficient(lags, of);
+        let told = Lag::of(a);
+        let (true, Some((without, deviation))) = (told.may_be_none, lag::at_shortest(lags, of)) else {
+            return self.measured(reading.scaled(times)).note(separation_note(a));
+        };
+        let single = reading.standard_uncertainty() < WIDENED * deviation;
+        if let Some(i) = reading.spread.interval(reading.value, 0.95) {
+            reading.value = without.clamp(i.low, i.high);
+        }
+        let row = self.measured(reading.scaled(times));
+        if single && told.bounded {
+            return row.note(separation_note(a));
+        }
+        row.note(
+            Note::new("thermal.lag_or_rate")
+                .with("u", Arg::figures(times * deviation, 2))
+                .with("lag", Arg::figures(told.longest_s / 60.0, 2)),
+        )
     }
 
     fn lag(&self, a: &Analysis) -> Option<Estimate> {
-        let p = &a.posterior;
-        let reading = lag::reading(&p.lags);
-        let separable = a.separable(|s| s.lag);
-        let upper = reading.spread.bound(reading.value, 0.95)?;
-        let bounded = upper < UNBOUNDED * p.longest_lag_s;
-        let limit = bounded.then_some(UpperLimit { value: upper, coverage: 0.95 });
-        if !separable || !bounded {
+        let told = Lag::of(a);
+        let limit = told.bounded.then_some(UpperLimit { value: told.upper_s, coverage: 0.95 });
+        if !a.parted {
             return Some(self.none(limit).note(inseparable(a)));
         }
-        if p.lag_evidence < SEEN {
+        if !told.bounded {
+            let longest = Arg::figures(told.longest_s / 60.0, 2);
+            return Some(self.none(None).note(Note::new("thermal.any_lag").with("lag", longest)));
+        }
+        if told.may_be_none {
             return Some(self.none(limit).note(Note::new("thermal.no_lag")));
         }
-        Some(self.measured(reading).note(separation_note(a)))
+        Some(self.measured(told.reading).note(separation_note(a)))
     }
 
     fn residual(&self, a: &Analysis) -> Estimate {
@@ -341,12 +364,33 @@ fn gap(draw: &Draw, c: &DVector<f64>, x: f64, a: &Analysis) -> f64 {
     2.0 * (of(terms.rate_at()) * r - slope(c, terms.order, x, a) * lag_min * r + of(terms.hysteresis_at()))
 }
 
-fn coefficient(a: &Analysis, at: usize) -> Reading {
-    read::linear(&a.posterior.draws, |d| {
-        let mut w = DVector::zeros(d.coefficients.len());
-        w[at] = 1.0;
-        w
-    })
+/// What a record says of its lag.
+struct Lag {
+    reading: Reading,
+    /// What it is at most with 95 %, s.
+    upper_s: f64,
+    /// Longest lag that was looked at, s.
+    longest_s: f64,
+    /// True when the record bounds it from above.
+    bounded: bool,
+    /// True when the record is explained without one.
+    may_be_none: bool,
+}
+
+impl Lag {
+    fn of(a: &Analysis) -> Lag {
+        let longest_s = a.posterior.longest_lag_s;
+        let reading = lag::reading(&a.posterior.lags);
+        let bound = |p: f64, otherwise: f64| reading.spread.bound(reading.value, p).unwrap_or(otherwise);
+        let (lower, upper_s) = (bound(SEEN, 0.0), bound(0.95, longest_s));
+        Lag {
+            upper_s,
+            longest_s,
+            bounded: upper_s < UNBOUNDED * longest_s,
+            may_be_none: lower <= 1e-3 * a.course.block_s,
+            reading,
+        }
+    }
 }
 
 /// How well the terms were told apart.

@@ -1,86 +1,189 @@
-//! The lag from its densities at drawn states.
+//! What a record says of the lag, and of what a lag can stand for.
 //!
-//! The states of a chain are worth far fewer independent lags, and quantiles of m independent ones leave 2/m more outside an
-//! interval than they should. So at a part of the states the density of the lag, everything else of the state held, is tabled
-//! over its range, and the mean of these is its distribution (Gelfand and Smith 1990; tabled as by Ritter and Tanner 1992).
+//! A straight line b·T behind a lag τ is, ramps over, b·T − b·τ·dT/dt: the same as a sensitivity to the rate of
+//! temperature. With a sensitivity b·τ beside it the lag cancels exactly, so that on a straight line every lag fits as well.
+//! A density over the lag would then decide by its own shape. So at a part of the states (noise and play drawn) the
+//! likelihood is tabled over the lag with the coefficients at their best, and what is stated of the lag and of a coefficient
+//! comes from the profile of the likelihood: an interval holds every value that some lag explains as well (signed roots of the
+//! profile, Barndorff-Nielsen and Cox 1994, section 3.3), averaged over the states for what is not known of the noise.
 
 use super::read::{self, Reading};
 use super::sampler::Draw;
-use crate::estimate::Spread;
+use crate::estimate::{Spread, normal_probability};
 
-/// States at which the density is tabled.
+/// States at which the likelihood is tabled.
 const STATES: usize = 30;
 /// Lags of a table.
-const LAGS: usize = 33;
-/// Part of the range of the drawn lags that a table goes beyond it on each side.
-const BEYOND: f64 = 0.25;
+const LAGS: usize = 37;
+/// Lags that are tried to find where a table must reach.
+const TRIED: usize = 28;
+/// Shortest of them, as a share of the longest.
+const SHORTEST: f64 = 0.001;
+/// Loss of log-likelihood from which a lag is out of question at the best noise.
+const LOST: f64 = 14.0;
+/// Points between two lags of a table at which coefficients are read.
+const BETWEEN: usize = 4;
 
-/// The distribution of the lag at one state.
+/// A coefficient at one lag: mean and standard deviation.
+pub type Coefficient = (f64, f64);
+
+/// What one state says at one lag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtLag {
+    /// Lag, s.
+    pub lag_s: f64,
+    /// Logarithm of the likelihood with the coefficients at their best.
+    pub log_likelihood: f64,
+    /// Sensitivity to the rate of temperature.
+    pub rate: Option<Coefficient>,
+    /// Half of the gap of the hysteresis.
+    pub hysteresis: Option<Coefficient>,
+}
+
+/// The table of one state, by ascending lag.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Conditional {
+pub struct Profile {
     /// Weight of the model that the state belongs to.
     pub weight: f64,
-    /// (lag in s, probability of a shorter one), ascending.
-    pub below: Vec<(f64, f64)>,
+    /// Lags.
+    pub lags: Vec<AtLag>,
 }
 
-/// Lags at which densities are tabled: all that were drawn, and beyond.
-pub fn grid(draws: &[Draw], longest_s: f64) -> Vec<f64> {
-    let lags = || draws.iter().filter_map(|d| d.shape.first().copied());
-    let (low, high) = (lags().fold(f64::INFINITY, f64::min), lags().fold(0.0, f64::max));
-    let reach = BEYOND * (high - low).max(0.01 * longest_s);
+/// Lags to be tabled, by the log-likelihood at the best noise and by the lags drawn: everything that comes into question.
+pub fn grid(draws: &[Draw], longest_s: f64, log_likelihood: impl Fn(f64) -> Option<f64>) -> Vec<f64> {
+    let ratio = (1.0 / SHORTEST).powf(1.0 / (TRIED - 2) as f64);
+    let tried: Vec<f64> = (0..TRIED)
+        .map(|i| if i == 0 { 0.0 } else { longest_s * SHORTEST * ratio.powi(i as i32 - 1) })
+        .map(|lag| lag.min(longest_s))
+        .collect();
+    let logs: Vec<f64> = tried.iter().map(|lag| log_likelihood(*lag).unwrap_or(f64::NEG_INFINITY)).collect();
+    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let drawn = || draws.iter().filter_map(|d| d.shape.first().copied());
+    let mut low = drawn().fold(longest_s, f64::min);
+    let mut high = drawn().fold(0.0, f64::max);
+    for (i, l) in logs.iter().enumerate().filter(|(_, l)| **l > top - LOST) {
+        let _ = l;
+        low = low.min(tried[i.saturating_sub(1)]);
+        high = high.max(tried[(i + 1).min(TRIED - 1)]);
+    }
+    let reach = 0.25 * (high - low).max(0.01 * longest_s);
     let (low, high) = ((low - reach).max(0.0), (high + reach).min(longest_s));
-    (0..LAGS).map(|i| low + (high - low) * i as f64 / (LAGS - 1) as f64).collect()
+    // Denser at short lags where the table begins at none.
+    let power = if low < 0.05 * high { 2.0 } else { 1.0 };
+    (0..LAGS).map(|i| low + (high - low) * (i as f64 / (LAGS - 1) as f64).powf(power)).collect()
 }
 
-/// The distributions at a part of the states; `log_density` is that at a position of the grid and a state.
-pub fn conditionals(
+/// The tables at a part of the states; `at_lag` is what a state says at a position of the grid.
+pub fn profiles(
     draws: &[Draw],
     grid: &[f64],
-    log_density: impl Fn(usize, &Draw) -> f64,
-) -> Vec<Conditional> {
+    at_lag: impl Fn(usize, &Draw) -> Option<AtLag>,
+) -> Vec<Profile> {
     let step = draws.len().div_ceil(STATES).max(1);
-    draws
-        .iter()
-        .skip(step / 2)
-        .step_by(step)
-        .filter_map(|draw| {
-            let logs: Vec<f64> = (0..grid.len()).map(|at| log_density(at, draw)).collect();
-            let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            if !top.is_finite() {
-                return None;
-            }
-            let mut sum = 0.0;
-            let mut below = vec![(grid.first().copied().unwrap_or(0.0), 0.0)];
-            for (pair, l) in grid.windows(2).zip(logs.windows(2)) {
-                sum += 0.5 * (pair[1] - pair[0]) * ((l[0] - top).exp() + (l[1] - top).exp());
-                below.push((pair[1], sum));
-            }
-            below.iter_mut().for_each(|p| p.1 /= sum.max(f64::MIN_POSITIVE));
-            Some(Conditional { weight: 1.0, below })
-        })
-        .collect()
+    let table = |draw: &Draw| -> Vec<AtLag> { (0..grid.len()).filter_map(|at| at_lag(at, draw)).collect() };
+    let states = draws.iter().skip(step / 2).step_by(step);
+    states.map(|draw| Profile { weight: 1.0, lags: table(draw) }).filter(|p| !p.lags.is_empty()).collect()
 }
 
-impl Conditional {
-    fn share_below(&self, lag_s: f64) -> f64 {
-        let at = self.below.partition_point(|p| p.0 < lag_s);
-        let Some((to, high)) = self.below.get(at).copied() else { return 1.0 };
-        let Some((from, low)) = at.checked_sub(1).map(|i| self.below[i]) else { return 0.0 };
-        low + (high - low) * (lag_s - from) / (to - from).max(f64::MIN_POSITIVE)
+impl Profile {
+    fn top(&self) -> f64 {
+        self.lags.iter().map(|l| l.log_likelihood).fold(f64::NEG_INFINITY, f64::max)
     }
+
+    /// Probability of a shorter lag, by the signed root of the profile; it never falls.
+    fn share_below(&self, lag_s: f64) -> f64 {
+        let best_beyond = |keep: &dyn Fn(f64) -> bool| {
+            let whole = self.lags.iter().filter(|l| keep(l.lag_s)).map(|l| l.log_likelihood);
+            // The likelihood at the lag itself, between two of the table.
+            let at = self.lags.partition_point(|l| l.lag_s < lag_s);
+            let here = match (at.checked_sub(1).and_then(|i| self.lags.get(i)), self.lags.get(at)) {
+                (Some(a), Some(b)) => {
+                    let share = (lag_s - a.lag_s) / (b.lag_s - a.lag_s).max(f64::MIN_POSITIVE);
+                    a.log_likelihood + share * (b.log_likelihood - a.log_likelihood)
+                }
+                (Some(l), None) | (None, Some(l)) => l.log_likelihood,
+                (None, None) => f64::NEG_INFINITY,
+            };
+            whole.fold(here, f64::max)
+        };
+        root(self.top(), best_beyond(&|l| l <= lag_s), best_beyond(&|l| l >= lag_s))
+    }
+
+    /// Coefficients of all lags, those between two of the table by straight lines.
+    fn coefficients(&self, of: impl Fn(&AtLag) -> Option<Coefficient>) -> Vec<(f64, f64, f64)> {
+        let one = |l: &AtLag| of(l).map(|(mean, deviation)| (l.log_likelihood, mean, deviation));
+        let known: Vec<(f64, f64, f64)> = self.lags.iter().filter_map(one).collect();
+        let mut all: Vec<(f64, f64, f64)> = known.last().copied().into_iter().collect();
+        for (a, b) in known.iter().zip(known.iter().skip(1)) {
+            for k in 0..BETWEEN {
+                let share = k as f64 / BETWEEN as f64;
+                let between = |a: f64, b: f64| a + share * (b - a);
+                all.push((between(a.0, b.0), between(a.1, b.1), between(a.2, b.2)));
+            }
+        }
+        all
+    }
+}
+
+/// Probability of less, by the signed root: `lower` and `higher` are the best log-likelihoods of a value at most and at least
+/// as large as the one in question. Where both are the largest there is, nothing tells on which side the truth lies.
+fn root(top: f64, lower: f64, higher: f64) -> f64 {
+    let of = |best: f64| (2.0 * (top - best)).max(0.0).sqrt();
+    normal_probability(of(higher) - of(lower))
 }
 
 /// The lag with its spread.
-pub fn reading(parts: &[Conditional]) -> Reading {
-    if parts.is_empty() {
+pub fn reading(parts: &[Profile]) -> Reading {
+    let ends = || parts.iter().flat_map(|p| [p.lags.first(), p.lags.last()]).flatten().map(|l| l.lag_s);
+    let range = (ends().fold(f64::INFINITY, f64::min), ends().fold(0.0, f64::max));
+    mixed(parts, range, |i, lag| parts[i].share_below(lag))
+}
+
+/// A coefficient with its spread, every lag that explains the record as well included.
+pub fn coefficient(parts: &[Profile], of: impl Fn(&AtLag) -> Option<Coefficient>) -> Reading {
+    let tables: Vec<(f64, Vec<(f64, f64, f64)>)> =
+        parts.iter().map(|p| (p.top(), p.coefficients(&of))).collect();
+    let near = || {
+        tables
+            .iter()
+            .flat_map(|(top, t)| t.iter().filter(move |c| c.0 > top - LOST))
+            .map(|c| (c.1, 6.0 * c.2))
+    };
+    let low = near().map(|(m, r)| m - r).fold(f64::INFINITY, f64::min);
+    let high = near().map(|(m, r)| m + r).fold(f64::NEG_INFINITY, f64::max);
+    mixed(parts, (low, high), |i, x| {
+        let (top, table) = &tables[i];
+        let best = |sign: f64| {
+            let loss = |mean: f64, deviation: f64| {
+                let off = (sign * (x - mean)).max(0.0) / deviation.max(f64::MIN_POSITIVE);
+                0.5 * off * off
+            };
+            table.iter().map(|(l, m, d)| l - loss(*m, *d)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        root(*top, best(-1.0), best(1.0))
+    })
+}
+
+/// Mean and standard deviation of a coefficient at the shortest lag of the tables.
+pub fn at_shortest(parts: &[Profile], of: impl Fn(&AtLag) -> Option<Coefficient>) -> Option<Coefficient> {
+    let (mut weights, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for p in parts {
+        let (mean, deviation) = p.lags.first().and_then(&of)?;
+        weights += p.weight;
+        sum += p.weight * mean;
+        squares += p.weight * (mean * mean + deviation * deviation);
+    }
+    let mean = sum / weights;
+    (weights > 0.0).then(|| (mean, (squares / weights - mean * mean).max(0.0).sqrt()))
+}
+
+fn mixed(parts: &[Profile], range: (f64, f64), below: impl Fn(usize, f64) -> f64) -> Reading {
+    let total: f64 = parts.iter().map(|p| p.weight).sum();
+    if parts.is_empty() || !range.0.is_finite() || !range.1.is_finite() {
         return Reading { value: f64::NAN, spread: Spread::Unknown };
     }
-    let total: f64 = parts.iter().map(|p| p.weight).sum();
-    let ends = || parts.iter().flat_map(|p| [p.below.first(), p.below.last()]).flatten().map(|p| p.0);
-    let range = (ends().fold(f64::INFINITY, f64::min), ends().fold(0.0, f64::max));
     read::of_distribution(
-        |lag| parts.iter().map(|p| p.weight * p.share_below(lag)).sum::<f64>() / total,
+        |x| parts.iter().enumerate().map(|(i, p)| p.weight * below(i, x)).sum::<f64>() / total,
         range,
     )
 }
@@ -88,35 +191,59 @@ pub fn reading(parts: &[Conditional]) -> Reading {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{DMatrix, DVector};
 
-    fn draw(lag_s: f64) -> Draw {
-        Draw {
-            shape: vec![lag_s],
-            noise: [1.0, 0.0, 0.0],
-            coefficients: DVector::zeros(1),
-            covariance: DMatrix::zeros(1, 1),
-        }
+    fn table(lags: impl Iterator<Item = (f64, f64, Coefficient)>) -> Profile {
+        let one = |(lag_s, log_likelihood, rate)| AtLag {
+            lag_s,
+            log_likelihood,
+            rate: Some(rate),
+            hysteresis: None,
+        };
+        Profile { weight: 1.0, lags: lags.map(one).collect() }
     }
 
     #[test]
-    fn a_normal_density_gives_the_interval_of_a_normal_whatever_was_drawn() {
-        // A chain that stood still on one side of the truth.
-        let draws: Vec<Draw> = (0..90).map(|i| draw(480.0 + f64::from(i))).collect();
-        let grid = grid(&draws, 4000.0);
-        let wide: Vec<f64> = grid.iter().map(|l| 300.0 + (l - grid[0]) * 6.0).collect();
-        let parts = conditionals(&draws, &wide, |at, _| -0.5 * ((wide[at] - 600.0) / 50.0).powi(2));
-        let found = reading(&parts);
+    fn a_normal_likelihood_gives_the_interval_of_a_normal() {
+        let lag = |i: i32| 300.0 + 10.0 * f64::from(i);
+        let log = |lag: f64| -0.5 * ((lag - 600.0) / 50.0).powi(2);
+        let found = reading(&[table((0..61).map(|i| (lag(i), log(lag(i)), (0.0, 1.0))))]);
         let interval = found.spread.interval(found.value, 0.95).unwrap();
-        assert!((found.value - 600.0).abs() < 1.0, "{found:?}");
-        assert!((interval.low - 502.0).abs() < 4.0 && (interval.high - 698.0).abs() < 4.0, "{interval:?}");
+        assert!((found.value - 600.0).abs() < 2.0, "{found:?}");
+        assert!((interval.low - 502.0).abs() < 3.0 && (interval.high - 698.0).abs() < 3.0, "{interval:?}");
+    }
+
+    #[test]
+    fn a_coefficient_that_follows_a_lag_nothing_tells_spans_all_of_it() {
+        // Every lag as likely, the coefficient in step with it from 0 to 4.
+        let parts = [table((0..=40).map(|i| (f64::from(i), 0.0, (0.1 * f64::from(i), 0.01))))];
+        let found = coefficient(&parts, |l| l.rate);
+        let i = found.spread.interval(found.value, 0.95).unwrap();
+        assert!((i.low + 0.0196).abs() < 0.003 && (i.high - 4.0196).abs() < 0.003, "{i:?}");
+        // Neither side of a limit within is shown.
+        for limit in [0.1, 1.0, 3.9] {
+            let above = found.spread.probability_above(found.value, limit).unwrap();
+            assert!((above - 0.5).abs() < 0.05, "{limit}: {above}");
+        }
+        assert_eq!(at_shortest(&parts, |l| l.rate).map(|c| c.0), Some(0.0));
+    }
+
+    #[test]
+    fn a_lag_that_is_told_leaves_the_coefficient_its_own_interval() {
+        let log = |i: i32| -0.5 * (f64::from(i - 20) / 0.05).powi(2);
+        let parts = [table((0..=40).map(|i| (f64::from(i), log(i), (0.1 * f64::from(i), 0.01))))];
+        let found = coefficient(&parts, |l| l.rate);
+        let i = found.spread.interval(found.value, 0.95).unwrap();
+        assert!((i.low - 1.98).abs() < 0.005 && (i.high - 2.02).abs() < 0.005, "{i:?}");
     }
 
     #[test]
     fn models_count_by_their_weights() {
-        let at = |lag: f64, weight: f64| Conditional { weight, below: vec![(lag, 0.0), (lag + 1.0, 1.0)] };
+        let at = |lag: f64, weight: f64| Profile {
+            weight,
+            ..table([(lag, 0.0, (0.0, 1.0)), (lag + 1.0, 0.0, (0.0, 1.0))].into_iter())
+        };
         let found = reading(&[at(100.0, 3.0), at(900.0, 1.0)]);
         let bound = |p: f64| found.spread.bound(found.value, p).unwrap();
-        assert!(bound(0.70) < 101.0 && bound(0.80) > 900.0, "{} {}", bound(0.70), bound(0.80));
+        assert!(bound(0.70) < 102.0 && bound(0.80) > 899.0, "{} {}", bound(0.70), bound(0.80));
     }
 }

@@ -5,7 +5,7 @@
 
 use super::course::{Course, Shape, Span, Terms};
 use super::gls::{Fitted, Modes, Solved};
-use super::lag::{self, Conditional};
+use super::lag::{self, AtLag, Profile};
 use super::sampler::{self, Draw, Range};
 use nalgebra::{DMatrix, DVector};
 
@@ -20,12 +20,10 @@ pub struct Posterior {
     pub best: Best,
     /// States, equally weighted.
     pub draws: Vec<Draw>,
-    /// Distributions of the lag at a part of the states.
-    pub lags: Vec<Conditional>,
+    /// What a part of the states says of every lag.
+    pub lags: Vec<Profile>,
     /// Longest lag that was tried, s.
     pub longest_lag_s: f64,
-    /// Twice the log-likelihood ratio of the best lag to none.
-    pub lag_evidence: f64,
 }
 
 /// The best fit.
@@ -145,16 +143,17 @@ pub fn sample(course: &Course, terms: Terms, span: Span, sweeps: usize) -> Optio
     if draws.is_empty() {
         return None;
     }
-    let none = Shape { lag_s: 0.0, ..best.shape };
-    let without = s.modes.fit(&s.data, &s.columns(&none), Some(best.fitted.noise))?;
-    let lag_evidence = 2.0 * (best.fitted.solved.log_likelihood - without.solved.log_likelihood);
-    let lags = lags(&s, &draws, longest, best.shape.play_deg_c);
-    Some(Posterior { terms, span, best, draws, lags, longest_lag_s: longest, lag_evidence })
+    let lags = lags(&s, &draws, longest, &best);
+    Some(Posterior { terms, span, best, draws, lags, longest_lag_s: longest })
 }
 
-/// Distributions of the lag at a part of the states, noise and play held.
-fn lags(s: &Search<'_>, draws: &[Draw], longest: f64, play_deg_c: f64) -> Vec<Conditional> {
-    let grid = lag::grid(draws, longest);
+/// What a part of the states says of every lag, noise and play held.
+fn lags(s: &Search<'_>, draws: &[Draw], longest: f64, best: &Best) -> Vec<Profile> {
+    let play_deg_c = best.shape.play_deg_c;
+    let profiled = |solved: &Solved| Some(solved.log_likelihood + 0.5 * solved.log_information()?);
+    let grid = lag::grid(draws, longest, |lag_s| {
+        profiled(&s.solve(&Shape { lag_s, play_deg_c }, &best.fitted.noise)?)
+    });
     // All columns but that of the play are those of the lag alone.
     let apart = Terms { hysteresis: false, ..s.terms };
     let play = Terms { order: 0, rate: false, hysteresis: s.terms.hysteresis };
@@ -163,10 +162,21 @@ fn lags(s: &Search<'_>, draws: &[Draw], longest: f64, play_deg_c: f64) -> Vec<Co
     };
     let common: Vec<Vec<Vec<f64>>> =
         grid.iter().map(|lag_s| modes(&apart, &Shape { lag_s: *lag_s, play_deg_c })).collect();
-    lag::conditionals(draws, &grid, |at, draw| {
-        let shape = Shape { lag_s: grid[at], ..Shape::of(&draw.shape, play_deg_c) };
-        let columns: Vec<Vec<f64>> = common[at].iter().cloned().chain(modes(&play, &shape)).collect();
-        s.modes.solve(&s.data, &columns, &draw.noise).map_or(f64::NEG_INFINITY, |s| s.log_likelihood)
+    lag::profiles(draws, &grid, |at, draw| {
+        let lag_s = *grid.get(at)?;
+        let shape = Shape { lag_s, ..Shape::of(&draw.shape, play_deg_c) };
+        let columns: Vec<Vec<f64>> = common.get(at)?.iter().cloned().chain(modes(&play, &shape)).collect();
+        let solved = s.modes.solve(&s.data, &columns, &draw.noise)?;
+        let coefficient = |at: Option<usize>| {
+            let i = at?;
+            Some((solved.coefficients[i], solved.covariance[(i, i)].max(0.0).sqrt()))
+        };
+        Some(AtLag {
+            lag_s,
+            log_likelihood: profiled(&solved)?,
+            rate: coefficient(s.terms.rate_at()),
+            hysteresis: coefficient(s.terms.hysteresis_at()),
+        })
     })
 }
 
@@ -216,7 +226,7 @@ pub fn average(models: Vec<(Posterior, f64)>, shown: usize) -> Option<Posterior>
         let kept = (model.draws.len() as f64 * weight / total).round().max(f64::from(u8::from(is_shown)));
         let step = model.draws.len() as f64 / kept.max(1.0);
         draws.extend((0..kept as usize).filter_map(|i| model.draws.get((i as f64 * step) as usize).cloned()));
-        lags.extend(model.lags.iter().map(|c| Conditional { weight, ..c.clone() }));
+        lags.extend(model.lags.iter().map(|c| Profile { weight, ..c.clone() }));
         if is_shown {
             whole = Some(model);
         }
