@@ -7,7 +7,10 @@
 //! mistake explains is a bias: it fails by its limit.
 //!
 //! Where no bound of the bias is known, a mean of another size than the Earth rate which one of the usual exchanges of
-//! unit (deg/h, deg/s, rad/s) brings to within an eighth of it is taken for that exchange; nothing else is judged.
+//! unit (deg/h, deg/s, rad/s) brings to within an eighth of it is taken for that exchange. Over temperature and while a unit
+//! warms up its bias is also seen to move, and one that moves little is thought to be little: three times the movement stands
+//! for the bound, and a mean that a reversed sign or an Earth rate taken out before explains is taken for that. Where the bias
+//! moves too much for this, the record says that the mean was not judged.
 
 use super::{Condition, Facts, GyroFact, id_of, mistakes, noise_level, record};
 use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
@@ -34,9 +37,7 @@ impl Condition for EarthRate {
 
 /// Largest bias that a unit is thought to have, deg/h.
 pub(super) fn bias_bound(gyro: &GyroFact, facts: &Facts<'_>) -> Option<f64> {
-    let kept =
-        facts.procedure.measurands.iter().any(|m| m.id.id == "static_bias" && m.earth_rate == Removal::Keep);
-    if kept {
+    if kept(facts) {
         return None;
     }
     let bound = facts.limits.limit("static_bias", &gyro.channel).and_then(|l| l.limit.largest_magnitude());
@@ -58,7 +59,9 @@ fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
         None => facts.checks.made("earth_rate", Some(&gyro.channel), "earth_rate"),
     }
     let (earth, _) = gyro.earth_deg_h?;
-    let Some(bound) = bias_bound(gyro, facts) else { return exchanged_unit(gyro, earth, facts) };
+    let Some(bound) = bias_bound(gyro, facts) else {
+        return exchanged_unit(gyro, earth, facts).or_else(|| by_movement(gyro, earth, facts));
+    };
     let agrees = agrees(gyro, facts)?;
     let mistakes = if agrees { vec![] } else { explain(gyro, earth, bound, facts) };
     let (status, key) = match (agrees, mistakes.is_empty()) {
@@ -123,6 +126,40 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
     }
     let required = Note::new("earth_rate.required_alone").with("earth", earth);
     Some(told(gyro, earth, (ConditionStatus::Invalid, "earth_rate.mistake", found), required, facts))
+}
+
+/// A reversed sign, or an Earth rate taken out before, told by how little the bias moves in a test over temperature or of the
+/// warm-up.
+fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let moves = gyro.moves_deg_h?;
+    let ids = ["bias_over_temperature_peak_to_peak", "turn_on_transient"];
+    let limits = ids.iter().filter_map(|id| facts.limits.limit(id, &gyro.channel)?.limit.largest_magnitude());
+    let bound = TYPICAL * limits.fold(moves, f64::max);
+    if kept(facts) || earth.abs() < LEAST_DEG_H {
+        return None;
+    }
+    let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
+    let u = 3.0 * gyro.mean_uncertainty_deg_h;
+    if earth.abs() < PLAIN * (bound + u) {
+        let status = (ConditionStatus::Remark, "earth_rate.not_judged", vec![]);
+        return Some(told(gyro, earth, status, required, facts));
+    }
+    let near = |value: f64| (gyro.mean_deg_h - value).abs() <= bound + u;
+    let found = if near(-earth) {
+        Note::new("earth_rate.sign")
+    } else if near(0.0) {
+        Note::new("earth_rate.taken_out")
+    } else {
+        return None;
+    };
+    let status = (ConditionStatus::Invalid, "earth_rate.mistake", vec![found]);
+    Some(told(gyro, earth, status, required, facts))
+}
+
+/// Whether the procedure states the bias with the Earth rate in it.
+fn kept(facts: &Facts<'_>) -> bool {
+    let mut measurands = facts.procedure.measurands.iter();
+    measurands.any(|m| m.id.id == "static_bias" && m.earth_rate == Removal::Keep)
 }
 
 /// The single mistakes that bring the mean into agreement.

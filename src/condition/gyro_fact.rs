@@ -21,6 +21,8 @@ pub struct GyroFact {
     pub angle_random_walk: Option<f64>,
     /// Step of the output, deg/h, where the values lie on a lattice.
     pub quantization_step_deg_h: Option<f64>,
+    /// How far the bias moves over temperature or while it warms up, deg/h, in a test of that.
+    pub moves_deg_h: Option<f64>,
     /// The largest step of the mean that noise does not explain.
     pub bias_step: Option<BiasStep>,
     /// A change of the noise between parts of the record.

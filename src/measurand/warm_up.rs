@@ -3,6 +3,7 @@
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, LowerLimit, UpperLimit};
 use crate::temperature::settled::SHOWN;
+use crate::temperature::start::{Missing, Start};
 use crate::temperature::warm_up::WarmUpFindings;
 use crate::text::{Arg, Note};
 
@@ -27,7 +28,31 @@ pub fn warm_up(found: &WarmUpFindings, channel: &str) -> Vec<Estimate> {
     let r = &found.transient;
     let spread = r.spread.clone();
     let transient = Estimate::measured("turn_on_transient", channel, r.value, "deg/h", spread, METHOD);
-    vec![transient.note(described.clone()), time(found, channel, described)]
+    let rows = [transient.note(described.clone()), time(found, channel, described)];
+    match found.start {
+        Start::Shown(_) => rows.into(),
+        Start::Declared => rows.map(|row| row.note(Note::new("thermal_start.declared"))).into(),
+        Start::NotShown(why) => rows.map(|row| unknown(row, why)).into(),
+    }
+}
+
+/// A row whose time counts from an unknown moment: it is at least what is seen from the first sample on.
+fn unknown(row: Estimate, why: Missing) -> Estimate {
+    let seen = row.value.and_then(|v| row.spread.bound(v, 1.0 - SHOWN)).filter(|v| *v > 0.0);
+    let least = row.lower_limit.or(seen.map(|value| LowerLimit { value, coverage: SHOWN }));
+    let least = least.filter(|_| row.id == "warm_up_time");
+    let mut out = Estimate::not_identifiable(row.id, &row.channel, None, row.unit, METHOD).at_least(least);
+    out.notes = row.notes;
+    out.note(match why {
+        Missing::NotAsked => Note::new("thermal_start.not_asked"),
+        Missing::NoValues => Note::new("thermal_start.no_values"),
+        Missing::OnAtFirst => Note::new("thermal_start.on_at_first"),
+        Missing::NoRise => Note::new("thermal_start.no_rise"),
+        Missing::WarmAtFirst(first, cold) => Note::new("thermal_start.warm_at_first")
+            .with("first", Arg::figures(first, 4))
+            .with("cold", Arg::Stated(cold)),
+        Missing::Late(late_s) => Note::new("thermal_start.late").with("late", Arg::figures(late_s, 4)),
+    })
 }
 
 fn time(found: &WarmUpFindings, channel: &str, described: Note) -> Estimate {

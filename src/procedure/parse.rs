@@ -15,7 +15,7 @@ use super::tables_limits::LIMITS_FILE;
 use super::{channel, reading, validate};
 use crate::keyed::inside;
 use crate::record::{ClauseRecord, WaiverRecord};
-use crate::temperature::{SegmentKind, StatedSegment, TemperatureTest, WarmUpTest};
+use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
 use std::path::{Path, PathBuf};
 
 /// Reads a procedure from its text. The second value holds every problem, warnings among them. With its folder, the
@@ -282,7 +282,22 @@ fn warm_up_test(section: &Section) -> WarmUpTest {
     WarmUpTest {
         band_deg_h: section.number("band").unwrap_or(0.0),
         final_share: section.number("final_share").unwrap_or(0.25),
+        start: started(section).unwrap_or(StartAsked::Nothing),
     }
+}
+
+fn started(section: &Section) -> Option<StartAsked> {
+    let channel = section.text("start_channel");
+    Some(match section.word("start")? {
+        "declared" => StartAsked::Declared,
+        "stamp" => StartAsked::Stamp { power_on_s: section.number("power_on").unwrap_or(0.0) },
+        "supply" => StartAsked::Supply { channel: channel? },
+        _ => StartAsked::Temperature {
+            channel: channel?,
+            cold_deg_c: section.number("cold")?,
+            tolerance_deg_c: section.number("cold_tolerance").unwrap_or(0.5),
+        },
+    })
 }
 
 fn measurand(section: &Section) -> Option<MeasurandSpec> {

@@ -154,9 +154,19 @@ static SEGMENT: TableSpec = TableSpec {
     ],
 };
 
+/// What can say when a unit was switched on.
+pub const STARTS: &[Word] = &[
+    ("declared", "the procedure: at the first row; reports say that it is declared, not seen"),
+    ("stamp", "the stamps: at `power_on`"),
+    ("supply", "a supply that comes on in the recording"),
+    ("temperature", "a thermometer that stands at `cold` first and rises"),
+];
+
 pub(super) static WARM_UP_TEST: TableSpec = TableSpec {
     name: "warm_up_test",
-    doc: "A test of the warm-up: the recording starts when the unit is switched on, and nothing is left out of it.",
+    doc: "A test of the warm-up, from switching on. The recording must show when that was, or the procedure declare it: a \
+          recording whose start is cut off shows a shorter warm-up. Where neither is so, no time is judged to be short \
+          enough.",
     keys: &[
         required(
             "band",
@@ -170,6 +180,38 @@ pub(super) static WARM_UP_TEST: TableSpec = TableSpec {
             "\"25 %\"",
             "\"25 %\"",
             "Share of the recording, at its end, whose mean is the final value.",
+        ),
+        optional(
+            "start",
+            Kind::Choice(STARTS),
+            "\"declared\"",
+            "What says when the unit was switched on; left out: nothing, and no time is judged to be short enough.",
+        ),
+        optional(
+            "start_channel",
+            Kind::Id,
+            "\"supply\"",
+            "With `start = \"supply\"` the channel of the supply, with `\"temperature\"` that of the thermometer on the unit.",
+        ),
+        with_default(
+            "power_on",
+            quantity("s", Range::NOT_NEGATIVE),
+            "\"0 s\"",
+            "\"0 s\"",
+            "With `start = \"stamp\"`: the stamp of switching on.",
+        ),
+        optional(
+            "cold",
+            quantity("degC", REACHABLE),
+            "\"23 degC\"",
+            "With `start = \"temperature\"`: temperature of the cold unit, that of the chamber.",
+        ),
+        with_default(
+            "cold_tolerance",
+            difference("degC", Range::POSITIVE),
+            "\"0.5 degC\"",
+            "\"0.5 degC\"",
+            "How far from `cold` the first temperature may be; the unit must warm up by three times as much.",
         ),
     ],
 };

@@ -225,6 +225,21 @@ fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'
         let at = root.table("conditions").map_or(0..0, |c| c.span_of("warm_up"));
         reader.error(&at, "check_temperature.warm_up", None);
     }
+    if let Some(test) = root.table("warm_up_test") {
+        let needed = match test.word("start") {
+            Some("supply") => Some(Role::Supply),
+            Some("temperature") => Some(Role::Temperature),
+            _ => None,
+        };
+        let is = |id: &str, role: Role| procedure.channel(id).is_some_and(|c| c.channel.role == role);
+        let named = test.text("start_channel");
+        if needed.is_some_and(|role| !named.as_deref().is_some_and(|id| is(id, role))) {
+            reader.error(&test.span_of("start"), "check_temperature.start_channel", None);
+        }
+        if needed == Some(Role::Temperature) && test.number("cold").is_none() {
+            reader.error(&test.span_of("start"), "check_temperature.cold", None);
+        }
+    }
     let moves = root.table("temperature_test").or(root.table("warm_up_test")).is_some();
     for section in root.tables("measurand") {
         let Some(measurand) = section.measurand("id") else { continue };

@@ -150,7 +150,9 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
             Some(evidence(procedure, channel, several, tau0_s, digest, step_deg_h))
         })
         .collect();
-    let (gyros, schedule) = thermal::examine(procedure, &channels, gyros, means.as_ref());
+    let has_stamps = request.use_stamps && channels.iter().any(|c| c.role == Role::Time);
+    let first_stamp_s = has_stamps.then(|| plan.start_s());
+    let (gyros, schedule) = thermal::examine(procedure, &channels, gyros, means.as_ref(), first_stamp_s);
     if gyros.iter().all(|g| g.digest.samples < 2) {
         return Err(RunError::Nothing(if window.usable_s > 0.0 || procedure.conditions.warm_up_s == 0.0 {
             about(request, "run_error.too_few")

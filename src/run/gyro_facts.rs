@@ -29,6 +29,7 @@ fn gyro(g: &GyroEvidence, found: &Found) -> GyroFact {
         longest_stretch_s: g.longest_stretch_s,
         angle_random_walk: g.identification.angle_random_walk.value,
         quantization_step_deg_h: facts.and_then(|f| f.values.quantization_step),
+        moves_deg_h: moves(g),
         bias_step: step.map(|s| crate::condition::BiasStep { time_s: s.time_s + start_s, ..s }),
         noise_change: change.map(|c| crate::condition::NoiseChange {
             loudest_s: c.loudest_s + start_s,
@@ -36,6 +37,15 @@ fn gyro(g: &GyroEvidence, found: &Found) -> GyroFact {
             ..c
         }),
     }
+}
+
+/// Range of the bias by the model of a test over temperature or of the warm-up, deg/h.
+fn moves(g: &GyroEvidence) -> Option<f64> {
+    let over = g.over_temperature.as_ref().and_then(|f| f.analysis.as_ref()).map(|a| &a.modelled);
+    let modelled = over.or_else(|| g.warm_up.as_ref().map(|w| &w.modelled))?;
+    let (low, high) =
+        modelled.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    Some(high - low).filter(|m| m.is_finite())
 }
 
 /// The columns of the channels.

@@ -76,7 +76,7 @@ impl Inside {
                 held.push((("supply".to_owned(), i), slot, TemperatureTrack::new(0.0, tau0_s, Some(band))));
             }
         }
-        let tracked = |c: &Channel| c.role.is_gyro() || c.role == Role::Temperature;
+        let tracked = |c: &Channel| c.role.is_gyro() || matches!(c.role, Role::Temperature | Role::Supply);
         let asked = procedure.temperature_test.is_some() || procedure.warm_up_test.is_some();
         let track = asked.then(|| {
             let slots: Vec<usize> =

@@ -10,6 +10,7 @@ use crate::record::{
     ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord, NoiseModelRecord,
     OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
 };
+use crate::temperature::start::Start;
 use crate::text::Note;
 use std::path::Path;
 
@@ -24,7 +25,11 @@ pub(super) fn record(
     let errors = errors(request);
     let rows = super::unshown::complete(request, &found.channels, rows);
     let judged = verdict::whole(&rows, &conditions, &errors);
-    let (verdict, summary) = verdict::with_idle_limits(judged, request.limits.idle.as_ref());
+    let (verdict, mut summary) = verdict::with_idle_limits(judged, request.limits.idle.as_ref());
+    let declared = |g: &GyroEvidence| g.warm_up.as_ref().is_some_and(|w| w.start == Start::Declared);
+    if errors.is_empty() && verdict != Verdict::None && found.gyros.iter().any(declared) {
+        summary.push(Note::new("summary.start_declared"));
+    }
     // What is said of noise at rest has no meaning while the temperature moves.
     let resting = || found.gyros.iter().filter(|_| found.at_rest());
     RunRecord {

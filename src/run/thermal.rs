@@ -7,15 +7,17 @@ use crate::procedure::Procedure;
 use crate::recording::Channel;
 use crate::temperature::compensation::Compensation;
 use crate::temperature::findings::{Findings, Schedule, findings, schedule};
+use crate::temperature::start::start;
 use crate::temperature::track::Means;
 use crate::temperature::warm_up;
 
-/// Adds what the tests showed to the evidence of each channel.
+/// Adds what the tests showed to the evidence of each channel. `first_stamp_s` is the first stamp, where there are stamps.
 pub(super) fn examine(
     procedure: &Procedure,
     channels: &[Channel],
     mut gyros: Vec<GyroEvidence>,
     means: Option<&(Vec<usize>, Means)>,
+    first_stamp_s: Option<f64>,
 ) -> (Vec<GyroEvidence>, Option<Schedule>) {
     let Some((slots, means)) = means else { return (gyros, None) };
     let position = |id: &str| {
@@ -35,8 +37,9 @@ pub(super) fn examine(
         }
     }
     if let Some(test) = &procedure.warm_up_test {
+        let start = start(&test.start, means, test.start.channel().and_then(position), first_stamp_s);
         for gyro in &mut gyros {
-            gyro.warm_up = position(&gyro.channel).and_then(|rate| warm_up::find(means, rate, test));
+            gyro.warm_up = position(&gyro.channel).and_then(|rate| warm_up::find(means, rate, test, start));
         }
     }
     (gyros, found)

@@ -16,9 +16,10 @@ pub mod sampler;
 pub mod segments;
 pub mod separate;
 pub mod settled;
+pub mod start;
 mod test;
 pub mod track;
 pub mod warm_up;
 pub mod zones;
 
-pub use test::{SegmentKind, StatedSegment, TemperatureTest, WarmUpTest};
+pub use test::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};

@@ -95,4 +95,44 @@ pub struct WarmUpTest {
     pub band_deg_h: f64,
     /// Share of the record at its end that gives the final value.
     pub final_share: f64,
+    /// What says when the unit was switched on.
+    pub start: StartAsked,
+}
+
+/// What says when a unit was switched on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StartAsked {
+    /// Nothing.
+    Nothing,
+    /// The procedure: at the first sample.
+    Declared,
+    /// The stamps: at one of them, s.
+    Stamp {
+        /// The stamp of switching on, s.
+        power_on_s: f64,
+    },
+    /// A supply that comes on.
+    Supply {
+        /// Its channel.
+        channel: String,
+    },
+    /// A thermometer on the unit, which is cold first and warms up.
+    Temperature {
+        /// Its channel.
+        channel: String,
+        /// Temperature of the cold unit, degC.
+        cold_deg_c: f64,
+        /// How far from it the first temperature may be, degC.
+        tolerance_deg_c: f64,
+    },
+}
+
+impl StartAsked {
+    /// The channel that is to show it.
+    pub fn channel(&self) -> Option<&str> {
+        match self {
+            StartAsked::Supply { channel } | StartAsked::Temperature { channel, .. } => Some(channel),
+            _ => None,
+        }
+    }
 }

@@ -7,6 +7,7 @@ use super::gls::{Fitted, Modes};
 use super::read::{self, Reading};
 use super::sampler::{self, Draw, Range};
 use super::settled::{Settled, settled};
+use super::start::Start;
 use super::test::WarmUpTest;
 use super::track::{Means, bridged};
 
@@ -22,6 +23,8 @@ const SWEEPS: usize = 500;
 pub struct WarmUpFindings {
     /// What was asked.
     pub test: WarmUpTest,
+    /// What is known of the start, which times count from.
+    pub start: Start,
     /// Time until the transient stays within the band, s.
     pub time: Reading,
     /// True when the transient never left the band.
@@ -56,8 +59,13 @@ fn columns(times: &[f64], constants: &[f64]) -> Vec<Vec<f64>> {
     constants.iter().map(|c| times.iter().map(|t| (-t / c).exp()).collect()).collect()
 }
 
-/// Evaluates a record that starts when the unit is switched on.
-pub fn find(means: &Means, rate: usize, test: &WarmUpTest) -> Option<WarmUpFindings> {
+/// Evaluates a record from switching on, or from its first sample where that is not shown.
+pub fn find(means: &Means, rate: usize, test: &WarmUpTest, start: Start) -> Option<WarmUpFindings> {
+    let since = match start {
+        Start::Shown(from_s) if from_s > 0.0 => Some(means.since(from_s)),
+        _ => None,
+    };
+    let means = since.as_ref().unwrap_or(means);
     let coarse = means.merged(means.len().div_ceil(BLOCKS).max(1));
     let (y, _) = bridged(coarse.values.get(rate)?)?;
     let n = y.len();
@@ -114,6 +122,7 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest) -> Option<WarmUpFindi
     let upper = time.spread.bound(time.value, 0.975).unwrap_or(length_s);
     Some(WarmUpFindings {
         test: test.clone(),
+        start,
         always_inside: upper <= 0.0,
         too_short: upper > (1.0 - test.final_share) * length_s,
         settled,

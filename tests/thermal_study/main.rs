@@ -3,6 +3,7 @@
 //! The short study runs with the tests; the long one:
 //! `SAGNAC_RUNS=1000 cargo test --release --test thermal_study -- --ignored --nocapture`
 
+mod ambiguity;
 mod chamber;
 mod samples;
 mod settling;
@@ -17,7 +18,8 @@ use sagnac::temperature::findings::{Findings, findings, schedule};
 use sagnac::temperature::gls::Modes;
 use sagnac::temperature::read::of_distribution;
 use sagnac::temperature::track::Track;
-use sagnac::temperature::{TemperatureTest, WarmUpTest, warm_up};
+use sagnac::temperature::start::Start;
+use sagnac::temperature::{StartAsked, TemperatureTest, WarmUpTest, warm_up};
 use std::collections::BTreeMap;
 use tally::Tally;
 
@@ -190,8 +192,8 @@ fn warm_up_of(seed: u64) -> Option<(f64, f64, warm_up::WarmUpFindings)> {
     let y = switched_on(&decays, 12.5, model, dt, count, seed);
     let mut track = Track::new(1, dt);
     track.push(0, &y, 0);
-    let asked = WarmUpTest { band_deg_h: 0.02, final_share: 0.25 };
-    let f = warm_up::find(&track.finish().unwrap(), 0, &asked)?;
+    let asked = WarmUpTest { band_deg_h: 0.02, final_share: 0.25, start: StartAsked::Declared };
+    let f = warm_up::find(&track.finish().unwrap(), 0, &asked, Start::Declared)?;
     let at = |t: f64| decays.iter().map(|(a, c)| a * (-t / c).exp()).sum::<f64>();
     let length = dt * count as f64;
     let end: f64 =

@@ -2,7 +2,8 @@
 
 use crate::chamber::{Noise, warm_up as switched_on};
 use crate::{first, runs};
-use sagnac::temperature::WarmUpTest;
+use sagnac::temperature::start::Start;
+use sagnac::temperature::{StartAsked, WarmUpTest};
 use sagnac::temperature::track::Track;
 use sagnac::temperature::warm_up::{WarmUpFindings, find};
 
@@ -13,8 +14,8 @@ fn found(decay: (f64, f64), length_s: f64, n: f64, seed: u64) -> WarmUpFindings 
     let y = switched_on(&[decay], 12.5, noise, dt, (length_s / dt) as usize, seed);
     let mut track = Track::new(1, dt);
     track.push(0, &y, 0);
-    let asked = WarmUpTest { band_deg_h: 0.02, final_share: 0.25 };
-    find(&track.finish().unwrap(), 0, &asked).unwrap()
+    let asked = WarmUpTest { band_deg_h: 0.02, final_share: 0.25, start: StartAsked::Declared };
+    find(&track.finish().unwrap(), 0, &asked, Start::Declared).unwrap()
 }
 
 /// The row of the time, and whether it is bounded from below only.
