@@ -22,6 +22,7 @@ mod steadiness;
 mod supply;
 pub mod table;
 pub mod table_motion;
+pub mod thermometer;
 mod temperature;
 pub mod temperature_track;
 mod unit_named;

@@ -32,16 +32,17 @@ pub struct Alignment {
     pub factor: Option<Combination>,
 }
 
-/// Evaluates a channel: what the turns do not show says why. `vertical` is the Earth rate along the outer axis, deg/h.
-pub fn evaluate(steps: &Steps, channel: &str, gyro: usize, vertical: f64) -> Alignment {
-    fit(steps, channel, gyro, vertical).unwrap_or_else(|why| Alignment {
+/// Evaluates a channel: what the turns do not show says why. `vertical` is the Earth rate along the outer axis, deg/h, and
+/// `squareness` the standard uncertainty of the right angle between the axes of the table, rad.
+pub fn evaluate(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64) -> Alignment {
+    fit(steps, channel, gyro, vertical, squareness).unwrap_or_else(|why| Alignment {
         channel: channel.to_owned(),
         tilts: [Err(why.clone()), Err(why)],
         factor: None,
     })
 }
 
-fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64) -> Result<Alignment, Note> {
+fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64) -> Result<Alignment, Note> {
     // A step is one row: the Earth's horizontal rotation averages out over whole turns and not within one, and at rest it
     // depends on where the outer axis stopped.
     let largest = steps.list.iter().map(|s| s.outer.abs()).filter(|r| r.is_finite()).fold(0.0, f64::max);
@@ -95,7 +96,11 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64) -> Result<Align
         step: (0..n).collect(),
     };
     let components = [grid.white()];
-    let fixed = DMatrix::identity(n, n) * (1e-12 * y.variance()).max(f64::MIN_POSITIVE);
+    // Axes that are not square add the same share of the outer rate at every inner angle: common to all rows, it goes out
+    // between angles that stand opposite, and stays where they do not.
+    let common = column(&outer) * squareness;
+    let fixed = &common * common.transpose()
+        + DMatrix::identity(n, n) * (1e-12 * y.variance()).max(f64::MIN_POSITIVE);
     let fit = reml::fit(&y, &x, &fixed, &components).ok_or_else(few)?;
     let of = |k: usize| at[k].map(|column| fit.coefficient(column));
     let tilt = |k: usize| of(k).ok_or_else(of_inner);
@@ -103,15 +108,13 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64) -> Result<Align
 }
 
 impl Alignment {
-    /// The estimate of one id; `None` for an id that is not given here. The squareness of the axes of the table enters
-    /// by `alignment_uncertainty`.
+    /// The estimate of one id; `None` for an id that is not given here.
     pub fn estimate(&self, id: &'static str, unit: &'static str, setup: &Setup) -> Option<Estimate> {
         let which = IDS.iter().position(|known| *known == id)?;
         let method = "outer_axis_turns";
         Some(match &self.tilts[which] {
             Ok(tilt) => {
-                let others =
-                    [1e3 * setup.alignment_uncertainty_rad, 1e3 * setup.rate_uncertainty * tilt.value.abs()];
+                let others = [1e3 * setup.rate_uncertainty * tilt.value.abs()];
                 Estimate::measured(
                     id,
                     &self.channel,

@@ -180,6 +180,15 @@ impl ScaleFactor {
         self.of_line(1).standard
     }
 
+    /// Output of the line where the input of the table and this rate, deg/h, cancel one another: offset and slope of the
+    /// line are correlated, and near the rates of the test they hardly scatter together.
+    pub fn output_without(&self, rate_deg_h: f64) -> Combination {
+        let weights: Vec<f64> =
+            (0..self.line.ncols()).map(|i| self.line[(0, i)] - rate_deg_h * self.line[(1, i)]).collect();
+        let found = self.response.of_levels(&weights);
+        Combination { value: self.bias - rate_deg_h * self.factor, ..found }
+    }
+
     /// The estimate of one id; `None` for an id that is not given here.
     pub fn estimate(
         &self,

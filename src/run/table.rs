@@ -8,8 +8,9 @@ use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
 use crate::condition::checks::CheckLog;
 use crate::condition::table::{ChannelFact, TableFacts, judge, judge_scale};
 use crate::condition::table_motion::Settling;
+use crate::condition::thermometer::{Thermometer, judge_scale_of_temperature};
 use crate::condition::{Facts, judge_all};
-use crate::estimate::{Estimate, Spread};
+use crate::estimate::Estimate;
 use crate::figure::Figure;
 use crate::ingest::Plan;
 use crate::noise::tau_grid::TauGrid;
@@ -19,7 +20,7 @@ use crate::rate_table::blocks::{Blocks, Collector};
 use crate::rate_table::inner_axis::InnerAxis;
 use crate::rate_table::scale_factor::{self, ScaleFactor};
 use crate::rate_table::settling::Unsettled;
-use crate::rate_table::{Setup, TableRun, stamps};
+use crate::rate_table::{Setup, TableRun, combine, stamps};
 use crate::record::{ConditionRecord, OptionRecord};
 use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
@@ -49,6 +50,8 @@ pub(super) fn execute(
     }
     let scales = evaluated.iter().filter_map(|(_, c)| c.as_ref());
     conditions.extend(scales.filter_map(|c| judge_scale(&c.channel, c.factor)));
+    conditions
+        .extend(temperature(request, setup, &run, &wanted).and_then(|t| judge_scale_of_temperature(&t)));
     conditions.extend(usual_conditions(request, &found));
     let others: Vec<Others> = evaluated
         .iter()
@@ -63,7 +66,7 @@ pub(super) fn execute(
             }
             let given = !setup.sine || !super::table_others::SINE_IDS.contains(&spec.id.id);
             if given && let Some(estimate) = channel.estimate(spec.id.id, spec.id.unit, setup, &run.steps) {
-                let estimate = without_earth(procedure, channel, estimate);
+                let estimate = without_earth(procedure, channel, setup, estimate);
                 rows.push(verdict::row(&estimate, request.limits, procedure));
             }
         }
@@ -92,18 +95,44 @@ pub(super) fn execute(
 }
 
 /// The bias of the line without the Earth rate along the axis, where the site tells it.
-fn without_earth(procedure: &Procedure, channel: &ScaleFactor, mut estimate: Estimate) -> Estimate {
+fn without_earth(
+    procedure: &Procedure,
+    channel: &ScaleFactor,
+    setup: &Setup,
+    mut estimate: Estimate,
+) -> Estimate {
     let Some(site) = procedure.site.as_ref().filter(|_| estimate.id == "scale_factor_bias") else {
         return estimate;
     };
     let earth = site.earth_rate_along(&channel.channel);
-    estimate.value = estimate.value.map(|v| v - channel.factor * earth.value);
-    if let Spread::StudentT { standard_uncertainty, dof } = &mut estimate.spread {
-        let total = standard_uncertainty.hypot(earth.uncertainty);
-        *dof = (*dof * (total / *standard_uncertainty).powi(4)).min(1e9);
-        *standard_uncertainty = total;
-    }
+    let found = channel.output_without(earth.value);
+    let others = [channel.factor * earth.uncertainty, setup.rate_uncertainty * earth.value];
+    estimate.value = Some(found.value);
+    estimate.spread = combine::spread(&found, 1.0, &others);
     estimate.note(Note::new("on_table.earth_removed").with("earth", Arg::figures(earth.value, 5)))
+}
+
+/// The thermometer of the test, where the procedure states no temperature that its readings are judged by.
+fn temperature(
+    request: &Request<'_>,
+    setup: &Setup,
+    run: &TableRun,
+    wanted: &dyn Fn(&str) -> bool,
+) -> Option<Thermometer> {
+    let procedure = request.procedure;
+    let is_it = |id: &str| setup.temperature.as_ref().is_none_or(|t| t == id);
+    let spec =
+        procedure.channels.iter().find(|c| c.channel.role == Role::Temperature && is_it(&c.channel.id))?;
+    let id = &spec.channel.id;
+    let readings = run.blocks.list.iter().map(|b| b.temperature).filter(|t| t.is_finite());
+    let (sum, n) = readings.fold((0.0, 0.0), |(s, n), t| (s + t, n + 1.0));
+    let stated = procedure.conditions.temperatures.iter().any(|c| c.channel == *id);
+    (n > 0.0 && !stated).then(|| Thermometer {
+        channel: id.clone(),
+        unit: spec.unit_in_file.clone(),
+        mean_deg_c: sum / n,
+        counts: wanted("scale_factor_temperature_sensitivity"),
+    })
 }
 
 /// Rates of the other axis that differ.

@@ -78,8 +78,18 @@ pub(super) fn finish(
         seen.len()
     };
     conditions.insert(0, crate::condition::table::judge_stretches(setup.known.len(), missing));
-    let own = turns.iter().flat_map(|t| &t.table).filter(|t| t.output == t.axis);
-    conditions.extend(own.filter_map(|t| judge_scale(&t.output, t.factor.value)));
+    // Along the axis or across; a factor that noise alone may make says nothing.
+    let of_turns = turns.iter().flat_map(|t| &t.table).map(|t| (&t.output, t.factor));
+    let mut named: Vec<&str> = vec![];
+    for (channel, factor) in positions.iter().map(|p| (&p.channel, p.factor)).chain(of_turns) {
+        let certain = (factor.value.abs() - 4.0 * factor.standard).max(0.0);
+        if !named.contains(&channel.as_str())
+            && let Some(found) = judge_scale(channel, certain).and_then(|_| judge_scale(channel, factor.value))
+        {
+            named.push(channel);
+            conditions.push(found);
+        }
+    }
     conditions.extend(table::usual_conditions(request, &found));
     let mut rows = Vec::new();
     for spec in &procedure.measurands {

@@ -60,7 +60,9 @@ impl Others {
                     line.and_then(|l| dead_zone::evaluate(&run.steps, gyro, &l.response, &channel, setup))
                 })
                 .flatten(),
-            alignment: any(alignment::IDS).then(|| alignment::evaluate(&run.steps, &channel, gyro, vertical)),
+            alignment: any(alignment::IDS).then(|| {
+                alignment::evaluate(&run.steps, &channel, gyro, vertical, setup.alignment_uncertainty_rad)
+            }),
             channel,
         }
     }

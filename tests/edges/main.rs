@@ -15,13 +15,20 @@
 mod case;
 mod noise_source;
 mod page;
+mod rate_table;
+mod small_rates;
 mod study;
+mod tilts;
 
 use case::Family;
 use sagnac::ids::MEASURANDS;
 
 /// Every family. One more: one file and one line.
-static FAMILIES: &[&Family] = &[];
+static FAMILIES: &[&Family] = &[
+    &rate_table::FAMILY,
+    &small_rates::FAMILY,
+    &tilts::FAMILY,
+];
 
 /// True once the families of all measurands stand in [`FAMILIES`].
 const COMPLETE: bool = false;

@@ -253,7 +253,7 @@ fn tilts(runs: u64, first: u64) -> [Count; 2] {
         ];
         let run = run_of(&channels, 1.0 / bench.hz, &setup);
         let vertical = EARTH * bench.latitude.to_radians().sin();
-        let found = alignment::evaluate(&run.steps, "rate", 0, vertical);
+        let found = alignment::evaluate(&run.steps, "rate", 0, vertical, 0.0);
         let gain = 1e3 * (1.0 + 1e-6 * bench.error_ppm);
         for (i, (id, truth)) in
             [("misalignment_x", bench.tilt.0), ("misalignment_y", bench.tilt.1)].into_iter().enumerate()

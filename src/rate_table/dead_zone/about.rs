@@ -44,6 +44,8 @@ pub struct Means {
     pub likely: Vec<Likely>,
     /// The steps as wholes.
     pub steps: Wholes,
+    /// Strength of the white noise where every rate has a mean of its own.
+    pub white: f64,
 }
 
 /// A noise that the test may have.
@@ -102,6 +104,7 @@ pub fn means(
                 covariance: of_levels(&fit.covariance),
                 likely: noises.into_iter().map(of_steps).collect(),
                 steps: wholes(design, &whole),
+                white: strength,
             });
         }
     }
@@ -137,7 +140,7 @@ fn whole(step: &[usize]) -> DMatrix<f64> {
 
 /// The noises that the rows may have, white noise alone first. The noise about the columns has one further kind at most; the
 /// strength of all together is that of the restricted likelihood.
-fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<Likely>> {
+pub fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<Likely>> {
     let of_white = &design.quick.first()?.1;
     let white = white.max(1e-3 * design.fixed.trace() / of_white.trace()).max(f64::MIN_POSITIVE);
     let alone = of_white + &design.fixed / white;
@@ -191,7 +194,7 @@ fn with_zone(design: &Design, points: &Points) -> Option<Vec<DVector<f64>>> {
         .flat_map(|w| {
             // What noise inside the loop rounds off is no drift either.
             let rounded = NOISES.map(|n| Shape { kind: Kind::Rounded, half_width: w, noise: n * w });
-            [Kind::Subtractive, Kind::Gap].map(|kind| Shape::clean(kind, w)).into_iter().chain(rounded)
+            Kind::CLEAN.map(|kind| Shape::clean(kind, w)).into_iter().chain(rounded)
         })
         .map(|shape| points.at_any_centre(shape))
         .min_by(|a, b| a.least.total_cmp(&b.least))?;

@@ -1,10 +1,14 @@
 //! Response to rates near zero: dead zone, threshold, resolution.
 //!
-//! Two static models are held against the straight line: *subtractive*, D = sgn(x)·max(|x| − δ, 0), and *gap*,
-//! D = x·[|x| > δ], each about a centre that is fitted too, for the zone lies where the unit believes to be at rest. The
-//! half width δ has the interval of its likelihood over the means of the rates with their covariance, slope and offset at
-//! their best, kind averaged over and centre too, over the places where a unit is at rest and any other (`place`). The
-//! noise is that about the zone that suits best (`about`), of all strengths that the test allows.
+//! Static forms are held against the straight line: *subtractive*, D = sgn(x)·max(|x| − δ, 0), *gap*, D = x·[|x| > δ],
+//! and *locked*, D = sgn(x)·√(x² − δ²) outside, each about a centre that is fitted too, for the zone lies where the unit
+//! believes to be at rest. The half width δ of a form has the interval of its likelihood over the means of the rates with
+//! their covariance, slope and offset at their best, averaged over the places where a unit is at rest and any other
+//! (`place`). Between two rates of the test the edge of a gap moves nothing: all of that stretch belongs to its interval.
+//! The noise is that about the zone that suits best (`about`), of all strengths that the test allows.
+//!
+//! Forms that fit nearly as well as the best one are not told apart, and the interval covers all of them (`covering`). Each
+//! is tested by noise that it cannot enlarge (`fits`): where none fits, nothing is stated of a zone.
 //!
 //! Outside a zone the output follows the rate by the scale factor. What a test of scale factor said of it may be used: a
 //! line that may have any slope takes up most of a small zone. A zone is claimed when a line with the noise of this test
@@ -13,10 +17,12 @@
 //!
 //! Noise inside the loop carries the input in and out of the zone and rounds it off (*rounded*): the subtractive response
 //! is averaged over normal noise σ. Where that fits better than any zone without noise, δ and σ are estimated together;
-//! otherwise σ is bounded, and the interval of δ is averaged over it too.
+//! otherwise σ is bounded, and the interval of δ covers it too.
 
 mod about;
 mod chance;
+mod covering;
+mod fits;
 mod place;
 mod points;
 mod rounded;
@@ -29,11 +35,13 @@ use super::model::Response;
 use super::steps::Steps;
 use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::text::{Arg, Note};
+use covering::covering;
+use fits::{FITS_FROM, Fits};
 use nalgebra::{DMatrix, DVector};
 use points::{Left, Points};
-use rounded::Rounded;
+use rounded::{Rounded, SHOWN_FROM};
 use shape::{Kind, Shape};
-use widths::Widths;
+use widths::{FORMS, WITH_NOISE, Widths};
 
 /// Ids that this evaluation gives.
 pub const IDS: &[&str] = &["dead_zone", NOISE, "threshold", "resolution"];
@@ -61,20 +69,24 @@ pub struct DeadZone {
     pub offset: f64,
     /// The zone that is drawn.
     shape: Shape,
-    /// (normal score, half width), ascending.
+    /// (normal score, half width), ascending; of all forms that fit.
     curve: Vec<(f64, f64)>,
-    /// Upper bound of 95 %, deg/h.
-    bound: f64,
+    /// Upper bounds of 95 % of half width and threshold, deg/h.
+    bound: (f64, f64),
+    /// Probability that chance leaves as much of the best form, where none fits.
+    unexplained: Option<f64>,
+    /// Forms that fit beside the one that is drawn.
+    others: usize,
     /// Zone with noise inside the loop, where that is shown.
     rounded: Option<Rounded>,
-    /// (normal score, input at which half comes through), ascending; of all kinds where none is shown to be it.
+    /// (normal score, input at which half comes through), ascending; of all forms that fit.
     threshold: Vec<(f64, f64)>,
     /// Upper bound of 95 % of the noise inside the loop where it is not shown, deg/h.
     noise_bound: Option<f64>,
     /// Smallest rate beside the middle of the test, and the widest distance of neighbours where a zone was looked for, deg/h,
     /// where what fits between rates makes the bound.
     between: Option<(f64, f64)>,
-    /// Smallest change of rate that the output followed by half, deg/h.
+    /// Smallest change of rate outside the zone that the output followed by half wherever it was tried, deg/h.
     resolution: Option<f64>,
     /// Relative standard uncertainty of the scale factor outside, where it was used.
     scale_factor_known: Option<f64>,
@@ -107,48 +119,105 @@ pub fn evaluate(
     let design = Design::new(steps, gyro, setup, &response.extras)?;
     let about = about::means(&design, |means, covariance| Some(made(means, covariance)?.0))?;
     let (points, of_points): (Points, Vec<_>) = made(&about.means, about.covariance.clone())?;
-    let (line, _, _) = points.cost(|x| x);
+    let (line, line_slope, _) = points.cost(|x| x);
     let widths = Widths::new(&points)?;
     let gain = line - widths.least_clean();
     let known = setup.scale_factor_uncertainty;
     let shown = chance::shows_a_zone(&about, known, |m, v| Some(made(m, v)?.0), gain, widths.tried())?;
+    let fits = Fits::new(&design, about.white, known.is_some(), |m, v| Some(made(m, v)?.0))?;
     let closer = if shown { rounded::closer(&points, &widths.with_noise) } else { None };
     let with_noise = closer.as_ref().filter(|r| r.shown(widths.least_clean()));
-    let (value, curve, Left { mut shape, centre, slope, offset, .. }) = match with_noise {
-        Some(r) => (middle_of(&r.half_width), r.half_width.clone(), r.best),
-        None => {
-            let (value, curve) = widths.curve();
-            (value, curve, widths.chosen())
+    let forms = forms(&widths, closer.as_ref(), &fits);
+    let explained = forms.iter().map(|f| f.chance).chain([fits.of_line()].into_iter().filter(|_| !shown));
+    let unexplained = Some(explained.fold(0.0, f64::max)).filter(|p| *p < FITS_FROM);
+    let alike: Vec<&Form> = forms.iter().filter(|f| f.chance >= FITS_FROM || unexplained.is_some()).collect();
+    let best = alike.first().map_or(forms.first()?.left, |f| f.left);
+    let (curve, threshold) = match (with_noise, &closer) {
+        (Some(r), _) => (r.half_width.clone(), r.threshold.clone()),
+        _ => {
+            let curves: Vec<_> = alike.iter().map(|f| widths.curve(f.number)).collect();
+            let thresholds: Vec<_> =
+                alike.iter().zip(&curves).map(|(f, c)| f.threshold(c, closer.as_ref())).collect();
+            (covering(&curves), covering(&thresholds))
         }
     };
-    shape.half_width = if shown { value } else { 0.0 };
-    // A subtractive zone lets half through at twice its width, a gap everything at its edge.
-    let times = if shape.kind == Kind::Gap { 1.0 } else { 2.0 };
-    let threshold = match (with_noise, &closer) {
-        (Some(r), _) => r.threshold.clone(),
-        (None, Some(r)) => {
-            let clean: Vec<(f64, f64)> = curve.iter().map(|(z, w)| (*z, times * w)).collect();
-            rounded::mixture(&clean, &r.threshold, widths.share_with_noise())
-        }
-        (None, None) => curve.iter().map(|(z, w)| (*z, times * w)).collect(),
+    let Left { mut shape, centre, slope, offset, .. } = with_noise.map_or(best, |r| r.best);
+    let value = Some(middle_of(&curve)).filter(|_| shown && unexplained.is_none());
+    shape.half_width = value.unwrap_or(0.0);
+    let rounds = alike.iter().any(|f| f.number == WITH_NOISE);
+    let bound = (widths.bound(), widths.bound_of_threshold());
+    let zone = match (value, unexplained) {
+        (_, Some(_)) => 0.0,
+        (None, _) => bound.1,
+        (Some(_), _) => Spread::Curve(threshold.clone()).bound(0.0, 0.95).unwrap_or(0.0),
     };
     Some(DeadZone {
         channel: channel.to_owned(),
-        half_width: shown.then_some(value),
+        half_width: value,
         centre,
         slope,
         offset,
         shape,
         curve,
-        bound: widths.bound(),
+        bound,
+        unexplained,
+        others: alike.len().saturating_sub(1),
         between: widths.bounded_by_a_gap().then(|| points.spacing()),
-        noise_bound: closer.as_ref().map(|r| r.bound(widths.least_clean_over_centres())),
-        rounded: with_noise.cloned(),
+        noise_bound: closer.as_ref().filter(|_| rounds).map(|r| r.bound(widths.least_clean_over_centres())),
+        rounded: with_noise.filter(|_| unexplained.is_none()).cloned(),
         threshold,
-        resolution: resolution(response, slope),
+        resolution: resolution(response, line_slope, (centre, zone)),
         scale_factor_known: setup.scale_factor_uncertainty,
         points: of_points,
     })
+}
+
+/// A form that explains the means nearly as well as the best one.
+struct Form {
+    number: usize,
+    /// Its best zone.
+    left: Left,
+    /// Probability that chance leaves as much.
+    chance: f64,
+}
+
+impl Form {
+    /// The curve of the threshold from that of the half width.
+    fn threshold(&self, curve: &[(f64, f64)], closer: Option<&Rounded>) -> Vec<(f64, f64)> {
+        match (Kind::CLEAN.get(self.number), closer) {
+            (None, Some(r)) => r.threshold.clone(),
+            (kind, _) => {
+                let times = kind.map_or(2.0, |k| k.threshold_over_width());
+                curve.iter().map(|(z, w)| (*z, times * w)).collect()
+            }
+        }
+    }
+}
+
+/// The forms that the means do not tell from the best one, that first.
+fn forms(widths: &Widths, closer: Option<&Rounded>, fits: &Fits) -> Vec<Form> {
+    let of_noise = || {
+        let coarse = widths.with_noise.iter().min_by(|a, b| a.least.total_cmp(&b.least)).copied();
+        closer.map(|r| r.best).into_iter().chain(coarse).min_by(|a, b| a.least.total_cmp(&b.least))
+    };
+    let left = |form: usize| if form == WITH_NOISE { of_noise() } else { widths.best(form).copied() };
+    let mut all: Vec<(usize, Left)> = (0..FORMS).filter_map(|form| Some((form, left(form)?))).collect();
+    all.sort_by(|a, b| a.1.least.total_cmp(&b.1.least));
+    let least = all.first().map_or(f64::INFINITY, |f| f.1.least);
+    all.retain(|f| f.1.least <= least + SHOWN_FROM);
+    all.into_iter()
+        .map(|(number, left)| {
+            // Where the edge of a gap lies between two rates, neither it nor the centre moves anything.
+            let unknowns = if number == WITH_NOISE {
+                3.0
+            } else if left.shape.kind == Kind::Gap {
+                1.0
+            } else {
+                2.0
+            };
+            Form { number, left, chance: fits.of_zone(left.shape, left.centre, unknowns) }
+        })
+        .collect()
 }
 
 /// The median of a curve.
@@ -156,34 +225,42 @@ fn middle_of(curve: &[(f64, f64)]) -> f64 {
     Spread::Curve(curve.to_vec()).bound(0.0, 0.5).unwrap_or(0.0)
 }
 
-/// The smallest difference of neighbouring rates that the output followed by half, shown with 95 %.
-fn resolution(response: &Response, slope: f64) -> Option<f64> {
+/// The smallest difference of rates that the output followed by half, shown with 95 %, wherever the test has it beyond a
+/// distance from a centre: what is followed in one place only is followed by chance, or by the grid of a read-out.
+fn resolution(response: &Response, slope: f64, (centre, beyond): (f64, f64)) -> Option<f64> {
     let x = &response.levels;
-    let mut least: Option<f64> = None;
-    for i in 1..x.len() {
-        let change = x[i] - x[i - 1];
+    let followed = |i: usize, j: usize| {
         let mut weights = vec![0.0; x.len()];
-        (weights[i], weights[i - 1]) = (1.0, -1.0);
+        (weights[j], weights[i]) = (1.0, -1.0);
         let found = response.of_levels(&weights);
-        let followed = found.value + response.slope * change;
-        let low = followed / slope - 1.645 * (found.standard / slope).abs();
-        if low >= 0.5 * change && least.is_none_or(|l| change < l) {
-            least = Some(change);
-        }
-    }
-    least
+        let change = x[j] - x[i];
+        let low = (found.value + response.slope * change) / slope - 1.645 * (found.standard / slope).abs();
+        low >= 0.5 * change
+    };
+    let outside = |i: usize, j: usize| x[i] - centre >= 0.999 * beyond || centre - x[j] >= 0.999 * beyond;
+    (1..x.len()).find_map(|apart| {
+        let pairs: Vec<(usize, usize)> =
+            (0..x.len() - apart).map(|i| (i, i + apart)).filter(|(i, j)| outside(*i, *j)).collect();
+        let all = pairs.len() >= 2 && pairs.iter().all(|(i, j)| followed(*i, *j));
+        all.then(|| pairs.iter().map(|(i, j)| x[*j] - x[*i]).fold(0.0, f64::max))
+    })
 }
 
 impl DeadZone {
     /// The estimate of one id; `None` for an id that is not given here.
     pub fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
+        if let Some(chance) = self.unexplained.filter(|_| id != "resolution") {
+            let found = if IDS.contains(&id) { self.at_most(id, unit, None) } else { return None };
+            return Some(
+                found.note(Note::new("dead_zone.no_form").with("percent", Arg::figures(100.0 * chance, 2))),
+            );
+        }
         let found = match id {
             "dead_zone" => match self.half_width {
                 Some(value) => self.of_zone(id, unit, value, &self.curve),
-                None => self.bounded(id, unit, self.bound),
+                None => self.bounded(id, unit, self.bound.0),
             },
-            // What is not shown lets half through at twice the half width at the latest.
-            "threshold" if self.half_width.is_none() => self.bounded(id, unit, 2.0 * self.bound),
+            "threshold" if self.half_width.is_none() => self.bounded(id, unit, self.bound.1),
             "threshold" if middle_of(&self.threshold) <= 0.0 => {
                 let value = Spread::Curve(self.threshold.clone()).bound(0.0, 0.95).unwrap_or(0.0);
                 self.at_most(id, unit, Some(value)).note(Note::new("dead_zone_noise.half_of_any"))
@@ -230,10 +307,16 @@ impl DeadZone {
         let key = match self.shape.kind {
             Kind::Subtractive => "dead_zone.subtractive",
             Kind::Gap => "dead_zone.gap",
+            Kind::Locked => "dead_zone.locked",
             Kind::Rounded => "dead_zone_noise.rounded",
         };
-        Estimate::measured(id, &self.channel, value, unit, Spread::Curve(curve.to_vec()), METHOD)
-            .note(Note::new(key).with("centre", Arg::figures(self.centre, 3)))
+        let found = Estimate::measured(id, &self.channel, value, unit, Spread::Curve(curve.to_vec()), METHOD)
+            .note(Note::new(key).with("centre", Arg::figures(self.centre, 3)));
+        if self.others > 0 && self.rounded.is_none() {
+            found.note(Note::new("dead_zone.forms").with("n", self.others))
+        } else {
+            found
+        }
     }
 
     /// The noise inside the loop.
@@ -243,6 +326,9 @@ impl DeadZone {
                 let spread = Spread::Curve(r.noise.clone());
                 Estimate::measured(NOISE, &self.channel, middle_of(&r.noise), unit, spread, METHOD)
                     .note(Note::new("dead_zone_noise.shown"))
+            }
+            None if self.half_width.is_some() && self.noise_bound.is_none() => {
+                self.at_most(NOISE, unit, None).note(Note::new("dead_zone_noise.other_form"))
             }
             None if self.half_width.is_some() => {
                 self.at_most(NOISE, unit, self.noise_bound).note(Note::new("dead_zone_noise.not_shown"))

@@ -8,6 +8,12 @@ use std::cell::OnceCell;
 /// Centres tried.
 pub const CENTRES: usize = 41;
 
+/// Divisions of a stretch of centres between which no rate changes sides.
+const THIRDS: usize = 8;
+
+/// Cost above the least from which a stretch of centres is not looked into.
+const NEAR: f64 = 30.0;
+
 /// What one zone leaves.
 #[derive(Debug, Clone, Copy)]
 pub struct Left {
@@ -145,6 +151,47 @@ impl Points {
         Left { shape, least: best.0, centre: best.1, slope: best.2, offset: best.3, over_centres }
     }
 
+    /// A gap of a half width at the centre that suits it best. Which rates lie inside is all that the outputs tell of it:
+    /// centres between which none changes sides are one stretch, and every stretch is searched, however narrow.
+    pub fn gap(&self, half_width: f64) -> Left {
+        let mut found = self.at_any_centre(Shape::clean(Kind::Gap, half_width));
+        let (middle, largest) = self.range();
+        let (low, high) = (middle - 0.5 * largest, middle + 0.5 * largest);
+        let sides = self.x.iter().flat_map(|x| [x - half_width, x + half_width]);
+        let mut ends: Vec<f64> = sides.filter(|c| (low..high).contains(c)).chain([low, high]).collect();
+        ends.sort_by(f64::total_cmp);
+        let shape = found.shape;
+        let at = |c: f64| (self.cost(|x| shape.of(x - c)), c);
+        let stretches: Vec<[((f64, f64, f64), f64); 3]> = ends
+            .windows(2)
+            .filter(|w| w[1] - w[0] > 1e-9 * largest)
+            .map(|w| [0.5, 1e-6, 1.0 - 1e-6].map(|part| at(w[0] + part * (w[1] - w[0]))))
+            .collect();
+        let least_of =
+            |s: &[((f64, f64, f64), f64); 3]| s.iter().map(|t| t.0.0).fold(f64::INFINITY, f64::min);
+        let near = stretches.iter().map(least_of).fold(found.least, f64::min) + NEAR;
+        for s in stretches.iter().filter(|s| least_of(s) <= near) {
+            // The cost is that of a straight line outside, smooth over a stretch: thirds close in on its least.
+            let (mut a, mut b) = (s[1].1, s[2].1);
+            let mut tried = s.to_vec();
+            for _ in 0..THIRDS {
+                let (c, d) = (at(a + (b - a) / 3.0), at(b - (b - a) / 3.0));
+                if c.0.0 <= d.0.0 {
+                    b = d.1
+                } else {
+                    a = c.1
+                }
+                tried.extend([c, d]);
+            }
+            for ((cost, slope, offset), centre) in tried {
+                if cost < found.least {
+                    found = Left { least: cost, centre, slope, offset, ..found };
+                }
+            }
+        }
+        found
+    }
+
     /// The line that fits best, over the standard uncertainties.
     pub fn line(&self) -> Option<DVector<f64>> {
         let (line, data) = (self.design(|x| x), self.data());
@@ -169,7 +216,7 @@ impl Points {
         let centre = |i: usize| middle + 0.5 * largest * (2.0 * i as f64 / fine as f64 - 1.0);
         // Tried half widths grow with the square of their number.
         let place = self.place();
-        let (weights, columns): (Vec<f64>, Vec<[DVector<f64>; 2]>) = [Kind::Subtractive, Kind::Gap]
+        let (weights, columns): (Vec<f64>, Vec<[DVector<f64>; 2]>) = Kind::CLEAN
             .into_iter()
             .flat_map(|k| {
                 widths.iter().enumerate().skip(1).step_by(8).map(move |(i, w)| (k, *w, 1.0 / i as f64))

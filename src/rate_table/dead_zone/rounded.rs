@@ -6,7 +6,7 @@
 
 use super::points::{Left, Points};
 use super::shape::{Kind, Shape};
-use crate::estimate::{Spread, normal_quantile};
+use crate::estimate::normal_quantile;
 
 /// Noise over half width, largest; its inverse is the least.
 const MOST_NOISE: f64 = 8.0;
@@ -21,7 +21,7 @@ const FINE: (usize, usize) = (40, 24);
 const NEAR: f64 = 20.0;
 
 /// Gain of −2 ln L over a zone without noise from which the noise is said to be shown: by chance in one test of a hundred.
-const SHOWN_FROM: f64 = 5.41;
+pub const SHOWN_FROM: f64 = 5.41;
 
 /// What the rates show of a zone with noise inside the loop.
 #[derive(Debug, Clone)]
@@ -149,27 +149,6 @@ fn curve(mut values: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     found
 }
 
-/// The curve of a quantity that is as the second one says in this share of the confidence, and otherwise as the first.
-pub fn mixture(first: &[(f64, f64)], second: &[(f64, f64)], share: f64) -> Vec<(f64, f64)> {
-    let below = |curve: &[(f64, f64)], value: f64| {
-        let above = Spread::Curve(curve.to_vec()).probability_above(value, value).unwrap_or(0.5);
-        match (curve.first(), curve.last()) {
-            (Some(least), _) if value < least.1 => 0.0,
-            (_, Some(most)) if value > most.1 => 1.0,
-            _ => 1.0 - above,
-        }
-    };
-    let mut values: Vec<f64> = first.iter().chain(second).map(|p| p.1).collect();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    values
-        .into_iter()
-        .map(|v| ((1.0 - share) * below(first, v) + share * below(second, v), v))
-        .filter(|(p, _)| (1e-5..=1.0 - 1e-5).contains(p))
-        .map(|(p, v)| (normal_quantile(p), v))
-        .collect()
-}
-
 impl Rounded {
     /// Whether the noise explains what a zone without leaves.
     pub fn shown(&self, least_without: f64) -> bool {
@@ -182,23 +161,5 @@ impl Rounded {
         let within = self.over_noise.iter().filter(|p| p.1 <= least + SHOWN_FROM);
         let least_tried = self.over_noise.first().map_or(0.0, |p| p.0);
         within.map(|p| p.0).fold(least_tried, f64::max)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_mixture_has_the_quantiles_of_its_parts() {
-        let normal = |middle: f64| -> Vec<(f64, f64)> {
-            (-30..=30).map(|i| (0.1 * f64::from(i), middle + 0.1 * f64::from(i))).collect()
-        };
-        let far = Spread::Curve(mixture(&normal(0.0), &normal(100.0), 0.25));
-        // The median of the whole is the quantile of two thirds of the first part.
-        assert!((far.bound(0.0, 0.5).unwrap() - normal_quantile(2.0 / 3.0)).abs() < 0.02);
-        assert!((far.bound(0.0, 0.95).unwrap() - 100.0 - normal_quantile(0.8)).abs() < 0.02);
-        let alike = Spread::Curve(mixture(&normal(1.0), &normal(1.0), 0.4));
-        assert!((alike.bound(0.0, 0.975).unwrap() - 2.96).abs() < 0.02);
     }
 }

@@ -13,8 +13,24 @@ pub enum Kind {
     Subtractive,
     /// The output is none inside and whole outside.
     Gap,
+    /// The output is none inside and the root of x² − δ² outside: two beams that are locked to one another.
+    Locked,
     /// Subtractive, with noise inside the loop that carries the input in and out of the zone.
     Rounded,
+}
+
+impl Kind {
+    /// The kinds without noise inside the loop.
+    pub const CLEAN: [Kind; 3] = [Kind::Subtractive, Kind::Gap, Kind::Locked];
+
+    /// The input at which half comes through, in half widths; of the kinds without noise.
+    pub fn threshold_over_width(self) -> f64 {
+        match self {
+            Kind::Gap => 1.0,
+            Kind::Locked => 2.0 / 3f64.sqrt(),
+            Kind::Subtractive | Kind::Rounded => 2.0,
+        }
+    }
 }
 
 /// A dead zone about zero.
@@ -46,6 +62,7 @@ impl Shape {
                     0.0
                 }
             }
+            Kind::Locked => x.signum() * (x * x - delta * delta).max(0.0).sqrt(),
             Kind::Rounded => {
                 let part = |u: f64| self.noise * beyond(u / self.noise);
                 part(x - delta) - part(-x - delta)
@@ -56,8 +73,9 @@ impl Shape {
     /// The input at which half comes through; 0 where half of any does.
     pub fn threshold(&self) -> f64 {
         match self.kind {
-            Kind::Subtractive => 2.0 * self.half_width,
-            Kind::Gap => self.half_width,
+            Kind::Subtractive | Kind::Gap | Kind::Locked => {
+                self.kind.threshold_over_width() * self.half_width
+            }
             Kind::Rounded => {
                 // The share that comes through grows with the input, and is a half at twice the half width at the latest.
                 let (mut low, mut high) = (0.0, 2.0 * self.half_width);
@@ -150,5 +168,11 @@ mod tests {
         assert!((zone.of(t) - 0.5 * t).abs() < 1e-9 && t > 0.2 && t < 0.4, "{t}");
         assert_eq!(rounded(0.1, 0.2).threshold(), 0.0);
         assert_eq!(Shape::clean(Kind::Subtractive, 0.1).threshold(), 0.2);
+        for kind in Kind::CLEAN {
+            let zone = Shape::clean(kind, 0.3);
+            let t = zone.threshold();
+            assert!(zone.of(0.999 * t) < 0.4995 * t && zone.of(1.001 * t) > 0.5 * t, "{kind:?}");
+            assert_eq!(zone.of(0.2), 0.0);
+        }
     }
 }

@@ -5,20 +5,32 @@ use super::shape::{Kind, Shape};
 use super::{WIDTHS, rounded};
 use crate::estimate::normal_quantile;
 
-/// Normal score of the ends of a stretch that is all as likely: an interval of 95 % holds it.
-const EDGE_SCORE: f64 = 1.96;
+/// Normal score up to which a stretch that is all as likely spreads, and that of its ends: at a risk of a tenth or less a
+/// bound is its end.
+const STRETCH: (f64, f64) = (1.2816, 1.6449);
+
+/// Halvings by which an end of a stretch is found.
+const HALVINGS: usize = 24;
+
+/// Forms that are tried: the kinds without noise inside the loop, and zones with noise.
+pub const FORMS: usize = Kind::CLEAN.len() + 1;
+
+/// Number of the form with noise inside the loop.
+pub const WITH_NOISE: usize = FORMS - 1;
+
+/// Number of the gap.
+const GAP: usize = 1;
 
 /// The half widths tried, and what they leave.
 pub struct Widths {
     widths: Vec<f64>,
     /// Zones without noise inside the loop, by kind.
-    clean: [Vec<Left>; 2],
+    clean: [Vec<Left>; Kind::CLEAN.len()],
     /// Zones with noise, and −2 ln of their mean likelihood over all noises for every width.
     pub with_noise: Vec<Left>,
     over_noise: Vec<f64>,
-    /// −2 ln of the mean likelihood of the kinds.
-    costs: Vec<f64>,
-    best: usize,
+    /// Half widths of gaps, from and to, that the test does not tell from the likeliest.
+    stretch: (f64, f64),
 }
 
 /// So many half widths from none up to a part of half the range of the rates, the closer the smaller they are.
@@ -31,25 +43,16 @@ impl Widths {
     pub fn new(points: &Points) -> Option<Widths> {
         let (_, largest) = points.range();
         let widths: Vec<f64> = tried(largest, WIDTHS).collect();
-        let clean = [Kind::Subtractive, Kind::Gap]
-            .map(|kind| widths.iter().map(|w| points.at_any_centre(Shape::clean(kind, *w))).collect());
+        let clean = Kind::CLEAN.map(|kind| {
+            let left = |w: &f64| match kind {
+                Kind::Gap => points.gap(*w),
+                _ => points.at_any_centre(Shape::clean(kind, *w)),
+            };
+            widths.iter().map(left).collect::<Vec<Left>>()
+        });
         let (over_noise, with_noise) = rounded::over_noise(points, &widths);
-        let mut found = Widths { widths, clean, with_noise, over_noise, costs: vec![], best: 0 };
-        // Which kind it is, is not known either.
-        found.costs = (0..WIDTHS)
-            .map(|i| {
-                let kinds = found.of_kinds(i);
-                let least = kinds.into_iter().fold(f64::INFINITY, f64::min);
-                let mean = kinds.iter().map(|k| (0.5 * (least - k)).exp()).sum::<f64>() / kinds.len() as f64;
-                least - 2.0 * mean.ln()
-            })
-            .collect();
-        found.best = (0..WIDTHS).min_by(|a, b| found.costs[*a].total_cmp(&found.costs[*b]))?;
-        Some(found)
-    }
-
-    fn of_kinds(&self, i: usize) -> [f64; 3] {
-        [self.clean[0][i].over_centres, self.clean[1][i].over_centres, self.over_noise[i]]
+        let stretch = stretch(points, &widths, &clean[GAP])?;
+        Some(Widths { widths, clean, with_noise, over_noise, stretch })
     }
 
     /// The half widths, ascending.
@@ -57,88 +60,123 @@ impl Widths {
         &self.widths
     }
 
-    /// Share of the likelihood that zones with noise inside the loop have.
-    pub fn share_with_noise(&self) -> f64 {
-        let lowest = self.costs[self.best];
-        // Tried half widths lie the farther apart the larger they are.
-        let of = |costs: &dyn Fn(usize) -> f64| -> f64 {
-            (0..WIDTHS).map(|i| i as f64 * (0.5 * (lowest - costs(i))).exp()).sum()
-        };
-        let [a, b, with] = [0, 1, 2].map(|k| of(&|i| self.of_kinds(i)[k]));
-        let all = a + b + with;
-        if all > 0.0 { with / all } else { 0.0 }
+    /// −2 ln of the likelihood of a form at each half width. A gap of any half width in its stretch is as likely: it is
+    /// taken at its best centre, and every other form at all centres where it may lie.
+    fn cost(&self, form: usize, i: usize) -> f64 {
+        match form {
+            WITH_NOISE => self.over_noise[i],
+            GAP => self.clean[GAP][i].least,
+            _ => self.clean[form][i].over_centres,
+        }
     }
 
-    /// The better zone without noise at the likeliest half width.
-    pub fn chosen(&self) -> Left {
-        let [a, b] = [self.clean[0][self.best], self.clean[1][self.best]];
-        if a.over_centres <= b.over_centres { a } else { b }
+    /// The likeliest half width of a form without noise.
+    pub fn best(&self, form: usize) -> Option<&Left> {
+        self.clean.get(form)?.iter().min_by(|a, b| a.least.total_cmp(&b.least))
     }
 
-    /// −2 ln L of the best zone without noise inside the loop.
+    /// −2 ln L of the best zone of a form.
+    pub fn least(&self, form: usize) -> f64 {
+        let all = if form == WITH_NOISE { &self.with_noise } else { &self.clean[form] };
+        all.iter().map(|l| l.least).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same of all forms without noise inside the loop.
     pub fn least_clean(&self) -> f64 {
-        self.clean.iter().flatten().map(|v| v.least).fold(f64::INFINITY, f64::min)
+        (0..WITH_NOISE).map(|f| self.least(f)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The same of its mean likelihood over all centres.
+    /// The same of the mean likelihood over all centres.
     pub fn least_clean_over_centres(&self) -> f64 {
         self.clean.iter().flatten().map(|v| v.over_centres).fold(f64::INFINITY, f64::min)
     }
 
-    /// Upper bound of 95 %: for the kind that allows the wider zone.
+    /// Upper bound of 95 %: for the form that allows the wider zone.
     pub fn bound(&self) -> f64 {
-        (0..3).map(|k| self.bound_of(k)).fold(0.0, f64::max)
+        (0..FORMS).map(|form| self.bound_of(form)).fold(0.0, f64::max)
+    }
+
+    /// The same of the input at which half comes through.
+    pub fn bound_of_threshold(&self) -> f64 {
+        let times = |form: usize| Kind::CLEAN.get(form).map_or(2.0, |k| k.threshold_over_width());
+        (0..FORMS).map(|form| times(form) * self.bound_of(form)).fold(0.0, f64::max)
     }
 
     /// True when that is a gap, which may lie between two rates.
     pub fn bounded_by_a_gap(&self) -> bool {
-        self.bound_of(1) >= self.bound()
+        self.bound_of(GAP) >= self.bound()
     }
 
-    fn bound_of(&self, kind: usize) -> f64 {
+    fn bound_of(&self, form: usize) -> f64 {
+        if form == GAP {
+            return self.stretch.1;
+        }
         let z = normal_quantile(0.95);
-        let costs = |i: usize| self.of_kinds(i)[kind];
+        let costs = |i: usize| self.cost(form, i);
         let lowest = (0..WIDTHS).map(costs).fold(f64::INFINITY, f64::min);
         let last = (0..WIDTHS).rev().find(|i| costs(*i) <= lowest + z * z).unwrap_or(0);
         self.widths[(last + 1).min(WIDTHS - 1)]
     }
 
-    /// The likeliest half width, and (normal score, half width), ascending.
-    pub fn curve(&self) -> (f64, Vec<(f64, f64)>) {
-        let cost = |i: usize| self.costs[i];
-        let (best, widths) = (self.best, &self.widths);
+    /// (normal score, half width) of a form, ascending.
+    pub fn curve(&self, form: usize) -> Vec<(f64, f64)> {
+        let cost = |i: usize| self.cost(form, i);
+        let best = (0..WIDTHS).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(0);
         let lowest = cost(best);
-        // Between two rates of the test the edge of a gap moves nothing: all of that stretch is as likely.
-        let alike = |i: &usize| cost(*i) <= lowest + 0.2;
-        let first = (0..=best).rev().take_while(alike).last().unwrap_or(best);
-        let end = (best..WIDTHS).take_while(alike).last().unwrap_or(best);
-        let flat = if end > first + 3 { EDGE_SCORE } else { 0.0 };
-        let value = if flat > 0.0 { 0.5 * (widths[first] + widths[end]) } else { widths[best] };
+        let (low, high) = self.stretch;
+        let mut inside = (form == GAP).then(|| {
+            // A hair apart, for no stretch of a curve is level.
+            let hair = 1e-6 * (high - low).max(1e-6 * high);
+            let (spread, end) = STRETCH;
+            [(-end, low), (-spread, low + hair), (spread, high - hair), (end, high)]
+        });
         let mut curve: Vec<(f64, f64)> = Vec::new();
-        for (i, w) in widths.iter().enumerate() {
+        for (i, w) in self.widths.iter().enumerate() {
+            if form == GAP && *w >= low {
+                curve.extend(inside.take().into_iter().flatten());
+                if *w <= high {
+                    continue;
+                }
+            }
+            let below = if form == GAP { *w < low } else { i < best };
             // Beyond a second dip all up to it belongs to the interval.
-            let beyond = if i < best {
+            let beyond = if below {
                 (0..=i).map(cost).fold(f64::INFINITY, f64::min)
             } else {
                 (i..WIDTHS).map(cost).fold(f64::INFINITY, f64::min)
             };
-            let away = (beyond - lowest).max(0.0) + flat * flat;
-            let z = if flat > 0.0 && (first..=end).contains(&i) {
-                flat * (2.0 * (w - widths[first]) / (widths[end] - widths[first]) - 1.0)
-            } else if i < best {
-                -away.sqrt()
-            } else {
-                away.sqrt()
-            };
+            let away = (beyond - lowest).max(0.0).sqrt();
+            let z = if below { -away } else { away };
             match curve.last_mut() {
                 Some((last, width)) if z <= *last + 1e-9 => {
-                    if i > best && z > *last - 1e-9 {
+                    if !below && z > *last - 1e-9 {
                         *width = *w;
                     }
                 }
                 _ => curve.push((z, *w)),
             }
         }
-        (value, curve)
+        curve.extend(inside.take().into_iter().flatten());
+        curve
     }
+}
+
+/// The half widths of gaps from the least to the largest that costs no more than the likeliest but for what a bound of
+/// 95 % allows. Between the last silent rate and the first that answers the edge moves nothing.
+fn stretch(points: &Points, widths: &[f64], gaps: &[Left]) -> Option<(f64, f64)> {
+    let z = normal_quantile(0.95);
+    let most = gaps.iter().map(|g| g.least).fold(f64::INFINITY, f64::min) + z * z;
+    let first = gaps.iter().position(|g| g.least <= most)?;
+    let last = gaps.iter().rposition(|g| g.least <= most)?;
+    // The end between a half width that is allowed and one that is not.
+    let end = |mut inside: f64, mut outside: f64| {
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            if points.gap(middle).least <= most { inside = middle } else { outside = middle }
+        }
+        outside
+    };
+    let low = if first == 0 { 0.0 } else { end(widths[first], widths[first - 1]) };
+    let high = if last + 1 == widths.len() { widths[last] } else { end(widths[last], widths[last + 1]) };
+    Some((low, high))
 }

@@ -9,28 +9,34 @@ use crate::text::{Arg, Note};
 pub struct Bound {
     /// Smallest and largest value that is possible.
     pub values: (f64, f64),
-    /// Largest change in an hour beyond one turn, of angles: what accumulates is bounded by its rate alone.
-    pub rate: Option<f64>,
+    /// Largest change from one sample to the next: at once, and what an hour between them adds.
+    pub change: Option<(f64, f64)>,
 }
 
 /// The bounds of a role, with their reasons; `None` where nothing is known of the quantity.
 pub fn bound(role: Role) -> Option<Bound> {
-    let within = |low: f64, high: f64| Some(Bound { values: (low, high), rate: None });
+    let within = |low: f64, high: f64| Some(Bound { values: (low, high), change: None });
     let no_more = |largest: f64| within(-largest, largest);
+    let turning = |fastest_deg_s: f64| {
+        let (largest, change) =
+            (fastest_deg_s * 3600.0, (AT_ONCE_DEG_S * 3600.0, SHARPEST_DEG_S2 * 3600.0 * 3600.0));
+        Some(Bound { values: (-largest, largest), change: Some(change) })
+    };
     match role {
         // The fastest spin gyros read 50 000 deg/s; above, a sample is a broken number or has another unit.
-        Role::Rate | Role::AngleIncrement | Role::AccumulatedAngle => no_more(FASTEST_GYRO_DEG_S * 3600.0),
+        Role::Rate | Role::AngleIncrement | Role::AccumulatedAngle => turning(FASTEST_GYRO_DEG_S),
         // The fastest rate tables turn at 10 000 deg/s.
-        Role::TableRate | Role::OuterRate => no_more(FASTEST_TABLE_DEG_S * 3600.0),
+        Role::TableRate | Role::OuterRate => turning(FASTEST_TABLE_DEG_S),
         // A table turns on and on: only its rate is bounded.
         Role::TableAngle => Some(Bound {
             values: (f64::NEG_INFINITY, f64::INFINITY),
-            rate: Some(FASTEST_TABLE_DEG_S * 3600.0 * 3600.0),
+            // Twice a turn: an angle that starts again while it turns, and readings taken between samples.
+            change: Some((2.0 * TURN_ARCSEC, FASTEST_TABLE_DEG_S * 3600.0 * 3600.0)),
         }),
         // Absolute zero, and what no electronics survives.
         Role::Temperature => within(-273.15, 1000.0),
         // Supplies of gyros are some volts to some tens of volts.
-        Role::Supply => no_more(10_000.0),
+        Role::Supply => no_more(1000.0),
         // 20 T: beyond the largest magnets that hold a unit.
         Role::MagneticField => no_more(20_000.0),
         // Rms of an acceleration: no shaker gives 10 000 g. Small negative numbers are the noise of a sensor about zero.
@@ -44,6 +50,12 @@ const FASTEST_GYRO_DEG_S: f64 = 50_000.0;
 
 /// Fastest table, deg/s.
 const FASTEST_TABLE_DEG_S: f64 = 10_000.0;
+
+/// Sharpest angular acceleration that a unit is held at while it is tested, deg/s².
+const SHARPEST_DEG_S2: f64 = 100_000.0;
+
+/// Change of a rate that a spike makes at once, from one end of a common range to the other, deg/s.
+const AT_ONCE_DEG_S: f64 = 5000.0;
 
 /// One turn, arcsec: angles start again after it.
 const TURN_ARCSEC: f64 = 1_296_000.0;
@@ -84,13 +96,12 @@ impl Plausible {
                 w.latest = None;
             }
             let (low, high) = w.bound.values;
-            if w.bound.rate.is_none() && values.iter().all(|v| !(*v < low || *v > high)) {
+            if w.bound.change.is_none() && values.iter().all(|v| !(*v < low || *v > high)) {
                 continue;
             }
             for (i, &value) in values.iter().enumerate().filter(|(_, v)| v.is_finite()) {
                 let step = w.latest.map_or(0.0, |l| (value - l).abs());
-                // Twice a turn: an angle that starts again while it turns, and readings taken between samples.
-                let most = w.bound.rate.map(|r| 2.0 * TURN_ARCSEC + r * interval_s / 3600.0);
+                let most = w.bound.change.map(|(at_once, hourly)| at_once + hourly * interval_s / 3600.0);
                 w.latest = Some(value);
                 let out = value < low || value > high;
                 if !out && most.is_none_or(|most| step <= most) {
@@ -99,7 +110,11 @@ impl Plausible {
                 w.count += 1;
                 let at = slab.time_s + i as f64 * interval_s;
                 log.push("implausible", Some(&w.id), Some(at), slab.first_row + i as u64, 1, || {
-                    if out { beyond(w.role, value, low, high) } else { leap(step, most.unwrap_or(0.0)) }
+                    if out {
+                        beyond(w.role, value, low, high)
+                    } else {
+                        leap(w.role, step, most.unwrap_or(0.0))
+                    }
                 });
             }
         }
@@ -115,13 +130,23 @@ fn beyond(role: Role, value: f64, low: f64, high: f64) -> Note {
     Note::new("plausible.value")
         .with("value", Arg::figures(value, 6))
         .with("bound", Arg::figures(if value < low { low } else { high }, 6))
-        .with("unit", role.internal_unit().unwrap_or(""))
+        .with("unit", unit_of(role))
 }
 
-fn leap(step_arcsec: f64, most_arcsec: f64) -> Note {
+/// Unit of the values that are watched: outputs are rates by then, whatever was recorded.
+fn unit_of(role: Role) -> &'static str {
+    if role.is_gyro() { "deg/h" } else { role.internal_unit().unwrap_or("") }
+}
+
+fn leap(role: Role, step: f64, most: f64) -> Note {
+    if role != Role::TableAngle {
+        return Note::new("plausible.leap")
+            .with("step_deg_s", Arg::figures(step / 3600.0, 6))
+            .with("most_deg_s", Arg::figures(most / 3600.0, 6));
+    }
     Note::new("plausible.angle")
-        .with("step_deg", Arg::figures(step_arcsec / 3600.0, 6))
-        .with("most_deg", Arg::figures(most_arcsec / 3600.0, 6))
+        .with("step_deg", Arg::figures(step / 3600.0, 6))
+        .with("most_deg", Arg::figures(most / 3600.0, 6))
         .with("rate_deg_s", FASTEST_TABLE_DEG_S)
 }
 
@@ -157,8 +182,11 @@ mod tests {
 
     #[test]
     fn values_that_no_sensor_shows_are_counted() {
-        assert_eq!(watched(Role::Rate, vec![0.0, 1.7e8, 1.9e8, -1e30, f64::NAN]), 2);
+        assert_eq!(watched(Role::Rate, vec![1.7e8, 1.9e8, -1e30, f64::NAN]), 2);
         assert_eq!(watched(Role::TableRate, vec![3.5e7, 3.7e7]), 1);
+        // From one end of a range to the other: a spike of a unit of 2000 deg/s, and numbers that are none.
+        assert_eq!(watched(Role::Rate, vec![0.0, 7.2e6, -7.2e6, 0.0]), 0);
+        assert_eq!(watched(Role::Rate, vec![0.0, 9e7, -9e7, 0.0]), 3);
         assert_eq!(watched(Role::Temperature, vec![-274.0, -55.0, 125.0]), 1);
         assert_eq!(watched(Role::Supply, vec![5.0, 28.0, 1e9]), 1);
     }

@@ -195,6 +195,9 @@ fn scale_factor(seen: &Seen) -> Note {
     }
 }
 
+/// Largest angle that a unit is turned by without a table, deg: a hundred turns.
+const LARGEST_TURN_DEG: f64 = 36_000.0;
+
 fn known_angle(page: &mut Page, seen: &Seen) {
     // Numbers that no sensor shows sum up to no angle.
     if seen.report.integrity.implausible > 0 {
@@ -203,7 +206,10 @@ fn known_angle(page: &mut Page, seen: &Seen) {
     let moved = |g: &&Gyro| matches!(g.motion, Motion::Moved { .. });
     let swing = |g: &Gyro| g.angle.max_deg - g.angle.min_deg;
     let most = seen.gyros.iter().filter(moved).max_by(|a, b| swing(a).total_cmp(&swing(b)));
-    let Some(most) = most.filter(|_| table_moves(seen).is_none()) else { return };
+    // Nor does an output that sums up to more than anyone turns a unit by without a table.
+    let Some(most) = most.filter(|g| table_moves(seen).is_none() && swing(g) <= LARGEST_TURN_DEG) else {
+        return;
+    };
     let note = Note::new("inspect.known_angle_is")
         .with("name", most.name.as_str())
         .with("swing", plain(swing(most), 4));
