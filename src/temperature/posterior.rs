@@ -37,16 +37,23 @@ pub struct Best {
 
 /// Lags tried as a start, shares of the longest.
 const LAGS: [f64; 10] = [0.0, 0.004, 0.012, 0.03, 0.06, 0.1, 0.18, 0.3, 0.5, 0.85];
-/// Plays tried as a start, shares of the span.
-const PLAYS: [f64; 4] = [0.01, 0.03, 0.06, 0.12];
+/// Plays tried as a start, shares of the widest.
+const PLAYS: [f64; 4] = [0.07, 0.2, 0.4, 0.8];
 /// Range of the play, shares of the span.
 const PLAY_RANGE: (f64, f64) = (0.005, 0.15);
+/// Play that a body has over any span, degC, and the share of the span that it is not wider than.
+const ANY_PLAY: (f64, f64) = (6.0, 0.3);
 /// Longest lag that is thought of, s.
 const LONGEST_LAG_S: f64 = 7200.0;
 
 /// The longest lag that a record is searched for, s.
 pub fn longest_lag_s(course: &Course) -> f64 {
     LONGEST_LAG_S.min(course.len() as f64 * course.block_s / 8.0)
+}
+
+/// Widest play, degC, over a span of so many degC.
+fn widest_play(width: f64) -> f64 {
+    (PLAY_RANGE.1 * width).max(ANY_PLAY.0.min(ANY_PLAY.1 * width))
 }
 
 struct Search<'a> {
@@ -78,8 +85,8 @@ pub fn best(course: &Course, terms: Terms, span: Span) -> Option<(Best, f64)> {
     let s = search(course, terms, span);
     let longest = longest_lag_s(course);
     let width = span.high - span.low;
-    let play = |share: f64| share * width;
-    let start = Shape { lag_s: 0.03 * longest, play_deg_c: play(0.03) };
+    let play = |share: f64| share * widest_play(width);
+    let start = Shape { lag_s: 0.03 * longest, play_deg_c: play(0.2) };
     let mut noise = s.modes.fit(&s.data, &s.columns(&start), None)?.noise;
     let plays: &[f64] = if terms.hysteresis { &PLAYS } else { &PLAYS[..1] };
     let mut found: Option<(f64, Shape)> = None;
@@ -133,7 +140,7 @@ pub fn sample(course: &Course, terms: Terms, span: Span, sweeps: usize) -> Optio
     }];
     let mut start = vec![best.shape.lag_s];
     if terms.hysteresis {
-        let (low, high) = (PLAY_RANGE.0 * width, PLAY_RANGE.1 * width);
+        let (low, high) = (PLAY_RANGE.0 * width, widest_play(width));
         ranges.push(Range { low, high, log: true, step: 0.5 });
         start.push(best.shape.play_deg_c.clamp(low, high));
     }

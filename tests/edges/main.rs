@@ -18,6 +18,7 @@ mod page;
 mod rate_table;
 mod small_rates;
 mod study;
+mod temperature;
 mod tilts;
 
 use case::Family;
@@ -27,6 +28,7 @@ use sagnac::ids::MEASURANDS;
 static FAMILIES: &[&Family] = &[
     &rate_table::FAMILY,
     &small_rates::FAMILY,
+    &temperature::FAMILY,
     &tilts::FAMILY,
 ];
 

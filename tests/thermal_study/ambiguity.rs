@@ -7,8 +7,12 @@ use rayon::prelude::*;
 use sagnac::estimate::Estimate;
 use std::collections::BTreeMap;
 
-const IDS: [&str; 4] =
-    ["bias_temperature_rate_sensitivity", "thermal_lag", "thermal_hysteresis", "bias_temperature_sensitivity"];
+const IDS: [&str; 4] = [
+    "bias_temperature_rate_sensitivity",
+    "thermal_lag",
+    "thermal_hysteresis",
+    "bias_temperature_sensitivity",
+];
 
 /// A unit with nothing but a static curve.
 fn plain(chance: &mut Chance, curved: bool) -> Unit {
@@ -34,8 +38,7 @@ fn plain(chance: &mut Chance, curved: bool) -> Unit {
 
 /// Several cycles between two temperatures.
 fn cycles(low: f64, high: f64, rates: &[f64], dwell_s: f64) -> Vec<Leg> {
-    let one =
-        |r: &f64| [Leg::Ramp(high, *r), Leg::Hold(dwell_s), Leg::Ramp(low, *r), Leg::Hold(dwell_s)];
+    let one = |r: &f64| [Leg::Ramp(high, *r), Leg::Hold(dwell_s), Leg::Ramp(low, *r), Leg::Hold(dwell_s)];
     std::iter::once(Leg::Hold(dwell_s)).chain(rates.iter().flat_map(one)).collect()
 }
 
@@ -114,6 +117,13 @@ fn units_with_nothing_but_a_curve() {
 fn intervals_cover_over_a_narrow_range() {
     let legs = cycles(10.0, 30.0, &[57.0, 4.3], 3600.0);
     say("narrow", tally(crate::unit, (10.0, &legs), first(1)..first(1) + runs()));
+    let brief = |c: &mut Chance| {
+        let u = crate::unit(c);
+        Unit { hysteresis: (u.hysteresis.0, 0.3 * u.hysteresis.1), ..u }
+    };
+    say("narrow, little play", tally(brief, (10.0, &legs), first(1)..first(1) + runs()));
+    let none = |c: &mut Chance| Unit { hysteresis: (0.0, 0.0), ..crate::unit(c) };
+    say("narrow, no hysteresis", tally(none, (10.0, &legs), first(1)..first(1) + runs()));
 }
 
 #[test]

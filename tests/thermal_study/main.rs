@@ -5,6 +5,7 @@
 
 mod ambiguity;
 mod chamber;
+mod mistaken;
 mod samples;
 mod settling;
 mod tally;
@@ -17,8 +18,8 @@ use sagnac::temperature::course::{Shape, Terms};
 use sagnac::temperature::findings::{Findings, findings, schedule};
 use sagnac::temperature::gls::Modes;
 use sagnac::temperature::read::of_distribution;
-use sagnac::temperature::track::Track;
 use sagnac::temperature::start::Start;
+use sagnac::temperature::track::Track;
 use sagnac::temperature::{StartAsked, TemperatureTest, WarmUpTest, warm_up};
 use std::collections::BTreeMap;
 use tally::Tally;

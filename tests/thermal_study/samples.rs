@@ -7,7 +7,7 @@ use assert_cmd::Command;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-fn root() -> PathBuf {
+pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
 }
 
@@ -75,7 +75,7 @@ fn write_the_samples() {
 }
 
 /// Runs a sample and gives exit code and result.
-fn run(procedure: &str, limits: &str, sample: &str, serial: &str) -> (i32, serde_json::Value) {
+pub fn run(procedure: &str, limits: &str, sample: &str, serial: &str) -> (i32, serde_json::Value) {
     let out = tempfile::tempdir().unwrap();
     let report = out.path().join("report");
     let done = Command::cargo_bin("sagnac")
@@ -96,7 +96,7 @@ fn run(procedure: &str, limits: &str, sample: &str, serial: &str) -> (i32, serde
     (done.status.code().unwrap(), result)
 }
 
-fn row<'a>(result: &'a serde_json::Value, id: &str) -> &'a serde_json::Value {
+pub fn row<'a>(result: &'a serde_json::Value, id: &str) -> &'a serde_json::Value {
     let rows = result["measurands"].as_array().unwrap();
     rows.iter().find(|r| r["id"] == id).unwrap_or_else(|| panic!("{id}"))
 }

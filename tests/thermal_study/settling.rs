@@ -3,9 +3,9 @@
 use crate::chamber::{Noise, warm_up as switched_on};
 use crate::{first, runs};
 use sagnac::temperature::start::Start;
-use sagnac::temperature::{StartAsked, WarmUpTest};
 use sagnac::temperature::track::Track;
 use sagnac::temperature::warm_up::{WarmUpFindings, find};
+use sagnac::temperature::{StartAsked, WarmUpTest};
 
 /// A record of one decay, with a band of 0.02 deg/h.
 fn found(decay: (f64, f64), length_s: f64, n: f64, seed: u64) -> WarmUpFindings {
