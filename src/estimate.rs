@@ -188,6 +188,8 @@ pub struct Estimate {
     pub most_likely: Option<f64>,
     /// Bound from below, where the value is `None`.
     pub lower_limit: Option<LowerLimit>,
+    /// True where another reading of the same record contradicts it: it then decides nothing.
+    pub disputed: bool,
     /// How it was obtained, short and stable: `whittle`, `overlapping_allan`, ...
     pub method: &'static str,
     /// What a reader must know with it: conventions, averaging times, numbers of clusters.
@@ -214,6 +216,7 @@ impl Estimate {
             upper_limit: None,
             most_likely: None,
             lower_limit: None,
+            disputed: false,
             method,
             notes: vec![],
         }
@@ -236,6 +239,7 @@ impl Estimate {
             upper_limit,
             most_likely: None,
             lower_limit: None,
+            disputed: false,
             method,
             notes: vec![],
         }

@@ -77,7 +77,8 @@ const fn table(id: &'static str, unit: &'static str, doc: &'static str) -> Measu
 pub const MEASURANDS: &[MeasurandId] = &[
     signed(given("static_bias", "deg/h", &["earth_rate"], "mean rate at rest, Earth rate removed")),
     signed(given("earth_rate_component", "deg/h", &[], "Earth rate along the input axis, from the site")),
-    given("angle_random_walk", "deg/sqrt(h)", &[], "N of the joint noise fit"),
+    given("angle_random_walk", "deg/sqrt(h)", &[], "N of the joint noise fit: white noise with every process that is white where it is read"),
+    given("angle_random_walk_white", "deg/sqrt(h)", &[], "the part of N that is white noise at every averaging time"),
     given("bias_instability", "deg/h", &[], "flicker coefficient B of the joint noise fit"),
     given("bias_instability_minimum", "deg/h", &[], "minimum of the overlapping Allan deviation over octaves up to a fifth of the record"),
     given("bias_instability_minimum_scaled", "deg/h", &[], "that minimum divided by 0.664"),

@@ -27,6 +27,25 @@ pub struct GyroFact {
     pub bias_step: Option<BiasStep>,
     /// A change of the noise between parts of the record.
     pub noise_change: Option<NoiseChange>,
+    /// How the values are spread about the means of short blocks, where they are white enough to tell.
+    pub tails: Option<TailShape>,
+}
+
+/// How values are spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TailShape {
+    /// Values.
+    pub samples: u64,
+    /// Fourth moment over the squared variance, less 3.
+    pub excess_kurtosis: f64,
+    /// How much shorter lines and rounding make the tails: the same, positive.
+    pub explained: f64,
+    /// Standard deviations beyond which values are counted.
+    pub sigma: f64,
+    /// Values beyond.
+    pub beyond: u64,
+    /// How many of them normal noise has.
+    pub expected_beyond: f64,
 }
 
 /// A step of the mean.

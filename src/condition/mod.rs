@@ -22,6 +22,7 @@ mod steadiness;
 mod supply;
 pub mod table;
 pub mod table_motion;
+mod tails;
 pub mod thermometer;
 mod temperature;
 pub mod temperature_track;
@@ -29,7 +30,7 @@ mod unit_named;
 mod units;
 mod warm_up;
 
-pub use gyro_fact::{BiasStep, ColumnFact, GyroFact, NoiseChange};
+pub use gyro_fact::{BiasStep, ColumnFact, GyroFact, NoiseChange, TailShape};
 
 use crate::procedure::{EffectiveLimits, Procedure};
 use crate::record::{ConditionRecord, ConditionStatus, Integrity};
@@ -118,6 +119,7 @@ pub static CONDITIONS: &[&dyn Condition] = &[
     &warm_up::WarmUp,
     &sample_rate::SampleRate,
     &steadiness::Steadiness,
+    &tails::Tails,
     &output::Output,
     &faults::Faults,
     &instruments::Instruments,

@@ -5,10 +5,12 @@ use crate::noise::digest::RateDigest;
 use crate::noise::identification::Identification;
 use crate::noise::intervals::BoundedPoint;
 use crate::noise::lines::SpectralLine;
+use crate::noise::motion::Motion;
 use crate::noise::residual::GoodnessOfFit;
 use crate::noise::windows::WindowStatistics;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
+use crate::text::Note;
 
 /// Earth rate along an input axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +44,10 @@ pub struct GyroEvidence {
     pub goodness: GoodnessOfFit,
     /// Spectral lines.
     pub lines: Vec<SpectralLine>,
+    /// The strongest line that was found and is more than the record can hold.
+    pub withheld_line: Option<Note>,
+    /// Whether the unit stood still.
+    pub motion: Motion,
     /// Earth rate along the axis, where the site is known.
     pub earth: Option<Earth>,
     /// What a test over temperature showed, where the procedure asks for one.

@@ -4,9 +4,9 @@ use super::allan_minimum::{lowest, minimum_edf};
 use super::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S, degrees_of_freedom, no_windows};
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread, chi_square_quantile, normal_probability};
-use crate::noise::composite::{Parameter, Part};
+use crate::noise::composite::{Composite, Part};
 use crate::noise::data::NoiseType;
-use crate::noise::prediction::{WindowPrediction, covariance_with, unseen_variance};
+use crate::noise::prediction::{WindowPrediction, covariance_of, unseen_variance};
 use crate::text::Note;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -112,19 +112,20 @@ fn random_walk_ratio(gyro: &GyroEvidence) -> Estimate {
     let (id, method) = ("ratio_russian_to_allan_arw", "whittle");
     let found = &gyro.identification;
     let windows = gyro.windows(RANDOM_WALK_WINDOW_S).filter(|w| w.standard_deviation > 0.0);
-    let ratio = windows.zip(found.angle_random_walk.value).and_then(|(windows, n)| {
+    let read = found.read_angle_random_walk();
+    let level = |m: &Composite| found.plateau.as_ref().map_or(m.terms.n, |p| p.level(m));
+    let ratio = windows.zip(read.value).and_then(|(windows, n)| {
         let exact_s = windows.samples as f64 * gyro.tau0_s;
         let p = WindowPrediction::of(&found.described, exact_s, windows.n, gyro.tau0_s)?;
-        let white = Parameter::Coefficient(NoiseType::AngleRandomWalk);
-        let expected = |m: &crate::noise::composite::Composite| {
-            m.expected_variance(exact_s, windows.n, gyro.tau0_s).unwrap_or(f64::NAN)
-        };
-        let shared = covariance_with(&found.described, white, expected)?;
-        let (_, u_n) = found.described.propagate(|m| m.terms.n);
+        let expected =
+            |m: &Composite| m.expected_variance(exact_s, windows.n, gyro.tau0_s).unwrap_or(f64::NAN);
+        let (variance, u_n) = found.described.propagate(level);
+        let shared = covariance_of(&found.described, (level, n), (expected, p.sigma * p.sigma));
+        let variance = variance * variance;
         // The interval of N may be wider: it allows for terms that the description lacks; and the description may hold
         // quantisation that was not claimed.
-        let own = found.angle_random_walk.interval95().map_or(0.0, |i| (i.high - i.low) / (2.0 * NORMAL_95));
-        let moved = n - found.described.model.terms.n;
+        let own = read.interval95().map_or(0.0, |i| (i.high - i.low) / (2.0 * NORMAL_95));
+        let moved = n - variance.sqrt();
         let unshared = (own * own - u_n * u_n).max(0.0) + moved * moved;
         let scatter = 2.0 / p.scatter_dof;
         let relative = scatter + (2.0 * u_n / n).powi(2) - 4.0 * shared / (n * p.sigma * p.sigma);

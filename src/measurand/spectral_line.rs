@@ -32,7 +32,7 @@ impl Measurand for SpectralLine {
         let strongest = gyro.lines.iter().max_by(|a, b| a.amplitude_deg_h.total_cmp(&b.amplitude_deg_h));
         let Some(line) = strongest else {
             let none = Estimate::not_identifiable(id, &gyro.channel, None, unit, "welch");
-            return Some(none.note(Note::new("note.no_line")));
+            return Some(none.note(gyro.withheld_line.clone().unwrap_or(Note::new("note.no_line"))));
         };
         let averages = gyro.spectrum().effective_averages;
         let value = if frequency { line.frequency_hz } else { line.amplitude_deg_h };

@@ -6,6 +6,7 @@ use super::data::BlockSeries;
 use super::envelope::{Envelope, EnvelopeAccumulator};
 use super::family::Estimator;
 use super::histogram::{Histogram, HistogramAccumulator};
+use super::motion::Quietest;
 use super::phase::Compensated;
 use super::tau_grid::TauGrid;
 use super::welch::{WelchAccumulator, WelchResult};
@@ -80,6 +81,8 @@ pub struct RateDigest {
     pub histogram: Histogram,
     /// The rate over time for a plot.
     pub envelope: Envelope,
+    /// Standard deviation within the quietest second, deg/h: what the noise is where a record that moves stands still.
+    pub quietest_deg_h: Option<f64>,
 }
 
 /// Streaming digest of one rate channel.
@@ -93,6 +96,7 @@ pub struct RateAccumulator {
     windows: Vec<WindowMeans>,
     histogram: HistogramAccumulator,
     envelope: EnvelopeAccumulator,
+    quietest: Quietest,
     samples: u64,
     unusable: u64,
     reference: f64,
@@ -128,6 +132,7 @@ impl RateAccumulator {
             windows,
             histogram: HistogramAccumulator::new(),
             envelope: EnvelopeAccumulator::new(),
+            quietest: Quietest::new(plan.tau0_s),
             samples: 0,
             unusable: 0,
             reference: 0.0,
@@ -187,6 +192,7 @@ impl RateAccumulator {
             windows: self.windows.into_iter().map(WindowMeans::finish).collect(),
             histogram: self.histogram.finish(),
             envelope: self.envelope.finish(),
+            quietest_deg_h: self.quietest.finish(),
         }
     }
 
@@ -211,6 +217,7 @@ impl RateAccumulator {
         self.windows.iter_mut().for_each(|w| w.push(run, continues));
         self.histogram.push(run, continues);
         self.envelope.push(run, first_index);
+        self.quietest.push(run, continues);
     }
 }
 

@@ -3,7 +3,8 @@
 use super::composite::{Composite, Described};
 use super::data::NoiseType;
 use super::identify::METHOD;
-use super::joint::Extras;
+use super::joint::{Extras, Plateau};
+use super::mean_allowed::Allowed;
 use super::misfit::Misfit;
 use super::model::{NoiseModel, TERMS, unit_allan_variance};
 use crate::estimate::{Estimate, normal_quantile};
@@ -29,8 +30,13 @@ pub struct Identification {
     pub ambiguous: bool,
     /// 2 Δ ln L of each of [`TERMS`] against the best model without it.
     pub likelihood_ratios: [f64; 5],
-    /// N with its interval, or its upper limit.
+    /// N of the white noise alone with its interval, or its upper limit.
     pub angle_random_walk: Estimate,
+    /// The level that is read as angle random walk where a process is white there beside the white noise
+    /// ([`super::joint::Plateau`]); `None`: it is that of the white noise.
+    pub white_plateau: Option<Estimate>,
+    /// Where it is read.
+    pub plateau: Option<Plateau>,
     /// B of the 1/f law with its interval, or its upper limit. The Allan floor is 0.664 B.
     pub bias_instability: Estimate,
     /// K with its interval, or its upper limit.
@@ -49,6 +55,8 @@ pub struct Identification {
     /// The maximum with N, B, K and Q allowed beside everything that was found: [`Identification::full`] with the rest.
     /// For uncertainties.
     pub allowed: Composite,
+    /// Sizes of flicker and random walk that the record allows, with their weights; empty where they are known.
+    pub slow_allowed: Allowed,
     /// Markov processes found.
     pub markov: Vec<MarkovFound>,
     /// Quasi-periodic disturbances found, the strongest first.
@@ -107,6 +115,16 @@ impl Identification {
         (sigma * (-half).exp(), sigma, sigma * half.exp())
     }
 
+    /// Angle random walk by its meaning: the level that is read, white noise with every process that is white there.
+    pub fn read_angle_random_walk(&self) -> &Estimate {
+        self.white_plateau.as_ref().unwrap_or(&self.angle_random_walk)
+    }
+
+    /// The same, to be changed.
+    pub fn read_angle_random_walk_mut(&mut self) -> &mut Estimate {
+        self.white_plateau.as_mut().unwrap_or(&mut self.angle_random_walk)
+    }
+
     /// The estimates in the order of the contract: N, B, K, R, Q.
     pub fn estimates(&self) -> [&Estimate; 5] {
         [
@@ -142,6 +160,7 @@ impl Identification {
         for q in &mut self.quasi_periodic {
             out.extend([&mut q.amplitude, &mut q.frequency, &mut q.coherence_time]);
         }
+        out.extend(&mut self.white_plateau);
         out.extend(&mut self.cutoff);
         out
     }
@@ -174,6 +193,8 @@ impl Identification {
             ambiguous: false,
             likelihood_ratios: [0.0; 5],
             angle_random_walk: none(0),
+            white_plateau: None,
+            plateau: None,
             bias_instability: none(1),
             rate_random_walk: none(2),
             quantization: none(3),
@@ -182,6 +203,7 @@ impl Identification {
             misfit: Misfit::none(),
             described: Described::default(),
             allowed: Composite::default(),
+            slow_allowed: vec![],
             markov: vec![],
             quasi_periodic: vec![],
             cutoff: None,

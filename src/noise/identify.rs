@@ -4,12 +4,12 @@ use super::composite::{Described, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, toggled};
-use super::identifiable::IDENTIFIABLE;
 use super::identification::{IDS, Identification};
+use super::mean_allowed;
 use super::misfit::Misfit;
 use super::model::{NoiseModel, TERMS};
 use super::profile::{Profile, wider};
-use super::slow_terms::{NEARLY, SlowChoice, SlowPrices, holds};
+use super::slow_terms::{NEARLY, SlowChoice, SlowPrices, holds, needed_preference};
 use super::structure::Search;
 use crate::estimate::{Estimate, UpperLimit};
 use crate::text::Note;
@@ -125,7 +125,7 @@ impl Whittle {
             let bound = likelihood.covariance_bound(&model, &search.supported(&claimed));
             for term in [FLICKER, WALK] {
                 let relative = bound[term][term].sqrt() / model.coefficient(TERMS[term]);
-                claimed[term] &= is_told(search.preference[term], relative);
+                claimed[term] &= is_told(term, search.preference[term], relative);
             }
         }
         let supported = search.supported(&claimed);
@@ -153,6 +153,7 @@ impl Whittle {
         if !intervals {
             return out;
         }
+        out.slow_allowed = mean_allowed::allowed(&likelihood, &supported, &out.supported, evidence.usable_s);
         let mut estimates: [Option<Estimate>; 5] = [const { None }; 5];
         for (term, slot) in estimates.iter_mut().enumerate() {
             *slot = Some(estimate(&likelihood, channel, term, &claimed, &supported, needed, &search));
@@ -228,9 +229,10 @@ fn estimate(
 }
 
 /// True when a slow term that was chosen may be claimed. A rival nearly as good matters little while the term is known
-/// well; one that is hardly identifiable is claimed only where it is clearly preferred.
-pub(super) fn is_told(preference: f64, relative_sigma: f64) -> bool {
-    preference >= NEARLY || relative_sigma <= IDENTIFIABLE
+/// well; one that is hardly identifiable is claimed only where it is clearly preferred. Flicker needs some preference all the
+/// same: chance makes a random walk look like it in one record of twelve.
+pub(super) fn is_told(term: usize, preference: f64, relative_sigma: f64) -> bool {
+    preference >= needed_preference(TERMS[term], relative_sigma)
 }
 
 /// Says so where another slow term in place of this one describes the record nearly as well.

@@ -6,7 +6,7 @@
 //! 1978), hence Var\[s² − E\] = Var\[s²\] − Var\[E\]: what the fit took from the record it cannot be tested against.
 //! The ratio s²/E is read as χ² with the degrees of freedom of that variance.
 
-use super::composite::{Composite, Described, Line, Parameter, Part};
+use super::composite::{Composite, Described, Line, Part};
 use super::data::NoiseType;
 use super::windows::edf_of_window_std;
 use crate::estimate::{Interval, chi_square_quantile};
@@ -184,23 +184,14 @@ impl WindowPrediction {
     }
 }
 
-/// Covariance of a parameter with a quantity computed from the model, to first order; `None` when it was not fitted.
-pub fn covariance_with(
+/// Covariance of two quantities computed from the model, to first order, each with a scale that makes it of the size of 1.
+pub fn covariance_of(
     described: &Described,
-    parameter: Parameter,
-    quantity: impl Fn(&Composite) -> f64,
-) -> Option<f64> {
-    let row = described.covariance.get(described.parameters.iter().position(|p| *p == parameter)?)?;
-    let mut sum = 0.0;
-    for (p, c) in described.parameters.iter().zip(row) {
-        let at = described.model.value(*p);
-        let step = 1e-3 * at.abs();
-        if step > 0.0 {
-            let (up, down) = (described.model.with(*p, at + step), described.model.with(*p, at - step));
-            sum += c * (quantity(&up) - quantity(&down)) / (2.0 * step);
-        }
-    }
-    Some(sum)
+    (a, size_a): (impl Fn(&Composite) -> f64, f64),
+    (b, size_b): (impl Fn(&Composite) -> f64, f64),
+) -> f64 {
+    let square = |sign: f64| described.propagate(|m| a(m) / size_a + sign * b(m) / size_b).1.powi(2);
+    0.25 * (square(1.0) - square(-1.0)) * size_a * size_b
 }
 
 /// What a term that was not shown would add to E\[s²\] at its upper limit, (deg/h)².
@@ -211,6 +202,7 @@ pub fn unseen_variance(term: NoiseType, limit: f64, window_s: f64, windows: u64)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noise::composite::Parameter;
     use crate::noise::model::NoiseModel;
 
     fn described(model: NoiseModel, parameters: Vec<Parameter>, variances: &[f64]) -> Described {

@@ -5,6 +5,7 @@
 //! term beside others: where two terms are near each other the line is too high. Source: IEEE Std 952 Annex C.
 
 use super::data::NoiseType;
+use std::ops::Range;
 
 /// Largest difference of the slope over an octave from that of the law.
 pub const SLOPE_TOLERANCE: f64 = 0.15;
@@ -93,24 +94,30 @@ pub fn through(points: &[SlopePoint], term: NoiseType) -> Option<ReadOut> {
     })
 }
 
-/// The longest run of octaves that follow the slope of a term, the one at the shorter τ of equal ones; `None` where no
-/// octave does. `octaves` ascend.
-pub fn read(octaves: &[SlopePoint], term: NoiseType) -> Option<ReadOut> {
+/// Every run of two octaves or more that follows the slope of a term. `octaves` ascend.
+pub fn runs(octaves: &[SlopePoint], term: NoiseType) -> Vec<Range<usize>> {
     let follows = |a: &SlopePoint, b: &SlopePoint| {
         let local = (b.deviation / a.deviation).ln() / (b.tau_s / a.tau_s).ln();
         (local - slope(term)).abs() <= SLOPE_TOLERANCE
     };
-    let (mut best, mut start) = (0..0, 0);
+    let (mut out, mut start) = (vec![], 0);
     for i in 1..=octaves.len() {
         let goes_on = i < octaves.len() && follows(&octaves[i - 1], &octaves[i]);
         if !goes_on {
-            if i - start >= 2 && i - start > best.len() {
-                best = start..i;
+            if i - start >= 2 {
+                out.push(start..i);
             }
             start = i;
         }
     }
-    through(octaves.get(best)?, term)
+    out
+}
+
+/// The longest run of octaves that follow the slope of a term, the one at the shorter τ of equal ones; `None` where no
+/// octave does. `octaves` ascend.
+pub fn read(octaves: &[SlopePoint], term: NoiseType) -> Option<ReadOut> {
+    let longest = runs(octaves, term).into_iter().rev().max_by_key(Range::len)?;
+    through(octaves.get(longest)?, term)
 }
 
 #[cfg(test)]

@@ -8,26 +8,30 @@ use super::{
 use crate::condition::checks::CheckLog;
 use crate::condition::temperature_track::TemperatureFacts;
 use crate::condition::{Facts, WarmUpFact, judge_all};
+use crate::estimate::Estimate;
 use crate::ingest::{Plan, StreamReport};
 use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
 use crate::noise::coarse;
 use crate::noise::composite::Sampling;
+use crate::noise::curve_check;
 use crate::noise::digest::RateDigest;
 use crate::noise::envelope::Envelope;
 use crate::noise::family::Estimator;
 use crate::noise::identification::Identification;
 use crate::noise::intervals::BoundedPoint;
 use crate::noise::lines::{SpectralLine, find_lines};
+use crate::noise::motion::{Motion, motion, together};
 use crate::noise::residual::GoodnessOfFit;
 use crate::noise::spectral_record::SpectralRecord;
 use crate::noise::tau_grid::TauGrid;
+use crate::noise::whole::Whole;
 use crate::procedure::Procedure;
 use crate::procedure::model::{EarthRate, Taus};
 use crate::record::{ConditionStatus, Window};
 use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
 use crate::temperature::findings::Schedule;
-use crate::text::Arg;
+use crate::text::{Arg, Note};
 use std::collections::BTreeMap;
 
 /// Everything that was found, before verdicts.
@@ -142,7 +146,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     let Collected { gyros, held, means } = inside.finish();
     let tau0_s = tidy(report.tau0_measured_s);
     let several = gyros.len() > 1;
-    let gyros: Vec<GyroEvidence> = gyros
+    let mut gyros: Vec<GyroEvidence> = gyros
         .into_iter()
         .filter_map(|(slot, digest)| {
             let channel = channels.get(slot)?.id.clone();
@@ -150,6 +154,17 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
             Some(evidence(procedure, channel, several, tau0_s, digest, step_deg_h))
         })
         .collect();
+    let envelopes = overview.finish();
+    let warming = channels.iter().enumerate().filter(|(_, c)| c.role == Role::Temperature);
+    let range = |e: &Envelope| {
+        let means = || e.bins.iter().map(|b| b.mean).filter(|m| m.is_finite());
+        means().fold(f64::NEG_INFINITY, f64::max) - means().fold(f64::INFINITY, f64::min)
+    };
+    let warming_deg_c = warming.filter_map(|(slot, _)| envelopes.get(&slot).map(range)).fold(0.0, f64::max);
+    for gyro in &mut gyros {
+        gyro.motion = motion(&gyro.digest.blocks, tau0_s, gyro.digest.quietest_deg_h, warming_deg_c);
+    }
+    together(gyros.iter_mut().map(|g| &mut g.motion).collect());
     let has_stamps = request.use_stamps && channels.iter().any(|c| c.role == Role::Time);
     let first_stamp_s = has_stamps.then(|| plan.start_s());
     let (gyros, schedule) = thermal::examine(procedure, &channels, gyros, means.as_ref(), first_stamp_s);
@@ -163,7 +178,6 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
         }));
     }
     settle_integrity(&mut report, &overview, tau0_s, &gyros);
-    let envelopes = overview.finish();
     Ok(Found {
         channels,
         report,
@@ -237,13 +251,21 @@ fn evidence(
     step_deg_h: Option<f64>,
 ) -> GyroEvidence {
     let alarm = procedure.analysis.line_false_alarm;
-    let (lines, identification) = spectral(&channel, &digest, tau0_s, alarm, step_deg_h);
+    let (mut lines, mut identification) = spectral(&channel, &digest, tau0_s, alarm, step_deg_h);
     let model = &identification.described.model;
     let sigma_tau = sigma_tau::allan_points(&digest.deviations, model, tau0_s);
     let octaves = digest
         .octaves
         .as_ref()
         .map_or_else(|| sigma_tau.clone(), |set| sigma_tau::allan_points(set, model, tau0_s));
+    let whole = Whole::of(&digest, &octaves, identification.highest_hz);
+    let withheld_line = whole.lines(&mut lines);
+    if withheld_line.is_some() {
+        let kept: Vec<f64> = lines.iter().map(|l| l.frequency_hz).collect();
+        identification.described.keep_lines(|line| kept.contains(&line.frequency_hz));
+    }
+    whole.parts(&mut identification);
+    curve_check::contest(&mut identification, &octaves, tau0_s, digest.samples);
     let goodness = goodness(&digest, &lines, &identification, &octaves, tau0_s);
     let longest_stretch_s = digest.deviations.stretches.longest() as f64 * tau0_s;
     let earth = procedure.site.as_ref().map(|site| {
@@ -261,6 +283,8 @@ fn evidence(
         identification,
         goodness,
         lines,
+        withheld_line,
+        motion: Motion::Unknown,
         earth,
         over_temperature: None,
         warm_up: None,
@@ -275,10 +299,45 @@ fn measure(request: &Request<'_>, found: &Found) -> Vec<crate::record::Measurand
                 continue;
             }
             let options = Options { remove_earth_rate: spec.earth_rate == EarthRate::Remove };
-            for estimate in crate::measurand::evaluate_all(spec.id.id, gyro, &options) {
+            for mut estimate in crate::measurand::evaluate_all(spec.id.id, gyro, &options) {
+                if found.at_rest() && gyro.motion.is_motion() {
+                    estimate = moving(estimate);
+                }
                 rows.push(verdict::row(&estimate, request.limits, request.procedure));
             }
         }
     }
     rows
+}
+
+/// Quantities of noise at rest: a record that moves does not show them.
+const OF_REST: [&str; 19] = [
+    "angle_random_walk",
+    "angle_random_walk_white",
+    "bias_instability",
+    "bias_instability_minimum",
+    "bias_instability_minimum_scaled",
+    "rate_random_walk",
+    "rate_ramp",
+    "quantization",
+    "angle_random_walk_readout",
+    "rate_random_walk_readout",
+    "rate_ramp_readout",
+    "quantization_readout",
+    "markov_sigma",
+    "markov_correlation_time",
+    "quasi_periodic_amplitude",
+    "quasi_periodic_coherence_time",
+    "russian_drift_100s_predicted",
+    "ratio_russian_to_allan_bias",
+    "ratio_russian_to_allan_arw",
+];
+
+/// What is said in place of noise at rest.
+fn moving(estimate: Estimate) -> Estimate {
+    if !OF_REST.contains(&estimate.id) {
+        return estimate;
+    }
+    Estimate::not_identifiable(estimate.id, &estimate.channel, None, estimate.unit, estimate.method)
+        .note(Note::new("note.moving"))
 }

@@ -130,7 +130,7 @@ pub(super) fn find(
                 let digest = digest.finish();
                 let alarm = request.procedure.analysis.line_false_alarm;
                 let (_, noise) = evaluate::spectral(&channel, &digest, found.tau0_s, alarm, step_deg_h);
-                let n = &noise.angle_random_walk;
+                let n = noise.read_angle_random_walk();
                 let half = n.interval95().map(|i| 0.5 * (i.high - i.low) / normal_quantile(0.975));
                 State { level: level.clone(), n: n.value.zip(half) }
             })

@@ -32,6 +32,7 @@ pub(super) fn record(
     }
     // What is said of noise at rest has no meaning while the temperature moves.
     let resting = || found.gyros.iter().filter(|_| found.at_rest());
+    let still = || resting().filter(|g| !g.motion.is_motion());
     RunRecord {
         verdict,
         summary,
@@ -42,10 +43,10 @@ pub(super) fn record(
         window: found.window.clone(),
         measurands: rows,
         lines: resting().flat_map(lines).collect(),
-        noise_models: resting().map(noise_model).collect(),
-        goodness_of_fit: resting().flat_map(goodness::records).collect(),
+        noise_models: still().map(noise_model).collect(),
+        goodness_of_fit: still().flat_map(goodness::records).collect(),
         deviations: resting().flat_map(sigma_tau::records).collect(),
-        comparison: resting().filter_map(super::comparison::record).collect(),
+        comparison: still().filter_map(super::comparison::record).collect(),
         explained: None,
         power,
         options: options(request, found),

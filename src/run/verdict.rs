@@ -15,8 +15,9 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
     // Of what can be negative and is not shown, no lower limit is known to be met.
     let signed = crate::ids::find(estimate.id).is_some_and(|m| m.signed);
     let judgement = limit.map(|l| {
-        let mut judged = judge(if other.is_some() { &nothing } else { estimate }, l);
-        if other.is_some() || estimate.value.is_none() && signed && l.min.is_some() {
+        let undecided = other.is_some() || estimate.disputed;
+        let mut judged = judge(if undecided { &nothing } else { estimate }, l);
+        if undecided || estimate.value.is_none() && signed && l.min.is_some() {
             judged.verdict = Verdict::Indeterminate;
         }
         judged

@@ -6,6 +6,7 @@ use sagnac::noise::composite::{Composite, Sampling};
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
 use sagnac::noise::family::Estimator;
 use sagnac::noise::intervals::bounded;
+use sagnac::noise::motion::Motion;
 use sagnac::noise::simulate::{Setup, Simulator};
 use sagnac::noise::spectral_record::SpectralRecord;
 
@@ -45,6 +46,8 @@ pub fn simulate(model: &Composite, hours: f64, tau0_s: f64, seed: u64) -> GyroEv
         digest,
         identification,
         lines: vec![],
+        withheld_line: None,
+        motion: Motion::Unknown,
         earth: None,
         over_temperature: None,
         warm_up: None,

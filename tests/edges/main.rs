@@ -13,6 +13,7 @@
 //! `FAMILY` restricts it to one family, `RECORDS` sets the number of recordings of each case.
 
 mod case;
+mod noise;
 mod noise_source;
 mod page;
 mod rate_table;
@@ -26,6 +27,7 @@ use sagnac::ids::MEASURANDS;
 
 /// Every family. One more: one file and one line.
 static FAMILIES: &[&Family] = &[
+    &noise::FAMILY,
     &rate_table::FAMILY,
     &small_rates::FAMILY,
     &temperature::FAMILY,

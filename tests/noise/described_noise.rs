@@ -10,6 +10,7 @@ use sagnac::noise::family::Estimator;
 use sagnac::noise::identification::{MarkovFound, QuasiPeriodicFound};
 use sagnac::noise::intervals::{BoundedPoint, bounded};
 use sagnac::noise::lines::find_lines;
+use sagnac::noise::motion::Motion;
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::residual::GoodnessOfFit;
 use sagnac::noise::simulate::{Setup, Simulator};
@@ -97,6 +98,8 @@ fn gyro() -> GyroEvidence {
         identification,
         goodness,
         lines,
+        withheld_line: None,
+        motion: Motion::Unknown,
         earth: None,
         digest,
         over_temperature: None,

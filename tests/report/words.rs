@@ -5,7 +5,7 @@ use crate::support;
 use crate::support::tested::tested;
 use sagnac::condition::temperature_track::{Extreme, TemperatureFacts};
 use sagnac::condition::{
-    BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
+    BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, TailShape, WarmUpFact, judge_all,
 };
 use sagnac::measurand::ids::{MEASURANDS, Test};
 use sagnac::noise::model::TERMS;
@@ -149,6 +149,14 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         quantization_step_deg_h: Some(1.0),
         bias_step: Some(BiasStep { time_s: 1.0, size_deg_h: 1.0, significance: 20.0 }),
         noise_change: Some(NoiseChange { ratio: 2.0, loudest_s: 1.0, quietest_s: 2.0 }),
+        tails: Some(TailShape {
+            samples: 100_000,
+            excess_kurtosis: -0.5,
+            explained: 0.0,
+            sigma: 3.0,
+            beyond: 0,
+            expected_beyond: 270.0,
+        }),
         ..GyroFact::default()
     };
     let columns = [ColumnFact { channel: "rate".into(), name: "rate_deg_s".into(), unit: None }];

@@ -1,6 +1,6 @@
 //! A model with the covariance of its parameters, and what follows for quantities computed from it.
 
-use super::Composite;
+use super::{Composite, Line};
 use crate::noise::data::NoiseType;
 
 /// A parameter of a [`Composite`].
@@ -97,6 +97,42 @@ impl Composite {
 }
 
 impl Described {
+    /// Keeps those lines of the model that a condition holds for, their parameters with them.
+    pub fn keep_lines(&mut self, kept: impl Fn(&Line) -> bool) {
+        let places: Vec<bool> = self.model.lines.iter().map(kept).collect();
+        let mut at = 0;
+        self.model.lines.retain(|_| {
+            at += 1;
+            places.get(at - 1).copied().unwrap_or(false)
+        });
+        let moved = |i: usize| places.iter().take(i).filter(|k| **k).count();
+        let stays: Vec<bool> = self
+            .parameters
+            .iter()
+            .map(|p| match p {
+                Parameter::LineAmplitude(i) => places.get(*i).copied().unwrap_or(false),
+                _ => true,
+            })
+            .collect();
+        let held = |i: usize| stays.get(i).copied().unwrap_or(false);
+        self.covariance = (0..self.covariance.len())
+            .filter(|i| held(*i))
+            .map(|i| {
+                let row = self.covariance.get(i).map(Vec::as_slice).unwrap_or_default();
+                row.iter().enumerate().filter(|(j, _)| held(*j)).map(|(_, c)| *c).collect()
+            })
+            .collect();
+        self.parameters = std::mem::take(&mut self.parameters)
+            .into_iter()
+            .zip(&stays)
+            .filter(|(_, stays)| **stays)
+            .map(|(p, _)| match p {
+                Parameter::LineAmplitude(i) => Parameter::LineAmplitude(moved(i)),
+                other => other,
+            })
+            .collect();
+    }
+
     /// A quantity computed from the model and its standard uncertainty from the covariance of the parameters, to
     /// first order.
     pub fn propagate(&self, quantity: impl Fn(&Composite) -> f64) -> (f64, f64) {

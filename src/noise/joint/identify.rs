@@ -3,7 +3,8 @@
 use super::confounded::quantization_price;
 use super::ends::judged;
 use super::filter_alike::with_filter_instead;
-use super::needless::{Part, needless, without};
+use super::needless::{Part, needless, unresolved, without};
+use super::plateau::Plateau;
 use super::search::all_free;
 use super::slow::{Slow, long_markov};
 use super::{
@@ -103,6 +104,7 @@ impl MaximumLikelihood {
             exchanged |= filtered.is_some();
             // A filter that took the place of a process is not given up for it again.
             let needless = found.needless.filter(|part| !exchanged || *part != Part::Filter);
+            let needless = unresolved(&joint, &[&found.full, &found.supported]).or(needless);
             match (needless, near) {
                 _ if turns > 0
                     && let Some(shape) = filtered =>
@@ -175,7 +177,7 @@ impl Found {
             let at = variables.iter().position(|v| *v == Variable::Variance(term));
             let sigma = at.map_or(f64::INFINITY, |i| covariance[i][i].max(0.0).sqrt());
             let relative = sigma / point.reported(Variable::Variance(term));
-            *claimed &= is_told(slow.preference[term], relative);
+            *claimed &= is_told(term, slow.preference[term], relative);
         }
         let (supported, free) = supported(joint, shape, &full, &claimed, ramp);
         Some(Found { full, slow, ratios, claimed, supported, free, needless })
@@ -217,6 +219,9 @@ impl Found {
         for (term, estimate) in out.estimates_mut_by_term().into_iter().enumerate() {
             *estimate = self.base_estimate(channel, joint, term);
         }
+        if let Some((plateau, estimate)) = self.plateau(channel, joint) {
+            (out.plateau, out.white_plateau) = (Some(plateau), Some(estimate));
+        }
         self.report_parts(channel, joint, &mut out);
         out
     }
@@ -225,6 +230,27 @@ impl Found {
         let best = joint.maximise(&self.supported, free);
         let spread = JointProfile::new(joint, &best, free, variable).spread();
         (best, spread)
+    }
+
+    /// White noise with every process that is white where it is read; `None` where there is no such process.
+    fn plateau(&self, channel: &str, joint: &Joint<'_>) -> Option<(Plateau, Estimate)> {
+        let evidence = joint.evidence();
+        let model = self.supported.composite(joint.sampling());
+        let plateau = Plateau::of(&model, evidence.tau0_s, evidence.span_s)?;
+        let value = plateau.level(&model);
+        let mut spread = plateau.spread(joint, &self.supported, &self.free);
+        // What is too weak to be named may still hold a part of the level.
+        for other in suspects(0) {
+            if !self.free.variance[*other] && self.ratios[*other] > SUSPICION {
+                let mut wide = self.free.clone();
+                wide.variance[*other] = true;
+                let point = joint.maximise(&self.supported, &wide);
+                spread = wider(value, &spread, &plateau.spread(joint, &point, &wide));
+            }
+        }
+        let (id, unit) = IDS[0];
+        let estimate = Estimate::measured(id, channel, value, unit, spread, METHOD).note(plateau.note());
+        Some((plateau, estimate))
     }
 
     /// The estimate of one of [`TERMS`].

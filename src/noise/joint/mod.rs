@@ -13,6 +13,7 @@ mod interval;
 mod maximise;
 mod needless;
 mod peaks;
+mod plateau;
 mod search;
 mod slow;
 mod solve;
@@ -21,6 +22,7 @@ pub use columns::expected_power;
 pub use identify::MaximumLikelihood;
 pub use interval::{JointProfile, parameter_covariance};
 pub use maximise::{Free, Joint};
+pub use plateau::Plateau;
 pub use search::{ExtraThresholds, Extras, find_extras};
 
 use super::composite::{Bandwidth, Composite, Damped, Parameter, Sampling};

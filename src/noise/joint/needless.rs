@@ -1,9 +1,10 @@
 //! Parts of a model that a later part made needless.
 
 use super::confounded::filter_price;
-use super::search::{all_free, best_of};
+use super::search::{RESOLVED, all_free, best_of};
 use super::slow::Slow;
 use super::{BASE, ExtraThresholds, Extras, Joint, JointPoint, Kind, Shape};
+use crate::noise::composite::Damped;
 use crate::noise::fit::RAMP;
 use crate::noise::slow_terms::{SlowPrices, holds};
 
@@ -28,6 +29,15 @@ fn without_shape(shape: &Shape, part: Part) -> Shape {
 
 pub(super) fn without(extras: &Extras, part: Part) -> Extras {
     Extras { shape: without_shape(&extras.shape, part), zones: extras.zones.clone() }
+}
+
+/// A Markov process whose corner a fit has moved beyond what the sampling resolves.
+pub(super) fn unresolved(joint: &Joint<'_>, points: &[&JointPoint]) -> Option<Part> {
+    let shortest_s = RESOLVED * joint.evidence().tau0_s;
+    let white = |(i, (kind, d)): (usize, &(Kind, Damped))| {
+        (*kind == Kind::Markov && d.decay_time_s < shortest_s).then_some(Part::Damped(i))
+    };
+    points.iter().find_map(|p| p.shape.damped.iter().enumerate().find_map(white))
 }
 
 /// The part whose loss costs less than it was accepted for, by the most.

@@ -59,6 +59,9 @@ pub struct Extras {
 pub(super) const MOST: usize = 4;
 /// Correlation times tried, per octave.
 const PER_OCTAVE: f64 = 1.5;
+/// Shortest correlation time that is told from white noise, sample intervals: the corner then lies at half the Nyquist
+/// frequency, so that an octave of the fall beyond it is seen. A process with a higher corner is white noise.
+pub(super) const RESOLVED: f64 = 0.637;
 /// Longest correlation time that is told from random walk: this share of the record.
 pub(super) const LONGEST: f64 = 0.125;
 /// Highest frequency in units of the sample rate below which a range was cut.
@@ -217,11 +220,12 @@ fn markovs(
     thresholds: &ExtraThresholds,
 ) -> Option<Candidate> {
     let evidence = joint.evidence();
-    let octaves = (LONGEST * evidence.span_s / (0.4 * evidence.tau0_s)).log2().max(0.0);
+    let shortest_s = RESOLVED * evidence.tau0_s;
+    let octaves = (LONGEST * evidence.span_s / shortest_s).log2().max(0.0);
     let count = (octaves * PER_OCTAVE) as usize;
     let best = (0..=count)
         .map(|i| {
-            let time_s = 0.4 * evidence.tau0_s * 2f64.powf(i as f64 / PER_OCTAVE);
+            let time_s = shortest_s * 2f64.powf(i as f64 / PER_OCTAVE);
             at_shape(joint, &found.shape.with(Kind::Markov, 0.0, time_s), current, ramp, SCREEN)
         })
         .min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
@@ -230,7 +234,7 @@ fn markovs(
     }
     let point = refined(joint, &best, ramp);
     let time_s = point.shape.damped.last()?.1.decay_time_s;
-    if time_s > LONGEST * evidence.span_s || bends_at_the_edge(evidence, time_s) {
+    if time_s < shortest_s || time_s > LONGEST * evidence.span_s || bends_at_the_edge(evidence, time_s) {
         return None;
     }
     let reached = with_priced_quantization(joint, &point, ramp, thresholds.quantization);

@@ -79,7 +79,7 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
     if let Some(at) = lowest {
         layers.push(Layer::Label { at, text: label("figure_label.minimum", at.1) });
     }
-    if let Some(n) = gyro.identification.angle_random_walk.value {
+    if let Some(n) = gyro.identification.read_angle_random_walk().value {
         let within =
             shown.first().is_some_and(|p| p.0 <= 3600.0) && shown.last().is_some_and(|p| p.0 >= 3600.0);
         if within {

@@ -1,14 +1,14 @@
 //! One pass over a recording for everything that `inspect` says.
 
 use super::columns::{self, Content, Listed};
-use super::judge::{Motion, motion};
-use super::tracks::{Angle, Follow, LevelFacts, Levels, Quietest, runs};
+use super::tracks::{Angle, Follow, LevelFacts, Levels, runs};
 use crate::condition::temperature_track::{TemperatureFacts, TemperatureTrack};
 use crate::ingest::{IngestError, IngestErrorKind, Plan, Source, StreamReport, TimeBaseSpec, prepare};
 use crate::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
 use crate::noise::envelope::EnvelopeAccumulator;
 use crate::noise::identification::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
+use crate::noise::motion::{Motion, motion, together};
 use crate::recording::{Channel, Role, Sink, Slab};
 use crate::run::evaluate::spectral;
 use crate::run::reading::tidy;
@@ -176,7 +176,6 @@ fn spec(time: &TimeBase) -> TimeBaseSpec {
 struct GyroTrack {
     slot: usize,
     digest: RateAccumulator,
-    quietest: Quietest,
     angle: Angle,
 }
 
@@ -199,7 +198,6 @@ impl Pass {
         let gyros = slots(Role::is_gyro).filter(|_| timed).map(|slot| GyroTrack {
             slot,
             digest: RateAccumulator::new(DigestPlan::new(tau0_s)),
-            quietest: Quietest::new(tau0_s),
             angle: Angle::default(),
         });
         let temperatures = slots(|r| r == Role::Temperature)
@@ -226,7 +224,7 @@ impl Pass {
             let name = channels.get(track.slot)?.id.clone();
             let digest = track.digest.finish();
             let (lines, identification) = spectral(&name, &digest, tau0_s, FALSE_ALARM_RATE, None);
-            let quietest_deg_h = track.quietest.finish();
+            let quietest_deg_h = digest.quietest_deg_h;
             Some(Gyro {
                 slot: track.slot,
                 name,
@@ -239,10 +237,7 @@ impl Pass {
             })
         };
         let mut gyros: Vec<Gyro> = self.gyros.into_iter().filter_map(with).collect();
-        // The axes of a unit turn together: one that hardly shows it is not at rest either.
-        if gyros.iter().any(|g| g.motion.is_motion()) {
-            gyros.iter_mut().filter(|g| g.motion.is_rest()).for_each(|g| g.motion = Motion::Carried);
-        }
+        together(gyros.iter_mut().map(|g| &mut g.motion).collect());
         gyros
     }
 
@@ -289,7 +284,6 @@ impl Sink for Pass {
         for gyro in &mut self.gyros {
             let Some(values) = slab.values.get(gyro.slot) else { continue };
             gyro.digest.push(values, slab.first_index, slab.continues);
-            gyro.quietest.push(values, slab.continues);
             gyro.angle.push(values, self.tau0_s);
         }
         for (slot, track, envelope) in &mut self.temperatures {

@@ -1,11 +1,11 @@
 //! The words: what each gyro channel shows, and the temperatures and table channels beside it.
 
 use super::gather::{Driven, Gyro, Seen};
-use super::judge::Motion;
 use super::layout::{Page, SAME, word};
 use super::quantity::{plain, rate, rates, time};
 use crate::noise::family::Estimator;
 use crate::noise::lines::SpectralLine;
+use crate::noise::motion::Motion;
 use crate::recording::Role;
 use crate::text::{Arg, Note};
 
@@ -145,7 +145,7 @@ fn allan(seen: &Seen, gyro: &Gyro) -> Note {
 }
 
 fn noise(seen: &Seen, gyro: &Gyro) -> Note {
-    let estimate = &gyro.identification.angle_random_walk;
+    let estimate = gyro.identification.read_angle_random_walk();
     let length = time(gyro.digest.samples as f64 * seen.tau0_s);
     match (estimate.value, estimate.interval95(), &estimate.upper_limit) {
         (Some(n), Some(interval), _) => Note::new("inspect.noise_is")

@@ -1,12 +1,13 @@
 //! What a recording can support, each statement with its reason. Nothing is promised that the data cannot give.
 
 use super::gather::{Driven, Gyro, Seen, Temperature};
-use super::judge::{ClockRemark, Motion, clock_remark, earth};
+use super::judge::{ClockRemark, clock_remark, earth, is_mains};
 use super::layout::{Page, SAME, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
 use super::show_gyro::{described, strongest};
 use crate::noise::data::NoiseType;
 use crate::noise::expected::expected_upper_limit;
+use crate::noise::motion::Motion;
 use crate::recording::Role;
 use crate::text::Note;
 
@@ -220,9 +221,13 @@ fn known_angle(page: &mut Page, seen: &Seen) {
 fn clock(page: &mut Page, seen: &Seen) {
     // Frequency, excess and channel of each line that says something.
     let mut remarks: Vec<(ClockRemark, f64, f64, String)> = Vec::new();
+    // A line where mains is shows the clock to be right, whatever else stands near another mains frequency.
+    let right = seen.gyros.iter().flat_map(|g| &g.lines).any(is_mains);
     for gyro in &seen.gyros {
         for line in strongest(gyro).into_iter().take(STRONGEST) {
-            if let Some(remark) = clock_remark(line, seen.tau0_s) {
+            let remark = clock_remark(line, seen.tau0_s)
+                .filter(|remark| !right || matches!(remark, ClockRemark::AtNyquist { .. }));
+            if let Some(remark) = remark {
                 remarks.push((remark, line.frequency_hz, line.excess, gyro.name.clone()));
             }
         }

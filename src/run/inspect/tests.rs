@@ -1,12 +1,13 @@
 //! Judgements on simulated recordings, and of the small statistics behind them.
 
 use super::inspect_source;
-use super::judge::{ClockRemark, Motion, clock_remark, earth, motion};
-use super::tracks::{Follow, Levels, Quietest, runs, scatter};
+use super::judge::{ClockRemark, clock_remark, earth};
+use super::tracks::{Follow, Levels, runs};
 use crate::ingest::Source;
 use crate::noise::block_series::BlockSeriesAccumulator;
 use crate::noise::lines::SpectralLine;
 use crate::noise::model::NoiseModel;
+use crate::noise::motion::{Motion, Quietest, motion, scatter};
 use crate::noise::simulate::{Setup, Simulator};
 use std::f64::consts::TAU;
 

@@ -1,50 +1,5 @@
 //! Small statistics that are taken beside the noise while a recording goes by.
 
-use std::f64::consts::SQRT_2;
-
-/// Scatter within the quietest window of about 1 s: what the noise is where a record that moves stands still.
-#[derive(Debug, Clone)]
-pub(super) struct Quietest {
-    length: usize,
-    window: Vec<f64>,
-    least: Option<f64>,
-}
-
-impl Quietest {
-    pub fn new(tau0_s: f64) -> Quietest {
-        let length = ((1.0 / tau0_s).ceil() as usize).clamp(32, 1 << 20);
-        Quietest { length, window: Vec::new(), least: None }
-    }
-
-    pub fn push(&mut self, values: &[f64], continues: bool) {
-        if !continues {
-            self.window.clear();
-        }
-        for &v in values {
-            if v.is_finite() {
-                self.window.push(v);
-            } else {
-                self.window.clear();
-            }
-            if self.window.len() == self.length {
-                let n = self.length as f64;
-                let mean = self.window.iter().sum::<f64>() / n;
-                let variance = self.window.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / (n - 1.0);
-                // A window that holds one value says that the output stood, not that it is free of noise.
-                if variance > 0.0 {
-                    self.least = Some(self.least.map_or(variance, |l| l.min(variance)));
-                }
-                self.window.clear();
-            }
-        }
-    }
-
-    /// Standard deviation in the quietest window, unit of the values.
-    pub fn finish(&self) -> Option<f64> {
-        self.least.map(f64::sqrt)
-    }
-}
-
 /// The angle that a rate adds up to, deg: at the end, least and greatest. The bias is part of it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Angle {
@@ -183,17 +138,4 @@ pub(super) fn runs(means: &[f64]) -> (u32, u32) {
         }
     }
     (up, down)
-}
-
-/// Standard deviation of values, and of the steps between neighbours divided by √2: the two agree for white values,
-/// the second is far smaller for slow ones.
-pub(super) fn scatter(values: &[f64]) -> Option<(f64, f64)> {
-    let n = values.len() as f64;
-    if values.len() < 3 {
-        return None;
-    }
-    let mean = values.iter().sum::<f64>() / n;
-    let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
-    let steps: f64 = values.iter().zip(values.iter().skip(1)).map(|(a, b)| (b - a).powi(2)).sum();
-    Some((deviation, (steps / (n - 1.0)).sqrt() / SQRT_2))
 }

@@ -1,0 +1,165 @@
+//! Whether a channel stood still: noise at rest has no meaning for a record that moves.
+
+use super::data::BlockSeries;
+use std::f64::consts::SQRT_2;
+
+/// Scatter of means over 1 s beyond which a unit may have moved: 0.1 deg/s. Slower than any table test, faster than
+/// the bias of a gyro that is worth testing wanders.
+const MOVED_DEG_H: f64 = 360.0;
+/// How many times the scatter must exceed what the sample noise explains.
+const BEYOND_NOISE: f64 = 5.0;
+/// A single mean so far from the middle one tells of a short turn in a long rest.
+const TURNED_DEG_H: f64 = 1800.0;
+/// Ratio of the steps between neighbouring means to their scatter below which the change is slow.
+const SLOW: f64 = 0.35;
+/// Range of a temperature that can explain a slow change of the bias, degC.
+const WARMING_DEG_C: f64 = 5.0;
+/// Whether a channel stood still.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Motion {
+    /// Nothing speaks against rest.
+    Rest {
+        /// Standard deviation of the means, deg/h.
+        scatter_deg_h: f64,
+        /// How many times that is what the noise of the samples explains, were it white; 0 where that is not known.
+        beyond_noise: f64,
+    },
+    /// It hardly changed, but another axis of the unit was turned.
+    Carried,
+    /// It changed slowly by far more than the noise: a slow turn, or the bias with temperature.
+    Slow {
+        /// Standard deviation of the means, deg/h.
+        scatter_deg_h: f64,
+    },
+    /// It was turned or driven.
+    Moved {
+        /// Standard deviation of the means, deg/h.
+        scatter_deg_h: f64,
+        /// Farthest mean from the middle one, deg/h.
+        farthest_deg_h: f64,
+    },
+    /// Too few samples to tell.
+    Unknown,
+}
+
+impl Motion {
+    /// True where nothing speaks against rest.
+    pub fn is_rest(&self) -> bool {
+        matches!(self, Motion::Rest { .. })
+    }
+
+    /// True where the unit was turned, about this axis or another.
+    pub fn is_motion(&self) -> bool {
+        matches!(self, Motion::Moved { .. } | Motion::Carried)
+    }
+}
+
+/// Judges the motion by means over 1 s (or an eighth of a shorter record). `sample_noise`: standard deviation of a
+/// sample where the record is quietest; `warming`: largest range of a temperature, degC.
+pub fn motion(
+    blocks: &BlockSeries,
+    tau0_s: f64,
+    sample_noise_deg_h: Option<f64>,
+    warming_deg_c: f64,
+) -> Motion {
+    let block_s = blocks.block_len.max(1) as f64 * tau0_s;
+    let eighth = (blocks.mean.len() / 8).max(1);
+    let merged = ((1.0 / block_s).ceil() as usize).clamp(1, eighth);
+    let means = means(blocks, merged);
+    let Some((deviation, steps)) = scatter(&means) else { return Motion::Unknown };
+    let mut sorted = means.clone();
+    let middle = sorted.len() / 2;
+    let (_, median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
+    let median = *median;
+    let farthest = means.iter().map(|m| (m - median).abs()).fold(0.0, f64::max);
+    let samples = merged as f64 * blocks.block_len.max(1) as f64;
+    let noise = sample_noise_deg_h.unwrap_or(0.0) / samples.sqrt();
+    let moved = deviation > MOVED_DEG_H.max(BEYOND_NOISE * noise)
+        || farthest > TURNED_DEG_H.max(2.0 * BEYOND_NOISE * noise);
+    if !moved {
+        let beyond_noise = if noise > 0.0 { deviation / noise } else { 0.0 };
+        Motion::Rest { scatter_deg_h: deviation, beyond_noise }
+    } else if steps < SLOW * deviation && warming_deg_c >= WARMING_DEG_C {
+        Motion::Slow { scatter_deg_h: deviation }
+    } else {
+        Motion::Moved { scatter_deg_h: deviation, farthest_deg_h: farthest }
+    }
+}
+
+/// The axes of a unit turn together: one that hardly shows it is not at rest either.
+pub fn together(mut axes: Vec<&mut Motion>) {
+    if axes.iter().any(|m| m.is_motion()) {
+        axes.iter_mut().filter(|m| m.is_rest()).for_each(|m| **m = Motion::Carried);
+    }
+}
+
+/// Means over `merged` blocks that are at least half full.
+fn means(blocks: &BlockSeries, merged: usize) -> Vec<f64> {
+    let full = blocks.block_len.max(1) as f64 * merged as f64;
+    let counts = blocks.count.chunks(merged);
+    let sums = blocks.mean.chunks(merged).zip(counts).map(|(means, counts)| {
+        means.iter().zip(counts).filter(|(m, _)| m.is_finite()).fold((0.0, 0.0), |(sum, n), (m, c)| {
+            let c = f64::from(*c);
+            (sum + m * c, n + c)
+        })
+    });
+    sums.filter(|(_, n)| *n >= 0.5 * full).map(|(sum, n)| sum / n).collect()
+}
+
+/// Standard deviation of values, and of the steps between neighbours divided by √2: the two agree for white values,
+/// the second is far smaller for slow ones.
+pub fn scatter(values: &[f64]) -> Option<(f64, f64)> {
+    let n = values.len() as f64;
+    if values.len() < 3 {
+        return None;
+    }
+    let mean = values.iter().sum::<f64>() / n;
+    let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+    let steps: f64 = values.iter().zip(values.iter().skip(1)).map(|(a, b)| (b - a).powi(2)).sum();
+    Some((deviation, (steps / (n - 1.0)).sqrt() / SQRT_2))
+}
+
+/// Scatter within the quietest window of about 1 s: what the noise is where a record that moves stands still.
+#[derive(Debug, Clone)]
+pub struct Quietest {
+    length: usize,
+    window: Vec<f64>,
+    least: Option<f64>,
+}
+
+impl Quietest {
+    /// An empty track of samples over `tau0_s` s.
+    pub fn new(tau0_s: f64) -> Quietest {
+        let length = ((1.0 / tau0_s).ceil() as usize).clamp(32, 1 << 20);
+        Quietest { length, window: Vec::new(), least: None }
+    }
+
+    /// Takes contiguous samples.
+    pub fn push(&mut self, values: &[f64], continues: bool) {
+        if !continues {
+            self.window.clear();
+        }
+        for &v in values {
+            if v.is_finite() {
+                self.window.push(v);
+            } else {
+                self.window.clear();
+            }
+            if self.window.len() == self.length {
+                let n = self.length as f64;
+                let mean = self.window.iter().sum::<f64>() / n;
+                let variance = self.window.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / (n - 1.0);
+                // A window that holds one value says that the output stood, not that it is free of noise.
+                if variance > 0.0 {
+                    self.least = Some(self.least.map_or(variance, |l| l.min(variance)));
+                }
+                self.window.clear();
+            }
+        }
+    }
+
+    /// Standard deviation in the quietest window, unit of the values.
+    pub fn finish(&self) -> Option<f64> {
+        self.least.map(f64::sqrt)
+    }
+}
