@@ -116,7 +116,12 @@ impl Unit {
     }
 
     fn of_ids(&self, ids: &[&str]) -> Vec<Truth> {
-        self.truths().into_iter().filter(|t| ids.contains(&t.id)).collect()
+        // No unit can meet a limit of nothing, and none is written.
+        let meant = |t: Truth| match &t.limit {
+            Some(limit) if limit.value < 1e-9 => Truth { limit: None, ..t },
+            _ => t,
+        };
+        self.truths().into_iter().filter(|t| ids.contains(&t.id)).map(meant).collect()
     }
 
     fn simulated(&self, seed: u64, ids: &[&str]) -> Simulated {

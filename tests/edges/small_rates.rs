@@ -24,8 +24,8 @@ enum Form {
     Lock(f64),
     /// Play, with normal noise on the input.
     Shaken(f64, f64),
-    /// Half of the input inside, and what is lost stays lost outside: no zone that the program knows.
-    HalfInside(f64),
+    /// Nothing inside, and outside half of the half width is lost: no zone that the program knows.
+    Stick(f64),
     /// Steps of a read-out.
     Stairs(f64),
 }
@@ -43,7 +43,8 @@ impl Form {
                 let sum: f64 = jitter.iter().map(|z| x + s * z).map(|v| v - v.clamp(-d, d)).sum();
                 sum / jitter.len() as f64
             }
-            Form::HalfInside(d) => x - 0.5 * x.clamp(-d, d),
+            Form::Stick(d) if x.abs() <= d => 0.0,
+            Form::Stick(d) => x - x.clamp(-0.5 * d, 0.5 * d),
             Form::Stairs(q) => q * (x / q).round(),
         }
     }
@@ -290,9 +291,9 @@ fn shaken(seed: u64) -> Simulated {
     sweep.simulated(seed, truths)
 }
 
-fn half_inside(seed: u64) -> Simulated {
-    let truths = vec![Truth::new("dead_zone", 0.4).max(0.38), Truth::new("threshold", 0.4).max(0.38)];
-    Sweep::of(Form::HalfInside(0.4)).simulated(seed, truths)
+fn stick(seed: u64) -> Simulated {
+    let truths = vec![Truth::new("dead_zone", 0.44).max(0.43), Truth::new("threshold", 0.44).max(0.43)];
+    Sweep::of(Form::Stick(0.44)).simulated(seed, truths)
 }
 
 fn stairs(seed: u64) -> Simulated {
@@ -390,11 +391,11 @@ pub static FAMILY: Family = Family {
             draw: shaken,
         },
         Case {
-            name: "half of the rate inside",
+            name: "zone of no known form",
             edges: &[Edge::BesideLarge],
             ids: ZONE,
             records: 60,
-            draw: half_inside,
+            draw: stick,
         },
         Case {
             name: "steps of a read-out",

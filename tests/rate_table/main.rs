@@ -6,6 +6,7 @@ mod motion;
 mod pauses;
 mod positions;
 mod runs;
+mod thermometer;
 mod unshown;
 mod zones;
 

@@ -49,7 +49,9 @@ fn numbers_that_sum_up_to_no_angle_are_not_offered_as_one_and_state_no_scale_fac
     assert!(!page.contains("If a known angle was turned"), "{page}");
     // The same numbers, smooth: they sum up to 1.6 million degrees.
     let rows: String = (0..40_000u64)
-        .map(|i| format!("{:.2},{:.6}\n", i as f64 * 0.01, 4000.0 + 300.0 * (i as f64 * 0.002).sin() + white(5, i)))
+        .map(|i| {
+            format!("{:.2},{:.6}\n", i as f64 * 0.01, 4000.0 + 300.0 * (i as f64 * 0.002).sin() + white(5, i))
+        })
         .collect();
     std::fs::write(dir.path().join("s.csv"), format!("time_s,rate_deg_s\n{rows}")).unwrap();
     let page = sagnac(dir.path(), &["inspect", "s.csv"]).out;

@@ -226,7 +226,8 @@ fn middle_of(curve: &[(f64, f64)]) -> f64 {
 }
 
 /// The smallest difference of rates that the output followed by half, shown with 95 %, wherever the test has it beyond a
-/// distance from a centre: what is followed in one place only is followed by chance, or by the grid of a read-out.
+/// distance from a centre: what is followed in one place only is followed by chance, or by the grid of a read-out. The
+/// distance of neighbouring rates is added, for the steps of a read-out may lie anywhere between them.
 fn resolution(response: &Response, slope: f64, (centre, beyond): (f64, f64)) -> Option<f64> {
     let x = &response.levels;
     let followed = |i: usize, j: usize| {
@@ -242,7 +243,8 @@ fn resolution(response: &Response, slope: f64, (centre, beyond): (f64, f64)) -> 
         let pairs: Vec<(usize, usize)> =
             (0..x.len() - apart).map(|i| (i, i + apart)).filter(|(i, j)| outside(*i, *j)).collect();
         let all = pairs.len() >= 2 && pairs.iter().all(|(i, j)| followed(*i, *j));
-        all.then(|| pairs.iter().map(|(i, j)| x[*j] - x[*i]).fold(0.0, f64::max))
+        let between = x.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+        all.then(|| between + pairs.iter().map(|(i, j)| x[*j] - x[*i]).fold(0.0, f64::max))
     })
 }
 
