@@ -6,10 +6,14 @@
 //! likelihood is tabled over the lag with the coefficients at their best, and what is stated of the lag and of a coefficient
 //! comes from the profile of the likelihood: an interval holds every value that some lag explains as well (signed roots of the
 //! profile, Barndorff-Nielsen and Cox 1994, section 3.3), averaged over the states for what is not known of the noise.
+//!
+//! Where effects of changing temperature are zero, the lag has no meaning, and the largest likelihood of many lags is larger
+//! by chance than that of one (Davies 1977). So roots are read as those of χ² with more degrees of freedom the more of all lags
+//! come into question.
 
 use super::read::{self, Reading};
 use super::sampler::Draw;
-use crate::estimate::{Spread, normal_probability};
+use crate::estimate::{Spread, chi_square_tail, normal_probability, normal_quantile};
 
 /// States at which the likelihood is tabled.
 const STATES: usize = 30;
@@ -21,6 +25,14 @@ const TRIED: usize = 28;
 const SHORTEST: f64 = 0.001;
 /// Loss of log-likelihood from which a lag is out of question at the best noise.
 const LOST: f64 = 14.0;
+/// Loss of log-likelihood up to which a lag comes into question where degrees of freedom are counted.
+const IN_QUESTION: f64 = 5.0;
+/// Shares of the longest lag that come into question: from the first on there are more degrees of freedom than one, from the
+/// second on as many as there can be.
+const TOLD: (f64, f64) = (0.1, 0.4);
+/// Degrees of freedom where every lag comes into question: by simulation of units without any effect, whose largest
+/// likelihoods exceed that of no effect as χ² with two to three does.
+const MOST_DOF: f64 = 3.0;
 /// Points between two lags of a table at which coefficients are read.
 const BETWEEN: usize = 4;
 
@@ -45,6 +57,8 @@ pub struct AtLag {
 pub struct Profile {
     /// Weight of the model that the state belongs to.
     pub weight: f64,
+    /// Longest lag that the record was searched for, s.
+    pub longest_s: f64,
     /// Lags.
     pub lags: Vec<AtLag>,
 }
@@ -76,18 +90,30 @@ pub fn grid(draws: &[Draw], longest_s: f64, log_likelihood: impl Fn(f64) -> Opti
 /// The tables at a part of the states; `at_lag` is what a state says at a position of the grid.
 pub fn profiles(
     draws: &[Draw],
-    grid: &[f64],
+    (grid, longest_s): (&[f64], f64),
     at_lag: impl Fn(usize, &Draw) -> Option<AtLag>,
 ) -> Vec<Profile> {
     let step = draws.len().div_ceil(STATES).max(1);
     let table = |draw: &Draw| -> Vec<AtLag> { (0..grid.len()).filter_map(|at| at_lag(at, draw)).collect() };
     let states = draws.iter().skip(step / 2).step_by(step);
-    states.map(|draw| Profile { weight: 1.0, lags: table(draw) }).filter(|p| !p.lags.is_empty()).collect()
+    states
+        .map(|draw| Profile { weight: 1.0, longest_s, lags: table(draw) })
+        .filter(|p| !p.lags.is_empty())
+        .collect()
 }
 
 impl Profile {
     fn top(&self) -> f64 {
         self.lags.iter().map(|l| l.log_likelihood).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Degrees of freedom that a root is read with.
+    fn dof(&self) -> f64 {
+        let top = self.top();
+        let asked = || self.lags.iter().filter(|l| l.log_likelihood > top - IN_QUESTION).map(|l| l.lag_s);
+        let width = asked().fold(0.0, f64::max) - asked().fold(f64::INFINITY, f64::min);
+        let share = width / self.longest_s.max(f64::MIN_POSITIVE);
+        1.0 + (MOST_DOF - 1.0) * ((share - TOLD.0) / (TOLD.1 - TOLD.0)).clamp(0.0, 1.0)
     }
 
     /// Probability of a shorter lag, by the signed root of the profile; it never falls.
@@ -106,7 +132,7 @@ impl Profile {
             };
             whole.fold(here, f64::max)
         };
-        root(self.top(), best_beyond(&|l| l <= lag_s), best_beyond(&|l| l >= lag_s))
+        root((self.top(), self.dof()), best_beyond(&|l| l <= lag_s), best_beyond(&|l| l >= lag_s))
     }
 
     /// Coefficients of all lags, those between two of the table by straight lines.
@@ -127,8 +153,11 @@ impl Profile {
 
 /// Probability of less, by the signed root: `lower` and `higher` are the best log-likelihoods of a value at most and at least
 /// as large as the one in question. Where both are the largest there is, nothing tells on which side the truth lies.
-fn root(top: f64, lower: f64, higher: f64) -> f64 {
-    let of = |best: f64| (2.0 * (top - best)).max(0.0).sqrt();
+fn root((top, dof): (f64, f64), lower: f64, higher: f64) -> f64 {
+    let of = |best: f64| {
+        let twice = (2.0 * (top - best)).max(0.0);
+        if dof <= 1.0 { twice.sqrt() } else { normal_quantile(1.0 - 0.5 * chi_square_tail(twice, dof)) }
+    };
     normal_probability(of(higher) - of(lower))
 }
 
@@ -141,12 +170,12 @@ pub fn reading(parts: &[Profile]) -> Reading {
 
 /// A coefficient with its spread, every lag that explains the record as well included.
 pub fn coefficient(parts: &[Profile], of: impl Fn(&AtLag) -> Option<Coefficient>) -> Reading {
-    let tables: Vec<(f64, Vec<(f64, f64, f64)>)> =
-        parts.iter().map(|p| (p.top(), p.coefficients(&of))).collect();
+    let tables: Vec<((f64, f64), Vec<(f64, f64, f64)>)> =
+        parts.iter().map(|p| ((p.top(), p.dof()), p.coefficients(&of))).collect();
     let near = || {
         tables
             .iter()
-            .flat_map(|(top, t)| t.iter().filter(move |c| c.0 > top - LOST))
+            .flat_map(|((top, _), t)| t.iter().filter(move |c| c.0 > top - LOST))
             .map(|c| (c.1, 6.0 * c.2))
     };
     let low = near().map(|(m, r)| m - r).fold(f64::INFINITY, f64::min);
@@ -199,7 +228,7 @@ mod tests {
             rate: Some(rate),
             hysteresis: None,
         };
-        Profile { weight: 1.0, lags: lags.map(one).collect() }
+        Profile { weight: 1.0, longest_s: 1e9, lags: lags.map(one).collect() }
     }
 
     #[test]
@@ -225,6 +254,19 @@ mod tests {
             assert!((above - 0.5).abs() < 0.05, "{limit}: {above}");
         }
         assert_eq!(at_shortest(&parts, |l| l.rate).map(|c| c.0), Some(0.0));
+    }
+
+    #[test]
+    fn where_all_lags_come_into_question_more_is_needed_to_exclude_a_value() {
+        let all = |longest_s: f64| Profile {
+            longest_s,
+            ..table((0..=40).map(|i| (f64::from(i), 0.0, (0.0, 1.0))))
+        };
+        let bound = |longest_s: f64| {
+            let found = coefficient(&[all(longest_s)], |l| l.rate);
+            found.spread.interval(found.value, 0.95).unwrap().high
+        };
+        assert!((bound(1e9) - 1.96).abs() < 0.01 && (bound(40.0) - 7.815f64.sqrt()).abs() < 0.02);
     }
 
     #[test]

@@ -169,7 +169,7 @@ fn lags(s: &Search<'_>, draws: &[Draw], longest: f64, best: &Best) -> Vec<Profil
     };
     let common: Vec<Vec<Vec<f64>>> =
         grid.iter().map(|lag_s| modes(&apart, &Shape { lag_s: *lag_s, play_deg_c })).collect();
-    lag::profiles(draws, &grid, |at, draw| {
+    lag::profiles(draws, (&grid, longest), |at, draw| {
         let lag_s = *grid.get(at)?;
         let shape = Shape { lag_s, ..Shape::of(&draw.shape, play_deg_c) };
         let columns: Vec<Vec<f64>> = common.get(at)?.iter().cloned().chain(modes(&play, &shape)).collect();
