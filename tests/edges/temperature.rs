@@ -249,7 +249,7 @@ fn over(unit: Unit, chamber: &Programme, seed: u64, ids: &[&'static str]) -> Sim
         let truth = Truth::new(id, value);
         match id {
             RAMP => truth.on("rate@ramp1"),
-            NOISE => truth.on("rate@10").max(value),
+            NOISE => truth.on("rate@10"),
             LEFT => truth,
             _ if value == 0.0 => truth,
             LAG | RANGE | RMS | SIGMA => truth.max(value),
