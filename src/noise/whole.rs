@@ -178,3 +178,85 @@ fn withhold(estimate: &mut Estimate, (has, most): (f64, f64)) {
     none.notes = std::mem::take(&mut estimate.notes);
     *estimate = none.note(Note::new("note.part_beyond_record").with("has", has).with("most", most));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::composite::{Damped, Described, Line};
+    use crate::noise::digest::{DigestPlan, RateAccumulator};
+    use crate::noise::identification::MarkovFound;
+    use crate::noise::intervals::BoundedPoint;
+
+    /// White values of ±1 deg/h.
+    fn whole() -> Whole {
+        let mut bits = 1u32;
+        let values: Vec<f64> = (0..20_000)
+            .map(|_| {
+                bits ^= bits << 13;
+                bits ^= bits >> 17;
+                bits ^= bits << 5;
+                f64::from(bits) / f64::from(u32::MAX) * 2.0 - 1.0
+            })
+            .collect();
+        let mut pass = RateAccumulator::new(DigestPlan::new(1.0));
+        pass.push(&values, 0, false);
+        let digest = pass.finish();
+        let curve = digest.deviations.curve(crate::noise::family::Estimator::Allan).unwrap();
+        let octaves: Vec<BoundedPoint> = curve
+            .points
+            .iter()
+            .map(|point| BoundedPoint {
+                point: *point,
+                noise: NoiseType::AngleRandomWalk,
+                edf: 0.5 * digest.samples as f64 / point.m as f64,
+                interval95: None,
+                interval68: None,
+            })
+            .collect();
+        Whole::of(&digest, &octaves, None)
+    }
+
+    #[test]
+    fn what_is_larger_than_the_record_is_withheld() {
+        let line = |amplitude_deg_h: f64, frequency_hz: f64| SpectralLine {
+            frequency_hz,
+            resolution_hz: 1e-3,
+            amplitude_deg_h,
+            excess: 9.0,
+            false_alarm_probability: 0.0,
+            harmonic_of: None,
+            harmonic_order: 1,
+            sinusoid: None,
+        };
+        // Too large for the range; too large for the curve at 50 s; small enough.
+        let mut lines = vec![line(1.5, 0.2), line(0.9, 0.01), line(0.05, 0.2)];
+        let said = whole().lines(&mut lines).unwrap();
+        assert_eq!(lines.len(), 1);
+        assert!(said.say(crate::text::Lang::En).contains("more than the record can hold"));
+        assert!(whole().lines(&mut lines).is_none());
+    }
+
+    #[test]
+    fn a_process_larger_than_the_record_is_withheld_everywhere() {
+        for (rms, fits) in [(0.02, true), (0.6, false)] {
+            let normal = crate::estimate::Spread::Normal { standard_uncertainty: 0.05 * rms };
+            let measured = |id, value| Estimate::measured(id, "rate", value, "", normal.clone(), "whittle");
+            let mut found = Identification::empty("rate");
+            found.markov.push(MarkovFound {
+                sigma: measured("markov_sigma", rms),
+                correlation_time: measured("markov_correlation_time", 60.0),
+            });
+            found.described = Described {
+                model: Composite {
+                    markov: vec![Damped { rms_deg_h: rms, frequency_hz: 0.0, decay_time_s: 60.0 }],
+                    lines: vec![Line { amplitude_deg_h: 1.0, frequency_hz: 0.1 }],
+                    ..Default::default()
+                },
+                ..Default::default()
+            };
+            whole().parts(&mut found);
+            assert_eq!(found.markov[0].sigma.value.is_some(), fits);
+            assert_eq!(found.described.model.markov[0].rms_deg_h > 0.0, fits);
+        }
+    }
+}
