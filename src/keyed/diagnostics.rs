@@ -232,7 +232,8 @@ impl SourceText {
 
 /// A text without what steers a terminal or turns the direction of writing: a value may hold it by an escape of TOML.
 fn harmless(text: &str) -> String {
-    let turns = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let turns =
+        |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     text.chars().map(|c| if c.is_control() || turns(c) { '·' } else { c }).collect()
 }
 

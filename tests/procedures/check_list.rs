@@ -29,13 +29,13 @@ fn a_check_that_lacks_what_it_needs_is_listed_with_the_reason() {
     assert_eq!(check(&r, "serial_number")["status"], "made");
     assert_eq!(check(&r, "column_units")["status"], "made");
     // Without the site the sign of the output cannot be told, and the report says so.
-    let text = std::fs::read_to_string(procedure()).unwrap();
-    let site = text.split("[site]").nth(1).unwrap().split("\n[").next().unwrap();
-    let keep = "id = \"static_bias\"";
-    let bare = text
-        .replace(&format!("[site]{site}"), "")
-        .replace(keep, &format!("{keep}\noptions.earth_rate = \"keep\""));
-    std::fs::write(dir.path().join("bare.toml"), bare).unwrap();
+    std::fs::write(
+        dir.path().join("bare.toml"),
+        "format = \"procedure/1\"\n[procedure]\nid = \"p\"\ntitle = \"P\"\nrevision = \"A\"\n[[channel]]\nid = \"time\"\n\
+         column = \"time_s\"\nrole = \"time\"\nunit = \"s\"\n[[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\n\
+         role = \"rate\"\nunit = \"deg/h\"\n[[measurand]]\nid = \"angle_random_walk\"\n",
+    )
+    .unwrap();
     let r = run(dir.path(), "bare.toml", &sample("pass"), &more);
     let unmade = check(&r, "earth_rate");
     assert_eq!(unmade["status"], "not_made");

@@ -47,6 +47,68 @@ fn hostile_files_end_in_bounded_time() {
     assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
 }
 
+/// Values that no key expects, the empty text and what steers a terminal among them.
+const ODD: [&str; 18] = [
+    "\"\"",
+    "0",
+    "-1",
+    "1e308",
+    "1e999",
+    "99999999999999999999999",
+    "nan",
+    "true",
+    "[]",
+    "{}",
+    "[1, \"a\"]",
+    "1979-05-27",
+    "\"\\u0000\"",
+    "\"\\u001b]0;PASS\\u0007\"",
+    "\"\\u202e\"",
+    "\"1e400 deg/h\"",
+    "\"../../etc/passwd\"",
+    "\"no_such_id\"",
+];
+
+#[test]
+fn any_line_of_a_shipped_file_may_hold_an_odd_value() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("procedures");
+    let mut files = 0;
+    for (below, limits) in [("", false), ("limits", true)] {
+        for entry in std::fs::read_dir(folder.join(below)).unwrap() {
+            let path = entry.unwrap().path();
+            let Ok(text) = std::fs::read_to_string(&path) else { continue };
+            files += 1;
+            let lines: Vec<&str> = text.lines().collect();
+            let keys = lines.iter().enumerate().filter(|(_, l)| l.contains(" = ") && !l.starts_with('#'));
+            for (at, line) in keys {
+                let odd = [ODD[at % ODD.len()], ODD[(at * 7 + files) % ODD.len()]];
+                for value in odd {
+                    let mut changed = lines.clone();
+                    let put = format!("{} = {value}", line.split(" = ").next().unwrap());
+                    changed[at] = &put;
+                    let changed = changed.join("\n");
+                    let problems = if limits {
+                        parse_limits("x", changed.as_bytes()).err()
+                    } else {
+                        parse_procedure("x", changed.as_bytes()).err()
+                    };
+                    for problem in problems.iter().flat_map(|p| &p.list) {
+                        let said = problem.to_string();
+                        let place = format!("x:{}:{}", problem.line, problem.column);
+                        assert!(
+                            problem.line >= 1 && problem.column >= 1 && said.contains(&place),
+                            "{put}: {said}"
+                        );
+                        let steers = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
+                        assert!(!said.contains(steers), "{put}: {said:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(files >= 20, "{files}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
 

@@ -124,6 +124,9 @@ fn batches_give_the_rate_the_losses_and_the_noise_of_the_samples() {
         ("ten by ten", PLAIN),
         ("six by six", Logger { batch: (6, 6), ..PLAIN }),
         ("two by two", Logger { batch: (2, 2), ..PLAIN }),
+        ("one or two", Logger { batch: (1, 2), step_s: 2e-4, scatter_s: 5e-5, ..PLAIN }),
+        ("one or two, one stamp", Logger { batch: (1, 2), step_s: 0.0, scatter_s: 0.0, ..PLAIN }),
+        ("one to three", Logger { batch: (1, 3), step_s: 2e-4, scatter_s: 5e-5, ..PLAIN }),
         ("500 by 500", Logger { batch: (500, 500), step_s: 1e-4, scatter_s: 1e-5, ..PLAIN }),
         ("one stamp", Logger { step_s: 0.0, scatter_s: 0.0, ..PLAIN }),
         ("one stamp, any size", Logger { batch: (1, 20), step_s: 0.0, scatter_s: 0.0, ..PLAIN }),
@@ -162,4 +165,66 @@ fn batches_that_tell_no_clock_are_refused_or_right() {
     let wrong: Vec<String> =
         cases.iter().filter_map(|(name, l)| judged(dir.path(), name, l, false)).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn rows_that_are_now_and_then_delivered_together_lose_nothing() {
+    // One delivery in thirty holds two rows: the first of them was there an interval before.
+    let dir = tempdir().unwrap();
+    let mut wrong = Vec::new();
+    for (name, apart_s, digits) in [("one stamp", 0.0, 6), ("two stamps", 2e-4, 6), ("milliseconds", 2e-4, 3)]
+    {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(11);
+        let mut text = String::from("time_s,rate_deg_h\n");
+        let mut i = 0u64;
+        while i < 60_000 {
+            let together = if rng.random_bool(1.0 / 30.0) { 2 } else { 1 };
+            let stamp = (i + together - 1) as f64 / HZ + 1e-3 * rng.random::<f64>();
+            for j in 0..together {
+                let rate = white(7, i + j) * N * 60.0 * HZ.sqrt();
+                text.push_str(&format!("{:.digits$},{rate:.4}\n", stamp + j as f64 * apart_s));
+            }
+            i += together;
+        }
+        std::fs::write(dir.path().join("r.csv"), text).unwrap();
+        let _ = std::fs::remove_dir_all(dir.path().join("a"));
+        let said = sagnac(dir.path(), &["analyze", "r.csv", "--out", "a"]);
+        assert_eq!(said.code, 0, "{name}: {said:?}");
+        let r = result(&dir.path().join("a"));
+        let hz = 1.0 / r["recording"][0]["sample_interval_s"].as_f64().unwrap();
+        let missing = r["integrity"]["missing_samples"].as_u64().unwrap();
+        let n = measurand(&r, "angle_random_walk")["value"].as_f64().unwrap();
+        if (hz / HZ - 1.0).abs() > 1e-4 || missing > 6 || (n / N - 1.0).abs() > 0.03 {
+            wrong.push(format!("{name}: {hz} Hz, {missing} missing, N {n}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn rows_written_twice_and_gaps_of_an_even_clock_stay_what_they_are() {
+    let dir = tempdir().unwrap();
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(12);
+    let (mut text, mut twice, mut missing) = (String::from("time_s,rate_deg_h\n"), 0, 0);
+    let mut i = 0u64;
+    while i < 40_000 {
+        if i > 0 && rng.random_bool(0.0005) {
+            let gap = rng.random_range(1..40);
+            (i, missing) = (i + gap, missing + gap);
+        }
+        let stamp = i as f64 / HZ + 5e-4 * (2.0 * rng.random::<f64>() - 1.0);
+        let row = format!("{stamp:.6},{:.4}\n", white(9, i) * N * 60.0 * HZ.sqrt());
+        text.push_str(&row);
+        if rng.random_bool(0.01) {
+            text.push_str(&row);
+            twice += 1;
+        }
+        i += 1;
+    }
+    std::fs::write(dir.path().join("r.csv"), text).unwrap();
+    let said = sagnac(dir.path(), &["analyze", "r.csv", "--out", "a"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let r = result(&dir.path().join("a"));
+    let count = |id: &str| r["integrity"][id].as_u64().unwrap();
+    assert_eq!((count("missing_samples"), count("duplicate_timestamps")), (missing, twice));
 }
