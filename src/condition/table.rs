@@ -77,8 +77,8 @@ const TWICE: f64 = 0.05;
 const LEAST_EARTH: f64 = 3.0;
 
 /// Judges a test on a table, and tells which checks were made.
-pub fn judge(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRecord> {
-    let all = judge_quietly(facts);
+pub fn judge_and_tell(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRecord> {
+    let all = judge(facts);
     let made = |id: &str| all.iter().any(|c| c.id.split('.').next() == Some(id));
     let tell = |id: &str, condition: &str, reason: &'static str| {
         if made(condition) {
@@ -109,7 +109,8 @@ pub fn judge(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRecord> {
     all
 }
 
-fn judge_quietly(facts: &TableFacts) -> Vec<ConditionRecord> {
+/// Judges a test on a table.
+pub fn judge(facts: &TableFacts) -> Vec<ConditionRecord> {
     let mut all = vec![steps(facts)];
     // With stamps in a wrong unit every rate is wrong, and nothing else is worth a word.
     if let Some(wrong) = table_motion::stamps(facts) {

@@ -6,7 +6,7 @@ use super::reading::{self, tidy};
 use super::table_others::Others;
 use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
 use crate::condition::checks::CheckLog;
-use crate::condition::table::{ChannelFact, TableFacts, judge, judge_scale};
+use crate::condition::table::{ChannelFact, TableFacts, judge_and_tell, judge_scale};
 use crate::condition::table_motion::Settling;
 use crate::condition::thermometer::{Thermometer, judge_scale_of_temperature};
 use crate::condition::{Facts, judge_all};
@@ -43,7 +43,7 @@ pub(super) fn execute(
             (gyro, scale_factor::evaluate(&run, gyro, setup, unit, &wanted))
         })
         .collect();
-    let mut conditions = judge(&facts(request, &run, setup, &evaluated), &found.checks);
+    let mut conditions = judge_and_tell(&facts(request, &run, setup, &evaluated), &found.checks);
     if setup.known.is_empty() && wants_alignment(procedure) {
         // The input axis is square to the axis that is turned about: its output follows by the tilt only.
         conditions.retain(|c| c.id != "table_reached");

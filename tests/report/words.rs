@@ -3,6 +3,7 @@
 
 use crate::support;
 use crate::support::tested::tested;
+use sagnac::condition::checks::CheckLog;
 use sagnac::condition::temperature_track::{Extreme, TemperatureFacts};
 use sagnac::condition::{
     BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, TailShape, WarmUpFact, judge_all,
@@ -202,6 +203,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         serial: Some("SN-1"),
         schedule: Some(&schedule),
         today: chrono::NaiveDate::from_ymd_opt(2100, 1, 1).unwrap(),
+        checks: &CheckLog::default(),
     });
     let kinds: BTreeSet<&str> = records.iter().filter_map(|c| c.id.split('.').next()).collect();
     // One kind a condition, eleven more of faults, three more of the schedule.

@@ -357,13 +357,14 @@ pub(super) fn course(t: &[f64]) -> Option<Course> {
     Some(Course { mean_s, middle, bounded: t.len() >= 1024 && long <= 2.0 * short.max(0.5 * mean_s) })
 }
 
-/// True when the rows come in batches, if they come from a uniform clock: the middle step is short, or, where many batches
-/// have one row, the short steps stand apart from the others and make up for the wait before them. Rows that were written
-/// twice make up for nothing.
-pub(super) fn in_batches(t: &[f64], course: &Course) -> bool {
-    if course.middle <= WITHIN {
-        return true;
-    }
+/// True when the middle step is so short that the rows come in batches, if they come from a uniform clock.
+pub(super) fn in_batches(course: &Course) -> bool {
+    course.middle <= WITHIN
+}
+
+/// True where most batches have one row and some have more: their short steps stand apart from the others and make up for
+/// the wait before them. Rows that were written twice make up for nothing.
+pub(super) fn now_and_then(t: &[f64], course: &Course) -> bool {
     let (mut together, mut apart, mut made_up) = (0usize, 0usize, 0usize);
     // The wait before the rows that are delivered now, and how many they are, in mean intervals.
     let (mut wait, mut rows) = (1.0, 1.0);

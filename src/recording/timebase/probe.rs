@@ -56,8 +56,9 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
     let (median, long) = middle(&t);
     let resolution_s = resolution(&t, median);
     let rounded = resolution_s > 0.3 * median && straight(&t, resolution_s) >= 0.5;
-    let batches = course.filter(|c| !rounded && buffered::in_batches(&t, c));
-    let steps_of_its_own = batches.and_then(|_| in_step(&t, median, resolution_s));
+    let together = course.is_some_and(|c| !buffered::in_batches(&c) && buffered::now_and_then(&t, &c));
+    let batches = course.filter(|c| !rounded && (together || buffered::in_batches(c)));
+    let steps_of_its_own = batches.filter(|_| !together).and_then(|_| in_step(&t, median, resolution_s));
     if let Some(course) = batches.filter(|_| steps_of_its_own.is_none()) {
         let mut batches = Batches::new(course.mean_s);
         t.iter().for_each(|stamp| batches.push(*stamp));
