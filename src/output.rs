@@ -2,19 +2,30 @@
 //!
 //! Everything is written into a hidden folder beside the target, synced to disk, and put in place by one rename. A
 //! run that is killed, or a disk that fills up, leaves the earlier result or none, never half of a new one.
+//!
+//! A result lists its inputs and its files. It takes the place of an earlier one unasked only where both have the same
+//! inputs, and only files that the earlier one lists are ever removed.
 
 mod csv;
+mod earlier;
 mod file;
+mod partial;
 
 pub use csv::quoted;
 pub use file::StagedFile;
+pub use partial::abandon_all;
 
-use crate::text::{Note, io_reason};
+use crate::text::{Arg, Note, io_reason};
+use earlier::Earlier;
+use partial::Partial;
+use schemars::JsonSchema;
+use serde::Serialize;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
 
 /// Why an output folder could not be written.
 #[derive(Debug)]
@@ -39,6 +50,24 @@ pub enum OutputError {
     NoName(PathBuf),
     /// A file that no result folder holds.
     Unforeseen(String),
+    /// A result of other inputs stands there, and nobody asked to replace it.
+    Other {
+        /// Where.
+        path: PathBuf,
+        /// What it is.
+        what: Note,
+        /// The inputs that differ.
+        differ: Vec<String>,
+    },
+    /// A file that is read lies where the result would go.
+    InputInside {
+        /// The folder.
+        path: PathBuf,
+        /// The file.
+        input: PathBuf,
+    },
+    /// The record cannot be written as JSON.
+    Unwritable(String),
 }
 
 impl OutputError {
@@ -54,6 +83,17 @@ impl OutputError {
             }
             OutputError::NoName(path) => Note::new("output_error.no_name").with("path", at(path)),
             OutputError::Unforeseen(name) => Note::new("output_error.unforeseen").with("name", name.as_str()),
+            OutputError::Other { path, what, differ } => {
+                let differ = differ.iter().map(|d| Arg::Key(format!("output_error.input.{d}"))).collect();
+                Note::new("output_error.other")
+                    .with("path", at(path))
+                    .with("what", what.clone())
+                    .with("differ", Arg::Several(differ, ", "))
+            }
+            OutputError::InputInside { path, input } => {
+                Note::new("output_error.input_inside").with("path", at(path)).with("input", at(input))
+            }
+            OutputError::Unwritable(reason) => Note::new("system.other").with("reason", reason.as_str()),
         }
     }
 }
@@ -79,9 +119,6 @@ fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Outpu
     move |source| OutputError::Io { action, path, source }
 }
 
-/// What killed runs leave is removed after this time: no run lasts as long.
-const ABANDONED_AFTER: Duration = Duration::from_secs(24 * 3600);
-
 /// Attempts to put a folder in place while other runs put theirs there.
 const ATTEMPTS: usize = 100;
 
@@ -89,8 +126,34 @@ const ATTEMPTS: usize = 100;
 #[derive(Debug)]
 pub struct StagedFolder {
     target: PathBuf,
-    staging: tempfile::TempDir,
+    staging: Partial<tempfile::TempDir>,
     kind: Kind,
+    order: Order,
+    replaces: Option<Note>,
+    written: RefCell<BTreeSet<String>>,
+}
+
+/// What a folder is made from, and whether it may replace a result of other inputs.
+#[derive(Debug, Clone, Default)]
+pub struct Order {
+    /// The inputs: their names, such as `recording`, and what tells each from others, such as a hash.
+    pub inputs: BTreeMap<String, String>,
+    /// Files and folders that are read, which the result must not take away.
+    pub read: Vec<PathBuf>,
+    /// Replaces a result of other inputs too.
+    pub force: bool,
+}
+
+/// A record with what it was made from and the files of its folder.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Listed<T> {
+    #[serde(flatten)]
+    record: T,
+    /// What the result was made from: SHA-256 of `recording`, `procedure`, `limits`, `model` and `options`, and the
+    /// serial number of the `unit`, as far as there are any.
+    inputs: BTreeMap<String, String>,
+    /// Every file of the folder, this one among them. Nothing else in it is ever removed by the program.
+    files: BTreeSet<String>,
 }
 
 /// What a folder holds; one kind never takes the place of another.
@@ -137,38 +200,43 @@ impl Kind {
 }
 
 impl StagedFolder {
-    /// Begins a folder that will appear at `target`. An earlier result there is replaced on publication; anything
-    /// else there is refused now, before any work is done. What killed runs left beside `target` more than a day ago
-    /// is removed.
+    /// Begins a folder that will appear at `target`. What stands there is looked at now, before any work is done: an
+    /// earlier result of the same inputs is replaced on publication, one of others where the order says so; anything
+    /// else is refused. What killed runs left in the folder of `target` is removed.
     ///
     /// # Errors
     /// [`OutputError`] when the place cannot be written or is taken.
-    pub fn begin(target: &Path) -> Result<StagedFolder, OutputError> {
-        StagedFolder::begin_kind(target, Kind::Result)
-    }
-
-    /// The same for a folder of a kind.
-    ///
-    /// # Errors
-    /// As [`StagedFolder::begin`].
-    pub fn begin_kind(target: &Path, kind: Kind) -> Result<StagedFolder, OutputError> {
+    pub fn begin(target: &Path, kind: Kind, order: Order) -> Result<StagedFolder, OutputError> {
         let Some(name) = target.file_name() else {
             return Err(OutputError::NoName(target.to_owned()));
         };
-        if target.symlink_metadata().is_ok() {
-            replaceable(target, kind)?;
-        }
+        outside(target, &order.read)?;
+        let replaces = match target.symlink_metadata() {
+            Ok(_) => {
+                replaceable(target, kind, &order)?.filter(|e| e.inputs != order.inputs).map(|e| e.what())
+            }
+            Err(_) => None,
+        };
         let parent = parent(target);
         fs::create_dir_all(parent).map_err(io("output_error.create_folder", parent))?;
-        let prefix = format!(".{}.partial-", name.to_string_lossy());
-        remove_abandoned(parent, &prefix);
+        partial::remove_abandoned(parent);
         let mut builder = tempfile::Builder::new();
+        let prefix = partial::prefix(&name.to_string_lossy());
         builder.prefix(&prefix);
         // A result is read by colleagues: the usual rights under the user's umask, not those of a private scratch.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let staging = builder.tempdir_in(parent).map_err(io("output_error.write_into", parent))?;
-        Ok(StagedFolder { target: target.to_owned(), staging, kind })
+        let staging =
+            Partial::begin(|| builder.tempdir_in(parent)).map_err(io("output_error.write_into", parent))?;
+        let written = RefCell::default();
+        Ok(StagedFolder { target: target.to_owned(), staging, kind, order, replaces, written })
+    }
+
+    /// The result of other inputs that publication will take away, where the order allows it.
+    pub fn replaces(&self) -> Option<Note> {
+        let what = self.replaces.clone()?;
+        let path = self.target.display().to_string();
+        Some(Note::new("output_error.replaces").with("path", path).with("what", what))
     }
 
     /// Writes one file into the folder; `name` may hold sub-folders.
@@ -180,34 +248,51 @@ impl StagedFolder {
         if !self.kind.owns(name.split('/').next().unwrap_or_default()) {
             return Err(OutputError::Unforeseen(name.to_owned()));
         }
+        // A signal waits until the file is there: what is written after its cleaning would stay.
+        let _quiet = partial::quiet();
         let path = self.staging.path().join(name);
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(io("output_error.create_folder", parent))?;
         }
         let mut file = File::create(&path).map_err(io("output_error.create", &path))?;
         file.write_all(contents).map_err(io("output_error.write", &path))?;
-        file.sync_all().map_err(io("output_error.sync", &path))
+        file.sync_all().map_err(io("output_error.sync", &path))?;
+        self.written.borrow_mut().insert(name.to_owned());
+        Ok(())
     }
 
-    /// Puts the folder in its place in one step and gives its path back.
+    /// Writes the record with the list of everything that the folder holds, puts the folder in its place in one step
+    /// and gives its path back.
     ///
     /// # Errors
-    /// [`OutputError::Io`] when the place cannot be written, [`OutputError::InTheWay`] when it was taken meanwhile.
-    pub fn publish(self) -> Result<PathBuf, OutputError> {
+    /// [`OutputError::Io`] when the place cannot be written, [`OutputError::InTheWay`] or [`OutputError::Other`] when
+    /// it was taken meanwhile.
+    pub fn publish(self, record: impl Serialize) -> Result<PathBuf, OutputError> {
+        let (marks, _) = self.kind.marks();
+        let mut files = self.written.borrow().clone();
+        files.insert(marks.to_owned());
+        let listed = Listed { record, inputs: self.order.inputs.clone(), files };
+        let json = serde_json::to_vec_pretty(&listed).map_err(|e| OutputError::Unwritable(e.to_string()))?;
+        self.write(marks, &json)?;
+        let quiet = partial::quiet();
         let figures = self.staging.path().join("figures");
         if figures.is_dir() {
             sync_folder(&figures)?;
         }
         sync_folder(self.staging.path())?;
-        let staged = self.staging.keep();
-        let outcome = put_in_place(&staged, &self.target, self.kind);
-        if outcome.is_err() {
+        let StagedFolder { target, staging, kind, order, .. } = self;
+        let (folder, entry) = staging.into_parts();
+        let staged = folder.keep();
+        let outcome = put_in_place(&staged, &target, kind, &order);
+        if outcome.is_err() && staged.join(marks).exists() && is_own(&staged, &json) {
             // Best effort: what could not be published must not stay behind as clutter.
             let _ = fs::remove_dir_all(&staged);
         }
+        drop(quiet);
+        drop(entry);
         outcome?;
-        sync_folder(parent(&self.target))?;
-        Ok(self.target)
+        sync_folder(parent(&target))?;
+        Ok(target)
     }
 }
 
@@ -216,74 +301,46 @@ fn parent(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// The first entry of a folder that no result folder holds.
-fn foreign(folder: &Path, kind: Kind) -> std::io::Result<Option<String>> {
-    for entry in fs::read_dir(folder)? {
-        let name = entry?.file_name().to_string_lossy().into_owned();
-        if !kind.owns(&name) {
-            return Ok(Some(name));
-        }
-    }
-    Ok(None)
-}
-
-/// Refuses whatever is neither an empty folder nor an earlier result and nothing else.
-fn replaceable(target: &Path, kind: Kind) -> Result<(), OutputError> {
-    let in_the_way = |why: Note| Err(OutputError::InTheWay { path: target.to_owned(), why });
-    let found = target.symlink_metadata().map_err(io("output_error.look_at", target))?.file_type();
-    if !found.is_dir() {
-        let why = if found.is_symlink() { "output_error.why.link" } else { "output_error.why.file" };
-        return in_the_way(why.into());
-    }
-    if fs::read_dir(target).map_err(io("output_error.look_into", target))?.next().is_none() {
-        return Ok(());
-    }
-    if !is_of(target, kind) {
-        return in_the_way(match kind {
-            Kind::Result => "output_error.why.foreign".into(),
-            Kind::Comparison => "compare.more.foreign_folder".into(),
-            Kind::Explanation => "explain.error.foreign_folder".into(),
-        });
-    }
-    match foreign(target, kind).map_err(io("output_error.look_into", target))? {
-        Some(name) => in_the_way(Note::new("output_error.why.holds").with("name", name)),
+/// Refuses a place that holds something that is read.
+fn outside(target: &Path, read: &[PathBuf]) -> Result<(), OutputError> {
+    let Ok(place) = target.canonicalize() else { return Ok(()) };
+    let inside = |input: &&PathBuf| {
+        // A file that is a link has two places: its own and that of what it leads to.
+        let own = input.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
+        let own = own.and_then(|p| p.canonicalize().ok());
+        own.is_some_and(|p| p.starts_with(&place))
+            || input.canonicalize().is_ok_and(|i| i.starts_with(&place))
+    };
+    match read.iter().find(inside) {
+        Some(input) => Err(OutputError::InputInside { path: target.to_owned(), input: input.clone() }),
         None => Ok(()),
     }
 }
 
-/// True when a folder holds the file that tells its kind.
-fn is_of(folder: &Path, kind: Kind) -> bool {
-    let (name, start) = kind.marks();
-    let mut head = String::new();
-    let read = File::open(folder.join(name)).and_then(|f| f.take(64).read_to_string(&mut head));
-    read.is_ok() && head.split_whitespace().collect::<String>().starts_with(start)
+/// Refuses a file that is read.
+fn outside_file(target: &Path, read: &[PathBuf]) -> Result<(), OutputError> {
+    let Ok(place) = target.canonicalize() else { return Ok(()) };
+    match read.iter().find(|input| input.canonicalize().is_ok_and(|i| i == place)) {
+        Some(input) => Err(OutputError::InputInside { path: target.to_owned(), input: input.clone() }),
+        None => Ok(()),
+    }
 }
 
-/// Removes what killed runs left beside a target long ago. Best effort: it is clutter and harms nobody.
-fn remove_abandoned(parent: &Path, prefix: &str) {
-    let old = |path: &Path| {
-        let modified = path.symlink_metadata().and_then(|m| m.modified()).ok();
-        modified
-            .and_then(|m| SystemTime::now().duration_since(m).ok())
-            .is_some_and(|age| age > ABANDONED_AFTER)
-    };
-    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let ours = name
-            .strip_prefix(prefix)
-            .is_some_and(|rest| rest.len() == 6 && rest.chars().all(|c| c.is_ascii_alphanumeric()));
-        let path = entry.path();
-        let folder = entry.file_type().is_ok_and(|t| t.is_dir());
-        if ours
-            && folder
-            && old(&path)
-            && [Kind::Result, Kind::Comparison, Kind::Explanation]
-                .iter()
-                .any(|k| matches!(foreign(&path, *k), Ok(None)))
-        {
-            let _ = fs::remove_dir_all(&path);
-        }
+/// The earlier result that may be replaced; `None` for an empty folder. Whatever else stands there is refused.
+fn replaceable(target: &Path, kind: Kind, order: &Order) -> Result<Option<Earlier>, OutputError> {
+    let Some(earlier) = Earlier::at(target, kind)? else { return Ok(None) };
+    if order.force || earlier.inputs == order.inputs {
+        return Ok(Some(earlier));
     }
+    let differ = earlier.differing(&order.inputs);
+    Err(OutputError::Other { path: target.to_owned(), what: earlier.what(), differ })
+}
+
+/// True when a folder holds the record that was just written.
+fn is_own(folder: &Path, json: &[u8]) -> bool {
+    [Kind::Result, Kind::Comparison, Kind::Explanation]
+        .iter()
+        .any(|k| fs::read(folder.join(k.marks().0)).is_ok_and(|found| found == json))
 }
 
 fn sync_folder(path: &Path) -> Result<(), OutputError> {
@@ -291,7 +348,7 @@ fn sync_folder(path: &Path) -> Result<(), OutputError> {
 }
 
 #[cfg(target_os = "linux")]
-fn put_in_place(staged: &Path, target: &Path, kind: Kind) -> Result<(), OutputError> {
+fn put_in_place(staged: &Path, target: &Path, kind: Kind, order: &Order) -> Result<(), OutputError> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
     use rustix::io::Errno;
     let rename = |flags| renameat_with(CWD, staged, CWD, target, flags);
@@ -301,29 +358,40 @@ fn put_in_place(staged: &Path, target: &Path, kind: Kind) -> Result<(), OutputEr
             Err(Errno::EXIST) => {}
             Err(_) => break,
         }
-        replaceable(target, kind)?;
+        replaceable(target, kind, order)?;
+        // Another run that tidies up must not take the old folder, once it stands aside, for one that was left.
+        let _lock = partial::lock(target);
         // An exchange is one step: at no moment is there neither the old folder nor the new one.
         match rename(RenameFlags::EXCHANGE) {
-            Ok(()) => return fs::remove_dir_all(staged).map_err(io("output_error.remove", staged)),
+            Ok(()) => {
+                // What came between the look and the exchange goes back.
+                return match replaceable(staged, kind, order) {
+                    Ok(old) => earlier::remove(staged, old.as_ref()),
+                    Err(e) => {
+                        let _ = rename(RenameFlags::EXCHANGE);
+                        Err(e)
+                    }
+                };
+            }
             // Another run has just taken the old folder away.
             Err(Errno::NOENT) => {}
             Err(_) => break,
         }
     }
-    replace_in_two_steps(staged, target, kind)
+    replace_in_two_steps(staged, target, kind, order)
 }
 
 #[cfg(not(target_os = "linux"))]
-fn put_in_place(staged: &Path, target: &Path, kind: Kind) -> Result<(), OutputError> {
-    replace_in_two_steps(staged, target, kind)
+fn put_in_place(staged: &Path, target: &Path, kind: Kind, order: &Order) -> Result<(), OutputError> {
+    replace_in_two_steps(staged, target, kind, order)
 }
 
 /// For file systems without an exchange: the old folder steps aside first.
-fn replace_in_two_steps(staged: &Path, target: &Path, kind: Kind) -> Result<(), OutputError> {
+fn replace_in_two_steps(staged: &Path, target: &Path, kind: Kind, order: &Order) -> Result<(), OutputError> {
     if target.symlink_metadata().is_err() {
         return fs::rename(staged, target).map_err(io("output_error.put_in_place", target));
     }
-    replaceable(target, kind)?;
+    let old = replaceable(target, kind, order)?;
     let mut aside = staged.as_os_str().to_owned();
     aside.push(".replaced");
     let aside = PathBuf::from(aside);
@@ -332,7 +400,7 @@ fn replace_in_two_steps(staged: &Path, target: &Path, kind: Kind) -> Result<(), 
         let _ = fs::rename(&aside, target);
         return Err(io("output_error.put_in_place", target)(e));
     }
-    fs::remove_dir_all(&aside).map_err(io("output_error.remove", &aside))
+    earlier::remove(&aside, old.as_ref())
 }
 
 #[cfg(test)]

@@ -5,9 +5,11 @@
 
 mod lang;
 mod system;
+mod visible;
 
 pub use lang::Lang;
 pub use system::io_reason;
+pub use visible::{steers, visible, visible_lines};
 
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
@@ -64,7 +66,7 @@ pub enum Arg {
     Stated(f64),
     /// A count; shown in full.
     Count(u64),
-    /// A text, shown as it is.
+    /// A text, shown as one line, without what steers a terminal.
     Text(String),
     /// A key of the locale tables, shown as what stands there; as its last part where nothing does.
     Key(String),
@@ -137,7 +139,7 @@ impl Arg {
                 decimal(&trimmed(format!("{value:.digits$}")), lang)
             }
             Arg::Count(v) => v.to_string(),
-            Arg::Text(t) => t.clone(),
+            Arg::Text(t) => visible(t).into_owned(),
             Arg::Key(k) => Arg::words(k, lang),
             Arg::Note(n) => n.say(lang),
             Arg::Several(list, between) => list.iter().map(|a| a.say(lang)).collect::<Vec<_>>().join(between),

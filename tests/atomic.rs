@@ -9,7 +9,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
-use support::{files, limits, names, procedure, program, result, sagnac, sample};
+use support::{Said, files, limits, names, procedure, program, result, sagnac, sagnac_as_typed, sample};
 use tempfile::tempdir;
 
 /// The files of a result without the moment of its making.
@@ -26,7 +26,8 @@ fn content(folder: &Path) -> Content {
 }
 
 fn arguments(name: &str, out: &str) -> Vec<String> {
-    ["run", &procedure(), &sample(name), "--limits", &limits(), "--serial", "SN-1", "--out", out]
+    // The samples take turns: each replaces the result of the other.
+    ["run", &procedure(), &sample(name), "--limits", &limits(), "--serial", "SN-1", "--force", "--out", out]
         .map(str::to_owned)
         .to_vec()
 }
@@ -99,6 +100,7 @@ fn kill_at_random_moments(times: u64, seed: u64) -> u64 {
     println!("{times} runs: {killed} killed in their course, {replaced} had replaced the earlier result");
     // What the killed runs left does not disturb the next.
     assert_eq!(finish(dir.path(), "pass", "out"), passing);
+    assert_eq!(names(dir.path()), ["out"], "what dead runs left is removed by the next");
     killed
 }
 
@@ -204,4 +206,146 @@ fn a_file_that_cannot_be_written_whole_leaves_the_earlier_result() {
     assert!(err.starts_with("error: failed to write") && err.lines().count() == 1, "{err}");
     assert_eq!(content(&dir.path().join("out")), passing);
     assert_eq!(names(dir.path()), ["out"]);
+}
+
+/// A run without `--force`.
+fn typed(folder: &Path, arguments: &[&str]) -> Said {
+    sagnac_as_typed(folder, arguments, &[])
+}
+
+fn run<'a>(procedure: &'a str, recording: &'a str, limits: &'a str, serial: &'a str) -> Vec<&'a str> {
+    vec!["run", procedure, recording, "--limits", limits, "--serial", serial, "--out", "out"]
+}
+
+#[test]
+fn a_result_of_other_inputs_is_replaced_by_force_only() {
+    let dir = tempdir().unwrap();
+    let (pass, fail, procedure, limits) = (sample("pass"), sample("fail"), procedure(), limits());
+    let other_limits =
+        support::altered(dir.path(), "limits.toml", &limits, &[("[limits]", "# tighter\n[limits]")]);
+    let other_procedure =
+        support::altered(dir.path(), "procedure.toml", &procedure, &[("[procedure]", "# new\n[procedure]")]);
+    let first = run(&procedure, &pass, &limits, "SN-1");
+    assert_eq!(typed(dir.path(), &first).code, 0);
+    assert_eq!(typed(dir.path(), &first).code, 0, "the same inputs anew");
+    let before = files(&dir.path().join("out"));
+    for (other, differs) in [
+        (run(&procedure, &fail, &limits, "SN-1"), "recording"),
+        (run(&procedure, &pass, &other_limits, "SN-1"), "limits"),
+        (run(&other_procedure, &pass, &limits, "SN-1"), "procedure"),
+        (run(&procedure, &pass, &limits, "SN-2"), "unit"),
+    ] {
+        let said = typed(dir.path(), &other);
+        assert_eq!(said.code, 2, "{differs}: {said:?}");
+        for part in ["result pass of unit SN-1", &format!("differ from it: {differs};"), "--force"] {
+            assert!(said.err.contains(part), "{part}: {}", said.err);
+        }
+        assert!(files(&dir.path().join("out")) == before, "{differs}");
+    }
+    let mut forced = run(&procedure, &fail, &limits, "SN-1");
+    forced.push("--force");
+    let said = typed(dir.path(), &forced);
+    assert!(
+        said.code == 1 && said.err.contains("held the result pass of unit SN-1, evaluated 20"),
+        "{said:?}"
+    );
+    assert_eq!(result(&dir.path().join("out"))["verdict"], "fail");
+
+    let analysed = ["analyze", &pass, "--out", "a"];
+    assert_eq!(typed(dir.path(), &analysed).code, 0);
+    let said = typed(dir.path(), &["analyze", &fail, "--out", "a"]);
+    assert!(said.code == 2 && said.err.contains("result none of unit"), "{said:?}");
+    let compared = ["compare", &pass, "--out", "c"];
+    assert_eq!(typed(dir.path(), &compared).code, 0);
+    assert_eq!(typed(dir.path(), &compared).code, 0);
+    let said = typed(dir.path(), &["compare", &fail, "--out", "c"]);
+    assert!(said.code == 2 && said.err.contains("a comparison made 20"), "{said:?}");
+    let model = support::shipped("samples/model-static.toml");
+    let simulate = |seed: &'static str| {
+        let dir = dir.path().to_owned();
+        let model = model.clone();
+        move |more: &[&str]| {
+            let args = ["simulate", &model, "--out", "s.csv", "--duration", "20min", "--seed", seed];
+            typed(&dir, &[&args[..], more].concat())
+        }
+    };
+    assert_eq!(simulate("1")(&[]).code, 0);
+    assert_eq!(simulate("1")(&[]).code, 0, "the same recording anew");
+    let said = simulate("2")(&[]);
+    assert!(said.code == 2 && said.err.contains("holds something else"), "{said:?}");
+    assert_eq!(simulate("2")(&["--force"]).code, 0);
+    assert_eq!(names(dir.path()), ["a", "c", "limits.toml", "out", "procedure.toml", "s.csv"]);
+}
+
+#[test]
+fn nothing_that_the_result_does_not_list_is_removed_and_no_input() {
+    let dir = tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    let (procedure, limits) = (procedure(), limits());
+    let arguments = run(&procedure, "u.csv", &limits, "SN-1");
+    std::fs::copy(sample("pass"), at("u.csv")).unwrap();
+    assert_eq!(typed(dir.path(), &arguments).code, 0);
+    for name in ["figures/photo.jpg", "explain/thoughts.txt", "phases/u.csv", "figures/sub/scan.pdf"] {
+        std::fs::create_dir_all(at("out").join(name).parent().unwrap()).unwrap();
+        std::fs::write(at("out").join(name), "of the user").unwrap();
+        for force in [&[][..], &["--force"]] {
+            let said = typed(dir.path(), &[&arguments[..], force].concat());
+            assert!(
+                said.code == 2 && said.err.contains("which this program did not write"),
+                "{name}: {said:?}"
+            );
+            assert_eq!(std::fs::read(at("out").join(name)).unwrap(), b"of the user");
+        }
+        std::fs::remove_file(at("out").join(name)).unwrap();
+        let _ = std::fs::remove_dir(at("out").join(name).parent().unwrap());
+    }
+    // The recording itself, the procedure, the limits in the folder of the result.
+    std::fs::copy(sample("pass"), at("out/figures/u.csv")).unwrap();
+    std::fs::copy(&limits, at("out/limits.toml")).unwrap();
+    for arguments in [
+        run(&procedure, "out/figures/u.csv", &limits, "SN-1"),
+        run(&procedure, "out/figures/*.csv", &limits, "SN-1"),
+        run(&procedure, "u.csv", "out/limits.toml", "SN-1"),
+        vec!["analyze", "out/figures/u.csv", "--out", "out"],
+        vec!["compare", "u.csv", "out", "--out", "out"],
+        vec!["explain", "u.csv", "--simulation", "out/figures/u.csv", "--out", "out"],
+    ] {
+        let said = typed(dir.path(), &[&arguments[..], &["--force"]].concat());
+        assert!(
+            said.code == 2 && said.err.contains("lies in the folder of the result"),
+            "{arguments:?} {said:?}"
+        );
+        assert!(at("out/figures/u.csv").exists() && at("out/limits.toml").exists());
+    }
+    assert_eq!(names(dir.path()), ["out", "u.csv"]);
+}
+
+#[test]
+fn a_signal_leaves_nothing_half_made() {
+    let dir = tempdir().unwrap();
+    let time = run_time(tempdir().unwrap().path());
+    let signal = |child: &Child, name: &str| {
+        let id = child.id().to_string();
+        assert!(Command::new("kill").args([&format!("-{name}"), &id]).status().unwrap().success());
+    };
+    let mut ended = 0;
+    for (i, name) in ["INT", "TERM", "HUP", "INT", "TERM", "INT"].into_iter().enumerate() {
+        let mut child = start(dir.path(), "pass", "out");
+        // Late enough that the folder was begun.
+        std::thread::sleep(time.mul_f64(0.3 + 0.1 * i as f64));
+        signal(&child, name);
+        ended += u64::from(child.wait().unwrap().code().is_none());
+        assert!(names(dir.path()).iter().all(|n| n == "out"), "{name}: {:?}", names(dir.path()));
+    }
+    assert!(ended >= 3, "{ended} of 6 were ended in their course");
+    // A run that was killed leaves its folder; one beside it that lives keeps its own.
+    let mut live = start(dir.path(), "pass", "live");
+    let mut dead = start(dir.path(), "pass", "dead");
+    std::thread::sleep(time.mul_f64(0.5));
+    dead.kill().unwrap();
+    dead.wait().unwrap();
+    finish(dir.path(), "pass", "next");
+    assert_eq!(live.wait().unwrap().code(), Some(0));
+    let left: Vec<String> = names(dir.path()).into_iter().filter(|n| n.starts_with('.')).collect();
+    assert!(left.is_empty(), "{left:?}");
 }

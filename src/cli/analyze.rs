@@ -1,8 +1,9 @@
 //! `sagnac analyze`: the noise of a recording without a procedure.
 
+use super::inputs::Inputs;
 use super::{AnalyzeArgs, exit, place, run};
 use crate::ingest::{Source, open_recording};
-use crate::output::StagedFolder;
+use crate::output::Kind;
 use crate::procedure::EffectiveLimits;
 use crate::procedure::model::Procedure;
 use crate::record::UnitUnderTest;
@@ -34,7 +35,14 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
-    let folder = StagedFolder::begin(&out).map_err(|e| say(e.note()))?;
+    let folder = Inputs::new(args.force)
+        .recording(&args.recording, &args.read.options())
+        .options(&(
+            (&args.rate, &args.angle, &args.unit, &args.counter, &args.time),
+            (args.sample_rate, args.warm_up, &args.grid, &args.read),
+        ))
+        .beside(args.templates.as_deref())
+        .begin(&out, Kind::Result, lang)?;
     let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
     let channels = channels(args, &source).map_err(say)?;

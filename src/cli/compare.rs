@@ -1,5 +1,6 @@
 //! `sagnac compare`: Russian against Allan figures of any units, or the published tables.
 
+use super::inputs::{self, Inputs};
 use super::progress::Progress;
 use super::{AnalyzeArgs, CompareArgs, GridArgs, analyze, exit, place, run};
 use crate::compare::published::checked;
@@ -44,7 +45,15 @@ fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
     let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);
     let first = args.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("comparison", Some(&first), now));
-    let folder = StagedFolder::begin_kind(&out, Kind::Comparison).map_err(|e| say(e.note()))?;
+    let folder = Inputs::new(args.force)
+        .recording(&read_for(&args.recording), &args.read.options())
+        .file("limits", args.limits.as_deref())
+        .options(&(
+            (&args.rate, &args.angle, &args.unit, &args.counter, &args.time),
+            (args.sample_rate, args.warm_up, args.published, &args.read),
+        ))
+        .beside(args.templates.as_deref())
+        .begin(&out, Kind::Comparison, lang)?;
     if args.published {
         let checked = checked().ok_or_else(|| say("compare.error.tables".into()))?;
         let rows = csv::published(&checked);
@@ -137,6 +146,12 @@ fn read(
     Ok(units)
 }
 
+/// The files that are read for the units: that of a result in place of its folder.
+fn read_for(named: &[PathBuf]) -> Vec<PathBuf> {
+    let each = named.iter().flat_map(|p| each_of(p).unwrap_or_else(|_| vec![p.clone()]));
+    each.map(|p| result_file(&p).unwrap_or(p)).collect()
+}
+
 /// The result that a path stands for.
 fn result_file(path: &Path) -> Option<PathBuf> {
     let inside = path.join("result.json");
@@ -174,6 +189,7 @@ fn analysed(
         sample_rate: args.sample_rate,
         warm_up: args.warm_up,
         out: None,
+        force: false,
         templates: None,
         grid: GridArgs { taus: None, exact: false },
         read: args.read.clone(),
@@ -224,19 +240,16 @@ fn finish(
 ) -> Result<(), String> {
     let say = |note: Note| place::error(&note, lang);
     let view = CompareView::new(comparison, figures, lang);
-    let json = serde_json::to_vec_pretty(comparison)
-        .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
     let html = renderer.render_view("compare.html", &view, lang).map_err(|e| say(e.note()))?;
     let markdown = renderer.render_view("compare.md", &view, lang).map_err(|e| say(e.note()))?;
     let write = |name: &str, bytes: &[u8]| folder.write(name, bytes).map_err(|e| say(e.note()));
-    write("comparison.json", &json)?;
     write("comparison.html", html.as_bytes())?;
     write("comparison.md", markdown.as_bytes())?;
     write("comparison.csv", rows.as_bytes())?;
     for figure in figures {
         write(&format!("figures/{}.svg", figure.id), svg::render(figure, lang).as_bytes())?;
     }
-    let place = folder.publish().map_err(|e| say(e.note()))?;
-    place::print(&format!("{}{}\n", table(&view, lang), place.join("comparison.html").display()));
+    let folder = inputs::publish(folder, comparison, lang)?;
+    place::print(&format!("{}{}\n", table(&view, lang), place::shown(&folder.join("comparison.html"))));
     Ok(())
 }

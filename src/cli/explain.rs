@@ -1,9 +1,11 @@
 //! `sagnac explain`: where, and because of what, a recording differs from its simulation.
 
+use super::inputs::{self, Inputs};
 use super::progress::Progress;
 use super::{ExplainArgs, exit, place, run};
 use crate::claim::{self, Claim};
 use crate::effect::{Column, EFFECTS, find};
+use crate::ingest::{ReadOptions, files_read};
 use crate::keyed::diagnostics::nearest;
 use crate::mismatch::{self, Options, Outcome};
 use crate::output::{Kind, StagedFolder};
@@ -34,7 +36,17 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let name = args.recording.first().map(|p| stem(p));
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("explain", name.as_deref(), now));
-    let folder = StagedFolder::begin_kind(&out, Kind::Explanation).map_err(|e| say(e.note()))?;
+    let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();
+    let folder = Inputs::new(args.force)
+        .recording(&args.recording, &args.read.options())
+        .file("model", args.model.as_deref())
+        .files("simulation", &files_read(&simulation, &ReadOptions::default()))
+        .options(&(
+            (&args.rate, &args.unit, args.sample_rate, &args.read),
+            (&args.hide, &args.without, args.alpha, args.max_effects),
+        ))
+        .beside(args.templates.as_deref())
+        .begin(&out, Kind::Explanation, lang)?;
 
     let mut progress = Watch::new(lang);
     let recording = read(args, &args.recording, &mut progress, lang)?;
@@ -66,8 +78,8 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     };
     let view = ExplainView::new(&outcome.explanation, &outcome.figures, &context, lang);
     write(&outcome, &view, &folder, "", &renderer, lang)?;
-    let place = folder.publish().map_err(|e| say(e.note()))?;
-    place::print(&format!("{}{}\n", view.summary(), place.join("report.html").display()));
+    let folder = inputs::publish(folder, &outcome.explanation, lang)?;
+    place::print(&format!("{}{}\n", view.summary(), place::shown(&folder.join("report.html"))));
     Ok(match outcome.explanation.verdict.as_str() {
         "consistent" => exit::PASS,
         "mismatch" => exit::FAIL,
@@ -139,7 +151,7 @@ fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang)
     })
 }
 
-/// Writes everything of an explanation into a folder, each name with `before` in front.
+/// Writes everything of an explanation but its record into a folder, each name with `before` in front.
 pub(super) fn write(
     outcome: &Outcome,
     view: &ExplainView,
@@ -149,13 +161,10 @@ pub(super) fn write(
     lang: Lang,
 ) -> Result<(), String> {
     let say = |note: Note| place::error(&note, lang);
-    let json = serde_json::to_vec_pretty(&outcome.explanation)
-        .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
     let html = renderer.render_view("explain.html", view, lang).map_err(|e| say(e.note()))?;
     let markdown = renderer.render_view("explain.md", view, lang).map_err(|e| say(e.note()))?;
     let write =
         |name: &str, bytes: &[u8]| folder.write(&format!("{before}{name}"), bytes).map_err(|e| say(e.note()));
-    write("explain.json", &json)?;
     if let Some(correction) = &outcome.correction {
         write("correction.csv", csv(correction).as_bytes())?;
     }

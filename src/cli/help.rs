@@ -143,9 +143,12 @@ fn argument(
 /// Says why the arguments cannot be used, or shows the help that was asked for.
 pub fn refuse(error: &Error, lang: Lang) -> ExitCode {
     let asked_for = !error.use_stderr();
-    if lang == Lang::En || asked_for || error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+    if asked_for || error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         // A reader that went away is no error.
         let _ = error.print();
+    } else if lang == Lang::En {
+        // What was typed stands in it, so that it goes the way of all text from outside.
+        super::place::complain(&error.to_string());
     } else {
         super::place::complain(&complaint(error, lang));
     }

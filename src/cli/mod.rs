@@ -6,6 +6,7 @@ mod compare;
 mod effects;
 mod explain;
 mod help;
+mod inputs;
 mod inspect;
 mod place;
 mod progress;
@@ -120,6 +121,9 @@ struct RunArgs {
     /// Folder for the results [default: named after procedure, serial and UTC start]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace an earlier result of other inputs
+    #[arg(long)]
+    force: bool,
     /// Folder with templates that replace the built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,
@@ -186,6 +190,9 @@ struct AnalyzeArgs {
     /// Folder for the results [default: named after the recording and UTC start]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace an earlier result of other inputs
+    #[arg(long)]
+    force: bool,
     /// Folder with templates that replace the built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,
@@ -230,6 +237,9 @@ struct CompareArgs {
     /// Folder for the comparison [default: named after the first unit and UTC start]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace an earlier result of other inputs
+    #[arg(long)]
+    force: bool,
     /// Folder with templates that replace the built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,
@@ -245,6 +255,9 @@ struct SimulateArgs {
     /// File to write, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    /// Replace a file that holds something else
+    #[arg(long)]
+    force: bool,
     /// Seed, a whole number: equal seeds give equal recordings [default: as in the model, else 1]
     #[arg(long, value_name = "SEED")]
     seed: Option<u64>,
@@ -301,6 +314,9 @@ struct ExplainArgs {
     /// Folder for the explanation [default: named after the recording and UTC start]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace an earlier result of other inputs
+    #[arg(long)]
+    force: bool,
     /// Folder with templates that replace the built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,

@@ -1,18 +1,24 @@
 //! Where results go, and how text reaches the user.
 
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Note, visible, visible_lines};
 use chrono::{DateTime, Utc};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// Writes to standard output; a reader that went away (`| head`) is no error.
+/// Writes to standard output; a reader that went away (`| head`) is no error. What a file or its name holds cannot
+/// steer the terminal: all that the program says goes through here or [`complain`].
 pub fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    let _ = std::io::stdout().lock().write_all(visible_lines(text).as_bytes());
 }
 
 /// Writes to standard error.
 pub fn complain(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = std::io::stderr().lock().write_all(visible_lines(text).as_bytes());
+}
+
+/// A path for the terminal, on one line.
+pub fn shown(path: &Path) -> String {
+    visible(&path.display().to_string()).into_owned()
 }
 
 /// The line of an error for the terminal.

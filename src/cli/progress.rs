@@ -1,5 +1,6 @@
 //! Progress on stderr, when it is a terminal and the work takes more than about a second.
 
+use crate::text::visible;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
@@ -33,7 +34,7 @@ impl Progress {
 
     /// Another piece of work begins.
     pub fn name(&mut self, message: &str) {
-        self.bar.set_message(message.to_owned());
+        self.bar.set_message(visible(message).into_owned());
         self.bar.reset_eta();
     }
 
@@ -41,7 +42,7 @@ impl Progress {
     pub fn update(&mut self, message: &str, done: u64, total: u64) {
         if !self.shown && self.began.elapsed() > Duration::from_secs(1) {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
-            self.bar.set_message(message.to_owned());
+            self.bar.set_message(visible(message).into_owned());
             self.shown = true;
         }
         self.bar.set_length(total.max(done));

@@ -1,6 +1,7 @@
 //! `sagnac run`: a procedure on a recording.
 
 use super::explain::Watch;
+use super::inputs::{self, Inputs};
 use super::progress::Progress;
 use super::{GridArgs, RunArgs, exit, place};
 use crate::claim::Claim;
@@ -8,7 +9,7 @@ use crate::estimate::Verdict;
 use crate::ingest::manifest::Manifest;
 use crate::ingest::{RecordingError, Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
-use crate::output::StagedFolder;
+use crate::output::{Kind, StagedFolder};
 use crate::procedure::phases::is_phased;
 use crate::procedure::{effective, load, load_limits};
 use crate::record::{ExplainedRecord, RunRecord, UnitUnderTest};
@@ -56,7 +57,15 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         .out
         .clone()
         .unwrap_or_else(|| place::default_folder(&procedure.value.id, args.serial.as_deref(), now));
-    let folder = StagedFolder::begin(&out).map_err(|e| place::error(&e.note(), lang))?;
+    let folder = Inputs::new(args.force)
+        .recording(&args.recording, &procedure.value.recording.read)
+        .file("procedure", Some(&args.procedure))
+        .file("limits", args.limits.as_deref())
+        .file("model", procedure.value.explain.as_ref().map(|e| e.model.as_path()))
+        .text("unit", args.serial.as_deref())
+        .options(&(&args.grid.taus, args.grid.exact))
+        .beside(args.templates.as_deref())
+        .begin(&out, Kind::Result, lang)?;
     // A recording that is there and cannot be opened still gets its report: the verdict is an error, and says why. A
     // name that is no file is a slip of the pen, which must not cost an earlier result.
     let name = args.recording.first().map_or(Path::new(""), PathBuf::as_path);
@@ -154,6 +163,9 @@ fn explain(
         };
         let view = ExplainView::new(&outcome.explanation, &outcome.figures, &context, lang);
         super::explain::write(outcome, &view, folder, "explain/", renderer, lang)?;
+        let json = serde_json::to_vec_pretty(&outcome.explanation)
+            .map_err(|e| place::error(&Note::new("system.other").with("reason", e.to_string()), lang))?;
+        folder.write("explain/explain.json", &json).map_err(|e| place::error(&e.note(), lang))?;
     }
     Ok(Some(out.record))
 }
@@ -213,10 +225,10 @@ fn publish(
     lang: Lang,
 ) -> Result<PathBuf, String> {
     write_results(outcome, &folder, "", renderer, lang)?;
-    folder.publish().map_err(|e| place::error(&e.note(), lang))
+    inputs::publish(folder, &outcome.record, lang)
 }
 
-/// Writes everything that a run gives under a prefix of a folder.
+/// Writes everything that a run gives under a prefix of a folder, but for its record.
 pub(super) fn write_results(
     outcome: &Outcome,
     folder: &StagedFolder,
@@ -225,14 +237,11 @@ pub(super) fn write_results(
     lang: Lang,
 ) -> Result<(), String> {
     let say = |note: Note| place::error(&note, lang);
-    let json = serde_json::to_vec_pretty(&outcome.record)
-        .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
     let html = render_html(&outcome.record, &outcome.figures, lang, renderer).map_err(|e| say(e.note()))?;
     let markdown =
         render_markdown(&outcome.record, &outcome.figures, lang, renderer).map_err(|e| say(e.note()))?;
     let write =
         |name: &str, bytes: &[u8]| folder.write(&format!("{prefix}{name}"), bytes).map_err(|e| say(e.note()));
-    write("result.json", &json)?;
     write("report.html", html.as_bytes())?;
     write("report.md", markdown.as_bytes())?;
     for (name, table) in &outcome.tables {
@@ -245,7 +254,7 @@ pub(super) fn write_results(
 }
 
 /// The outcome in a few lines for the terminal.
-pub(super) fn summary(record: &RunRecord, place: &Path, lang: Lang) -> String {
+pub(super) fn summary(record: &RunRecord, folder: &Path, lang: Lang) -> String {
     let word = |key: String| lookup(lang, &key).map_or(key.clone(), str::to_owned);
     let mut out = format!("{}\n", word(format!("verdict.{}", record.verdict.id())).to_uppercase());
     for note in &record.summary {
@@ -254,7 +263,7 @@ pub(super) fn summary(record: &RunRecord, place: &Path, lang: Lang) -> String {
     for sentence in record.explained.iter().flat_map(|e| explained_says(e, lang)) {
         out.push_str(&format!("  {sentence}\n"));
     }
-    out.push_str(&format!("{}\n", place.join("report.html").display()));
+    out.push_str(&format!("{}\n", place::shown(&folder.join("report.html"))));
     out
 }
 

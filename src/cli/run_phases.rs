@@ -1,12 +1,13 @@
 //! `sagnac run` with a procedure of several phases: each on its files of a manifest, one report over all.
 
+use super::inputs::{self, Inputs};
 use super::progress::Progress;
 use super::run::{code, grid, renderer, serial, summary, write_results};
 use super::{RunArgs, place};
 use crate::figure::Figure;
 use crate::ingest::manifest::{self, Manifest, ManifestFile, is_manifest};
-use crate::ingest::{Source, open_files};
-use crate::output::StagedFolder;
+use crate::ingest::{ReadOptions, Source, open_files};
+use crate::output::{Kind, StagedFolder};
 use crate::procedure::effective;
 use crate::procedure::phases::{Phase, Phased, load_phased};
 use crate::record::{RunRecord, UnitUnderTest};
@@ -49,7 +50,22 @@ pub fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         .out
         .clone()
         .unwrap_or_else(|| place::default_folder(&phased.identity.id, unit.serial.as_deref(), now));
-    let staged = StagedFolder::begin(&out).map_err(|e| error(e.note()))?;
+    let paths = |path: &String| PathBuf::from(path);
+    let procedures = phased.phases.iter().map(|p| paths(&p.procedure.path));
+    let procedures: Vec<PathBuf> = std::iter::once(args.procedure.clone()).chain(procedures).collect();
+    let limits: Vec<PathBuf> =
+        phased.phases.iter().filter_map(|p| Some(paths(&p.limits.as_ref()?.path))).collect();
+    let layouts: Vec<PathBuf> =
+        phased.phases.iter().filter_map(|p| p.procedure.value.recording.read.layout.clone()).collect();
+    let staged = Inputs::new(args.force)
+        .recording(&args.recording, &ReadOptions::default())
+        .files("procedure", &procedures)
+        .files("limits", &limits)
+        .files("layout", &layouts)
+        .text("unit", args.serial.as_deref())
+        .options(&(&args.grid.taus, args.grid.exact))
+        .beside(args.templates.as_deref())
+        .begin(&out, Kind::Result, lang)?;
     let mut done: Vec<Done<'_>> = Vec::new();
     let mut who = None;
     for phase in &phased.phases {
@@ -87,7 +103,11 @@ pub fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
             None => evaluate(&request, phase, lang),
             Some(e) => nothing(&request, &e.into()),
         };
-        write_results(&outcome, &staged, &format!("{}/", folder(phase)), &renderer, lang)?;
+        let prefix = format!("{}/", folder(phase));
+        write_results(&outcome, &staged, &prefix, &renderer, lang)?;
+        let json = serde_json::to_vec_pretty(&outcome.record)
+            .map_err(|e| error(Note::new("system.other").with("reason", e.to_string())))?;
+        staged.write(&format!("{prefix}result.json"), &json).map_err(|e| error(e.note()))?;
         done.push(Done { phase, outcome: Some(outcome) });
     }
     let who = who.unwrap_or_default();
@@ -99,7 +119,7 @@ pub fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
             place::complain(&place::error(&note, lang));
         }
     }
-    let place = staged.publish().map_err(|e| error(e.note()))?;
+    let place = inputs::publish(staged, &record, lang)?;
     place::print(&summary(&record, &place, lang));
     Ok(code(record.verdict))
 }
@@ -167,13 +187,8 @@ fn write_whole(
         })
         .collect();
     let (html, markdown) = render_phases(record, &parts, lang, renderer).map_err(|e| say(e.note()))?;
-    let json = serde_json::to_vec_pretty(record)
-        .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
-    let mut all: Vec<(PathBuf, Vec<u8>)> = vec![
-        ("result.json".into(), json),
-        ("report.html".into(), html.into_bytes()),
-        ("report.md".into(), markdown.into_bytes()),
-    ];
+    let mut all: Vec<(PathBuf, Vec<u8>)> =
+        vec![("report.html".into(), html.into_bytes()), ("report.md".into(), markdown.into_bytes())];
     for figure in drawn.iter().flatten() {
         all.push((format!("figures/{}.svg", figure.id).into(), svg::render(figure, lang).into_bytes()));
     }

@@ -3,11 +3,13 @@
 use super::progress::Progress;
 use super::{SimulateArgs, exit, place};
 use crate::claim::{ModelFile, load_model};
+use crate::ingest::{ReadOptions, files_read};
 use crate::keyed::quantity;
+use crate::output::StagedFile;
 use crate::series::{Series, SeriesOptions, load_series};
 use crate::simulate::{Format, Order, Over, Simulation, Written, write};
 use crate::text::{Arg, Lang, Note};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Seed where neither the command line nor the model says one.
 const SEED: u64 = 1;
@@ -28,11 +30,12 @@ pub fn main(args: &SimulateArgs, lang: Lang) -> u8 {
 fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     let say = |note: &Note| place::error(note, lang);
     Format::of(&args.out).map_err(|e| say(e.note()))?;
-    for input in [Some(args.model.as_path()), args.like.as_deref()].into_iter().flatten() {
-        if same(input, &args.out) {
-            let note = Note::new("simulate.onto_itself").with("path", args.out.display().to_string());
-            return Err(say(&note));
-        }
+    let like: Vec<PathBuf> = args.like.clone().into_iter().collect();
+    let mut read = files_read(&like, &ReadOptions::default());
+    read.push(args.model.clone());
+    if read.iter().any(|input| same(input, &args.out)) {
+        let note = Note::new("simulate.onto_itself").with("path", args.out.display().to_string());
+        return Err(say(&note));
     }
     let asked_s = args.duration.as_deref().map(|d| duration(d, lang)).transpose()?;
     if asked_s.is_some() && args.like.is_some() {
@@ -66,9 +69,15 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     let simulation =
         Simulation::begin(Order { claim: &model.claim, seed, over }).map_err(|e| say(e.note()))?;
     let writing = Note::new("simulate.writing").say(lang);
-    let written = write(simulation, &args.out, &mut |done, total| progress.update(&writing, done, total));
+    let replaced = args.force && args.out.exists();
+    let staged = StagedFile::begin(&args.out, &read, args.force).map_err(|e| say(&e.note()))?;
+    let written = write(simulation, staged, &mut |done, total| progress.update(&writing, done, total));
     progress.finish();
     let written = written.map_err(|e| say(&e.note()))?;
+    if replaced {
+        let note = Note::new("output_file.replaces").with("path", args.out.display().to_string());
+        place::complain(&format!("{}\n", note.say(lang)));
+    }
     Ok(summary(args, &model, series.as_ref(), &written, seed, lang))
 }
 

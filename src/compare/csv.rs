@@ -41,7 +41,7 @@ pub fn units(units: &[Unit]) -> String {
             quoted(&unit.path),
             number(unit.length_s),
             count(w100.map(|w| w.n)),
-            detail.map(|d| d.detrend.clone()).unwrap_or_default(),
+            quoted(detail.map(|d| d.detrend.as_str()).unwrap_or_default()),
             value("russian_drift_100s"),
             low("russian_drift_100s"),
             high("russian_drift_100s"),

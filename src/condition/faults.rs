@@ -63,7 +63,9 @@ impl Condition for Faults {
                 }
                 continue;
             };
-            let (status, key) = if !allowance.allows(count, facts.rows) {
+            let (status, key) = if count == 0 && !found.has_examined(id) {
+                (ConditionStatus::Remark, "note.condition.fault_not_examined")
+            } else if !allowance.allows(count, facts.rows) {
                 (ConditionStatus::Invalid, "note.condition.fault_over")
             } else if count > 0 {
                 (ConditionStatus::Remark, "note.condition.fault_within")

@@ -166,6 +166,6 @@ impl std::error::Error for IngestError {}
 /// Cuts a text that is quoted, and makes control characters visible.
 pub(crate) fn shorten(text: &str) -> String {
     let clean: String =
-        text.chars().take(QUOTED).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+        text.chars().take(QUOTED).map(|c| if crate::text::steers(c) { '\u{fffd}' } else { c }).collect();
     if text.chars().nth(QUOTED).is_some() { clean + "…" } else { clean }
 }

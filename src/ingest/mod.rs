@@ -49,7 +49,7 @@ pub use joined::PartFacts;
 pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
 pub use pauses::Pauses;
 pub use plan::{Plan, TimeBaseSpec, prepare};
-pub use recording::{Recording, RecordingError, each_of, open_files, open_recording};
+pub use recording::{Recording, RecordingError, each_of, files_read, open_files, open_recording};
 pub use source::{Source, open, open_with};
 pub use stream::{ChannelFacts, FileReport, StreamReport, locate, stream, stream_path};
 

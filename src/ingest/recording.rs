@@ -125,6 +125,26 @@ pub fn open_files(
     }
 }
 
+/// Every file that is read for what a user named: the files themselves, a manifest and what it lists, a layout. What
+/// cannot be found out is left out: opening says why.
+pub fn files_read(named: &[PathBuf], options: &ReadOptions) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let mut layout = options.layout.clone();
+    for path in named {
+        if !manifest::is_manifest(path) {
+            files.extend(each_of(path).unwrap_or_else(|_| vec![path.clone()]));
+            continue;
+        }
+        files.push(path.clone());
+        if let Ok(manifest) = manifest::load(path) {
+            files.extend(manifest.files.iter().map(|f| f.path.clone()));
+            layout = manifest.options.layout.or(layout);
+        }
+    }
+    files.extend(layout);
+    files
+}
+
 /// The files that a path names one by one: those of a pattern in their order, else the path itself.
 ///
 /// # Errors

@@ -3,8 +3,9 @@
 use super::following::State;
 use super::plan::{Plan, TimeBaseSpec, prepare};
 use super::{FileFacts, IngestError, IngestErrorKind, PartFacts, Source};
+use crate::record::integrity::{OF_ROWS, OF_STAMPS, OF_VALUES};
 use crate::record::{FaultRecord, Integrity};
-use crate::recording::integrity::{ValueChecks, ValueFacts};
+use crate::recording::integrity::{ValueChecks, ValueFacts, fewest_for};
 use crate::recording::timebase::{Cadence, Measured};
 use crate::recording::{Channel, Role, Sink};
 use crate::text::{Arg, Note};
@@ -118,6 +119,21 @@ impl Plan<'_> {
     }
 }
 
+/// What was looked for: a check that had nothing to look at, or too little, found nothing and says nothing.
+fn examined(plan: &Plan<'_>, values: &[ValueFacts], rows: u64) -> Vec<String> {
+    let gyros = plan.channels.iter().zip(values).filter(|(c, _)| c.role.is_gyro());
+    let samples = gyros.map(|(_, v)| v.count).min().unwrap_or(0);
+    let mut out: Vec<&str> = vec![];
+    if rows > 0 {
+        out.extend(OF_ROWS);
+    }
+    if rows > 1 && (plan.time.is_some() || plan.counter.is_some()) {
+        out.extend(OF_STAMPS);
+    }
+    out.extend(OF_VALUES.iter().filter(|id| samples >= fewest_for(id)));
+    out.into_iter().map(str::to_owned).collect()
+}
+
 impl State<'_> {
     fn report(mut self, facts: FileFacts, parts: Vec<PartFacts>) -> StreamReport {
         let plan = self.plan;
@@ -142,6 +158,7 @@ impl State<'_> {
             // The end is missing: the place is the last row there is.
             self.log.push("cut_off", None, None, facts.rows, 1, || note.clone());
         }
+        integrity.examined = examined(plan, &values, facts.rows);
         integrity.faults = std::mem::take(&mut self.log).into_list();
         let files = self.files(&facts, parts, measured);
         for fault in &mut integrity.faults {

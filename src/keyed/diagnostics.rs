@@ -3,7 +3,7 @@
 //! A [`Problem`] carries the line it is about, so that it can be shown without the file. The rendering is plain text:
 //! no colours, columns counted in characters, so that it lines up for text in any alphabet.
 
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Note, steers, visible};
 use std::fmt;
 use std::ops::Range;
 
@@ -90,19 +90,19 @@ impl Problem {
             Severity::Error => "diagnostic.error",
             Severity::Warning => "diagnostic.warning",
         };
-        let mut out = format!("{}: {}\n", Note::new(key).say(lang), harmless(&self.message.say(lang)));
+        let mut out = format!("{}: {}\n", Note::new(key).say(lang), visible(&self.message.say(lang)));
         if self.line == 0 {
-            out.push_str(&format!(" --> {}\n", harmless(&self.file)));
+            out.push_str(&format!(" --> {}\n", visible(&self.file)));
         } else {
             let number = self.line.to_string();
             let margin = " ".repeat(number.len());
             let (indent, carets) = (" ".repeat(self.excerpt.start), "^".repeat(self.excerpt.width));
-            out.push_str(&format!("{margin}--> {}:{}:{}\n", harmless(&self.file), self.line, self.column));
+            out.push_str(&format!("{margin}--> {}:{}:{}\n", visible(&self.file), self.line, self.column));
             out.push_str(&format!("{margin} |\n{number} | {}\n", self.excerpt.text.trim_end()));
             out.push_str(&format!("{margin} | {indent}{carets}\n"));
         }
         if let Some(help) = &self.help {
-            let help = harmless(&help.say(lang));
+            let help = visible(&help.say(lang));
             out.push_str(&format!("  {}: {help}\n", Note::new("diagnostic.help").say(lang)));
         }
         out
@@ -230,19 +230,17 @@ impl SourceText {
     }
 }
 
-/// A text without what steers a terminal or turns the direction of writing: a value may hold it by an escape of TOML.
-fn harmless(text: &str) -> String {
-    let turns =
-        |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    text.chars().map(|c| if c.is_control() || turns(c) { '·' } else { c }).collect()
-}
-
 /// Cuts a long line around the offending text. Control characters are shown as `·`, so that a file cannot steer a
 /// terminal and one character stays one column.
 fn excerpt(line: &str, start: usize, width: usize) -> Excerpt {
     let from = if start > SHOWN / 2 && line.chars().count() > SHOWN { start - SHOWN / 2 } else { 0 };
-    let spaced = line.replace(['\t', '\r'], " ");
-    let text: String = harmless(&spaced).chars().skip(from).take(SHOWN).collect();
+    let visible = |c: char| match c {
+        '\t' => ' ',
+        '\r' => ' ',
+        c if steers(c) => '·',
+        c => c,
+    };
+    let text: String = line.chars().skip(from).take(SHOWN).map(visible).collect();
     let start = start - from;
     Excerpt { text, start, width: width.clamp(1, SHOWN.saturating_sub(start).max(1)) }
 }

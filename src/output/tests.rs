@@ -1,13 +1,33 @@
+use super::partial::{prefix, remove_abandoned};
 use super::*;
+use serde_json::json;
+use std::time::{Duration, SystemTime};
 
-const FIRST: &str = "{\n  \"format\": \"result/1\",\n  \"round\": 1\n}";
-const SECOND: &str = "{\"format\":\"result/1\",\"round\":2}";
+fn order(unit: &str, force: bool) -> Order {
+    Order { inputs: BTreeMap::from([("unit".to_owned(), unit.to_owned())]), force, ..Order::default() }
+}
 
-fn staged(target: &Path, result: &str) -> StagedFolder {
-    let staged = StagedFolder::begin(target).unwrap();
-    staged.write("result.json", result.as_bytes()).unwrap();
+fn begin(target: &Path) -> Result<StagedFolder, OutputError> {
+    StagedFolder::begin(target, Kind::Result, order("1", false))
+}
+
+fn staged_by(target: &Path, order: Order) -> StagedFolder {
+    let staged = StagedFolder::begin(target, Kind::Result, order).unwrap();
     staged.write("figures/a.svg", b"<svg/>").unwrap();
     staged
+}
+
+fn staged(target: &Path) -> StagedFolder {
+    staged_by(target, order("1", false))
+}
+
+fn record(round: u64) -> serde_json::Value {
+    json!({"format": "result/1", "round": round})
+}
+
+fn round(target: &Path) -> u64 {
+    let text = fs::read_to_string(target.join("result.json")).unwrap();
+    serde_json::from_str::<serde_json::Value>(&text).unwrap()["round"].as_u64().unwrap()
 }
 
 fn entries(folder: &Path) -> Vec<String> {
@@ -22,44 +42,86 @@ fn entries(folder: &Path) -> Vec<String> {
 fn a_folder_appears_whole_and_replaces_an_earlier_result() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("result");
-    for round in [FIRST, SECOND] {
-        staged(&target, round).publish().unwrap();
-        assert_eq!(fs::read_to_string(target.join("result.json")).unwrap(), round);
+    for n in [1, 2] {
+        staged(&target).publish(record(n)).unwrap();
+        assert_eq!(round(&target), n);
     }
     assert_eq!(entries(dir.path()), ["result"], "nothing but the result stays");
     fs::create_dir(dir.path().join("empty")).unwrap();
-    staged(&dir.path().join("empty"), FIRST).publish().unwrap();
+    staged(&dir.path().join("empty")).publish(record(1)).unwrap();
     assert_eq!(entries(&dir.path().join("empty")), ["figures", "result.json"]);
+}
+
+#[test]
+fn a_result_of_other_inputs_is_replaced_by_force_only() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("result");
+    let meanwhile = staged_by(&target, order("2", false));
+    staged(&target).publish(record(1)).unwrap();
+    let refused = StagedFolder::begin(&target, Kind::Result, order("2", false));
+    assert!(matches!(refused, Err(OutputError::Other { differ, .. }) if differ == ["unit"]));
+    assert!(matches!(meanwhile.publish(record(2)), Err(OutputError::Other { .. })));
+    assert_eq!((round(&target), entries(dir.path())), (1, vec!["result".to_owned()]));
+    let forced = staged_by(&target, order("2", true));
+    assert!(forced.replaces().is_some());
+    forced.publish(record(2)).unwrap();
+    assert_eq!((round(&target), entries(dir.path())), (2, vec!["result".to_owned()]));
+}
+
+#[test]
+fn an_input_in_the_folder_of_the_result_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("result");
+    staged(&target).publish(record(1)).unwrap();
+    for input in ["result/figures/a.svg", "result/not-there.csv", "result/result.json"] {
+        let order = Order { read: vec![dir.path().join(input)], ..order("1", true) };
+        let refused = StagedFolder::begin(&target, Kind::Result, order);
+        assert!(matches!(refused, Err(OutputError::InputInside { .. })), "{input}");
+    }
 }
 
 #[test]
 fn without_an_exchange_the_old_folder_steps_aside() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("result");
-    for round in [FIRST, SECOND] {
-        let path = staged(&target, round).staging.keep();
-        replace_in_two_steps(&path, &target, Kind::Result).unwrap();
-        assert_eq!(fs::read_to_string(target.join("result.json")).unwrap(), round);
-        assert_eq!(entries(dir.path()), ["result"]);
-    }
+    staged(&target).publish(record(1)).unwrap();
+    let beside = dir.path().join("beside");
+    staged(&beside).publish(record(2)).unwrap();
+    replace_in_two_steps(&beside, &target, Kind::Result, &order("1", false)).unwrap();
+    assert_eq!((round(&target), entries(dir.path())), (2, vec!["result".to_owned()]));
 }
 
 #[test]
 fn abandoned_work_leaves_nothing_and_foreign_folders_are_safe() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("result");
-    drop(staged(&target, FIRST));
+    drop(staged(&target));
     assert!(entries(dir.path()).is_empty());
 
     fs::create_dir(&target).unwrap();
-    let refused = || matches!(StagedFolder::begin(&target), Err(OutputError::InTheWay { .. }));
+    let refused = || matches!(begin(&target), Err(OutputError::InTheWay { .. }));
     fs::write(target.join("thesis.txt"), "do not touch").unwrap();
     assert!(refused());
     fs::write(target.join("result.json"), "{\"format\": \"another program\"}").unwrap();
     assert!(refused());
-    fs::write(target.join("result.json"), FIRST).unwrap();
-    assert!(refused(), "a result with something of the user's in it");
     fs::remove_file(target.join("thesis.txt")).unwrap();
+    fs::write(target.join("result.json"), "{\"format\": \"result/1\"}").unwrap();
+    assert!(refused(), "a result that does not list its files");
+    fs::remove_dir_all(&target).unwrap();
+    staged(&target).publish(record(1)).unwrap();
+    for name in ["thesis.txt", "figures/photo.jpg", "phases/recording.csv", "figures/.hidden/x"] {
+        fs::create_dir_all(target.join(name).parent().unwrap()).unwrap();
+        fs::write(target.join(name), "of the user").unwrap();
+        for force in [false, true] {
+            let refused = StagedFolder::begin(&target, Kind::Result, order("2", force));
+            assert!(matches!(refused, Err(OutputError::InTheWay { .. })), "{name}");
+        }
+        fs::remove_file(target.join(name)).unwrap();
+        if name.contains("phases") || name.contains("hidden") {
+            assert!(refused(), "an empty folder of the user's");
+            fs::remove_dir(target.join(name).parent().unwrap()).unwrap();
+        }
+    }
     assert!(!refused());
 }
 
@@ -67,19 +129,19 @@ fn abandoned_work_leaves_nothing_and_foreign_folders_are_safe() {
 fn what_comes_while_the_work_goes_on_is_safe() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("result");
-    let (one, two, three) = (staged(&target, FIRST), staged(&target, SECOND), staged(&target, FIRST));
-    one.publish().unwrap();
-    two.publish().unwrap();
-    assert_eq!(fs::read_to_string(target.join("result.json")).unwrap(), SECOND);
+    let (one, two, three) = (staged(&target), staged(&target), staged(&target));
+    one.publish(record(1)).unwrap();
+    two.publish(record(2)).unwrap();
+    assert_eq!(round(&target), 2);
     fs::write(target.join("scan.pdf"), "signed").unwrap();
-    let refused = three.publish().unwrap_err().to_string();
+    let refused = three.publish(record(3)).unwrap_err().to_string();
     assert!(refused.contains("holds `scan.pdf`"), "{refused}");
     assert_eq!(fs::read_to_string(target.join("scan.pdf")).unwrap(), "signed");
     assert_eq!(entries(dir.path()), ["result"]);
 }
 
 #[test]
-fn only_what_is_old_and_ours_is_cleared_away() {
+fn only_what_is_dead_and_ours_is_cleared_away() {
     let dir = tempfile::tempdir().unwrap();
     let age = |name: &str, hours: u64, file: &str| {
         let folder = dir.path().join(name);
@@ -88,27 +150,41 @@ fn only_what_is_old_and_ours_is_cleared_away() {
         let then = SystemTime::now() - Duration::from_secs(hours * 3600);
         File::open(&folder).unwrap().set_modified(then).unwrap();
     };
+    // Without a lock that tells, age does.
     age(".r.partial-oldOLD", 25, "report.md");
     age(".r.partial-newNEW", 23, "report.md");
     age(".r.partial-notOWN", 25, "thesis.txt");
     age(".r.partial-longer-name", 25, "report.md");
-    age(".other.partial-oldOLD", 25, "report.md");
-    let begun = StagedFolder::begin(&dir.path().join("r")).unwrap();
-    let own = begun.staging.path().file_name().unwrap().to_string_lossy().into_owned();
-    let left: Vec<String> = entries(dir.path()).into_iter().filter(|n| *n != own).collect();
-    assert_eq!(
-        left,
-        [".other.partial-oldOLD", ".r.partial-longer-name", ".r.partial-newNEW", ".r.partial-notOWN"]
-    );
+    age(".s.partial-0123abcd-newNEW", 23, "report.md");
+    age(".s.partial-0123abcd-oldOLD", 25, "report.md");
+    age("r.partial-oldOLD", 25, "report.md");
+    // A lock tells of this machine.
+    let live = begin(&dir.path().join("r")).unwrap();
+    age(&format!("{}deadDE", prefix("other")), 0, "report.md");
+    age(&format!("{}notOWN", prefix("other")), 0, "thesis.txt");
+    fs::write(dir.path().join(format!("{}deadDE", prefix("simulated.csv"))), "time_s").unwrap();
+    remove_abandoned(dir.path());
+    let own = live.staging.path().file_name().unwrap().to_string_lossy().into_owned();
+    let mut expected = vec![
+        ".r.partial-longer-name".to_owned(),
+        ".r.partial-newNEW".to_owned(),
+        ".r.partial-notOWN".to_owned(),
+        ".s.partial-0123abcd-newNEW".to_owned(),
+        "r.partial-oldOLD".to_owned(),
+        format!("{}notOWN", prefix("other")),
+        own,
+    ];
+    expected.sort();
+    assert_eq!(entries(dir.path()), expected);
 }
 
 #[test]
 fn names_that_are_no_folder_to_be_made_are_refused() {
     for odd in ["..", "/", "", "a/.."] {
-        let refused = StagedFolder::begin(Path::new(odd));
+        let refused = begin(Path::new(odd));
         assert!(matches!(refused, Err(OutputError::NoName(_))), "{odd}");
     }
     let dir = tempfile::tempdir().unwrap();
-    let begun = StagedFolder::begin(&dir.path().join("r")).unwrap();
+    let begun = begin(&dir.path().join("r")).unwrap();
     assert!(matches!(begun.write("notes.txt", b""), Err(OutputError::Unforeseen(_))));
 }

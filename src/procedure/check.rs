@@ -6,10 +6,11 @@ use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
 use super::phases::{Phase, Phased, is_phased, load_phased};
 use super::slips;
+use crate::claim;
 use crate::ingest::manifest::{self, Manifest, is_manifest};
 use crate::ingest::raw::layout::{self, Layout};
 use crate::keyed::file;
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Note, visible};
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -27,23 +28,40 @@ pub enum Checked {
     Phased(Box<Phased>),
 }
 
-/// Reads a file as what its first table says it is: a file with `[limits]` or `format = "limits/..."` is a limits file,
+/// Reads a file as what its first table says it is, and every file that it names: a file with `[limits]` or `format = "limits/..."` is a limits file,
 /// one with `format = "manifest/..."` a manifest, one with `format = "layout/..."` a layout, any other a procedure.
 ///
 /// # Errors
 /// Every problem of the file.
 pub fn check(path: &Path) -> Result<Checked, Problems> {
     if is_manifest(path) {
-        manifest::load(path).map(|m| Checked::Manifest(Box::new(m)))
+        let manifest = manifest::load(path)?;
+        manifest.options.layout.as_deref().map(layout::load).transpose()?;
+        Ok(Checked::Manifest(Box::new(manifest)))
     } else if says(path, |line| line.strip_prefix("format").is_some_and(|rest| rest.contains("\"layout/"))) {
         layout::load(path).map(|l| Checked::Layout(Box::new(l)))
     } else if is_phased(path) {
-        load_phased(path).map(|p| Checked::Phased(Box::new(p)))
+        let phased = load_phased(path)?;
+        all_named(phased.phases.iter().map(|p| &p.procedure.value))?;
+        Ok(Checked::Phased(Box::new(phased)))
     } else if is_limits(path) {
         load_limits(path).map(|l| Checked::Limits(Box::new(l)))
     } else {
-        load(path).map(|p| Checked::Procedure(Box::new(p)))
+        let procedure = load(path)?;
+        all_named([&procedure.value].into_iter())?;
+        Ok(Checked::Procedure(Box::new(procedure)))
     }
+}
+
+/// Reads every file that procedures name: a procedure whose layout or model is missing or wrong cannot be used.
+fn all_named<'a>(procedures: impl Iterator<Item = &'a Procedure>) -> Result<(), Problems> {
+    let mut found = Problems::default();
+    for p in procedures {
+        let layout = p.recording.read.layout.as_deref().map(layout::load).and_then(Result::err);
+        let model = p.explain.as_ref().map(|e| claim::load(&e.model)).and_then(Result::err);
+        found.list.extend([layout, model].into_iter().flatten().flat_map(|problems| problems.list));
+    }
+    if found.has_errors() { Err(found) } else { Ok(()) }
 }
 
 /// The result of checking several files, ready to be shown.
@@ -88,12 +106,20 @@ pub fn check_report_with(
                 for warning in warnings {
                     report.text.push_str(&format!("{}\n", warning.say(lang)));
                 }
-                report.text.push_str(&format!("{}: {}\n", path.display(), sentence.say(lang)));
+                report.text.push_str(&format!(
+                    "{}: {}\n",
+                    visible(&path.display().to_string()),
+                    sentence.say(lang)
+                ));
             }
             Err(problems) => {
                 report.failed += 1;
                 let summary = count(problems.list.len(), "check.one_problem", "check.problems").say(lang);
-                report.text.push_str(&format!("{}\n{}: {summary}\n", problems.say(lang), path.display()));
+                report.text.push_str(&format!(
+                    "{}\n{}: {summary}\n",
+                    problems.say(lang),
+                    visible(&path.display().to_string())
+                ));
             }
         }
     }

@@ -37,7 +37,8 @@ pub struct ClauseRecord {
     pub clause: String,
     /// Its title.
     pub title: String,
-    /// `here`, `elsewhere`, `not_applicable`.
+    /// `here`, `elsewhere`, `not_applicable`; `not_done` in place of `here` where the test could not be carried out,
+    /// `partly` where not every phase of it could.
     pub status: String,
     /// Where or why.
     pub note: String,

@@ -4,6 +4,13 @@ use crate::text::Note;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+/// What can be examined where any row was read.
+pub const OF_ROWS: &[&str] = &["non_finite", "unparsable", "implausible", "cut_off"];
+/// What stamps or a counter tell.
+pub const OF_STAMPS: &[&str] = &["gaps", "missing_samples", "duplicate_timestamps", "backward_timestamps"];
+/// What the values of a gyro tell.
+pub const OF_VALUES: &[&str] = &["outliers", "saturated", "stuck", "repeated"];
+
 /// Faults of the recording, counted; the first of each kind listed with row and time.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Integrity {
@@ -41,8 +48,22 @@ pub struct Integrity {
     pub quantization_step_deg_h: Option<f64>,
     /// Threshold of the outlier test, in robust standard deviations.
     pub outlier_threshold: Option<f64>,
+    /// Counts above that were examined, by their names; a count that is not among them says nothing.
+    pub examined: Vec<String>,
     /// The faults one by one, at most 100 of a kind.
     pub faults: Vec<FaultRecord>,
+}
+
+impl Integrity {
+    /// True where it was looked for a fault.
+    pub fn has_examined(&self, id: &str) -> bool {
+        self.examined.iter().any(|e| e == id)
+    }
+
+    /// Every count as examined.
+    pub fn all_examined() -> Vec<String> {
+        [OF_ROWS, OF_STAMPS, OF_VALUES].concat().into_iter().map(str::to_owned).collect()
+    }
 }
 
 /// One fault.

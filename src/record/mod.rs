@@ -10,7 +10,7 @@ mod comparison;
 mod deviation;
 pub mod explanation;
 mod goodness;
-mod integrity;
+pub mod integrity;
 mod interval_mean;
 mod origin;
 mod phase;

@@ -1,6 +1,7 @@
 //! Sentences in the kind of file they stand in: names between backticks become code.
 
 use super::svg;
+use crate::text::{steers, visible};
 use minijinja::value::Value;
 use minijinja::{AutoEscape, State};
 
@@ -12,7 +13,7 @@ pub fn prose(state: &State, sentence: &str) -> Value {
         })),
         AutoEscape::Custom(kind) if kind == "md" => {
             // Within code nothing is markup but the bar that ends a cell.
-            let name = |name: &str| format!("`{}`", name.replace('|', "\\|").replace(['\n', '\r'], " "));
+            let name = |name: &str| format!("`{}`", visible(name).replace('|', "\\|"));
             Value::from_safe_string(parted(sentence, markdown, name))
         }
         _ => Value::from(sentence),
@@ -42,11 +43,16 @@ pub fn markdown(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '&' => out.push_str("&amp;"),
-            '\n' | '\r' => out.push(' '),
+            '\n' | '\r' | '\t' => out.push(' '),
+            c if steers(c) => out.push('·'),
             c => out.push(c),
         }
     }
-    out
+    // An address is no link unless the report makes one.
+    out.replace("://", "&#58;//")
+        .replace("www.", "www&#46;")
+        .replace("WWW.", "WWW&#46;")
+        .replace('@', "&#64;")
 }
 
 #[cfg(test)]

@@ -73,7 +73,7 @@ pub(super) fn csv(records: &[IntervalMeanRecord]) -> String {
             r.to_s.to_string(),
             r.row.to_string(),
             number(r.level),
-            r.level_unit.clone().unwrap_or_default(),
+            quoted(r.level_unit.as_deref().unwrap_or_default()),
             quoted(r.axis.as_deref().unwrap_or_default()),
             r.without.map_or_else(String::new, |w| w.to_string()),
             number(r.temperature_deg_c),

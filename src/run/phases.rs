@@ -51,6 +51,12 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
             instruments.push(instrument.clone());
         }
     }
+    let evaluated = records.iter().filter(|r| r.recording.iter().any(|f| f.samples > 0)).count();
+    let clauses = match evaluated {
+        0 => super::settle::clauses(&phased.clauses, "not_done"),
+        n if n < done.len() => super::settle::clauses(&phased.clauses, "partly"),
+        _ => phased.clauses.clone(),
+    };
     RunRecord {
         format: RESULT_FORMAT,
         program: Program { name: "sagnac", version: env!("CARGO_PKG_VERSION").to_owned() },
@@ -82,7 +88,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         power: vec![],
         instruments,
         waivers: records.iter().flat_map(|r| r.waivers.clone()).collect(),
-        clauses: phased.clauses.clone(),
+        clauses,
         options: vec![],
         figures: phases.iter().flat_map(|p| p.figures.clone()).collect(),
         phases,
@@ -180,6 +186,11 @@ fn together(records: &[&RunRecord]) -> Integrity {
         repeated: sum(|i| i.repeated),
         implausible: sum(|i| i.implausible),
         cut_off: sum(|i| i.cut_off),
+        // Examined in the whole is what was examined in each part.
+        examined: Integrity::all_examined()
+            .into_iter()
+            .filter(|id| !records.is_empty() && records.iter().all(|r| r.integrity.has_examined(id)))
+            .collect(),
         faults: records.iter().flat_map(|r| r.integrity.faults.clone()).collect(),
         ..Integrity::default()
     }

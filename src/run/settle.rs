@@ -7,8 +7,8 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::measurand::GyroEvidence;
 use crate::record::{
-    ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord, NoiseModelRecord,
-    OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
+    ClauseRecord, ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord,
+    NoiseModelRecord, OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
 };
 use crate::temperature::start::Start;
 use crate::text::Note;
@@ -67,9 +67,19 @@ pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
         summary: errors.clone(),
         recording: request.source.files().into_iter().map(unread).collect(),
         checks: if request.kind == "run" { none_made(Kind::of(request.procedure)) } else { vec![] },
+        clauses: clauses(&request.procedure.clauses, "not_done"),
         errors,
         ..blank(request)
     }
+}
+
+/// Clauses of a test that was not carried out as a whole.
+pub(super) fn clauses(declared: &[ClauseRecord], here: &str) -> Vec<ClauseRecord> {
+    let of = |c: &ClauseRecord| {
+        let status = if c.status == "here" { here.to_owned() } else { c.status.clone() };
+        ClauseRecord { status, ..c.clone() }
+    };
+    declared.iter().map(of).collect()
 }
 
 fn errors(request: &Request<'_>) -> Vec<Note> {

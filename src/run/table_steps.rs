@@ -1,5 +1,6 @@
 //! The steps of a table test as records and as a table.
 
+use crate::output::quoted;
 use crate::rate_table::TableRun;
 use crate::rate_table::scale_factor::ScaleFactor;
 use crate::record::TableStepRecord;
@@ -41,7 +42,7 @@ pub(super) fn csv(records: &[TableStepRecord]) -> String {
         let temperature = r.temperature_deg_c.map_or_else(String::new, |t| t.to_string());
         out.push_str(&format!(
             "{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-            r.channel,
+            quoted(&r.channel),
             r.from_s,
             r.to_s,
             r.row,

@@ -88,11 +88,10 @@ impl From<OutputError> for WriteError {
 /// [`WriteError`].
 pub fn write(
     mut simulation: Simulation<'_>,
-    path: &Path,
+    staged: StagedFile,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Written, WriteError> {
-    let format = Format::of(path)?;
-    let staged = StagedFile::begin(path)?;
+    let format = Format::of(staged.target())?;
     let beside = simulation.columns();
     let columns: Vec<&'static str> =
         ["time_s", "rate_deg_h"].into_iter().chain(beside.iter().map(|c| c.name())).collect();

@@ -35,8 +35,18 @@ pub fn sagnac(folder: &Path, args: &[&str]) -> Said {
     sagnac_with(folder, args, &[])
 }
 
-/// Runs the program in a folder with variables of the environment.
+/// Runs the program in a folder with variables of the environment. A test that names a folder for results once more
+/// means to replace what is there.
 pub fn sagnac_with(folder: &Path, args: &[&str], environment: &[(&str, &str)]) -> Said {
+    let out = args.iter().position(|a| *a == "--out").and_then(|i| args.get(i + 1));
+    let again = out.is_some_and(|out| folder.join(out).exists()) && !args.contains(&"--force");
+    let mut args = args.to_vec();
+    args.extend(again.then_some("--force"));
+    sagnac_as_typed(folder, &args, environment)
+}
+
+/// Runs the program in a folder with the arguments as they are.
+pub fn sagnac_as_typed(folder: &Path, args: &[&str], environment: &[(&str, &str)]) -> Said {
     let output = assert_cmd::Command::new(program())
         .current_dir(folder)
         .args(args)

@@ -32,6 +32,17 @@ const CONSTANT_AFTER: u64 = 1000;
 /// Largest step of the lattice, in standard deviations, at which straight lines between samples can be told.
 const FINE: f64 = 1e-2;
 
+/// Fewest samples of a gyro channel from which a fault of its values can be seen.
+pub fn fewest_for(fault: &str) -> u64 {
+    match fault {
+        "outliers" => outliers::FEWEST as u64,
+        "saturated" => rails::FEWEST,
+        "stuck" => 2 * stuck::FEWEST,
+        "repeated" => 2 * repeats::FEWEST,
+        _ => 1,
+    }
+}
+
 /// What the values of a channel are like.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ValueFacts {

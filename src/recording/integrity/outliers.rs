@@ -16,7 +16,7 @@ const BLOCK: usize = 1024;
 /// Samples on each side that a candidate is compared with.
 const MARGIN: usize = 16;
 /// Fewest samples that can be judged.
-const FEWEST: usize = 64;
+pub(super) const FEWEST: usize = 64;
 /// Lowest threshold, robust standard deviations.
 const LOWEST: f64 = 5.0;
 /// The same against the scatter of the 33 samples about it, which is known less well.

@@ -7,6 +7,9 @@
 
 use super::Place;
 
+/// Fewest samples at one value that can be a rail.
+pub(super) const FEWEST: u64 = 8;
+
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     /// +1 for the upper edge, −1 for the lower one, where the values are mirrored.
@@ -85,7 +88,7 @@ impl Rails {
 
     pub(super) fn found(&self, deviation: f64) -> Vec<Rail> {
         let railed = |e: &&Edge| {
-            e.count >= 8
+            e.count >= FEWEST
                 && e.count >= 4 * e.next_count + 4
                 && e.next.is_finite()
                 && e.value - e.next < 0.5 * deviation

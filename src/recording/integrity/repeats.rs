@@ -22,7 +22,7 @@ const MOST: usize = 1 << 17;
 /// Runs allowed by chance in a record.
 const BY_CHANCE: f64 = 1e-3;
 /// Least evidence, samples: two stuck stretches of one value must not look alike.
-const FEWEST: u64 = 24;
+pub(super) const FEWEST: u64 = 24;
 /// Last samples that are kept to judge a run by.
 const RECENT: usize = 512;
 /// Samples of a run that its chance is measured on.

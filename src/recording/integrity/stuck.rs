@@ -9,7 +9,7 @@
 use super::Place;
 
 /// Fewest equal values that can be called stuck.
-const FEWEST: u64 = 5;
+pub(super) const FEWEST: u64 = 5;
 /// Runs allowed by chance in a record.
 const BY_CHANCE: f64 = 1e-3;
 /// Probability of a repeat beyond which the test cannot tell anything: a held or a very coarse output.

@@ -1,7 +1,7 @@
 //! The short table of the terminal.
 
 use super::CompareView;
-use crate::text::{Lang, lookup};
+use crate::text::{Lang, lookup, visible};
 
 /// The table of a comparison, columns in line.
 pub fn table(view: &CompareView, lang: Lang) -> String {
@@ -78,6 +78,8 @@ pub fn table(view: &CompareView, lang: Lang) -> String {
                 .collect(),
         ),
     };
+    let one_line = |cell: &String| visible(cell).into_owned();
+    let rows: Vec<Vec<String>> = rows.iter().map(|r| r.iter().map(one_line).collect()).collect();
     let mut out = aligned(&head, &rows);
     out.push_str(&format!("{}\n", t("compare.more.units")));
     if view.published.as_ref().is_some_and(|p| p.rows.iter().any(|r| r.flagged)) {
@@ -87,20 +89,24 @@ pub fn table(view: &CompareView, lang: Lang) -> String {
     if let Some(p) = &view.published {
         for row in p.rows.iter().filter(|r| r.flagged) {
             for remark in &row.remarks {
-                out.push_str(&format!("{}: {remark}\n", row.device));
+                out.push_str(&format!("{}: {}\n", visible(&row.device), visible(remark)));
             }
         }
         p.remarks.iter().for_each(|r| out.push_str(&format!("{r}\n")));
     } else {
         for unit in &view.units {
             for sentence in unit.says.iter().chain(&unit.missing) {
-                out.push_str(&format!("{}: {sentence}\n", unit.label));
+                out.push_str(&format!("{}: {}\n", visible(&unit.label), visible(sentence)));
             }
         }
         for l in &view.limits {
             out.push_str(&format!(
                 "{}: {} {} ({}): {}\n",
-                l.unit, l.quantity, l.value, l.limit, l.verdict_word
+                visible(&l.unit),
+                l.quantity,
+                l.value,
+                l.limit,
+                l.verdict_word
             ));
         }
     }

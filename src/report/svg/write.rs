@@ -1,5 +1,6 @@
 //! The small writer of SVG text: escaping, coordinates, the estimated width of words.
 
+use crate::text::steers;
 use std::fmt::Write;
 
 /// Size of ordinary words in a figure, px of the view box.
@@ -16,6 +17,7 @@ pub fn escape(text: &str) -> String {
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
             '\n' | '\t' => out.push(' '),
+            c if steers(c) && !c.is_control() => out.push('·'),
             c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {}
             c => out.push(c),
         }

@@ -211,13 +211,16 @@ impl Evidence {
             checks: checks::unmade(record, words),
             checks_made: checks::made(record, words),
             faults: Faults::new(record, words),
+            // A run that read nothing evaluated nothing, and left nothing out.
             window: [
                 ("report.window_from", record.window.from_s),
                 ("report.window_to", record.window.to_s),
                 ("report.window_usable", record.window.usable_s),
             ]
+            .into_iter()
+            .filter(|_| record.window.to_s > record.window.from_s)
             .map(|(key, s)| Field { label: words.t(key), value: duration(s, lang) })
-            .into(),
+            .collect(),
             excluded: record
                 .window
                 .excluded

@@ -15,7 +15,9 @@ pub struct Faults {
     pub found_faults: Vec<FaultKind>,
     /// Kinds that were looked for and not found, with what is allowed, as a sentence.
     pub absent_faults: String,
-    /// True when no fault was found.
+    /// Kinds that could not be looked for, as a sentence.
+    pub unexamined_faults: String,
+    /// True when it was looked for faults and none was found.
     pub faultless: bool,
     /// Jitter, quantisation step, threshold.
     pub integrity_facts: Vec<Field>,
@@ -95,9 +97,13 @@ impl Faults {
         let integrity = &record.integrity;
         let rows: u64 = record.recording.iter().map(|f| f.samples).sum();
         let condition = |id: &str| record.conditions.iter().find(|c| c.id == id);
-        let (mut found, mut absent) = (vec![], vec![]);
+        let (mut found, mut absent, mut unexamined) = (vec![], vec![], vec![]);
         for (id, n) in counts(integrity) {
             let share = if rows > 0 { percent(n as f64 / rows as f64, words.lang) } else { String::new() };
+            if n == 0 && !integrity.has_examined(id) {
+                unexamined.push(words.name("condition", id));
+                continue;
+            }
             let kind = kind(id, count(n, words.lang), share, condition(id), words);
             if n > 0 || kind.status == "invalid" { found.push(kind) } else { absent.push(kind) }
         }
@@ -112,7 +118,14 @@ impl Faults {
         }
         let shown = first_of_each_kind(&integrity.faults);
         Faults {
-            faultless: counts(integrity).iter().chain(&grave(integrity)).all(|c| c.1 == 0),
+            unexamined_faults: match unexamined.len() {
+                0 => String::new(),
+                _ if integrity.examined.is_empty() && found.is_empty() => words.t("report.none_examined"),
+                _ => words.with("report.unexamined", &[("kinds", &unexamined.join("; "))]),
+            },
+            faultless: !integrity.examined.is_empty()
+                && counts(integrity).iter().chain(&grave(integrity)).all(|c| c.1 == 0)
+                && integrity.faults.is_empty(),
             found_faults: found,
             absent_faults: sentence(&absent, words),
             integrity_facts: facts(integrity, words),

@@ -333,12 +333,14 @@ fn files(record: &RunRecord, words: Words) -> Vec<FileView> {
         .recording
         .iter()
         .map(|f| {
-            let mut details = vec![
-                words.with("report.file_bytes", &[("bytes", &count(f.bytes, lang))]),
-                words.with("report.file_samples", &[("samples", &count(f.samples, lang))]),
-                words.with("report.file_interval", &[("interval", &duration(f.sample_interval_s, lang))]),
-                words.with("report.file_duration", &[("duration", &duration(f.duration_s, lang))]),
-            ];
+            let mut details = vec![words.with("report.file_bytes", &[("bytes", &count(f.bytes, lang))])];
+            if f.samples > 0 {
+                details.extend([
+                    words.with("report.file_samples", &[("samples", &count(f.samples, lang))]),
+                    words.with("report.file_interval", &[("interval", &duration(f.sample_interval_s, lang))]),
+                    words.with("report.file_duration", &[("duration", &duration(f.duration_s, lang))]),
+                ]);
+            }
             if let Some(start) = &f.start {
                 details.push(words.with("report.file_start", &[("start", &date_time(start))]));
             }

@@ -1,6 +1,6 @@
 //! Plain text in aligned columns, at most 96 characters wide where words allow it.
 
-use crate::text::{Arg, Lang, Note};
+use crate::text::{Arg, Lang, Note, visible};
 
 /// Width of a line, characters.
 const WIDTH: usize = 96;
@@ -35,7 +35,7 @@ impl Page {
 
     /// The title of the text.
     pub fn title(&mut self, text: &str) {
-        self.out.push_str(text);
+        self.out.push_str(&visible(text));
         self.out.push('\n');
     }
 
@@ -77,11 +77,13 @@ impl Page {
 
     /// A table; the first `left` columns are set to the left, the others to the right.
     pub fn table(&mut self, rows: &[Vec<String>], left: usize) {
+        let rows: Vec<Vec<String>> =
+            rows.iter().map(|r| r.iter().map(|c| visible(c).into_owned()).collect()).collect();
         let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
         let widths: Vec<usize> = (0..columns)
             .map(|c| rows.iter().filter_map(|r| r.get(c)).map(|t| t.chars().count()).max().unwrap_or(0))
             .collect();
-        for row in rows {
+        for row in &rows {
             let mut line = String::new();
             for (c, (text, width)) in row.iter().zip(&widths).enumerate() {
                 line.push_str("  ");

@@ -1,0 +1,117 @@
+//! What a result is made from, so that it takes the place of none made from something else.
+
+use super::place;
+use crate::ingest::{ReadOptions, files_read};
+use crate::output::{Kind, Order, StagedFolder};
+use crate::text::Lang;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::fmt::Debug;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// The inputs of one call of the program.
+pub struct Inputs(Order);
+
+impl Inputs {
+    /// None yet.
+    pub fn new(force: bool) -> Inputs {
+        Inputs(Order { force, ..Order::default() })
+    }
+
+    /// The recording, whatever files it is of.
+    #[must_use]
+    pub fn recording(self, named: &[PathBuf], options: &ReadOptions) -> Inputs {
+        self.files("recording", &files_read(named, options))
+    }
+
+    /// A file, told by its hash.
+    #[must_use]
+    pub fn file(self, name: &str, path: Option<&Path>) -> Inputs {
+        let files: Vec<PathBuf> = path.map(Path::to_owned).into_iter().collect();
+        self.files(name, &files)
+    }
+
+    /// Files in their order, told by their hashes.
+    #[must_use]
+    pub fn files(mut self, name: &str, paths: &[PathBuf]) -> Inputs {
+        let told = match paths {
+            [] => return self,
+            [one] => hash(one),
+            several => {
+                let all: Vec<String> = several.iter().map(|p| hash(p)).collect();
+                hex(Sha256::digest(all.join("\n")))
+            }
+        };
+        self.0.inputs.insert(name.to_owned(), told);
+        self.0.read.extend_from_slice(paths);
+        self
+    }
+
+    /// A folder that is read and tells nothing of the result.
+    #[must_use]
+    pub fn beside(mut self, path: Option<&Path>) -> Inputs {
+        self.0.read.extend(path.map(Path::to_owned));
+        self
+    }
+
+    /// A text as it is.
+    #[must_use]
+    pub fn text(mut self, name: &str, text: Option<&str>) -> Inputs {
+        if let Some(text) = text {
+            self.0.inputs.insert(name.to_owned(), text.trim().to_owned());
+        }
+        self
+    }
+
+    /// Whatever else decides, by the hash of its form.
+    #[must_use]
+    pub fn options(mut self, options: &dyn Debug) -> Inputs {
+        self.0.inputs.insert("options".to_owned(), hex(Sha256::digest(format!("{options:?}"))));
+        self
+    }
+
+    /// Begins the folder.
+    ///
+    /// # Errors
+    /// The complaint, in words.
+    pub fn begin(self, out: &Path, kind: Kind, lang: Lang) -> Result<StagedFolder, String> {
+        StagedFolder::begin(out, kind, self.0).map_err(|e| place::error(&e.note(), lang))
+    }
+}
+
+/// Puts a folder in its place, and says which result of other inputs it replaced.
+///
+/// # Errors
+/// The complaint, in words.
+pub fn publish(folder: StagedFolder, record: impl Serialize, lang: Lang) -> Result<PathBuf, String> {
+    let replaced = folder.replaces();
+    let place = folder.publish(record).map_err(|e| place::error(&e.note(), lang))?;
+    if let Some(note) = replaced {
+        place::complain(&format!("{}\n", note.say(lang)));
+    }
+    Ok(place)
+}
+
+fn hex(bytes: impl AsRef<[u8]>) -> String {
+    bytes.as_ref().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// SHA-256 of a file. What is no file, or cannot be read, has none: opening it says why.
+fn hash(path: &Path) -> String {
+    let none = || "unread".to_owned();
+    if !path.is_file() {
+        return none();
+    }
+    let Ok(mut file) = File::open(path) else { return none() };
+    let (mut hash, mut block) = (Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut block) {
+            Ok(0) => return hex(hash.finalize()),
+            Ok(n) => hash.update(block.get(..n).unwrap_or_default()),
+            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(_) => return none(),
+        }
+    }
+}
