@@ -254,7 +254,7 @@ fn a_result_of_other_inputs_is_replaced_by_force_only() {
     let analysed = ["analyze", &pass, "--out", "a"];
     assert_eq!(typed(dir.path(), &analysed).code, 0);
     let said = typed(dir.path(), &["analyze", &fail, "--out", "a"]);
-    assert!(said.code == 2 && said.err.contains("result none of unit"), "{said:?}");
+    assert!(said.code == 2 && said.err.contains("result no limits of unit"), "{said:?}");
     let compared = ["compare", &pass, "--out", "c"];
     assert_eq!(typed(dir.path(), &compared).code, 0);
     assert_eq!(typed(dir.path(), &compared).code, 0);

@@ -12,7 +12,6 @@ const CLAIMS: &[&str] = &[
     "No fault was found",
     "Looked for and not found",
     "Nothing was left out",
-    "Evaluated",
     "None found",
     "samples, interval",
     "0 samples",
