@@ -12,7 +12,7 @@ use crate::noise::tau_grid::TauGrid;
 use crate::output::{Kind, StagedFolder};
 use crate::procedure::phases::is_phased;
 use crate::procedure::{effective, load, load_limits};
-use crate::record::{ExplainedRecord, RunRecord, UnitUnderTest};
+use crate::record::{Evidence, ExplainedRecord, RunRecord, UnitUnderTest};
 use crate::report::explain::{Context, ExplainView, explained_says};
 use crate::report::{Renderer, render_html, render_markdown, svg};
 use crate::run::{Outcome, Request, RunError, execute, explained, failed};
@@ -258,6 +258,19 @@ pub(super) fn summary(record: &RunRecord, folder: &Path, lang: Lang) -> String {
     let word = |key: String| lookup(lang, &key).map_or(key.clone(), str::to_owned);
     let mut out = format!("{}\n", word(format!("verdict.{}", record.verdict.id())).to_uppercase());
     for note in &record.summary {
+        out.push_str(&format!("  {}\n", note.say(lang)));
+    }
+    let mut declared: Vec<&str> = record
+        .conditions
+        .iter()
+        .filter(|c| c.evidence == Some(Evidence::Declared))
+        .map(|c| c.id.split('.').next().unwrap_or(&c.id))
+        .collect();
+    declared.sort_unstable();
+    declared.dedup();
+    if !declared.is_empty() {
+        let names: Vec<String> = declared.iter().map(|id| word(format!("condition.{id}"))).collect();
+        let note = Note::new("cli.declared").with("names", names.join(", "));
         out.push_str(&format!("  {}\n", note.say(lang)));
     }
     for sentence in record.explained.iter().flat_map(|e| explained_says(e, lang)) {

@@ -8,6 +8,7 @@ pub mod checks;
 mod clock;
 mod duration;
 mod earth_rate;
+pub mod evidence;
 mod faults;
 mod gyro_fact;
 mod held;
@@ -149,6 +150,7 @@ fn record(
         id: id.into(),
         phase: None,
         status,
+        evidence: None,
         observed,
         required: requirement.as_ref().map_or_else(String::new, |r| r.say(Lang::En)),
         requirement,

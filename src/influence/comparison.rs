@@ -3,6 +3,7 @@
 use super::cut::{Cut, cut, span_s};
 use super::gls;
 use super::intervals::Intervals;
+use super::nuisance::{Course, Following, Nuisance, following};
 use super::setup::ComparisonTest;
 use crate::estimate::{Estimate, chi_square_tail};
 use crate::numeric::reml::{Combination, Fit};
@@ -70,8 +71,19 @@ pub struct Comparison {
     pub drift: bool,
     /// True when intervals of one level differ by more than their noise.
     pub scatter: bool,
-    /// Temperature with less temperature without the influence, the drift taken out, degC; `None` without one.
-    pub temperature_difference: Option<f64>,
+    /// How the temperature of the unit goes with the levels; `None` without one.
+    pub temperature: Option<Following>,
+    /// How further recorded quantities go with the levels.
+    pub others: Vec<Following>,
+}
+
+/// What was recorded beside the output and the level.
+#[derive(Debug, Clone, Default)]
+pub struct Beside {
+    /// Temperature of the unit.
+    pub temperature: Option<Nuisance>,
+    /// Further quantities with their positions beside the blocks.
+    pub others: Vec<(usize, Nuisance)>,
 }
 
 /// Evaluates a channel. `None` without an interval of both kinds.
@@ -79,6 +91,7 @@ pub fn evaluate(
     blocks: &Blocks,
     found: &Intervals,
     test: &ComparisonTest,
+    beside: &Beside,
     gyro: usize,
 ) -> Option<Comparison> {
     let spans: Vec<(usize, usize)> = found.list.iter().map(|i| i.blocks).collect();
@@ -139,6 +152,13 @@ pub fn evaluate(
             states.list.iter().map(|(a, l)| if a == u { drive(*l) } else { 0.0 }).collect()
         })
         .collect();
+    let course = |values: &[f64], what: &Nuisance| {
+        let time = drift.then_some(&time);
+        let levels = states.list.len();
+        let own = Course { values, of: &cut.of, time, states: &states.of, drives: &drives, levels };
+        following(what, &own)
+    };
+    let others = beside.others.iter().filter_map(|(at, what)| course(cut.beside.get(*at)?, what)).collect();
     Some(Comparison {
         channel: blocks.gyros.get(gyro)?.clone(),
         axes: used.iter().map(|a| found.axes[*a].clone()).collect(),
@@ -148,7 +168,8 @@ pub fn evaluate(
         intervals: means(blocks, found, &states, &cut, drift.then_some(&time))?,
         drift,
         scatter,
-        temperature_difference: temperature(&cut, &states, drift.then_some(&time)),
+        temperature: beside.temperature.as_ref().and_then(|what| course(&cut.temperature, what)),
+        others,
         test: test.clone(),
     })
 }
@@ -286,22 +307,6 @@ fn means(
     Some(list.collect())
 }
 
-/// How much the temperature differs with the influence, degC.
-fn temperature(cut: &Cut, states: &States, time: Option<&DVector<f64>>) -> Option<f64> {
-    let n = cut.rows.len();
-    if cut.temperature.iter().any(|t| !t.is_finite()) {
-        return None;
-    }
-    let mut columns = vec![DVector::from_element(n, 1.0)];
-    columns.extend(time.cloned());
-    columns.push(DVector::from_fn(n, |i, _| f64::from(!states.is_off(cut.of[i]))));
-    let at = columns.len() - 1;
-    let x = DMatrix::from_columns(&columns);
-    let normal = Cholesky::new(x.transpose() * &x)?;
-    let t = DVector::from_row_slice(&cut.temperature);
-    Some(normal.solve(&(x.transpose() * t))[at])
-}
-
 /// Probability that levels on a line through zero are so far from one, with the noise of the fit.
 fn off_line(each: &Fit, first: usize, drives: &[Vec<f64>]) -> Option<f64> {
     let levels = drives.first()?.len();
@@ -330,25 +335,63 @@ impl Comparison {
         if parts.is_empty() { self.channel.clone() } else { format!("{}@{}", self.channel, parts.join(":")) }
     }
 
+    /// True where something that was recorded goes with the levels, so that its effect cannot be told from theirs.
+    pub fn confounded(&self) -> bool {
+        self.too_warm().is_some() || self.others.iter().any(|o| self.disturbs(o))
+    }
+
+    /// Difference of temperature between the levels where it is more than allowed, degC.
+    fn too_warm(&self) -> Option<f64> {
+        let difference = self.temperature.as_ref()?.difference();
+        (difference.abs() > self.test.temperature_difference_deg_c).then_some(difference)
+    }
+
+    /// True for a quantity beside that goes with the levels; a temperature by more than allowed.
+    fn disturbs(&self, other: &Following) -> bool {
+        match other.what.temperature {
+            true => other.difference().abs() > self.test.temperature_difference_deg_c,
+            false => other.follows(),
+        }
+    }
+
+    /// The quantities beside that go with the levels.
+    pub fn disturbing(&self) -> impl Iterator<Item = &Following> {
+        self.others.iter().filter(|o| self.disturbs(o))
+    }
+
     /// The estimates of one id.
     pub fn estimates(&self, id: &'static str, unit: &'static str) -> Vec<Estimate> {
+        let withheld = self.confounded();
+        let one = |place: String, c: &Combination, parts: &[f64]| {
+            let e = if withheld {
+                Estimate::not_identifiable(id, &place, None, unit, METHOD)
+            } else {
+                Estimate::measured(id, &place, c.value, unit, spread(c, 1.0, parts), METHOD)
+            };
+            self.remarked(e)
+        };
+        // What the temperature may do is at most this: a bound of a uniform law.
+        let warm = |degrees: Option<&f64>| {
+            let coefficient = self.test.temperature_coefficient.unwrap_or(0.0);
+            coefficient * degrees.map_or(0.0, |d| d.abs()) / 3f64.sqrt()
+        };
+        let warmed = |at: usize| self.temperature.as_ref().and_then(|t| t.per_drive.get(at));
+        let warmer = |at: usize| self.temperature.as_ref().and_then(|t| t.shifts.get(at));
         if id == self.test.influence.sensitivity() {
             let u = self.test.level_uncertainty * self.test.influence.degree();
-            let rows = self.axes.iter().zip(&self.per_unit).map(|(axis, c)| {
-                let spread = spread(c, 1.0, &[u * c.value.abs()]);
-                let e = Estimate::measured(id, &self.place(axis, None), c.value, unit, spread, METHOD);
-                self.remarked(e)
+            let rows = self.axes.iter().zip(&self.per_unit).enumerate().map(|(at, (axis, c))| {
+                one(self.place(axis, None), c, &[u * c.value.abs(), warm(warmed(at))])
             });
             return rows.collect();
         }
         if id != "bias_shift" {
             return vec![];
         }
-        let rows = self.shifts.iter().map(|s| {
-            let spread = spread(&s.change, 1.0, &[]);
-            let place = self.place(&s.axis, Some(s.level));
-            self.remarked(Estimate::measured(id, &place, s.change.value, unit, spread, METHOD))
-        });
+        let rows = self
+            .shifts
+            .iter()
+            .enumerate()
+            .map(|(at, s)| one(self.place(&s.axis, Some(s.level)), &s.change, &[warm(warmer(at))]));
         rows.collect()
     }
 
@@ -360,12 +403,31 @@ impl Comparison {
         if self.scatter {
             e = e.note(Note::new("compared.scatter"));
         }
-        match self.temperature_difference {
-            Some(d) if d.abs() > self.test.temperature_difference_deg_c => {
-                e.note(Note::new("compared.warmer").with("difference", Arg::figures(d, 2)))
-            }
-            _ => e,
+        if let Some(d) = self.too_warm() {
+            e = e.note(Note::new("compared.warmer").with("difference", Arg::figures(d.abs(), 2)));
+        } else if let Some(t) = self.temperature.as_ref().filter(|t| t.follows()) {
+            let difference = Arg::figures(t.difference().abs(), 2);
+            e = e.note(match self.test.temperature_coefficient {
+                Some(c) => Note::new("compared.allowed_for")
+                    .with("difference", difference)
+                    .with("coefficient", Arg::figures(c, 3)),
+                None => Note::new("compared.not_allowed_for").with("difference", difference),
+            });
         }
+        for other in self.disturbing() {
+            e = e.note(other.note("compared.in_step"));
+        }
+        e
+    }
+}
+
+impl Following {
+    /// A sentence on it, with its numbers.
+    pub fn note(&self, key: &'static str) -> Note {
+        Note::new(key)
+            .with("channel", self.what.channel.clone())
+            .with("difference", Arg::figures(self.difference().abs(), 3))
+            .with("unit", Arg::key("unit", self.what.unit))
     }
 }
 

@@ -94,6 +94,8 @@ pub struct Cut {
     pub of: Vec<usize>,
     /// Temperatures, degC; NaN without one.
     pub temperature: Vec<f64>,
+    /// Means of the channels kept beside; NaN without one.
+    pub beside: Vec<Vec<f64>>,
 }
 
 impl Cut {
@@ -120,6 +122,7 @@ pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option
     let total: usize = stretches.iter().map(|s| s.1 - s.0).sum();
     let (mut y, mut of, mut temperature) = (vec![], vec![], vec![]);
     let mut rows = Rows::default();
+    let mut beside = vec![vec![]; blocks.list.first().map_or(0, |b| b.beside.len())];
     for (number, (from, to)) in stretches.iter().enumerate() {
         let length = to - from;
         let parts = (PARTS * length / total.max(1)).max(LEAST_PARTS).min(length);
@@ -139,13 +142,23 @@ pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option
             y.push(sum / n);
             of.push(number);
             temperature.push(if t_n > 0.0 { t / t_n } else { f64::NAN });
+            for (at, means) in beside.iter_mut().enumerate() {
+                let (sum, n) = weighted(&|b| b.beside.get(at).copied().unwrap_or(f64::NAN));
+                means.push(if n > 0.0 { sum / n } else { f64::NAN });
+            }
             rows.mid_s.push(0.5 * (span_s(blocks, first).0 + span_s(blocks, last).1));
             rows.length_s.push(n * blocks.interval_s);
             rows.step.push(number);
         }
     }
     let whole = (0..stretches.len()).all(|s| of.contains(&s));
-    (whole && y.len() > stretches.len()).then(|| Cut { y: DVector::from_vec(y), rows, of, temperature })
+    (whole && y.len() > stretches.len()).then(|| Cut {
+        y: DVector::from_vec(y),
+        rows,
+        of,
+        temperature,
+        beside,
+    })
 }
 
 #[cfg(test)]
@@ -164,7 +177,9 @@ mod tests {
                 }
             }
             let of = rows.step.clone();
-            Cut { y: DVector::zeros(12), rows, of, temperature: vec![f64::NAN; 12] }.without_pauses().rows
+            Cut { y: DVector::zeros(12), rows, of, temperature: vec![f64::NAN; 12], beside: vec![] }
+                .without_pauses()
+                .rows
         };
         let apart = runs([60.0, 4000.0, 90_000.0]);
         assert_eq!(apart, runs([60.0, 320.0, 580.0]));

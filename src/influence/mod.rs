@@ -9,6 +9,8 @@ pub mod contrasts;
 pub mod cut;
 mod gls;
 pub mod intervals;
+pub mod nuisance;
+pub mod range;
 pub mod repeatability;
 pub mod runs;
 pub mod setup;

@@ -3,6 +3,7 @@
 use super::contrasts::{Contrasts, Means, coefficient};
 use super::cut::{cut, span_s};
 use super::gls;
+use super::range::{self, PossibleMeans, Range};
 use super::runs::Runs;
 use super::unsure;
 use crate::estimate::{Estimate, Spread, UpperLimit, chi_square_quantile};
@@ -49,11 +50,13 @@ pub struct Repeatability {
     pub deviation: (f64, Spread),
     /// Standard deviation of the means as they are, deg/h.
     pub plain: f64,
-    /// Largest less smallest, deg/h.
-    pub range: Combination,
-    /// Change from the first run to the last by the line through all, deg/h.
+    /// Range of the true biases of the runs, deg/h.
+    pub range: Range,
+    /// Change from the first run to the last by the line through all, what goes with their temperature left out, deg/h.
     pub trend: Option<Combination>,
-    /// Change with the temperature of the runs.
+    /// Correlation of the temperature of the runs with their order; `None` where no temperature tells.
+    pub in_step: Option<f64>,
+    /// Change with the temperature of the runs, what goes with their order left out.
     pub temperature: Option<OverTemperature>,
 }
 
@@ -106,13 +109,18 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     let means = Means { values: fit.coefficients.clone(), noise: fit.covariance.clone() };
     let ones = DMatrix::from_element(count, 1, 1.0);
     let contrasts = Contrasts::new(&means, &ones)?;
-    let value = |i: &usize| means.values[*i];
-    let largest = (0..count).max_by(|a, b| value(a).total_cmp(&value(b)))?;
-    let smallest = (0..count).min_by(|a, b| value(a).total_cmp(&value(b)))?;
-    let difference = DVector::from_fn(count, |i, _| f64::from(i == largest) - f64::from(i == smallest));
-    let line = |over: &[f64]| -> Option<(Combination, f64)> {
-        let middle = over.iter().sum::<f64>() / count as f64;
-        let x = DMatrix::from_fn(count, 2, |i, j| if j == 0 { 1.0 } else { over[i] - middle });
+    // Without a strength of flicker that can be fitted there is the noise that was identified.
+    let possible = unsure::means(&cut, &x, &fixed).unwrap_or_else(|| {
+        let dof = fit.coefficient(0).dof;
+        vec![PossibleMeans { weight: 1.0, values: means.values.clone(), noise: means.noise.clone(), dof }]
+    });
+    // The coefficient of the first of several courses over the runs, beside the others, and the variance that is left.
+    let line = |over: &[&[f64]]| -> Option<(Combination, f64)> {
+        let middle = |course: &[f64]| course.iter().sum::<f64>() / count as f64;
+        let x = DMatrix::from_fn(count, over.len() + 1, |i, j| match j.checked_sub(1) {
+            None => 1.0,
+            Some(k) => over[k][i] - middle(over[k]),
+        });
         let left = Contrasts::new(&means, &x)?.variance();
         Some((coefficient(&means, &x, 1, left)?, left))
     };
@@ -121,15 +129,23 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     let span = temperatures.iter().fold(f64::NEG_INFINITY, |m, t| m.max(*t))
         - temperatures.iter().fold(f64::INFINITY, |m, t| m.min(*t));
     let known = count >= 4 && temperatures.iter().all(|t| t.is_finite()) && span > 1e-6;
+    // What goes with the order of the runs may be their temperature, and the reverse: each is stated beside the other.
+    let trend = match known {
+        true => line(&[&order, &temperatures]),
+        false if count >= 4 => line(&[&order]),
+        false => None,
+    };
+    let slope = known.then(|| Some((line(&[&temperatures, &order])?.0, line(&[&temperatures])?.1))).flatten();
     let whole = contrasts.variance();
     Some(Repeatability {
         channel: blocks.gyros.get(gyro)?.clone(),
         mean: list.iter().map(|r| r.bias.value).sum::<f64>() / count as f64,
-        deviation: unsure::deviation(&cut, &x, &fixed).unwrap_or_else(|| contrasts.deviation()),
+        deviation: unsure::deviation(&possible).unwrap_or_else(|| contrasts.deviation()),
         plain: means.values.deviation_of_sample(),
-        range: fit.combine(&difference),
-        trend: (count >= 4).then(|| line(&order)).flatten().map(|l| l.0),
-        temperature: known.then(|| line(&temperatures)).flatten().map(|(slope, left)| OverTemperature {
+        range: range::range(&possible)?,
+        trend: trend.map(|l| l.0),
+        in_step: known.then(|| correlation(&order, &temperatures)),
+        temperature: slope.map(|(slope, left)| OverTemperature {
             slope,
             left: left.sqrt(),
             share: if whole > 0.0 { (1.0 - left / whole).clamp(0.0, 1.0) } else { 0.0 },
@@ -137,6 +153,16 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
         }),
         runs: list,
     })
+}
+
+/// Correlation of two courses.
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let middle = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let (ma, mb) = (middle(a), middle(b));
+    let product = |x: &[f64], mx: f64, y: &[f64], my: f64| -> f64 {
+        x.iter().zip(y).map(|(x, y)| (x - mx) * (y - my)).sum()
+    };
+    product(a, ma, b, mb) / (product(a, ma, a, ma) * product(b, mb, b, mb)).sqrt()
 }
 
 /// The standard deviation of a sample.
@@ -150,6 +176,9 @@ impl Sample for DVector<f64> {
         (self.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (self.len().max(2) - 1) as f64).sqrt()
     }
 }
+
+/// Correlation of temperature and order from which it is said that they went in step.
+const IN_STEP: f64 = 0.7;
 
 /// Factors on a standard deviation of so many runs between which it lies, 95 %.
 pub fn factors(runs: usize) -> (f64, f64) {
@@ -169,24 +198,45 @@ impl Repeatability {
             |c: &Combination| Estimate::measured(id, &self.channel, c.value, unit, student(c), METHOD);
         Some(match id {
             "bias_repeatability" => self.spread(id, unit),
-            "bias_repeatability_peak_to_peak" => {
-                measured(&self.range).note(Note::new("runs.range").with("n", n))
-            }
+            "bias_repeatability_peak_to_peak" => self.peak_to_peak(id, unit),
             "bias_repeatability_trend" => match &self.trend {
-                Some(t) => measured(t).note(Note::new("runs.trend").with("n", n)),
+                Some(t) => self.stepped(measured(t).note(Note::new("runs.trend").with("n", n))),
+                None if n >= 4 => self.stepped(none("runs.not_apart")),
                 None => none("runs.no_line"),
             },
             "bias_repeatability_temperature" => match &self.temperature {
-                Some(t) => measured(&t.slope).note(
-                    Note::new("runs.temperature")
-                        .with("percent", Arg::figures(100.0 * t.share, 2))
-                        .with("left", Arg::figures(t.left, 3))
-                        .with("range", Arg::figures(t.range, 2)),
+                Some(t) => self.stepped(
+                    measured(&t.slope).note(
+                        Note::new("runs.temperature")
+                            .with("percent", Arg::figures(100.0 * t.share, 2))
+                            .with("left", Arg::figures(t.left, 3))
+                            .with("range", Arg::figures(t.range, 2)),
+                    ),
                 ),
+                None if self.in_step.is_some() => self.stepped(none("runs.not_apart")),
                 None => none(if n < 4 { "runs.no_line" } else { "runs.no_temperature" }),
             },
             _ => return None,
         })
+    }
+
+    /// Says how the temperature went with the order of the runs.
+    fn stepped(&self, e: Estimate) -> Estimate {
+        match self.in_step {
+            None => e.note(Note::new("runs.trend_alone")),
+            Some(r) if r.abs() >= IN_STEP => {
+                e.note(Note::new("runs.in_step").with("correlation", Arg::figures(r, 2)))
+            }
+            Some(_) => e,
+        }
+    }
+
+    fn peak_to_peak(&self, id: &'static str, unit: &'static str) -> Estimate {
+        let (value, spread) = (self.range.value, self.range.spread.clone());
+        let told = Note::new("runs.range")
+            .with("n", self.runs.len())
+            .with("plain", Arg::figures(self.range.plain, 3));
+        self.shown_or_bounded(id, unit, value, spread, told)
     }
 
     fn spread(&self, id: &'static str, unit: &'static str) -> Estimate {
@@ -200,6 +250,18 @@ impl Repeatability {
             .with("high", Arg::figures(high, 3))
             .with("plain", Arg::figures(self.plain, 3))
             .with("noise", Arg::figures(typical, 2));
+        self.shown_or_bounded(id, unit, value, spread, told)
+    }
+
+    /// A value whose interval does not reach zero, or a bound.
+    fn shown_or_bounded(
+        &self,
+        id: &'static str,
+        unit: &'static str,
+        value: f64,
+        spread: Spread,
+        told: Note,
+    ) -> Estimate {
         let shown = spread.bound(value, 0.025).is_some_and(|b| b > 0.0);
         if shown {
             return Estimate::measured(id, &self.channel, value, unit, spread, METHOD).note(told);

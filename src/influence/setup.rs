@@ -125,6 +125,10 @@ pub struct ComparisonTest {
     pub level_uncertainty: f64,
     /// Largest difference of temperature between without and with, degC.
     pub temperature_difference_deg_c: f64,
+    /// Largest temperature coefficient that the bias may have, deg/h/degC; `None`: not stated.
+    pub temperature_coefficient: Option<f64>,
+    /// True where the procedure takes it for granted that the influence acted as stated.
+    pub declared: bool,
     /// Channel of the unit's temperature; `None`: the first.
     pub temperature: Option<String>,
     /// The intervals; empty: found from the channels of the influence's role.

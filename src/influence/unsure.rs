@@ -8,6 +8,7 @@
 use super::contrasts::{Contrasts, Means};
 use super::cut::Cut;
 use super::gls;
+use super::range::PossibleMeans;
 use crate::estimate::{Spread, normal_probability};
 use crate::numeric::bracket::halved;
 use crate::numeric::reml;
@@ -26,9 +27,9 @@ struct Possible {
     contrasts: Contrasts,
 }
 
-/// The spread between runs about their common mean: value and confidence distribution. `runs` has a column a run. `None`
-/// where no strength can be fitted.
-pub fn deviation(cut: &Cut, runs: &DMatrix<f64>, fixed: &DMatrix<f64>) -> Option<(f64, Spread)> {
+/// The means of runs with each strength of flicker that they may have. `runs` has a column a run. `None` where no strength can
+/// be fitted.
+pub fn means(cut: &Cut, runs: &DMatrix<f64>, fixed: &DMatrix<f64>) -> Option<Vec<PossibleMeans>> {
     let all = [cut.rows.white(), cut.rows.angle(), cut.rows.random_walk()];
     let plain = reml::fit(&cut.y, runs, fixed, &all)?;
     let shown = gls::shown(&plain, &all);
@@ -37,26 +38,35 @@ pub fn deviation(cut: &Cut, runs: &DMatrix<f64>, fixed: &DMatrix<f64>) -> Option
     let noise = all.iter().zip(&plain.strengths).fold(fixed.clone(), |sum, (v, s)| sum + v * *s);
     let visible = visible(cut, &noise, &flicker).filter(|v| *v > 0.0 && v.is_finite())?;
     let width = LARGEST.ln_1p() / STRENGTHS as f64;
-    let columns = DMatrix::from_element(runs.ncols(), 1, 1.0);
-    let mut possible: Vec<(f64, Contrasts)> = (0..STRENGTHS)
+    let mut possible: Vec<PossibleMeans> = (0..STRENGTHS)
         .filter_map(|i| {
             // Equal steps of ln(B + visible) carry equal density.
             let b = visible * ((i as f64 + 0.5) * width).exp_m1();
             let fit = reml::fit(&cut.y, runs, &(fixed + &flicker * (b * b)), &others)?;
-            let means = Means { values: fit.coefficients, noise: fit.covariance };
-            Some((0.5 * fit.twice_log_likelihood, Contrasts::new(&means, &columns)?))
+            let dof = fit.coefficient(0).dof;
+            let weight = 0.5 * fit.twice_log_likelihood;
+            Some(PossibleMeans { weight, values: fit.coefficients, noise: fit.covariance, dof })
         })
         .collect();
-    let top = possible.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
-    possible.retain(|p| p.0 > top + LEAST_WEIGHT.ln());
-    let weights: Vec<f64> = possible.iter().map(|p| (p.0 - top).exp()).collect();
-    let total: f64 = weights.iter().sum();
+    let top = possible.iter().map(|p| p.weight).fold(f64::NEG_INFINITY, f64::max);
+    possible.retain(|p| p.weight > top + LEAST_WEIGHT.ln());
+    possible.iter_mut().for_each(|p| p.weight = (p.weight - top).exp());
+    let total: f64 = possible.iter().map(|p| p.weight).sum();
+    possible.iter_mut().for_each(|p| p.weight /= total);
+    (!possible.is_empty()).then_some(possible)
+}
+
+/// The spread between runs about their common mean: value and confidence distribution.
+pub fn deviation(possible: &[PossibleMeans]) -> Option<(f64, Spread)> {
     let list: Vec<Possible> = possible
-        .into_iter()
-        .zip(weights)
-        .map(|((_, contrasts), w)| Possible { weight: w / total, contrasts })
+        .iter()
+        .filter_map(|p| {
+            let means = Means { values: p.values.clone(), noise: p.noise.clone() };
+            let columns = DMatrix::from_element(p.values.len(), 1, 1.0);
+            Some(Possible { weight: p.weight, contrasts: Contrasts::new(&means, &columns)? })
+        })
         .collect();
-    (!list.is_empty()).then(|| mean(&list))
+    (list.len() == possible.len() && !list.is_empty()).then(|| mean(&list))
 }
 
 /// The least B that a record shows: its flicker moves the halves of the runs against one another by as much more than the
@@ -111,7 +121,7 @@ mod tests {
         let y = DVector::from_fn(n, |i, _| bias[i / parts] + noise(i));
         let of: Vec<usize> = (0..n).map(|i| i / parts).collect();
         let x = DMatrix::from_fn(n, runs, |i, j| f64::from(u8::from(of[i] == j)));
-        (Cut { y, rows, of, temperature: vec![f64::NAN; n] }, x)
+        (Cut { y, rows, of, temperature: vec![f64::NAN; n], beside: vec![] }, x)
     }
 
     #[test]
@@ -119,7 +129,7 @@ mod tests {
         // domain: six cycles leave 0.62 … 2.45 times the estimate.
         let (cut, x) = cut(&[1.0, 2.0, 4.0, 3.0, 6.0, 5.0], 1e-4);
         let fixed = DMatrix::identity(60, 60) * 1e-14;
-        let (value, spread) = deviation(&cut, &x, &fixed).unwrap();
+        let (value, spread) = deviation(&means(&cut, &x, &fixed).unwrap()).unwrap();
         assert!((value / 3.5f64.sqrt() - 1.0).abs() < 1e-3, "{value}");
         let i = spread.interval(value, 0.95).unwrap();
         assert!((i.low / value - 0.6242).abs() < 3e-3 && (i.high / value - 2.4526).abs() < 8e-3, "{i:?}");
@@ -130,10 +140,11 @@ mod tests {
         let (cut, x) = cut(&[0.10, -0.05, 0.04, -0.12, 0.06, -0.03], 0.25);
         let fixed = DMatrix::identity(60, 60) * 1e-12;
         let white = reml::fit(&cut.y, &x, &fixed, &[cut.rows.white()]).unwrap();
-        let means = Means { values: white.coefficients, noise: white.covariance };
-        let (plain, known) = Contrasts::new(&means, &DMatrix::from_element(6, 1, 1.0)).unwrap().deviation();
+        let plain_means = Means { values: white.coefficients, noise: white.covariance };
+        let (plain, known) =
+            Contrasts::new(&plain_means, &DMatrix::from_element(6, 1, 1.0)).unwrap().deviation();
         assert!(known.bound(plain, 0.025).unwrap() > 0.0, "{plain}");
-        let (value, spread) = deviation(&cut, &x, &fixed).unwrap();
+        let (value, spread) = deviation(&means(&cut, &x, &fixed).unwrap()).unwrap();
         assert_eq!(spread.bound(value, 0.025), Some(0.0));
         assert!(spread.bound(value, 0.975).unwrap() > plain);
     }

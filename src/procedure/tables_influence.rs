@@ -4,7 +4,9 @@
 use super::model::Procedure;
 use super::reader::Reader;
 use super::section::Section;
-use super::spec::{KeySpec, Kind, Range, TableSpec, difference, optional, quantity, required, with_default};
+use super::spec::{
+    KeySpec, Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
+};
 use crate::ids::Test;
 use crate::influence::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};
 use crate::recording::Role;
@@ -107,8 +109,24 @@ const TEMPERATURE_DIFFERENCE: KeySpec = with_default(
     difference("degC", Range::POSITIVE),
     "\"0.3 degC\"",
     "\"0.3 degC\"",
-    "How much the temperature may differ with the influence: what more would do to the bias cannot be told from the influence.",
+    "How much the temperature may differ between any two levels, the one without among them: what more would do to the bias cannot be told from the influence.",
 );
+const TEMPERATURE_COEFFICIENT: KeySpec = optional(
+    "temperature_coefficient",
+    quantity("deg/h/degC", Range::NOT_NEGATIVE),
+    "\"0.003 deg/h/degC\"",
+    "Largest change of the bias with the temperature, from a test over temperature: what a temperature that goes with the levels may do within `temperature_difference` is then part of the uncertainty.",
+);
+const EVIDENCE: KeySpec = optional(
+    "evidence",
+    Kind::Choice(EVIDENCES),
+    "\"declared\"",
+    "Where nothing in the recording shows that the influence acted, the test is not valid, unless this says that it was declared; report and verdict then say so.",
+);
+
+/// Evidence that a procedure may do with.
+const EVIDENCES: &[Word] =
+    &[("declared", "that the influence acted, and at which levels, is taken from the procedure")];
 
 macro_rules! comparison_table {
     ($table:ident, $interval:ident, $name:literal, $interval_name:literal, $unit:literal, $reference:literal,
@@ -129,7 +147,9 @@ macro_rules! comparison_table {
                 ALTERNATIONS,
                 LEVEL_UNCERTAINTY,
                 TEMPERATURE_DIFFERENCE,
+                TEMPERATURE_COEFFICIENT,
                 TEMPERATURE,
+                EVIDENCE,
                 optional(
                     "interval",
                     Kind::Tables(&$interval),
@@ -220,6 +240,8 @@ pub(super) fn comparison(root: &Section) -> Option<ComparisonTest> {
         alternations: number("alternations").unwrap_or(2.0) as usize,
         level_uncertainty: number("level_uncertainty").unwrap_or(0.0),
         temperature_difference_deg_c: number("temperature_difference").unwrap_or(0.3),
+        temperature_coefficient: number("temperature_coefficient"),
+        declared: section.word("evidence") == Some("declared"),
         temperature: section.text("temperature"),
         intervals: section
             .tables("interval")

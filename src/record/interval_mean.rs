@@ -1,5 +1,6 @@
 //! Means of runs, or of intervals without and with an influence.
 
+use super::Evidence;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -20,6 +21,8 @@ pub struct IntervalMeanRecord {
     pub row: u64,
     /// Level of the influence, in `level_unit`; absent for a run.
     pub level: Option<f64>,
+    /// How it is known that the influence was at this level; absent for a run.
+    pub evidence: Option<Evidence>,
     /// Unit of the level.
     pub level_unit: Option<String>,
     /// Axis that the influence acts along, where there are several.

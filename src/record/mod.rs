@@ -8,6 +8,7 @@ mod beside;
 mod check;
 mod comparison;
 mod deviation;
+mod evidence;
 pub mod explanation;
 mod goodness;
 pub mod integrity;
@@ -23,6 +24,7 @@ pub use comparison::{
     ShareRecord, WindowRecord,
 };
 pub use deviation::DeviationRecord;
+pub use evidence::Evidence;
 pub use explanation::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
@@ -142,7 +144,9 @@ pub struct ConditionRecord {
     pub phase: Option<String>,
     /// State.
     pub status: ConditionStatus,
-    /// What was observed, by name, in the unit of `required`.
+    /// How it is known; `null` where nothing tells it.
+    pub evidence: Option<Evidence>,
+    /// What was found, by name, in the unit of `required`.
     pub observed: serde_json::Map<String, serde_json::Value>,
     /// What was required, as text with unit, English.
     pub required: String,

@@ -3,18 +3,22 @@
 
 use super::evaluate::Found;
 use super::influence_noise::{self, ChangeOfNoise};
-use super::{Outcome, Request, RunError, drawn, figures, interval_means, settle, table, verdict};
+use super::{
+    Outcome, Request, RunError, drawn, figures, influence_acted, interval_means, settle, table, verdict,
+};
 use crate::condition::influence::{ComparedFacts, RunFacts, judge_compared, judge_runs};
 use crate::estimate::Estimate;
 use crate::figure::Figure;
-use crate::influence::comparison::{self, Comparison};
+use crate::influence::comparison::{self, Beside, Comparison};
 use crate::influence::cut::FileSpan;
 use crate::influence::intervals;
+use crate::influence::nuisance::{Following, Nuisance};
 use crate::influence::repeatability::{self, Repeatability};
 use crate::influence::{ComparisonTest, RepeatabilityTest, runs};
 use crate::procedure::Procedure;
 use crate::rate_table::blocks::Collector;
-use crate::record::{ConditionRecord, IntervalMeanRecord, OptionRecord};
+use crate::record::{ConditionRecord, Evidence, IntervalMeanRecord, OptionRecord};
+use crate::recording::{Channel, Role};
 
 /// The files of a recording with their rows.
 fn files(found: &Found) -> Vec<FileSpan> {
@@ -93,6 +97,11 @@ pub(super) fn repeatability(
         fewest: test.fewest,
         too_short: series.too_short,
         minimum_run_s: test.minimum_run_s,
+        // A time without output in one file is what switching off leaves; that files or stated times are runs is declared.
+        evidence: match test.runs.is_empty() && found.report.files.len() < 2 {
+            true => Evidence::Inferred,
+            false => Evidence::Declared,
+        },
     })];
     let several = evaluated.len() > 1;
     let drawn = if wanted(request, "bias_of_runs") {
@@ -104,21 +113,77 @@ pub(super) fn repeatability(
     Ok(finish(request, &found, conditions, rows, drawn, means))
 }
 
+/// True for a channel whose quantity may change the bias beside the influence. The temperature of the unit is judged by itself.
+fn may_disturb(c: &Channel, test: &ComparisonTest) -> bool {
+    let role = matches!(
+        c.role,
+        Role::Temperature
+            | Role::Supply
+            | Role::MagneticField
+            | Role::Vibration
+            | Role::TableRate
+            | Role::OuterRate
+    );
+    role && c.role != test.influence.role()
+}
+
+/// What was recorded beside output and level, whose channels come first beside the blocks.
+fn beside(channels: &[Channel], test: &ComparisonTest, levels: usize) -> Beside {
+    let nuisance = |c: &Channel| Nuisance {
+        channel: c.id.clone(),
+        unit: c.role.internal_unit().unwrap_or("1"),
+        temperature: c.role == Role::Temperature,
+    };
+    let others: Vec<&Channel> = channels.iter().filter(|c| may_disturb(c, test)).collect();
+    let warm = || others.iter().filter(|c| c.role == Role::Temperature);
+    let own = warm().find(|c| Some(&c.id) == test.temperature.as_ref()).or_else(|| warm().next());
+    Beside {
+        temperature: own.map(|c| nuisance(c)),
+        others: others
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| own.is_none_or(|o| o.id != c.id))
+            .map(|(at, c)| (levels + at, nuisance(c)))
+            .collect(),
+    }
+}
+
+/// The quantities beside, each from the gyro channel whose intervals show it most.
+fn most_disturbing(evaluated: &[Comparison]) -> Vec<&Following> {
+    let mut most: Vec<&Following> = vec![];
+    for found in evaluated.iter().flat_map(|e| &e.others) {
+        match most.iter_mut().find(|m| m.what.channel == found.what.channel) {
+            Some(known) if found.by_chance < known.by_chance => *known = found,
+            Some(_) => {}
+            None => most.push(found),
+        }
+    }
+    most
+}
+
 /// A comparison without and with an influence.
 pub(super) fn comparison(
     request: &Request<'_>,
     test: &ComparisonTest,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Outcome, RunError> {
-    let level = |c: &crate::recording::Channel| c.role == test.influence.role();
+    let level = |c: &Channel| c.role == test.influence.role();
     let (found, blocks) = table::collect_blocks(request, progress, &|channels, nominal_s| {
-        let slots = channels.iter().enumerate().filter(|(_, c)| level(c)).map(|(slot, _)| slot).collect();
-        Collector::new(channels, nominal_s, test.temperature.as_deref()).beside(slots)
+        let slots = |of: &dyn Fn(&Channel) -> bool| {
+            channels.iter().enumerate().filter(|(_, c)| of(c)).map(|(slot, _)| slot).collect::<Vec<usize>>()
+        };
+        // The channels of the level come first.
+        let mut kept = slots(&level);
+        kept.extend(slots(&|c| may_disturb(c, test)));
+        Collector::new(channels, nominal_s, test.temperature.as_deref()).beside(kept)
     })?;
     let axes: Vec<String> = found.channels.iter().filter(|c| level(c)).map(|c| c.id.clone()).collect();
     let series = intervals::find(&blocks, test, &axes, &files(&found));
-    let evaluated: Vec<Comparison> =
-        (0..blocks.gyros.len()).filter_map(|g| comparison::evaluate(&blocks, &series, test, g)).collect();
+    let beside = beside(&found.channels, test, axes.len());
+    let evaluated: Vec<Comparison> = (0..blocks.gyros.len())
+        .filter_map(|g| comparison::evaluate(&blocks, &series, test, &beside, g))
+        .collect();
+    let acted = influence_acted::find(request, test, &found, &blocks, &series, &axes, progress)?;
     let procedure = request.procedure;
     let noise: Vec<ChangeOfNoise> = if procedure.measures("angle_random_walk_shift", None) {
         influence_noise::find(request, &found, &blocks, &series, progress)?
@@ -130,6 +195,7 @@ pub(super) fn comparison(
         let own = evaluated[at].estimates(id, unit);
         own.into_iter()
             .chain(noise.iter().filter(|n| n.gyro == channels[at]).filter_map(|n| n.estimate(id, unit)))
+            .map(|e| acted.remark().into_iter().fold(e, Estimate::note))
             .collect()
     });
     match evaluated.iter().find_map(|e| e.temperature_difference) {
@@ -145,7 +211,11 @@ pub(super) fn comparison(
         missing: series.missing,
         minimum_interval_s: test.minimum_interval_s,
         recorded: test.intervals.is_empty(),
-        temperature: evaluated.iter().find_map(|e| e.temperature_difference),
+        level_unit: test.influence.unit(),
+        table: test.influence.table(),
+        acted,
+        temperature: evaluated.iter().find_map(|e| e.temperature.as_ref()),
+        others: most_disturbing(&evaluated),
         allowed_deg_c: test.temperature_difference_deg_c,
         line: evaluated.iter().filter_map(|e| e.line).reduce(f64::min),
         squared: test.influence.degree() > 1.0,
@@ -156,7 +226,7 @@ pub(super) fn comparison(
     } else {
         vec![]
     };
-    let means = evaluated.iter().flat_map(interval_means::of_intervals).collect();
+    let means = evaluated.iter().flat_map(|e| interval_means::of_intervals(e, acted.evidence())).collect();
     Ok(finish(request, &found, conditions, rows, drawn, means))
 }
 

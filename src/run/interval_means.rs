@@ -5,7 +5,7 @@ use crate::influence::comparison::{Comparison, IntervalMean};
 use crate::influence::repeatability::{Repeatability, RunMean};
 use crate::numeric::reml::Combination;
 use crate::output::quoted;
-use crate::record::IntervalMeanRecord;
+use crate::record::{Evidence, IntervalMeanRecord};
 
 /// The 95 % interval of a mean.
 pub(super) fn interval(c: &Combination) -> (f64, f64) {
@@ -42,13 +42,14 @@ pub(super) fn of_runs(found: &Repeatability) -> Vec<IntervalMeanRecord> {
 }
 
 /// The intervals of a channel.
-pub(super) fn of_intervals(found: &Comparison) -> Vec<IntervalMeanRecord> {
+pub(super) fn of_intervals(found: &Comparison, evidence: Evidence) -> Vec<IntervalMeanRecord> {
     let one = |(i, r): (usize, &IntervalMean)| IntervalMeanRecord {
         name: r.name.clone(),
         from_s: r.span_s.0,
         to_s: r.span_s.1,
         row: r.row,
         level: Some(r.level),
+        evidence: Some(evidence),
         level_unit: Some(found.test.influence.unit().to_owned()),
         axis: Some(r.axis.clone()).filter(|a| !a.is_empty()),
         without: Some(r.off),
@@ -60,7 +61,7 @@ pub(super) fn of_intervals(found: &Comparison) -> Vec<IntervalMeanRecord> {
 /// The same as CSV.
 pub(super) fn csv(records: &[IntervalMeanRecord]) -> String {
     let mut out = String::from(
-        "channel,number,name,from_s,to_s,row,level,level_unit,axis,without,temperature_degC,mean_deg_h,\
+        "channel,number,name,from_s,to_s,row,level,evidence,level_unit,axis,without,temperature_degC,mean_deg_h,\
          standard_uncertainty_deg_h,degrees_of_freedom,low_deg_h,high_deg_h\n",
     );
     for r in records {
@@ -73,6 +74,7 @@ pub(super) fn csv(records: &[IntervalMeanRecord]) -> String {
             r.to_s.to_string(),
             r.row.to_string(),
             number(r.level),
+            r.evidence.map_or_else(String::new, |e| e.id().to_owned()),
             quoted(r.level_unit.as_deref().unwrap_or_default()),
             quoted(r.axis.as_deref().unwrap_or_default()),
             r.without.map_or_else(String::new, |w| w.to_string()),

@@ -12,6 +12,7 @@ pub mod figures;
 mod goodness;
 mod gyro_facts;
 mod influence;
+mod influence_acted;
 mod influence_noise;
 pub mod inspect;
 mod interval_means;

@@ -42,7 +42,9 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         }
         .with("title", p.title.as_str())
     };
-    let summary = errors.iter().cloned().chain(phases.iter().map(of_phase)).collect();
+    let declared = Note::new("summary.influence_declared");
+    let said = phases.iter().any(|p| p.summary.contains(&declared)).then_some(declared);
+    let summary = errors.iter().cloned().chain(phases.iter().map(of_phase)).chain(said).collect();
     let records: Vec<&RunRecord> =
         done.iter().filter_map(|d| d.outcome.as_ref()).map(|o| &o.record).collect();
     let mut instruments = Vec::new();

@@ -2,6 +2,7 @@
 
 use super::evaluate::Found;
 use super::{Request, RunError, described, goodness, session, sigma_tau, verdict};
+use crate::condition::evidence;
 use crate::condition::checks::{Kind, none_made};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
@@ -10,6 +11,7 @@ use crate::record::{
     ClauseRecord, ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord,
     NoiseModelRecord, OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
 };
+use crate::recording::Role;
 use crate::temperature::start::Start;
 use crate::text::Note;
 use std::path::Path;
@@ -17,13 +19,15 @@ use std::path::Path;
 pub(super) fn record(
     request: &Request<'_>,
     found: &Found,
-    conditions: Vec<ConditionRecord>,
+    mut conditions: Vec<ConditionRecord>,
     rows: Vec<MeasurandRecord>,
     power: Vec<PowerRecord>,
     figures: &[Figure],
 ) -> RunRecord {
     let errors = errors(request);
     let rows = super::unshown::complete(request, &found.channels, rows);
+    let has_stamps = request.use_stamps && found.channels.iter().any(|c| c.role == Role::Time);
+    evidence::complete(&mut conditions, has_stamps);
     let judged = verdict::whole(&rows, &conditions, &errors);
     let (verdict, mut summary) = verdict::with_idle_limits(judged, request.limits.idle.as_ref());
     let declared = |g: &GyroEvidence| g.warm_up.as_ref().is_some_and(|w| w.start == Start::Declared);

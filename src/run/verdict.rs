@@ -2,7 +2,7 @@
 
 use crate::estimate::{Estimate, Verdict, judge};
 use crate::procedure::{EffectiveLimits, Procedure};
-use crate::record::{ConditionRecord, ConditionStatus, LimitRecord, MeasurandRecord};
+use crate::record::{ConditionRecord, ConditionStatus, Evidence, LimitRecord, MeasurandRecord};
 use crate::text::{Arg, Note};
 
 /// Judges one estimate.
@@ -104,6 +104,10 @@ pub fn whole(
         Verdict::None => reasons.push(Note::new("summary.no_limits")),
         _ => {}
     }
+    let declared = |c: &&ConditionRecord| c.id == "influence_acted" && c.evidence == Some(Evidence::Declared);
+    if judged > 0 && conditions.iter().any(|c| declared(&c)) {
+        reasons.push(Note::new("summary.influence_declared"));
+    }
     (verdict, reasons)
 }
 
@@ -152,6 +156,7 @@ mod tests {
             id: "temperature".into(),
             phase: None,
             status,
+            evidence: None,
             observed: Default::default(),
             required: String::new(),
             requirement: None,

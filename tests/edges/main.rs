@@ -13,6 +13,7 @@
 //! `FAMILY` restricts it to one family, `RECORDS` sets the number of recordings of each case.
 
 mod case;
+mod influence;
 mod noise;
 mod noise_source;
 mod page;
@@ -27,6 +28,7 @@ use sagnac::ids::MEASURANDS;
 
 /// Every family. One more: one file and one line.
 static FAMILIES: &[&Family] = &[
+    &influence::FAMILY,
     &noise::FAMILY,
     &rate_table::FAMILY,
     &small_rates::FAMILY,

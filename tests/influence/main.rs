@@ -211,6 +211,120 @@ fn files_of_a_manifest_are_the_runs() {
     }
 }
 
+/// The result of the shipped test of vibration on a recording, with lines put into the table of the test.
+fn shaker(recorded: &Recorded, keys: &str) -> (i32, Value, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("recording.csv"), text("SN-1", "", recorded)).unwrap();
+    let shipped = std::fs::read_to_string(root("procedures/vibration.toml")).unwrap();
+    let procedure = shipped.replacen("[vibration_test]\n", &format!("[vibration_test]\n{keys}"), 1);
+    std::fs::write(at("p.toml"), procedure).unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_sagnac"))
+        .current_dir(folder.path())
+        .args(["run", "p.toml", "recording.csv", "--serial", "SN-1", "--out", "o"])
+        .output()
+        .unwrap();
+    let result = std::fs::read_to_string(at("o/result.json")).unwrap();
+    let report = std::fs::read_to_string(at("o/report.md")).unwrap();
+    let said = String::from_utf8_lossy(&done.stdout).into_owned() + &report;
+    (done.status.code().unwrap(), serde_json::from_str(&result).unwrap(), said)
+}
+
+fn condition<'a>(result: &'a Value, id: &str) -> &'a Value {
+    result["conditions"].as_array().unwrap().iter().find(|c| c["id"] == id).unwrap()
+}
+
+#[test]
+fn a_declared_influence_is_not_one_that_acted() {
+    // White noise at rest: the shaker was off.
+    let rest = shaken(0.0, |_| 1.0).record(31);
+    let (code, result, said) = shaker(&rest, "");
+    assert_eq!(code, 3, "{said}");
+    let acted = condition(&result, "influence_acted");
+    assert_eq!((&acted["status"], &acted["evidence"]), (&"invalid".into(), &"declared".into()), "{acted}");
+    assert!(!said.contains("Observed"), "{said}");
+
+    let (code, result, said) = shaker(&rest, "evidence = \"declared\"\n");
+    assert_eq!(code, 0, "{said}");
+    let acted = condition(&result, "influence_acted");
+    assert_eq!((&acted["status"], &acted["evidence"]), (&"remark".into(), &"declared".into()));
+    assert_eq!(said.matches("only declared").count() >= 2, true, "{said}");
+    assert!(result["interval_means"].as_array().unwrap().iter().all(|m| m["evidence"] == "declared"));
+
+    let (code, result, said) = shaker(&shaken(0.001, |g| 1.0 + 0.05 * g).record(32), "");
+    assert_eq!(code, 0, "{said}");
+    let acted = condition(&result, "influence_acted");
+    assert_eq!((&acted["status"], &acted["evidence"]), (&"ok".into(), &"inferred".into()));
+}
+
+#[test]
+fn every_condition_says_how_it_is_known() {
+    let (_, result) = run(
+        &path("procedures/supply-sensitivity.toml"),
+        &path("samples/supply-sensitivity-pass.csv"),
+        "SN-0115",
+    );
+    for c in result["conditions"].as_array().unwrap() {
+        assert!(c["evidence"].is_string(), "{c}");
+    }
+    assert_eq!(condition(&result, "influence_acted")["evidence"], "recorded");
+    assert_eq!(condition(&result, "calibration")["evidence"], "declared");
+    assert!(result["interval_means"].as_array().unwrap().iter().all(|m| m["evidence"] == "recorded"));
+}
+
+#[test]
+fn a_field_stated_without_a_channel_is_no_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let recorded = turns(&FIELD, 0.05).record(33);
+    std::fs::write(folder.path().join("r.csv"), text("SN-1", "", &recorded)).unwrap();
+    let shipped = std::fs::read_to_string(root("procedures/magnetic-sensitivity.toml")).unwrap();
+    let (head, tail) = shipped.split_once("[[channel]]\nid = \"field\"").unwrap();
+    let tail = tail.split_once("[magnetic_test]").unwrap().1;
+    let mut stated = String::new();
+    for (i, level) in FIELD.iter().enumerate() {
+        let (from, to) = (2 * i, 2 * i + 2);
+        let _ = write!(
+            stated,
+            "[[magnetic_test.interval]]\nfrom = \"{from} min\"\nto = \"{to} min\"\nlevel = \"{level} mT\"\n"
+        );
+    }
+    let tail = tail.replacen("[conditions]", &format!("{stated}\n[conditions]"), 1);
+    let procedure = folder.path().join("p.toml");
+    for (keys, code) in [("", 3), ("\nevidence = \"declared\"", 0)] {
+        std::fs::write(&procedure, format!("{head}[magnetic_test]{keys}{tail}")).unwrap();
+        let recording = folder.path().join("r.csv");
+        let (got, result) = run(&procedure.to_string_lossy(), &recording.to_string_lossy(), "SN-1");
+        assert_eq!(got, code, "{:#}", result["summary"]);
+    }
+}
+
+#[test]
+fn a_further_channel_in_step_with_the_level_is_named() {
+    let mut recorded = turns(&FIELD, 0.05).record(34);
+    recorded.time_s.truncate(recorded.rate.len());
+    let folder = tempfile::tempdir().unwrap();
+    let mut out = String::from("time_s,rate_deg_h,temp_degC,field_mT,supply_V\n");
+    for i in 0..recorded.rate.len() {
+        let supply = 5.0 + 0.002 * (i * 7919 % 97) as f64 / 97.0 - 0.1 * recorded.level[i];
+        let _ = writeln!(
+            out,
+            "{},{:.4},{:.3},{},{supply:.5}",
+            recorded.time_s[i], recorded.rate[i], recorded.temperature[i], recorded.level[i]
+        );
+    }
+    let recording = folder.path().join("r.csv");
+    std::fs::write(&recording, out).unwrap();
+    let shipped = std::fs::read_to_string(root("procedures/magnetic-sensitivity.toml")).unwrap();
+    let channel = "[[channel]]\nid = \"volts\"\ncolumn = \"supply_V\"\nrole = \"supply\"\nunit = \"V\"\n\n[magnetic_test]";
+    let procedure = folder.path().join("p.toml");
+    std::fs::write(&procedure, shipped.replacen("[magnetic_test]", channel, 1)).unwrap();
+    let (code, result) = run(&procedure.to_string_lossy(), &recording.to_string_lossy(), "SN-1");
+    assert_eq!(code, 3, "{:#}", result["summary"]);
+    let said = condition(&result, "influence_beside.volts");
+    assert_eq!(said["status"], "invalid", "{said}");
+    assert!(row(&result, "magnetic_sensitivity")["value"].is_null());
+}
+
 #[test]
 fn mistakes_name_themselves() {
     let says = |result: &Value, id: &str| {

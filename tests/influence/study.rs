@@ -7,7 +7,7 @@ use super::generator::{Noise, Recorded, Series, Turns};
 use super::{FIELD, SHAKER, series, shaken, turns};
 use rayon::prelude::*;
 use sagnac::estimate::Estimate;
-use sagnac::influence::comparison::{self, Comparison};
+use sagnac::influence::comparison::{self, Beside, Comparison};
 use sagnac::influence::cut::FileSpan;
 use sagnac::influence::repeatability::{self, Repeatability};
 use sagnac::influence::{ComparisonTest, Influence, RepeatabilityTest, intervals, runs};
@@ -73,11 +73,13 @@ fn compared(t: &Turns, seed: u64) -> Comparison {
         alternations: 2,
         level_uncertainty: 0.0,
         temperature_difference_deg_c: 0.3,
+        temperature_coefficient: None,
+        declared: false,
         temperature: None,
         intervals: vec![],
     };
     let found = intervals::find(&blocks, &test, &["field".to_owned()], &[]);
-    comparison::evaluate(&blocks, &found, &test, 0).expect("intervals")
+    comparison::evaluate(&blocks, &found, &test, &Beside::default(), 0).expect("intervals")
 }
 
 /// What a study of one measurand counts.

@@ -21,7 +21,7 @@ pub enum Change {
     OtherUnits,
     /// Pairs of rows averaged.
     Resample,
-    /// The influence rests at its first value.
+    /// The influence rests at its first value; of one that only the procedure tells, what it does to the output is gone.
     SilenceInfluence,
     /// The recording of a unit under the serial number of another.
     OtherUnit,
@@ -138,9 +138,13 @@ pub fn make(change: Change, pair: &Pair, text: &str, procedure: &str) -> Option<
             sample.rows = sample.rows.chunks_exact(2).map(mean).collect();
         }
         Change::SilenceInfluence => {
-            let column = sample.column(pair.influence?)?;
-            let first = sample.rows.first()?.get(column)?.clone();
-            sample.rows.iter_mut().for_each(|r| r[column].clone_from(&first));
+            if let Some(interval_s) = pair.schedule_s {
+                silence_the_output(&mut sample, interval_s)?;
+            } else {
+                let column = sample.column(pair.influence?)?;
+                let first = sample.rows.first()?.get(column)?.clone();
+                sample.rows.iter_mut().for_each(|r| r[column].clone_from(&first));
+            }
         }
         Change::OtherUnit => {
             // Without a stated serial number nothing tells units apart.
@@ -150,6 +154,29 @@ pub fn make(change: Change, pair: &Pair, text: &str, procedure: &str) -> Option<
     }
     let files = vec![sample.text(&sample.rows)];
     Some(Made { files, procedure, serial })
+}
+
+/// Puts white noise as strong as that of the first interval, about its mean, in place of the output.
+fn silence_the_output(sample: &mut Sample<'_>, interval_s: f64) -> Option<()> {
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+    let (time, rate) = (sample.column("time_s")?, sample.column("rate_deg_h")?);
+    let number = |r: &[String], c: usize| r.get(c)?.parse::<f64>().ok();
+    let rest: Vec<f64> = sample
+        .rows
+        .iter()
+        .take_while(|r| number(r, time).is_some_and(|t| t < interval_s))
+        .filter_map(|r| number(r, rate))
+        .collect();
+    let n = rest.len() as f64;
+    let mean = rest.iter().sum::<f64>() / n;
+    let sigma = (rest.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
+    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(7);
+    for r in &mut sample.rows {
+        let z: f64 = StandardNormal.sample(&mut rng);
+        r[rate] = format!("{:.4}", mean + sigma * z);
+    }
+    Some(())
 }
 
 /// deg/h in rad/s.

@@ -93,6 +93,8 @@ fn outcome(pair: &Pair, change: Change) -> (String, Option<String>) {
         // A record of another unit is none of this one.
         Change::OtherUnit if judged.code == 0 => Some(format!("another unit passes: {line}")),
         Change::OtherUnit => None,
+        // Nothing is known of a unit under an influence that never acted.
+        Change::SilenceInfluence if judged.code < 2 => Some(format!("judged without influence: {line}")),
         _ => wrong,
     };
     (line, wrong)

@@ -14,6 +14,8 @@ pub struct Pair {
     pub code: i32,
     /// The channel of the influence, where the recording has one.
     pub influence: Option<&'static str>,
+    /// Length of the intervals of a schedule that nothing but the procedure tells, s.
+    pub schedule_s: Option<f64>,
 }
 
 const fn pair(
@@ -24,7 +26,12 @@ const fn pair(
     code: i32,
     influence: Option<&'static str>,
 ) -> Pair {
-    Pair { sample, procedure, limits, serial, code, influence }
+    Pair { sample, procedure, limits, serial, code, influence, schedule_s: None }
+}
+
+/// Every second interval of this length is one with an influence that only the procedure tells.
+const fn scheduled(pair: Pair, interval_s: f64) -> Pair {
+    Pair { schedule_s: Some(interval_s), ..pair }
 }
 
 const UNIT: Option<&str> = Some("sample-unit");
@@ -32,6 +39,8 @@ const OVEN: Option<&str> = Some("sample-temperature");
 const WARM: Option<&str> = Some("sample-warm-up");
 const RATE: Option<&str> = Some("table_rate_deg_s");
 const INNER: Option<&str> = Some("inner_rate_deg_s");
+const FIELD: Option<&str> = Some("field_mT");
+const VOLTS: Option<&str> = Some("supply_V");
 const TEMP: Option<&str> = Some("temp_degC");
 
 /// Every pair.
@@ -57,10 +66,10 @@ pub const PAIRS: [Pair; 27] = [
     pair("warm-up-fail", "warm-up", WARM, "SN-0107", 1, None),
     pair("bias-repeatability-pass", "bias-repeatability", None, "SN-0111", 0, None),
     pair("bias-repeatability-fail", "bias-repeatability", None, "SN-0112", 1, None),
-    pair("magnetic-sensitivity-pass", "magnetic-sensitivity", None, "SN-0113", 0, None),
-    pair("magnetic-sensitivity-fail", "magnetic-sensitivity", None, "SN-0114", 1, None),
-    pair("supply-sensitivity-pass", "supply-sensitivity", None, "SN-0115", 0, None),
-    pair("supply-sensitivity-fail", "supply-sensitivity", None, "SN-0116", 1, None),
-    pair("vibration-pass", "vibration", None, "SN-0117", 0, None),
-    pair("vibration-fail", "vibration", None, "SN-0118", 1, None),
+    pair("magnetic-sensitivity-pass", "magnetic-sensitivity", None, "SN-0113", 0, FIELD),
+    pair("magnetic-sensitivity-fail", "magnetic-sensitivity", None, "SN-0114", 1, FIELD),
+    pair("supply-sensitivity-pass", "supply-sensitivity", None, "SN-0115", 0, VOLTS),
+    pair("supply-sensitivity-fail", "supply-sensitivity", None, "SN-0116", 1, VOLTS),
+    scheduled(pair("vibration-pass", "vibration", None, "SN-0117", 0, None), 120.0),
+    scheduled(pair("vibration-fail", "vibration", None, "SN-0118", 1, None), 120.0),
 ];

@@ -1,4 +1,4 @@
-//! Conditions of the test with what was observed, in words and units.
+//! Conditions of the test with what was found, and how it is known, in words and units.
 
 use super::{Words, evidence::status, faults};
 use crate::record::{ConditionRecord, RunRecord};
@@ -17,13 +17,15 @@ pub struct Condition {
     pub status_word: String,
     /// What was required.
     pub required: String,
-    /// What was observed.
-    pub observed: String,
+    /// How it is known, in words.
+    pub evidence: String,
+    /// What was found.
+    pub found: String,
     /// Explanation.
     pub note: String,
 }
 
-/// Units that the name of an observed value ends in, longest first, with the unit.
+/// Units that the name of a value found ends in, longest first, with the unit.
 const ENDINGS: &[(&str, &str)] = &[
     ("_deg_c_h", "degC/h"),
     ("_deg_c", "degC"),
@@ -60,14 +62,15 @@ fn condition(c: &ConditionRecord, words: Words) -> Condition {
         status: status(c.status),
         status_word: words.name("status", status(c.status)),
         required: required(c, words),
-        observed: observed(kind, c, words),
+        evidence: words.name("evidence", c.evidence.map_or("none", crate::record::Evidence::id)),
+        found: found(kind, c, words),
         note: c.message.as_ref().map_or_else(|| c.note.clone(), |m| words.say(m)),
     }
 }
 
-/// What was observed. Of a quantity that is held, the range and the mean; the rest stands in the explanation and in
+/// What was found. Of a quantity that is held, the range and the mean; the rest stands in the explanation and in
 /// the result file.
-fn observed(kind: &str, c: &ConditionRecord, words: Words) -> String {
+fn found(kind: &str, c: &ConditionRecord, words: Words) -> String {
     let number = |name: &str| c.observed.get(name).and_then(Value::as_f64);
     if let (Some(low), Some(high)) = (number("min"), number("max")) {
         let unit = match kind {

@@ -46,6 +46,8 @@ pub struct IntervalMean {
     pub length: String,
     /// Level, with its axis.
     pub level: String,
+    /// How the level is known, in words.
+    pub evidence: String,
     /// Temperature; empty without one.
     pub temperature: String,
     /// Mean.
@@ -101,6 +103,7 @@ fn one(m: &IntervalMeanRecord, words: Words) -> IntervalMean {
         from: limit_digits(m.from_s, 7, lang),
         length: limit_digits(m.to_s - m.from_s, 5, lang),
         level: m.axis.as_ref().map_or_else(|| level.clone(), |axis| format!("{axis}: {level}")),
+        evidence: m.evidence.map_or_else(String::new, |e| words.name("evidence", e.id())),
         temperature: m.temperature_deg_c.map_or_else(String::new, |t| digits(t, 4, lang)),
         mean: rounding.show(m.mean_deg_h, lang),
         interval: words.with(
