@@ -120,6 +120,11 @@ impl CheckLog {
                     None => all.push(record.clone()),
                 }
             }
+            // What one part of the test could not check, another may have.
+            let made = all.iter().skip(before).any(|r| r.status == CheckStatus::Made);
+            let mut own = all.split_off(before);
+            own.retain(|r| !made || r.status == CheckStatus::Made || r.channel.is_some());
+            all.append(&mut own);
             if all.len() == before {
                 all.push(unmade(id, Note::new("check_list.no_part")));
             }

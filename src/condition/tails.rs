@@ -15,7 +15,11 @@ const CLEAR: f64 = 8.0;
 impl Condition for Tails {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
         let one = |gyro: &super::GyroFact| {
-            let shape = gyro.tails.filter(|s| s.samples > 0)?;
+            let Some(shape) = gyro.tails.filter(|s| s.samples > 0) else {
+                facts.checks.not_made("distribution", Some(&gyro.channel), "check_list.no_plain_noise");
+                return None;
+            };
+            facts.checks.made("distribution", Some(&gyro.channel), "tails");
             let error = (24.0 / shape.samples as f64).sqrt();
             if shape.excess_kurtosis > (SHORT - shape.explained).min(-CLEAR * error - shape.explained) {
                 return None;

@@ -62,7 +62,7 @@ mod tests {
 
     fn judged(unit: &str, mean_deg_c: f64) -> Option<String> {
         let t = Thermometer { channel: "t".to_owned(), unit: unit.to_owned(), mean_deg_c, counts: true };
-        judge_scale_of_temperature(&t).and_then(|r| r.note).map(|n| n.id)
+        judge_scale_of_temperature(&t).map(|r| r.note)
     }
 
     #[test]

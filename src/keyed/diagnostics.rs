@@ -102,8 +102,8 @@ impl Problem {
             out.push_str(&format!("{margin} | {indent}{carets}\n"));
         }
         if let Some(help) = &self.help {
-            let help = visible(&help.say(lang));
-            out.push_str(&format!("  {}: {help}\n", Note::new("diagnostic.help").say(lang)));
+            let help = help.say(lang);
+            out.push_str(&format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), visible(&help)));
         }
         out
     }

@@ -198,7 +198,7 @@ pub(super) fn comparison(
             .map(|e| acted.remark().into_iter().fold(e, Estimate::note))
             .collect()
     });
-    match evaluated.iter().find_map(|e| e.temperature_difference) {
+    match evaluated.iter().find_map(|e| e.temperature.as_ref()) {
         Some(_) => found.checks.made("temperature_in_step", None, "influence_temperature"),
         None => found.checks.not_made("temperature_in_step", None, "check_list.no_temperature"),
     }

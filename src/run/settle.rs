@@ -2,8 +2,8 @@
 
 use super::evaluate::Found;
 use super::{Request, RunError, described, goodness, session, sigma_tau, verdict};
-use crate::condition::evidence;
 use crate::condition::checks::{Kind, none_made};
+use crate::condition::evidence;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::measurand::GyroEvidence;

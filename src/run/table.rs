@@ -50,8 +50,10 @@ pub(super) fn execute(
     }
     let scales = evaluated.iter().filter_map(|(_, c)| c.as_ref());
     conditions.extend(scales.filter_map(|c| judge_scale(&c.channel, c.factor)));
-    conditions
-        .extend(temperature(request, setup, &run, &wanted).and_then(|t| judge_scale_of_temperature(&t)));
+    if let Some(thermometer) = temperature(request, setup, &run, &wanted) {
+        found.checks.made("temperature_unit", Some(&thermometer.channel), "units");
+        conditions.extend(judge_scale_of_temperature(&thermometer));
+    }
     conditions.extend(usual_conditions(request, &found));
     let others: Vec<Others> = evaluated
         .iter()

@@ -84,7 +84,8 @@ pub(super) fn finish(
     for (channel, factor) in positions.iter().map(|p| (&p.channel, p.factor)).chain(of_turns) {
         let certain = (factor.value.abs() - 4.0 * factor.standard).max(0.0);
         if !named.contains(&channel.as_str())
-            && let Some(found) = judge_scale(channel, certain).and_then(|_| judge_scale(channel, factor.value))
+            && let Some(found) =
+                judge_scale(channel, certain).and_then(|_| judge_scale(channel, factor.value))
         {
             named.push(channel);
             conditions.push(found);
