@@ -326,6 +326,7 @@ fn shortest(seed: u64) -> Simulated {
 }
 
 fn coarsest(seed: u64) -> Simulated {
+    // Up to nearly the largest rate.
     let d = anywhere(seed, 0.1, 0.9);
     let sweep = Sweep { each_side: 2, spacing: 0.5, ..Sweep::of(Form::Play(d)) };
     let mut truths = whole(&sweep, d, 0.0, 2.0 * d);

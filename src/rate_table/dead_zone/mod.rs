@@ -75,6 +75,8 @@ pub struct DeadZone {
     bound: (f64, f64),
     /// Probability that chance leaves as much of the best form, where none fits.
     unexplained: Option<f64>,
+    /// Largest half width tried, deg/h, where the zone may be wider.
+    open: Option<f64>,
     /// Forms that fit beside the one that is drawn.
     others: usize,
     /// Zone with noise inside the loop, where that is shown.
@@ -142,12 +144,20 @@ pub fn evaluate(
         }
     };
     let Left { mut shape, centre, slope, offset, .. } = with_noise.map_or(best, |r| r.best);
-    let value = Some(middle_of(&curve)).filter(|_| shown && unexplained.is_none());
+    let open = if with_noise.is_some() {
+        None
+    } else if shown {
+        alike.iter().find_map(|f| widths.open(f.number))
+    } else {
+        (0..FORMS).find_map(|form| widths.open(form))
+    };
+    let value = Some(middle_of(&curve)).filter(|_| shown && unexplained.is_none() && open.is_none());
     shape.half_width = value.unwrap_or(0.0);
     let rounds = alike.iter().any(|f| f.number == WITH_NOISE);
     let bound = (widths.bound(), widths.bound_of_threshold());
     let zone = match (value, unexplained) {
         (_, Some(_)) => 0.0,
+        _ if open.is_some() => f64::INFINITY,
         (None, _) => bound.1,
         (Some(_), _) => Spread::Curve(threshold.clone()).bound(0.0, 0.95).unwrap_or(0.0),
     };
@@ -161,6 +171,7 @@ pub fn evaluate(
         curve,
         bound,
         unexplained,
+        open,
         others: alike.len().saturating_sub(1),
         between: widths.bounded_by_a_gap().then(|| points.spacing()),
         noise_bound: closer.as_ref().filter(|_| rounds).map(|r| r.bound(widths.least_clean_over_centres())),
@@ -256,6 +267,10 @@ impl DeadZone {
             return Some(
                 found.note(Note::new("dead_zone.no_form").with("percent", Arg::figures(100.0 * chance, 2))),
             );
+        }
+        if let Some(most) = self.open.filter(|_| id != "resolution") {
+            let found = if IDS.contains(&id) { self.at_most(id, unit, None) } else { return None };
+            return Some(found.note(Note::new("dead_zone.open").with("most", Arg::figures(most, 3))));
         }
         let found = match id {
             "dead_zone" => match self.half_width {

@@ -102,6 +102,14 @@ impl Widths {
         (0..FORMS).map(|form| times(form) * self.bound_of(form)).fold(0.0, f64::max)
     }
 
+    /// The largest half width tried, deg/h, where it fits as well: the zone may be wider.
+    pub fn open(&self, form: usize) -> Option<f64> {
+        let z = normal_quantile(0.95);
+        let lowest = (0..WIDTHS).map(|i| self.cost(form, i)).fold(f64::INFINITY, f64::min);
+        let last = WIDTHS - 1;
+        (self.cost(form, last) <= lowest + z * z).then(|| self.widths[last])
+    }
+
     /// True when that is a gap, which may lie between two rates.
     pub fn bounded_by_a_gap(&self) -> bool {
         self.bound_of(GAP) >= self.bound()
