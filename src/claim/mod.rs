@@ -45,6 +45,12 @@ pub struct Uncertainty {
     pub b_rel: f64,
     /// Relative, of K.
     pub k_rel: f64,
+    /// Of N where the claim states 0, deg/√h: N is no larger than what this allows, and may be less.
+    pub n_deg_rt_h: f64,
+    /// The same of B, deg/h.
+    pub b_deg_h: f64,
+    /// The same of K, deg/h/√h.
+    pub k_deg_h_rt_h: f64,
     /// deg/h. The engine leaves the bias free whatever it is.
     pub bias_deg_h: f64,
     /// deg/h/°C.

@@ -170,6 +170,27 @@ static UNCERTAINTY: TableSpec = TableSpec {
         with_default("N_rel", Kind::Number(COEFFICIENT), "0.0", "0.015", "Of N, relative."),
         with_default("B_rel", Kind::Number(COEFFICIENT), "0.0", "0.12", "Of B, relative."),
         with_default("K_rel", Kind::Number(COEFFICIENT), "0.0", "0.15", "Of K, relative."),
+        with_default(
+            "N_deg_rt_h",
+            Kind::Number(COEFFICIENT),
+            "0.0",
+            "0.001",
+            "Of N where it is stated as 0, deg/√h: the value is positive and within about two of these.",
+        ),
+        with_default(
+            "B_deg_h",
+            Kind::Number(COEFFICIENT),
+            "0.0",
+            "0.002",
+            "Of B where it is stated as 0, deg/h.",
+        ),
+        with_default(
+            "K_deg_h_rt_h",
+            Kind::Number(COEFFICIENT),
+            "0.0",
+            "0.0005",
+            "Of K where it is stated as 0, deg/h/√h.",
+        ),
         with_default("bias_deg_h", Kind::Number(COEFFICIENT), "0.0", "0.03", "Of the bias, deg/h."),
         with_default(
             "temperature_coefficient_deg_h_per_degC",

@@ -152,3 +152,46 @@ fn every_effect_can_be_stated_with_its_parameters_and_lists() {
         assert_eq!(again.effects[0].values, claim.effects[0].values, "{}", effect.kind());
     }
 }
+
+/// Every parameter of every effect, given far outside its bounds, at them, and as no number: what is written is read.
+#[test]
+fn whatever_an_effect_was_fitted_to_its_claim_is_read_again() {
+    for effect in EFFECTS {
+        let params = || {
+            effect.params().iter().map(|p| (p, false)).chain(effect.list_params().iter().map(|p| (p, true)))
+        };
+        for odd in [f64::NEG_INFINITY, f64::INFINITY, f64::NAN, -0.064, -1e300, 1e300, 0.0, 1.0, 1e7] {
+            let given = params().map(|(p, listed)| {
+                let value = if listed { Value::List(vec![odd; 3]) } else { Value::Number(odd) };
+                (p.name.to_owned(), value)
+            });
+            let values = crate::effect::stateable(*effect, given.collect());
+            for (p, _) in params() {
+                match values.get(p.name) {
+                    Some(Value::Number(v)) => assert!((p.lower..=p.upper).contains(v), "{} {v}", p.name),
+                    Some(Value::List(list)) => assert!(list.iter().all(|v| (p.lower..=p.upper).contains(v))),
+                    None => assert!(odd.is_nan(), "{} {odd}", p.name),
+                }
+            }
+            if odd.is_nan() {
+                continue;
+            }
+            let mut claim = read("[recording]\nsample_rate_hz = 10\n");
+            claim.effects = vec![Stated { effect: *effect, values }];
+            let text = write(&claim);
+            parse("augmented.toml", text.as_bytes())
+                .unwrap_or_else(|e| panic!("{}: {e}\n{text}", effect.kind()));
+        }
+    }
+}
+
+#[test]
+fn bounds_of_coefficients_stated_as_zero_are_written_and_read() {
+    let mut claim = read(CONTRACT);
+    claim.noise.b = 0.0;
+    claim.uncertainty.b_deg_h = 0.0021;
+    claim.uncertainty.k_deg_h_rt_h = 3e-4;
+    let again = read(&write(&claim));
+    assert_eq!(again.uncertainty, claim.uncertainty);
+    assert!(!write(&read(CONTRACT)).contains("\nN_deg_rt_h = 0.0\n"));
+}

@@ -50,22 +50,29 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
 
     let mut progress = Watch::new(lang);
     let recording = read(args, &args.recording, &mut progress, lang)?;
-    let (claim, named, identified) = match (stated, args.simulation.as_deref()) {
+    let mut notes = recording.remarks();
+    let (claim, outcome, named, identified) = match (stated, args.simulation.as_deref()) {
         (Some(claim), _) => {
             let path = args.model.as_deref().map(shown).unwrap_or_default();
-            (claim, path, false)
+            let outcome = mismatch::explain(recording, &claim, &options, &mut |p| progress.of(p));
+            (claim, outcome.map_err(say)?, path, false)
         }
         (None, Some(simulation)) => {
             let series = read(args, &[simulation.to_owned()], &mut progress, lang)?;
-            let claim = mismatch::identify(&series, &mut |p| progress.of(p));
-            (claim.map_err(say)?, shown(simulation), true)
+            let taken = mismatch::explain_simulation(&recording, series, &options, &mut |p| progress.of(p));
+            let taken = taken.map_err(say)?;
+            if taken.same {
+                notes.push("explain.note.same_samples".into());
+            }
+            if !taken.shared.is_empty() {
+                let titles: Vec<&str> = taken.shared.iter().map(|e| e.doc().title.of(lang)).collect();
+                notes.push(Note::new("explain.note.shared").with("effects", titles.join(", ")));
+            }
+            (taken.claim, taken.outcome, shown(simulation), true)
         }
         (None, None) => return Err(say("explain.error.both".into())),
     };
-    let notes = recording.remarks();
-    let outcome = mismatch::explain(recording, &claim, &options, &mut |p| progress.of(p));
     progress.finish();
-    let outcome = outcome.map_err(say)?;
 
     let context = Context {
         recording: args.recording.iter().map(|p| shown(p)).collect::<Vec<_>>().join(", "),

@@ -133,6 +133,27 @@ pub fn list<'a>(values: &'a Values, name: &str) -> &'a [f64] {
     }
 }
 
+/// Whether numbers in the order of an effect's parameters are within what it allows; one that is not known is.
+pub fn plausible(effect: &dyn Effect, parameters: &[f64]) -> bool {
+    let within = |(p, v): (&Param, &f64)| v.is_nan() || (p.lower..=p.upper).contains(v);
+    effect.params().iter().zip(parameters).all(within)
+}
+
+/// Values as a claim may state them: within the bounds of their parameters, those that are no numbers left out.
+pub fn stateable(effect: &dyn Effect, values: Values) -> Values {
+    let param = |name: &str| effect.params().iter().chain(effect.list_params()).find(|p| p.name == name);
+    let one = |(name, value): (String, Value)| {
+        let Some(p) = param(&name) else { return Some((name, value)) };
+        let value = match value {
+            Value::Number(v) => Value::Number(Some(v.clamp(p.lower, p.upper)).filter(|v| !v.is_nan())?),
+            Value::List(list) if list.iter().any(|v| v.is_nan()) => return None,
+            Value::List(list) => Value::List(list.iter().map(|v| v.clamp(p.lower, p.upper)).collect()),
+        };
+        Some((name, value))
+    };
+    values.into_iter().filter_map(one).collect()
+}
+
 /// One piece of physics.
 pub trait Effect: Sync {
     /// Its kind in files.

@@ -22,7 +22,7 @@ use super::samples::Named;
 use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::single_cause;
 use crate::claim::{Claim, Stated};
-use crate::effect::{Column, Domain, Effect, Model, Place, SpectralLook, UNKNOWN};
+use crate::effect::{Column, Domain, Effect, Model, Place, SpectralLook, UNKNOWN, stateable};
 use std::collections::BTreeMap;
 
 /// A residual test counts as departed below this, its own scan and the number of tests counted.
@@ -111,7 +111,10 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         "mismatch"
     };
     let mut correction = contribution::correction(&selection.best, scenes);
-    let stated = found.named.into_iter().map(|n| Stated { effect: n.effect, values: n.estimated.stated });
+    let stated = found
+        .named
+        .into_iter()
+        .map(|n| Stated { effect: n.effect, values: stateable(n.effect, n.estimated.stated) });
     let levelled = found.level.is_some();
     let augmented =
         augmented(problem, claim, &selection.best, stated.collect(), levelled, correction.as_deref());

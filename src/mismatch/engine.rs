@@ -109,7 +109,7 @@ pub fn explain(
 }
 
 /// The rows on the grid of the claim, columns that are treated as not recorded left out.
-fn on_grid(series: Series, claim: &Claim, options: &Options) -> Result<Regular, Note> {
+pub(super) fn on_grid(series: Series, claim: &Claim, options: &Options) -> Result<Regular, Note> {
     let columns: BTreeMap<_, _> = series
         .columns
         .iter()
@@ -153,7 +153,7 @@ fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departu
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
 /// not state is named first: nothing finer can be judged beside it.
-fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Options) -> Problem {
+pub(super) fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Options) -> Problem {
     let problem = Problem::new(regular, claim);
     let as_effect = claim.effects.iter().filter(|e| e.effect.kind() == "quantization");
     let as_effect = as_effect.filter_map(|e| number(&e.values, "lsb_arcsec")).fold(0.0, f64::max);

@@ -147,6 +147,7 @@ mod tests {
         Noise {
             base: [N, 0.0, 0.0],
             claimed: [N, 0.0, 0.0],
+            bound: [0.0; 3],
             deviation: [0.0; 3],
             freed: [false; 3],
             quantization_arcsec: 0.0,

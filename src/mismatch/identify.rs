@@ -21,7 +21,7 @@ const ROUNDS: u64 = 2;
 /// Identifies a claim.
 ///
 /// # Errors
-/// A recording that is too short.
+/// A recording that is too short, or of which all samples are equal.
 pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<Claim, Note> {
     let rows = series.rate_deg_h.len();
     if rows < FEWEST {
@@ -33,6 +33,9 @@ pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<C
     let columns = mean::Columns::new(series);
     let mut fitted = columns.fit(series, None);
     step(1);
+    if !has_noise(series, &fitted.residual) {
+        return Err("explain.error.no_noise".into());
+    }
     let mut found = noise::identify(series, &fitted.residual);
     for round in 1..ROUNDS {
         step(2 * round);
@@ -41,11 +44,25 @@ pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<C
         found = noise::identify(series, &fitted.residual);
     }
     step(2 * ROUNDS);
+    let [n, b, k, q] = [found.n, found.b, found.k, found.q];
+    if [n, b, k, q].iter().all(|c| c.value <= 0.0 && c.bound <= 0.0) {
+        return Err("explain.error.no_noise".into());
+    }
     Ok(claim(series, &fitted, &found))
+}
+
+/// Whether a residual holds more than what rounding in the last digits of the arithmetic leaves.
+fn has_noise(series: &Series, residual: &[f64]) -> bool {
+    const ROUNDING: f64 = 1e-11;
+    let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let columns = series.columns.get(&Column::TableRate).map_or(0.0, |rate| 3600.0 * largest(rate));
+    largest(residual) > ROUNDING * largest(&series.rate_deg_h).max(columns)
 }
 
 fn claim(series: &Series, mean: &mean::Fitted, noise: &noise::Found) -> Claim {
     let [n, b, k, q] = [noise.n, noise.b, noise.k, noise.q];
+    // No claim states a deviation beyond this: it knows nothing of the value.
+    let deviation = |d: f64| if d.is_finite() { d.min(1e6) } else { 1e6 };
     Claim {
         case: String::new(),
         description: String::new(),
@@ -55,12 +72,15 @@ fn claim(series: &Series, mean: &mean::Fitted, noise: &noise::Found) -> Claim {
         quantization_lsb_arcsec: q.value * 12f64.sqrt(),
         mean: mean.claimed,
         uncertainty: Uncertainty {
-            n_rel: n.relative,
-            b_rel: b.relative,
-            k_rel: k.relative,
-            bias_deg_h: mean.bias_sd,
-            temperature_coefficient_deg_h_per_degc: mean.temperature_sd,
-            scale_factor_ppm: mean.scale_factor_sd,
+            n_rel: deviation(n.relative),
+            b_rel: deviation(b.relative),
+            k_rel: deviation(k.relative),
+            n_deg_rt_h: deviation(n.bound),
+            b_deg_h: deviation(b.bound),
+            k_deg_h_rt_h: deviation(k.bound),
+            bias_deg_h: deviation(mean.bias_sd),
+            temperature_coefficient_deg_h_per_degc: deviation(mean.temperature_sd),
+            scale_factor_ppm: deviation(mean.scale_factor_sd),
         },
         effects: noise.effects.clone(),
     }

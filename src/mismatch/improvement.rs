@@ -69,6 +69,7 @@ mod tests {
             let noise = Noise {
                 base,
                 claimed: base,
+                bound: [0.0; 3],
                 deviation: [0.0; 3],
                 freed: [false; 3],
                 quantization_arcsec: 0.0,

@@ -39,10 +39,13 @@ pub mod scene;
 pub mod select;
 mod shape;
 mod single_cause;
+mod taken;
 pub mod tiles;
+mod witness;
 
 pub use crate::record::explanation as finding;
 pub use engine::explain;
 pub use identify::identify;
 pub use options::{Options, Progress};
 pub use outcome::Outcome;
+pub use taken::{Taken, explain_simulation};

@@ -43,6 +43,9 @@ pub struct Noise {
     pub claimed: [f64; 3],
     /// Stated relative deviations; 0 is exact.
     pub deviation: [f64; 3],
+    /// Deviation of a coefficient that is claimed as 0, in its own unit: it is positive, and as likely as a normal number of
+    /// this deviation; 0 is exact.
+    pub bound: [f64; 3],
     /// Set free by an effect.
     pub freed: [bool; 3],
     /// Density of the claimed quantisation for Q = 1 times Q², by bin: Q, arcsec.
@@ -87,6 +90,7 @@ impl Noise {
             base,
             claimed: base,
             deviation: [u.n_rel, u.b_rel, u.k_rel],
+            bound: [u.n_deg_rt_h, u.b_deg_h, u.k_deg_h_rt_h],
             freed: [false; 3],
             quantization_arcsec: claim.quantization_lsb_arcsec / 12f64.sqrt(),
             spectra: vec![],
@@ -103,7 +107,19 @@ impl Noise {
                 _ => out.spectra.push(stated),
             }
         }
+        (0..3).for_each(|i| out.base[i] = out.begin(i));
         out
+    }
+
+    /// Where the fit of a stated coefficient begins: at its claim, or within its bound.
+    pub fn begin(&self, i: usize) -> f64 {
+        const WITHIN: f64 = 0.1;
+        if self.is_bound(i) { WITHIN * self.bound[i] } else { self.claimed[i] }
+    }
+
+    /// Whether a coefficient is claimed as 0 with a bound.
+    fn is_bound(&self, i: usize) -> bool {
+        self.claimed[i] <= 0.0 && self.bound[i] > 0.0
     }
 
     /// The effects that multiply the density of everything else.
@@ -166,7 +182,10 @@ impl Noise {
     /// The parameters that a fit moves.
     pub fn which(&self) -> Vec<Which> {
         let base = (0..3)
-            .filter(|i| self.freed[*i] || (self.base[*i] > 0.0 && self.deviation[*i] > 0.0))
+            .filter(|i| {
+                let known = if self.is_bound(*i) { self.bound[*i] } else { self.deviation[*i] };
+                self.freed[*i] || (self.base[*i] > 0.0 && known > 0.0)
+            })
             .map(Which::Base);
         let effects = self.spectra.iter().enumerate().filter(|(_, s)| !s.stated).flat_map(|(e, s)| {
             let spectrum = s.spectrum().filter(|x| !matches!(x.act(), SpectrumAct::Frees(_)));
@@ -204,6 +223,9 @@ impl Noise {
     /// −½ Σ (ln c − ln c₀)²/σ² of the stated coefficients.
     pub fn prior(&self) -> f64 {
         let one = |i: usize| {
+            if self.is_bound(i) && !self.freed[i] {
+                return -0.5 * (self.base[i] / self.bound[i]).powi(2);
+            }
             if self.freed[i] || self.deviation[i] <= 0.0 || self.claimed[i] <= 0.0 {
                 return 0.0;
             }
@@ -216,7 +238,11 @@ impl Noise {
     fn log_bounds(&self, which: Which, look: &SpectralLook<'_>) -> (f64, f64) {
         match which {
             Which::Base(i) => {
-                let c = if self.claimed[i] > 0.0 { self.claimed[i] } else { self.base[i].max(1e-30) };
+                let c = match self.claimed[i] {
+                    claimed if claimed > 0.0 => claimed,
+                    _ if self.is_bound(i) && !self.freed[i] => self.bound[i],
+                    _ => self.base[i].max(1e-30),
+                };
                 ((c * 1e-4).ln(), (c * 1e4).ln())
             }
             Which::Effect(e, p) => {
@@ -323,6 +349,13 @@ fn derivatives(
     }
     for (i, w) in which.iter().enumerate() {
         if let Which::Base(c) = *w
+            && !noise.freed[c]
+            && noise.is_bound(c)
+        {
+            let square = (noise.base[c] / noise.bound[c]).powi(2);
+            gradient[i] -= square;
+            fisher[(i, i)] += 2.0 * square;
+        } else if let Which::Base(c) = *w
             && !noise.freed[c]
             && noise.deviation[c] > 0.0
         {

@@ -32,6 +32,19 @@ pub(super) fn nuisances(problem: &Problem, base: &Tried, best: &Tried) -> Vec<Nu
             });
         }
     }
+    let bound = base.hypothesis.noise.bound;
+    for (i, (name, unit)) in
+        names.into_iter().enumerate().filter(|(i, _)| claimed[*i] <= 0.0 && bound[*i] > 0.0)
+    {
+        out.push(NuisanceValue {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            claimed: 0.0,
+            uncertainty: bound[i],
+            baseline: base.hypothesis.noise.base[i],
+            augmented: best.hypothesis.noise.base[i],
+        });
+    }
     if let Some(t) = claim.mean.temperature
         && u.temperature_coefficient_deg_h_per_degc > 0.0
     {

@@ -72,6 +72,7 @@ mod tests {
             let noise = Noise {
                 base: [1.0 / 60.0, 0.0, k],
                 claimed: [1.0 / 60.0, 0.0, 0.0],
+                bound: [0.0; 3],
                 deviation: [0.0; 3],
                 freed: [false, false, true],
                 quantization_arcsec: 0.0,

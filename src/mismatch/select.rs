@@ -132,7 +132,7 @@ fn restore(noise: &mut Noise, part: &SpectrumIn) -> usize {
         && let Some(i) = base_index(term)
     {
         noise.freed[i] = false;
-        noise.base[i] = noise.claimed[i];
+        noise.base[i] = noise.begin(i);
         return 1;
     }
     part.fitted.len()

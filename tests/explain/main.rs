@@ -2,6 +2,7 @@
 
 mod in_run;
 mod on_table;
+mod simulation;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -26,7 +26,7 @@ static DOC: Doc = Doc {
     source: "IEEE Std 952, Annex C: rate ramp",
 };
 
-static PARAMS: [Param; 1] = [Param::reported("slope_deg_h_per_h", "deg/h/h", -1e4, 1e4)];
+static PARAMS: [Param; 1] = [Param::reported("slope_deg_h_per_h", "deg/h/h", -1e6, 1e6)];
 
 describe! {
     RateRamp, "rate_ramp", Course in Time, needs [],

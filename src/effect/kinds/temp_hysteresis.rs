@@ -34,7 +34,7 @@ static DOC: Doc = Doc {
 };
 
 static PARAMS: [Param; 4] = [
-    Param::reported("loop_width_deg_h", "deg/h", -1e4, 1e4),
+    Param::reported("loop_width_deg_h", "deg/h", -1e6, 1e6),
     Param::inner("play_degC", "°C", 1e-6, 300.0),
     Param::inner("first_state", "", -1.0, 1.0),
     // 1: higher while heating; −1: higher while cooling. The width of a loop has no sign.

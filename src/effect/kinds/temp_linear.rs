@@ -31,7 +31,7 @@ static DOC: Doc = Doc {
     source: "IEEE Std 952, model equation: D_T",
 };
 
-static PARAMS: [Param; 1] = [Param::reported("coefficient_deg_h_per_degC", "deg/h/°C", -10.0, 10.0)];
+static PARAMS: [Param; 1] = [Param::reported("coefficient_deg_h_per_degC", "deg/h/°C", -1e5, 1e5)];
 
 impl Effect for TempLinear {
     fn kind(&self) -> &'static str {

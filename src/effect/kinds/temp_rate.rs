@@ -32,7 +32,7 @@ static DOC: Doc = Doc {
 };
 
 static PARAMS: [Param; 1] =
-    [Param::reported("coefficient_deg_h_per_degC_per_min", "deg/h/(°C/min)", -1e3, 1e3)];
+    [Param::reported("coefficient_deg_h_per_degC_per_min", "deg/h/(°C/min)", -1e6, 1e6)];
 
 describe! {
     TempRate, "temp_rate", Course in TemperatureRate, needs [Temperature],

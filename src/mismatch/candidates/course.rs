@@ -1,7 +1,7 @@
 //! A course as an addition: the best of its shapes with the noise held, then everything fitted together.
 
 use super::{Candidate, Scenes, Tried, own_odds, rated};
-use crate::effect::{Course, Effect, Look, Pace};
+use crate::effect::{Course, Effect, Look, Pace, plausible};
 use crate::mismatch::hypothesis::{
     CourseIn, Hypothesis, Normal, PartModes, columns, fit, kept, less_fixed, subtract,
 };
@@ -174,6 +174,14 @@ pub(super) fn try_course(
         if better.log_likelihood > fit.log_likelihood {
             (hypothesis, fit) = (again, better);
         }
+    }
+    // A fit with a value that the effect cannot have (a zone that answers more than the rest) is another effect.
+    let allowed = hypothesis.courses.last().is_none_or(|inside| {
+        inside.coefficients.len() != parts.free.len()
+            || plausible(effect, &course.parameters(&inside.shape, &inside.coefficients, &scene.drivers))
+    });
+    if !allowed {
+        return None;
     }
     let tried = Tried { hypothesis, fit, parameters, odds: before.odds + odds };
     Some(rated(effect, tried, before, starts.looked, scenes.rows))

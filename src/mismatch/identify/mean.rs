@@ -130,7 +130,8 @@ impl Columns {
         };
         // What cannot be told from nil is not claimed, and takes nothing out.
         let clear = |(value, sd): (f64, f64)| value.abs() > CLAIMED * sd;
-        let temperature = of(Term::Temperature).filter(|t| clear(*t));
+        // A coefficient that cannot be told from nil is claimed with its deviation: that is all that is known of it.
+        let temperature = of(Term::Temperature);
         let scale = of(Term::ScaleFactor);
         let heading = of(Term::Cosine).zip(of(Term::Sine)).filter(|(c, s)| {
             let size = c.0.hypot(s.0);

@@ -9,8 +9,10 @@ use crate::noise::lines::{FALSE_ALARM_RATE, find_lines};
 use crate::noise::spectral_record::SpectralRecord;
 use crate::series::Series;
 
-/// Width of a 95 % interval in standard deviations.
-const INTERVAL_WIDTH: f64 = 2.0 * 1.96;
+/// Half of a 95 % interval in standard deviations.
+const HALF_WIDTH: f64 = 1.96;
+/// Logarithm of the ratio of a value to the end of its interval that counts at most.
+const LARGEST: f64 = 3.0;
 /// Correlation time, in samples, that divides short from long.
 const SHORT_SAMPLES: f64 = 10.0;
 
@@ -21,6 +23,8 @@ pub struct Coefficient {
     pub value: f64,
     /// Relative standard deviation.
     pub relative: f64,
+    /// Deviation of a value of 0, in its own unit: a 95 % upper limit is 1.96 of it.
+    pub bound: f64,
 }
 
 /// The noise found.
@@ -40,9 +44,21 @@ pub struct Found {
 }
 
 fn coefficient(estimate: &Estimate) -> Coefficient {
-    let Some(value) = estimate.value.filter(|v| *v > 0.0) else { return Coefficient::default() };
-    let relative = estimate.interval95().map_or(0.0, |i| (i.high - i.low) / INTERVAL_WIDTH / value);
-    Coefficient { value, relative: if relative.is_finite() { relative } else { 0.0 } }
+    let Some(value) = estimate.value.filter(|v| *v > 0.0) else {
+        let most = estimate.upper_limit.map_or(0.0, |limit| limit.value);
+        let most = most.max(estimate.most_likely.unwrap_or(0.0));
+        return Coefficient {
+            bound: if most.is_finite() { most / HALF_WIDTH } else { 0.0 },
+            ..Coefficient::default()
+        };
+    };
+    // The prior of the engine is that of the logarithm: the longer side of an interval of unequal sides counts.
+    let relative = estimate.interval95().map_or(0.0, |i| {
+        let below = if i.low > 0.0 { (value / i.low).ln().min(LARGEST) } else { LARGEST };
+        let above = (i.high / value).max(1.0).ln();
+        below.max(above) / HALF_WIDTH
+    });
+    Coefficient { value, relative: if relative.is_finite() { relative } else { LARGEST }, bound: 0.0 }
 }
 
 /// Identifies the noise of a residual, row by row.

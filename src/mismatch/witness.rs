@@ -1,0 +1,238 @@
+//! Whether a simulation shows itself what a recording shows beyond the claim that was taken from it.
+//!
+//! A claim taken from a simulation holds what the simulation resolves. What it does not resolve is no statement of the
+//! simulation: an effect found in the recording is a difference of the two only where the simulation speaks against it.
+//! With θ the effect as found, L the likelihood of the simulation and θ' what suits it best, 2 (L(θ') − L(θ)) over
+//! 1 + n_S/n_X, the uncertainty of θ itself, is χ² where both are of one process.
+
+use super::candidates::Tried;
+use super::engine::{on_grid, uncoarsened};
+use super::finding::{Explanation, Finding};
+use super::found::Found;
+use super::hypothesis::{Hypothesis, Normal, columns, fit};
+use super::noise_fit::{Noise, SpectrumIn, base_index};
+use super::options::Options;
+use super::problem::Problem;
+use super::scene::Scene;
+use crate::claim::{Claim, Stated};
+use crate::effect::{Drivers, Model, Nuisance, Spectrum, SpectrumAct, Value, Values, list, number};
+use crate::estimate::chi_square_tail;
+use crate::series::Series;
+
+/// Deviation of the logarithm of a coefficient that is all but free.
+const LOOSE: f64 = 3.0;
+/// Standard deviations of a 95 % interval from end to end.
+const WIDTH95: f64 = 3.92;
+/// The name under which sinusoids state their phase.
+const PHASE: &str = "phase_deg";
+/// The name under which sinusoids state their frequency.
+const FREQUENCY: &str = "frequency_hz";
+
+/// A simulation that is asked.
+pub(super) struct Witness<'a> {
+    /// The simulation, its beginning at that of the recording.
+    pub simulation: &'a Series,
+    /// Decisions of the user.
+    pub options: &'a Options,
+    /// Rows of the simulation over those of the recording.
+    pub share: f64,
+}
+
+/// A claim whose noise and coefficients are free.
+fn free(claim: &Claim) -> Claim {
+    let mut out = claim.clone();
+    let u = &mut out.uncertainty;
+    (u.n_rel, u.b_rel, u.k_rel) = (LOOSE, LOOSE, LOOSE);
+    for bound in [&mut u.n_deg_rt_h, &mut u.b_deg_h, &mut u.k_deg_h_rt_h] {
+        *bound *= 100.0;
+    }
+    u.temperature_coefficient_deg_h_per_degc = f64::INFINITY;
+    u.scale_factor_ppm = f64::INFINITY;
+    out
+}
+
+fn fitted(noise: Noise, scene: &Scene) -> Tried {
+    let mut hypothesis = Hypothesis { noise, courses: vec![] };
+    let fit = fit(&mut hypothesis, scene);
+    Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
+}
+
+/// The noise of a claim with every process of it free.
+fn free_noise(claim: &Claim) -> Noise {
+    let mut noise = Noise::of(claim);
+    noise.spectra.iter_mut().for_each(|s| s.stated = false);
+    noise
+}
+
+impl Witness<'_> {
+    fn problem(&self, claim: &Claim) -> Option<Problem> {
+        let regular = on_grid(self.simulation.clone(), claim, self.options).ok()?;
+        Some(uncoarsened(&regular, claim, &mut Found::default(), self.options))
+    }
+
+    /// Probability of the simulation, or one less like it, where it holds an effect as the recording shows it; 0 where it
+    /// cannot hold it. `own` is what the simulation shows itself beyond the claim.
+    pub fn chance(
+        &self,
+        stated: &Stated,
+        claim: &Claim,
+        found: &Explanation,
+        own: &mut dyn FnMut() -> Option<Explanation>,
+    ) -> f64 {
+        let by_model = match stated.effect.model() {
+            Model::Spectrum(spectrum) => self.by_spectrum(spectrum, stated, claim),
+            Model::Course(_) => self.by_course(stated, claim),
+            Model::Samples(_) => None,
+        };
+        let told_by_kind =
+            matches!(stated.effect.model(), Model::Samples(_)) || stated.effect.kind() == "unobserved_driver";
+        let own = if told_by_kind { own() } else { None };
+        let by_kind = own.map(|own| self.by_kind(stated.effect.kind(), found, &own));
+        by_model.unwrap_or(0.0).max(by_kind.unwrap_or(0.0))
+    }
+
+    fn by_spectrum(&self, spectrum: &'static dyn Spectrum, stated: &Stated, claim: &Claim) -> Option<f64> {
+        let mut with = free(claim);
+        // A driver is stated as a course; in another record the same quantity takes another one of the same size and pace.
+        let driver = (stated.effect.kind() == "unobserved_driver").then(|| pace(&stated.values)).flatten();
+        let parameters = match &driver {
+            Some(driver) => driver.len(),
+            None => spectrum.stated(&stated.values)?.len(),
+        };
+        if driver.is_none() {
+            with.effects.push(stated.clone());
+        }
+        let problem = self.problem(&with)?;
+        if stated.effect.kind() == "quantization"
+            && let (Some(lattice), Some(lsb)) = (problem.lattice, number(&stated.values, "lsb_arcsec"))
+            && (lattice.increment_arcsec / lsb - 1.0).abs() < 0.01
+        {
+            return Some(1.0);
+        }
+        let scene = &problem.scenes.full;
+        let worth = |noise: Noise| fitted(noise, scene).fit.log_likelihood;
+        let mut noise = free_noise(&problem.claim);
+        noise.spectra.extend(driver.map(|fitted| SpectrumIn {
+            effect: stated.effect,
+            fitted,
+            stated: false,
+        }));
+        let (held, best) = if let SpectrumAct::Frees(term) = spectrum.act() {
+            let mut held = noise.clone();
+            held.deviation[base_index(term)?] = 0.0;
+            (worth(held), worth(noise))
+        } else {
+            let at = noise.spectra.iter().rposition(|s| s.effect.kind() == stated.effect.kind())?;
+            let (mut held, mut none) = (noise.clone(), noise.clone());
+            held.spectra[at].stated = true;
+            none.spectra.remove(at);
+            (worth(held), worth(noise).max(worth(none)))
+        };
+        let ratio = 2.0 * (best - held).max(0.0) / (1.0 + self.share);
+        Some(chi_square_tail(ratio, parameters.max(1) as f64))
+    }
+
+    /// How far the size of a course in the simulation is from that in the recording. Of a sinusoid the phase is no
+    /// property of the process, and its frequency is known to within the resolution.
+    fn by_course(&self, stated: &Stated, claim: &Claim) -> Option<f64> {
+        let mut loose = free(claim);
+        if let Model::Course(course) = stated.effect.model() {
+            match course.replaces() {
+                Some(Nuisance::TemperatureCoefficient) => {
+                    loose.uncertainty.temperature_coefficient_deg_h_per_degc = 0.0;
+                }
+                Some(Nuisance::ScaleFactor) => loose.uncertainty.scale_factor_ppm = 0.0,
+                _ => {}
+            }
+        }
+        let problem = self.problem(&loose)?;
+        let scene = &problem.scenes.full;
+        let tried = fitted(free_noise(&problem.claim), scene);
+        let powers = scene.powers(&tried.fit.densities);
+        let nuisances: Vec<_> = scene.nuisances.iter().collect();
+        let steps = if stated.values.contains_key(FREQUENCY) { 16 } else { 0 };
+        let resolution = 1.0 / problem.drivers.length_s();
+        let mut best: Option<(f64, f64)> = None;
+        for step in -steps..=steps {
+            let values = shifted(&stated.values, FREQUENCY, 0.25 * f64::from(step) * resolution);
+            let mut parts = vec![course(stated, &values, &problem.drivers)?];
+            if values.contains_key(PHASE) {
+                parts.extend(course(stated, &shifted(&values, PHASE, 90.0), &problem.drivers));
+            }
+            let modes: Vec<Vec<f64>> = parts.iter().map(|p| scene.transform(p)).collect();
+            let mut all = columns(&nuisances, []);
+            all.extend(modes.iter().map(|m| (m.as_slice(), f64::INFINITY)));
+            let (solved, covariance, _) = Normal::new(&all, &scene.modes, &powers).solve();
+            let first = nuisances.len();
+            let size = solved[first..].iter().map(|c| c * c).sum::<f64>().sqrt();
+            let size = if modes.len() == 1 { solved[first] } else { size };
+            let variance = covariance[(first, first)];
+            if !(variance.is_finite() && variance < 1e30) {
+                return None;
+            }
+            if best.is_none_or(|(most, _)| size > most) {
+                best = Some((size, variance));
+            }
+        }
+        let (size, variance) = best?;
+        Some(chi_square_tail((1.0 - size).powi(2) / (variance * (1.0 + self.share)), 1.0))
+    }
+
+    /// How unlike the parameters of an effect are that both records show.
+    fn by_kind(&self, kind: &str, found: &Explanation, own: &Explanation) -> f64 {
+        let of = |all: &Explanation| all.effects.iter().find(|f| f.effect_id() == kind).cloned();
+        let (Some(here), Some(there)) = (of(found), of(own)) else { return 0.0 };
+        unlike(&here, &there, self.share)
+    }
+}
+
+/// The smallest probability of a difference between parameters of the same name. Instants are not compared.
+fn unlike(here: &Finding, there: &Finding, share: f64) -> f64 {
+    let mut least = 1.0f64;
+    for (name, a) in &here.parameters {
+        let Some(b) = there.parameters.get(name).filter(|_| name != "time_s") else { continue };
+        let chance = if matches!(name.as_str(), "count" | "missing_rows") {
+            // Groups come by chance, and rows are lost in groups: counts are compared with a wide law.
+            let (x, y) = (a.value * share, b.value);
+            let spread = (x * share.max(1.0) + y).max(1.0) * if name == "count" { 1.0 } else { 10.0 };
+            chi_square_tail((x - y).powi(2) / spread, 1.0)
+        } else {
+            let deviation = |ends: [f64; 2]| (ends[1] - ends[0]).abs() / WIDTH95;
+            let variance = deviation(a.ci95).powi(2) + deviation(b.ci95).powi(2);
+            let apart = a.value.abs() - b.value.abs();
+            if apart == 0.0 { 1.0 } else { chi_square_tail(apart * apart / variance.max(1e-300), 1.0) }
+        };
+        least = least.min(chance);
+    }
+    least
+}
+
+fn course(stated: &Stated, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+    match stated.effect.model() {
+        Model::Course(c) => c.course(values, drivers),
+        _ => stated.effect.stated_course(values, drivers),
+    }
+}
+
+fn shifted(values: &Values, name: &str, by: f64) -> Values {
+    let mut out = values.clone();
+    if let Some(Value::Number(x)) = out.get_mut(name) {
+        *x += by;
+    }
+    out
+}
+
+/// Root mean square and time of the course through stated knots, as of a smooth process: its slope is the one over the
+/// other.
+fn pace(values: &Values) -> Option<Vec<f64>> {
+    let (times, knots) = (list(values, "knots_time_s"), list(values, "knots_deg_h"));
+    if knots.len() < 8 || times.len() != knots.len() {
+        return None;
+    }
+    let n = knots.len() as f64;
+    let mean = knots.iter().sum::<f64>() / n;
+    let rms = (knots.iter().map(|k| (k - mean).powi(2)).sum::<f64>() / n).sqrt();
+    let slopes = times.windows(2).zip(knots.windows(2)).map(|(t, k)| ((k[1] - k[0]) / (t[1] - t[0])).powi(2));
+    let slope = (slopes.sum::<f64>() / (n - 1.0)).sqrt();
+    (rms > 0.0 && slope > 0.0 && slope.is_finite()).then(|| vec![rms, rms / slope])
+}
