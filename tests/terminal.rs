@@ -124,7 +124,11 @@ fn home(evil: &str) -> (TempDir, String) {
     let (rate, temperature) = (format!("rate {EVIL}_deg_h"), format!("temp {EVIL}_degC"));
     let name = format!("u {}.csv", forged().replace('/', "_"));
     std::fs::write(dir.path().join(&name), recording(&rate, &temperature)).unwrap();
-    procedure_of(dir.path(), "p.toml", evil, &rate, &temperature);
+    // What TOML refuses in a text is refused with its place; the rest goes through to the report.
+    procedure_of(dir.path(), "evil-p.toml", evil, &rate, &temperature);
+    let by_position =
+        [("warm_up = \"30 min\"", "warm_up = \"10 s\""), ("\"rate_deg_h\"", "2"), ("\"temp_degC\"", "3")];
+    altered(dir.path(), "p.toml", &procedure(), &by_position);
     limits_of(dir.path(), evil);
     (dir, name)
 }
@@ -141,7 +145,7 @@ fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
     )
     .unwrap();
     std::fs::write(at("bad-m.toml"), format!("format = \"manifest/1\"\nserial = \"{t}\"\n\"{t}\" = 1\n[[file]]\npath = \"{t}\"\nsha256 = \"{t}\"\n")).unwrap();
-    std::fs::write(at("l.toml"), format!("format = \"layout/1\"\nrecord_bytes = 4\nbyte_order = \"little\"\nsample_rate = \"10 Hz\"\n[[field]]\nname = \"rate {t}\"\ntype = \"f32\"\nat = 0\nunit = \"deg/h\"\n")).unwrap();
+    std::fs::write(at("l.toml"), format!("format = \"layout/1\"\nrecord_bytes = 4\nbyte_order = \"little\"\nsample_rate = \"10 Hz\"\n[[field]]\nname = \"rate {t}\"\ntype = \"f32\"\noffset = 0\nunit = \"deg/h\"\n")).unwrap();
     std::fs::write(
         at("raw.bin"),
         (0..4000u32).flat_map(|i| ((i % 97) as f32).to_le_bytes()).collect::<Vec<u8>>(),
@@ -171,23 +175,11 @@ fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
         vec!["inspect", "raw.bin", "--layout", "l.toml"],
         vec!["check", p, "limits.toml", "m.toml", "l.toml"],
         vec!["check", "bad-p.toml"],
+        vec!["check", "evil-p.toml"],
+        vec!["run", "evil-p.toml", &name, "--limits", "limits.toml", "--serial", "S", "--out", "r6"],
         vec!["check", "bad-m.toml"],
         vec!["check", &missing],
-        vec![
-            "run",
-            p,
-            &name,
-            "--limits",
-            "limits.toml",
-            "--serial",
-            &evil,
-            "--operator",
-            &evil,
-            "--station",
-            &evil,
-            "--out",
-            "r",
-        ],
+        vec!["run", p, &name, "--serial", &evil, "--operator", &evil, "--station", &evil, "--out", "r"],
         vec!["run", p, "bad.csv", "--serial", serial, "--out", "r2"],
         vec!["run", p, &missing, "--serial", serial, "--out", "r3"],
         vec!["run", p, "m.toml", "--serial", serial, "--out", "r4"],

@@ -17,6 +17,7 @@ mod schema;
 mod selftest;
 mod simulate;
 
+use crate::text::visible;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -355,7 +356,12 @@ pub fn main() -> ExitCode {
         .and_then(|matches| Cli::from_arg_matches(&matches))
     {
         Ok(cli) => cli,
-        Err(error) => return help::refuse(&error, lang),
+        Err(error) => {
+            // What was typed stands in the complaint: on one line, without what steers.
+            let typed = arguments.iter().map(|a| visible(&a.to_string_lossy()).into_owned());
+            let again = help::command(Cli::command(), lang).try_get_matches_from(typed).err();
+            return help::refuse(&again.unwrap_or(error), lang);
+        }
     };
     let code = match cli.verb {
         Verb::Run(args) => run::main(&args, lang),
