@@ -100,7 +100,7 @@ fn what_cannot_be_examined_is_not_told_as_absent() {
     std::fs::write(dir.path().join("clockless.csv"), format!("rate_deg_h\n{plain}")).unwrap();
     std::fs::write(dir.path().join("sound.csv"), synthetic::recording(3000)).unwrap();
     let analyse = |name: &str, more: &[&str]| {
-        let said = sagnac(dir.path(), &[&["analyze", name, "--out", "a"], more].concat());
+        let said = sagnac(dir.path(), &[&["analyze", name, "--out", "a"][..], more].concat());
         assert_eq!(said.code, 0, "{said:?}");
         (result(&dir.path().join("a")), holds(&dir.path().join("a"), name))
     };
@@ -136,7 +136,11 @@ fn a_test_of_phases_that_could_not_run_says_so_of_its_clauses() {
         ("bad.csv", None, "not_done"),
     ] {
         let b = b.map(|b| file(b, "b")).unwrap_or_default();
-        std::fs::write(at("m.toml"), format!("format = \"manifest/1\"\n{}{b}", file(a, "a"))).unwrap();
+        std::fs::write(
+            at("m.toml"),
+            format!("format = \"manifest/1\"\nseveral_phases = true\n{}{b}", file(a, "a")),
+        )
+        .unwrap();
         sagnac(dir.path(), &["run", "whole.toml", "m.toml", "--serial", "S", "--out", "r"]);
         assert_eq!(result(&at("r"))["clauses"][0]["status"], expected);
         std::fs::remove_dir_all(at("r")).unwrap();

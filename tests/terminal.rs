@@ -201,7 +201,7 @@ fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
         vec!["explain", &name, "--model", "model.toml", "--hide", &evil, "--out", "e3"],
         vec!["effects", &evil],
         vec!["schema", &evil],
-        vec![&evil],
+        vec![evil.as_str()],
         vec!["run", &evil, "--nothing", &evil],
     ] {
         for lang in ["en", "ru"] {
