@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-const BEGIN: &str = "<!-- edges: begin; written by the study -->";
-const END: &str = "<!-- edges: end -->";
+/// Place of the misses, at the top of the page.
+const MISSES: (&str, &str) = ("<!-- edge misses: begin; written by the study -->", "<!-- edge misses: end -->");
+/// Place of the whole table.
+const WHOLE: (&str, &str) = ("<!-- edges: begin; written by the study -->", "<!-- edges: end -->");
 
 /// One case with its tallies, as it is kept.
 #[derive(Serialize, Deserialize)]
@@ -47,7 +49,7 @@ pub fn write(families: &[&Family]) {
     for family in families {
         let Ok(text) = std::fs::read_to_string(file(family)) else { continue };
         let kept: Vec<Kept> = serde_json::from_str(&text).unwrap();
-        let _ = write!(whole, "\n#### {}\n\n{HEAD}", family.name);
+        let _ = write!(whole, "\n### {}\n\n{HEAD}", family.name);
         for case in &kept {
             for tally in &case.tallies {
                 let row = row(case, tally);
@@ -59,12 +61,17 @@ pub fn write(families: &[&Family]) {
         }
     }
     let missed = if missed.is_empty() { "Nothing misses.\n".to_string() } else { format!("{HEAD}{missed}") };
-    let section = format!("{BEGIN}\n### Misses\n\n{missed}\n### Every case\n{whole}{END}");
     let page = root().join("docs/VALIDATION.md");
     let text = std::fs::read_to_string(&page).unwrap();
-    let (before, rest) = text.split_once(BEGIN).expect("docs/VALIDATION.md has no place for the table");
-    let (_, after) = rest.split_once(END).expect("the place of the table has no end");
-    std::fs::write(page, format!("{before}{section}{after}")).unwrap();
+    let text = placed(&text, MISSES, &format!("\n{missed}\n"));
+    std::fs::write(page, placed(&text, WHOLE, &format!("{whole}\n"))).unwrap();
+}
+
+/// A page with what stands between two marks replaced.
+fn placed(page: &str, (begin, end): (&str, &str), what: &str) -> String {
+    let (before, rest) = page.split_once(begin).unwrap_or_else(|| panic!("the page lacks {begin}"));
+    let (_, after) = rest.split_once(end).unwrap_or_else(|| panic!("the page lacks {end}"));
+    format!("{before}{begin}\n{what}{end}{after}")
 }
 
 const HEAD: &str = "| measurand | case | records | with a value | bounded | coverage | width over oracle | units | passed | failed | missed |\n\
