@@ -65,10 +65,10 @@ const IDS: &[&str] = &[
 fn procedure(dt_s: f64, elevation_deg: f64, ids: &[&str]) -> String {
     let mut text = format!(
         "format = \"procedure/1\"\n[procedure]\nid = \"p\"\ntitle = \"P\"\nrevision = \"A\"\n\
-         [recording]\nuse_stamps = false\nsample_rate = \"{} Hz\"\n\
+         [recording]\nsample_rate = \"{} Hz\"\n\
          [[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"\n\
          [site]\nlatitude = \"56 deg\"\nlatitude_uncertainty = \"10 arcsec\"\nelevation = \"{elevation_deg} deg\"\n\
-         elevation_uncertainty = \"30 arcsec\"\n",
+         elevation_uncertainty = \"30 arcsec\"\nheading = \"0 deg\"\nheading_uncertainty = \"30 arcsec\"\n",
         1.0 / dt_s
     );
     for id in ids {

@@ -11,7 +11,7 @@ const RATE_HZ: f64 = 100.0;
 fn procedure(ids: &[&str]) -> String {
     let mut text = String::from(
         "format = \"procedure/1\"\n[procedure]\nid = \"p\"\ntitle = \"P\"\nrevision = \"A\"\n\
-         [recording]\nuse_stamps = false\nsample_rate = \"100 Hz\"\n\
+         [recording]\nsample_rate = \"100 Hz\"\n\
          [[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"\n",
     );
     for id in ids {
@@ -126,7 +126,7 @@ fn a_hand_motion_near_mains_does_not_overrule_a_clean_mains_line() {
     for (i, v) in x.iter_mut().enumerate() {
         let t = i as f64 / rate_hz;
         *v += 40.0 * (std::f64::consts::TAU * 120.0 * t).sin();
-        *v += 4.0 * (std::f64::consts::TAU * 57.0 * t).sin();
+        *v += 12.0 * (std::f64::consts::TAU * 57.0 * t).sin();
     }
     std::fs::write(folder.path().join("r.csv"), csv("rate_deg_h", &[&x])).unwrap();
     let told = sagnac(folder.path(), &["inspect", "r.csv", "--sample-rate", "1000"]);
