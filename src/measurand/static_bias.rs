@@ -5,11 +5,8 @@
 
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread};
-use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
-use crate::noise::intervals::ONE_SIGMA;
-use crate::noise::mean_allowed::mixed_quantile;
-use crate::noise::model::{NoiseModel, TERMS};
+use crate::noise::model::TERMS;
 use crate::noise::static_bias::BiasUncertainty;
 use crate::text::Note;
 
@@ -17,17 +14,13 @@ pub(super) struct StaticBias;
 
 /// Uncertainty of the mean of a channel.
 pub fn uncertainty(gyro: &GyroEvidence, earth_removed: bool) -> BiasUncertainty {
-    uncertainty_of(gyro, &gyro.identification.allowed, earth_removed)
-}
-
-fn uncertainty_of(gyro: &GyroEvidence, noise: &Composite, earth_removed: bool) -> BiasUncertainty {
     let earth: Vec<(&'static str, f64)> = gyro
         .earth
         .filter(|_| earth_removed)
         .map(|e| ("earth_rate", e.uncertainty_deg_h))
         .into_iter()
         .collect();
-    BiasUncertainty::of_mean(noise, gyro.usable_s(), None, &earth)
+    BiasUncertainty::of_mean(&gyro.identification.allowed, gyro.usable_s(), None, &earth)
 }
 
 /// Least degrees of freedom of the uncertainty. Slow noise rules it, and a record shows little of that: below what it
@@ -59,33 +52,6 @@ fn degrees_of_freedom(gyro: &GyroEvidence, u: &BiasUncertainty) -> f64 {
     if variance > 0.0 { (2.0 * u.variance().powi(2) / variance).max(LEAST_DOF) } else { LEAST_DOF }
 }
 
-/// What the mean is known to: a mixture over the slow noise that the record allows, where it is too weak to be known.
-fn spread(gyro: &GyroEvidence, u: &BiasUncertainty, earth_removed: bool, value: f64) -> Spread {
-    let student =
-        || Spread::StudentT { standard_uncertainty: u.standard(), dof: degrees_of_freedom(gyro, u) };
-    let found = &gyro.identification;
-    if found.slow_allowed.is_empty() || !found.described.model.markov.is_empty() {
-        return student();
-    }
-    let families: Vec<Vec<(f64, f64)>> = found
-        .slow_allowed
-        .iter()
-        .map(|family| {
-            let of = |model: &NoiseModel| {
-                let noise = Composite { terms: *model, ..found.allowed.clone() };
-                uncertainty_of(gyro, &noise, earth_removed).standard()
-            };
-            family.iter().map(|(weight, model)| (*weight, of(model))).collect()
-        })
-        .collect();
-    let at = |i: i32| 0.25 * f64::from(i);
-    let widest = |z: f64| {
-        let of = families.iter().map(|laws| mixed_quantile(laws, z));
-        if z < 0.0 { of.fold(0.0, f64::min) } else { of.fold(0.0, f64::max) }
-    };
-    Spread::Curve((-16..=16).map(|i| (at(i), value + widest(at(i)))).collect())
-}
-
 impl Measurand for StaticBias {
     fn ids(&self) -> &'static [&'static str] {
         &["static_bias"]
@@ -95,10 +61,15 @@ impl Measurand for StaticBias {
         let removed = gyro.earth.filter(|_| options.remove_earth_rate);
         let value = gyro.digest.mean - removed.map_or(0.0, |e| e.rate_deg_h);
         let u = uncertainty(gyro, removed.is_some());
-        let spread = spread(gyro, &u, removed.is_some(), value);
-        let interval = spread.interval(value, ONE_SIGMA);
-        let standard_uncertainty = interval.map_or(u.standard(), |i| 0.5 * (i.high - i.low));
-        let mut estimate = Estimate::measured("static_bias", &gyro.channel, value, "deg/h", spread, "mean");
+        let standard_uncertainty = u.standard();
+        let mut estimate = Estimate::measured(
+            "static_bias",
+            &gyro.channel,
+            value,
+            "deg/h",
+            Spread::StudentT { standard_uncertainty, dof: degrees_of_freedom(gyro, &u) },
+            "mean",
+        );
         estimate = match removed {
             Some(e) => estimate.note(Note::new("note.earth_rate_removed").with("rate", e.rate_deg_h)),
             None => estimate.note(Note::new("note.earth_rate_kept")),

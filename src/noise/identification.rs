@@ -4,7 +4,6 @@ use super::composite::{Composite, Described};
 use super::data::NoiseType;
 use super::identify::METHOD;
 use super::joint::{Extras, Plateau};
-use super::mean_allowed::Allowed;
 use super::misfit::Misfit;
 use super::model::{NoiseModel, TERMS, unit_allan_variance};
 use crate::estimate::{Estimate, normal_quantile};
@@ -55,8 +54,6 @@ pub struct Identification {
     /// The maximum with N, B, K and Q allowed beside everything that was found: [`Identification::full`] with the rest.
     /// For uncertainties.
     pub allowed: Composite,
-    /// Sizes of flicker and random walk that the record allows, with their weights; empty where they are known.
-    pub slow_allowed: Allowed,
     /// Markov processes found.
     pub markov: Vec<MarkovFound>,
     /// Quasi-periodic disturbances found, the strongest first.
@@ -203,7 +200,6 @@ impl Identification {
             misfit: Misfit::none(),
             described: Described::default(),
             allowed: Composite::default(),
-            slow_allowed: vec![],
             markov: vec![],
             quasi_periodic: vec![],
             cutoff: None,

@@ -5,7 +5,6 @@ use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::fit::{Likelihood, RAMP, Structure, toggled};
 use super::identification::{IDS, Identification};
-use super::mean_allowed;
 use super::misfit::Misfit;
 use super::model::{NoiseModel, TERMS};
 use super::profile::{Profile, wider};
@@ -153,7 +152,6 @@ impl Whittle {
         if !intervals {
             return out;
         }
-        out.slow_allowed = mean_allowed::allowed(&likelihood, &supported, &out.supported, evidence.usable_s);
         let mut estimates: [Option<Estimate>; 5] = [const { None }; 5];
         for (term, slot) in estimates.iter_mut().enumerate() {
             *slot = Some(estimate(&likelihood, channel, term, &claimed, &supported, needed, &search));

@@ -24,7 +24,6 @@ pub mod identify;
 pub mod intervals;
 pub mod joint;
 pub mod lines;
-pub mod mean_allowed;
 pub mod misfit;
 pub mod model;
 pub mod motion;
