@@ -424,10 +424,14 @@ impl Comparison {
 impl Following {
     /// A sentence on it, with its numbers.
     pub fn note(&self, key: &'static str) -> Note {
+        let unit = match self.what.unit {
+            "deg/h" => Arg::key("compared", "unit_rate"),
+            other => Arg::key("unit", other),
+        };
         Note::new(key)
             .with("channel", self.what.channel.clone())
             .with("difference", Arg::figures(self.difference().abs(), 3))
-            .with("unit", Arg::key("unit", self.what.unit))
+            .with("unit", unit)
     }
 }
 

@@ -14,7 +14,7 @@ pub struct Pair {
     pub code: i32,
     /// The channel of the influence, where the recording has one.
     pub influence: Option<&'static str>,
-    /// Length of the intervals of a schedule that nothing but the procedure tells, s.
+    /// Length of the first interval of a schedule that nothing but the procedure tells, s.
     pub schedule_s: Option<f64>,
 }
 
@@ -29,7 +29,7 @@ const fn pair(
     Pair { sample, procedure, limits, serial, code, influence, schedule_s: None }
 }
 
-/// Every second interval of this length is one with an influence that only the procedure tells.
+/// The recording begins with an interval of this length at least without the influence, which only the procedure tells.
 const fn scheduled(pair: Pair, interval_s: f64) -> Pair {
     Pair { schedule_s: Some(interval_s), ..pair }
 }
@@ -55,8 +55,8 @@ pub const PAIRS: [Pair; 27] = [
     pair("threshold-fail", "threshold", None, "SN-1", 1, RATE),
     pair("misalignment-pass", "misalignment", None, "SN-1", 0, INNER),
     pair("misalignment-fail", "misalignment", None, "SN-1", 1, INNER),
-    pair("multi-position-pass", "multi-position", None, "SN-1", 0, None),
-    pair("multi-position-software", "multi-position", None, "SN-1", 3, None),
+    scheduled(pair("multi-position-pass", "multi-position", None, "SN-1", 0, None), 60.0),
+    scheduled(pair("multi-position-software", "multi-position", None, "SN-1", 3, None), 60.0),
     pair("temperature-pass", "temperature-ramp", OVEN, "SN-0101", 0, TEMP),
     pair("temperature-fail", "temperature-ramp", OVEN, "SN-0102", 1, TEMP),
     pair("temperature-aborted", "temperature-ramp", OVEN, "SN-0103", 3, TEMP),
