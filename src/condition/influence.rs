@@ -58,7 +58,7 @@ pub enum Acted {
     Recorded,
     /// The output was louder with it.
     Inferred {
-        /// Standard deviation of neighbouring samples against that without, at the level where least is seen.
+        /// Standard deviation within ten samples against that without, at the level where least is seen.
         ratio: f64,
         /// Standard deviations of what is known of it.
         significance: f64,

@@ -1,8 +1,8 @@
 //! Whether the recording shows that an influence acted: a channel that tells its level, or what it did to the output.
 //!
-//! Vibration makes the output louder. The differences of neighbouring samples tell that without what is slow: their mean
-//! square in the intervals with it is set against that without. The mean square over n samples of white noise scatters by
-//! √(3/n); where the intervals of one level differ among themselves by more, that counts.
+//! Vibration makes the output louder. The variance within ten samples tells that without what is slow: that of the intervals
+//! with it is set against that without. A variance of white noise with n degrees of freedom scatters by √(2/n); where the
+//! intervals of one level differ among themselves by more, that counts.
 
 use super::evaluate::Found;
 use super::{Request, RunError, reading};
@@ -15,11 +15,14 @@ use crate::recording::{Sink, Slab};
 /// Share of the largest level by which a channel may differ from what is stated.
 const AGREES: f64 = 0.1;
 
-/// Mean squares of differences in every interval of every gyro channel.
+/// Samples within which the output scatters by what is fast.
+const WITHIN: usize = 10;
+
+/// Squares about the means of so many samples in every interval of every gyro channel.
 struct Loudness {
     /// First position and position after the last of every interval.
     spans: Vec<(u64, u64)>,
-    /// Position of every gyro among the channels, and sum and count of every interval.
+    /// Position of every gyro among the channels, and sum and degrees of freedom of every interval.
     gyros: Vec<(usize, Vec<(f64, u64)>)>,
 }
 
@@ -35,9 +38,10 @@ impl Sink for Loudness {
             for (slot, sums) in &mut self.gyros {
                 let values = slab.values.get(*slot).and_then(|v| v.get(inside.clone())).unwrap_or_default();
                 let Some(sum) = sums.get_mut(at) else { continue };
-                for d in values.windows(2).map(|w| w[1] - w[0]).filter(|d| d.is_finite()) {
-                    sum.0 += d * d;
-                    sum.1 += 1;
+                for part in values.chunks(WITHIN).filter(|p| p.iter().all(|v| v.is_finite())) {
+                    let mean = part.iter().sum::<f64>() / part.len() as f64;
+                    sum.0 += part.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+                    sum.1 += part.len() as u64 - 1;
                 }
             }
         }
@@ -165,7 +169,7 @@ fn of_levels(sums: &[(f64, u64)], levels: &[usize]) -> Option<(f64, f64)> {
         let (mean, _) = of(level)?;
         let own = sums.iter().zip(levels).filter(|(s, l)| **l == level && s.1 > 1).map(|(s, _)| s);
         let parts: Vec<f64> =
-            own.map(|(sum, n)| (sum / *n as f64 / mean - 1.0).powi(2) * *n as f64 / 3.0).collect();
+            own.map(|(sum, n)| (sum / *n as f64 / mean - 1.0).powi(2) * *n as f64 / 2.0).collect();
         excess += parts.iter().sum::<f64>();
         free += parts.len().saturating_sub(1) as f64;
     }
@@ -173,7 +177,7 @@ fn of_levels(sums: &[(f64, u64)], levels: &[usize]) -> Option<(f64, f64)> {
     let (rest, n0) = of(0)?;
     let ratios = (1..=most).filter_map(|level| {
         let (loud, n) = of(level)?;
-        let scatter = (3.0 * factor * (1.0 / n + 1.0 / n0)).sqrt();
+        let scatter = (2.0 * factor * (1.0 / n + 1.0 / n0)).sqrt();
         Some(((loud / rest).sqrt(), (loud / rest).ln() / scatter))
     });
     ratios.min_by(|a, b| a.1.total_cmp(&b.1))
