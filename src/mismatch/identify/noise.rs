@@ -11,6 +11,9 @@ use crate::series::Series;
 
 /// Half of a 95 % interval in standard deviations.
 const HALF_WIDTH: f64 = 1.96;
+/// Upper limit of a coefficient that is not resolved, in deviations of its prior. A value beyond the prior is no mismatch
+/// yet: the simulation itself is asked. A wide prior would let a random walk stand for a single jump.
+const OF_LIMIT: f64 = 6.0;
 /// Logarithm of the ratio of a value to the end of its interval that counts at most.
 const LARGEST: f64 = 3.0;
 /// Correlation time, in samples, that divides short from long.
@@ -23,7 +26,7 @@ pub struct Coefficient {
     pub value: f64,
     /// Relative standard deviation.
     pub relative: f64,
-    /// Deviation of a value of 0, in its own unit: a 95 % upper limit is 1.96 of it.
+    /// Deviation of a value of 0, in its own unit: a sixth of its upper limit.
     pub bound: f64,
 }
 
@@ -48,7 +51,7 @@ fn coefficient(estimate: &Estimate) -> Coefficient {
         let most = estimate.upper_limit.map_or(0.0, |limit| limit.value);
         let most = most.max(estimate.most_likely.unwrap_or(0.0));
         return Coefficient {
-            bound: if most.is_finite() { most / HALF_WIDTH } else { 0.0 },
+            bound: if most.is_finite() { most / OF_LIMIT } else { 0.0 },
             ..Coefficient::default()
         };
     };
