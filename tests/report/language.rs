@@ -58,6 +58,7 @@ const LATIN: &[&str] = &[
     "rate",
     "sample",
     "out",
+    "force",
     "serial",
     "unit",
     "warm",

@@ -28,7 +28,21 @@ const LISTED: &[(&str, &[&str])] = &[
         ],
     ),
     ("excluded", &["warm_up", "declared", "gap", "pause"]),
-    ("clause", &["here", "elsewhere", "not_applicable"]),
+    ("clause", &["here", "elsewhere", "not_applicable", "not_done", "partly"]),
+    // The inputs by which a result is told from another.
+    (
+        "output_error",
+        &[
+            "input.recording",
+            "input.procedure",
+            "input.limits",
+            "input.layout",
+            "input.model",
+            "input.simulation",
+            "input.unit",
+            "input.options",
+        ],
+    ),
     ("status", &["ok", "remark", "invalid"]),
     ("calibration", &["ok", "remark", "invalid"]),
     // Of each channel: the id goes on with its name.
