@@ -146,13 +146,16 @@ pub struct Order {
 
 /// A record with what it was made from and the files of its folder.
 #[derive(Debug, Serialize, JsonSchema)]
+#[schemars(title = "RunRecord")]
 pub struct Listed<T> {
     #[serde(flatten)]
     record: T,
     /// What the result was made from: SHA-256 of `recording`, `procedure`, `limits`, `model` and `options`, and the
     /// serial number of the `unit`, as far as there are any.
+    #[schemars(default)]
     inputs: BTreeMap<String, String>,
     /// Every file of the folder, this one among them. Nothing else in it is ever removed by the program.
+    #[schemars(default)]
     files: BTreeSet<String>,
 }
 
