@@ -310,7 +310,8 @@ fn ramp(seed: u64) -> Simulated {
 }
 
 fn quantized(seed: u64) -> Simulated {
-    let (q, dt_s) = (0.5, 0.01);
+    // So large that white noise bends the line of slope −1 by a thousandth.
+    let (q, dt_s) = (20.0, 0.01);
     let truths = vec![Truth::new("quantization", q).max(q), Truth::new("quantization_readout", q)];
     Unit::new(seed, 20_000, dt_s).quantized(q, truths).at_rest(0.3, &["quantization", "quantization_readout"])
 }
@@ -344,7 +345,7 @@ fn short_line(seed: u64) -> Simulated {
 }
 
 fn short_process(seed: u64) -> Simulated {
-    let (dt_s, sigma, tau_s) = (0.01, 3.0, 0.015);
+    let (dt_s, sigma, tau_s) = (0.01, 1.0, 0.015);
     let level = (N * N + 2.0 * sigma * sigma * tau_s / 3600.0).sqrt();
     let truths = vec![
         Truth::new("angle_random_walk", level).max(level),
