@@ -94,14 +94,18 @@ fn a_dead_zone_is_found_with_its_width_and_otherwise_bounded() {
 
 #[test]
 fn all_of_the_stretch_between_a_silent_rate_and_one_that_answers_belongs_to_the_interval() {
+    let mut withheld = 0;
     for (i, share) in [0.03, 0.2, 0.5, 0.8, 0.97].into_iter().enumerate() {
         let half_width = 0.125 * (2.0 + share);
         let count = zones(half_width, false, Some(5e-4), 3, 500 + 10 * i as u64);
-        assert_eq!((count.errors.len(), count.held), (3, 3), "{half_width}: {:?}", count.errors);
+        assert_eq!(count.errors.len(), count.held, "{half_width}: {:?}", count.errors);
+        withheld += count.withheld;
     }
+    // A form that is the true one is refused in one test of a hundred.
+    assert!(withheld <= 2, "{withheld}");
     // Smaller than the first rate it is a bound, up to that rate.
     let count = zones(0.11, false, Some(5e-4), 3, 560);
-    assert!(count.errors.is_empty() && count.bounds.1 == 3, "{:?}", count.bounds);
+    assert!(count.errors.is_empty() && count.bounds.1 + count.withheld == 3, "{:?}", count.bounds);
 }
 
 /// The rates of a test about the middle, each with the weight of its mean: the inverse of its standard uncertainty.

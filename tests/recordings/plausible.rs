@@ -47,12 +47,9 @@ fn numbers_that_sum_up_to_no_angle_are_not_offered_as_one_and_state_no_scale_fac
     let page = seen.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(page.contains("from one sample to the next; no unit under test"), "{page}");
     assert!(!page.contains("If a known angle was turned"), "{page}");
-    // The same numbers, smooth: they sum up to 1.6 million degrees.
-    let rows: String = (0..40_000u64)
-        .map(|i| {
-            format!("{:.2},{:.6}\n", i as f64 * 0.01, 4000.0 + 300.0 * (i as f64 * 0.002).sin() + white(5, i))
-        })
-        .collect();
+    // Smooth numbers that sum up to 800 000 degrees where a quarter of a turn is stated.
+    let smooth = |i: u64| if (10_000..30_000).contains(&i) { 4000.0 } else { 0.0 } + white(5, i);
+    let rows: String = (0..40_000u64).map(|i| format!("{:.2},{:.6}\n", i as f64 * 0.01, smooth(i))).collect();
     std::fs::write(dir.path().join("s.csv"), format!("time_s,rate_deg_s\n{rows}")).unwrap();
     let page = sagnac(dir.path(), &["inspect", "s.csv"]).out;
     assert!(!page.contains("swing") && !page.contains("swung"), "{page}");

@@ -102,8 +102,11 @@ impl Plausible {
             for (i, &value) in values.iter().enumerate().filter(|(_, v)| v.is_finite()) {
                 let step = w.latest.map_or(0.0, |l| (value - l).abs());
                 let most = w.bound.change.map(|(at_once, hourly)| at_once + hourly * interval_s / 3600.0);
-                w.latest = Some(value);
                 let out = value < low || value > high;
+                // What is none is no start of a change: the way back from it is not counted again.
+                if !out {
+                    w.latest = Some(value);
+                }
                 if !out && most.is_none_or(|most| step <= most) {
                     continue;
                 }

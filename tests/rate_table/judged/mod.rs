@@ -17,6 +17,8 @@ pub struct Count {
     pub widths: Vec<f64>,
     /// Bounds given in place of a value, and those that hold.
     pub bounds: (usize, usize),
+    /// Rows that state nothing.
+    pub withheld: usize,
     /// Width over that of a fit that is told the noise.
     pub over_told: Vec<f64>,
 }
@@ -28,6 +30,7 @@ impl Count {
         self.errors.extend(other.errors);
         self.widths.extend(other.widths);
         self.bounds = (self.bounds.0 + other.bounds.0, self.bounds.1 + other.bounds.1);
+        self.withheld += other.withheld;
         self.over_told.extend(other.over_told);
     }
 
@@ -42,7 +45,10 @@ impl Count {
                 self.over_told.extend(told.map(|t| (interval.high - interval.low) / (3.919_928 * t)));
             }
             None => {
-                let bound = estimate.upper_limit.expect("a bound").value;
+                let Some(bound) = estimate.upper_limit.map(|u| u.value) else {
+                    self.withheld += 1;
+                    return;
+                };
                 let holds = usize::from(truth.abs() <= bound);
                 self.held += holds;
                 self.bounds = (self.bounds.0 + 1, self.bounds.1 + holds);
