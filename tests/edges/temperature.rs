@@ -259,6 +259,7 @@ fn over(unit: Unit, chamber: &Programme, seed: u64, ids: &[&'static str]) -> Sim
     let procedure = include_str!("../../procedures/temperature-ramp.toml")
         .replace("minimum_duration = \"10 h\"", "minimum_duration = \"30 min\"")
         .replace("warm_up = \"30 min\"", "warm_up = \"0 s\"")
+        .replace("residual_average", "highest_order = 3\nresidual_average")
         .replace("low = \"-40 degC\"", &format!("low = \"{} degC\"", chamber.low))
         .replace("high = \"60 degC\"", &format!("high = \"{} degC\"", chamber.high));
     Simulated {
