@@ -140,7 +140,7 @@ fn what_the_recording_has_beyond_its_simulation_is_named() {
             rate.iter_mut().enumerate().for_each(|(i, r)| *r += f(i));
         };
         match kind {
-            "bias_step" => each(&mut rate, &|i| if i > 1700 { 0.2 } else { 0.0 }),
+            "bias_step" => each(&mut rate, &|i| if i > 1700 { 0.3 } else { 0.0 }),
             "line" => each(&mut rate, &|i| 0.15 * (TAU * 0.11 * i as f64).sin()),
             "excess_arw" => rate.iter_mut().for_each(|r| *r = 5.0 + 1.25 * (*r - 5.0)),
             "temp_linear" => each(&mut rate, &|i| 0.06 * (temperature[i] - 20.0)),

@@ -105,3 +105,22 @@ fn a_ring_laser_unit_has_its_lines_and_its_quantisation_named_where_more_effects
     }
     assert!(heldout_gain(&report) > 10_000.0);
 }
+
+#[test]
+fn real_recordings_are_consistent_with_themselves() {
+    let files = [
+        ("mems_astropi_68h_temperature", "part_b_warming_day.csv.gz", "gyro_z_rad_s"),
+        ("mems_astropi_68h_temperature", "part_d_cool_days.csv.gz", "gyro_y_rad_s"),
+        ("fog_aegiverse_iris_two_position", "z_up.csv.gz", "gyro_z_deg_s"),
+        ("rlg_ln100_two_position", "x_up.parquet", "rate_x_deg_h"),
+    ];
+    for (folder, file, column) in files {
+        let Some(folder) = set(folder) else { return };
+        let path = folder.join(file).display().to_string();
+        let out = tempdir().unwrap();
+        let args = ["explain", &path, "--simulation", &path, "--rate", column, "--out", "out"];
+        let said = sagnac(out.path(), &args);
+        assert_eq!(said.code, 0, "{file}: {said:?}");
+        assert!(said.out.starts_with("CONSISTENT"), "{file}: {}", said.out);
+    }
+}
