@@ -62,7 +62,7 @@ pub fn explain_simulation(
     }
     let mut least = 1.0f64;
     let mut left: Vec<Stated> = vec![];
-    for _ in 0..ROUNDS {
+    for round in 0..=ROUNDS {
         left.clear();
         if outcome.explanation.verdict == "consistent" {
             break;
@@ -85,7 +85,8 @@ pub fn explain_simulation(
                 both.push(stated);
             }
         }
-        if both.is_empty() {
+        // In the last round what was found is judged and no more.
+        if both.is_empty() || round == ROUNDS {
             break;
         }
         for stated in &both {
@@ -146,10 +147,9 @@ fn take(claim: &mut Claim, effects: Vec<Stated>, augmented: &Claim) {
     }
 }
 
-/// Where nothing is left but departures that no effect explains: those that the simulation shows as strongly are no
+/// Where nothing is left but effects that the simulation shows and departures that no effect explains: those of these that the simulation shows as strongly are no
 /// difference. The equivalent normal numbers of both, scaled to one length, are compared.
 fn unnamed(outcome: &mut Outcome, claim: &Claim, witness: &Witness<'_>, least: f64) {
-    let named = outcome.explanation.effects.iter().any(|f| !f.is_unnamed());
     let Ok(own) = explain(witness.simulation.clone(), claim, witness.options, &mut |_| {}) else { return };
     let z = |p: f64| if p >= 0.5 { 0.0 } else { -normal_quantile(p) };
     let root = witness.share.min(1.0 / witness.share).sqrt();
@@ -171,7 +171,7 @@ fn unnamed(outcome: &mut Outcome, claim: &Claim, witness: &Witness<'_>, least: f
         smallest = smallest.min(test.p_after);
     }
     let chance = (many * smallest).min(1.0);
-    if chance < witness.options.alpha || named && least * FAMILY < witness.options.alpha {
+    if chance < witness.options.alpha {
         return;
     }
     agree(outcome, chance.min(least));
