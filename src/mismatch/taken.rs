@@ -18,6 +18,8 @@ use crate::text::Note;
 const ROUNDS: usize = 4;
 /// Effects that are counted as tried.
 const FAMILY: f64 = 40.0;
+/// Probability below which the normal number is that of the leading term of its logarithm.
+const SMALL: f64 = 1e-14;
 /// Relative deviation of a coefficient that both records together suggested.
 const SUGGESTED: f64 = 0.3;
 
@@ -151,7 +153,11 @@ fn take(claim: &mut Claim, effects: Vec<Stated>, augmented: &Claim) {
 /// difference. The equivalent normal numbers of both, scaled to one length, are compared.
 fn unnamed(outcome: &mut Outcome, claim: &Claim, witness: &Witness<'_>, least: f64) {
     let Ok(own) = explain(witness.simulation.clone(), claim, witness.options, &mut |_| {}) else { return };
-    let z = |p: f64| if p >= 0.5 { 0.0 } else { -normal_quantile(p) };
+    let z = |p: f64| match p {
+        p if p >= 0.5 => 0.0,
+        p if p > SMALL => -normal_quantile(p),
+        p => (-2.0 * p.max(f64::MIN_POSITIVE).ln()).sqrt(),
+    };
     let root = witness.share.min(1.0 / witness.share).sqrt();
     let many = outcome.explanation.tests.len().max(1) as f64;
     let mut smallest = 1.0f64;
