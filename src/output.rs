@@ -156,7 +156,7 @@ pub struct Listed<T> {
     inputs: BTreeMap<String, String>,
     /// Every file of the folder, this one among them. Nothing else in it is ever removed by the program.
     #[schemars(default)]
-    files: BTreeSet<String>,
+    files: Vec<String>,
 }
 
 /// What a folder holds; one kind never takes the place of another.
@@ -274,6 +274,7 @@ impl StagedFolder {
         let (marks, _) = self.kind.marks();
         let mut files = self.written.borrow().clone();
         files.insert(marks.to_owned());
+        let files = files.into_iter().collect();
         let listed = Listed { record, inputs: self.order.inputs.clone(), files };
         let json = serde_json::to_vec_pretty(&listed).map_err(|e| OutputError::Unwritable(e.to_string()))?;
         self.write(marks, &json)?;

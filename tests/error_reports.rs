@@ -120,6 +120,7 @@ fn a_test_of_phases_that_could_not_run_says_so_of_its_clauses() {
     let dir = tempdir().unwrap();
     let at = |name: &str| dir.path().join(name);
     std::fs::write(at("good.csv"), synthetic::recording(3000)).unwrap();
+    std::fs::write(at("other.csv"), synthetic::recording(3001)).unwrap();
     std::fs::write(at("bad.csv"), "time_s,rate_deg_h,temp_degC\n").unwrap();
     let short = short_procedure(dir.path());
     let name = Path::new(&short).file_name().unwrap().to_string_lossy().into_owned();
@@ -130,7 +131,7 @@ fn a_test_of_phases_that_could_not_run_says_so_of_its_clauses() {
     std::fs::write(at("whole.toml"), format!("{head}{}{}{clause}", phase("a"), phase("b"))).unwrap();
     let file = |name: &str, phase: &str| format!("[[file]]\npath = \"{name}\"\nphase = \"{phase}\"\n");
     for (a, b, expected) in [
-        ("good.csv", Some("good.csv"), "here"),
+        ("good.csv", Some("other.csv"), "here"),
         ("good.csv", Some("bad.csv"), "partly"),
         ("good.csv", None, "partly"),
         ("bad.csv", None, "not_done"),
