@@ -213,7 +213,10 @@ impl StagedFolder {
         let Some(name) = target.file_name() else {
             return Err(OutputError::NoName(target.to_owned()));
         };
-        outside(target, &order.read)?;
+        // A folder of another kind is refused for what it is.
+        if earlier::is_of(target, kind) {
+            outside(target, &order.read)?;
+        }
         let replaces = match target.symlink_metadata() {
             Ok(_) => {
                 replaceable(target, kind, &order)?.filter(|e| e.inputs != order.inputs).map(|e| e.what())

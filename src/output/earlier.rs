@@ -96,7 +96,7 @@ impl Earlier {
 }
 
 /// True when a folder holds the file that tells its kind.
-fn is_of(folder: &Path, kind: Kind) -> bool {
+pub(super) fn is_of(folder: &Path, kind: Kind) -> bool {
     let (name, start) = kind.marks();
     let mut head = String::new();
     let read = File::open(folder.join(name)).and_then(|f| f.take(64).read_to_string(&mut head));
