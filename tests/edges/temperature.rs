@@ -194,14 +194,12 @@ fn recorded(unit: &Unit, chamber: &Programme, from: &mut NoiseSource) -> (Vec<f6
             let blown = air + 0.2 * (std::f64::consts::TAU * t / 170.0).sin();
             housing += h * (blown - housing) / 200.0;
             outer = if unit.lag_s > 0.0 { outer + h * (housing - outer) / unit.lag_s } else { housing };
-            inner += h * (outer - inner) / INNER_S;
+            let across = (outer - inner) / INNER_S;
+            inner += h * across;
             body = body.clamp(outer - unit.play_deg_c, outer + unit.play_deg_c);
             let state = (outer - body) / unit.play_deg_c;
             let x = outer - middle;
-            sum += unit.line * x
-                + unit.bend * x * x
-                + unit.shupe * 60.0 * (outer - inner) / INNER_S
-                + unit.half_gap * state;
+            sum += unit.line * x + unit.bend * x * x + unit.shupe * 60.0 * across + unit.half_gap * state;
             heat += housing;
             count += 1;
             t += h;
