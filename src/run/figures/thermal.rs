@@ -121,13 +121,22 @@ fn over_temperature(a: &Analysis) -> (Vec<Panel>, Vec<Note>) {
         y: axis("axis.rate", "deg/h", Scale::Linear),
         layers,
     };
-    let noise = p.best.fitted.noise;
-    let remark = Note::new("figure_thermal.noise")
-        .with("average_s", Arg::figures(merged.block_s, 4))
-        .with("n", Arg::figures(noise[0], 3))
-        .with("b", Arg::figures(noise[1], 3))
-        .with("k", Arg::figures(noise[2], 3));
-    (vec![panel], vec![remark])
+    let remark = Note::new("figure_thermal.averaged").with("average_s", Arg::figures(merged.block_s, 4));
+    (vec![panel], vec![remark, noise_of_fit(p.best.fitted.noise, a.course.len() as f64 * a.course.block_s)])
+}
+
+/// The noise of the fit. Flicker and random walk that move the record by less than a hundredth of what its white noise
+/// does are only where the search came to rest, and have no value.
+fn noise_of_fit([n, b, k]: [f64; 3], length_s: f64) -> Note {
+    let hours = length_s / 3600.0;
+    let least = 0.01 * n / hours.sqrt();
+    let seen = |value: f64, moves: f64, key: &'static str, none: &'static str| {
+        if moves > least { Note::new(key).with("value", Arg::figures(value, 3)) } else { none.into() }
+    };
+    Note::new("figure_thermal.noise")
+        .with("n", Arg::figures(n, 3))
+        .with("b", seen(b, b, "figure_thermal.flicker", "figure_thermal.no_flicker"))
+        .with("k", seen(k, k * hours.sqrt(), "figure_thermal.walk", "figure_thermal.no_walk"))
 }
 
 fn thinned_by_index(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
@@ -270,4 +279,18 @@ fn warm_up(w: &WarmUpFindings) -> Panel {
         );
     }
     Panel { x: axis("axis.time", "s", Scale::Linear), y: axis("axis.rate", "deg/h", Scale::Linear), layers }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::Lang;
+
+    #[test]
+    fn noise_that_was_not_seen_has_no_value() {
+        let none = noise_of_fit([0.002, 1.4e-8, 1.6e-8], 75_600.0).say(Lang::En);
+        assert!(none.ends_with("N 0.00200 °/√h, no flicker seen, no random walk seen."), "{none}");
+        let both = noise_of_fit([0.002, 0.003, 0.004], 75_600.0).say(Lang::En);
+        assert!(both.ends_with("N 0.00200 °/√h, B 0.00300 °/h, K 0.00400 °/h/√h."), "{both}");
+    }
 }
