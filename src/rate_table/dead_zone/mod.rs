@@ -144,12 +144,13 @@ pub fn evaluate(
         }
     };
     let Left { mut shape, centre, slope, offset, .. } = with_noise.map_or(best, |r| r.best);
+    // Noise far beyond the half width makes a line of any zone: that form is never told from a slope, and does not count.
     let open = if with_noise.is_some() {
         None
     } else if shown {
-        alike.iter().find_map(|f| widths.open(f.number))
+        alike.iter().filter(|f| f.number != WITH_NOISE).find_map(|f| widths.open(f.number))
     } else {
-        (0..FORMS).find_map(|form| widths.open(form))
+        (0..WITH_NOISE).find_map(|form| widths.open(form))
     };
     let value = Some(middle_of(&curve)).filter(|_| shown && unexplained.is_none() && open.is_none());
     shape.half_width = value.unwrap_or(0.0);
