@@ -1,7 +1,7 @@
 //! Which checks were made. The checks tell it themselves where they run; what a kind of test could check and nobody told
 //! of is listed as not made.
 //!
-//! One more check: one line in [`CHECKS`], its name `check.name.<id>` in the tables, and a call of [`CheckLog::made`] or
+//! One more check: one line in [`CHECKS`], its name `check_name.<id>` in the tables, and a call of [`CheckLog::made`] or
 //! [`CheckLog::not_made`] where it runs.
 
 use crate::procedure::Procedure;
@@ -178,7 +178,7 @@ mod tests {
         for (id, kinds) in CHECKS {
             assert!(!kinds.is_empty());
             for lang in [Lang::En, Lang::Ru] {
-                assert!(lookup(lang, &format!("check.name.{id}")).is_some(), "{id}");
+                assert!(lookup(lang, &format!("check_name.{id}")).is_some(), "{id}");
             }
         }
     }

@@ -107,7 +107,6 @@ const LATIN: &[&str] = &[
     "toml",
     "recording",
     "csv",
-    "oius",
     "SN",
     "reports",
     "parquet",

@@ -21,7 +21,7 @@ pub fn unmade(record: &RunRecord, words: Words) -> Vec<Unmade> {
         record.checks.iter().any(|c| c.id == check.id && c.phase == check.phase && c.reason != check.reason)
     };
     let of = |(check, channels): (&CheckRecord, Vec<&str>)| {
-        let mut name = words.name("check.name", &check.id);
+        let mut name = words.name("check_name", &check.id);
         if differs(check) && !channels.is_empty() {
             name = format!("{name} · {}", channels.join(", "));
         }
@@ -37,7 +37,7 @@ pub fn unmade(record: &RunRecord, words: Words) -> Vec<Unmade> {
 pub fn made(record: &RunRecord, words: Words) -> String {
     let mut names: Vec<String> = Vec::new();
     for check in record.checks.iter().filter(|c| c.status == CheckStatus::Made) {
-        let name = words.name("check.name", &check.id);
+        let name = words.name("check_name", &check.id);
         if !names.contains(&name) {
             names.push(name);
         }
