@@ -7,7 +7,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Place of the misses, at the top of the page.
-const MISSES: (&str, &str) = ("<!-- edge misses: begin; written by the study -->", "<!-- edge misses: end -->");
+const MISSES: (&str, &str) =
+    ("<!-- edge misses: begin; written by the study -->", "<!-- edge misses: end -->");
 /// Place of the whole table.
 const WHOLE: (&str, &str) = ("<!-- edges: begin; written by the study -->", "<!-- edges: end -->");
 
