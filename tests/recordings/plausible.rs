@@ -48,7 +48,7 @@ fn numbers_that_sum_up_to_no_angle_are_not_offered_as_one_and_state_no_scale_fac
     assert!(page.contains("from one sample to the next; no unit under test"), "{page}");
     assert!(!page.contains("If a known angle was turned"), "{page}");
     // Smooth numbers that sum up to 800 000 degrees where a quarter of a turn is stated.
-    let smooth = |i: u64| if (10_000..30_000).contains(&i) { 4000.0 } else { 0.0 } + white(5, i);
+    let smooth = |i: u64| white(5, i) + if (10_000..30_000).contains(&i) { 4000.0 } else { 0.0 };
     let rows: String = (0..40_000u64).map(|i| format!("{:.2},{:.6}\n", i as f64 * 0.01, smooth(i))).collect();
     std::fs::write(dir.path().join("s.csv"), format!("time_s,rate_deg_s\n{rows}")).unwrap();
     let page = sagnac(dir.path(), &["inspect", "s.csv"]).out;
