@@ -88,6 +88,7 @@ fn draw(process: &str, path: &Path, seed: u64) {
 }
 
 fn compared(folder: &Path, recording: &str, simulation: &str) -> (i32, Value, String) {
+    let _ = std::fs::remove_dir_all(folder.join("e"));
     let said = sagnac(folder, &["explain", recording, "--simulation", simulation, "--out", "e"]);
     let text =
         std::fs::read_to_string(folder.join("e/explain.json")).unwrap_or_else(|e| panic!("{e}: {said:?}"));
