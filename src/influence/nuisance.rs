@@ -140,7 +140,7 @@ mod tests {
     fn what_follows_the_level_and_not_only_its_presence_is_seen() {
         // -4 and +4 in turns, on a drift: an indicator of on and off has a mean of nothing.
         let found = of(&[0.0, -3.9, 0.2, 4.3, 0.4, -3.5, 0.6, 4.7, 0.8]);
-        assert!((found.difference() - 8.0).abs() < 1e-9 && found.follows(), "{found:?}");
+        assert!((found.difference().abs() - 8.0).abs() < 1e-9 && found.follows(), "{found:?}");
         assert!((found.per_drive[0] - 16.0).abs() < 1e-9);
     }
 

@@ -120,15 +120,15 @@ impl Profile {
     fn share_below(&self, lag_s: f64) -> f64 {
         let best_beyond = |keep: &dyn Fn(f64) -> bool| {
             let whole = self.lags.iter().filter(|l| keep(l.lag_s)).map(|l| l.log_likelihood);
-            // The likelihood at the lag itself, between two of the table.
+            // The likelihood at the lag itself, between two of the table. Beyond its ends a lag is out of question.
             let at = self.lags.partition_point(|l| l.lag_s < lag_s);
             let here = match (at.checked_sub(1).and_then(|i| self.lags.get(i)), self.lags.get(at)) {
                 (Some(a), Some(b)) => {
                     let share = (lag_s - a.lag_s) / (b.lag_s - a.lag_s).max(f64::MIN_POSITIVE);
                     a.log_likelihood + share * (b.log_likelihood - a.log_likelihood)
                 }
-                (Some(l), None) | (None, Some(l)) => l.log_likelihood,
-                (None, None) => f64::NEG_INFINITY,
+                (None, Some(l)) if l.lag_s <= lag_s => l.log_likelihood,
+                _ => f64::NEG_INFINITY,
             };
             whole.fold(here, f64::max)
         };
@@ -156,6 +156,9 @@ impl Profile {
 fn root((top, dof): (f64, f64), lower: f64, higher: f64) -> f64 {
     let of = |best: f64| {
         let twice = (2.0 * (top - best)).max(0.0);
+        if twice.is_infinite() {
+            return f64::INFINITY;
+        }
         if dof <= 1.0 { twice.sqrt() } else { normal_quantile(1.0 - 0.5 * chi_square_tail(twice, dof)) }
     };
     normal_probability(of(higher) - of(lower))

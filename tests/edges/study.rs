@@ -112,8 +112,15 @@ fn limits(truths: &[Truth]) -> String {
         "format = \"limits/1\"\n[limits]\nid = \"edges\"\ntitle = \"Truths\"\nrevision = \"A\"\nfamily = \"SIMULATED\"\n\
          source = \"drawn\"\n",
     );
+    let mut written: Vec<(&str, Option<&str>)> = Vec::new();
     for truth in truths {
         let Some(limit) = &truth.limit else { continue };
+        // A limit of a channel judges its rows at all levels.
+        let channel = truth.channel.map(|c| c.split('@').next().unwrap_or(c));
+        if written.contains(&(truth.id, channel)) {
+            continue;
+        }
+        written.push((truth.id, channel));
         let unit = sagnac::ids::find(truth.id).map_or("", |m| m.unit);
         let key = match limit.key {
             LimitKey::Max => "max",
@@ -121,7 +128,7 @@ fn limits(truths: &[Truth]) -> String {
             LimitKey::MaxAbs => "max_abs",
         };
         text += &format!("[[limit]]\nmeasurand = \"{}\"\n{key} = \"{:.12} {unit}\"\n", truth.id, limit.value);
-        if let Some(channel) = truth.channel {
+        if let Some(channel) = channel {
             text += &format!("channel = \"{channel}\"\n");
         }
     }

@@ -42,7 +42,14 @@ pub fn sagnac_with(folder: &Path, args: &[&str], environment: &[(&str, &str)]) -
     let again = out.is_some_and(|out| folder.join(out).exists()) && !args.contains(&"--force");
     let mut args = args.to_vec();
     args.extend(again.then_some("--force"));
-    sagnac_as_typed(folder, &args, environment)
+    let mut said = sagnac_as_typed(folder, &args, environment);
+    if again
+        && let Some((first, rest)) = said.err.split_once('\n').filter(|(f, _)| f.starts_with("--force: "))
+    {
+        assert!(first.contains("replaced"), "{first}");
+        said.err = rest.to_owned();
+    }
+    said
 }
 
 /// Runs the program in a folder with the arguments as they are.

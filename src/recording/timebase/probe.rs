@@ -57,7 +57,7 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
     let resolution_s = resolution(&t, median);
     let rounded = resolution_s > 0.3 * median && straight(&t, resolution_s) >= 0.5;
     let together = course.is_some_and(|c| !buffered::in_batches(&c) && buffered::now_and_then(&t, &c));
-    let batches = course.filter(|c| !rounded && (together || buffered::in_batches(c)));
+    let batches = course.filter(|c| !rounded && advances(&t) && (together || buffered::in_batches(c)));
     let steps_of_its_own = batches.filter(|_| !together).and_then(|_| in_step(&t, median, resolution_s));
     if let Some(course) = batches.filter(|_| steps_of_its_own.is_none()) {
         let mut batches = Batches::new(course.mean_s);
@@ -114,6 +114,12 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
         };
     }
     Ok(clock)
+}
+
+/// True where the stamps go forward on the whole, not to and fro.
+fn advances(t: &[f64]) -> bool {
+    let way: f64 = steps(t).map(f64::abs).sum();
+    t.last().zip(t.first()).is_some_and(|(last, first)| last - first > 0.5 * way)
 }
 
 /// True where most steps are far shorter than the mean and most of the time passes between few rows, as in batches.
