@@ -170,8 +170,7 @@ fn ramps_and_what_the_temperature_model_leaves_are_those_of_the_chamber() {
 }
 
 /// Steps of a table about the rate at which the unit sees none, and its output, deg/h.
-fn steps(output: impl Fn(f64) -> f64) -> String {
-    let levels = [-1.0, -0.5, -0.2, -0.1, 0.0, 0.1, 0.2, 0.5, 1.0];
+fn steps(levels: &[f64], output: impl Fn(f64) -> f64) -> String {
     let up = levels.iter().copied();
     let sweep: Vec<f64> = up.clone().chain(up.rev()).collect();
     let mut z = Normal::new(3);
@@ -194,12 +193,12 @@ fn the_smallest_change_that_is_shown_is_that_of_the_schedule() {
         let r = run(dir.path(), &procedure, csv);
         rows(&r, "resolution")[0]["upper_limit"]["value"].as_f64().unwrap()
     };
-    // Without a zone every change is shown, the smallest of 0.1 °/h. With one of 0.3 °/h, what lies within is not, and
-    // of the step from 0.2 to 0.5 two thirds.
-    let plain = found(&steps(|x| x));
-    assert!((plain - 0.1).abs() < 1e-3, "{plain}");
-    let zone = found(&steps(|x: f64| x.signum() * (x.abs() - 0.3).max(0.0)));
-    assert!((zone - 0.3).abs() < 1e-3, "{zone}");
+    // Every change that the test has is followed: the widest distance of neighbours, and as much again between them.
+    let even = [-1.0, -0.8, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+    let plain = found(&steps(&even, |x| x));
+    assert!((plain - 0.4).abs() < 1e-3, "{plain}");
+    let wide = found(&steps(&[-1.0, -0.8, -0.6, -0.2, 0.0, 0.2, 0.4, 0.6, 0.8, 1.0], |x| x));
+    assert!((wide - 0.8).abs() < 1e-3, "{wide}");
 }
 
 #[test]

@@ -12,8 +12,11 @@ const BEYOND_NOISE: f64 = 5.0;
 const TURNED_DEG_H: f64 = 1800.0;
 /// Ratio of the steps between neighbouring means to their scatter below which the change is slow.
 const SLOW: f64 = 0.35;
+/// Share of a mean that the rounding of its sum may make up.
+const ROUNDED: f64 = 1e-12;
 /// Range of a temperature that can explain a slow change of the bias, degC.
 const WARMING_DEG_C: f64 = 5.0;
+
 /// Whether a channel stood still.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion {
@@ -73,11 +76,12 @@ pub fn motion(
     let median = *median;
     let farthest = means.iter().map(|m| (m - median).abs()).fold(0.0, f64::max);
     let samples = merged as f64 * blocks.block_len.max(1) as f64;
-    let noise = sample_noise_deg_h.unwrap_or(0.0) / samples.sqrt();
+    let noise = (sample_noise_deg_h.unwrap_or(0.0) / samples.sqrt()).max(ROUNDED * median.abs());
     let moved = deviation > MOVED_DEG_H.max(BEYOND_NOISE * noise)
         || farthest > TURNED_DEG_H.max(2.0 * BEYOND_NOISE * noise);
     if !moved {
-        let beyond_noise = if noise > 0.0 { deviation / noise } else { 0.0 };
+        let known = sample_noise_deg_h.is_some_and(|s| s > 0.0);
+        let beyond_noise = if known { deviation / noise } else { 0.0 };
         Motion::Rest { scatter_deg_h: deviation, beyond_noise }
     } else if steps < SLOW * deviation && warming_deg_c >= WARMING_DEG_C {
         Motion::Slow { scatter_deg_h: deviation }

@@ -314,9 +314,9 @@ fn a_further_channel_in_step_with_the_level_is_named() {
     let recording = folder.path().join("r.csv");
     std::fs::write(&recording, out).unwrap();
     let shipped = std::fs::read_to_string(root("procedures/magnetic-sensitivity.toml")).unwrap();
-    let channel = "[[channel]]\nid = \"volts\"\ncolumn = \"supply_V\"\nrole = \"supply\"\nunit = \"V\"\n\n[magnetic_test]";
+    let channel = "\n[[channel]]\nid = \"volts\"\ncolumn = \"supply_V\"\nrole = \"supply\"\nunit = \"V\"\n\n[magnetic_test]\n";
     let procedure = folder.path().join("p.toml");
-    std::fs::write(&procedure, shipped.replacen("[magnetic_test]", channel, 1)).unwrap();
+    std::fs::write(&procedure, shipped.replacen("\n[magnetic_test]\n", channel, 1)).unwrap();
     let (code, result) = run(&procedure.to_string_lossy(), &recording.to_string_lossy(), "SN-1");
     assert_eq!(code, 3, "{:#}", result["summary"]);
     let said = condition(&result, "influence_beside.volts");

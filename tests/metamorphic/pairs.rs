@@ -38,7 +38,7 @@ const UNIT: Option<&str> = Some("sample-unit");
 const OVEN: Option<&str> = Some("sample-temperature");
 const WARM: Option<&str> = Some("sample-warm-up");
 const RATE: Option<&str> = Some("table_rate_deg_s");
-const INNER: Option<&str> = Some("inner_rate_deg_s");
+const OUTER: Option<&str> = Some("outer_rate_deg_s");
 const FIELD: Option<&str> = Some("field_mT");
 const VOLTS: Option<&str> = Some("supply_V");
 const TEMP: Option<&str> = Some("temp_degC");
@@ -53,8 +53,8 @@ pub const PAIRS: [Pair; 27] = [
     pair("scale-factor-fail", "scale-factor", None, "SN-1", 1, RATE),
     pair("threshold-pass", "threshold", None, "SN-1", 0, RATE),
     pair("threshold-fail", "threshold", None, "SN-1", 1, RATE),
-    pair("misalignment-pass", "misalignment", None, "SN-1", 0, INNER),
-    pair("misalignment-fail", "misalignment", None, "SN-1", 1, INNER),
+    pair("misalignment-pass", "misalignment", None, "SN-1", 0, OUTER),
+    pair("misalignment-fail", "misalignment", None, "SN-1", 1, OUTER),
     scheduled(pair("multi-position-pass", "multi-position", None, "SN-1", 0, None), 60.0),
     scheduled(pair("multi-position-software", "multi-position", None, "SN-1", 3, None), 60.0),
     pair("temperature-pass", "temperature-ramp", OVEN, "SN-0101", 0, TEMP),

@@ -46,7 +46,7 @@ const LISTED: &[(&str, &[&str])] = &[
     ("status", &["ok", "remark", "invalid"]),
     ("calibration", &["ok", "remark", "invalid"]),
     // Of each channel: the id goes on with its name.
-    ("condition", &["steadiness"]),
+    ("condition", &["steadiness", "influence_beside"]),
     ("verdict", &["none", "pass", "indeterminate", "fail", "error"]),
 ];
 
@@ -54,6 +54,8 @@ const LISTED: &[(&str, &[&str])] = &[
 const OPEN: &[&str] = &[
     "how",
     "check_name",
+    "evidence",
+    "compared",
     "condition",
     "observed",
     "option",
