@@ -77,7 +77,7 @@ pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, C
     }
     let share = share(equal);
     if share > COARSE_SHARE && equal > 2 {
-        return Err(ClockError::Coarse { share });
+        return Err(if advances(&t) { ClockError::Coarse { share } } else { ClockError::NotGrowing });
     }
     let coarse = resolution_s > 0.3 * median;
     let odd = steps(&t).filter(|d| (d / median - 1.0).abs() > 0.3).count() as f64 / (t.len() - 1) as f64;
