@@ -63,7 +63,7 @@ fn tails(g: &GyroEvidence, step_deg_h: Option<f64>) -> Option<TailShape> {
     let histogram: &Histogram = &g.digest.histogram;
     let deviation = histogram.standard_deviation;
     let variance = deviation * deviation;
-    if histogram.samples < 4096 || !(variance > 0.0) || g.motion.is_motion() {
+    if histogram.samples < 4096 || variance.is_nan() || variance <= 0.0 || g.motion.is_motion() {
         return None;
     }
     // White to within a factor: what wanders within a block has no distribution of its own.

@@ -173,18 +173,22 @@ pub fn reading(parts: &[Profile]) -> Reading {
 
 /// A coefficient with its spread, every lag that explains the record as well included.
 pub fn coefficient(parts: &[Profile], of: impl Fn(&AtLag) -> Option<Coefficient>) -> Reading {
-    let tables: Vec<((f64, f64), Vec<(f64, f64, f64)>)> =
-        parts.iter().map(|p| ((p.top(), p.dof()), p.coefficients(&of))).collect();
+    let tables: Vec<Vec<(f64, f64, f64)>> = parts.iter().map(|p| p.coefficients(&of)).collect();
     let near = || {
-        tables
+        parts
             .iter()
-            .flat_map(|((top, _), t)| t.iter().filter(move |c| c.0 > top - LOST))
+            .zip(&tables)
+            .flat_map(|(p, t)| {
+                let top = p.top();
+                t.iter().filter(move |c| c.0 > top - LOST)
+            })
             .map(|c| (c.1, 6.0 * c.2))
     };
     let low = near().map(|(m, r)| m - r).fold(f64::INFINITY, f64::min);
     let high = near().map(|(m, r)| m + r).fold(f64::NEG_INFINITY, f64::max);
+    let tops: Vec<(f64, f64)> = parts.iter().map(|p| (p.top(), p.dof())).collect();
     mixed(parts, (low, high), |i, x| {
-        let (top, table) = &tables[i];
+        let table = &tables[i];
         let best = |sign: f64| {
             let loss = |mean: f64, deviation: f64| {
                 let off = (sign * (x - mean)).max(0.0) / deviation.max(f64::MIN_POSITIVE);
@@ -192,7 +196,7 @@ pub fn coefficient(parts: &[Profile], of: impl Fn(&AtLag) -> Option<Coefficient>
             };
             table.iter().map(|(l, m, d)| l - loss(*m, *d)).fold(f64::NEG_INFINITY, f64::max)
         };
-        root(*top, best(-1.0), best(1.0))
+        root(tops[i], best(-1.0), best(1.0))
     })
 }
 

@@ -222,11 +222,9 @@ impl Series {
         }
         truths.push(Truth::new("bias_repeatability_trend", self.trend));
         truths.push(Truth::new("bias_repeatability_temperature", self.per_deg_c));
-        let own = format!(
-            "[repeatability_test]\nsettling = \"0 s\"\nminimum_run = \"30 s\"\noff = \"5 min\"\nruns = 2\n\
+        let own = "[repeatability_test]\nsettling = \"0 s\"\nminimum_run = \"30 s\"\noff = \"5 min\"\nruns = 2\n\
              [[measurand]]\nid = \"bias_repeatability\"\n[[measurand]]\nid = \"bias_repeatability_peak_to_peak\"\n\
-             [[measurand]]\nid = \"bias_repeatability_trend\"\n[[measurand]]\nid = \"bias_repeatability_temperature\"\n"
-        );
+             [[measurand]]\nid = \"bias_repeatability_trend\"\n[[measurand]]\nid = \"bias_repeatability_temperature\"\n";
         let [time, rate, temperature] = &columns;
         Simulated {
             csv: csv("time_s,rate_deg_h,temp_degC", &[time, rate, temperature]),

@@ -135,7 +135,7 @@ impl Unit {
         let of_cycle: Vec<f64> = (0..self.cycles).map(|_| self.cycle_ppm * source.normal()).collect();
         let mut columns: [Vec<f64>; 5] = Default::default();
         let (mut angle, mut warm) = (12.0f64, 0.0f64);
-        for row in 0..rows {
+        for (row, noise) in white.iter().enumerate() {
             let step = row / each;
             let (x, before) = (steps[step], if step == 0 { f64::NAN } else { steps[step - 1] });
             let share = row as f64 / rows as f64;
@@ -158,7 +158,7 @@ impl Unit {
                 + self.harmonics[1] * (2.0 * psi + 0.3).cos()
                 + 2.0
                 + self.drift * share
-                + white[row];
+                + noise;
             let values = [row as f64 * dt, y, x / 3600.0, angle.rem_euclid(360.0), 22.0 + off];
             for (column, value) in columns.iter_mut().zip(values) {
                 column.push(value);

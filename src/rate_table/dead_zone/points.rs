@@ -46,6 +46,15 @@ pub struct Points {
     place: OnceCell<Place>,
 }
 
+/// A gap about one centre.
+#[derive(Clone, Copy)]
+struct Tried {
+    cost: f64,
+    slope: f64,
+    offset: f64,
+    centre: f64,
+}
+
 impl Points {
     /// `None` with a covariance that is none.
     pub fn new(
@@ -161,31 +170,34 @@ impl Points {
         let mut ends: Vec<f64> = sides.filter(|c| (low..high).contains(c)).chain([low, high]).collect();
         ends.sort_by(f64::total_cmp);
         let shape = found.shape;
-        let at = |c: f64| (self.cost(|x| shape.of(x - c)), c);
-        let stretches: Vec<[((f64, f64, f64), f64); 3]> = ends
+        let at = |centre: f64| {
+            let (cost, slope, offset) = self.cost(|x| shape.of(x - centre));
+            Tried { cost, slope, offset, centre }
+        };
+        let stretches: Vec<[Tried; 3]> = ends
             .windows(2)
             .filter(|w| w[1] - w[0] > 1e-9 * largest)
             .map(|w| [0.5, 1e-6, 1.0 - 1e-6].map(|part| at(w[0] + part * (w[1] - w[0]))))
             .collect();
-        let least_of =
-            |s: &[((f64, f64, f64), f64); 3]| s.iter().map(|t| t.0.0).fold(f64::INFINITY, f64::min);
+        let least_of = |s: &[Tried; 3]| s.iter().map(|t| t.cost).fold(f64::INFINITY, f64::min);
         let near = stretches.iter().map(least_of).fold(found.least, f64::min) + NEAR;
         for s in stretches.iter().filter(|s| least_of(s) <= near) {
             // The cost is that of a straight line outside, smooth over a stretch: thirds close in on its least.
-            let (mut a, mut b) = (s[1].1, s[2].1);
+            let (mut a, mut b) = (s[1].centre, s[2].centre);
             let mut tried = s.to_vec();
             for _ in 0..THIRDS {
                 let (c, d) = (at(a + (b - a) / 3.0), at(b - (b - a) / 3.0));
-                if c.0.0 <= d.0.0 {
-                    b = d.1
+                if c.cost <= d.cost {
+                    b = d.centre
                 } else {
-                    a = c.1
+                    a = c.centre
                 }
                 tried.extend([c, d]);
             }
-            for ((cost, slope, offset), centre) in tried {
-                if cost < found.least {
-                    found = Left { least: cost, centre, slope, offset, ..found };
+            for t in tried {
+                if t.cost < found.least {
+                    found =
+                        Left { least: t.cost, centre: t.centre, slope: t.slope, offset: t.offset, ..found };
                 }
             }
         }
