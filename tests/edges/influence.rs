@@ -228,7 +228,7 @@ impl Series {
         let [time, rate, temperature] = &columns;
         Simulated {
             csv: csv("time_s,rate_deg_h,temp_degC", &[time, rate, temperature]),
-            procedure: procedure(&own),
+            procedure: procedure(own),
             truths,
         }
     }
