@@ -211,9 +211,10 @@ fn analyse(
     let kept = &powers[..(powers.len() / each).max(1)];
     let (sum, squares) = kept.iter().fold((0.0, 0.0), |(s, q), p| (s + p, q + p * p));
     let rates: Vec<f64> = ramps.iter().map(|r| r.rate_deg_c_h.abs() / 60.0).collect();
+    let (residual_rms, evenly) = rms_over_temperature(&residual, &span);
     Some(Analysis {
-        residual_rms: rms_over_temperature(&residual, &span),
-        residual_dof: if squares > 0.0 { (sum * sum / squares).max(1.0) } else { 1.0 },
+        residual_rms,
+        residual_dof: if squares > 0.0 { (evenly * sum * sum / squares).max(1.0) } else { 1.0 },
         average_s: each as f64 * course.block_s,
         ramp_deg_c_min: rates.iter().copied().fold(0.0, f64::max),
         slowest_deg_c_min: rates.iter().copied().reduce(f64::min).unwrap_or(0.0),
@@ -230,8 +231,9 @@ fn analyse(
     })
 }
 
-/// Root of the mean over temperature of the mean square at each.
-fn rms_over_temperature(residual: &[(f64, f64, f64)], span: &Span) -> f64 {
+/// Root of the mean over temperature of the mean square at each, and the share of the degrees of freedom that even weights
+/// leave: a temperature where little time was spent counts as much as a long dwell.
+fn rms_over_temperature(residual: &[(f64, f64, f64)], span: &Span) -> (f64, f64) {
     const BINS: usize = 20;
     let mut bins = [(0.0, 0usize); BINS];
     for (_, t, r) in residual {
@@ -240,8 +242,12 @@ fn rms_over_temperature(residual: &[(f64, f64, f64)], span: &Span) -> f64 {
         bin.0 += r * r;
         bin.1 += 1;
     }
-    let used: Vec<f64> = bins.iter().filter(|b| b.1 > 0).map(|b| b.0 / b.1 as f64).collect();
-    (used.iter().sum::<f64>() / used.len().max(1) as f64).sqrt()
+    let used = || bins.iter().filter(|b| b.1 > 0).map(|b| (b.0, b.1 as f64));
+    let count = used().count().max(1) as f64;
+    let mean = used().map(|(sum, n)| sum / n).sum::<f64>() / count;
+    // The mean of k means over n₁ … nₖ squares is as sure as that of k²/Σ(1/nᵢ) squares.
+    let as_sure = count * count / used().map(|(_, n)| 1.0 / n).sum::<f64>().max(f64::MIN_POSITIVE);
+    (mean.sqrt(), (as_sure / residual.len().max(1) as f64).min(1.0))
 }
 
 /// Ratio of ramp rates from which they count as different.
@@ -317,5 +323,24 @@ impl Analysis {
         let (all, white) = (modes.powers(&noise), modes.powers(&[noise[0], 0.0, 0.0]));
         let kept = residual.iter().zip(all.iter().zip(&white)).map(|(r, (p, w))| r * (1.0 - w / p));
         inverse_dct2(&std::iter::once(0.0).chain(kept).collect::<Vec<_>>())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_dwell_adds_few_degrees_of_freedom_to_an_rms_with_even_weights() {
+        let span = Span { low: 0.0, high: 20.0 };
+        // Two means at each degree; then a hundred more at the upper end.
+        let at = |deg_c: f64, count: usize| vec![(0.0, deg_c, 1.0); count];
+        let even: Vec<_> = (0..20).flat_map(|i| at(f64::from(i) + 0.5, 2)).collect();
+        let (rms, share) = rms_over_temperature(&even, &span);
+        assert!((rms - 1.0).abs() < 1e-12 && (share - 1.0).abs() < 1e-12, "{rms} {share}");
+        let dwelt: Vec<_> = even.iter().copied().chain(at(19.5, 100)).collect();
+        let (_, share) = rms_over_temperature(&dwelt, &span);
+        // 400 / (19/2 + 1/102) squares of 140.
+        assert!((share * 140.0 - 42.06).abs() < 0.01, "{share}");
     }
 }
