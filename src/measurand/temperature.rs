@@ -31,8 +31,9 @@ const IDS: &[&str] = &[
 
 /// Name of the method of rows that come from the model over temperature.
 const METHOD: &str = "thermal_gls";
-/// Probability of no lag below which a lag counts as seen.
-const SEEN: f64 = 0.025;
+/// Probability of no lag below which a lag counts as seen. What is stated then excludes none, so that it is to be rare among
+/// units without one: an interval of 95 % that just misses zero is not enough.
+const SEEN: f64 = 0.005;
 /// Probability of as large a range by chance from which the curve counts as flat.
 const FLAT: f64 = 0.05;
 /// Arguments at which a curve over temperature is read.
