@@ -236,6 +236,9 @@ impl Row<'_> {
         if !a.parted {
             return Some(self.none(None).note(inseparable(a)));
         }
+        if a.narrow() {
+            return Some(self.none(None).note(narrow(a)));
+        }
         Some(self.beside_a_lag(a, 1.0, |l| l.rate))
     }
 
@@ -274,6 +277,9 @@ impl Row<'_> {
     }
 
     fn lag(&self, a: &Analysis) -> Option<Estimate> {
+        if a.parted && a.narrow() {
+            return Some(self.none(None).note(narrow(a)));
+        }
         let told = Lag::of(a);
         let limit = told.bounded.then_some(UpperLimit { value: told.upper_s, coverage: 0.95 });
         if !a.parted {
@@ -404,6 +410,15 @@ fn separation_note(a: &Analysis) -> Note {
         .with("rate", inflation(|s| s.rate))
         .with("lag", inflation(|s| s.lag))
         .with("hysteresis", inflation(|s| s.hysteresis))
+}
+
+/// Why a narrow range tells neither the lag nor the sensitivity to the rate of temperature.
+fn narrow(a: &Analysis) -> Note {
+    let span = a.posterior.span;
+    Note::new("thermal.narrow")
+        .with("range", Arg::figures(span.high - span.low, 3))
+        .with("crossing", Arg::figures(a.crossing_s() / 60.0, 2))
+        .with("lag", Arg::figures(a.posterior.longest_lag_s / 60.0, 2))
 }
 
 /// What can be said in place of terms that the schedule does not tell apart: the half gap at the middle of the range,

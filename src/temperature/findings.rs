@@ -288,7 +288,22 @@ impl Findings {
     }
 }
 
+/// Shares of the longest lag looked at that the fastest ramp must take over the whole range.
+const SETTLES: f64 = 0.4;
+
 impl Analysis {
+    /// Time that the fastest ramp takes over the whole range, s.
+    pub fn crossing_s(&self) -> f64 {
+        let span = self.posterior.span;
+        (span.high - span.low) / self.ramp_deg_c_min.max(f64::MIN_POSITIVE) * 60.0
+    }
+
+    /// True where the range is over before the coil can follow a ramp steadily: a lag, its rate of temperature and the
+    /// turning round of the hysteresis then have nearly the same course, and intervals of the first two are too short.
+    pub fn narrow(&self) -> bool {
+        self.crossing_s() < SETTLES * self.posterior.longest_lag_s
+    }
+
     /// Whether a term with so much inflation of its variance can be stated singly.
     pub fn separable(&self, inflation: impl Fn(&Separation) -> f64) -> bool {
         self.parted && self.separation.as_ref().is_some_and(|s| inflation(s) < separate::INSEPARABLE)

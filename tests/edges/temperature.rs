@@ -68,6 +68,13 @@ pub static FAMILY: Family = Family {
             draw: short,
         },
         Case {
+            name: "two rates over 20 degC",
+            edges: &[Edge::BesideLarge],
+            ids: &[SLOPE, SHUPE, LAG, PLAY, NOISE],
+            records: 60,
+            draw: narrow,
+        },
+        Case {
             name: "no transient after switching on",
             edges: &[Edge::Zero],
             ids: &[TRANSIENT, TIME],
@@ -295,6 +302,13 @@ fn faint(seed: u64) -> Simulated {
 fn short(seed: u64) -> Simulated {
     let chamber = Programme { low: 0.0, high: 20.0, rates: &[30.0], rest_s: 0.0 };
     over(Unit { line: 2e-3, ..STILL }, &chamber, seed, OVER)
+}
+
+fn narrow(seed: u64) -> Simulated {
+    let chamber = Programme { low: 0.0, high: 20.0, rates: &[57.0, 4.3], rest_s: 3600.0 };
+    let unit =
+        Unit { line: 2e-3, bend: 2e-5, shupe: 0.05, lag_s: 600.0, half_gap: 0.006, play_deg_c: 1.5, ..STILL };
+    over(unit, &chamber, seed, &[SLOPE, SHUPE, LAG, PLAY, NOISE])
 }
 
 /// Length of a record of the warm-up, s.
