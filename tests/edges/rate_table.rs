@@ -91,11 +91,11 @@ impl Unit {
         let of_rate = self.levels().into_iter().zip(&left).filter(|(x, _)| x.abs() >= 0.0999 * FULL);
         let of_rate = of_rate.fold(0.0, |m: f64, (x, r)| m.max((r / x).abs()));
         let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt();
-        // Of all steps, with the bias at its mean, where noise is all that moves the output and cycles tell it.
         let x: Vec<f64> = self.rates.iter().map(|r| 3600.0 * r).collect();
         let square: f64 = x.iter().map(|x| x * x).sum();
-        let plain = self.drift == 0.0 && self.heated == 0.0 && self.cycles > 2;
-        let told = plain.then(|| 1.96e6 * self.of_step() / (square * self.cycles as f64).sqrt());
+        // One or two cycles leave few degrees of freedom: Student's interval is wide by what the noise is not known to,
+        // and its width says nothing of what is lost.
+        let told = (self.cycles > 2).then(|| 1.96e6 * self.of_step() / self.left_of_rates().sqrt());
         let of_cycle = 1e6 * self.of_step() / square.sqrt();
         vec![
             Truth { oracle: told.map(|t| 1e-6 * t), ..Truth::new("scale_factor", slope).min(slope) },
@@ -114,6 +114,41 @@ impl Unit {
             Truth::new("table_harmonic_1", self.harmonics[0]).max(self.harmonics[0]),
             Truth::new("table_harmonic_2", self.harmonics[1]).max(self.harmonics[1]),
         ]
+    }
+
+    /// Square sum of the rates of all steps without what a bias takes of them, and a drift along a line or a sensitivity to
+    /// the temperature that follows the rates, where there is one: these are fitted too by one who knows the noise.
+    fn left_of_rates(&self) -> f64 {
+        let steps: Vec<f64> = (0..self.cycles).flat_map(|_| self.rates.iter().map(|r| 3600.0 * r)).collect();
+        let mut others: Vec<Vec<f64>> = vec![vec![1.0; steps.len()]];
+        if self.drift != 0.0 {
+            others.push((0..steps.len()).map(|i| i as f64).collect());
+        }
+        if self.heated != 0.0 {
+            // Mean over a step of what follows the square of the rate late by a minute.
+            let (mut warm, late) = (0.0, 60.0 / DWELL as f64 * (1.0 - (-(DWELL as f64) / 60.0).exp()));
+            let column = steps.iter().map(|x| {
+                let target = (x / FULL).powi(2);
+                let mean = target + (warm - target) * late;
+                warm = target + (warm - target) * (-(DWELL as f64) / 60.0).exp();
+                x * mean
+            });
+            others.push(column.collect());
+        }
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let without = |mut v: Vec<f64>, basis: &[Vec<f64>]| {
+            for b in basis {
+                let share = dot(&v, b) / dot(b, b);
+                v.iter_mut().zip(b).for_each(|(v, b)| *v -= share * b);
+            }
+            v
+        };
+        for column in others {
+            basis.push(without(column, &basis));
+        }
+        let left = without(steps, &basis);
+        dot(&left, &left)
     }
 
     fn of_ids(&self, ids: &[&str]) -> Vec<Truth> {

@@ -26,6 +26,8 @@ enum Form {
     Shaken(f64, f64),
     /// Nothing inside, and outside half of the half width is lost: no zone that the program knows.
     Stick(f64),
+    /// A part of every rate is lost inside, and what is lost stays lost outside.
+    Weak { half_width: f64, share: f64 },
     /// Steps of a read-out.
     Stairs(f64),
 }
@@ -45,6 +47,7 @@ impl Form {
             }
             Form::Stick(d) if x.abs() <= d => 0.0,
             Form::Stick(d) => x - x.clamp(-0.5 * d, 0.5 * d),
+            Form::Weak { half_width: d, share } => x - (1.0 - share) * x.clamp(-d, d),
             Form::Stairs(q) => q * (x / q).round(),
         }
     }
@@ -296,6 +299,20 @@ fn stick(seed: u64) -> Simulated {
     Sweep::of(Form::Stick(0.44)).simulated(seed, truths)
 }
 
+/// Half of the rate inside: at no rate the output moves by less than a tenth of what is expected, and half is enough for
+/// a threshold. So both are none, though a user may read either as the half width.
+fn half_inside(seed: u64) -> Simulated {
+    let truths = vec![Truth::new("dead_zone", 0.0).max(0.38), Truth::new("threshold", 0.0)];
+    Sweep::of(Form::Weak { half_width: 0.4, share: 0.5 }).simulated(seed, truths)
+}
+
+/// Two fifths of the rate inside: no dead zone, and a threshold where x − 0.6 δ is half of x.
+fn weak_inside(seed: u64) -> Simulated {
+    let d = 0.4;
+    let truths = vec![Truth::new("dead_zone", 0.0), Truth::new("threshold", 1.2 * d).max(1.2 * d)];
+    Sweep::of(Form::Weak { half_width: d, share: 0.4 }).simulated(seed, truths)
+}
+
 fn stairs(seed: u64) -> Simulated {
     let q = anywhere(seed, 0.3, 0.5);
     Sweep::of(Form::Stairs(q)).simulated(seed, vec![Truth::new("resolution", q).max(q)])
@@ -305,7 +322,8 @@ fn drifting(seed: u64) -> Simulated {
     let sweep = Sweep { drift: 0.1, ..Sweep::of(Form::Play(0.25)) };
     let mut truths = whole(&sweep, 0.25, 0.0, 0.5);
     truths[0] = Truth::new("dead_zone", 0.25).max(0.25);
-    truths[4] = Truth::new("scale_factor_bias", sweep.bias);
+    // A line about its middle takes nothing of a mean: fitted too, it leaves the oracle as it is.
+    truths[4] = Truth::new("scale_factor_bias", sweep.bias).oracle(sweep.bias_oracle());
     sweep.simulated(seed, truths)
 }
 
@@ -313,7 +331,7 @@ fn drifting_without(seed: u64) -> Simulated {
     let sweep = Sweep { drift: 0.1, ..Sweep::of(Form::Line) };
     let mut truths = whole(&sweep, 0.0, 0.0, 0.0);
     truths[0] = Truth::new("dead_zone", 0.0).max(0.15);
-    truths[4] = Truth::new("scale_factor_bias", sweep.bias);
+    truths[4] = Truth::new("scale_factor_bias", sweep.bias).oracle(sweep.bias_oracle());
     sweep.simulated(seed, truths)
 }
 
@@ -397,6 +415,20 @@ pub static FAMILY: Family = Family {
             ids: ZONE,
             records: 60,
             draw: stick,
+        },
+        Case {
+            name: "half of the rate inside",
+            edges: &[Edge::BesideLarge],
+            ids: ZONE,
+            records: 60,
+            draw: half_inside,
+        },
+        Case {
+            name: "two fifths of the rate inside",
+            edges: &[Edge::BesideLarge],
+            ids: ZONE,
+            records: 60,
+            draw: weak_inside,
         },
         Case {
             name: "steps of a read-out",

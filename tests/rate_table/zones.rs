@@ -84,12 +84,13 @@ fn zones(half_width: f64, subtractive: bool, known: Option<f64>, runs: u64, firs
 fn a_dead_zone_is_found_with_its_width_and_otherwise_bounded() {
     let wide = zones(0.3, true, None, 10, 400);
     assert_eq!(wide.errors.len(), 10);
-    assert!(wide.held >= 7, "{}", wide.held);
+    assert!(wide.held >= 7 && wide.withheld == 0, "{} {}", wide.held, wide.withheld);
     let gap = zones(0.3, false, None, 10, 400);
     assert_eq!(gap.errors.len(), 10);
-    assert!(gap.held >= 7, "{}", gap.held);
+    assert!(gap.held >= 7 && gap.withheld == 0, "{} {}", gap.held, gap.withheld);
     let none = zones(0.0, true, None, 10, 400);
     assert!(none.errors.is_empty(), "{} zones where none is", none.errors.len());
+    assert!(none.withheld <= 1, "{}", none.withheld);
 }
 
 #[test]
@@ -106,6 +107,7 @@ fn all_of_the_stretch_between_a_silent_rate_and_one_that_answers_belongs_to_the_
     // Smaller than the first rate it is a bound, up to that rate.
     let count = zones(0.11, false, Some(5e-4), 3, 560);
     assert!(count.errors.is_empty() && count.bounds.1 + count.withheld == 3, "{:?}", count.bounds);
+    assert!(count.withheld <= 1, "{}", count.withheld);
 }
 
 /// The rates of a test about the middle, each with the weight of its mean: the inverse of its standard uncertainty.
@@ -178,6 +180,7 @@ fn power_told_but_the_centre(bench: &SmallRates) -> [f64; 2] {
 fn a_zone_as_small_as_the_noise_of_a_step_is_found_where_the_scale_factor_is_known() {
     let small = zones(0.016, true, Some(5e-4), 12, 400);
     assert!(small.errors.len() >= 11 && small.held >= 9, "{} {}", small.errors.len(), small.held);
+    assert!(small.withheld <= 1, "{}", small.withheld);
     let bench = SmallRates { half_width: 0.016, ..SmallRates::default() };
     assert!(power_told(&bench, Some(5e-4)) > 0.99 && power_told(&bench, None) < 0.75);
 }
@@ -224,12 +227,13 @@ fn a_zone_with_noise_inside_the_loop_has_both_of_them() {
     assert!(width.held >= 17, "{} {:?}", width.held, width.errors);
     assert!(noise.errors.len() >= 19 && noise.held >= 17, "{} {:?}", noise.held, noise.errors);
     assert!(threshold.held >= 17, "{} {:?}", threshold.held, threshold.errors);
+    assert!(width.withheld + threshold.withheld == 0, "{} {}", width.withheld, threshold.withheld);
 }
 
 #[test]
 fn noise_that_rounds_nothing_off_is_bounded() {
     let [width, noise, _] = counted(&rounded(0.3, 0.0), Some(5e-4), 20, 700);
-    assert!(width.held >= 17, "{}", width.held);
+    assert!(width.held >= 17 && width.withheld <= 1, "{} {}", width.held, width.withheld);
     assert!(noise.errors.len() <= 1, "{:?}", noise.errors);
     assert!(noise.bounds.1 >= 17, "{:?}", noise.bounds);
 }

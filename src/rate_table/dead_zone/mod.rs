@@ -51,6 +51,9 @@ const NOISE: &str = "dead_zone_noise";
 
 const METHOD: &str = "profile_likelihood";
 
+/// Share of a change of rate that the output has to stay below inside a dead zone (IEEE Std 528).
+const SILENT_BELOW: f64 = 0.1;
+
 /// Half widths tried, up to a part of half the range of the rates.
 const WIDTHS: usize = 160;
 
@@ -81,6 +84,8 @@ pub struct DeadZone {
     others: usize,
     /// Zone with noise inside the loop, where that is shown.
     rounded: Option<Rounded>,
+    /// Share of small rates that the noise inside the loop lets through, where it is too much for a dead zone.
+    follows: Option<f64>,
     /// (normal score, input at which half comes through), ascending; of all forms that fit.
     threshold: Vec<(f64, f64)>,
     /// Upper bound of 95 % of the noise inside the loop where it is not shown, deg/h.
@@ -154,6 +159,7 @@ pub fn evaluate(
     };
     let value = Some(middle_of(&curve)).filter(|_| shown && unexplained.is_none() && open.is_none());
     shape.half_width = value.unwrap_or(0.0);
+    let follows = with_noise.and_then(follows);
     let rounds = alike.iter().any(|f| f.number == WITH_NOISE);
     let bound = (widths.bound(), widths.bound_of_threshold());
     let zone = match (value, unexplained) {
@@ -164,7 +170,7 @@ pub fn evaluate(
     };
     Some(DeadZone {
         channel: channel.to_owned(),
-        half_width: value,
+        half_width: value.filter(|_| follows.is_none()),
         centre,
         slope,
         offset,
@@ -177,6 +183,7 @@ pub fn evaluate(
         between: widths.bounded_by_a_gap().then(|| points.spacing()),
         noise_bound: closer.as_ref().filter(|_| rounds).map(|r| r.bound(widths.least_clean_over_centres())),
         rounded: with_noise.filter(|_| unexplained.is_none()).cloned(),
+        follows,
         threshold,
         resolution: resolution(response, line_slope, (centre, zone)),
         scale_factor_known: setup.scale_factor_uncertainty,
@@ -232,6 +239,15 @@ fn forms(widths: &Widths, closer: Option<&Rounded>, fits: &Fits) -> Vec<Form> {
         .collect()
 }
 
+/// Share of the smallest rates that noise inside the loop lets through, where it is surely too much for a dead zone: with the
+/// widest zone and the least noise that the test allows.
+fn follows(zone: &Rounded) -> Option<f64> {
+    let half_width = Spread::Curve(zone.half_width.clone()).bound(0.0, 0.95)?;
+    let noise = Spread::Curve(zone.noise.clone()).bound(0.0, 0.05)?;
+    let least = Shape { kind: Kind::Rounded, half_width, noise: noise.max(f64::MIN_POSITIVE) }.at_null();
+    (least >= SILENT_BELOW).then(|| zone.best.shape.at_null())
+}
+
 /// The median of a curve.
 fn middle_of(curve: &[(f64, f64)]) -> f64 {
     Spread::Curve(curve.to_vec()).bound(0.0, 0.5).unwrap_or(0.0)
@@ -273,12 +289,20 @@ impl DeadZone {
             let found = if IDS.contains(&id) { self.at_most(id, unit, None) } else { return None };
             return Some(found.note(Note::new("dead_zone.open").with("most", Arg::figures(most, 3))));
         }
+        if let Some(share) = self.follows.filter(|_| id == "dead_zone" || id == NOISE) {
+            let percent = Arg::figures(100.0 * share, 2);
+            return Some(
+                self.at_most(id, unit, None).note(Note::new("dead_zone.follows").with("percent", percent)),
+            );
+        }
         let found = match id {
             "dead_zone" => match self.half_width {
                 Some(value) => self.of_zone(id, unit, value, &self.curve),
                 None => self.bounded(id, unit, self.bound.0),
             },
-            "threshold" if self.half_width.is_none() => self.bounded(id, unit, self.bound.1),
+            "threshold" if self.half_width.is_none() && self.follows.is_none() => {
+                self.bounded(id, unit, self.bound.1)
+            }
             "threshold" if middle_of(&self.threshold) <= 0.0 => {
                 let value = Spread::Curve(self.threshold.clone()).bound(0.0, 0.95).unwrap_or(0.0);
                 self.at_most(id, unit, Some(value)).note(Note::new("dead_zone_noise.half_of_any"))

@@ -70,6 +70,15 @@ impl Shape {
         }
     }
 
+    /// Share of the smallest inputs that comes through.
+    pub fn at_null(&self) -> f64 {
+        match self.kind {
+            Kind::Rounded => 2.0 * normal_probability(-self.half_width / self.noise),
+            _ if self.half_width > 0.0 => 0.0,
+            _ => 1.0,
+        }
+    }
+
     /// The input at which half comes through; 0 where half of any does.
     pub fn threshold(&self) -> f64 {
         match self.kind {
@@ -79,7 +88,7 @@ impl Shape {
             Kind::Rounded => {
                 // The share that comes through grows with the input, and is a half at twice the half width at the latest.
                 let (mut low, mut high) = (0.0, 2.0 * self.half_width);
-                if 2.0 * normal_probability(-self.half_width / self.noise) >= 0.5 {
+                if self.at_null() >= 0.5 {
                     return 0.0;
                 }
                 for _ in 0..50 {
@@ -147,6 +156,7 @@ mod tests {
     fn a_rounded_zone_has_the_slope_at_null_and_the_offset_of_the_closed_form() {
         let slope = |delta: f64, sigma: f64| rounded(delta, sigma).of(1e-6) / 1e-6;
         assert!((slope(1.0, 3.0) - 2.0 * normal_probability(-1.0 / 3.0)).abs() < 1e-6);
+        assert!((slope(1.0, 0.8) - rounded(1.0, 0.8).at_null()).abs() < 1e-6);
         assert!((rounded(0.2, 0.1).of(5.0) - 4.8).abs() < 1e-12);
         assert!((rounded(0.2, 1e-9).of(0.3) - 0.1).abs() < 1e-9);
     }
