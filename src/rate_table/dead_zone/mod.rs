@@ -84,8 +84,9 @@ pub struct DeadZone {
     others: usize,
     /// Zone with noise inside the loop, where that is shown.
     rounded: Option<Rounded>,
-    /// Share of small rates that the noise inside the loop lets through, where it is too much for a dead zone.
-    follows: Option<f64>,
+    /// Share of the smallest rates that the noise inside the loop lets through, where it is too much for a dead zone, and
+    /// what one is at most, where that share may be less.
+    follows: Option<(f64, Option<f64>)>,
     /// (normal score, input at which half comes through), ascending; of all forms that fit.
     threshold: Vec<(f64, f64)>,
     /// Upper bound of 95 % of the noise inside the loop where it is not shown, deg/h.
@@ -239,13 +240,14 @@ fn forms(widths: &Widths, closer: Option<&Rounded>, fits: &Fits) -> Vec<Form> {
         .collect()
 }
 
-/// Share of the smallest rates that noise inside the loop lets through, where it is surely too much for a dead zone: with the
-/// widest zone and the least noise that the test allows.
-fn follows(zone: &Rounded) -> Option<f64> {
+/// Share of the smallest rates that noise inside the loop lets through, where it is too much for a dead zone; with what one
+/// is at most, unless the share is too much for the widest zone and the least noise that the test allows.
+fn follows(zone: &Rounded) -> Option<(f64, Option<f64>)> {
+    let share = zone.best.shape.at_null();
     let half_width = Spread::Curve(zone.half_width.clone()).bound(0.0, 0.95)?;
     let noise = Spread::Curve(zone.noise.clone()).bound(0.0, 0.05)?;
     let least = Shape { kind: Kind::Rounded, half_width, noise: noise.max(f64::MIN_POSITIVE) }.at_null();
-    (least >= SILENT_BELOW).then(|| zone.best.shape.at_null())
+    (share >= SILENT_BELOW).then(|| (share, Some(half_width).filter(|_| least < SILENT_BELOW)))
 }
 
 /// The median of a curve.
@@ -289,10 +291,12 @@ impl DeadZone {
             let found = if IDS.contains(&id) { self.at_most(id, unit, None) } else { return None };
             return Some(found.note(Note::new("dead_zone.open").with("most", Arg::figures(most, 3))));
         }
-        if let Some(share) = self.follows.filter(|_| id == "dead_zone" || id == NOISE) {
+        if let Some((share, most)) =
+            self.follows.filter(|f| id == "dead_zone" || (id == NOISE && f.1.is_none()))
+        {
             let percent = Arg::figures(100.0 * share, 2);
             return Some(
-                self.at_most(id, unit, None).note(Note::new("dead_zone.follows").with("percent", percent)),
+                self.at_most(id, unit, most).note(Note::new("dead_zone.follows").with("percent", percent)),
             );
         }
         let found = match id {
