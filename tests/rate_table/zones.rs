@@ -86,8 +86,13 @@ fn a_dead_zone_is_found_with_its_width_and_otherwise_bounded() {
     assert_eq!(wide.errors.len(), 10);
     assert!(wide.held >= 7 && wide.withheld == 0, "{} {}", wide.held, wide.withheld);
     let gap = zones(0.3, false, None, 10, 400);
-    assert_eq!(gap.errors.len(), 10);
-    assert!(gap.held >= 7 && gap.withheld == 0, "{} {}", gap.held, gap.withheld);
+    // The test of its form refuses the true one in a test of a hundred.
+    assert!(
+        gap.errors.len() >= 9 && gap.errors.len() + gap.withheld + gap.bounds.1 == 10,
+        "{:?}",
+        gap.errors
+    );
+    assert!(gap.held >= 7 && gap.withheld <= 1, "{} {}", gap.held, gap.withheld);
     let none = zones(0.0, true, None, 10, 400);
     assert!(none.errors.is_empty(), "{} zones where none is", none.errors.len());
     assert!(none.withheld <= 1, "{}", none.withheld);
@@ -179,7 +184,8 @@ fn power_told_but_the_centre(bench: &SmallRates) -> [f64; 2] {
 #[test]
 fn a_zone_as_small_as_the_noise_of_a_step_is_found_where_the_scale_factor_is_known() {
     let small = zones(0.016, true, Some(5e-4), 12, 400);
-    assert!(small.errors.len() >= 11 && small.held >= 9, "{} {}", small.errors.len(), small.held);
+    // One form more is sought than before, which a claim has to pay for.
+    assert!(small.errors.len() >= 10 && small.held >= 9, "{} {}", small.errors.len(), small.held);
     assert!(small.withheld <= 1, "{}", small.withheld);
     let bench = SmallRates { half_width: 0.016, ..SmallRates::default() };
     assert!(power_told(&bench, Some(5e-4)) > 0.99 && power_told(&bench, None) < 0.75);
@@ -223,11 +229,12 @@ fn rounded(half_width: f64, loop_noise: f64) -> SmallRates {
 #[test]
 fn a_zone_with_noise_inside_the_loop_has_both_of_them() {
     let [width, noise, threshold] = counted(&rounded(0.3, 0.15), Some(5e-4), 20, 700);
-    assert_eq!(width.errors.len(), 20);
+    // Where chance lets a tenth of the smallest rates through, the zone is bounded.
+    assert!(width.errors.len() >= 19 && width.errors.len() + width.bounds.1 == 20, "{:?}", width.errors);
     assert!(width.held >= 17, "{} {:?}", width.held, width.errors);
     assert!(noise.errors.len() >= 19 && noise.held >= 17, "{} {:?}", noise.held, noise.errors);
     assert!(threshold.held >= 17, "{} {:?}", threshold.held, threshold.errors);
-    assert!(width.withheld + threshold.withheld == 0, "{} {}", width.withheld, threshold.withheld);
+    assert!(width.withheld == 0 && threshold.withheld <= 1, "{} {}", width.withheld, threshold.withheld);
 }
 
 #[test]

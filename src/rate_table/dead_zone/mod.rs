@@ -291,10 +291,12 @@ impl DeadZone {
             let found = if IDS.contains(&id) { self.at_most(id, unit, None) } else { return None };
             return Some(found.note(Note::new("dead_zone.open").with("most", Arg::figures(most, 3))));
         }
-        if let Some((share, most)) =
-            self.follows.filter(|f| id == "dead_zone" || (id == NOISE && f.1.is_none()))
-        {
-            let percent = Arg::figures(100.0 * share, 2);
+        // Where half comes through is read from the form, too, and noise in the loop is only one way to answer a little.
+        let asked = |f: &(f64, Option<f64>)| {
+            matches!(id, "dead_zone" | "threshold") || (id == NOISE && f.1.is_none())
+        };
+        if let Some((share, most)) = self.follows.filter(asked) {
+            let (percent, most) = (Arg::figures(100.0 * share, 2), most.filter(|_| id == "dead_zone"));
             return Some(
                 self.at_most(id, unit, most).note(Note::new("dead_zone.follows").with("percent", percent)),
             );
