@@ -82,11 +82,15 @@ fn zones(half_width: f64, subtractive: bool, known: Option<f64>, runs: u64, firs
 
 #[test]
 fn a_dead_zone_is_found_with_its_width_and_otherwise_bounded() {
-    let wide = zones(0.3, true, None, 10, 400);
-    assert_eq!(wide.errors.len(), 10);
-    assert!(wide.held >= 7 && wide.withheld == 0, "{} {}", wide.held, wide.withheld);
-    let gap = zones(0.3, false, None, 10, 400);
     // The test of its form refuses the true one in a test of a hundred.
+    let wide = zones(0.3, true, None, 10, 400);
+    assert!(
+        wide.errors.len() >= 9 && wide.errors.len() + wide.withheld + wide.bounds.1 == 10,
+        "{:?}",
+        wide.errors
+    );
+    assert!(wide.held >= 7 && wide.withheld <= 1, "{} {}", wide.held, wide.withheld);
+    let gap = zones(0.3, false, None, 10, 400);
     assert!(
         gap.errors.len() >= 9 && gap.errors.len() + gap.withheld + gap.bounds.1 == 10,
         "{:?}",
