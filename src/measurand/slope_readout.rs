@@ -2,9 +2,7 @@
 
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread, normal_probability};
-use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
-use crate::noise::model::NoiseModel;
 use crate::noise::slope::{LARGEST_SHARE, SLOPE_TOLERANCE, SlopePoint, read, reading_time_s, slope};
 use crate::text::{Arg, Note};
 
@@ -83,15 +81,7 @@ impl Measurand for SlopeReadOut {
 fn own_part<'a>(gyro: &GyroEvidence, term: NoiseType, tau_s: impl Iterator<Item = &'a f64>) -> f64 {
     let (model, tau0_s) = (&gyro.identification.described.model, gyro.tau0_s);
     let plateau = gyro.identification.plateau.as_ref().filter(|_| term == NoiseType::AngleRandomWalk);
-    let alone = plateau.map_or_else(
-        || Composite {
-            terms: NoiseModel::default().with(term, model.terms.coefficient(term)),
-            bandwidth: model.bandwidth,
-            sampling: model.sampling,
-            ..Default::default()
-        },
-        |plateau| plateau.parts(model),
-    );
+    let alone = plateau.map_or_else(|| model.alone(term), |plateau| plateau.parts(model));
     let ratios: Vec<f64> = tau_s
         .map(|t| alone.allan_variance(*t, tau0_s) / model.allan_variance(*t, tau0_s))
         .filter(|r| r.is_finite())

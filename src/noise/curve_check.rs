@@ -8,7 +8,7 @@ use super::composite::{Composite, Described};
 use super::data::NoiseType;
 use super::identification::Identification;
 use super::intervals::BoundedPoint;
-use super::model::{NoiseModel, unit_allan_variance};
+use super::model::unit_allan_variance;
 use super::slope::{LARGEST_SHARE, SlopePoint, read, reading_time_s, runs, through};
 use crate::estimate::{Estimate, Interval, Spread};
 use crate::text::Note;
@@ -121,18 +121,12 @@ pub fn contest(found: &mut Identification, octaves: &[BoundedPoint], tau0_s: f64
     let curve = Curve::of(octaves, tau0_s, samples, found.highest_hz);
     let described = found.described.clone();
     let model = described.model.clone();
-    let alone = |term: NoiseType, coefficient: f64| Composite {
-        terms: NoiseModel::default().with(term, coefficient),
-        bandwidth: model.bandwidth,
-        sampling: model.sampling,
-        ..Default::default()
-    };
     let plateau = found.plateau.clone();
     for term in [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk] {
         let white = term == NoiseType::AngleRandomWalk;
         let (parts, coefficient) = match plateau.as_ref().filter(|_| white) {
             Some(plateau) => (plateau.parts(&model), plateau.level(&model)),
-            None => (alone(term, model.terms.coefficient(term)), model.terms.coefficient(term)),
+            None => (model.alone(term), model.terms.coefficient(term)),
         };
         let estimate = match term {
             NoiseType::AngleRandomWalk => found.read_angle_random_walk_mut(),
@@ -185,6 +179,7 @@ mod tests {
     use super::*;
     use crate::noise::composite::Parameter;
     use crate::noise::data::DeviationPoint;
+    use crate::noise::model::NoiseModel;
 
     fn octaves(deviation: impl Fn(f64) -> f64) -> Vec<BoundedPoint> {
         let point = |k: u32| {

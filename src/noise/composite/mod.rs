@@ -215,6 +215,16 @@ impl Composite {
         }
     }
 
+    /// The same output with one term alone.
+    pub fn alone(&self, term: NoiseType) -> Composite {
+        Composite {
+            terms: NoiseModel::default().with(term, self.terms.coefficient(term)),
+            bandwidth: self.bandwidth,
+            sampling: self.sampling,
+            ..Default::default()
+        }
+    }
+
     /// Without its ramp, which is no noise.
     #[must_use]
     pub fn without_ramp(&self) -> Composite {
