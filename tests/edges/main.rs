@@ -16,6 +16,7 @@ mod case;
 mod influence;
 mod noise;
 mod noise_source;
+mod on_table;
 mod page;
 mod rate_table;
 mod small_rates;

@@ -5,6 +5,7 @@
 
 use crate::case::{Case, Edge, Exemption, Family, Simulated, Truth};
 use crate::noise_source::{NoiseSource, csv};
+use crate::on_table::{Column, column, procedure};
 
 /// Full scale, deg/h.
 const FULL: f64 = 360_000.0;
@@ -206,61 +207,26 @@ impl Unit {
                 "time_s,rate_deg_h,table_rate_deg_s,table_angle_deg,temp_degC",
                 &[time, output, table, read, temperature],
             ),
-            procedure: procedure(LINE, "full_scale = \"100 deg/s\"\nof_rate_from = \"10 deg/s\""),
+            procedure: rates(LINE, "of_rate_from = \"10 deg/s\""),
             truths: self.of_ids(ids),
         }
     }
 }
 
-fn procedure(ids: &[&str], table: &str) -> String {
-    let mut text = String::from(HEAD) + table + "\n";
-    text += "[conditions]\nminimum_duration = \"1 min\"\n[[instrument]]\nname = \"table\"\ncalibration_due = 2999-12-31\n";
-    for id in ids {
-        text += &format!("[[measurand]]\nid = \"{id}\"\n");
-    }
-    text + "[[clause]]\nclause = \"1\"\ntitle = \"Rates\"\nstatus = \"here\"\n"
-}
+const COLUMNS: [Column; 4] = [
+    column("rate", "rate_deg_h", "rate", "deg/h"),
+    column("table", "table_rate_deg_s", "table_rate", "deg/s"),
+    column("angle", "table_angle_deg", "table_angle", "deg"),
+    column("temp", "temp_degC", "temperature", "degC"),
+];
 
-const HEAD: &str = r#"format = "procedure/1"
-[procedure]
-id = "rates"
-title = "Rates"
-revision = "A"
-standard = "drawn"
-clause = "drawn"
-author = "drawn"
-[unit_under_test]
-serial_required = true
-[[channel]]
-id = "time"
-column = "time_s"
-role = "time"
-unit = "s"
-[[channel]]
-id = "rate"
-column = "rate_deg_h"
-role = "rate"
-unit = "deg/h"
-[[channel]]
-id = "table"
-column = "table_rate_deg_s"
-role = "table_rate"
-unit = "deg/s"
-[[channel]]
-id = "angle"
-column = "table_angle_deg"
-role = "table_angle"
-unit = "deg"
-[[channel]]
-id = "temp"
-column = "temp_degC"
-role = "temperature"
-unit = "degC"
-[rate_table]
-settling = "2 s"
-minimum_step = "15 s"
-whole_turns = false
-"#;
+fn rates(ids: &[&str], table: &str) -> String {
+    let sections = format!(
+        "[rate_table]\nsettling = \"2 s\"\nminimum_step = \"15 s\"\nwhole_turns = false\nfull_scale = \"100 deg/s\"\n\
+         {table}\n[conditions]\nminimum_duration = \"1 min\""
+    );
+    procedure("Rates", &COLUMNS, &sections, ids)
+}
 
 const LINE: &[&str] = &[
     "scale_factor",
@@ -287,6 +253,22 @@ const BENT: &[&str] = &[
     "scale_factor_residual",
     "scale_factor_odd",
     "scale_factor_even",
+];
+
+/// All of [`LINE`] but the asymmetry, which a bent response has by its definition.
+const LINE_WITHOUT_SIDES: &[&str] = &[
+    "scale_factor",
+    "scale_factor_error",
+    "scale_factor_nonlinearity",
+    "scale_factor_nonlinearity_of_rate",
+    "scale_factor_residual",
+    "scale_factor_odd",
+    "scale_factor_even",
+    "scale_factor_repeatability",
+    "scale_factor_hysteresis",
+    "scale_factor_temperature_sensitivity",
+    "table_harmonic_1",
+    "table_harmonic_2",
 ];
 
 const SLOW: &[&str] = &[
@@ -415,7 +397,7 @@ fn sine(kappa_s: f64, seed: u64) -> Simulated {
             "time_s,rate_deg_h,table_rate_deg_s,table_angle_deg,temp_degC",
             &[time, output, table, read, temperature],
         ),
-        procedure: procedure(&["sine_response"], "full_scale = \"100 deg/s\"\nresponse = \"sine\""),
+        procedure: rates(SINE, "response = \"sine\""),
         truths: vec![Truth::new("sine_response", kappa_s).max(kappa_s)],
     }
 }
@@ -452,33 +434,8 @@ fn turned(cross: f64, back: bool, drift: f64, seed: u64) -> Simulated {
         roll += (about * dt / 3600.0).to_radians();
     }
     let sign = if back { "-" } else { "" };
-    let procedure = format!(
-        r#"format = "procedure/1"
-[procedure]
-id = "turns"
-title = "Turns"
-revision = "A"
-standard = "drawn"
-clause = "drawn"
-author = "drawn"
-[unit_under_test]
-serial_required = true
-[[channel]]
-id = "time"
-column = "time_s"
-role = "time"
-unit = "s"
-[[channel]]
-id = "x"
-column = "x_deg_h"
-role = "rate"
-unit = "deg/h"
-[[channel]]
-id = "y"
-column = "y_deg_h"
-role = "rate"
-unit = "deg/h"
-[rate_table]
+    let sections = format!(
+        r#"[rate_table]
 [[rate_table.rest]]
 from = "1 s"
 to = "59 s"
@@ -502,20 +459,15 @@ from = "193 s"
 to = "250 s"
 [conditions]
 minimum_duration = "1 min"
-[[instrument]]
-name = "table"
-calibration_due = 2999-12-31
-[[measurand]]
-id = "cross_axis"
-[[clause]]
-clause = "1"
-title = "Turns"
-status = "here"
 "#
     );
+    let procedure = procedure("Turns", &TURNED, &sections, CROSS);
     let truth = Truth::new("cross_axis", cross).on("y<-x");
     Simulated { csv: csv("time_s,x_deg_h,y_deg_h", &[&time, &x, &y]), procedure, truths: vec![truth] }
 }
+
+const TURNED: [Column; 2] =
+    [column("x", "x_deg_h", "rate", "deg/h"), column("y", "y_deg_h", "rate", "deg/h")];
 
 fn no_cross(seed: u64) -> Simulated {
     turned(0.0, true, 0.0, seed)
@@ -581,20 +533,7 @@ pub static FAMILY: Family = Family {
         Case {
             name: "below the noise",
             edges: &[Edge::BelowNoise],
-            ids: &[
-                "scale_factor",
-                "scale_factor_error",
-                "scale_factor_nonlinearity",
-                "scale_factor_nonlinearity_of_rate",
-                "scale_factor_residual",
-                "scale_factor_odd",
-                "scale_factor_even",
-                "scale_factor_repeatability",
-                "scale_factor_hysteresis",
-                "scale_factor_temperature_sensitivity",
-                "table_harmonic_1",
-                "table_harmonic_2",
-            ],
+            ids: LINE_WITHOUT_SIDES,
             records: 100,
             draw: small,
         },
@@ -608,20 +547,7 @@ pub static FAMILY: Family = Family {
         Case {
             name: "everything large",
             edges: &[Edge::BesideLarge],
-            ids: &[
-                "scale_factor",
-                "scale_factor_error",
-                "scale_factor_nonlinearity",
-                "scale_factor_nonlinearity_of_rate",
-                "scale_factor_residual",
-                "scale_factor_odd",
-                "scale_factor_even",
-                "scale_factor_repeatability",
-                "scale_factor_hysteresis",
-                "scale_factor_temperature_sensitivity",
-                "table_harmonic_1",
-                "table_harmonic_2",
-            ],
+            ids: LINE_WITHOUT_SIDES,
             records: 100,
             draw: everything,
         },
@@ -630,20 +556,7 @@ pub static FAMILY: Family = Family {
         Case {
             name: "uneven rates",
             edges: &[Edge::Grid],
-            ids: &[
-                "scale_factor",
-                "scale_factor_error",
-                "scale_factor_nonlinearity",
-                "scale_factor_nonlinearity_of_rate",
-                "scale_factor_residual",
-                "scale_factor_odd",
-                "scale_factor_even",
-                "scale_factor_repeatability",
-                "scale_factor_hysteresis",
-                "scale_factor_temperature_sensitivity",
-                "table_harmonic_1",
-                "table_harmonic_2",
-            ],
+            ids: LINE_WITHOUT_SIDES,
             records: 100,
             draw: uneven,
         },

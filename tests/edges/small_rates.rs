@@ -5,6 +5,7 @@
 
 use crate::case::{Case, Edge, Exemption, Family, Simulated, Truth};
 use crate::noise_source::{NoiseSource, csv};
+use crate::on_table::{Column, column, procedure};
 
 /// Earth rate along the vertical at the latitude of the procedure, deg/h.
 fn vertical() -> f64 {
@@ -120,43 +121,19 @@ impl Sweep {
         }
         Simulated {
             csv: csv("time_s,rate_deg_h,table_rate_deg_h,table_angle_deg", &[&time, &output, &table, &read]),
-            procedure: PROCEDURE.to_string(),
+            procedure: procedure("Small rates", &COLUMNS, SECTIONS, ALL),
             truths,
         }
     }
 }
 
-const PROCEDURE: &str = r#"format = "procedure/1"
-[procedure]
-id = "small-rates"
-title = "Small rates"
-revision = "A"
-standard = "drawn"
-clause = "drawn"
-author = "drawn"
-[unit_under_test]
-serial_required = true
-[[channel]]
-id = "time"
-column = "time_s"
-role = "time"
-unit = "s"
-[[channel]]
-id = "rate"
-column = "rate_deg_h"
-role = "rate"
-unit = "deg/h"
-[[channel]]
-id = "table"
-column = "table_rate_deg_h"
-role = "table_rate"
-unit = "deg/h"
-[[channel]]
-id = "angle"
-column = "table_angle_deg"
-role = "table_angle"
-unit = "deg"
-[rate_table]
+const COLUMNS: [Column; 3] = [
+    column("rate", "rate_deg_h", "rate", "deg/h"),
+    column("table", "table_rate_deg_h", "table_rate", "deg/h"),
+    column("angle", "table_angle_deg", "table_angle", "deg"),
+];
+
+const SECTIONS: &str = r#"[rate_table]
 settling = "2 s"
 minimum_step = "60 s"
 whole_turns = false
@@ -169,23 +146,6 @@ latitude = "55.98 deg"
 latitude_uncertainty = "1 arcsec"
 elevation = "90 deg"
 elevation_uncertainty = "0.1 mrad"
-[[instrument]]
-name = "table"
-calibration_due = 2999-12-31
-[[measurand]]
-id = "dead_zone"
-[[measurand]]
-id = "dead_zone_noise"
-[[measurand]]
-id = "threshold"
-[[measurand]]
-id = "resolution"
-[[measurand]]
-id = "scale_factor_bias"
-[[clause]]
-clause = "1"
-title = "Small rates"
-status = "here"
 "#;
 
 const ZONE: &[&str] = &["dead_zone", "threshold"];

@@ -6,6 +6,7 @@
 
 use crate::case::{Case, Edge, Exemption, Family, Simulated, Truth};
 use crate::noise_source::{NoiseSource, csv};
+use crate::on_table::{Column, column, procedure};
 
 /// Earth rate, deg/h, and the latitude.
 const EARTH: f64 = 15.041_067;
@@ -109,48 +110,20 @@ impl Bench {
                 "time_s,rate_deg_h,inner_rate_deg_s,inner_angle_deg,outer_rate_deg_s",
                 &[&time, &output, &inner_rate, &inner, &outer],
             ),
-            procedure: PROCEDURE.to_string(),
+            procedure: procedure("Tilts", &COLUMNS, SECTIONS, IDS),
             truths,
         }
     }
 }
 
-const PROCEDURE: &str = r#"format = "procedure/1"
-[procedure]
-id = "tilts"
-title = "Tilts"
-revision = "A"
-standard = "drawn"
-clause = "drawn"
-author = "drawn"
-[unit_under_test]
-serial_required = true
-[[channel]]
-id = "time"
-column = "time_s"
-role = "time"
-unit = "s"
-[[channel]]
-id = "rate"
-column = "rate_deg_h"
-role = "rate"
-unit = "deg/h"
-[[channel]]
-id = "inner_rate"
-column = "inner_rate_deg_s"
-role = "table_rate"
-unit = "deg/s"
-[[channel]]
-id = "inner_angle"
-column = "inner_angle_deg"
-role = "table_angle"
-unit = "deg"
-[[channel]]
-id = "outer"
-column = "outer_rate_deg_s"
-role = "outer_rate"
-unit = "deg/s"
-[rate_table]
+const COLUMNS: [Column; 4] = [
+    column("rate", "rate_deg_h", "rate", "deg/h"),
+    column("inner_rate", "inner_rate_deg_s", "table_rate", "deg/s"),
+    column("inner_angle", "inner_angle_deg", "table_angle", "deg"),
+    column("outer", "outer_rate_deg_s", "outer_rate", "deg/s"),
+];
+
+const SECTIONS: &str = r#"[rate_table]
 settling = "4 s"
 minimum_step = "15 s"
 whole_turns = true
@@ -163,17 +136,6 @@ latitude = "55.98 deg"
 latitude_uncertainty = "10 arcsec"
 elevation = "90 deg"
 elevation_uncertainty = "1 mrad"
-[[instrument]]
-name = "table"
-calibration_due = 2999-12-31
-[[measurand]]
-id = "misalignment_x"
-[[measurand]]
-id = "misalignment_y"
-[[clause]]
-clause = "1"
-title = "Tilts"
-status = "here"
 "#;
 
 fn told(bench: &Bench) -> Vec<Truth> {
