@@ -18,10 +18,10 @@ const FEWEST: usize = 256;
 /// Rounds of mean and noise.
 const ROUNDS: u64 = 2;
 
-/// Identifies a claim.
+/// Identifies a claim from a recording.
 ///
 /// # Errors
-/// A recording that is too short, or of which all samples are equal.
+/// Fails when the recording is too short, or when all its samples are equal.
 pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<Claim, Note> {
     let rows = series.rate_deg_h.len();
     if rows < FEWEST {
