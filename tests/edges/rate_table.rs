@@ -244,17 +244,6 @@ const LINE: &[&str] = &[
     "table_harmonic_2",
 ];
 
-/// All that a unit with a bent response and no asymmetry of its own shows.
-const BENT: &[&str] = &[
-    "scale_factor",
-    "scale_factor_error",
-    "scale_factor_nonlinearity",
-    "scale_factor_nonlinearity_of_rate",
-    "scale_factor_residual",
-    "scale_factor_odd",
-    "scale_factor_even",
-];
-
 /// All of [`LINE`] but the asymmetry, which a bent response has by its definition.
 const LINE_WITHOUT_SIDES: &[&str] = &[
     "scale_factor",
@@ -271,13 +260,11 @@ const LINE_WITHOUT_SIDES: &[&str] = &[
     "table_harmonic_2",
 ];
 
-const SLOW: &[&str] = &[
-    "scale_factor_repeatability",
-    "scale_factor_hysteresis",
-    "scale_factor_temperature_sensitivity",
-    "table_harmonic_1",
-    "table_harmonic_2",
-];
+/// All that a unit with a bent response and no asymmetry of its own shows: the first seven.
+const BENT: &[&str] = LINE_WITHOUT_SIDES.split_at(7).0;
+
+/// What differs between cycles, temperatures and angles of the table: the others.
+const SLOW: &[&str] = LINE_WITHOUT_SIDES.split_at(7).1;
 
 fn perfect(seed: u64) -> Simulated {
     Unit::perfect().simulated(seed, LINE)
@@ -313,7 +300,7 @@ fn small(seed: u64) -> Simulated {
         harmonics: [0.004, 0.004],
         ..Unit::perfect()
     };
-    unit.simulated(seed, &[BENT, SLOW].concat())
+    unit.simulated(seed, LINE_WITHOUT_SIDES)
 }
 
 fn small_asymmetry(seed: u64) -> Simulated {
@@ -331,7 +318,7 @@ fn everything(seed: u64) -> Simulated {
         ..Unit::perfect()
     };
     // The three-slope line of a bent response has an asymmetry of its own.
-    unit.simulated(seed, &[BENT, SLOW].concat())
+    unit.simulated(seed, LINE_WITHOUT_SIDES)
 }
 
 fn drifting(seed: u64) -> Simulated {
@@ -339,7 +326,7 @@ fn drifting(seed: u64) -> Simulated {
 }
 
 fn heated(seed: u64) -> Simulated {
-    Unit { heated: 3.0, ..Unit::perfect() }.simulated(seed, &[BENT, SLOW].concat())
+    Unit { heated: 3.0, ..Unit::perfect() }.simulated(seed, LINE_WITHOUT_SIDES)
 }
 
 fn uneven(seed: u64) -> Simulated {
@@ -350,7 +337,7 @@ fn uneven(seed: u64) -> Simulated {
         .collect();
     let rates = up.iter().chain(up.iter().rev().skip(1).take(6)).copied().collect();
     let unit = Unit { rates, odd_ppm: 20.0, hysteresis_ppm: 2.0, per_degree_ppm: 5.0, ..Unit::perfect() };
-    unit.simulated(seed, &[BENT, SLOW].concat())
+    unit.simulated(seed, LINE_WITHOUT_SIDES)
 }
 
 fn one_way(seed: u64) -> Simulated {
