@@ -3,39 +3,33 @@
 //! A declarative procedure (TOML) and a unit's recording go in; a report comes out in which every quantity carries
 //! its uncertainty and is set against its limit: pass, fail, or indeterminate.
 //!
-//! Data flows one way, and modules depend downwards only:
-//!
-//! ```text
-//! numeric, units, text <- estimate, figure, output <- record, recording
-//!     <- keyed <- ingest, noise <- measurand <- procedure <- condition <- run <- compare <- report <- cli
-//! ```
+//! The analysis is in [`sagnac_core`], file formats and the clock in [`sagnac_ingest`]; both are re-exported here. This
+//! crate is the harness around them: configuration, acceptance, records, reports, the command line.
 #![forbid(unsafe_code)]
 
 pub mod claim;
 pub mod cli;
 pub mod compare;
 pub mod condition;
-pub mod effect;
-pub mod estimate;
-pub mod figure;
-pub mod ids;
-pub mod influence;
 pub mod ingest;
 pub mod keyed;
-pub mod measurand;
-pub mod mismatch;
-pub mod noise;
-pub mod numeric;
 pub mod output;
 pub mod procedure;
-pub mod rate_table;
 pub mod record;
-pub mod recording;
 pub mod report;
 pub mod run;
 pub mod selftest;
 pub mod series;
 pub mod simulate;
-pub mod temperature;
 pub mod text;
-pub mod units;
+
+pub use sagnac_core::{
+    effect, estimate, figure, ids, influence, measurand, mismatch, noise, numeric, rate_table, temperature,
+    units,
+};
+
+/// Channels, what they deliver, and what is found about them.
+pub mod recording {
+    pub use sagnac_core::recording::*;
+    pub use sagnac_ingest::{faults, guess, timebase, value_checks};
+}

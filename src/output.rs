@@ -15,7 +15,7 @@ pub use csv::quoted;
 pub use file::StagedFile;
 pub use partial::abandon_all;
 
-use crate::text::{Arg, Note, io_reason};
+use crate::text::{Arg, Lang, Localize, Note, io_reason};
 use earlier::Earlier;
 use partial::Partial;
 use schemars::JsonSchema;
@@ -76,7 +76,7 @@ impl OutputError {
         let at = |path: &Path| path.display().to_string();
         match self {
             OutputError::Io { action, path, source } => {
-                Note::new(action).with("path", at(path)).with("reason", io_reason(source))
+                Note::new(*action).with("path", at(path)).with("reason", io_reason(source))
             }
             OutputError::InTheWay { path, why } => {
                 Note::new("output_error.in_the_way").with("path", at(path)).with("why", why.clone())
@@ -88,7 +88,7 @@ impl OutputError {
                 Note::new("output_error.other")
                     .with("path", at(path))
                     .with("what", what.clone())
-                    .with("differ", Arg::Several(differ, ", "))
+                    .with("differ", Arg::Several(differ, ", ".into()))
             }
             OutputError::InputInside { path, input } => {
                 Note::new("output_error.input_inside").with("path", at(path)).with("input", at(input))
@@ -101,7 +101,7 @@ impl OutputError {
 impl fmt::Display for OutputError {
     /// In English.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.note().fmt(f)
+        f.write_str(&self.note().say(Lang::En))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::noise::model::{NoiseModel, unit_allan_variance};
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::noise::windows::edf_of_window_std;
-use crate::text::{Lang, Note, decimal};
+use crate::text::{Lang, Localize, Note, decimal};
 use crate::units::Unit;
 
 /// One oracle.

@@ -5,14 +5,12 @@
 
 mod lang;
 mod system;
-mod visible;
 
 pub use lang::Lang;
+pub use sagnac_core::message::{Arg, Note};
+pub use sagnac_core::visible::{steers, visible, visible_lines};
 pub use system::io_reason;
-pub use visible::{steers, visible, visible_lines};
 
-use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
@@ -56,77 +54,19 @@ pub fn lookup(lang: Lang, key: &str) -> Option<&'static str> {
     table(lang).get(key).or_else(|| table(Lang::En).get(key)).map(String::as_str)
 }
 
-/// One argument of a note.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Arg {
-    /// A number; shown with up to four significant digits.
-    Number(f64),
-    /// A number as it was stated, such as a requirement; shown with every digit.
-    Stated(f64),
-    /// A count; shown in full.
-    Count(u64),
-    /// A text, shown as one line, without what steers a terminal.
-    Text(String),
-    /// A key of the locale tables, shown as what stands there; as its last part where nothing does.
-    Key(String),
-    /// A sentence within the sentence.
-    Note(Box<Note>),
-    /// Several arguments with a text between each two; serialised in English.
-    #[serde(serialize_with = "joined")]
-    Several(Vec<Arg>, &'static str),
-    /// A number with so many decimals, whatever its size, with or without idle zeros; serialised as the number.
-    #[serde(serialize_with = "bare")]
-    Decimals {
-        /// The number.
-        value: f64,
-        /// Decimals.
-        digits: usize,
-        /// Whether zeros that fill the decimals are shown.
-        zeros: bool,
-    },
-    /// A number with its own count of significant digits, with or without idle zeros behind the decimal mark;
-    /// serialised as the number.
-    #[serde(serialize_with = "bare")]
-    Figures {
-        /// The number.
-        value: f64,
-        /// Significant digits.
-        digits: usize,
-        /// Whether zeros that fill the digits are shown.
-        zeros: bool,
-    },
+/// The words of a key: what the table says, or else the last part of the key.
+pub fn words(key: &str, lang: Lang) -> String {
+    lookup(lang, key).map_or_else(|| key.rsplit('.').next().unwrap_or(key).replace('_', " "), str::to_owned)
 }
 
-impl Arg {
-    /// The words of a key: what the table says, or else the last part of the key.
-    pub fn words(key: &str, lang: Lang) -> String {
-        lookup(lang, key)
-            .map_or_else(|| key.rsplit('.').next().unwrap_or(key).replace('_', " "), str::to_owned)
-    }
+/// What can be said in a language.
+pub trait Localize {
+    /// The words, with the decimal mark of the language.
+    fn say(&self, lang: Lang) -> String;
+}
 
-    /// A number with significant digits, idle zeros among them.
-    pub fn figures(value: f64, digits: usize) -> Arg {
-        Arg::Figures { value, digits, zeros: true }
-    }
-
-    /// A number with at most so many significant digits, without idle zeros.
-    pub fn rounded(value: f64, digits: usize) -> Arg {
-        Arg::Figures { value, digits, zeros: false }
-    }
-
-    /// A number with a fixed count of decimals.
-    pub fn fixed(value: f64, digits: usize) -> Arg {
-        Arg::Decimals { value, digits, zeros: true }
-    }
-
-    /// A number with at most so many decimals.
-    pub fn decimals(value: f64, digits: usize) -> Arg {
-        Arg::Decimals { value, digits, zeros: false }
-    }
-
-    /// The argument in words, with the decimal mark of the language.
-    pub fn say(&self, lang: Lang) -> String {
+impl Localize for Arg {
+    fn say(&self, lang: Lang) -> String {
         match self {
             Arg::Number(v) => decimal(&trimmed(significant(*v, 4)), lang),
             Arg::Stated(v) => decimal(&trimmed(significant(*v, 12)), lang),
@@ -140,108 +80,39 @@ impl Arg {
             }
             Arg::Count(v) => v.to_string(),
             Arg::Text(t) => visible(t).into_owned(),
-            Arg::Key(k) => Arg::words(k, lang),
+            Arg::Key(k) => words(k, lang),
             Arg::Note(n) => n.say(lang),
             Arg::Several(list, between) => list.iter().map(|a| a.say(lang)).collect::<Vec<_>>().join(between),
         }
     }
-
-    /// An id under a prefix of the locale tables, such as `measurand` and `static_bias`.
-    pub fn key(prefix: &str, id: &str) -> Arg {
-        Arg::Key(format!("{prefix}.{id}"))
-    }
 }
 
-/// A number without its presentation.
-fn bare<S: Serializer>(value: &f64, _: &usize, _: &bool, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_f64(*value)
-}
-
-fn joined<S: Serializer>(list: &[Arg], between: &&str, serializer: S) -> Result<S::Ok, S::Error> {
-    let words: Vec<String> = list.iter().map(|a| a.say(Lang::En)).collect();
-    serializer.serialize_str(&words.join(between))
-}
-
-impl From<f64> for Arg {
-    fn from(v: f64) -> Self {
-        Arg::Number(v)
-    }
-}
-impl From<u64> for Arg {
-    fn from(v: u64) -> Self {
-        Arg::Count(v)
-    }
-}
-impl From<usize> for Arg {
-    fn from(v: usize) -> Self {
-        Arg::Count(v as u64)
-    }
-}
-impl From<Note> for Arg {
-    fn from(v: Note) -> Self {
-        Arg::Note(Box::new(v))
-    }
-}
-impl From<&str> for Arg {
-    fn from(v: &str) -> Self {
-        Arg::Text(v.to_owned())
-    }
-}
-impl From<String> for Arg {
-    fn from(v: String) -> Self {
-        Arg::Text(v)
+impl Localize for Note {
+    /// The sentence. A key that the table lacks shows as itself, so that it is noticed.
+    fn say(&self, lang: Lang) -> String {
+        fill(lookup(lang, &self.id).unwrap_or(&self.id), |name| self.args.get(name).map(|arg| arg.say(lang)))
     }
 }
 
-/// A sentence by name, with its arguments. Serialised as the English text plus name and arguments.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Note {
-    /// Key in the locale tables, for example `note.record_too_short`.
-    pub id: &'static str,
-    /// Arguments by name.
-    pub args: BTreeMap<&'static str, Arg>,
-}
-
-impl Note {
-    /// A note with no arguments yet.
-    pub fn new(id: &'static str) -> Note {
-        Note { id, args: BTreeMap::new() }
-    }
-
-    /// Adds an argument.
-    #[must_use]
-    pub fn with(mut self, name: &'static str, value: impl Into<Arg>) -> Note {
-        self.args.insert(name, value.into());
-        self
-    }
-
-    /// The sentence in a language. A key the table lacks shows as itself, so that it is noticed.
-    pub fn say(&self, lang: Lang) -> String {
-        fill(lookup(lang, self.id).unwrap_or(self.id), |name| self.args.get(name).map(|arg| arg.say(lang)))
+impl Localize for sagnac_ingest::IngestError {
+    /// The whole diagnostic: place, what is wrong, what was found, what to do.
+    fn say(&self, lang: Lang) -> String {
+        self.note().say(lang)
     }
 }
 
-impl std::fmt::Display for Note {
-    /// In English: the language of `result.json`.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.say(Lang::En))
-    }
+/// Texts of the catalogue of effects.
+pub trait Bilingual {
+    /// The text in a language.
+    fn of(&self, lang: Lang) -> &'static str;
 }
 
-impl From<&'static str> for Note {
-    /// A sentence without arguments, by its key.
-    fn from(id: &'static str) -> Note {
-        Note::new(id)
-    }
-}
-
-impl Serialize for Note {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut s = serializer.serialize_struct("Note", 3)?;
-        s.serialize_field("text", &self.say(Lang::En))?;
-        s.serialize_field("id", self.id)?;
-        s.serialize_field("args", &self.args)?;
-        s.end()
+impl Bilingual for sagnac_core::effect::Both {
+    fn of(&self, lang: Lang) -> &'static str {
+        match lang {
+            Lang::En => self.en,
+            Lang::Ru => self.ru,
+        }
     }
 }
 

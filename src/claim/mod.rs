@@ -1,84 +1,12 @@
-//! A claimed simulation: the noise, mean, sensitivities and effects that an engineer believes a recording to hold, each
-//! with the uncertainty that he gives it.
+//! Model files: a claimed simulation read from TOML and written back.
 
-mod profile;
 mod read;
 pub mod tables;
 mod write;
 
-pub use profile::{Profile, SimulationPlan};
 pub use read::{load, load_model, parse};
+pub use sagnac_core::claim::{Claim, ModelFile, Profile, SimulationPlan, Stated, Uncertainty};
 pub use write::write;
 
-use crate::effect::{ClaimedMean, Column, Effect, Values};
-use crate::noise::model::NoiseModel;
-
-/// A claim (`model.toml`).
-#[derive(Clone)]
-pub struct Claim {
-    /// Name of the case; empty where none is stated.
-    pub case: String,
-    /// Free text.
-    pub description: String,
-    /// Nominal sample rate, Hz.
-    pub sample_rate_hz: f64,
-    /// Columns that the recording is stated to have, beside time and rate. `None` where the claim does not say.
-    pub columns: Option<Vec<Column>>,
-    /// N, B, K; Q from the angle increment, lsb/√12.
-    pub noise: NoiseModel,
-    /// Angle increment of the output, arcsec; 0 for none.
-    pub quantization_lsb_arcsec: f64,
-    /// The mean.
-    pub mean: ClaimedMean,
-    /// How well it is known.
-    pub uncertainty: Uncertainty,
-    /// Effects that it states.
-    pub effects: Vec<Stated>,
-}
-
-/// One standard deviation of the author's knowledge; 0 is exact.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Uncertainty {
-    /// Relative, of N.
-    pub n_rel: f64,
-    /// Relative, of B.
-    pub b_rel: f64,
-    /// Relative, of K.
-    pub k_rel: f64,
-    /// Of N where the claim states 0, deg/√h: N is no larger than what this allows, and may be less.
-    pub n_deg_rt_h: f64,
-    /// The same of B, deg/h.
-    pub b_deg_h: f64,
-    /// The same of K, deg/h/√h.
-    pub k_deg_h_rt_h: f64,
-    /// deg/h. The engine leaves the bias free whatever it is.
-    pub bias_deg_h: f64,
-    /// deg/h/°C.
-    pub temperature_coefficient_deg_h_per_degc: f64,
-    /// ppm.
-    pub scale_factor_ppm: f64,
-}
-
-/// An effect with its parameters.
-#[derive(Clone)]
-pub struct Stated {
-    /// The effect.
-    pub effect: &'static dyn Effect,
-    /// Its parameters by name.
-    pub values: Values,
-}
-
-/// A model file: a claim, and what `simulate` needs beside it.
-#[derive(Clone)]
-pub struct ModelFile {
-    /// The claim.
-    pub claim: Claim,
-    /// What is made when the command line does not say.
-    pub simulation: SimulationPlan,
-    /// Courses of columns.
-    pub drivers: Vec<Profile>,
-}
-
 #[cfg(test)]
-#[path = "tests.rs"]
 mod tests;

@@ -1,17 +1,17 @@
 //! A claim from a TOML file, with every problem at its place.
 
-use super::profile::{Profile, SimulationPlan};
 use super::tables::MODEL_FILE;
-use super::{Claim, ModelFile, Stated, Uncertainty};
+use super::{Claim, ModelFile, Profile, SimulationPlan, Stated, Uncertainty};
 use crate::effect::{
     self, ClaimedMean, Column, Drivers, EFFECTS, Earth, Effect, Param, Temperature, Value, Values,
 };
-use crate::keyed::diagnostics::{Problems, nearest};
+use crate::keyed::diagnostics::Problems;
 use crate::keyed::file::{self, Wording};
 use crate::keyed::reader::{Reader, checked, shorten};
 use crate::keyed::section::{Given, Named, Section};
 use crate::noise::model::NoiseModel;
 use crate::text::Note;
+use sagnac_core::spelling::nearest;
 use std::path::Path;
 
 /// What is said of a claim that cannot be read at all.

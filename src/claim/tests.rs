@@ -1,5 +1,6 @@
 use super::*;
-use crate::effect::{EFFECTS, Value};
+use crate::effect::{ClaimedMean, Column, EFFECTS, Value};
+use crate::noise::model::NoiseModel;
 use crate::noise::simulate::{Setup, Simulator};
 
 /// The example of the contract.

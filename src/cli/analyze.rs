@@ -9,7 +9,7 @@ use crate::procedure::model::Procedure;
 use crate::record::UnitUnderTest;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::run::{Request, analysis};
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Localize, Note};
 use crate::units::Unit;
 use chrono::Utc;
 use std::path::{Path, PathBuf};

@@ -17,7 +17,7 @@ use crate::recording::Role;
 use crate::report::compare::{CompareView, table};
 use crate::report::{Renderer, svg};
 use crate::run::{Request, analysis, execute};
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Localize, Note};
 use chrono::{DateTime, SecondsFormat, Utc};
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -2,9 +2,9 @@
 
 use super::{EffectsArgs, exit, place};
 use crate::effect::{EFFECTS, Effect, Param, find};
-use crate::keyed::diagnostics::nearest;
 use crate::report::unit::pretty;
-use crate::text::{Arg, Lang, Note, decimal};
+use crate::text::{Arg, Bilingual, Lang, Localize, Note, decimal};
+use sagnac_core::spelling::nearest;
 use serde_json::{Value, json};
 
 /// Width of the text of a page, characters.

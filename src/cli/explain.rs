@@ -6,14 +6,14 @@ use super::{ExplainArgs, exit, place, run};
 use crate::claim::{self, Claim};
 use crate::effect::{Column, EFFECTS, find};
 use crate::ingest::{ReadOptions, files_read};
-use crate::keyed::diagnostics::nearest;
 use crate::mismatch::{self, Options, Outcome};
 use crate::output::{Kind, StagedFolder};
 use crate::report::explain::{Context, ExplainView};
 use crate::report::{Renderer, svg};
 use crate::series::{Series, SeriesOptions, load_series};
-use crate::text::{Lang, Note};
+use crate::text::{Bilingual, Lang, Localize, Note};
 use chrono::{SecondsFormat, Utc};
+use sagnac_core::spelling::nearest;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

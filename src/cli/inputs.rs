@@ -3,7 +3,7 @@
 use super::place;
 use crate::ingest::{ReadOptions, files_read};
 use crate::output::{Kind, Order, StagedFolder};
-use crate::text::Lang;
+use crate::text::{Lang, Localize};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Debug;

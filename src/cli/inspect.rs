@@ -4,7 +4,7 @@ use super::progress::Progress;
 use super::{InspectArgs, exit, place};
 use crate::ingest::open_recording;
 use crate::run::inspect::inspect_source;
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Localize, Note};
 
 pub fn main(args: &InspectArgs, lang: Lang) -> u8 {
     let mut progress = Progress::new();

@@ -1,5 +1,6 @@
 //! Options that say how a recording is to be read.
 
+use crate::ingest::raw::LayoutFile;
 use crate::ingest::read_words::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding};
 use crate::ingest::{ReadOptions, TextOptions};
 use clap::Args;
@@ -54,7 +55,7 @@ impl ReadArgs {
                 ..TextOptions::default()
             },
             part: self.part.clone(),
-            layout: self.layout.clone(),
+            layout: self.layout.clone().map(LayoutFile::at),
         }
     }
 }

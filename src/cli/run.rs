@@ -16,7 +16,7 @@ use crate::record::{Evidence, ExplainedRecord, RunRecord, UnitUnderTest};
 use crate::report::explain::{Context, ExplainView, explained_says};
 use crate::report::{Renderer, render_html, render_markdown, svg};
 use crate::run::{Outcome, Request, RunError, execute, explained, failed};
-use crate::text::{Lang, Note, lookup};
+use crate::text::{Lang, Localize, Note, lookup};
 use chrono::{SecondsFormat, Utc};
 use std::path::{Path, PathBuf};
 

@@ -15,7 +15,7 @@ use crate::report::view::PhasePart;
 use crate::report::{Renderer, render_phases, svg};
 use crate::run::phases::{Done, combine, failure, figures, folder};
 use crate::run::{Outcome, Request, execute, failed, session};
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Localize, Note};
 use chrono::Utc;
 use std::path::PathBuf;
 
@@ -55,8 +55,11 @@ pub fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let procedures: Vec<PathBuf> = std::iter::once(args.procedure.clone()).chain(procedures).collect();
     let limits: Vec<PathBuf> =
         phased.phases.iter().filter_map(|p| Some(paths(&p.limits.as_ref()?.path))).collect();
-    let layouts: Vec<PathBuf> =
-        phased.phases.iter().filter_map(|p| p.procedure.value.recording.read.layout.clone()).collect();
+    let layouts: Vec<PathBuf> = phased
+        .phases
+        .iter()
+        .filter_map(|p| p.procedure.value.recording.read.layout.as_ref().map(|l| l.path.clone()))
+        .collect();
     let staged = Inputs::new(args.force)
         .recording(&args.recording, &ReadOptions::default())
         .files("procedure", &procedures)

@@ -8,7 +8,7 @@ use crate::keyed::quantity;
 use crate::output::StagedFile;
 use crate::series::{Series, SeriesOptions, load_series};
 use crate::simulate::{Format, Order, Over, Simulation, Written, write};
-use crate::text::{Arg, Lang, Note};
+use crate::text::{Arg, Lang, Localize, Note};
 use std::path::{Path, PathBuf};
 
 /// Seed where neither the command line nor the model says one.

@@ -101,7 +101,7 @@ n_deg_rt_h,arw_ratio_printed,arw_ratio_computed,six_n_deg_h,sigma100_over_six_n,
 n_table1_deg_rt_h,remarks\n",
     );
     for row in &checked.rows {
-        let ids: Vec<&str> = row.remarks.iter().map(|r| r.id).collect();
+        let ids: Vec<&str> = row.remarks.iter().map(|r| r.id.as_ref()).collect();
         let fields = [
             quoted(&row.device),
             number(Some(row.sigma100)),

@@ -41,7 +41,7 @@ pub(super) fn of_recording(result: &Value) -> Vec<Note> {
         })
         .collect();
     if !found.is_empty() {
-        out.push(Note::new("compare.more.faults").with("found", Arg::Several(found, ", ")));
+        out.push(Note::new("compare.more.faults").with("found", Arg::Several(found, ", ".into())));
     }
     let conditions = result.get("conditions").and_then(Value::as_array);
     if conditions.into_iter().flatten().any(|c| c.get("status").and_then(Value::as_str) == Some("invalid")) {
@@ -64,7 +64,8 @@ fn departure<'a>(result: &'a Value, channel: &str, view: &str) -> Option<&'a Val
 pub(super) fn of_model(result: &Value, channel: &str) -> Option<Note> {
     let departs = VIEWS.iter().filter(|(view, _)| departure(result, channel, view).is_some());
     let names: Vec<Arg> = departs.map(|(_, key)| Arg::Key((*key).into())).collect();
-    (!names.is_empty()).then(|| Note::new("compare.more.departs").with("views", Arg::Several(names, ", ")))
+    (!names.is_empty())
+        .then(|| Note::new("compare.more.departs").with("views", Arg::Several(names, ", ".into())))
 }
 
 /// The jump of the level that the model of a channel does not make: when, and how large.
@@ -81,6 +82,7 @@ pub(super) fn jump(result: &Value, channel: &str) -> Option<Note> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::{Lang, Localize};
     use serde_json::json;
 
     #[test]
@@ -95,11 +97,11 @@ mod tests {
                  "message": {"args": {"time_s": 18000.0, "size": 0.997, "deviations": 26.3}}},
             ],
         });
-        let said: Vec<String> = of_recording(&result).iter().map(ToString::to_string).collect();
+        let said: Vec<String> = of_recording(&result).iter().map(|n| n.say(Lang::En)).collect();
         assert!(said[0].contains("Gaps: 2, Stuck samples: 40") && said.len() == 2, "{said:?}");
-        let model = of_model(&result, "x").unwrap().to_string();
+        let model = of_model(&result, "x").unwrap().say(Lang::En);
         assert!(model.contains("by amplitude") && !model.contains("by lag"), "{model}");
-        let jumped = jump(&result, "y").unwrap().to_string();
+        let jumped = jump(&result, "y").unwrap().say(Lang::En);
         assert!(jumped.contains("0.997") && jumped.contains("18000 s"), "{jumped}");
         assert_eq!(jump(&result, "x"), None);
         assert_eq!((of_recording(&json!({})), of_model(&result, "z")), (vec![], None));

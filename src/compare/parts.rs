@@ -64,6 +64,7 @@ pub fn part_name(share: &ShareRecord, model: &ModelRecord) -> Note {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::{Lang, Localize};
 
     fn share(part: &str, index: usize, share: f64) -> ShareRecord {
         ShareRecord { part: part.into(), index, share, deviation_deg_h: 0.0 }
@@ -77,7 +78,7 @@ mod tests {
         assert!((kinds[0].1 - 0.6).abs() < 1e-12);
         assert_eq!(kinds[1], ("compare.part.angle_random_walk", 0.4));
         let model = ModelRecord { lines: vec![(1.0, 2.5), (2.0, 7.25)], ..ModelRecord::default() };
-        assert_eq!(part_name(&shares[1], &model).to_string(), "a spectral line at 7.25 Hz");
-        assert_eq!(part_name(&shares[0], &model).to_string(), "angle random walk");
+        assert_eq!(part_name(&shares[1], &model).say(Lang::En), "a spectral line at 7.25 Hz");
+        assert_eq!(part_name(&shares[0], &model).say(Lang::En), "angle random walk");
     }
 }

@@ -227,6 +227,7 @@ fn remarks(tables: &Tables, rows: &[CheckedRow], null: &[NullRow]) -> Vec<Note> 
 mod tests {
     use super::super::published::checked;
     use super::*;
+    use crate::text::{Lang, Localize};
 
     fn ids(notes: &[Note]) -> Vec<&str> {
         notes.iter().map(|n| n.id.rsplit('.').next().unwrap()).collect()
@@ -293,7 +294,7 @@ mod tests {
             assert!(whole.contains(&id), "{id}");
         }
         let slope = checked.remarks.iter().find(|n| n.id.ends_with("slope_name")).unwrap();
-        assert!(slope.to_string().contains("random walk"), "{slope}");
+        assert!(slope.say(Lang::En).contains("random walk"), "{slope:?}");
     }
 
     #[test]

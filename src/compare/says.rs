@@ -64,7 +64,7 @@ fn made_of(w: &WindowRecord) -> Option<Note> {
     let note = Note::new(if others.is_empty() { "compare.says.made_of_one" } else { "compare.says.made_of" })
         .with("part", Arg::Key(first.0.into()))
         .with("share", percent(first.1));
-    Some(if others.is_empty() { note } else { note.with("others", Arg::Several(others, ", ")) })
+    Some(if others.is_empty() { note } else { note.with("others", Arg::Several(others, ", ".into())) })
 }
 
 fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {

@@ -93,8 +93,10 @@ pub struct Unit {
     /// True where the model departs from the record, so that what it predicts is indicative.
     pub indicative: bool,
     /// What it all says.
+    #[serde(serialize_with = "crate::record::message::messages")]
     pub says: Vec<Note>,
     /// What could not be compared, and why.
+    #[serde(serialize_with = "crate::record::message::messages")]
     pub missing: Vec<Note>,
 }
 
@@ -209,7 +211,8 @@ pub fn not_compared<'a>(limited: impl Iterator<Item = &'a str>) -> Option<Note> 
     let mut ids: Vec<&str> = limited.filter(|id| !COMPARED.contains(id)).collect();
     ids.dedup();
     let names: Vec<Arg> = ids.into_iter().map(|id| Arg::Key(format!("measurand.{id}"))).collect();
-    (!names.is_empty()).then(|| Note::new("compare.more.limits").with("names", Arg::Several(names, ", ")))
+    (!names.is_empty())
+        .then(|| Note::new("compare.more.limits").with("names", Arg::Several(names, ", ".into())))
 }
 
 /// Tells units of the same name apart: by the name of their file, and where that is the same too, by their path.

@@ -98,7 +98,7 @@ impl CheckLog {
             channel: channel.map(str::to_owned),
             phase: None,
             status,
-            reason,
+            reason: reason.map(Into::into),
             evidence,
         };
         if let Ok(mut list) = self.0.lock() {
@@ -148,7 +148,7 @@ fn unmade(id: &str, reason: Note) -> CheckRecord {
         channel: None,
         phase: None,
         status: CheckStatus::NotMade,
-        reason: Some(reason),
+        reason: Some(reason.into()),
         evidence: None,
     }
 }

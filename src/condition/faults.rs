@@ -36,7 +36,7 @@ impl Condition for Faults {
         for (id, count, what) in
             [("implausible", found.implausible, "implausible"), ("cut_off", found.cut_off, "cut_off")]
         {
-            let first = found.faults.iter().find(|f| f.kind == what).and_then(|f| f.message.clone());
+            let first = found.faults.iter().find(|f| f.kind == what).map(|f| f.message.clone());
             if count > 0 {
                 let note = Note::new("plausible.condition").with("count", count);
                 let note = match first {

@@ -34,9 +34,10 @@ mod warm_up;
 pub use gyro_fact::{BiasStep, ColumnFact, GyroFact, NoiseChange, TailShape};
 
 use crate::procedure::{EffectiveLimits, Procedure};
-use crate::record::{ConditionRecord, ConditionStatus, Integrity};
+use crate::record::{ConditionRecord, ConditionStatus};
+use crate::recording::integrity::Integrity;
 use crate::temperature::findings::Schedule;
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Localize, Note};
 use chrono::NaiveDate;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -153,8 +154,8 @@ fn record(
         evidence: None,
         observed,
         required: requirement.as_ref().map_or_else(String::new, |r| r.say(Lang::En)),
-        requirement,
+        requirement: requirement.map(Into::into),
         note: note.say(Lang::En),
-        message: Some(note),
+        message: Some(note.into()),
     }
 }

@@ -321,6 +321,6 @@ mod tests {
         let beyond = run(&[(-40.0, 64.0, false), (64.0, -44.0, false)]);
         assert!(beyond.segments.iter().all(|s| left(s, &asked()) < 0.0));
         let none = dwells(&beyond, &asked(), 2700.0);
-        assert_eq!(none.message.map(|m| m.id), Some("schedule_dwell.none"));
+        assert_eq!(none.message.as_ref().map(|m| m.id.as_ref()), Some("schedule_dwell.none"));
     }
 }

@@ -5,8 +5,8 @@
 use super::compressed;
 use super::joined::PartSpec;
 use super::manifest_tables::MANIFEST_FILE;
-use super::options::{ReadOptions, TextOptions};
 use super::recording::natural;
+use super::{ReadOptions, TextOptions};
 use super::{pattern, reading};
 use crate::keyed::diagnostics::{Problems, Span};
 use crate::keyed::file::{self, Wording};
@@ -14,6 +14,7 @@ use crate::keyed::inside::{self, Inside};
 use crate::keyed::reader::{Reader, checked};
 use crate::keyed::section::Section;
 use crate::text::Note;
+use sagnac_ingest::raw::LayoutFile;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -194,7 +195,7 @@ fn hash_holds(stated: &str, path: &Path, section: &Section, reader: &mut Reader<
             false
         }
         Err(e) => {
-            complain(reader, &at, Note::new("manifest.unreadable").with("reason", e.to_string()), None);
+            complain(reader, &at, Note::new("manifest.unreadable").with("reason", e.note()), None);
             false
         }
     }
@@ -234,7 +235,7 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
 fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOptions {
     let layout = section.text("layout").and_then(|text| {
         let at = reader.source.inside_quotes(&section.span_of("layout"));
-        inside::file(&text, folder, &at, reader).map(|f| f.path)
+        inside::file(&text, folder, &at, reader).map(|f| LayoutFile::at(f.path))
     });
     ReadOptions { layout, ..reading::options(section, reader) }
 }

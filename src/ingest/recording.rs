@@ -1,13 +1,15 @@
 //! From what a user names to one recording: a file, several files, a pattern, a manifest.
 
-use super::error::{IngestError, IngestErrorKind};
 use super::joined::{self, PartSpec};
 use super::manifest::{self, Manifest};
+use super::raw::{layout, refused};
+use super::{IngestError, IngestErrorKind};
 use super::{ReadOptions, Source, open_with};
 use crate::keyed::diagnostics::Problems;
-use crate::text::{Lang, Note};
+use crate::text::{Lang, Localize, Note};
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// An opened recording and what its manifest says beside.
 pub struct Recording {
@@ -81,10 +83,11 @@ pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Record
     let name = named.first().map_or(none, PathBuf::as_path);
     if named.len() == 1 && manifest::is_manifest(name) {
         let manifest = manifest::load(name).map_err(RecordingError::Manifest)?;
-        let options = manifest.options_over(options);
+        let options = with_layout(&manifest.options_over(options))?;
         let source = joined::open(name, &manifest.parts(), manifest.contiguous, &options)?;
         return Ok(Recording { source, manifest: Some(manifest) });
     }
+    let options = &with_layout(options)?;
     let mut files = Vec::new();
     for path in named {
         match pattern(path) {
@@ -104,6 +107,16 @@ pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Record
     Ok(Recording { source: joined::open(name, &specs, false, options)?, manifest: None })
 }
 
+/// The options with their layout read, where there is one.
+fn with_layout(options: &ReadOptions) -> Result<ReadOptions, IngestError> {
+    let mut options = options.clone();
+    if let Some(file) = options.layout.as_mut().filter(|f| f.layout.is_none()) {
+        let read = layout::load(&file.path).map_err(|problems| refused(&file.path, &problems))?;
+        file.layout = Some(Arc::new(read));
+    }
+    Ok(options)
+}
+
 /// Opens files of a manifest as one recording, each with the phase given for it.
 ///
 /// # Errors
@@ -119,6 +132,7 @@ pub fn open_files(
         sha256: f.sha256.clone(),
         phase: f.phase.clone(),
     };
+    let options = &with_layout(options)?;
     match files {
         [one] if one.phase.is_none() => open_with(&one.path, options),
         _ => joined::open(name, &files.iter().map(part).collect::<Vec<_>>(), contiguous, options),
@@ -129,7 +143,7 @@ pub fn open_files(
 /// cannot be found out is left out: opening says why.
 pub fn files_read(named: &[PathBuf], options: &ReadOptions) -> Vec<PathBuf> {
     let mut files = Vec::new();
-    let mut layout = options.layout.clone();
+    let mut layout = options.layout.as_ref().map(|l| l.path.clone());
     for path in named {
         if !manifest::is_manifest(path) {
             files.extend(each_of(path).unwrap_or_else(|_| vec![path.clone()]));
@@ -138,7 +152,7 @@ pub fn files_read(named: &[PathBuf], options: &ReadOptions) -> Vec<PathBuf> {
         files.push(path.clone());
         if let Ok(manifest) = manifest::load(path) {
             files.extend(manifest.files.iter().map(|f| f.path.clone()));
-            layout = manifest.options.layout.or(layout);
+            layout = manifest.options.layout.map(|l| l.path).or(layout);
         }
     }
     files.extend(layout);

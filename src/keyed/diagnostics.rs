@@ -3,7 +3,7 @@
 //! A [`Problem`] carries the line it is about, so that it can be shown without the file. The rendering is plain text:
 //! no colours, columns counted in characters, so that it lines up for text in any alphabet.
 
-use crate::text::{Lang, Note, steers, visible};
+use crate::text::{Lang, Localize, Note, steers, visible};
 use std::fmt;
 use std::ops::Range;
 
@@ -245,21 +245,6 @@ fn excerpt(line: &str, start: usize, width: usize) -> Excerpt {
     Excerpt { text, start, width: width.clamp(1, SHOWN.saturating_sub(start).max(1)) }
 }
 
-/// The candidate that is spelt most nearly like `word`, when one is near enough to be meant.
-pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    if word.len() > 100 {
-        return None;
-    }
-    let plain = |s: &str| s.to_lowercase().replace(['-', ' '], "_");
-    let wanted = plain(word);
-    candidates
-        .into_iter()
-        .map(|c| (strsim::damerau_levenshtein(&wanted, &plain(c)), c))
-        .filter(|(distance, c)| *distance <= 1 + c.chars().count().min(wanted.chars().count()) / 4)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, c)| c)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -302,12 +287,5 @@ mod tests {
             assert!(!p.to_string().is_empty());
         }
         assert_eq!(SourceText::new("a", String::new()).error(&(0..0), "m").column, 1);
-    }
-
-    #[test]
-    fn only_near_spellings_are_offered() {
-        assert_eq!(nearest("warmup", ["warm_up", "site"]), Some("warm_up"));
-        assert_eq!(nearest("angle-random-walk", ["angle_random_walk"]), Some("angle_random_walk"));
-        assert_eq!(nearest("zebra", ["warm_up", "site"]), None);
     }
 }

@@ -147,6 +147,7 @@ pub fn parse(text: &str, unit: &str, difference: bool, bare: bool) -> Result<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::{Lang, Localize};
 
     #[test]
     fn numbers_and_units_are_told_apart() {
@@ -174,16 +175,16 @@ mod tests {
     fn the_wrong_part_is_pointed_at() {
         let e = parse("20 bananas", "degC", false, false).unwrap_err();
         assert_eq!(e.span, 3..10);
-        assert!(e.message.to_string().contains("`bananas`"), "{}", e.message);
+        assert!(e.message.say(Lang::En).contains("`bananas`"), "{:?}", e.message);
         let e = parse("3 deg/sqrt(h)", "deg/h", false, false).unwrap_err();
-        assert_eq!((e.span, e.message.to_string().contains("an angle random walk")), (2..13, true));
-        assert!(parse("20", "degC", false, false).unwrap_err().message.to_string().contains("no unit"));
+        assert_eq!((e.span, e.message.say(Lang::En).contains("an angle random walk")), (2..13, true));
+        assert!(parse("20", "degC", false, false).unwrap_err().message.say(Lang::En).contains("no unit"));
         assert!(
             parse("0,4 degC", "degC", false, false)
                 .unwrap_err()
                 .help
                 .unwrap()
-                .to_string()
+                .say(Lang::En)
                 .contains("0.4 degC")
         );
     }

@@ -1,13 +1,14 @@
 //! Reads a TOML file by its description: unknown keys, missing keys, types, units and ranges are checked here, all
 //! at once, each with its place.
 
-use super::diagnostics::{Problem, Problems, SourceText, Span, nearest};
+use super::diagnostics::{Problem, Problems, SourceText, Span};
 use super::section::{Entry, Section};
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::{syntax, values};
 use crate::ids::{self, MeasurandId};
 use crate::recording::Role;
 use crate::text::{Arg, Lang, Note, lookup};
+use sagnac_core::spelling::nearest;
 use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
 

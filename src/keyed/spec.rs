@@ -281,14 +281,15 @@ pub(crate) const fn difference(unit: &'static str, range: Range) -> Kind {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::{Lang, Localize};
 
     #[test]
     fn ranges_know_their_ends() {
         assert!(!Range::POSITIVE.holds(0.0) && Range::POSITIVE.holds(1e-300));
         assert!(Range::NOT_NEGATIVE.holds(0.0) && !Range::NOT_NEGATIVE.holds(-1e-300));
         assert!(!Range::ANY.holds(f64::NAN) && !Range::ANY.holds(f64::INFINITY));
-        assert_eq!(Range::above_up_to(0.0, 0.5).describe("").to_string(), "above 0 and at most 0.5");
-        assert_eq!(Range::POSITIVE.describe("s").to_string(), "above 0 s");
-        assert_eq!(Range::between(0.0, 1.0).describe("1").to_string(), "at least 0 % and at most 100 %");
+        assert_eq!(Range::above_up_to(0.0, 0.5).describe("").say(Lang::En), "above 0 and at most 0.5");
+        assert_eq!(Range::POSITIVE.describe("s").say(Lang::En), "above 0 s");
+        assert_eq!(Range::between(0.0, 1.0).describe("1").say(Lang::En), "at least 0 % and at most 100 %");
     }
 }

@@ -77,6 +77,7 @@ fn reason(said: &str) -> Arg {
 mod tests {
     use super::*;
     use crate::text::Lang;
+    use crate::text::Localize;
 
     #[test]
     fn english_keeps_what_the_parser_says() {

@@ -1,6 +1,6 @@
 //! Single values: texts, numbers, dates, words, quantities, each checked against its kind.
 
-use super::diagnostics::{Span, nearest};
+use super::diagnostics::Span;
 use super::quantity::{self, QuantityError};
 use super::reader::{Reader, for_example, shorten};
 use super::section::{Allowance, Entry, Given, Named, Taus};
@@ -9,6 +9,7 @@ use crate::recording::ColumnRef;
 use crate::text::Note;
 use crate::units::Unit;
 use chrono::NaiveDate;
+use sagnac_core::spelling::nearest;
 use toml::de::DeValue;
 
 /// Longest text that is taken, characters.

@@ -8,9 +8,9 @@ use super::phases::{Phase, Phased, is_phased, load_phased};
 use super::slips;
 use crate::claim;
 use crate::ingest::manifest::{self, Manifest, is_manifest};
-use crate::ingest::raw::layout::{self, Layout};
+use crate::ingest::raw::{Layout, layout};
 use crate::keyed::file;
-use crate::text::{Lang, Note, visible};
+use crate::text::{Lang, Localize, Note, visible};
 use std::path::Path;
 
 /// What a file turned out to be.
@@ -36,7 +36,7 @@ pub enum Checked {
 pub fn check(path: &Path) -> Result<Checked, Problems> {
     if is_manifest(path) {
         let manifest = manifest::load(path)?;
-        manifest.options.layout.as_deref().map(layout::load).transpose()?;
+        manifest.options.layout.as_ref().map(|l| layout::load(&l.path)).transpose()?;
         Ok(Checked::Manifest(Box::new(manifest)))
     } else if says(path, |line| line.strip_prefix("format").is_some_and(|rest| rest.contains("\"layout/"))) {
         layout::load(path).map(|l| Checked::Layout(Box::new(l)))
@@ -57,7 +57,7 @@ pub fn check(path: &Path) -> Result<Checked, Problems> {
 fn all_named<'a>(procedures: impl Iterator<Item = &'a Procedure>) -> Result<(), Problems> {
     let mut found = Problems::default();
     for p in procedures {
-        let layout = p.recording.read.layout.as_deref().map(layout::load).and_then(Result::err);
+        let layout = p.recording.read.layout.as_ref().map(|l| layout::load(&l.path)).and_then(Result::err);
         let model = p.explain.as_ref().map(|e| claim::load(&e.model)).and_then(Result::err);
         found.list.extend([layout, model].into_iter().flatten().flat_map(|problems| problems.list));
     }

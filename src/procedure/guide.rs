@@ -8,6 +8,7 @@ use crate::claim::tables::MODEL_FILE;
 use crate::ids::MEASURANDS;
 use crate::ingest::manifest_tables::MANIFEST_FILE;
 use crate::ingest::raw::tables::LAYOUT_FILE;
+use crate::text::{Lang, Localize};
 use std::fmt::Write;
 
 /// Every key of a procedure file, as Markdown.
@@ -89,7 +90,7 @@ fn value(key: &KeySpec) -> String {
     let what = match key.kind {
         Kind::Choice(_) => "one of the words beside".to_owned(),
         Kind::Choices(_) => "a list of the words beside".to_owned(),
-        kind => kind.describe().to_string(),
+        kind => kind.describe().say(Lang::En),
     };
     if key.example.is_empty() || matches!(key.kind, Kind::Format(_) | Kind::Flag) {
         what

@@ -13,6 +13,7 @@ use super::site::{Orientation, Site};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use super::{channel, reading, validate};
+use crate::ingest::raw::LayoutFile;
 use crate::keyed::inside;
 use crate::record::{ClauseRecord, WaiverRecord};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
@@ -24,7 +25,7 @@ pub(super) fn procedure(source: &SourceText, folder: Option<&Path>) -> (Option<P
     checked(source, &PROCEDURE_FILE, |root, reader| {
         let mut procedure = build(root, reader);
         let layout = named(root, "recording", "layout", folder, reader);
-        procedure.recording.read.layout = layout;
+        procedure.recording.read.layout = layout.map(LayoutFile::at);
         let model = named(root, "explain", "model", folder, reader);
         if let (Some(spec), Some(model)) = (&mut procedure.explain, model) {
             spec.model = model;

@@ -1,12 +1,13 @@
 //! What a procedure says as a whole: references between its tables, contradictions, conditions that cannot be met.
 
-use super::diagnostics::{Problem, SourceText, nearest};
+use super::diagnostics::{Problem, SourceText};
 use super::model::{ChannelSpec, EarthRate, MeasurandSpec, Procedure, Taus};
 use super::reader::{Reader, meant, shorten};
 use super::section::Section;
 use crate::ids;
 use crate::recording::{ColumnRef, Role};
 use crate::text::Note;
+use sagnac_core::spelling::nearest;
 
 /// Reports every contradiction.
 pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {

@@ -1,6 +1,6 @@
 //! Checks that a kind of test could make, and whether they were made.
 
-use crate::text::Note;
+use super::Message;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -28,8 +28,7 @@ pub struct CheckRecord {
     /// Whether it was made.
     pub status: CheckStatus,
     /// Why it was not made.
-    #[schemars(with = "Option<super::NoteSchema>")]
-    pub reason: Option<Note>,
+    pub reason: Option<Message>,
     /// Where its finding stands: the id of a condition, or `integrity`.
     pub evidence: Option<String>,
 }

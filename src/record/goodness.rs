@@ -1,7 +1,6 @@
 //! How well a noise model fits its record.
 
-use super::NoteSchema;
-use crate::text::Note;
+use super::Message;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -26,6 +25,5 @@ pub struct GoodnessOfFitRecord {
     /// deviations over expected ones less 1.
     pub excess: f64,
     /// The same in words.
-    #[schemars(with = "NoteSchema")]
-    pub message: Note,
+    pub message: Message,
 }

@@ -1,15 +1,12 @@
 //! What was wrong with a recording.
 
-use crate::text::Note;
+use super::Message;
+use crate::text::{Lang, Localize};
+use sagnac_core::recording::integrity as found;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// What can be examined where any row was read.
-pub const OF_ROWS: &[&str] = &["non_finite", "unparsable", "implausible", "cut_off"];
-/// What stamps or a counter tell.
-pub const OF_STAMPS: &[&str] = &["gaps", "missing_samples", "duplicate_timestamps", "backward_timestamps"];
-/// What the values of a gyro tell.
-pub const OF_VALUES: &[&str] = &["outliers", "saturated", "stuck", "repeated"];
+pub use found::{OF_ROWS, OF_STAMPS, OF_VALUES};
 
 /// Faults of the recording, counted; the first of each kind listed with row and time.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
@@ -86,5 +83,46 @@ pub struct FaultRecord {
     pub note: String,
     /// The same sentence by name, for other languages.
     #[schemars(with = "serde_json::Value")]
-    pub message: Option<Note>,
+    pub message: Option<Message>,
+}
+
+impl From<found::Integrity> for Integrity {
+    fn from(i: found::Integrity) -> Integrity {
+        Integrity {
+            gaps: i.gaps,
+            missing_samples: i.missing_samples,
+            duplicate_timestamps: i.duplicate_timestamps,
+            backward_timestamps: i.backward_timestamps,
+            rollovers: i.rollovers,
+            timestamp_disagreements: i.timestamp_disagreements,
+            non_finite: i.non_finite,
+            unparsable: i.unparsable,
+            outliers: i.outliers,
+            saturated: i.saturated,
+            stuck: i.stuck,
+            repeated: i.repeated,
+            implausible: i.implausible,
+            cut_off: i.cut_off,
+            timestamp_jitter_s: i.timestamp_jitter_s,
+            quantization_step_deg_h: i.quantization_step_deg_h,
+            outlier_threshold: i.outlier_threshold,
+            examined: i.examined,
+            faults: i.faults.into_iter().map(FaultRecord::from).collect(),
+        }
+    }
+}
+
+impl From<found::Fault> for FaultRecord {
+    fn from(f: found::Fault) -> FaultRecord {
+        FaultRecord {
+            kind: f.kind,
+            channel: f.channel,
+            time_s: f.time_s,
+            file: f.file,
+            row: f.row,
+            count: f.count,
+            note: f.message.say(Lang::En),
+            message: Some(f.message.into()),
+        }
+    }
 }

@@ -9,10 +9,11 @@ mod check;
 mod comparison;
 mod deviation;
 mod evidence;
-pub mod explanation;
+mod explained;
 mod goodness;
 pub mod integrity;
 mod interval_mean;
+pub(crate) mod message;
 mod origin;
 mod phase;
 mod table_step;
@@ -25,16 +26,18 @@ pub use comparison::{
 };
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;
-pub use explanation::ExplainedRecord;
+pub use explained::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use integrity::{FaultRecord, Integrity};
 pub use interval_mean::IntervalMeanRecord;
+pub use message::Message;
 pub use origin::{ColumnRecord, LimitsFile, ProcedureRecord, Program, RecordingFile, Session, UnitUnderTest};
 pub use phase::PhaseRecord;
 pub use table_step::TableStepRecord;
 
 use crate::estimate::{Interval, Judgement, LowerLimit, Rule, UpperLimit, Verdict};
-use crate::text::Note;
+pub use sagnac_core::mismatch::finding as explanation;
+pub use sagnac_core::recording::window::{ExcludedSpan, Window};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -61,8 +64,7 @@ pub struct RunRecord {
     /// Worst verdict of all rows and conditions.
     pub verdict: Verdict,
     /// Why the verdict is what it is, in one or more sentences.
-    #[schemars(with = "Vec<NoteSchema>")]
-    pub summary: Vec<Note>,
+    pub summary: Vec<Message>,
     /// Conditions of the test with their evidence.
     pub conditions: Vec<ConditionRecord>,
     /// Checks that a test of this kind could make, and whether they were made.
@@ -106,20 +108,7 @@ pub struct RunRecord {
     /// The phases of a test of several, in their order; `conditions` and `measurands` are those of all of them.
     pub phases: Vec<PhaseRecord>,
     /// Errors that made the verdict `error`.
-    #[schemars(with = "Vec<NoteSchema>")]
-    pub errors: Vec<Note>,
-}
-
-/// How a [`Note`] appears in JSON.
-#[derive(Debug, JsonSchema)]
-#[allow(dead_code)]
-pub struct NoteSchema {
-    /// The sentence in English.
-    text: String,
-    /// Its name in the locale tables.
-    id: String,
-    /// Its arguments.
-    args: std::collections::BTreeMap<String, serde_json::Value>,
+    pub errors: Vec<Message>,
 }
 
 /// State of a condition.
@@ -151,37 +140,11 @@ pub struct ConditionRecord {
     /// What was required, as text with unit, English.
     pub required: String,
     /// The same by name.
-    #[schemars(with = "Option<NoteSchema>")]
-    pub requirement: Option<Note>,
+    pub requirement: Option<Message>,
     /// The sentence that explains the state, English.
     pub note: String,
     /// The same sentence by name.
-    #[schemars(with = "Option<NoteSchema>")]
-    pub message: Option<Note>,
-}
-
-/// The evaluated part of a recording.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
-pub struct Window {
-    /// First time evaluated, s from the start of the recording.
-    pub from_s: f64,
-    /// Last time evaluated, s from the start of the recording.
-    pub to_s: f64,
-    /// Time that holds usable samples, s.
-    pub usable_s: f64,
-    /// Spans left out, with the reason.
-    pub excluded: Vec<ExcludedSpan>,
-}
-
-/// A span left out of the evaluation.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct ExcludedSpan {
-    /// Start, s from the start of the recording.
-    pub from_s: f64,
-    /// End, s from the start of the recording.
-    pub to_s: f64,
-    /// `warm_up`, `declared`, `gap`, `pause`.
-    pub reason: String,
+    pub message: Option<Message>,
 }
 
 /// One measurand row.
@@ -223,8 +186,7 @@ pub struct MeasurandRecord {
     /// Probability that the unit is outside its limit, given what was measured.
     pub specific_risk: Option<f64>,
     /// What must be known with the value.
-    #[schemars(with = "Vec<NoteSchema>")]
-    pub notes: Vec<Note>,
+    pub notes: Vec<Message>,
 }
 
 /// A limit as applied.
@@ -306,8 +268,7 @@ pub struct NoiseModelRecord {
     /// Cut-off of the measurement at -3 dB, Hz, where the record shows one.
     pub cutoff_hz: Option<f64>,
     /// What the description holds, rests on and leaves out.
-    #[schemars(with = "Vec<NoteSchema>")]
-    pub remarks: Vec<Note>,
+    pub remarks: Vec<Message>,
 }
 
 /// Power of one limit.
@@ -328,8 +289,7 @@ pub struct PowerRecord {
     /// Record length, h, with which the limit could be decided, when this one is too short.
     pub needed_h: Option<f64>,
     /// The same in words.
-    #[schemars(with = "NoteSchema")]
-    pub message: Note,
+    pub message: Message,
 }
 
 /// A figure of the report.

@@ -1,10 +1,8 @@
 //! Phases of a test of several.
 
-use super::{
-    ConditionRecord, FigureRecord, Integrity, MeasurandRecord, NoteSchema, ProcedureRecord, RecordingFile,
-};
+use super::Message;
+use super::{ConditionRecord, FigureRecord, Integrity, MeasurandRecord, ProcedureRecord, RecordingFile};
 use crate::estimate::Verdict;
-use crate::text::Note;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -24,8 +22,7 @@ pub struct PhaseRecord {
     /// Verdict of the phase.
     pub verdict: Verdict,
     /// Why.
-    #[schemars(with = "Vec<NoteSchema>")]
-    pub summary: Vec<Note>,
+    pub summary: Vec<Message>,
     /// Its conditions.
     pub conditions: Vec<ConditionRecord>,
     /// Faults of its recording.

@@ -5,7 +5,7 @@ use super::prose::{self, prose};
 use super::view::{PhasePart, View, Words};
 use crate::figure::Figure;
 use crate::record::RunRecord;
-use crate::text::{Lang, Note, io_reason, lookup, table};
+use crate::text::{Lang, Localize, Note, io_reason, lookup, table};
 use minijinja::value::{Kwargs, Serde, Value};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use std::collections::BTreeMap;
@@ -98,7 +98,7 @@ impl ReportError {
 impl fmt::Display for ReportError {
     /// In English.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.note().fmt(f)
+        f.write_str(&self.note().say(Lang::En))
     }
 }
 

@@ -41,7 +41,7 @@ pub fn explain(
             outcome: Some((claim, notes, outcome)),
         },
         Err(error) => Explained {
-            record: ExplainedRecord { model, explanation: None, error: Some(error) },
+            record: ExplainedRecord { model, explanation: None, error: Some(error.into()) },
             outcome: None,
         },
     }

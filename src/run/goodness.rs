@@ -22,7 +22,7 @@ pub(super) fn records(gyro: &GyroEvidence) -> Vec<GoodnessOfFitRecord> {
                 from: judged.departure.from,
                 to: Some(judged.departure.to).filter(|v| v.is_finite()),
                 excess: judged.departure.excess,
-                message: if departs { departure(judged, fit) } else { Note::new("goodness.fits") },
+                message: if departs { departure(judged, fit) } else { Note::new("goodness.fits") }.into(),
             }
         })
         .collect()

@@ -37,7 +37,7 @@ use crate::ingest::{IngestError, Source};
 use crate::noise::tau_grid::{TauGrid, TauGridError};
 use crate::procedure::{EffectiveLimits, Procedure};
 use crate::record::{ProcedureRecord, RunRecord, Session, UnitUnderTest};
-use crate::text::Note;
+use crate::text::{Lang, Localize, Note};
 use chrono::{DateTime, Utc};
 use std::fmt;
 
@@ -116,7 +116,7 @@ impl From<TauGridError> for RunError {
 impl fmt::Display for RunError {
     /// In English.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.note().fmt(f)
+        f.write_str(&self.note().say(Lang::En))
     }
 }
 

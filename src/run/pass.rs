@@ -6,10 +6,10 @@ use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
 use crate::noise::family::Estimator;
 use crate::noise::tau_grid::TauGrid;
 use crate::procedure::Procedure;
-use crate::record::FaultRecord;
+use crate::recording::integrity::Fault;
 use crate::recording::{Channel, Role, Sink, Slab};
 use crate::temperature::track::{Means, Track};
-use crate::text::{Lang, Note};
+use crate::text::Note;
 use std::collections::BTreeMap;
 
 /// Key of a quantity that must be held: kind of condition and its position.
@@ -173,21 +173,20 @@ impl Overview {
     }
 
     /// Samples at declared rails: one fault a channel.
-    pub fn saturated(&self) -> Vec<FaultRecord> {
+    pub fn saturated(&self) -> Vec<Fault> {
         self.rails
             .iter()
             .filter_map(|r| {
                 let (row, time_s) = r.first?;
                 let note = Note::new("fault_note.declared_rails").with("count", r.count);
-                Some(FaultRecord {
+                Some(Fault {
                     kind: "saturated".into(),
                     channel: Some(r.channel.clone()),
                     time_s: Some(time_s),
                     file: None,
                     row,
                     count: r.count,
-                    note: note.say(Lang::En),
-                    message: Some(note),
+                    message: note,
                 })
             })
             .collect()

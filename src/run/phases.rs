@@ -6,7 +6,7 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::procedure::phases::{Phase, Phased};
 use crate::record::{
-    CheckRecord, FigureRecord, Integrity, PhaseRecord, Program, RESULT_FORMAT, RunRecord, Session,
+    CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunRecord, Session,
     UnitUnderTest, Window,
 };
 use crate::text::{Arg, Note};
@@ -43,8 +43,9 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         .with("title", p.title.as_str())
     };
     let declared = Note::new("summary.influence_declared");
-    let said = phases.iter().any(|p| p.summary.contains(&declared)).then_some(declared);
-    let summary = errors.iter().cloned().chain(phases.iter().map(of_phase)).chain(said).collect();
+    let said = phases.iter().any(|p| p.summary.iter().any(|s| **s == declared)).then_some(declared);
+    let summary =
+        errors.iter().cloned().chain(phases.iter().map(of_phase)).chain(said).map(Into::into).collect();
     let records: Vec<&RunRecord> =
         done.iter().filter_map(|d| d.outcome.as_ref()).map(|o| &o.record).collect();
     let mut instruments = Vec::new();
@@ -94,7 +95,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         options: vec![],
         figures: phases.iter().flat_map(|p| p.figures.clone()).collect(),
         phases,
-        errors,
+        errors: errors.into_iter().map(Into::into).collect(),
     }
 }
 
@@ -110,7 +111,7 @@ fn checks(done: &[Done<'_>]) -> Vec<CheckRecord> {
 }
 
 /// Why a phase could not be carried out; `None` of one that was.
-pub fn failure(phase: &PhaseRecord) -> Option<&Note> {
+pub fn failure(phase: &PhaseRecord) -> Option<&Message> {
     phase.summary.first().filter(|_| phase.verdict == Verdict::Error)
 }
 
@@ -124,7 +125,7 @@ fn of(done: &Done<'_>) -> PhaseRecord {
             procedure: Some(phase.procedure.record(phase.limits.as_ref())),
             recording: vec![],
             verdict: Verdict::Error,
-            summary: vec![Note::new("phases.not_recorded").with("id", phase.id.as_str())],
+            summary: vec![Note::new("phases.not_recorded").with("id", phase.id.as_str()).into()],
             conditions: vec![],
             integrity: Integrity::default(),
             measurands: vec![],

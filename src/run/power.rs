@@ -90,7 +90,7 @@ pub fn records(limits: &EffectiveLimits, gyros: &[GyroEvidence]) -> Vec<PowerRec
                 power: power.fail_probability_at_1_5,
                 pass_probability: power.pass_probability_at_half,
                 needed_h: power.needed_duration_h.filter(|_| !power.is_enough()),
-                message: message(&power, gyro.usable_s() / 3600.0),
+                message: message(&power, gyro.usable_s() / 3600.0).into(),
             });
         }
     }

@@ -5,7 +5,8 @@ use super::{Request, RunError};
 use crate::ingest::{Pauses, Plan, Source, StreamReport, TimeBaseSpec, locate, prepare};
 use crate::measurand::GyroEvidence;
 use crate::procedure::Procedure;
-use crate::record::{FaultRecord, Integrity, Window};
+use crate::record::Window;
+use crate::recording::integrity::{Fault, Integrity};
 use crate::recording::window::WindowSpec;
 use crate::recording::{Channel, Role};
 use crate::text::Note;
@@ -108,9 +109,9 @@ pub(super) fn about(request: &Request<'_>, key: &'static str) -> Note {
 }
 
 /// Saturation at declared rails takes the place of what was guessed for the same channel.
-fn declare_rails(integrity: &mut Integrity, declared: Vec<FaultRecord>) {
+fn declare_rails(integrity: &mut Integrity, declared: Vec<Fault>) {
     for fault in declared {
-        let same = |f: &FaultRecord| f.kind == fault.kind && f.channel == fault.channel;
+        let same = |f: &Fault| f.kind == fault.kind && f.channel == fault.channel;
         let guessed: u64 = integrity.faults.iter().filter(|f| same(f)).map(|f| f.count).sum();
         integrity.faults.retain(|f| !same(f));
         integrity.saturated = integrity.saturated.saturating_sub(guessed) + fault.count;

@@ -39,11 +39,11 @@ pub(super) fn record(
     let still = || resting().filter(|g| !g.motion.is_motion());
     RunRecord {
         verdict,
-        summary,
+        summary: summary.into_iter().map(Into::into).collect(),
         recording: recording(request, found),
         conditions,
         checks: if request.kind == "run" { found.checks.settle(Kind::of(request.procedure)) } else { vec![] },
-        integrity: found.report.integrity.clone(),
+        integrity: found.report.integrity.clone().into(),
         window: found.window.clone(),
         measurands: rows,
         lines: resting().flat_map(lines).collect(),
@@ -58,7 +58,7 @@ pub(super) fn record(
             .iter()
             .map(|f| FigureRecord { id: f.id.clone(), file: format!("figures/{}.svg", f.id) })
             .collect(),
-        errors,
+        errors: errors.into_iter().map(Into::into).collect(),
         ..blank(request)
     }
 }
@@ -68,11 +68,11 @@ pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
     errors.push(Note::new("error.not_evaluated").with("reason", error.note()));
     RunRecord {
         verdict: Verdict::Error,
-        summary: errors.clone(),
+        summary: errors.clone().into_iter().map(Into::into).collect(),
         recording: request.source.files().into_iter().map(unread).collect(),
         checks: if request.kind == "run" { none_made(Kind::of(request.procedure)) } else { vec![] },
         clauses: clauses(&request.procedure.clauses, "not_done"),
-        errors,
+        errors: errors.into_iter().map(Into::into).collect(),
         ..blank(request)
     }
 }
@@ -222,7 +222,7 @@ fn noise_model(gyro: &GyroEvidence) -> NoiseModelRecord {
             .map(|d| [d.rms_deg_h, d.frequency_hz, d.decay_time_s])
             .collect(),
         cutoff_hz: id.cutoff.as_ref().and_then(|c| c.value),
-        remarks: described::remarks(gyro),
+        remarks: described::remarks(gyro).into_iter().map(Into::into).collect(),
     }
 }
 

@@ -54,8 +54,8 @@ pub(super) fn tables(request: &Request<'_>, found: &Found) -> Vec<(String, Strin
         };
         let made = Compensation::of(analysis, &gyro.channel, request.unit.serial.as_deref());
         let stem = gyro.figure_id("compensation");
-        out.push((format!("{stem}.toml"), made.toml()));
-        out.push((format!("{stem}.json"), made.json()));
+        out.push((format!("{stem}.toml"), toml::to_string(&made).unwrap_or_default()));
+        out.push((format!("{stem}.json"), serde_json::to_string_pretty(&made).unwrap_or_default() + "\n"));
         out.push((format!("{stem}.h"), made.header()));
     }
     out

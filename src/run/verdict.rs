@@ -49,7 +49,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         verdict: judgement.as_ref().map_or(Verdict::None, |j| j.verdict),
         margin: judgement.as_ref().and_then(|j| j.margin),
         specific_risk: judgement.as_ref().and_then(|j| j.specific_risk),
-        notes,
+        notes: notes.into_iter().map(Into::into).collect(),
     }
 }
 

@@ -4,17 +4,13 @@
 
 mod choose;
 mod collect;
-mod smooth;
 
 pub use collect::load_series;
-pub use smooth::smooth;
+pub use sagnac_core::series::{Faults, ReadFrom, Series, smooth};
 
-use crate::effect::Column;
 use crate::ingest::{IngestError, ReadOptions, RecordingError};
-use crate::record::Integrity;
 use crate::recording::Channel;
-use crate::text::{Lang, Note};
-use std::collections::BTreeMap;
+use crate::text::{Lang, Localize, Note};
 
 /// What the user decides about a recording; the rest is found from it.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -32,78 +28,6 @@ pub struct SeriesOptions {
     pub channels: Vec<Channel>,
     /// Sample rate, Hz: needed where there are no time stamps, and of help where their rounding leaves it open.
     pub sample_rate_hz: Option<f64>,
-}
-
-/// A recording: every row that can be used, in order.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Series {
-    /// Time of each row, s, on the recording's own scale.
-    pub time_s: Vec<f64>,
-    /// Output of the gyro, deg/h.
-    pub rate_deg_h: Vec<f64>,
-    /// The columns beside, in the units that their names tell, a value a row.
-    pub columns: BTreeMap<Column, Vec<f64>>,
-    /// Position of each row on the uniform grid of the recording, 0 for the first; where samples are missing,
-    /// positions are skipped.
-    pub index: Vec<u64>,
-    /// What was left out or mended.
-    pub faults: Faults,
-    /// Which column of the file each quantity was read from.
-    pub read_from: Vec<ReadFrom>,
-    /// Mean sample interval over the unbroken stretches, s.
-    pub sample_interval_s: f64,
-    /// SHA-256 of the file, hexadecimal; empty for a recording in memory.
-    pub sha256: String,
-    /// What must be known of the recording.
-    pub notes: Vec<Note>,
-}
-
-/// Rows that were left out, and values that were mended. Nothing is left out that is not counted here.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Faults {
-    /// Rows of the file.
-    pub rows: usize,
-    /// Rows left out because their time cannot be used: unreadable, repeated, or out of order.
-    pub without_time: usize,
-    /// Rows left out because their rate is no finite number.
-    pub without_rate: usize,
-    /// Samples missing between rows.
-    pub missing: usize,
-    /// Values of the columns beside that are no finite numbers; they were interpolated between their neighbours.
-    pub interpolated: BTreeMap<Column, usize>,
-    /// Everything that was found, fault by fault.
-    pub integrity: Integrity,
-}
-
-impl Series {
-    /// What must be known of the recording: what was found about it, and the rows that were left out or mended.
-    pub fn remarks(&self) -> Vec<Note> {
-        let mut out = self.notes.clone();
-        let faults = &self.faults;
-        for (key, count) in [
-            ("explain.note.without_time", faults.without_time),
-            ("explain.note.without_rate", faults.without_rate),
-        ] {
-            if count > 0 {
-                out.push(Note::new(key).with("count", count));
-            }
-        }
-        for (column, count) in &faults.interpolated {
-            out.push(Note::new("explain.note.mended").with("count", *count).with("column", column.name()));
-        }
-        out
-    }
-}
-
-/// Where a quantity was read from.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ReadFrom {
-    /// Name of the contract, `time_s`, `rate_deg_h`, or that of a column beside.
-    pub name: &'static str,
-    /// Column of the file.
-    pub column: String,
-    /// Unit in the file.
-    pub unit: String,
 }
 
 /// Why a recording cannot be taken.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::effect::Column;
 use std::fmt::Write as _;
 
 fn read(text: &str, options: &SeriesOptions) -> Result<Series, SeriesError> {

@@ -1,22 +1,9 @@
-//! Recordings made from a claim: its noise, its mean, its effects, and the columns that drive them.
-//!
-//! Every effect acts through its own forward model, the one that fits go through. A seed fixes every bit of the output,
-//! however it is cut into blocks.
+//! Simulated recordings as files.
 
-mod drive;
-mod error;
-mod low_pass;
-mod noise;
-mod quantize;
-mod run;
-mod shape;
 mod write;
 
-pub use error::SimulateError;
-pub use run::{Order, Over, Rows, Simulation};
-pub use shape::claimed_density;
-pub use write::{Format, WriteError, Written, write};
-
+pub use sagnac_core::simulate::*;
 #[cfg(test)]
-#[path = "tests.rs"]
 mod tests;
+
+pub use write::{Format, WriteError, Written, write};

@@ -176,13 +176,13 @@ fn a_seed_fixes_every_bit_however_the_record_is_cut() {
         let begin = |seed| Simulation::begin(Order { claim: &model.claim, seed, over }).unwrap();
         let whole = {
             let mut simulation = begin(9);
-            simulation.block = usize::MAX;
+            simulation.set_block(usize::MAX);
             simulation.next_rows().unwrap().unwrap()
         };
         assert_eq!(whole.time_s.len(), 200_000);
         for block in [1000, 65_536] {
             let mut simulation = begin(9);
-            simulation.block = block;
+            simulation.set_block(block);
             assert!(simulation.all().unwrap() == whole, "{block}");
         }
         assert!(begin(10).all().unwrap().rate_deg_h != whole.rate_deg_h);

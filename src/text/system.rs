@@ -1,32 +1,12 @@
 //! What the operating system answers, in words of the tables.
 
-use super::Note;
-use std::io::{Error, ErrorKind};
-
-/// Why the operating system refused, as a note. A reason that the tables do not know is shown as the system says it.
-pub fn io_reason(error: &Error) -> Note {
-    let key = match error.kind() {
-        ErrorKind::NotFound => "system.not_found",
-        ErrorKind::PermissionDenied => "system.permission_denied",
-        ErrorKind::AlreadyExists => "system.already_exists",
-        ErrorKind::StorageFull => "system.storage_full",
-        ErrorKind::ReadOnlyFilesystem => "system.read_only",
-        ErrorKind::NotADirectory => "system.not_a_folder",
-        ErrorKind::IsADirectory => "system.is_a_folder",
-        ErrorKind::DirectoryNotEmpty => "system.not_empty",
-        ErrorKind::QuotaExceeded => "system.quota",
-        _ => "",
-    };
-    match error.raw_os_error() {
-        Some(code) if !key.is_empty() => Note::new(key).with("code", code.to_string()),
-        _ => Note::new("system.other").with("reason", error.to_string()),
-    }
-}
+pub use sagnac_ingest::io_reason;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::Lang;
+    use crate::text::{Lang, Localize};
+    use std::io::Error;
 
     #[cfg(target_os = "linux")]
     #[test]

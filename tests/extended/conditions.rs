@@ -13,8 +13,8 @@ use sagnac::noise::lines::find_lines;
 use sagnac::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate, flicker_bracket};
 use sagnac::noise::tau_grid::TauGrid;
 use sagnac::recording::faults::FaultLog;
-use sagnac::recording::integrity::{ValueChecks, ValueFacts, ValueFaults};
 use sagnac::recording::timebase::{Cadence, Clock, ClockError, Step, Tracker};
+use sagnac::recording::value_checks::{ValueChecks, ValueFacts, ValueFaults};
 use sagnac::recording::{Channel, ColumnRef, Role, Sink, Slab};
 use sagnac::units::Unit;
 

@@ -16,7 +16,7 @@ use sagnac::noise::residual::GoodnessOfFit;
 use sagnac::noise::simulate::{Setup, Simulator};
 use sagnac::noise::spectral_record::SpectralRecord;
 use sagnac::run::figures::{allan_family, autocorrelation, residual, sigma_tau, spectrum};
-use sagnac::text::Lang;
+use sagnac::text::{Lang, Localize};
 
 fn truth() -> Composite {
     Composite {

@@ -11,7 +11,7 @@ use sagnac::procedure::tables_limits::LIMITS_FILE;
 use sagnac::procedure::tables_phases::PHASES_FILE;
 use sagnac::procedure::{effective, guide, load, load_limits, parse_limits, parse_procedure, power, schema};
 use sagnac::recording::{ColumnRef, Role};
-use sagnac::text::Lang;
+use sagnac::text::{Lang, Localize};
 use std::path::{Path, PathBuf};
 
 fn shipped(path: &str) -> PathBuf {
@@ -218,7 +218,7 @@ fn a_limits_file_goes_over_the_limits_of_the_procedure() {
     let unmeasured = file("[[limit]]\nmeasurand = \"static_bias\"\nmax_abs = \"1 deg/h\"\n");
     let all = effective(&procedure, Some(&unmeasured));
     assert_eq!(all.warnings.len(), 1);
-    assert!(all.warnings[0].message.to_string().contains("not judged"));
+    assert!(all.warnings[0].message.say(Lang::En).contains("not judged"));
 }
 
 #[test]
@@ -296,7 +296,7 @@ fn every_example_is_accepted_by_its_own_key() {
                 "is determined at rest",
                 "are two tests",
             ];
-            assert!(whole.iter().any(|w| p.message.to_string().contains(w)), "{p}");
+            assert!(whole.iter().any(|w| p.message.say(Lang::En).contains(w)), "{p}");
         }
     }
     let mut text = String::new();

@@ -4,7 +4,7 @@
 use crate::support::{sagnac, shipped};
 use sagnac::ingest::{IngestError, IngestErrorKind, ReadOptions, Source, open_with};
 use sagnac::recording::guess::guess;
-use sagnac::text::Lang;
+use sagnac::text::{Lang, Localize};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use tempfile::tempdir;

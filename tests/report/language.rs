@@ -2,7 +2,7 @@
 
 use crate::support::corpus::{cases, problems};
 use sagnac::procedure::{parse_limits, parse_procedure};
-use sagnac::text::{Lang, table};
+use sagnac::text::{Lang, Localize, table};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;

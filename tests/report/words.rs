@@ -12,12 +12,13 @@ use sagnac::measurand::ids::{MEASURANDS, Test};
 use sagnac::noise::model::TERMS;
 use sagnac::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
 use sagnac::procedure::{EffectiveLimits, effective, load, load_limits};
-use sagnac::record::{Integrity, RunRecord};
+use sagnac::record::RunRecord;
+use sagnac::recording::integrity::Integrity;
 use sagnac::temperature::SegmentKind;
 use sagnac::temperature::course::Span;
 use sagnac::temperature::findings::Schedule;
 use sagnac::temperature::segments::Segment;
-use sagnac::text::{Lang, lookup};
+use sagnac::text::{Lang, Localize, lookup};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
@@ -49,7 +50,7 @@ fn every_id_of_a_run_has_words() {
         for m in &r.measurands {
             measured.insert(m.id.clone());
             keys.extend([format!("measurand.{}", m.id), format!("how.{}", m.method)]);
-            keys.extend(m.notes.iter().map(|n| n.id.to_owned()));
+            keys.extend(m.notes.iter().map(|n| n.id.to_string()));
         }
         keys.extend(r.noise_models.iter().map(|m| format!("how.{}", m.method)));
         keys.extend(r.options.iter().map(|o| format!("option.{}", o.name)));
@@ -57,8 +58,8 @@ fn every_id_of_a_run_has_words() {
         keys.extend(r.window.excluded.iter().map(|e| format!("excluded.{}", e.reason)));
         keys.extend(r.clauses.iter().map(|c| format!("clause.{}", c.status)));
         keys.extend(r.recording.iter().flat_map(|f| &f.columns).map(|c| format!("role.{}", c.role)));
-        keys.extend(r.summary.iter().chain(&r.errors).map(|n| n.id.to_owned()));
-        keys.extend(r.power.iter().map(|p| p.message.id.to_owned()));
+        keys.extend(r.summary.iter().chain(&r.errors).map(|n| n.id.to_string()));
+        keys.extend(r.power.iter().map(|p| p.message.id.to_string()));
         assert!(keys.len() > 30, "{sample} shows {} ids only", keys.len());
         assert!(missing(keys.clone()).is_empty(), "{sample}: {:?}", missing(keys));
     }
@@ -211,7 +212,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
     let mut keys: BTreeSet<String> = kinds.iter().map(|k| format!("condition.{k}")).collect();
     for c in &records {
         keys.extend(c.observed.keys().map(|name| format!("observed.{name}")));
-        keys.extend([&c.message, &c.requirement].into_iter().flatten().map(|n| n.id.to_owned()));
+        keys.extend([&c.message, &c.requirement].into_iter().flatten().map(|n| n.id.to_string()));
         let requirement = c.requirement.as_ref().map(|r| r.say(Lang::En)).unwrap_or_default();
         assert!(!requirement.is_empty() && !requirement.contains('{'), "{}: {requirement}", c.id);
         assert_eq!(requirement, c.required);

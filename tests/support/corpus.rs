@@ -3,6 +3,7 @@
 //! Of files of keys it has one line a problem: `[warning ]line:column: offending text: fragment of message or help`.
 
 use sagnac::procedure::{Loaded, Problem, Problems, Severity};
+use sagnac::text::{Lang, Localize};
 use std::path::{Path, PathBuf};
 
 /// The files of a folder with an extension, sorted.
@@ -38,8 +39,11 @@ fn matches(expected: &str, problem: &Problem) -> bool {
     let mut parts = rest.splitn(3, ": ");
     let (place, token, fragment) =
         (parts.next().unwrap(), parts.next().expect("offending text"), parts.next().expect("fragment"));
-    let said =
-        format!("{} {}", problem.message, problem.help.as_ref().map(ToString::to_string).unwrap_or_default());
+    let said = format!(
+        "{} {}",
+        problem.message.say(Lang::En),
+        problem.help.as_ref().map(|h| h.say(Lang::En)).unwrap_or_default()
+    );
     severity == problem.severity
         && place == format!("{}:{}", problem.line, problem.column)
         && token == problem.token

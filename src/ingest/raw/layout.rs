@@ -1,15 +1,14 @@
 //! The layout of the records of a raw binary file, read from TOML with every problem at its place.
 
-use super::checksum::{Checksum, Sum};
 use super::tables::LAYOUT_FILE;
-use crate::ingest::binary::number_type::{ByteOrder, Field, NumberType};
-use crate::ingest::binary::records::{LONGEST_RECORD, MOST_COLUMNS};
 use crate::keyed::diagnostics::{Problems, Span};
 use crate::keyed::file::{self, Wording};
 use crate::keyed::reader::{Reader, checked};
 use crate::keyed::section::{Entry, Section};
 use crate::text::Note;
 use crate::units::Unit;
+use sagnac_ingest::raw::{ByteOrder, Field, NumberType};
+use sagnac_ingest::raw::{Checksum, LONGEST_RECORD, Layout, LayoutColumn, MOST_COLUMNS, Sum};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -18,38 +17,6 @@ const WORDING: Wording = Wording { unreadable: "layout.unreadable", folder: "lay
 
 /// Longest sync word, bytes.
 const LONGEST_SYNC: usize = 16;
-
-/// The layout of a record.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
-    /// Bytes before the first record.
-    pub header_bytes: u64,
-    /// Length of a record, bytes.
-    pub record_bytes: usize,
-    /// Bytes at the start of every record; empty: none.
-    pub sync: Vec<u8>,
-    /// Sample rate, Hz.
-    pub sample_rate_hz: Option<f64>,
-    pub(super) checksum: Option<Checksum>,
-    pub(super) columns: Vec<LayoutColumn>,
-}
-
-/// A column of a layout.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct LayoutColumn {
-    pub name: String,
-    pub storage: &'static str,
-    pub unit: Option<Unit>,
-    pub rollover_s: Option<f64>,
-    pub field: Field,
-}
-
-impl Layout {
-    /// Names of the columns.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.columns.iter().map(|c| c.name.as_str())
-    }
-}
 
 /// Reads a layout file.
 ///

@@ -6,6 +6,7 @@ use crate::effect::{Doc, find};
 use crate::mismatch::finding::{Explanation, Finding};
 use crate::report::number::{limit_digits, percent};
 use crate::report::view::Words;
+use crate::text::Bilingual;
 use serde::Serialize;
 
 /// A parameter of a cause.

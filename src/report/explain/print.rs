@@ -5,6 +5,7 @@ use crate::effect::find;
 use crate::mismatch::finding::{ParameterValue, PlaceRecord};
 use crate::report::number::{Rounding, digits, limit_digits, typographic};
 use crate::report::view::Words;
+use crate::text::Bilingual;
 
 /// Ratio of the sides of an interval from which it is printed by its ends.
 const LOPSIDED: f64 = 1.5;

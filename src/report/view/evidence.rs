@@ -377,7 +377,7 @@ fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model 
     let terms: Vec<String> = m.terms.iter().map(|t| words.name("term", t)).collect();
     let mut remarks: Vec<ModelRemark> = vec![];
     let of_model = rows.iter().filter(|r| r.channel == m.channel).flat_map(|r| &r.notes);
-    for note in of_model.filter(|n| MODEL_NOTES.contains(&n.id)) {
+    for note in of_model.filter(|n| MODEL_NOTES.contains(&n.id.as_ref())) {
         let remark = ModelRemark { text: words.say(note), misfit: note.id == "note.model_misfit" };
         if !remarks.contains(&remark) {
             remarks.push(remark);

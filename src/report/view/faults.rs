@@ -3,6 +3,7 @@
 use super::{Field, Words, conditions::required, evidence::status};
 use crate::record::{ConditionRecord, FaultRecord, Integrity, RunRecord};
 use crate::report::number::{NOTHING, count, duration, limit_digits, percent};
+use crate::text::Localize;
 use serde::Serialize;
 
 /// Faults of one kind that a report lists; more would bury the rest of it.

@@ -39,7 +39,8 @@ use crate::figure::Figure;
 use crate::record::RunRecord;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::{methods, unit};
-use crate::text::{Arg, Lang, Note, fill, lookup};
+use crate::text;
+use crate::text::{Arg, Lang, Localize, Note, fill, lookup};
 use serde::Serialize;
 
 /// A label and what stands beside it.
@@ -157,13 +158,13 @@ impl Words {
 
     /// A note with printed numbers.
     pub fn say(self, note: &Note) -> String {
-        fill(lookup(self.lang, note.id).unwrap_or(note.id), |name| {
+        fill(lookup(self.lang, &note.id).unwrap_or(&note.id), |name| {
             note.args.get(name).map(|arg| match arg {
                 Arg::Number(v) => super::number::limit_digits(*v, 4, self.lang),
                 Arg::Stated(v) => super::number::limit(*v, self.lang),
                 Arg::Count(v) => count(*v, self.lang),
                 Arg::Text(t) => t.clone(),
-                Arg::Key(k) => Arg::words(k, self.lang),
+                Arg::Key(k) => text::words(k, self.lang),
                 Arg::Note(n) => self.say(n),
                 Arg::Decimals { .. } | Arg::Several(..) => arg.say(self.lang),
                 Arg::Figures { value, digits, zeros: true } => {

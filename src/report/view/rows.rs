@@ -70,7 +70,7 @@ pub fn rounding(m: &MeasurandRecord) -> Rounding {
 const SEARCHED: [&str; 3] = ["note.no_line", "correlated.no_markov", "correlated.no_periodic"];
 
 fn searched(m: &MeasurandRecord) -> bool {
-    m.value.is_none() && m.upper_limit.is_none() && m.notes.iter().any(|n| SEARCHED.contains(&n.id))
+    m.value.is_none() && m.upper_limit.is_none() && m.notes.iter().any(|n| SEARCHED.contains(&n.id.as_ref()))
 }
 
 /// The value as printed: rounded by its uncertainty, or `≤ x (95 %)`, or that nothing can be said.
@@ -130,7 +130,7 @@ fn row(m: &MeasurandRecord, words: Words, footnotes: &mut Vec<String>) -> Row {
     let mut numbers = vec![];
     for note in &m.notes {
         // The model of a channel is remarked on once, where it is tabled.
-        let sentence = match note.id {
+        let sentence = match note.id.as_ref() {
             "note.model_misfit" => words.t("report.misfit_footnote"),
             id if MODEL_NOTES.contains(&id) || (SEARCHED.contains(&id) && searched(m)) => continue,
             _ => words.say(note),

@@ -285,6 +285,7 @@ fn warm_up(w: &WarmUpFindings) -> Panel {
 mod tests {
     use super::*;
     use crate::text::Lang;
+    use crate::text::Localize;
 
     #[test]
     fn noise_that_was_not_seen_has_no_value() {

@@ -1,6 +1,6 @@
 //! Plain text in aligned columns, at most 96 characters wide where words allow it.
 
-use crate::text::{Arg, Lang, Note, visible};
+use crate::text::{Arg, Lang, Localize, Note, visible};
 
 /// Width of a line, characters.
 const WIDTH: usize = 96;

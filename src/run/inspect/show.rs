@@ -8,7 +8,7 @@ use super::{show_gyro, support};
 use crate::ingest::{ChannelFacts, Packing, Source};
 use crate::recording::Role;
 use crate::recording::timebase::Measured;
-use crate::text::{Arg, Lang, Note, decimal};
+use crate::text::{Arg, Lang, Localize, Note, decimal};
 use crate::units::Unit;
 
 /// Faults listed one by one.
@@ -302,7 +302,7 @@ fn faults(page: &mut Page, seen: &Seen) {
         return;
     }
     for (label, n, key) in kinds.iter().filter(|(_, n, _)| *n > 0) {
-        page.row(label.clone(), Note::new(key).with("n", count(*n)));
+        page.row(label.clone(), Note::new(*key).with("n", count(*n)));
     }
     list(
         page,
@@ -320,8 +320,8 @@ fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
             Some(t) => Note::new("inspect.fault_at_time").with("row", fault.row).with("time", decimals(t, 6)),
             None => Note::new("inspect.fault_at").with("row", fault.row),
         };
-        let channel = fault.channel.as_deref().filter(|c| !fault.note.contains(c));
-        let what = fault.message.clone().map_or_else(|| Arg::from(fault.note.as_str()), Arg::from);
+        let channel = fault.channel.as_deref().filter(|c| !fault.message.say(Lang::En).contains(c));
+        let what = Arg::from(fault.message.clone());
         let row = match channel {
             Some(channel) => Note::new("inspect.fault_of").with("channel", channel),
             None => Note::new("inspect.fault_row"),

@@ -69,7 +69,7 @@ fn one(page: &mut Page, seen: &Seen, gyro: &Gyro) {
             let ratio = plain(step / sample_noise, 2);
             told.push(Note::new("inspect.step_ratio").with("ratio", ratio).into());
         }
-        page.row(word("inspect.step"), Arg::Several(told, " "));
+        page.row(word("inspect.step"), Arg::Several(told, " ".into()));
     }
     page.row(word("inspect.lines"), lines(gyro));
     let swing = gyro.angle.max_deg - gyro.angle.min_deg;
@@ -141,7 +141,7 @@ fn allan(seen: &Seen, gyro: &Gyro) -> Note {
     }
     Note::new("inspect.noise_undescribed")
         .with("misfit", plain(gyro.identification.misfit.per_dof, 2))
-        .with("points", if shown.is_empty() { "-".into() } else { Arg::Several(shown, ", ") })
+        .with("points", if shown.is_empty() { "-".into() } else { Arg::Several(shown, ", ".into()) })
 }
 
 fn noise(seen: &Seen, gyro: &Gyro) -> Note {
@@ -190,9 +190,9 @@ fn lines(gyro: &Gyro) -> Arg {
     if all.len() > LINES {
         shown.push(Note::new("inspect.lines_more").with("n", all.len() - LINES).into());
     }
-    let shown = Arg::Several(shown, "; ");
+    let shown = Arg::Several(shown, "; ".into());
     if gyro.motion.is_motion() {
-        Arg::Several(vec![shown, word("inspect.lines_moving")], ". ")
+        Arg::Several(vec![shown, word("inspect.lines_moving")], ". ".into())
     } else {
         shown
     }
@@ -221,7 +221,7 @@ pub(super) fn others(page: &mut Page, seen: &Seen) {
             told.push(runs.with("up", u64::from(up)).with("down", u64::from(down)).into());
         }
         told.push(".".into());
-        page.row(word("inspect.temperature"), Arg::Several(told, ""));
+        page.row(word("inspect.temperature"), Arg::Several(told, "".into()));
     }
     for d in &seen.driven {
         page.row(word("inspect.table"), driven(d));
@@ -258,5 +258,5 @@ fn driven(d: &Driven) -> Arg {
         0 => Note::new("inspect.table_sweeps"),
         n => Note::new("inspect.table_levels").with("n", n),
     };
-    Arg::Several(vec![range.into(), rest.into()], " ")
+    Arg::Several(vec![range.into(), rest.into()], " ".into())
 }

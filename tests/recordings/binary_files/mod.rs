@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use sagnac::ingest::{FieldFault, IngestError, ReadOptions, Source, open_with};
+use sagnac::text::Localize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 

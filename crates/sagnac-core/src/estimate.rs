@@ -1,0 +1,278 @@
+//! Estimates with their uncertainty, limits, decision rules, verdicts.
+//!
+//! A value never travels without its uncertainty: [`Estimate`] carries a [`Spread`], the confidence distribution
+//! of the quantity, from which every interval, every one-sided bound and every risk is read.
+//!
+//! Sources: JCGM 100:2008 (GUM), JCGM 106:2012 (specific risk, guard bands), ISO 14253-1:2017 (guard band of
+//! one-sided 5 %), ILAC-G8:09/2019 (simple acceptance).
+
+use crate::message::Note;
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+
+mod decision;
+mod student;
+mod tail;
+
+pub use decision::{Judgement, Limit, Rule, Verdict, judge};
+pub use tail::{
+    chi_square_tail, chi_square_two_sided, ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided,
+    normal_two_sided,
+};
+
+/// The standard normal quantile of a probability.
+pub fn normal_quantile(probability: f64) -> f64 {
+    Normal::standard().inverse_cdf(probability.clamp(1e-15, 1.0 - 1e-15))
+}
+
+/// The standard normal cumulative probability.
+pub fn normal_probability(z: f64) -> f64 {
+    Normal::standard().cdf(z)
+}
+
+/// The quantile of χ² with `dof` degrees of freedom (not necessarily whole).
+pub fn chi_square_quantile(probability: f64, dof: f64) -> f64 {
+    // Exact inversion takes seconds there; the cube root (Wilson and Hilferty 1931) is right to 1e-7.
+    if dof > 1e5 {
+        let spread = 2.0 / (9.0 * dof);
+        let z = normal_quantile(probability.clamp(1e-12, 1.0 - 1e-12));
+        return dof * (1.0 - spread + z * spread.sqrt()).powi(3);
+    }
+    match ChiSquared::new(dof.max(1e-3)) {
+        Ok(d) => d.inverse_cdf(probability.clamp(1e-12, 1.0 - 1e-12)),
+        Err(_) => f64::NAN,
+    }
+}
+
+/// A two-sided interval with its coverage probability.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Interval {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Probability with which such intervals contain the true value.
+    pub coverage: f64,
+}
+
+/// A one-sided bound for a quantity that the record cannot show.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct UpperLimit {
+    /// The quantity is at most this much.
+    pub value: f64,
+    /// Probability with which such bounds lie above the true value.
+    pub coverage: f64,
+}
+
+/// A one-sided bound from below for a quantity that the record cannot show.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LowerLimit {
+    /// The quantity is at least this much.
+    pub value: f64,
+    /// Probability with which such bounds lie below the true value.
+    pub coverage: f64,
+}
+
+/// The confidence distribution of an estimate.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Spread {
+    /// Gaussian with a standard uncertainty.
+    Normal {
+        /// Standard uncertainty, unit of the estimate.
+        standard_uncertainty: f64,
+    },
+    /// Student's t with a standard uncertainty and degrees of freedom.
+    StudentT {
+        /// Standard uncertainty, unit of the estimate.
+        standard_uncertainty: f64,
+        /// Effective degrees of freedom.
+        dof: f64,
+    },
+    /// A standard deviation whose square is a scaled χ² with `dof` equivalent degrees of freedom.
+    ChiSquare {
+        /// Equivalent degrees of freedom.
+        dof: f64,
+    },
+    /// Pairs of (normal score, value), ascending: read off a profile likelihood.
+    Curve(Vec<(f64, f64)>),
+    /// No uncertainty known: limits cannot be decided with it.
+    Unknown,
+}
+
+impl Spread {
+    /// The value that the quantity stays below with the given confidence; Student's law is normal beyond 1e6 degrees.
+    pub fn bound(&self, value: f64, confidence: f64) -> Option<f64> {
+        match self {
+            Spread::Normal { standard_uncertainty } => {
+                Some(value + normal_quantile(confidence) * standard_uncertainty)
+            }
+            Spread::StudentT { standard_uncertainty: u, dof } if *dof > 1e6 || *u == 0.0 => {
+                Some(value + normal_quantile(confidence) * u)
+            }
+            Spread::StudentT { standard_uncertainty, dof } => {
+                Some(value + student::quantile(confidence, *dof) * standard_uncertainty)
+            }
+            Spread::ChiSquare { dof } => {
+                let q = chi_square_quantile(1.0 - confidence, *dof);
+                (q > 0.0 && value.is_finite()).then(|| value * (dof / q).sqrt())
+            }
+            Spread::Curve(points) => interpolate(points, normal_quantile(confidence)),
+            Spread::Unknown => None,
+        }
+    }
+
+    /// Probability, in the sense of the confidence distribution, that the quantity lies above `threshold`.
+    pub fn probability_above(&self, value: f64, threshold: f64) -> Option<f64> {
+        match self {
+            Spread::Normal { standard_uncertainty: u } => {
+                if *u > 0.0 {
+                    Some(1.0 - normal_probability((threshold - value) / u))
+                } else {
+                    Some(if value > threshold { 1.0 } else { 0.0 })
+                }
+            }
+            Spread::StudentT { standard_uncertainty: u, dof } => {
+                (*u > 0.0).then(|| student::upper_tail((threshold - value) / u, *dof))
+            }
+            Spread::ChiSquare { dof } => {
+                let d = ChiSquared::new(dof.max(1e-3)).ok()?;
+                (threshold > 0.0).then(|| d.cdf(dof * (value / threshold).powi(2)))
+            }
+            Spread::Curve(points) => {
+                let flipped: Vec<(f64, f64)> = points.iter().map(|(z, v)| (*v, *z)).collect();
+                interpolate(&flipped, threshold).map(|z| 1.0 - normal_probability(z))
+            }
+            Spread::Unknown => None,
+        }
+    }
+
+    /// The two-sided interval with the given coverage, equal tails.
+    pub fn interval(&self, value: f64, coverage: f64) -> Option<Interval> {
+        let tail = 0.5 * (1.0 - coverage);
+        let (low, high) = (self.bound(value, tail)?, self.bound(value, 1.0 - tail)?);
+        (low.is_finite() && high.is_finite()).then_some(Interval { low, high, coverage })
+    }
+}
+
+/// Linear interpolation in ascending pairs; the end segments are held, not extended.
+fn interpolate(points: &[(f64, f64)], x: f64) -> Option<f64> {
+    let (first, last) = (points.first()?, points.last()?);
+    if x <= first.0 {
+        return Some(first.1);
+    }
+    if x >= last.0 {
+        return Some(last.1);
+    }
+    let i = points.partition_point(|p| p.0 <= x);
+    let (a, b) = (points[i - 1], points[i]);
+    Some(if b.0 > a.0 { a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0) } else { a.1 })
+}
+
+/// One measured quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// Id of the measurand, for example `angle_random_walk`.
+    pub id: &'static str,
+    /// Channel it belongs to.
+    pub channel: String,
+    /// Best value, in the unit below; `None` when the record cannot show it.
+    pub value: Option<f64>,
+    /// Unit of the value: the one the result contract fixes for this id.
+    pub unit: &'static str,
+    /// Confidence distribution.
+    pub spread: Spread,
+    /// Bound, where the value is `None`.
+    pub upper_limit: Option<UpperLimit>,
+    /// Where the likelihood is largest, where the value is `None`: no claim, and what errors are counted by.
+    pub most_likely: Option<f64>,
+    /// Bound from below, where the value is `None`.
+    pub lower_limit: Option<LowerLimit>,
+    /// True where another reading of the same record contradicts it: it then decides nothing.
+    pub disputed: bool,
+    /// How it was obtained, short and stable: `whittle`, `overlapping_allan`, ...
+    pub method: &'static str,
+    /// What a reader must know with it: conventions, averaging times, numbers of clusters.
+    pub notes: Vec<Note>,
+}
+
+impl Estimate {
+    /// A measured value with its spread.
+    pub fn measured(
+        id: &'static str,
+        channel: &str,
+        value: f64,
+        unit: &'static str,
+        spread: Spread,
+        method: &'static str,
+    ) -> Self {
+        let value = value.is_finite().then_some(value);
+        Estimate {
+            id,
+            channel: channel.to_owned(),
+            value,
+            unit,
+            spread,
+            upper_limit: None,
+            most_likely: None,
+            lower_limit: None,
+            disputed: false,
+            method,
+            notes: vec![],
+        }
+    }
+
+    /// A quantity the record cannot show, with what it is at most (`None`: nothing can be said).
+    pub fn not_identifiable(
+        id: &'static str,
+        channel: &str,
+        upper_limit: Option<UpperLimit>,
+        unit: &'static str,
+        method: &'static str,
+    ) -> Self {
+        Estimate {
+            id,
+            channel: channel.to_owned(),
+            value: None,
+            unit,
+            spread: Spread::Unknown,
+            upper_limit,
+            most_likely: None,
+            lower_limit: None,
+            disputed: false,
+            method,
+            notes: vec![],
+        }
+    }
+
+    /// Adds a note.
+    #[must_use]
+    pub fn note(mut self, note: Note) -> Self {
+        self.notes.push(note);
+        self
+    }
+
+    /// Adds where the likelihood of a quantity that the record cannot show is largest.
+    #[must_use]
+    pub fn most_likely(mut self, value: Option<f64>) -> Self {
+        self.most_likely = value.filter(|v| v.is_finite());
+        self
+    }
+
+    /// Adds what a quantity that the record cannot show is at least.
+    #[must_use]
+    pub fn at_least(mut self, limit: Option<LowerLimit>) -> Self {
+        self.lower_limit = limit;
+        self
+    }
+
+    /// The two-sided 95 % interval.
+    pub fn interval95(&self) -> Option<Interval> {
+        self.spread.interval(self.value?, 0.95)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,178 @@
+//! Limits, decision rules, verdicts.
+
+use super::{Estimate, Spread};
+use serde::Serialize;
+
+/// How a measured value with its uncertainty is compared with a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Rule {
+    /// The value itself is compared; the risk of a wrong decision is shared (ILAC-G8). Up to 50 % at the limit.
+    Simple,
+    /// The one-sided bound at the stated risk is compared (JCGM 106, ISO 14253-1).
+    GuardBand,
+}
+
+/// What a unit must satisfy.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// Lowest value allowed, in the unit of the estimate.
+    pub min: Option<f64>,
+    /// Highest value allowed, in the unit of the estimate.
+    pub max: Option<f64>,
+    /// Decision rule.
+    pub rule: Rule,
+    /// Risk of a wrong acceptance (and of a wrong rejection) that the guard band is set for.
+    pub risk: f64,
+    /// File the limit was read from.
+    pub source: String,
+}
+
+impl Limit {
+    /// Largest magnitude that it allows; `None` where it allows any.
+    pub fn largest_magnitude(&self) -> Option<f64> {
+        match (self.min, self.max) {
+            (Some(low), Some(high)) => Some(low.abs().max(high.abs())),
+            (one, other) => one.or(other).map(f64::abs),
+        }
+    }
+}
+
+/// The verdict of a row or of a whole run. Worst wins, in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Nothing was to be decided.
+    None,
+    /// The requirement is shown to be met.
+    Pass,
+    /// Neither met nor broken, as far as this test shows.
+    Indeterminate,
+    /// The requirement is shown not to be met.
+    Fail,
+    /// The test could not be carried out as required.
+    Error,
+}
+
+impl Verdict {
+    /// The id used in files and tables.
+    pub fn id(self) -> &'static str {
+        match self {
+            Verdict::None => "none",
+            Verdict::Pass => "pass",
+            Verdict::Indeterminate => "indeterminate",
+            Verdict::Fail => "fail",
+            Verdict::Error => "error",
+        }
+    }
+}
+
+/// A limit applied to an estimate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judgement {
+    /// What was decided.
+    pub verdict: Verdict,
+    /// The largest measured value that would be accepted under `max`.
+    pub acceptance_max: Option<f64>,
+    /// The smallest measured value that would be accepted under `min`.
+    pub acceptance_min: Option<f64>,
+    /// Probability that the unit lies outside the limit, given what was measured (JCGM 106, specific risk).
+    pub specific_risk: Option<f64>,
+    /// Distance to the nearest limit, positive inside, unit of the estimate.
+    pub margin: Option<f64>,
+}
+
+/// Decides one row.
+///
+/// A quantity that the record cannot show passes when its upper bound is inside the limit, fails when its lower bound is
+/// beyond an upper limit, and is otherwise indeterminate; a lower limit cannot be shown by it.
+pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
+    let Some(value) = estimate.value else {
+        let inside = limit.min.is_none_or(|m| m <= 0.0)
+            && match (limit.max, estimate.upper_limit) {
+                (Some(max), Some(bound)) => bound.value <= max && bound.coverage >= 1.0 - limit.risk - 1e-9,
+                (Some(_), None) => false,
+                (None, _) => limit.min.is_some(),
+            };
+        let beyond = limit
+            .max
+            .zip(estimate.lower_limit)
+            .filter(|(max, bound)| bound.value > *max && bound.coverage >= 1.0 - limit.risk - 1e-9);
+        let margin = match beyond {
+            Some((max, bound)) => Some(max - bound.value),
+            None => limit.max.zip(estimate.upper_limit).map(|(max, bound)| max - bound.value),
+        };
+        let verdict = match beyond {
+            Some(_) => Verdict::Fail,
+            None if inside => Verdict::Pass,
+            None => Verdict::Indeterminate,
+        };
+        return Judgement {
+            verdict,
+            acceptance_max: None,
+            acceptance_min: None,
+            specific_risk: None,
+            margin,
+        };
+    };
+    let margin = [limit.max.map(|max| max - value), limit.min.map(|min| value - min)]
+        .into_iter()
+        .flatten()
+        .reduce(f64::min);
+    let above = limit.max.and_then(|max| estimate.spread.probability_above(value, max));
+    let below = limit.min.and_then(|min| estimate.spread.probability_above(value, min)).map(|p| 1.0 - p);
+    let specific_risk = match (above, below) {
+        (Some(a), Some(b)) => Some((a + b).min(1.0)),
+        (a, b) => a.or(b),
+    };
+    if limit.rule == Rule::Simple {
+        let outside = limit.max.is_some_and(|max| value > max) || limit.min.is_some_and(|min| value < min);
+        let verdict = if outside { Verdict::Fail } else { Verdict::Pass };
+        return Judgement {
+            verdict,
+            acceptance_max: limit.max,
+            acceptance_min: limit.min,
+            specific_risk,
+            margin,
+        };
+    }
+    let (low, high) =
+        (estimate.spread.bound(value, limit.risk), estimate.spread.bound(value, 1.0 - limit.risk));
+    let (Some(low), Some(high)) = (low, high) else {
+        return Judgement {
+            verdict: Verdict::Indeterminate,
+            acceptance_max: None,
+            acceptance_min: None,
+            specific_risk,
+            margin,
+        };
+    };
+    // A spread that grows with the value (a deviation) moves the limit by a factor, any other by a difference.
+    let scales = value > 0.0
+        && match &estimate.spread {
+            Spread::ChiSquare { .. } => true,
+            Spread::Curve(points) => points.first().is_some_and(|p| p.1 >= 0.0),
+            _ => false,
+        };
+    let shift = |limit: f64, bound: f64| {
+        // A limit on the other side of zero is no multiple of the value.
+        if scales && bound > 0.0 && limit > 0.0 { limit * value / bound } else { limit - (bound - value) }
+    };
+    let passes = limit.max.is_none_or(|max| high <= max) && limit.min.is_none_or(|min| low >= min);
+    let fails = limit.max.is_some_and(|max| low > max) || limit.min.is_some_and(|min| high < min);
+    Judgement {
+        verdict: if passes {
+            Verdict::Pass
+        } else if fails {
+            Verdict::Fail
+        } else {
+            Verdict::Indeterminate
+        },
+        acceptance_max: limit.max.map(|max| shift(max, high)),
+        acceptance_min: limit.min.map(|min| shift(min, low)),
+        specific_risk,
+        margin,
+    }
+}

@@ -1,0 +1,78 @@
+//! The smallest Allan deviation, raw and over 0.664: two of the three figures that are called bias instability.
+//!
+//! The minimum is an extreme of a noisy curve. A record of angle random walk alone has one too, wherever it ends;
+//! so it is reported with its τ and its degrees of freedom and is no evidence of a floor by itself.
+
+use super::{GyroEvidence, Measurand, Options};
+use crate::estimate::{Estimate, Spread};
+use crate::message::Note;
+use crate::noise::intervals::BoundedPoint;
+use crate::noise::residual::degrees_of_freedom;
+
+pub(super) struct AllanMinimum;
+
+/// √(2 ln 2/π): the Allan deviation of flicker noise is this times B.
+pub const FLICKER_FLOOR: f64 = 0.664_282_470_3;
+
+/// Largest averaging time read, as a share of the record (result contract).
+const LARGEST_SHARE: f64 = 0.2;
+
+impl Measurand for AllanMinimum {
+    fn ids(&self) -> &'static [&'static str] {
+        &["bias_instability_minimum", "bias_instability_minimum_scaled"]
+    }
+
+    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
+        let scaled = id == "bias_instability_minimum_scaled";
+        let (id, divisor) = if scaled {
+            ("bias_instability_minimum_scaled", FLICKER_FLOOR)
+        } else {
+            ("bias_instability_minimum", 1.0)
+        };
+        let readable = readable(gyro);
+        let Some(lowest) = lowest(gyro) else {
+            let none = Estimate::not_identifiable(id, &gyro.channel, None, "deg/h", "overlapping_allan");
+            return Some(none.note(Note::new("note.minimum_none")));
+        };
+        let tau_s = lowest.point.m as f64 * gyro.tau0_s;
+        let edf = minimum_edf(gyro, lowest);
+        let mut estimate = Estimate::measured(
+            id,
+            &gyro.channel,
+            lowest.point.deviation / divisor,
+            "deg/h",
+            Spread::ChiSquare { dof: edf },
+            "overlapping_allan",
+        )
+        .note(Note::new("note.minimum_at").with("tau_s", tau_s).with("edf", edf));
+        if readable.last().is_some_and(|last| last.point.m == lowest.point.m) {
+            estimate = estimate.note(Note::new("note.minimum_at_end"));
+        } else if gyro.identification.bias_instability.value.is_none() {
+            estimate = estimate.note(Note::new("note.minimum_no_evidence"));
+        }
+        Some(estimate)
+    }
+}
+
+/// The smallest deviation that is read.
+pub fn lowest(gyro: &GyroEvidence) -> Option<&BoundedPoint> {
+    let positive = readable(gyro).into_iter().filter(|p| p.point.deviation > 0.0);
+    positive.min_by(|a, b| a.point.deviation.total_cmp(&b.point.deviation))
+}
+
+/// Degrees of freedom of the smallest deviation: those of the prevailing kind of noise, or of the whole description
+/// where it holds lines, Markov processes or quasi-periodic disturbances and gives fewer.
+pub fn minimum_edf(gyro: &GyroEvidence, lowest: &BoundedPoint) -> f64 {
+    let model = &gyro.identification.described.model;
+    if model.lines.is_empty() && model.markov.is_empty() && model.quasi_periodic.is_empty() {
+        return lowest.edf;
+    }
+    let whole = degrees_of_freedom(model, &lowest.point, gyro.tau0_s);
+    if whole > 0.0 { lowest.edf.min(whole.max(1.0)) } else { lowest.edf }
+}
+
+/// Octaves up to a fifth of the record.
+pub fn readable(gyro: &GyroEvidence) -> Vec<&BoundedPoint> {
+    let samples = gyro.digest.samples as f64;
+    gyro.octaves.iter().filter(|p| p.point.m as f64 <= samples * LARGEST_SHARE).collect()
+}

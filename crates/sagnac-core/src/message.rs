@@ -1,0 +1,155 @@
+//! What there is to say, as data: a key with arguments.
+//!
+//! This crate knows no language. A [`Note`] becomes a sentence where it is shown, by a table that belongs to the program.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// One argument of a note.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Arg {
+    /// A number; shown with up to four significant digits.
+    Number(f64),
+    /// A number as it was stated, such as a requirement; shown with every digit.
+    Stated(f64),
+    /// A count; shown in full.
+    Count(u64),
+    /// A text, shown as one line, without what steers a terminal.
+    Text(String),
+    /// A key of the locale tables, shown as what stands there; as its last part where nothing does.
+    Key(String),
+    /// A sentence within the sentence.
+    Note(Box<Note>),
+    /// Several arguments with a text between each two.
+    Several(Vec<Arg>, Cow<'static, str>),
+    /// A number with so many decimals, whatever its size, with or without idle zeros;.
+    Decimals {
+        /// The number.
+        value: f64,
+        /// Decimals.
+        digits: usize,
+        /// Whether zeros that fill the decimals are shown.
+        zeros: bool,
+    },
+    /// A number with its own count of significant digits, with or without idle zeros behind the decimal mark;
+    ///.
+    Figures {
+        /// The number.
+        value: f64,
+        /// Significant digits.
+        digits: usize,
+        /// Whether zeros that fill the digits are shown.
+        zeros: bool,
+    },
+}
+
+impl Arg {
+    /// A number with significant digits, idle zeros among them.
+    pub fn figures(value: f64, digits: usize) -> Arg {
+        Arg::Figures { value, digits, zeros: true }
+    }
+
+    /// A number with at most so many significant digits, without idle zeros.
+    pub fn rounded(value: f64, digits: usize) -> Arg {
+        Arg::Figures { value, digits, zeros: false }
+    }
+
+    /// A number with a fixed count of decimals.
+    pub fn fixed(value: f64, digits: usize) -> Arg {
+        Arg::Decimals { value, digits, zeros: true }
+    }
+
+    /// A number with at most so many decimals.
+    pub fn decimals(value: f64, digits: usize) -> Arg {
+        Arg::Decimals { value, digits, zeros: false }
+    }
+
+    /// An id under a prefix of the locale tables, such as `measurand` and `static_bias`.
+    pub fn key(prefix: &str, id: &str) -> Arg {
+        Arg::Key(format!("{prefix}.{id}"))
+    }
+}
+
+impl Arg {
+    fn plain(&self) -> String {
+        match self {
+            Arg::Number(v) | Arg::Stated(v) => v.to_string(),
+            Arg::Decimals { value, .. } | Arg::Figures { value, .. } => value.to_string(),
+            Arg::Count(v) => v.to_string(),
+            Arg::Text(text) => format!("{text:?}"),
+            Arg::Key(key) => key.clone(),
+            Arg::Note(note) => note.plain(),
+            Arg::Several(list, between) => list.iter().map(Arg::plain).collect::<Vec<_>>().join(between),
+        }
+    }
+}
+
+impl From<f64> for Arg {
+    fn from(v: f64) -> Self {
+        Arg::Number(v)
+    }
+}
+impl From<u64> for Arg {
+    fn from(v: u64) -> Self {
+        Arg::Count(v)
+    }
+}
+impl From<usize> for Arg {
+    fn from(v: usize) -> Self {
+        Arg::Count(v as u64)
+    }
+}
+impl From<Note> for Arg {
+    fn from(v: Note) -> Self {
+        Arg::Note(Box::new(v))
+    }
+}
+impl From<&str> for Arg {
+    fn from(v: &str) -> Self {
+        Arg::Text(v.to_owned())
+    }
+}
+impl From<String> for Arg {
+    fn from(v: String) -> Self {
+        Arg::Text(v)
+    }
+}
+
+/// A sentence by name, with its arguments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// Key in the locale tables, for example `note.record_too_short`.
+    pub id: Cow<'static, str>,
+    /// Arguments by name.
+    pub args: BTreeMap<Cow<'static, str>, Arg>,
+}
+
+impl Note {
+    /// A note with no arguments yet.
+    pub fn new(id: impl Into<Cow<'static, str>>) -> Note {
+        Note { id: id.into(), args: BTreeMap::new() }
+    }
+
+    /// Adds an argument.
+    #[must_use]
+    pub fn with(mut self, name: impl Into<Cow<'static, str>>, value: impl Into<Arg>) -> Note {
+        self.args.insert(name.into(), value.into());
+        self
+    }
+}
+
+impl Note {
+    /// The key and the arguments, for an error that is printed where no table of words is at hand.
+    pub fn plain(&self) -> String {
+        let args: Vec<String> =
+            self.args.iter().map(|(name, arg)| format!("{name} = {}", arg.plain())).collect();
+        if args.is_empty() { self.id.to_string() } else { format!("{} ({})", self.id, args.join(", ")) }
+    }
+}
+
+impl From<&'static str> for Note {
+    /// A sentence without arguments, by its key.
+    fn from(id: &'static str) -> Note {
+        Note::new(id)
+    }
+}

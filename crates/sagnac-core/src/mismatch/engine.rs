@@ -1,0 +1,297 @@
+//! The four steps: is there a mismatch and where, what could it be, which is it and how sure, does the fit improve.
+
+use super::assemble::{Parts, Recorded, assemble};
+use super::candidates::{self, Scenes, Tried};
+use super::coarse;
+use super::departures::{self, Departure};
+use super::filtered;
+use super::found::Found;
+use super::heldout::Halves;
+use super::hypothesis::fit;
+use super::jumps::{take_telegraph, with_stated_jumps};
+use super::lattice::Lattice;
+use super::local;
+use super::options::{Options, Progress};
+use super::outcome::Outcome;
+use super::problem::{Problem, drivers};
+use super::regular::{Irregular, Regular};
+use super::repeats;
+use super::samples::{self, Named};
+use super::select;
+use crate::claim::Claim;
+use crate::effect::{Column, Domain, EFFECTS, Effect, Model, number};
+use crate::message::Note;
+use crate::series::Series;
+use std::collections::BTreeMap;
+
+/// Rounds of setting samples aside that a course bends within, and of finding it without them.
+const ROUNDS: usize = 3;
+
+/// Explains a recording against a claim.
+///
+/// # Errors
+/// A note of what keeps the two from being compared.
+pub fn explain(
+    series: Series,
+    claim: &Claim,
+    options: &Options,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Outcome, Note> {
+    let length_s =
+        series.time_s.last().copied().unwrap_or(0.0) - series.time_s.first().copied().unwrap_or(0.0);
+    let recorded = Recorded { rows: series.time_s.len(), length_s };
+    let mut regular = on_grid(series, claim, options)?;
+    progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
+    let mut found = Found::default();
+    let repeated = take_repeats(&mut regular, claim, &mut found, options);
+    let mut problem = uncoarsened(&regular, claim, &mut found, options);
+    // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
+    drop(regular);
+    let rows = problem.scenes.rows;
+    let mut base = with_stated_jumps(&mut problem, options.alpha);
+    let mut before = tests(&problem, &base, problem.level.as_deref());
+    before.extend(repeated);
+    progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
+    // What the table does at low frequencies looks like a filter of the noise while no course says so.
+    let mut moved = with_table_courses(&base, &problem.scenes, options);
+    for _ in 0..ROUNDS {
+        // What is drawn for them follows the course as it was found with them, so it is found again.
+        if !problem.without_bends(&moved) {
+            break;
+        }
+        base = refitted(&base, &problem);
+        moved = with_table_courses(&base, &problem.scenes, options);
+    }
+    let mut held_base = Halves::new(&problem).judge(&base);
+    let filtered = filtered::behind(&problem, &moved, options);
+    let filtered = filtered.filter(|f| problem.see_behind(&moved, f)).map(|f| refitted(&f, &problem));
+    if let Some(filtered) = filtered {
+        base = refitted(&base, &problem);
+        held_base = Halves::new(&problem).judge(&base);
+        moved = with_table_courses(&filtered, &problem.scenes, options);
+    }
+    let mut start = take_bursts(&mut problem, &base, &moved, &mut found, options);
+    if problem.level.is_none() {
+        let moved = moved_again(&moved, &start, &problem);
+        let mut levels = local::level(&problem, &moved);
+        levels.retain(|l| options.allows(l.kind));
+        let passing =
+            levels.first().and_then(|l| samples::worth(l.gain, l.parameters, l.p_value, rows, options.alpha));
+        if let Some(delta_bic) = passing {
+            found.named.extend(samples::level(&levels, delta_bic, rows, &problem));
+            found.level = levels.into_iter().next().map(|l| l.profile);
+            start = samples::with_free_level(&start, &problem);
+        }
+    }
+    let mut selection = select::select(&start, &problem.scenes, options);
+    if problem.see_behind(&selection.best, &selection.best) {
+        base = refitted(&base, &problem);
+        held_base = Halves::new(&problem).judge(&base);
+        start = refitted(&start, &problem);
+        selection = select::select(&start, &problem.scenes, options);
+    }
+    take_telegraph(&mut problem, &start, &mut selection, &mut found, options);
+    progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
+    let level = found.level.clone().or_else(|| problem.level.clone());
+    let after = tests(&problem, &selection.best, level.as_deref());
+    Ok(assemble(Parts {
+        problem: &problem,
+        claim,
+        base: &base,
+        held_base,
+        selection: &selection,
+        found,
+        before: &before,
+        after: &after,
+        recorded,
+        options,
+    }))
+}
+
+/// The rows on the grid of the claim, columns that are treated as not recorded left out.
+pub(super) fn on_grid(series: Series, claim: &Claim, options: &Options) -> Result<Regular, Note> {
+    let columns: BTreeMap<_, _> = series
+        .columns
+        .iter()
+        .filter(|(c, _)| !options.hide.contains(c))
+        .map(|(c, v)| (*c, v.as_slice()))
+        .collect();
+    Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)
+}
+
+/// Sets samples aside that repeat the one before them: they say nothing of the rate. The test that they fail, where the
+/// claim does not state them.
+fn take_repeats(
+    regular: &mut Regular,
+    claim: &Claim,
+    found: &mut Found,
+    options: &Options,
+) -> Option<Departure> {
+    let stated = claim.effects.iter().any(|e| e.effect.kind() == "repeated_samples");
+    if !stated && !options.allows("repeated_samples") {
+        return None;
+    }
+    let repeats = repeats::of(regular)?;
+    let rows = regular.grid.present.iter().filter(|p| **p).count();
+    let delta_bic = samples::worth(repeats.gain, 1, repeats.chance, rows, options.alpha)?;
+    for row in &repeats.rows {
+        regular.grid.present[*row] = false;
+    }
+    if stated {
+        return None;
+    }
+    let named = samples::repeats(&repeats, delta_bic, &regular.grid)?;
+    let place = *named.places.first()?;
+    found.named.push(named);
+    Some(Departure { test: "repeats", place, beside: None, ln_p: -repeats.gain })
+}
+
+/// What departs from a hypothesis.
+fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departure> {
+    departures::all(&problem.scenes, tried, level, &problem.usable)
+}
+
+/// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
+/// not state is named first: nothing finer can be judged beside it.
+pub(super) fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Options) -> Problem {
+    let problem = Problem::new(regular, claim);
+    let as_effect = claim.effects.iter().filter(|e| e.effect.kind() == "quantization");
+    let as_effect = as_effect.filter_map(|e| number(&e.values, "lsb_arcsec")).fold(0.0, f64::max);
+    let stated = claim.quantization_lsb_arcsec.max(as_effect);
+    let lattice = problem.lattice.filter(|_| options.allows("quantization"));
+    let lsb = if stated > 0.0 { Some(stated) } else { lattice.map(|l| l.increment_arcsec) };
+    let m = lsb.map_or(1, |lsb| coarse::group(lsb, &problem.claim, problem.residual.len()));
+    let mut claim = claim.clone();
+    let unlike = lattice.filter(|l| (l.increment_arcsec - stated).abs() > 0.01 * stated);
+    if let Some(lattice) = unlike.filter(|_| m == 1 || stated <= 0.0) {
+        claim.quantization_lsb_arcsec = lattice.increment_arcsec;
+        claim.noise.q = lattice.increment_arcsec / 12f64.sqrt();
+        let with = Problem::new(regular, &claim);
+        match as_rounded(lattice, &problem, &with, m > 1, options) {
+            Some(named) => found.named.push(named),
+            None => return problem,
+        }
+        if m == 1 {
+            return with;
+        }
+    }
+    if m == 1 {
+        return problem;
+    }
+    claim.sample_rate_hz = problem.claim.sample_rate_hz / m as f64;
+    let expected = |r: &Regular| drivers(r, &claim).claimed_mean();
+    Problem::new(&coarse::about_the_claim(regular, m, expected), &claim)
+}
+
+/// Rounding that the claim does not state, as a finding. In a record that `needs` it known before anything else the
+/// spectrum decides; elsewhere the spectrum will have its say among the other effects, and the values decide where it would
+/// say too little. `with` is the problem with the rounding in the claim.
+fn as_rounded(
+    lattice: Lattice,
+    problem: &Problem,
+    with: &Problem,
+    needed: bool,
+    options: &Options,
+) -> Option<Named> {
+    let rows = problem.scenes.rows;
+    let gain = with.baseline().fit.log_likelihood - problem.baseline().fit.log_likelihood;
+    let chance = |gain: f64| crate::estimate::chi_square_tail(2.0 * gain.max(0.0), 1.0);
+    let worth = |total: f64| samples::worth(total, 1, chance(total), rows, options.alpha);
+    let by_spectrum = worth(gain);
+    if needed {
+        return samples::quantization(lattice, gain, by_spectrum?, chance(gain), problem);
+    }
+    let dt_s = problem.grid.dt_s;
+    let by_values = gain + lattice.gain(rows, 60.0 * problem.claim.noise.n * dt_s.sqrt());
+    if by_spectrum.is_some() || gain <= 0.0 {
+        return None;
+    }
+    samples::quantization(lattice, gain, worth(by_values)?, chance(by_values), problem)
+}
+
+/// What single samples are judged on: the claim with the courses of a moving table that it leaves out. Their corners,
+/// as of a delay, look like bursts and like a changing level; a smooth course does not.
+fn with_table_courses(base: &Tried, scenes: &Scenes, options: &Options) -> Tried {
+    const COURSES: usize = 2;
+    let table = [Column::TableRate, Column::TableAngle, Column::OuterRate];
+    // A delay of the claimed mean needs no column of its own, but moves only with the table.
+    let delays = |e: &dyn Effect| e.needs().is_empty() && e.domain() == Domain::Lag;
+    let follows = |e: &dyn Effect| {
+        options.allows(e.kind()) && (e.needs().iter().any(|c| table.contains(c)) || delays(e))
+    };
+    let drivers = &scenes.full.drivers;
+    let applies = |e: &dyn Effect| {
+        let there = e.needs().iter().all(|c| drivers.column(*c).is_some());
+        follows(e) && there && matches!(e.model(), Model::Course(c) if c.applies(drivers))
+    };
+    if !EFFECTS.iter().any(|e| applies(*e)) {
+        return base.clone();
+    }
+    let mut out = base.clone();
+    for _ in 0..COURSES {
+        let candidates = candidates::among(&out, scenes, applies);
+        let family = EFFECTS.len() as f64;
+        match candidates.into_iter().next() {
+            Some(leader) if select::passes(&leader, family, options.alpha) => out = leader.tried,
+            _ => break,
+        }
+    }
+    out
+}
+
+/// The same on a problem from which something was taken since.
+fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
+    let filters = |t: &Tried| t.hypothesis.noise.filters().count();
+    if moved.hypothesis.courses.is_empty() && filters(moved) == filters(start) {
+        return start.clone();
+    }
+    refitted(moved, problem)
+}
+
+/// A hypothesis fitted to what a problem has become.
+fn refitted(tried: &Tried, problem: &Problem) -> Tried {
+    let mut hypothesis = tried.hypothesis.clone();
+    let fit = fit(&mut hypothesis, &problem.scenes.full);
+    Tried { hypothesis, fit, ..tried.clone() }
+}
+
+/// Sets bursts aside; the claim's fit without them.
+fn take_bursts(
+    problem: &mut Problem,
+    base: &Tried,
+    moved: &Tried,
+    found: &mut Found,
+    options: &Options,
+) -> Tried {
+    let (rows, alpha) = (problem.scenes.rows, options.alpha);
+    let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "outlier_bursts");
+    if !stated && !options.allows("outlier_bursts") {
+        return base.clone();
+    }
+    let Some(bursts) = local::bursts(problem, moved) else { return base.clone() };
+    let Some(delta_bic) = samples::worth(bursts.gain, bursts.parameters, bursts.p_value, rows, alpha) else {
+        return base.clone();
+    };
+    let whole = problem.residual.clone();
+    problem.without(&bursts.samples, moved);
+    if !stated {
+        let removed: Vec<f64> = whole.iter().zip(&problem.residual).map(|(w, r)| w - r).collect();
+        found.named.extend(samples::bursts(&bursts, delta_bic, &removed, problem));
+        found.take(removed);
+    }
+    refitted(base, problem)
+}
+
+fn note(why: Irregular) -> Note {
+    match why {
+        Irregular::Short(rows) => Note::new("explain.error.short")
+            .with("rows", rows as u64)
+            .with("needed", super::regular::FEWEST as u64),
+        Irregular::OtherRate(observed, claimed) => Note::new("explain.error.other_rate")
+            .with("observed", format!("{observed:.6}"))
+            .with("claimed", format!("{claimed:.6}")),
+        Irregular::Sparse(rows, places) => {
+            Note::new("explain.error.sparse").with("rows", rows as u64).with("places", format!("{places:.0}"))
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! What an explanation says, as `explain.json` has it.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The document `explain.json`. Format `explain/1`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Explanation {
+    /// `explain/1`
+    pub format: String,
+    /// The case that the claim names.
+    pub case: String,
+    /// `consistent`, `mismatch` or `unknown-mismatch`.
+    pub verdict: String,
+    /// One entry a cause, the principal first.
+    pub effects: Vec<Finding>,
+    /// Baseline against augmented.
+    pub fit: Fit,
+    /// Probability of so large a mismatch under a correct claim, everything that was looked at counted.
+    pub family_p_value: f64,
+    /// The same with the augmented claim; that of the baseline where nothing was added.
+    pub family_p_value_after: f64,
+    /// Significance asked for.
+    pub alpha: f64,
+    /// Everything that was tried on the baseline, the best first.
+    pub candidates: Vec<Candidate>,
+    /// Tests of the residual, before and after.
+    pub tests: Vec<Test>,
+    /// Values of the claim with what the recording says of them, under the stated uncertainties.
+    pub nuisances: Vec<NuisanceValue>,
+    /// What the recording is: rows, missing rows, sample interval, length.
+    pub recording: RecordingFacts,
+    /// Experiments that would decide between equivalents, as keys of words.
+    pub experiments: Vec<Experiment>,
+}
+
+/// One cause.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Finding {
+    /// Kind of the contract, or `unknown`.
+    pub kind: String,
+    /// Effect of the catalogue, where `kind` is `unknown` because the format has no kind for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effect: Option<String>,
+    /// Kinds that this recording cannot tell from it, at most three.
+    pub equivalents: Vec<String>,
+    /// Parameters by name.
+    pub parameters: BTreeMap<String, ParameterValue>,
+    /// Where it lives, principal first.
+    #[serde(rename = "where")]
+    pub places: Vec<PlaceRecord>,
+    /// BIC without it less BIC with it.
+    pub delta_bic: f64,
+    /// Probability under its absence, corrected for the search.
+    pub p_value: f64,
+    /// Held-out gain of log-likelihood when it is added to the claim with the entries before it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heldout_gain: Option<f64>,
+    /// Share of the located excess that is removed, 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub removed_share: Option<f64>,
+}
+
+impl Finding {
+    /// Id of the effect of the catalogue, whether the format of explanations has a kind for it or not.
+    pub fn effect_id(&self) -> &str {
+        self.effect.as_deref().unwrap_or(&self.kind)
+    }
+
+    /// True for a cause that nothing in the catalogue describes.
+    pub fn is_unnamed(&self) -> bool {
+        self.effect_id() == "unknown"
+    }
+}
+
+/// A parameter with its interval.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ParameterValue {
+    /// Value.
+    pub value: f64,
+    /// Unit.
+    pub unit: String,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+}
+
+/// An interval of a domain.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PlaceRecord {
+    /// Domain id.
+    pub domain: String,
+    /// Lower end.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+}
+
+/// Baseline and augmented.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Fit {
+    /// Bin length of the held-out residual, s.
+    pub heldout_tau_s: f64,
+    /// The claim with its nuisances re-estimated.
+    pub baseline: FitFigures,
+    /// The same with the effects.
+    pub augmented: FitFigures,
+}
+
+/// Figures of one model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FitFigures {
+    /// Natural logarithm, whole recording.
+    pub log_likelihood: f64,
+    /// Of the held-out blocks, parameters from the others.
+    pub heldout_log_likelihood: f64,
+    /// Of the held-out residual in bins, deg/h.
+    pub heldout_rms_deg_h: f64,
+    /// −2 ln L + parameters · ln rows.
+    pub bic: f64,
+}
+
+/// An effect that was tried.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Candidate {
+    /// Kind.
+    pub kind: String,
+    /// BIC of the baseline less its own.
+    pub delta_bic: f64,
+    /// Gain of log-likelihood.
+    pub log_likelihood_gain: f64,
+    /// Corrected for its own search.
+    pub p_value: f64,
+}
+
+/// A test of one view.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Test {
+    /// Id: `spectrum`, `line`, `level`, `variance`, `distribution`, ...
+    pub id: String,
+    /// Domain of the largest departure.
+    pub domain: String,
+    /// Lower end of it.
+    pub from: f64,
+    /// Upper end of it.
+    pub to: f64,
+    /// p-value with the claim.
+    pub p_before: f64,
+    /// p-value with the augmented claim.
+    pub p_after: f64,
+}
+
+/// A stated value and what the recording says of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct NuisanceValue {
+    /// Key in `model.toml`.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// As claimed.
+    pub claimed: f64,
+    /// Stated standard deviation.
+    pub uncertainty: f64,
+    /// Fitted with the claim.
+    pub baseline: f64,
+    /// Fitted with the augmented claim.
+    pub augmented: f64,
+}
+
+/// What was read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RecordingFacts {
+    /// Rows.
+    pub rows: usize,
+    /// Rows missing inside.
+    pub missing: usize,
+    /// Sample interval, s.
+    pub sample_interval_s: f64,
+    /// From the first to the last row, s.
+    pub length_s: f64,
+    /// Columns that were used.
+    pub columns: Vec<String>,
+    /// Columns that were left out on request.
+    pub hidden: Vec<String>,
+}
+
+/// What would decide between two kinds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Experiment {
+    /// The chosen kind.
+    pub kind: String,
+    /// The other.
+    pub against: String,
+    /// How many times as long a record tells them apart in 95 of 100, if length alone can.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub times_longer: Option<f64>,
+}

@@ -1,0 +1,250 @@
+//! Up to which frequency a noise model describes a record.
+//!
+//! Real outputs are filtered, and noise near the Nyquist frequency can have a shape that no term has. Fitted over all
+//! frequencies, such a record gives a wrong N with a tiny interval. Where the model fails its misfit test it is fitted
+//! up to the highest frequency, by octaves, at which it passes, where the failure lies above; that part is left out and
+//! said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
+//! root of the misfit (Birge ratio), and that is said too.
+
+use super::composite::Part;
+use super::data::NoiseType;
+use super::evidence::Evidence;
+use super::identification::Identification;
+use super::identify::{Identify, LIMIT_COVERAGE, METHOD};
+use super::joint::expected_power;
+use super::misfit::Misfit;
+use crate::estimate::{Estimate, Spread, UpperLimit};
+use crate::message::Note;
+
+/// Probability of a larger misfit below which a range does not pass.
+const LEAST_PROBABILITY: f64 = 0.02;
+/// Probability below which the model of all frequencies fails above a range.
+const FAILS: f64 = 1e-5;
+/// Departure of the worst band that does no harm, whatever its significance: 2 % in power is 1 % in N.
+const HARMLESS: f64 = 0.02;
+/// Octaves that may be given up.
+const OCTAVES: u32 = 8;
+/// Degrees of freedom that a range must keep.
+const LEAST_DOF: f64 = 200.0;
+
+/// An identification and the range it rests on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RangedIdentification {
+    /// What was identified.
+    pub identification: Identification,
+    /// Highest frequency used, Hz; `None`: all.
+    pub highest_hz: Option<f64>,
+    /// Highest frequency at which coarse rounding lets the noise be seen, Hz; `None`: all.
+    pub rounded_above_hz: Option<f64>,
+    /// Factor by which intervals were widened; 1 where the model fits.
+    pub widened: f64,
+}
+
+/// Identifies over the widest range of frequencies in which the model holds.
+pub fn identify_in_range(
+    method: &dyn Identify,
+    channel: &str,
+    evidence: &Evidence,
+    nyquist_hz: f64,
+) -> RangedIdentification {
+    identify_over(method, channel, evidence, &describe_in_range(method, channel, evidence, nyquist_hz))
+}
+
+/// The range and the model in it, without intervals.
+pub fn describe_in_range(
+    method: &dyn Identify,
+    channel: &str,
+    evidence: &Evidence,
+    nyquist_hz: f64,
+) -> RangedIdentification {
+    let mut best: Option<RangedIdentification> = None;
+    let mut whole: Option<Identification> = None;
+    for octave in 0..=OCTAVES {
+        let highest_hz = nyquist_hz / f64::from(1u32 << octave);
+        let restricted = (octave > 0).then(|| evidence.up_to(highest_hz));
+        let used = restricted.as_ref().unwrap_or(evidence);
+        if octave > 0 && used.dof() < LEAST_DOF {
+            break;
+        }
+        let justified = whole.as_ref().is_none_or(|whole| fails_above(evidence, whole, highest_hz));
+        if !justified {
+            continue;
+        }
+        let identification = method.describe(channel, used);
+        whole.get_or_insert_with(|| identification.clone());
+        let fits = identification.misfit.probability >= LEAST_PROBABILITY
+            || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS;
+        let highest_hz = (octave > 0).then_some(highest_hz);
+        let candidate =
+            RangedIdentification { identification, highest_hz, rounded_above_hz: None, widened: 1.0 };
+        if fits {
+            return candidate;
+        }
+        let misfit = |r: &RangedIdentification| r.identification.misfit.per_dof;
+        if best.as_ref().is_none_or(|b| misfit(&candidate) < misfit(b)) {
+            best = Some(candidate);
+        }
+    }
+    let mut best = best.unwrap_or_else(|| RangedIdentification {
+        identification: method.describe(channel, evidence),
+        highest_hz: None,
+        rounded_above_hz: None,
+        widened: 1.0,
+    });
+    best.widened = best.identification.misfit.per_dof.sqrt().max(1.0);
+    best
+}
+
+/// Identifies over a range that was found, with intervals.
+pub fn identify_over(
+    method: &dyn Identify,
+    channel: &str,
+    evidence: &Evidence,
+    range: &RangedIdentification,
+) -> RangedIdentification {
+    let mut identification = match range.highest_hz {
+        Some(highest_hz) => method.complete(channel, &evidence.up_to(highest_hz), &range.identification),
+        None => method.complete(channel, evidence, &range.identification),
+    };
+    identification.highest_hz = range.highest_hz;
+    annotated(stated(RangedIdentification { identification, ..*range }, evidence.tau0_s))
+}
+
+/// True when a model of the whole evidence fails above a frequency. A departure that chance made at low frequencies is
+/// no reason to give up the high ones.
+fn fails_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -> bool {
+    let expected = expected_power(evidence, &found.described.model);
+    let ramp = found.supported.r;
+    let (mut above, mut whitened) = (evidence.clone(), vec![]);
+    above.bands.clear();
+    for (band, power) in
+        evidence.bands.iter().zip(expected).filter(|(b, p)| b.high_hz > highest_hz && *p > 0.0)
+    {
+        whitened.push((band.power_without_ramp(ramp) / power, band.dof));
+        above.bands.push(band.clone());
+    }
+    let misfit = Misfit::of(&above, &whitened, 0);
+    misfit.probability < FAILS || misfit.worst_probability < FAILS
+}
+
+/// Takes back what a restricted range cannot show: a filter whose cut-off, or quantisation whose rise above the white
+/// noise, lies beyond the range.
+fn stated(mut ranged: RangedIdentification, tau0_s: f64) -> RangedIdentification {
+    let Some(highest_hz) = ranged.highest_hz else { return ranged };
+    let found = &mut ranged.identification;
+    if found.cutoff.as_ref().is_some_and(|c| c.value.is_none_or(|hz| hz > highest_hz)) {
+        found.cutoff = None;
+    }
+    let density = |term| found.described.model.part_density(Part::Term(term), highest_hz, tau0_s);
+    let rises = density(NoiseType::Quantization) >= density(NoiseType::AngleRandomWalk);
+    if found.quantization.value.is_some() && !rises {
+        let q = &found.quantization;
+        let limit = q.interval95().map(|i| UpperLimit { value: i.high, coverage: LIMIT_COVERAGE });
+        found.quantization = Estimate::not_identifiable(q.id, &q.channel, limit, q.unit, METHOD);
+        found.claimed.retain(|t| *t != NoiseType::Quantization);
+        found.model.q = 0.0;
+    }
+    ranged
+}
+
+/// Puts the notes on the estimates, and the widening on their spreads.
+fn annotated(mut ranged: RangedIdentification) -> RangedIdentification {
+    let misfit = ranged.identification.misfit;
+    let RangedIdentification { highest_hz, rounded_above_hz, widened, .. } = ranged;
+    for row in &mut ranged.identification.described.covariance {
+        row.iter_mut().for_each(|c| *c *= widened * widened);
+    }
+    for estimate in ranged.identification.every_estimate_mut() {
+        if let Some(highest_hz) = rounded_above_hz {
+            estimate.notes.push(Note::new("note.fit_coarse").with("highest_hz", highest_hz));
+        }
+        if let Some(highest_hz) = highest_hz.filter(|_| highest_hz != rounded_above_hz) {
+            estimate.notes.push(Note::new("note.fit_restricted").with("highest_hz", highest_hz));
+        }
+        if widened > 1.0 {
+            widen(estimate, widened);
+            let [low_hz, high_hz] = misfit.worst_band_hz.unwrap_or([f64::NAN; 2]);
+            let note = Note::new("note.model_misfit")
+                .with("misfit", misfit.per_dof)
+                .with("low_hz", low_hz)
+                .with("high_hz", high_hz)
+                .with("factor", widened);
+            estimate.notes.push(note);
+        }
+    }
+    ranged
+}
+
+fn widen(estimate: &mut Estimate, factor: f64) {
+    let Some(value) = estimate.value else {
+        // An upper limit moves away from zero, the smallest value it could stand for.
+        if let Some(limit) = &mut estimate.upper_limit {
+            limit.value *= factor;
+        }
+        return;
+    };
+    match &mut estimate.spread {
+        Spread::Normal { standard_uncertainty } | Spread::StudentT { standard_uncertainty, .. } => {
+            *standard_uncertainty *= factor;
+        }
+        Spread::Curve(points) => {
+            for (_, v) in points {
+                // The quantities are sizes: a widened lower end stops at zero.
+                *v = if value > 0.0 {
+                    (value + (*v - value) * factor).max(0.0)
+                } else {
+                    value + (*v - value) * factor
+                };
+            }
+        }
+        Spread::ChiSquare { .. } | Spread::Unknown => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::data::BlockSeries;
+    use super::super::identify::Whittle;
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// White noise of N deg/√h at 1 Hz through a two-sample mean: the spectrum falls to zero at the Nyquist frequency.
+    fn smoothed(n: f64, samples: usize) -> Evidence {
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(20_261_121);
+        let white: Vec<f64> = (0..=samples)
+            .map(|_| 60.0 * n * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng))
+            .collect();
+        let mean: Vec<f64> = white.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
+        let blocks =
+            BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: vec![] };
+        Evidence::new(&blocks, None, 1.0, &[])
+    }
+
+    #[test]
+    fn a_filtered_output_still_gives_its_angle_random_walk() {
+        let evidence = smoothed(0.002, 36_000);
+        let all = Whittle::default().identify("rate", &evidence);
+        let naive = all.angle_random_walk.value.unwrap_or(0.0);
+        assert!((naive / 0.002 - 1.0).abs() > 0.1, "fitted over all frequencies N is wrong: {naive}");
+        let ranged = identify_in_range(&Whittle::default(), "rate", &evidence, 0.5);
+        let estimate = &ranged.identification.angle_random_walk;
+        let n = estimate.value.unwrap();
+        assert!((n / 0.002 - 1.0).abs() < 0.05, "{n} up to {:?}", ranged.highest_hz);
+        assert!(ranged.highest_hz.is_some_and(|f| f < 0.3));
+        assert!(estimate.notes.iter().any(|note| note.id == "note.fit_restricted"));
+    }
+
+    #[test]
+    fn a_model_that_fits_uses_every_frequency() {
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(7);
+        let mean: Vec<f64> = (0..36_000)
+            .map(|_| 0.12 * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng))
+            .collect();
+        let blocks =
+            BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: vec![] };
+        let evidence = Evidence::new(&blocks, None, 1.0, &[]);
+        let ranged = identify_in_range(&Whittle::default(), "rate", &evidence, 0.5);
+        assert_eq!((ranged.highest_hz, ranged.widened), (None, 1.0));
+    }
+}

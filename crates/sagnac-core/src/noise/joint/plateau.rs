@@ -1,0 +1,118 @@
+//! The level that is read off a curve as angle random walk: white noise, and every process that is white there.
+//!
+//! A process is white over averaging times far beyond its correlation time, and adds 2σ²T to the density of the white noise.
+//! Where no line of slope −1/2 is seen before its corner, a reader of the curve reads both as one.
+
+use super::{Free, Joint, JointPoint, parameter_covariance};
+use crate::estimate::Spread;
+use crate::message::Note;
+use crate::noise::composite::{Composite, Described};
+use crate::noise::data::NoiseType;
+use crate::noise::model::NoiseModel;
+use crate::noise::slope::{LARGEST_SHARE, SlopePoint, runs};
+
+/// Share of the octaves of the longest line from which a line at shorter averaging times is the one that is read.
+const AS_GOOD: f64 = 0.5;
+
+/// A line of slope −1/2 through the curve of a model, with the processes that are white on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plateau {
+    from_s: f64,
+    to_s: f64,
+    white: Vec<usize>,
+}
+
+impl Plateau {
+    /// The line that is read of a model; `None` where there is none, or no process is white on it.
+    pub fn of(model: &Composite, tau0_s: f64, length_s: f64) -> Option<Plateau> {
+        if model.markov.is_empty() {
+            return None;
+        }
+        let octaves: Vec<SlopePoint> = (0..63)
+            .map(|k| tau0_s * 2f64.powi(k))
+            .take_while(|tau_s| *tau_s <= LARGEST_SHARE * length_s)
+            .map(|tau_s| {
+                let deviation = model.allan_variance(tau_s, tau0_s).max(f64::MIN_POSITIVE).sqrt();
+                SlopePoint { tau_s, deviation, edf: 1.0 }
+            })
+            .collect();
+        let lines = runs(&octaves, NoiseType::AngleRandomWalk);
+        let longest = lines.iter().map(|r| r.len() - 1).max()? as f64;
+        let line = octaves.get(lines.into_iter().find(|r| (r.len() - 1) as f64 >= AS_GOOD * longest)?)?;
+        let (from_s, to_s) = (line.first()?.tau_s, line.last()?.tau_s);
+        let middle_s = (from_s * to_s).sqrt();
+        let white: Vec<usize> = model
+            .markov
+            .iter()
+            .enumerate()
+            .filter(|(_, d)| d.rms_deg_h > 0.0 && d.decay_time_s < middle_s)
+            .map(|(i, _)| i)
+            .collect();
+        (!white.is_empty()).then_some(Plateau { from_s, to_s, white })
+    }
+
+    /// The level of a model, deg/√h.
+    pub fn level(&self, model: &Composite) -> f64 {
+        let processes = self.white.iter().filter_map(|i| model.markov.get(*i));
+        let beside: f64 = processes.map(|d| 2.0 * d.rms_deg_h.powi(2) * d.decay_time_s / 3600.0).sum();
+        (model.terms.n.powi(2) + beside).sqrt()
+    }
+
+    /// The parts of a model that make up the level.
+    pub fn parts(&self, model: &Composite) -> Composite {
+        Composite {
+            terms: NoiseModel { n: model.terms.n, ..Default::default() },
+            markov: self.white.iter().filter_map(|i| model.markov.get(*i).copied()).collect(),
+            bandwidth: model.bandwidth,
+            sampling: model.sampling,
+            ..Default::default()
+        }
+    }
+
+    /// What the level is known to, from a fit. The level is that of a stretch of the spectrum: its square is nearly
+    /// normal by its logarithm, whatever its parts are known to.
+    pub(super) fn spread(&self, joint: &Joint<'_>, point: &JointPoint, free: &Free) -> Spread {
+        let (variables, covariance) = parameter_covariance(joint, point, free);
+        let described = Described {
+            model: point.composite(joint.sampling()),
+            parameters: variables.iter().filter_map(|v| point.parameter(*v)).collect(),
+            covariance,
+        };
+        let (value, u) = described.propagate(|m| self.level(m));
+        if !(value > 0.0 && u > 0.0 && u.is_finite()) {
+            return Spread::Unknown;
+        }
+        let at = |i: i32| 0.25 * f64::from(i);
+        Spread::Curve((-16..=16).map(|i| (at(i), value * (at(i) * u / value).exp())).collect())
+    }
+
+    /// Says which averaging times the level is read at.
+    pub(super) fn note(&self) -> Note {
+        Note::new("note.plateau").with("from_s", self.from_s).with("to_s", self.to_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::composite::Damped;
+
+    fn with(time_s: f64, rms: f64) -> Composite {
+        Composite {
+            terms: NoiseModel { n: 0.01, ..Default::default() },
+            markov: vec![Damped { rms_deg_h: rms, frequency_hz: 0.0, decay_time_s: time_s }],
+            ..Default::default()
+        }
+    }
+
+    #[test]
+    fn a_short_process_belongs_to_what_is_read_and_a_long_one_does_not() {
+        // 2σ²T/3600 = 3e-4: together 0.02.
+        let rms = |time_s: f64| (3e-4 * 3600.0 / (2.0 * time_s)).sqrt();
+        let short = with(1.5, rms(1.5));
+        let plateau = Plateau::of(&short, 1.0, 36_000.0).unwrap();
+        assert!((plateau.level(&short) / 0.02 - 1.0).abs() < 1e-9, "{plateau:?}");
+        assert_eq!(Plateau::of(&with(300.0, rms(300.0)), 1.0, 36_000.0), None);
+        assert_eq!(Plateau::of(&with(300.0, 0.0), 1.0, 36_000.0), None);
+    }
+}

@@ -1,0 +1,51 @@
+//! Sums that keep their digits.
+
+/// A sum with Neumaier's compensation.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Compensated {
+    sum: f64,
+    lost: f64,
+}
+
+impl Compensated {
+    /// Adds a value.
+    pub fn add(&mut self, value: f64) {
+        let sum = self.sum + value;
+        self.lost +=
+            if self.sum.abs() >= value.abs() { (self.sum - sum) + value } else { (value - sum) + self.sum };
+        self.sum = sum;
+    }
+
+    /// The sum.
+    pub fn value(self) -> f64 {
+        self.sum + self.lost
+    }
+}
+
+/// A sum and what rounding took from it (Knuth): together they are exact.
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let b_in = sum - a;
+    (sum, (a - (sum - b_in)) + (b - b_in))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn compensation_keeps_small_terms() {
+        let mut sum = Compensated::default();
+        for v in [1e16, 1.0, 1.0, -1e16] {
+            sum.add(v);
+        }
+        assert_eq!(sum.value(), 2.0);
+    }
+
+    #[test]
+    fn what_rounding_takes_is_given_beside_the_sum() {
+        assert_eq!(two_sum(1e15, 0.03), (1e15, 0.03));
+        assert_eq!(two_sum(0.03, 1e15), (1e15, 0.03));
+        assert_eq!(two_sum(1.0, 2.0), (3.0, 0.0));
+    }
+}

@@ -1,0 +1,130 @@
+//! Direction of the input axis from turns about an axis that is square to it.
+//!
+//! The input axis stands nearly along the inner axis of the table. The outer axis is square to the inner one, and its
+//! direction in the plate is (cos β, −sin β, 0) at the inner angle β. With the input axis along (θ_y, −θ_x, 1), for small
+//! tilts θ_x and θ_y about the plate's axes, y = y₀ + K·Ω_in + K·Ω_out·(θ_y cos β + θ_x sin β).
+
+use super::Setup;
+use super::blocks::TURN_ARCSEC;
+use super::combine::spread;
+use super::design::stands_out;
+use super::noise::Rows;
+use super::steps::{Step, Steps};
+use crate::estimate::Estimate;
+use crate::message::Note;
+use crate::numeric::reml::{self, Combination};
+use nalgebra::{DMatrix, DVector};
+
+/// Ids that this evaluation gives.
+pub const IDS: &[&str] = &["misalignment_x", "misalignment_y"];
+
+/// Least share of the turning by which a tilt must show. Sines of readings about zero are noise and no inner angle.
+const LEAST_SHARE: f64 = 0.01;
+
+/// Tilts of the input axis of a channel.
+#[derive(Debug, Clone)]
+pub struct Alignment {
+    /// Channel.
+    pub channel: String,
+    /// Tilts about x and y of the plate, rad; why one is not shown.
+    pub tilts: [Result<Combination, Note>; 2],
+    /// Output per rate about the inner axis, where the test turned about it.
+    pub factor: Option<Combination>,
+}
+
+/// Evaluates a channel: what the turns do not show says why. `vertical` is the Earth rate along the outer axis, deg/h, and
+/// `squareness` the standard uncertainty of the right angle between the axes of the table, rad.
+pub fn evaluate(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64) -> Alignment {
+    fit(steps, channel, gyro, vertical, squareness).unwrap_or_else(|why| Alignment {
+        channel: channel.to_owned(),
+        tilts: [Err(why.clone()), Err(why)],
+        factor: None,
+    })
+}
+
+fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64) -> Result<Alignment, Note> {
+    // A step is one row: the Earth's horizontal rotation averages out over whole turns and not within one, and at rest it
+    // depends on where the outer axis stopped.
+    let largest = steps.list.iter().map(|s| s.outer.abs()).filter(|r| r.is_finite()).fold(0.0, f64::max);
+    let rows: Vec<&Step> = steps
+        .list
+        .iter()
+        .filter(|s| s.outer.abs() > 0.05 * largest && s.outer.is_finite())
+        .filter(|s| s.gyro.get(gyro).is_some_and(|g| g.is_finite()))
+        .collect();
+    let n = rows.len();
+    if n == 0 {
+        return Err(Note::new("known.no_outer_turns"));
+    }
+    let angle = |s: &Step| {
+        let at = s.parts.iter().map(|p| 0.5 * (p.angle.0 + p.angle.1)).sum::<f64>() / s.parts.len() as f64;
+        at * 2.0 * std::f64::consts::PI / TURN_ARCSEC
+    };
+    if rows.iter().any(|s| !angle(s).is_finite()) {
+        return Err(Note::new("known.angle_not_recorded"));
+    }
+    let outer = |s: &Step| s.outer + vertical;
+    let column = |f: &dyn Fn(&Step) -> f64| DVector::from_iterator(n, rows.iter().map(|s| f(s)));
+    let mut columns = vec![column(&|_| 1.0)];
+    let candidates =
+        [column(&|s| outer(s) * angle(s).sin()), column(&|s| outer(s) * angle(s).cos()), column(&|s| s.rate)];
+    let turning = column(&outer).norm();
+    let mut at = [None; 3];
+    let mut y = column(&|s| s.gyro[gyro]);
+    for (k, c) in candidates.into_iter().enumerate() {
+        // An unknown that few rows cannot bear: what little the inner axis turns then counts with the nominal factor.
+        if k == 2 && n < columns.len() + 3 {
+            y -= c;
+        } else if (k == 2 || c.norm() > LEAST_SHARE * turning) && stands_out(&c, &columns) {
+            at[k] = Some(columns.len());
+            columns.push(c);
+        }
+    }
+    let of_inner = || Note::new("known.no_inner_angle");
+    if at[0].is_none() && at[1].is_none() {
+        return Err(of_inner());
+    }
+    // A row more than there are unknowns: the scatter of the turns is told by nothing else.
+    let few = || Note::new("known.few_outer_turns").with("n", n).with("least", columns.len() + 1);
+    if n <= columns.len() {
+        return Err(few());
+    }
+    let x = DMatrix::from_columns(&columns);
+    let grid = Rows {
+        mid_s: rows.iter().map(|s| 0.5 * (s.from_s + s.to_s)).collect(),
+        length_s: rows.iter().map(|s| s.to_s - s.from_s).collect(),
+        step: (0..n).collect(),
+    };
+    let components = [grid.white()];
+    // Axes that are not square add the same share of the outer rate at every inner angle: common to all rows, it goes out
+    // between angles that stand opposite, and stays where they do not.
+    let common = column(&outer) * squareness;
+    let fixed = &common * common.transpose()
+        + DMatrix::identity(n, n) * (1e-12 * y.variance()).max(f64::MIN_POSITIVE);
+    let fit = reml::fit(&y, &x, &fixed, &components).ok_or_else(few)?;
+    let of = |k: usize| at[k].map(|column| fit.coefficient(column));
+    let tilt = |k: usize| of(k).ok_or_else(of_inner);
+    Ok(Alignment { channel: channel.to_owned(), tilts: [tilt(0), tilt(1)], factor: of(2) })
+}
+
+impl Alignment {
+    /// The estimate of one id; `None` for an id that is not given here.
+    pub fn estimate(&self, id: &'static str, unit: &'static str, setup: &Setup) -> Option<Estimate> {
+        let which = IDS.iter().position(|known| *known == id)?;
+        let method = "outer_axis_turns";
+        Some(match &self.tilts[which] {
+            Ok(tilt) => {
+                let others = [1e3 * setup.rate_uncertainty * tilt.value.abs()];
+                Estimate::measured(
+                    id,
+                    &self.channel,
+                    1e3 * tilt.value,
+                    unit,
+                    spread(tilt, 1e3, &others),
+                    method,
+                )
+            }
+            Err(why) => Estimate::not_identifiable(id, &self.channel, None, unit, method).note(why.clone()),
+        })
+    }
+}

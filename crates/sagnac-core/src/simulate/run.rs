@@ -1,0 +1,306 @@
+//! A simulation, block by block.
+
+use super::SimulateError;
+use super::drive::{Sensors, of_recording};
+use super::noise::{Noise, composed, low_pass};
+use super::quantize::Counter;
+use crate::claim::{Claim, Profile, Stated};
+use crate::effect::{Column, Drivers, Model, Samples};
+use crate::message::{Arg, Note};
+use crate::series::Series;
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
+use std::collections::BTreeMap;
+
+/// Samples of a block where the claim states nothing that has to be made as a whole.
+const BLOCK: usize = 1 << 16;
+
+/// Most samples of a recording that has to be made as a whole.
+const MOST_WHOLE: u64 = 200_000_000;
+
+/// Most samples of a recording.
+const MOST: u64 = 10_000_000_000;
+
+/// Most by which the sample rate of a recording may differ from that of the claim, relative.
+const RATE_TOLERANCE: f64 = 0.01;
+
+/// A seed for one use of a simulation.
+pub(super) fn stream(seed: u64, tag: u64) -> u64 {
+    let mut mixed = SplitMix64::seed_from_u64(seed);
+    let base = mixed.next_u64();
+    SplitMix64::seed_from_u64(base ^ tag.wrapping_mul(0x9e37_79b9_7f4a_7c15)).next_u64()
+}
+
+/// What a simulation goes over.
+#[derive(Clone, Copy)]
+pub enum Over<'a> {
+    /// So many seconds, with columns from profiles.
+    Duration {
+        /// Length, s.
+        duration_s: f64,
+        /// `time_s` of the first sample, s.
+        start_s: f64,
+        /// Courses of the columns.
+        drivers: &'a [Profile],
+    },
+    /// The rows and columns of a recording.
+    Like(&'a Series),
+}
+
+/// What is to be simulated.
+#[derive(Clone, Copy)]
+pub struct Order<'a> {
+    /// The claim.
+    pub claim: &'a Claim,
+    /// Seed: equal seeds give equal recordings.
+    pub seed: u64,
+    /// Over what.
+    pub over: Over<'a>,
+}
+
+/// Some rows of a simulated recording.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Rows {
+    /// s.
+    pub time_s: Vec<f64>,
+    /// deg/h.
+    pub rate_deg_h: Vec<f64>,
+    /// Columns beside, in the units that their names tell.
+    pub columns: BTreeMap<Column, Vec<f64>>,
+}
+
+/// A running simulation.
+pub struct Simulation<'a> {
+    order: Order<'a>,
+    dt_s: f64,
+    samples: u64,
+    noise: Noise,
+    sensors: Sensors,
+    counter: Option<Counter>,
+    done: u64,
+    block: usize,
+}
+
+impl<'a> Simulation<'a> {
+    /// Begins a simulation.
+    ///
+    /// # Errors
+    /// A claim whose effects lack parameters or columns, a length that cannot be made, a recording of another rate.
+    pub fn begin(order: Order<'a>) -> Result<Simulation<'a>, SimulateError> {
+        let claim = order.claim;
+        let claimed_s = 1.0 / claim.sample_rate_hz;
+        let (dt_s, samples) = match order.over {
+            Over::Duration { duration_s, .. } => (claimed_s, (duration_s * claim.sample_rate_hz).round()),
+            Over::Like(series) => {
+                let own = series.sample_interval_s;
+                let off = (own * claim.sample_rate_hz - 1.0).abs();
+                if series.time_s.is_empty() {
+                    return Err(Note::new("simulate.no_rows").into());
+                }
+                if off.is_nan() || off > RATE_TOLERANCE {
+                    let note = Note::new("simulate.other_rate")
+                        .with("found", Arg::rounded(1.0 / own, 6))
+                        .with("claimed", Arg::rounded(claim.sample_rate_hz, 6));
+                    return Err(note.into());
+                }
+                (own, series.index.last().map_or(0, |last| last + 1) as f64)
+            }
+        };
+        let whole = matches!(order.over, Over::Like(_))
+            || claim.effects.iter().any(|e| !matches!(e.effect.model(), Model::Spectrum(_)));
+        let most = if whole { MOST_WHOLE } else { MOST };
+        if !(1.0..=most as f64).contains(&samples) {
+            let note = Note::new("simulate.length").with("samples", samples.to_string()).with("most", most);
+            return Err(note.into());
+        }
+        let samples = samples as u64;
+        needs(&order)?;
+        let noise = composed(claim)?;
+        // An effect of that kind states the whole of the quantisation.
+        let restated = noise.terms.q != claim.noise.q;
+        let step = if restated { noise.terms.q * 12f64.sqrt() } else { claim.quantization_lsb_arcsec };
+        let profiles = match order.over {
+            Over::Duration { drivers, .. } => drivers,
+            Over::Like(_) => &[],
+        };
+        Ok(Simulation {
+            noise: Noise::new(&noise, low_pass(claim), order.seed, dt_s, samples),
+            sensors: Sensors::new(profiles, order.seed),
+            counter: Counter::new(step, dt_s),
+            done: 0,
+            block: if whole { usize::MAX } else { BLOCK },
+            order,
+            dt_s,
+            samples,
+        })
+    }
+
+    /// Sets the samples that are made at once; the output does not depend on it.
+    pub fn set_block(&mut self, samples: usize) {
+        self.block = samples;
+    }
+
+    /// Samples of the grid; rows may be fewer.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Length of the grid, s.
+    pub fn length_s(&self) -> f64 {
+        self.samples as f64 * self.dt_s
+    }
+
+    /// Samples of the grid that were made.
+    pub fn done(&self) -> u64 {
+        self.done
+    }
+
+    /// Columns beside time and rate.
+    pub fn columns(&self) -> Vec<Column> {
+        columns(&self.order.over)
+    }
+
+    /// The next rows; `None` at the end.
+    ///
+    /// # Errors
+    /// An effect whose parameters do not suffice for its forward model.
+    pub fn next_rows(&mut self) -> Result<Option<Rows>, SimulateError> {
+        let left = self.samples - self.done;
+        if left == 0 {
+            return Ok(None);
+        }
+        let samples = usize::try_from(left).unwrap_or(usize::MAX).min(self.block);
+        let claim = self.order.claim;
+        let (drivers, shown) = match self.order.over {
+            Over::Duration { start_s, .. } => self.sensors.block(Drivers {
+                dt_s: self.dt_s,
+                start_s: start_s + self.done as f64 / claim.sample_rate_hz,
+                samples,
+                averaged: 1,
+                claim: claim.mean,
+                ..Drivers::default()
+            }),
+            Over::Like(series) => (of_recording(series, claim, self.dt_s), BTreeMap::new()),
+        };
+        let mut rate = self.noise.take(samples);
+        let mut keep = vec![true; samples];
+        for (y, m) in rate.iter_mut().zip(drivers.claimed_mean()) {
+            *y += claim.mean.bias_deg_h + m;
+        }
+        on_samples(claim, self.order.seed, &drivers, &mut rate, &mut keep);
+        for stated in &claim.effects {
+            for (y, c) in rate.iter_mut().zip(course(stated, &drivers)?.into_iter().flatten()) {
+                *y += c;
+            }
+        }
+        if let Some(counter) = &mut self.counter {
+            counter.count(&mut rate);
+        }
+        let rows = match self.order.over {
+            Over::Duration { start_s, .. } => {
+                let first = self.done;
+                let time = (0..samples as u64).map(|i| start_s + (first + i) as f64 / claim.sample_rate_hz);
+                Rows { time_s: time.collect(), rate_deg_h: rate, columns: shown }.kept(&keep)
+            }
+            Over::Like(series) => like(series, &rate, &keep),
+        };
+        self.done += samples as u64;
+        Ok(Some(rows))
+    }
+
+    /// The whole recording.
+    ///
+    /// # Errors
+    /// As [`Simulation::next_rows`].
+    pub fn all(mut self) -> Result<Rows, SimulateError> {
+        let mut all = Rows::default();
+        while let Some(rows) = self.next_rows()? {
+            all.time_s.extend(rows.time_s);
+            all.rate_deg_h.extend(rows.rate_deg_h);
+            for (column, values) in rows.columns {
+                all.columns.entry(column).or_default().extend(values);
+            }
+        }
+        Ok(all)
+    }
+}
+
+fn columns(over: &Over<'_>) -> Vec<Column> {
+    match over {
+        Over::Duration { drivers, .. } => {
+            Column::ALL.into_iter().filter(|c| drivers.iter().any(|p| p.column == *c)).collect()
+        }
+        Over::Like(series) => series.columns.keys().copied().collect(),
+    }
+}
+
+/// Refuses an effect whose columns are not there.
+fn needs(order: &Order<'_>) -> Result<(), SimulateError> {
+    let there = columns(&order.over);
+    for stated in &order.claim.effects {
+        let missing: Vec<&str> =
+            stated.effect.needs().iter().filter(|c| !there.contains(c)).map(|c| c.name()).collect();
+        if !missing.is_empty() {
+            let note = Note::new("simulate.no_column").with("kind", stated.effect.kind());
+            return Err(note.with("columns", missing.join(", ")).into());
+        }
+    }
+    Ok(())
+}
+
+/// The course that a stated effect adds; `None` for one that has none.
+fn course(stated: &Stated, drivers: &Drivers) -> Result<Option<Vec<f64>>, SimulateError> {
+    let model = match stated.effect.model() {
+        Model::Course(model) => model,
+        Model::Spectrum(_) => return Ok(stated.effect.stated_course(&stated.values, drivers)),
+        Model::Samples(_) => return Ok(None),
+    };
+    match model.course(&stated.values, drivers) {
+        Some(course) => Ok(Some(course)),
+        None => Err(Note::new("simulate.no_parameters").with("kind", stated.effect.kind()).into()),
+    }
+}
+
+/// Effects on single samples act on the claimed mean with its noise, before other effects add to the mean: what scales
+/// the noise scales what departs from the claim. What scales comes before what adds.
+fn on_samples(claim: &Claim, seed: u64, drivers: &Drivers, rate: &mut [f64], keep: &mut [bool]) {
+    let mut acting: Vec<(usize, &Stated, &dyn Samples)> = vec![];
+    for (place, stated) in claim.effects.iter().enumerate() {
+        if let Model::Samples(samples) = stated.effect.model() {
+            acting.push((place, stated, samples));
+        }
+    }
+    acting.sort_by_key(|(_, stated, _)| !stated.effect.kind().starts_with("noise_variance"));
+    for (place, stated, samples) in acting {
+        samples.apply(&stated.values, drivers, stream(seed, 1000 + place as u64), rate, keep);
+    }
+}
+
+/// The rows of a recording with another rate.
+fn like(series: &Series, rate: &[f64], keep: &[bool]) -> Rows {
+    let there = |i: &usize| keep.get(series.index[*i] as usize).copied().unwrap_or(false);
+    let rows: Vec<usize> = (0..series.time_s.len()).filter(there).collect();
+    let of = |values: &[f64]| rows.iter().filter_map(|i| values.get(*i).copied()).collect::<Vec<f64>>();
+    Rows {
+        time_s: of(&series.time_s),
+        rate_deg_h: rows.iter().filter_map(|i| rate.get(series.index[*i] as usize).copied()).collect(),
+        columns: series.columns.iter().map(|(column, values)| (*column, of(values))).collect(),
+    }
+}
+
+impl Rows {
+    /// The rows that are kept.
+    fn kept(mut self, keep: &[bool]) -> Rows {
+        if keep.iter().all(|k| *k) {
+            return self;
+        }
+        let pick = |values: &mut Vec<f64>| {
+            let mut at = keep.iter();
+            values.retain(|_| at.next().copied().unwrap_or(true));
+        };
+        pick(&mut self.time_s);
+        pick(&mut self.rate_deg_h);
+        self.columns.values_mut().for_each(pick);
+        self
+    }
+}

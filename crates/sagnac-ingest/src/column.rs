@@ -1,0 +1,58 @@
+//! A column of a file, and which column is what.
+
+use super::{Source, choice};
+use crate::guess::{Guess, guess};
+use sagnac_core::message::Note;
+use sagnac_core::recording::Role;
+
+/// A column of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name in the header, or `column_1`, `column_2` ... where there is none.
+    pub name: String,
+    /// True when the format can give numbers for it. A text file says so of every column.
+    pub numeric: bool,
+    /// Type in the file, in the format's words, for example `DOUBLE`; `text` for text files.
+    pub storage: String,
+    /// Unit the format itself declares, for example `ms` for a Parquet time stamp.
+    pub unit: Option<String>,
+    /// Seconds from 1970 to the zero of the values, when the reader turned stamps with a date into seconds; the unit is
+    /// `s` then.
+    pub epoch_s: Option<f64>,
+    /// Period after which the stamps start again, s: 86400 for clock time, 604800 for seconds of a week.
+    pub rollover_s: Option<f64>,
+}
+
+impl Column {
+    /// What the column may be: from what the reader knows of it, else from its name.
+    pub fn guess(&self) -> Guess {
+        let mut guess = guess(&self.name, self.unit.as_deref());
+        let dates = self.storage == DATES;
+        if dates || ((self.epoch_s.is_some() || self.rollover_s.is_some()) && guess.role != Role::Time) {
+            guess.role = if dates { Role::Auxiliary } else { Role::Time };
+            guess.unit_is_named = true;
+            guess.reason = Note::new("guess.stamps").with("name", self.name.as_str());
+        }
+        guess
+    }
+}
+
+/// Storage of a text column of dates without a time, which tells no sample from the next.
+pub(crate) const DATES: &str = "dates";
+
+impl Source {
+    /// The serial numbers of units that the recording states under usual keys: more than one where files of several
+    /// units were put together.
+    pub fn stated_serials(&self) -> Vec<&str> {
+        choice::serials(self.metadata())
+    }
+
+    /// Position of the column that tells the time, from 0: the first that goes on, else the first that starts again,
+    /// such as clock time.
+    pub fn time_column(&self) -> Option<usize> {
+        let first = |wanted: fn(&Column) -> bool| {
+            self.columns().iter().position(|c| c.numeric && wanted(c) && c.guess().role == Role::Time)
+        };
+        first(|c| c.rollover_s.is_none()).or_else(|| first(|_| true))
+    }
+}

@@ -1,0 +1,310 @@
+//! The tree of groups and datasets: every group with columns of numbers is a part that may be the recording.
+
+use super::attributes;
+use super::number::Storage;
+use crate::Column;
+use crate::parts::{Part, stated_rate_hz};
+use hdf5_reader::error::Error;
+use hdf5_reader::group::Group;
+use hdf5_reader::{Dataset, Datatype, Hdf5File, SliceInfo};
+use sagnac_core::message::Note;
+use std::collections::BTreeSet;
+
+/// Deepest group and most objects that are looked at.
+const DEEPEST: usize = 16;
+const OBJECTS: usize = 4096;
+/// A dataset with more columns, and a record with more fields, is no recording.
+const WIDEST: u64 = 1024;
+/// Most elements of an array in a field of a record.
+const ARRAY: u64 = 16;
+
+/// Where the values of a column stand.
+#[derive(Debug, Clone)]
+pub(super) struct Place {
+    /// Path of the dataset.
+    pub dataset: String,
+    /// What is read of it.
+    pub pick: Pick,
+    /// How a number is stored; `None` where there is none.
+    pub storage: Option<Storage>,
+    /// Factor and offset from the number stored to the value.
+    pub map: (f64, f64),
+    /// Number that stands for a missing value.
+    pub missing: Option<f64>,
+    /// For stamps that f64 cannot hold: the whole number that is taken off first.
+    pub base: Option<i128>,
+    /// Size of the dataset as its shape tells, bytes.
+    pub logical_bytes: u64,
+}
+
+/// What is read of a dataset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pick {
+    /// Everything, in order.
+    All,
+    /// A column of `width`; the rows lie along the first dimension, or along the last one.
+    Column { index: u64, width: u64, rows_last: bool },
+    /// A number at an offset of a record.
+    Field { offset: usize },
+}
+
+/// A group with its columns.
+#[derive(Debug, Default)]
+pub(super) struct GroupPart {
+    pub part: Part,
+    pub places: Vec<Place>,
+    pub notes: Vec<Note>,
+    pub metadata: Vec<(String, String)>,
+    pub stated_rate_hz: Option<f64>,
+}
+
+/// What a file holds.
+#[derive(Debug, Default)]
+pub(super) struct Found {
+    pub parts: Vec<GroupPart>,
+    pub notes: Vec<Note>,
+    /// Attributes of the root group.
+    pub metadata: Vec<(String, String)>,
+    pub stated_rate_hz: Option<f64>,
+}
+
+impl Found {
+    /// The same with one dataset alone, where its path was asked for instead of that of a group.
+    pub fn narrowed(mut self, wanted: Option<&str>) -> Found {
+        let Some(wanted) = wanted.map(|w| w.trim_matches('/')).filter(|w| !w.is_empty()) else { return self };
+        if self.parts.iter().any(|p| p.part.name.trim_matches('/') == wanted) {
+            return self;
+        }
+        let is_it = |p: &Place| p.dataset.trim_matches('/') == wanted;
+        if let Some(i) = self.parts.iter().position(|p| p.places.iter().any(is_it)) {
+            let mut part = self.parts.swap_remove(i);
+            let keep: Vec<bool> = part.places.iter().map(is_it).collect();
+            let mut kept = keep.iter();
+            part.part.columns.retain(|_| kept.next().copied().unwrap_or(false));
+            part.places.retain(is_it);
+            part.part.name = wanted.to_owned();
+            self.parts = vec![part];
+        }
+        self
+    }
+}
+
+/// Looks at every group.
+pub(super) fn walk(file: &Hdf5File) -> Result<Found, Error> {
+    let mut found = Found::default();
+    let root = file.root_group()?;
+    let (metadata, rate) = told(&root.attributes().unwrap_or_default());
+    (found.metadata, found.stated_rate_hz) = (metadata, rate);
+    let mut seen = BTreeSet::new();
+    let mut left = OBJECTS;
+    let mut waiting = vec![(root, String::from("/"), 0usize)];
+    while let Some((group, path, depth)) = waiting.pop() {
+        if !seen.insert(group.address()) || left == 0 {
+            continue;
+        }
+        let (groups, datasets, mut notes) = members(&group, &path)?;
+        left = left.saturating_sub(groups.len() + datasets.len() + 1);
+        if left == 0 {
+            found.notes.push(Note::new("ingest.hdf5.many_objects").with("count", OBJECTS));
+        }
+        let mut part =
+            GroupPart { part: Part { name: path.clone(), columns: Vec::new() }, ..GroupPart::default() };
+        part.notes.append(&mut notes);
+        if depth > 0 {
+            (part.metadata, part.stated_rate_hz) = told(&group.attributes().unwrap_or_default());
+        }
+        for dataset in &datasets {
+            add(&mut part, dataset, &path);
+        }
+        if !part.part.columns.is_empty() {
+            found.parts.push(part);
+        }
+        if depth < DEEPEST {
+            // The last one is taken first, so that groups come in the order of the file.
+            for child in groups.into_iter().rev() {
+                let below = join(&path, child.name());
+                // MATLAB keeps what cells and structures refer to in groups of this kind.
+                if !child.name().starts_with('#') {
+                    waiting.push((child, below, depth + 1));
+                }
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn join(path: &str, name: &str) -> String {
+    format!("{}/{name}", path.trim_end_matches('/'))
+}
+
+/// Groups and datasets in a group, and what was passed over.
+type Members = (Vec<Group>, Vec<Dataset>, Vec<Note>);
+
+/// Groups and datasets in a group. A member that cannot be opened is told and passed over, unless none can.
+fn members(group: &Group, path: &str) -> Result<Members, Error> {
+    let whole = match group.members() {
+        Ok((groups, datasets)) => return Ok((groups, datasets, Vec::new())),
+        Err(e) => e,
+    };
+    let Ok((group_names, dataset_names)) = group.member_names() else { return Err(whole) };
+    let (mut groups, mut datasets, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+    for name in group_names.iter().take(OBJECTS) {
+        groups.extend(group.group(name));
+    }
+    for name in dataset_names.iter().take(OBJECTS) {
+        match group.dataset(name) {
+            Ok(dataset) => datasets.push(dataset),
+            Err(e) => notes.push(
+                Note::new("ingest.hdf5.not_opened")
+                    .with("name", crate::error::shorten(&join(path, name)))
+                    .with("reason", e.to_string()),
+            ),
+        }
+    }
+    if groups.is_empty() && datasets.is_empty() { Err(whole) } else { Ok((groups, datasets, notes)) }
+}
+
+/// Attributes as metadata, and the sample rate among them.
+fn told(attributes: &[hdf5_reader::Attribute]) -> (Vec<(String, String)>, Option<f64>) {
+    let mut metadata = Vec::new();
+    let mut rate = None;
+    for a in attributes.iter().take(OBJECTS) {
+        let number = attributes::number(a);
+        rate = rate.or_else(|| stated_rate_hz(&a.name, number?));
+        let value = attributes::text(a).or_else(|| number.map(|v| v.to_string()));
+        metadata.extend(value.map(|v| (a.name.clone(), v)));
+    }
+    (metadata, rate)
+}
+
+/// Adds the columns of a dataset to its group.
+fn add(part: &mut GroupPart, dataset: &Dataset, group: &str) {
+    let said = attributes::said(&dataset.attributes());
+    part.stated_rate_hz = part.stated_rate_hz.or(said.rate_hz);
+    let name = dataset.name().rsplit('/').next().unwrap_or_default().to_owned();
+    let path = join(group, &name);
+    let shape = dataset.shape().to_vec();
+    let elements = shape.iter().try_fold(1u64, |n, d| n.checked_mul(*d)).unwrap_or(u64::MAX);
+    let element_bytes = dataset.raw_element_size().unwrap_or(usize::MAX) as u64;
+    let logical_bytes = elements.saturating_mul(element_bytes);
+    if elements == 1 {
+        single(part, dataset, &name);
+        return;
+    }
+    let place = |pick, storage, map, missing| Place {
+        dataset: path.clone(),
+        pick,
+        storage,
+        map,
+        missing,
+        base: None,
+        logical_bytes,
+    };
+    let map = (said.factor.unwrap_or(1.0), said.offset.unwrap_or(0.0));
+    let map = (map.0 * said.to_s, map.1 * said.to_s);
+    let column = |name: String, storage: Option<Storage>, words: String| Column {
+        name,
+        numeric: storage.is_some(),
+        storage: storage.map_or(words, Storage::words),
+        unit: said.unit.clone(),
+        epoch_s: said.epoch_s,
+        rollover_s: None,
+    };
+    let mut push = |c: Column, rows: u64, p: Place| {
+        part.part.columns.push((c, rows));
+        part.places.push(p);
+    };
+    if let Datatype::Compound { fields, .. } = dataset.dtype() {
+        let rows = if matches!(shape.as_slice(), [_]) { elements } else { 0 };
+        for field in fields.iter().take(WIDEST as usize) {
+            let offset = field.byte_offset as usize;
+            let (base, count) = match &field.datatype {
+                Datatype::Array { base, dims } => {
+                    (base.as_ref(), dims.iter().try_fold(1u64, |n, d| n.checked_mul(*d)).unwrap_or(u64::MAX))
+                }
+                single => (single, 1),
+            };
+            let storage = Storage::of(base).filter(|_| count <= ARRAY && rows > 0);
+            let count = if storage.is_some() { count } else { 1 };
+            for k in 0..count {
+                let name = if count == 1 { field.name.clone() } else { format!("{}_{}", field.name, k + 1) };
+                let step = (k as usize).saturating_mul(storage.map_or(0, Storage::bytes));
+                let pick = Pick::Field { offset: offset.saturating_add(step) };
+                let bare = Column { unit: None, epoch_s: None, ..column(name, storage, kind(base)) };
+                push(bare, rows, place(pick, storage, (1.0, 0.0), None));
+            }
+        }
+        return;
+    }
+    let storage = Storage::of(dataset.dtype()).filter(|_| !said.matlab_text);
+    let words = || if said.matlab_text { "text".to_owned() } else { kind(dataset.dtype()) };
+    match shape.as_slice() {
+        [rows] => push(column(name, storage, words()), *rows, place(Pick::All, storage, map, said.missing)),
+        [a, b] if (*a).min(*b) == 1 => {
+            let rows_last = *a == 1;
+            let pick = Pick::Column { index: 0, width: 1, rows_last };
+            push(column(name, storage, words()), (*a).max(*b), place(pick, storage, map, said.missing));
+        }
+        [a, b] if (*a).min(*b) <= WIDEST && elements > 0 && storage.is_some() => {
+            // A recording has more rows than columns; MATLAB stores matrices with the dimensions exchanged.
+            let rows_last = if a == b { said.matlab } else { a < b };
+            let (rows, width) = if rows_last { (*b, *a) } else { (*a, *b) };
+            for index in 0..width {
+                let pick = Pick::Column { index, width, rows_last };
+                let name = format!("{name}_{}", index + 1);
+                push(column(name, storage, words()), rows, place(pick, storage, map, said.missing));
+            }
+            let key = if rows_last { "ingest.hdf5.rows_last" } else { "ingest.hdf5.rows_first" };
+            part.notes.push(Note::new(key).with("name", name).with("rows", rows).with("width", width));
+        }
+        _ => push(
+            column(name, None, format!("{} {shape:?}", kind(dataset.dtype()))),
+            0,
+            place(Pick::All, None, map, None),
+        ),
+    }
+    if (said.factor.is_some() || said.offset.is_some()) && storage.is_some() {
+        part.notes.push(
+            Note::new("ingest.hdf5.scaled")
+                .with("name", path)
+                .with("factor", said.factor.unwrap_or(1.0))
+                .with("offset", said.offset.unwrap_or(0.0)),
+        );
+    }
+}
+
+/// A dataset of one element is a remark on the others.
+fn single(part: &mut GroupPart, dataset: &Dataset, name: &str) {
+    let text = match dataset.dtype() {
+        Datatype::String { .. } | Datatype::VarLen { .. } => {
+            dataset.read_strings().ok().and_then(|s| s.into_iter().next())
+        }
+        _ => {
+            let all = SliceInfo::all(dataset.ndim());
+            let number = Storage::of(dataset.dtype())
+                .and_then(|_| dataset.read_slice::<super::number::Number>(&all).ok())
+                .and_then(|a| a.iter().next().map(|n| n.0));
+            if let Some(rate) = number.and_then(|v| stated_rate_hz(name, v)) {
+                part.stated_rate_hz = part.stated_rate_hz.or(Some(rate));
+            }
+            number.map(|v| v.to_string())
+        }
+    };
+    part.metadata.extend(text.map(|t| (name.to_owned(), t)));
+}
+
+/// The class of a type in words.
+fn kind(datatype: &Datatype) -> String {
+    match datatype {
+        Datatype::FixedPoint { size, .. } => format!("integer of {size} bytes"),
+        Datatype::FloatingPoint { size, .. } => format!("number of {size} bytes"),
+        Datatype::String { .. } => "text".to_owned(),
+        Datatype::VarLen { .. } => "values of varying length".to_owned(),
+        Datatype::Compound { .. } => "records".to_owned(),
+        Datatype::Array { .. } => "arrays".to_owned(),
+        Datatype::Enum { .. } => "enumeration".to_owned(),
+        Datatype::Opaque { .. } => "opaque bytes".to_owned(),
+        Datatype::Reference { .. } => "references".to_owned(),
+        Datatype::Bitfield { .. } => "bit field".to_owned(),
+    }
+}

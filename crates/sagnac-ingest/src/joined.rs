@@ -1,0 +1,226 @@
+//! Several files as one recording: the same columns, read one after the other, never more than one file open.
+
+use super::compressed::digest;
+use super::error::{IngestError, IngestErrorKind};
+use super::{Block, Column, FileFacts, Opened, ReadOptions, Source, open_with};
+use crate::guess::{guess, stem};
+use sagnac_core::message::Note;
+use sagnac_core::units::Unit;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Most statements of the files about themselves that are kept.
+const MOST_METADATA: usize = 256;
+
+/// Most files of a recording.
+pub const MOST_FILES: usize = 10_000;
+
+/// One file of a recording of several.
+pub struct Part {
+    /// The file.
+    pub(super) source: Source,
+    /// For each column of the recording: its place in this file, factor and offset to the unit of the first file.
+    columns: Vec<(usize, f64, f64)>,
+    /// Hash that its manifest states.
+    stated_sha256: Option<String>,
+    /// Phase of the test that it belongs to.
+    pub(super) phase: Option<String>,
+}
+
+/// A file to be joined.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PartSpec {
+    /// Path.
+    pub path: PathBuf,
+    /// SHA-256 that the file must have, hexadecimal.
+    pub sha256: Option<String>,
+    /// Phase of the test that it belongs to.
+    pub phase: Option<String>,
+}
+
+/// What was read of one file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PartFacts {
+    /// Hash, size and rows.
+    pub facts: FileFacts,
+    /// Rows of the recording before this file.
+    pub rows_before: u64,
+}
+
+/// Opens files that follow each other as one recording.
+///
+/// # Errors
+/// What [`open_with`] says of one of them; columns that differ; a file that is there twice.
+pub fn open(
+    name: &Path,
+    specs: &[PartSpec],
+    contiguous: bool,
+    options: &ReadOptions,
+) -> Result<Source, IngestError> {
+    let error = |path: &Path, note: Note| IngestError::new(IngestErrorKind::Parts, path, note);
+    if specs.len() > MOST_FILES {
+        let note = Note::new("ingest.joined.too_many").with("count", specs.len()).with("most", MOST_FILES);
+        return Err(error(name, note));
+    }
+    let mut parts: Vec<Part> = Vec::new();
+    let mut first: Option<Vec<Column>> = None;
+    for spec in specs {
+        let source = open_with(&spec.path, options)?;
+        let columns = match &first {
+            None => (0..source.columns().len()).map(|i| (i, 1.0, 0.0)).collect(),
+            Some(columns) => matched(columns, &source, specs.first().map_or(name, |s| s.path.as_path()))?,
+        };
+        first.get_or_insert_with(|| source.columns().to_vec());
+        parts.push(Part { source, columns, stated_sha256: spec.sha256.clone(), phase: spec.phase.clone() });
+    }
+    let Some(columns) = first else { return Err(error(name, Note::new("ingest.joined.none"))) };
+    twice(&parts)?;
+    let rows = parts.iter().map(|p| p.source.rows_estimate()).sum::<Option<u64>>();
+    let mut notes = vec![Note::new("ingest.joined.note").with("count", parts.len())];
+    for note in parts.iter().flat_map(|p| p.source.notes()) {
+        if notes.len() < 64 && !notes.contains(note) {
+            notes.push(note.clone());
+        }
+    }
+    let mut metadata: Vec<(String, String)> = Vec::new();
+    for pair in parts.iter().flat_map(|p| p.source.metadata()) {
+        if metadata.len() < MOST_METADATA && !metadata.contains(pair) {
+            metadata.push(pair.clone());
+        }
+    }
+    let stated = parts.first().and_then(|p| p.source.stated_sample_rate_hz());
+    let described = Opened {
+        columns,
+        rows_estimate: rows,
+        cut_off: parts.iter().flat_map(|p| p.source.cut_off()).cloned().collect(),
+        notes,
+        metadata,
+        stated_sample_rate_hz: stated,
+        table: super::memory::nothing().table,
+    };
+    Ok(Source::of_parts(name, parts, contiguous, described))
+}
+
+/// Finds the columns of the first file in another one: by name, or by the name without its unit.
+fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usize, f64, f64)>, IngestError> {
+    let error = |key, column: &str| {
+        let note = Note::new(key).with("column", column).with("first", first.display().to_string());
+        IngestError::new(IngestErrorKind::Parts, source.path(), note).hint("ingest.joined.hint.same_columns")
+    };
+    let own = source.columns();
+    let mut taken = vec![false; own.len()];
+    let mut out = Vec::with_capacity(columns.len());
+    for column in columns {
+        let free = |i: &usize| taken.get(*i).is_some_and(|t| !t);
+        let by = |same: &dyn Fn(&Column) -> bool| {
+            (0..own.len()).filter(free).find(|i| own.get(*i).is_some_and(same))
+        };
+        let found = by(&|c| c.name == column.name).or_else(|| by(&|c| stem(&c.name) == stem(&column.name)));
+        let Some((index, other)) = found.and_then(|i| Some((i, own.get(i)?))) else {
+            return Err(error("ingest.joined.column_missing", &column.name));
+        };
+        if let Some(t) = taken.get_mut(index) {
+            *t = true;
+        }
+        let (factor, offset) = conversion(column, other).ok_or_else(|| {
+            let units =
+                |c: &Column| c.unit.clone().unwrap_or_else(|| guess(&c.name, None).unit.text().into());
+            let note = Note::new("ingest.joined.units")
+                .with("column", other.name.as_str())
+                .with("unit", units(other))
+                .with("wanted", units(column))
+                .with("first", first.display().to_string());
+            IngestError::new(IngestErrorKind::Parts, source.path(), note)
+        })?;
+        out.push((index, factor, offset));
+    }
+    match taken.iter().position(|t| !t).and_then(|i| own.get(i)) {
+        Some(extra) => Err(error("ingest.joined.column_extra", &extra.name)),
+        None => Ok(out),
+    }
+}
+
+/// Factor and offset from the numbers of one column to those of another; `None` where their units do not convert.
+fn conversion(to: &Column, from: &Column) -> Option<(f64, f64)> {
+    let named = |c: &Column| {
+        let g = guess(&c.name, c.unit.as_deref());
+        g.unit_is_named.then_some(g.unit)
+    };
+    let declared = |c: &Column| c.unit.as_deref().and_then(|u| Unit::parse(u).ok());
+    let unit = |c: &Column| declared(c).or_else(|| named(c));
+    let (factor, offset) = match (unit(from), unit(to)) {
+        (Some(a), Some(b)) if a.text() != b.text() => a.affine_to(&b).ok()?,
+        _ => (1.0, 0.0),
+    };
+    // Stamps with a date count from a day of their own in each file.
+    let days = match (from.epoch_s, to.epoch_s) {
+        (Some(a), Some(b)) => a - b,
+        (None, None) => 0.0,
+        _ => return None,
+    };
+    Some((factor, offset + days))
+}
+
+/// Refuses a file that is there twice, under one name or two.
+fn twice(parts: &[Part]) -> Result<(), IngestError> {
+    let mut seen: Vec<(u64, &Path, Option<String>)> = Vec::new();
+    for part in parts {
+        let (bytes, path) = (part.source.bytes(), part.source.path());
+        let mut own = None;
+        for (_, other, hash) in seen.iter_mut().filter(|s| s.0 == bytes) {
+            if hash.is_none() {
+                *hash = Some(digest(other)?.sha256);
+            }
+            if own.is_none() {
+                own = Some(digest(path)?.sha256);
+            }
+            if *hash == own {
+                let note = Note::new("ingest.joined.twice").with("other", other.display().to_string());
+                return Err(
+                    IngestError::new(IngestErrorKind::Parts, path, note).hint("ingest.joined.hint.name_once")
+                );
+            }
+        }
+        seen.push((bytes, path, own));
+    }
+    Ok(())
+}
+
+/// Reads wanted columns of every file in order. Rows count on from file to file; lines are those of their file.
+pub(super) fn read(
+    parts: &[Part],
+    wanted: &[usize],
+    on_block: &mut dyn FnMut(&mut Block) -> ControlFlow<()>,
+    on_part: &mut dyn FnMut(usize, PartFacts),
+) -> Result<Option<FileFacts>, IngestError> {
+    let (mut rows_before, mut bytes_before) = (0u64, 0u64);
+    for (index, part) in parts.iter().enumerate() {
+        let places: Vec<(usize, f64, f64)> =
+            wanted.iter().filter_map(|w| part.columns.get(*w).copied()).collect();
+        let own: Vec<usize> = places.iter().map(|(place, _, _)| *place).collect();
+        let facts = part.source.read(&own, &mut |block| {
+            block.part = index;
+            block.first_row += rows_before;
+            block.faults.iter_mut().for_each(|f| f.row += rows_before);
+            for (column, &(_, factor, offset)) in block.columns.iter_mut().zip(&places) {
+                if (factor, offset) != (1.0, 0.0) {
+                    column.iter_mut().for_each(|v| *v = *v * factor + offset);
+                }
+            }
+            block.bytes_done += bytes_before;
+            on_block(block)
+        })?;
+        let Some(facts) = facts else { return Ok(None) };
+        if let Some(stated) = part.stated_sha256.as_ref().filter(|s| !s.eq_ignore_ascii_case(&facts.sha256)) {
+            let note = Note::new("ingest.joined.hash")
+                .with("found", facts.sha256.as_str())
+                .with("stated", stated.as_str());
+            return Err(IngestError::new(IngestErrorKind::Changed, part.source.path(), note));
+        }
+        let rows = facts.rows;
+        bytes_before += facts.bytes;
+        on_part(index, PartFacts { facts, rows_before });
+        rows_before += rows;
+    }
+    Ok(Some(FileFacts { sha256: String::new(), bytes: bytes_before, rows: rows_before }))
+}

@@ -1,0 +1,91 @@
+//! How a file is to be read, where its user says so and nothing is left to be found out.
+
+use crate::raw::LayoutFile;
+use sagnac_core::recording::ColumnRef;
+
+/// Decisions about a file that were made for it; what is `None` is found from the file, and the finding is told.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Id of the format, one of [`super::FORMATS`].
+    pub format: Option<String>,
+    /// How a text file is written.
+    pub text: TextOptions,
+    /// Part of a container that holds the recording: the path of a dataset or group, the name of a variable, a topic.
+    pub part: Option<String>,
+    /// Layout of the records of a raw binary file (TOML).
+    pub layout: Option<LayoutFile>,
+}
+
+/// How a text file is written.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct TextOptions {
+    /// Character encoding.
+    pub encoding: Option<Encoding>,
+    /// Separator of fields; a space stands for any run of spaces and tabs.
+    pub delimiter: Option<u8>,
+    /// Decimal sign, `.` or `,`.
+    pub decimal: Option<u8>,
+    /// Line that holds the names of the columns, counted from 1; 0: there is none.
+    pub header_line: Option<u64>,
+    /// First line of data, counted from 1.
+    pub first_line: Option<u64>,
+    /// Beginning of lines that are comments wherever they stand.
+    pub comment: Option<String>,
+    /// How the stamps of columns are written.
+    pub stamps: Vec<StampOptions>,
+}
+
+/// How the stamps of a column are written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StampOptions {
+    /// The column.
+    pub column: ColumnRef,
+    /// How they are written; found from the file where it is left out.
+    pub writing: Option<StampWriting>,
+    /// Column of the date that belongs to the clock time.
+    pub date_column: Option<ColumnRef>,
+    /// Column of the GPS week that belongs to the seconds of week.
+    pub week_column: Option<ColumnRef>,
+}
+
+impl StampOptions {
+    /// Name of the column that two columns make together; `None` where the stamps stand in one.
+    pub fn joined_name(&self) -> Option<String> {
+        let text = |column: &ColumnRef| match column {
+            ColumnRef::Name(name) => name.clone(),
+            ColumnRef::Position(position) => position.to_string(),
+        };
+        let first = self.week_column.as_ref().or(self.date_column.as_ref())?;
+        Some(format!("{}+{}", text(first), text(&self.column)))
+    }
+}
+
+/// How stamps are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StampWriting {
+    /// Date and time with the year first, ISO 8601 or RFC 3339.
+    Iso8601,
+    /// Date and time with the day first.
+    DayFirst,
+    /// Date and time with the month first.
+    MonthFirst,
+    /// Clock time.
+    Clock,
+    /// Numbers of seconds of the GPS week.
+    GpsWeekSeconds,
+    /// Numbers.
+    Number,
+}
+
+/// A character encoding of text files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoding {
+    /// UTF-8, with or without byte-order mark.
+    Utf8,
+    /// UTF-16, little endian.
+    Utf16Le,
+    /// UTF-16, big endian.
+    Utf16Be,
+    /// Windows-1251, Cyrillic.
+    Windows1251,
+}

@@ -1,0 +1,190 @@
+//! Containers that hold more than one table: which part is the recording, and which of its columns belong together.
+
+use super::compressed::Packing;
+use super::error::{IngestError, IngestErrorKind, shorten};
+use super::{Candidate, Column};
+use crate::guess::guess;
+use sagnac_core::message::{Arg, Note};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// At most this many parts, and columns of a part, are listed in a diagnostic.
+const LISTED: usize = 12;
+/// At most this many entries of metadata are kept, each at most this long.
+const METADATA: usize = 64;
+const METADATA_CHARACTERS: usize = 200;
+
+/// One part of a container.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Part {
+    /// Name as the file has it.
+    pub name: String,
+    /// Its columns with their lengths.
+    pub columns: Vec<(Column, u64)>,
+}
+
+impl Part {
+    /// The length that most columns of numbers have, of equally frequent ones the greatest.
+    pub fn common_rows(&self) -> Option<u64> {
+        let mut counts: BTreeMap<u64, usize> = BTreeMap::new();
+        for (_, rows) in self.columns.iter().filter(|(c, rows)| c.numeric && *rows > 1) {
+            *counts.entry(*rows).or_default() += 1;
+        }
+        counts.into_iter().max_by_key(|&(rows, count)| (count, rows)).map(|(rows, _)| rows)
+    }
+
+    fn has_gyro(&self) -> bool {
+        let rows = self.common_rows();
+        self.columns
+            .iter()
+            .any(|(c, r)| c.numeric && Some(*r) == rows && guess(&c.name, c.unit.as_deref()).role.is_gyro())
+    }
+
+    /// Name, columns and length in words.
+    fn describe(&self) -> Note {
+        let names = self.columns.iter().take(LISTED).map(|(c, _)| shorten(&c.name));
+        let mut names = names.collect::<Vec<_>>().join(", ");
+        if self.columns.len() > LISTED {
+            names.push_str(", …");
+        }
+        Note::new("ingest.parts.part")
+            .with("name", shorten(&self.name))
+            .with("columns", names)
+            .with("rows", self.common_rows().unwrap_or(0))
+    }
+}
+
+/// The parts as a list in one sentence.
+fn list<'a>(parts: impl Iterator<Item = &'a Part>) -> Arg {
+    let parts: Vec<&Part> = parts.collect();
+    let mut note: Option<Note> = (parts.len() > LISTED)
+        .then(|| Note::new("ingest.parts.more").with("count", parts.len().saturating_sub(LISTED)));
+    for part in parts.iter().take(LISTED).rev() {
+        note = Some(match note {
+            Some(rest) => Note::new("ingest.parts.and").with("first", part.describe()).with("rest", rest),
+            None => part.describe(),
+        });
+    }
+    note.map_or_else(|| Arg::Text("–".to_owned()), Arg::from)
+}
+
+/// Chooses the part that is the recording: the one wanted, the only one with columns of numbers, or the only one among
+/// them with a gyro. The notes say what was chosen and why.
+///
+/// # Errors
+/// No such part, none with numbers, or several that could be it.
+pub(super) fn choose(
+    path: &Path,
+    parts: &[Part],
+    wanted: Option<&str>,
+) -> Result<(usize, Vec<Note>), IngestError> {
+    let error = |message: Note| IngestError::new(IngestErrorKind::UnknownFormat, path, message);
+    let with_numbers = || parts.iter().filter(|p| p.common_rows().is_some());
+    if let Some(wanted) = wanted {
+        let plain = |name: &str| name.trim_matches('/').to_lowercase();
+        let exact = parts.iter().position(|p| p.name == wanted);
+        let found = exact.or_else(|| parts.iter().position(|p| plain(&p.name) == plain(wanted)));
+        let Some(index) = found else {
+            return Err(error(Note::new("ingest.parts.no_such").with("name", shorten(wanted)))
+                .hint(Note::new("ingest.parts.hint.the_file_has").with("parts", list(with_numbers()))));
+        };
+        if parts.get(index).is_some_and(|p| p.common_rows().is_none()) {
+            return Err(error(Note::new("ingest.parts.no_numbers_in").with("name", shorten(wanted)))
+                .hint(Note::new("ingest.parts.hint.the_file_has").with("parts", list(with_numbers()))));
+        }
+        return Ok((index, vec![Note::new("ingest.parts.wanted").with("name", shorten(wanted))]));
+    }
+    let candidates: Vec<usize> =
+        parts.iter().enumerate().filter(|(_, p)| p.common_rows().is_some()).map(|(i, _)| i).collect();
+    let gyros: Vec<usize> =
+        candidates.iter().copied().filter(|&i| parts.get(i).is_some_and(Part::has_gyro)).collect();
+    let name = |i: usize| parts.get(i).map(|p| shorten(&p.name)).unwrap_or_default();
+    match (candidates.as_slice(), gyros.as_slice()) {
+        ([], _) => Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.parts.none")
+            .hint("ingest.parts.hint.check")),
+        ([one], _) => Ok((*one, vec![Note::new("ingest.parts.only").with("name", name(*one))])),
+        (_, [one]) => {
+            let others = parts.iter().enumerate().filter(|(i, _)| i != one && candidates.contains(i));
+            let note = Note::new("ingest.parts.gyro")
+                .with("name", name(*one))
+                .with("others", list(others.map(|(_, p)| p)));
+            Ok((*one, vec![note]))
+        }
+        (several, among) => {
+            let among = if among.is_empty() { several } else { among };
+            let count = among.len();
+            let listed = list(among.iter().filter_map(|&i| parts.get(i)));
+            Err(error(Note::new("ingest.parts.several").with("count", count).with("parts", listed))
+                .hint("ingest.parts.hint.name_one"))
+        }
+    }
+}
+
+/// Says which columns of a part are left out because their length is not that of the others.
+pub(super) fn odd_lengths(part: &Part, rows: u64) -> Option<Note> {
+    let odd: Vec<String> = part
+        .columns
+        .iter()
+        .filter(|(c, r)| c.numeric && *r != rows)
+        .take(LISTED)
+        .map(|(c, r)| format!("`{}` ({r})", shorten(&c.name)))
+        .collect();
+    (!odd.is_empty())
+        .then(|| Note::new("ingest.parts.odd_lengths").with("rows", rows).with("columns", odd.join(", ")))
+}
+
+/// Refuses a packed container: its parts are found by their place in the file.
+pub(super) fn unpacked(file: &Candidate, what: &'static str) -> Result<(), IngestError> {
+    if file.packing == Packing::Plain {
+        return Ok(());
+    }
+    Err(IngestError::new(
+        IngestErrorKind::UnknownFormat,
+        &file.path,
+        Note::new("ingest.parts.packed")
+            .with("what", Arg::Key(what.to_owned()))
+            .with("packing", file.packing.id()),
+    )
+    .hint("ingest.hint.unpack"))
+}
+
+/// What a file says of itself, bounded in number and length.
+#[derive(Debug, Default)]
+pub(super) struct Metadata(Vec<(String, String)>);
+
+impl Metadata {
+    /// Keeps an entry while there is room.
+    pub fn add(&mut self, key: &str, value: &str) {
+        let cut = |text: &str| {
+            let clean = text.trim().chars().filter(|c| !c.is_control());
+            clean.take(METADATA_CHARACTERS).collect::<String>()
+        };
+        let (key, value) = (cut(key), cut(value));
+        if self.0.len() < METADATA && !key.is_empty() && !value.is_empty() {
+            self.0.push((key, value));
+        }
+    }
+
+    /// The entries.
+    pub fn entries(self) -> Vec<(String, String)> {
+        self.0
+    }
+}
+
+/// Sample rate by the name and value of an entry, Hz: `fs`, `sample_rate_hz`, `dt` ...
+pub(super) fn stated_rate_hz(name: &str, value: f64) -> Option<f64> {
+    let name: String = name.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
+    let rates = ["fs", "fshz", "samplerate", "sampleratehz", "samplingrate", "samplingratehz"];
+    let more = ["samplingfrequency", "samplingfrequencyhz", "samplefrequency", "sampratehz", "samprate"];
+    let steps = ["dt", "dts", "deltat", "sampleinterval", "sampleintervals", "samplinginterval"];
+    let more_steps = ["sampleperiod", "samplingperiod", "samplinginterval", "ts"];
+    let name = name.as_str();
+    let rate = if rates.contains(&name) || more.contains(&name) {
+        value
+    } else if steps.contains(&name) || more_steps.contains(&name) {
+        1.0 / value
+    } else {
+        return None;
+    };
+    (rate.is_finite() && rate > 0.0).then_some(rate)
+}

@@ -1,0 +1,350 @@
+//! What must be known before a recording is read: its columns, the units of its channels, its clock.
+
+use super::pauses::Pauses;
+use super::{IngestError, IngestErrorKind, Source};
+use crate::timebase::{Batches, Cadence, Clock, ClockError, Loss, Unwrapper, moduli};
+use sagnac_core::message::{Arg, Note};
+use sagnac_core::recording::{Channel, Role};
+use sagnac_core::units::Unit;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// Rows from which the clock is found.
+const PROBED: usize = 65_536;
+
+/// Where the time base comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeBaseSpec {
+    /// The declared sample rate, Hz; needed where there are no stamps.
+    pub declared_sample_rate_hz: Option<f64>,
+    /// Use the time channel, where there is one. Without it every row is one interval after the one before.
+    pub use_stamps: bool,
+    /// Period after which the stamps start again, s; the file may tell it, and usual ones are found.
+    pub rollover_s: Option<f64>,
+    /// Count after which the counter starts again; usual ones are found.
+    pub counter_modulus: Option<f64>,
+}
+
+impl Default for TimeBaseSpec {
+    fn default() -> TimeBaseSpec {
+        TimeBaseSpec {
+            declared_sample_rate_hz: None,
+            use_stamps: true,
+            rollover_s: None,
+            counter_modulus: None,
+        }
+    }
+}
+
+/// A recording that is ready to be read: columns found, units checked, clock known.
+pub struct Plan<'a> {
+    pub(super) source: &'a Source,
+    pub(super) channels: &'a [Channel],
+    pub(super) wanted: Vec<usize>,
+    /// Factor and offset from the number in the file to the unit inside.
+    pub(super) maps: Vec<(f64, f64)>,
+    /// Which channel gives the stamps.
+    pub(super) time: Option<usize>,
+    /// Which channel counts the samples.
+    pub(super) counter: Option<usize>,
+    pub(super) clock: Clock,
+    pub(super) rollover: Unwrapper,
+    pub(super) counter_modulus: Option<f64>,
+    /// Interval by which angles become rates, s.
+    pub(super) increment_s: f64,
+    /// Angle after which an accumulated one starts again, arcsec, by channel.
+    pub(super) angle_periods: Vec<Option<f64>>,
+    pub(super) pauses: Pauses,
+    /// Where samples are missing, by the row of the recording, from 1, where the batches of the recording tell it.
+    pub(super) losses: Vec<Loss>,
+    start_s: f64,
+}
+
+/// Finds the columns of the channels, checks their units and finds the clock from the first rows.
+///
+/// # Errors
+/// A column that is not there, a unit that does not fit the role, no time base, or what [`Source::read`] says.
+pub fn prepare<'a>(
+    source: &'a Source,
+    channels: &'a [Channel],
+    spec: TimeBaseSpec,
+) -> Result<Plan<'a>, IngestError> {
+    let wanted = channels.iter().map(|c| source.resolve(&c.column)).collect::<Result<Vec<_>, _>>()?;
+    let maps = channels.iter().map(|c| map(source.path(), c)).collect::<Result<Vec<_>, _>>()?;
+    let no_clock = |e: ClockError, hint: &'static str| {
+        IngestError::new(IngestErrorKind::TimeBase, source.path(), clock_note(&e)).hint(hint)
+    };
+    let time = channels.iter().position(|c| c.role == Role::Time).filter(|_| spec.use_stamps);
+    let counter = channels.iter().position(|c| c.role == Role::Counter);
+    let stamped = time.and_then(|i| Some((*wanted.get(i)?, *maps.get(i)?)));
+    let rollover_s = spec.rollover_s.or_else(|| source.columns().get(stamped?.0)?.rollover_s);
+    let unwrapper = |limit_s: f64| {
+        let usual = stamped.map(|(_, map)| moduli(map.0.abs())).unwrap_or_default();
+        Unwrapper::new(rollover_s, usual, limit_s)
+    };
+    let (clock, start_s) = match stamped {
+        Some((column, map)) => {
+            let (mut stamps, mut counts) = (Vec::new(), Vec::new());
+            let counted = counter.and_then(|i| Some((*wanted.get(i)?, *maps.get(i)?)));
+            let columns: Vec<usize> = std::iter::once(column).chain(counted.map(|c| c.0)).collect();
+            source.read(&columns, &mut |block| {
+                let room = PROBED.saturating_sub(stamps.len());
+                let take = |slot: usize, map: (f64, f64), into: &mut Vec<f64>| {
+                    let values = block.columns.get(slot).into_iter().flatten();
+                    into.extend(values.take(room).map(|v| v * map.0 + map.1));
+                };
+                take(0, map, &mut stamps);
+                if let Some((_, map)) = counted {
+                    take(1, map, &mut counts);
+                }
+                // The clock is found from the first file alone: where the next one begins is not known.
+                if stamps.len() < PROBED && block.part == 0 {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
+            })?;
+            let start_s = stamps.iter().copied().find(|t| t.is_finite()).unwrap_or(0.0);
+            unwrapper(step_limit(&stamps)).apply(&mut stamps);
+            let counted = counted.and_then(|_| by_counter(&stamps, &mut counts, spec.counter_modulus));
+            let clock = match counted {
+                Some(interval_s) => Clock::declared(1.0 / interval_s),
+                None => Clock::probe_with(&stamps, spec.declared_sample_rate_hz),
+            };
+            (clock.map_err(|e| no_clock(e, hint(&e)))?, start_s)
+        }
+        None => {
+            let rate = source.rate_without_stamps_hz(spec.declared_sample_rate_hz).ok_or_else(|| {
+                IngestError::new(IngestErrorKind::TimeBase, source.path(), "ingest.no_time")
+                    .hint("ingest.hint.declare_rate")
+            })?;
+            (Clock::declared(rate).map_err(|e| no_clock(e, "ingest.hint.rate_in_hz"))?, 0.0)
+        }
+    };
+    let (clock, losses) = match (clock.cadence, stamped) {
+        (Cadence::Buffered { .. }, Some((column, map))) if counter.is_none() => {
+            batches(source, column, map, clock).map_err(|e| match e {
+                Unread::File(e) => e,
+                Unread::Clock(e) => no_clock(e, "ingest.hint.declare_batches"),
+            })?
+        }
+        _ => (clock, Vec::new()),
+    };
+    let rollover = unwrapper(clock.gap_limit_s);
+    let counter_modulus = spec.counter_modulus;
+    let (angle_periods, increment_s) = (vec![None; channels.len()], clock.interval_s);
+    let mut plan = Plan {
+        source,
+        channels,
+        wanted,
+        maps,
+        time,
+        counter,
+        clock,
+        rollover,
+        counter_modulus,
+        increment_s,
+        angle_periods,
+        pauses: Pauses::default(),
+        losses,
+        start_s,
+    };
+    plan.rates_from_angles(1.0, increment_s);
+    Ok(plan)
+}
+
+/// Why batches tell no clock.
+enum Unread {
+    File(IngestError),
+    Clock(ClockError),
+}
+
+/// The clock of stamps in batches and where samples are missing, from the stamps of all rows. A file that follows another
+/// is one of its own.
+fn batches(
+    source: &Source,
+    column: usize,
+    map: (f64, f64),
+    found: Clock,
+) -> Result<(Clock, Vec<Loss>), Unread> {
+    let (mut parts, mut rows) = (Vec::new(), 0u64);
+    source
+        .read(&[column], &mut |block| {
+            if parts.len() <= block.part {
+                parts.resize_with(block.part + 1, || (rows, Batches::new(found.interval_s)));
+            }
+            let values = block.columns.first().map(Vec::as_slice).unwrap_or_default();
+            rows += values.len() as u64;
+            if let Some((_, batches)) = parts.last_mut() {
+                values.iter().for_each(|v| batches.push(v * map.0 + map.1));
+            }
+            ControlFlow::Continue(())
+        })
+        .map_err(Unread::File)?;
+    let mut clock = None;
+    let mut losses = Vec::new();
+    for (before, batches) in parts {
+        let unclear = Unread::Clock(ClockError::Batches { rate_hz: 1.0 / found.interval_s });
+        let part = batches.clock().ok_or(unclear)?;
+        losses.extend(part.losses.iter().map(|l| Loss { row: before + l.row + 1, samples: l.samples }));
+        clock.get_or_insert_with(|| Clock::buffered(&part));
+    }
+    Ok((clock.unwrap_or(found), losses))
+}
+
+/// What to do about stamps that cannot serve.
+fn hint(error: &ClockError) -> &'static str {
+    match error {
+        ClockError::Batches { .. } | ClockError::Coarse { .. } => "ingest.hint.declare_batches",
+        _ => "ingest.hint.check_time",
+    }
+}
+
+/// Longest step across a roll-over before the clock is known: three middle steps.
+fn step_limit(stamps: &[f64]) -> f64 {
+    let steps = stamps.iter().zip(stamps.get(1..).unwrap_or_default()).map(|(a, b)| b - a);
+    let mut growing: Vec<f64> = steps.filter(|d| *d > 0.0).take(4096).collect();
+    if growing.is_empty() {
+        return 0.0;
+    }
+    let middle = growing.len() / 2;
+    3.0 * *growing.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// The interval by the first stamps and counts: the middle one over 64 rows.
+fn by_counter(stamps: &[f64], counts: &mut [f64], modulus: Option<f64>) -> Option<f64> {
+    Unwrapper::of_counter(modulus).apply(counts);
+    let lag = (counts.len() / 4).clamp(1, 64);
+    let pairs = || stamps.iter().zip(counts.iter());
+    let mut found: Vec<f64> = pairs()
+        .zip(pairs().skip(lag))
+        .filter(|((_, a), (_, b))| b > a)
+        .map(|((t0, a), (t1, b))| (t1 - t0) / (b - a))
+        .filter(|d| d.is_finite() && *d > 0.0)
+        .collect();
+    if found.len() < 2 {
+        return None;
+    }
+    let middle = found.len() / 2;
+    Some(*found.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// A date, s after a whole second from 1970.
+fn date(epoch_s: f64, s: f64) -> Option<String> {
+    let whole = s.floor();
+    let seconds = epoch_s + whole;
+    if !(-6e10..2.5e11).contains(&seconds) {
+        return None;
+    }
+    // Rounded to the microsecond: stamps in s hold no more.
+    let nanoseconds = (((s - whole) * 1e6).round() * 1e3).clamp(0.0, 999_999_000.0);
+    let date = chrono::DateTime::from_timestamp(seconds as i64, nanoseconds as u32)?;
+    Some(date.to_rfc3339_opts(chrono::SecondsFormat::Millis, true))
+}
+
+fn clock_note(error: &ClockError) -> Note {
+    let percent = |share: f64| Arg::Text(format!("{:.0}", share * 100.0));
+    match error {
+        ClockError::TooFew => Note::new("ingest.clock_too_few"),
+        ClockError::NotGrowing => Note::new("ingest.clock_not_growing"),
+        ClockError::Falling { share } => Note::new("ingest.clock_falling").with("percent", percent(*share)),
+        ClockError::Coarse { share } => Note::new("ingest.clock_coarse").with("percent", percent(*share)),
+        ClockError::Batches { rate_hz } => {
+            Note::new("ingest.clock_batches").with("hz", (rate_hz * 1e4).round() / 1e4)
+        }
+        ClockError::Rate { rate_hz } => Note::new("ingest.clock_rate").with("rate", rate_hz.to_string()),
+    }
+}
+
+/// Factor and offset from the number in the file to the unit inside.
+fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
+    let error = |message: Note| IngestError::new(IngestErrorKind::Unit, path, message);
+    if !channel.scale.is_finite() || channel.scale == 0.0 {
+        return Err(error(
+            Note::new("ingest.bad_scale")
+                .with("channel", channel.id.as_str())
+                .with("scale", channel.scale.to_string()),
+        )
+        .hint("ingest.hint.scale"));
+    }
+    let Some(inside) = channel.role.internal_unit() else { return Ok((channel.scale, 0.0)) };
+    let affine = Unit::parse(inside).and_then(|inside| channel.unit.affine_to(&inside));
+    affine.map(|(factor, offset)| (factor * channel.scale, offset)).map_err(|e| {
+        error(
+            Note::new("ingest.unit")
+                .with("channel", channel.id.as_str())
+                .with("role", Arg::key("role", channel.role.id()))
+                .with("reason", e.note()),
+        )
+        .hint("ingest.hint.unit")
+    })
+}
+
+impl Plan<'_> {
+    /// Turns angle increments into rates by another interval, s: 1 arcsec in 1 s is 1 deg/h.
+    fn rates_from_angles(&mut self, before_s: f64, interval_s: f64) {
+        for (channel, map) in self.channels.iter().zip(&mut self.maps) {
+            if channel.role == Role::AngleIncrement {
+                *map = (map.0 * before_s / interval_s, map.1 * before_s / interval_s);
+            }
+        }
+        self.increment_s = interval_s;
+    }
+
+    /// Divides angles by the interval that was measured over the whole recording.
+    pub fn set_increment_interval(&mut self, interval_s: f64) {
+        if interval_s.is_normal() && interval_s > 0.0 {
+            self.rates_from_angles(self.increment_s, interval_s);
+        }
+    }
+
+    /// True when a channel of angles is read, whose rates depend on the interval.
+    pub fn reads_angles(&self) -> bool {
+        self.channels.iter().any(|c| matches!(c.role, Role::AngleIncrement | Role::AccumulatedAngle))
+    }
+
+    /// Says after which angle a channel starts again, in the unit of its numbers.
+    pub fn set_angle_period(&mut self, channel: &str, period: f64) {
+        let slot = self.channels.iter().position(|c| c.id == channel && c.role == Role::AccumulatedAngle);
+        if let Some(place) = slot.and_then(|s| self.angle_periods.get_mut(s)) {
+            *place = Some(period);
+        }
+    }
+
+    /// Says where the recording may pause.
+    pub fn set_pauses(&mut self, pauses: Pauses) {
+        self.pauses = pauses;
+    }
+
+    /// The nominal clock.
+    pub fn clock(&self) -> Clock {
+        self.clock
+    }
+
+    /// First usable stamp, s; 0 without stamps.
+    pub fn start_s(&self) -> f64 {
+        self.start_s
+    }
+
+    /// The start as a date, where the reader, the name of the time column or the file format says what stamps count from.
+    pub(super) fn absolute_start(&self, first_s: f64) -> Option<String> {
+        let slot = self.time?;
+        let column = self.source.columns().get(*self.wanted.get(slot)?)?;
+        if let Some(epoch_s) = column.epoch_s {
+            return date(epoch_s, first_s);
+        }
+        let name = column.name.to_lowercase();
+        let said = ["unix", "epoch", "utc", "posix"].iter().any(|w| name.contains(w));
+        let known = said || column.storage.contains("Timestamp") || column.epoch_s.is_some();
+        let epoch_s = column.epoch_s.unwrap_or(0.0);
+        if !known || !(0.0..1e11).contains(&(first_s + epoch_s)) {
+            return None;
+        }
+        date(0.0, first_s)
+    }
+
+    pub(super) fn column_name(&self, slot: usize) -> &str {
+        let index = self.wanted.get(slot).copied().unwrap_or(0);
+        self.source.columns().get(index).map_or("", |c| c.name.as_str())
+    }
+}

@@ -1,0 +1,62 @@
+//! The layout of the records of a raw binary file.
+
+use super::checksum::Checksum;
+use crate::binary::number_type::Field;
+use sagnac_core::units::Unit;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A layout by its file, and what was read from it. Whoever opens a recording has read it before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayoutFile {
+    /// The file.
+    pub path: PathBuf,
+    /// What it says; `None` until it is read.
+    pub layout: Option<Arc<Layout>>,
+}
+
+impl LayoutFile {
+    /// A layout that is not yet read.
+    pub fn at(path: PathBuf) -> LayoutFile {
+        LayoutFile { path, layout: None }
+    }
+}
+
+/// The layout of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// Bytes before the first record.
+    pub header_bytes: u64,
+    /// Length of a record, bytes.
+    pub record_bytes: usize,
+    /// Bytes at the start of every record; empty: none.
+    pub sync: Vec<u8>,
+    /// Sample rate, Hz.
+    pub sample_rate_hz: Option<f64>,
+    /// Checksum of every record.
+    pub checksum: Option<Checksum>,
+    /// Columns, in the order of the file.
+    pub columns: Vec<LayoutColumn>,
+}
+
+/// A column of a layout.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayoutColumn {
+    /// Name.
+    pub name: String,
+    /// How the number is stored, as the layout names it.
+    pub storage: &'static str,
+    /// Unit.
+    pub unit: Option<Unit>,
+    /// Value at which stamps start again, s.
+    pub rollover_s: Option<f64>,
+    /// Where the number is and how it is decoded.
+    pub field: Field,
+}
+
+impl Layout {
+    /// Names of the columns.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|c| c.name.as_str())
+    }
+}

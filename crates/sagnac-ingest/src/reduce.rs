@@ -1,0 +1,108 @@
+//! What stands between every reader and its consumer: refusing a column that is no column of numbers, and giving one
+//! column to several takers.
+
+use super::error::{IngestError, IngestErrorKind};
+use super::{Block, Column, FieldFault, FieldFaultKind};
+use sagnac_core::message::Note;
+use std::path::Path;
+
+/// Rows from which it is judged whether a column holds numbers at all.
+const JUDGED_ROWS: u64 = 1000;
+
+/// Watches the first rows of every wanted column.
+pub(super) struct FirstRows {
+    rows: u64,
+    bad: Vec<u64>,
+    first: Vec<Option<FieldFault>>,
+    done: bool,
+}
+
+impl FirstRows {
+    pub(super) fn new(slots: usize) -> FirstRows {
+        FirstRows { rows: 0, bad: vec![0; slots], first: vec![None; slots], done: false }
+    }
+
+    /// The first bad field of a column of which more than half of the first rows are no numbers.
+    pub(super) fn judge(&mut self, block: &Block) -> Option<FieldFault> {
+        if self.done {
+            return None;
+        }
+        let left = JUDGED_ROWS - self.rows;
+        let rows = block.rows() as u64;
+        let last_row = block.first_row + left.min(rows);
+        for fault in block.faults.iter().filter(|f| f.kind == FieldFaultKind::Unparsable) {
+            if let Some(first) = self.first.get_mut(fault.slot) {
+                first.get_or_insert_with(|| fault.clone());
+            }
+        }
+        for (slot, bad) in self.bad.iter_mut().enumerate() {
+            let located =
+                |f: &&FieldFault| f.slot == slot && f.kind == FieldFaultKind::Unparsable && f.row < last_row;
+            let listed = block.faults.iter().filter(located).count() as u64;
+            // Only the first faults of a block are located; when the list is full the rest is taken in proportion.
+            let all = block.unparsable.get(slot).copied().unwrap_or(0);
+            *bad += if all <= super::LOCATED_PER_BLOCK {
+                listed
+            } else {
+                (all as f64 * left.min(rows) as f64 / rows.max(1) as f64) as u64
+            };
+        }
+        self.rows += left.min(rows);
+        if self.rows < JUDGED_ROWS {
+            return None;
+        }
+        self.verdict()
+    }
+
+    /// The same for a file that ended before.
+    pub(super) fn judge_short(&mut self) -> Option<FieldFault> {
+        if self.done { None } else { self.verdict() }
+    }
+
+    fn verdict(&mut self) -> Option<FieldFault> {
+        self.done = true;
+        let slot = self.bad.iter().position(|&bad| bad * 2 > self.rows)?;
+        self.first.get(slot).cloned().flatten()
+    }
+}
+
+/// The diagnostic of a column that holds no numbers.
+pub(super) fn not_numeric(
+    path: &Path,
+    fault: &FieldFault,
+    wanted: &[usize],
+    columns: &[Column],
+) -> IngestError {
+    let name = wanted.get(fault.slot).and_then(|&i| columns.get(i)).map_or("?", |c| c.name.as_str());
+    let error = IngestError::new(
+        IngestErrorKind::NotNumeric,
+        path,
+        Note::new("ingest.not_numeric").with("name", name),
+    )
+    .found(&fault.text)
+    .hint("ingest.hint.check_dialect");
+    if fault.line > 0 { error.at(fault.line, Some(fault.character)) } else { error }
+}
+
+/// Turns columns read once each into columns as wanted, where one may be wanted several times.
+pub(super) fn spread(block: &mut Block, slots: &[usize]) {
+    if slots.len() == block.columns.len() {
+        return;
+    }
+    let unique = std::mem::take(&mut block.columns);
+    block.columns = slots.iter().filter_map(|&s| unique.get(s).cloned()).collect();
+    let repeat = |counts: &[u64]| slots.iter().filter_map(|&s| counts.get(s).copied()).collect();
+    block.non_finite = repeat(&block.non_finite);
+    block.unparsable = repeat(&block.unparsable);
+    let faults = std::mem::take(&mut block.faults);
+    for (slot, source) in slots.iter().enumerate() {
+        block
+            .faults
+            .extend(faults.iter().filter(|f| f.slot == *source).map(|f| FieldFault { slot, ..f.clone() }));
+    }
+}
+
+/// Undoes the shape of [`spread`], so that the block's memory can be used again.
+pub(super) fn gather(block: &mut Block, unique: usize) {
+    block.columns.resize_with(unique, Vec::new);
+}

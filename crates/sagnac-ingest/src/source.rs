@@ -1,0 +1,328 @@
+//! A recording that can be read: a file, several joined, or columns in memory.
+
+use super::compressed::{self, ByteStream, Packing, io_error};
+use super::error::{IngestError, IngestErrorKind};
+use super::identity::FileIdentity;
+use super::joined::{self, PartFacts};
+use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, choice, memory, reduce};
+use sagnac_core::message::Note;
+use sagnac_core::recording::ColumnRef;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// A recording that can be read: a file, or columns in memory.
+pub struct Source {
+    path: PathBuf,
+    format: &'static str,
+    packing: Packing,
+    bytes: u64,
+    /// Of a file; columns in memory have none.
+    identity: Option<FileIdentity>,
+    opened: Opened,
+    /// The files of a recording of several; empty for one.
+    parts: Vec<joined::Part>,
+    contiguous: bool,
+}
+
+/// Opens a recording; the format is found by its content.
+///
+/// # Errors
+/// A directory, an unreadable, empty or damaged file, an unknown kind of file, a file without rows.
+pub fn open(path: &Path) -> Result<Source, IngestError> {
+    open_with(path, &ReadOptions::default())
+}
+
+/// Opens a recording as its user says.
+///
+/// # Errors
+/// As [`open`], and where what was said does not fit the file.
+pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestError> {
+    let metadata = std::fs::metadata(path).map_err(|e| io_error(path, &e))?;
+    if metadata.is_dir() {
+        return Err(
+            IngestError::new(IngestErrorKind::Io, path, "ingest.is_folder").hint("ingest.hint.name_a_file")
+        );
+    }
+    if metadata.len() == 0 {
+        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_file")
+            .hint("ingest.hint.check_written"));
+    }
+    let mut first = ByteStream::open(path, Packing::Plain)?;
+    let mut magic = [0; 8];
+    let n = first.fill(&mut magic)?;
+    let packing = Packing::of(&magic[..n]);
+    let mut head = vec![0; HEAD];
+    let mut stream = ByteStream::open(path, packing)?;
+    let n = stream.fill(&mut head)?;
+    head.truncate(n);
+    let head_is_all = n < HEAD;
+    if head.is_empty() {
+        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_packed")
+            .hint("ingest.hint.check_written"));
+    }
+    let candidate = Candidate {
+        path: path.to_owned(),
+        bytes: metadata.len(),
+        packing,
+        head,
+        head_is_all,
+        options: options.clone(),
+    };
+    let format = choice::format(&candidate)?;
+    let opened = format.open(&candidate)?;
+    Ok(Source {
+        path: path.to_owned(),
+        format: format.id(),
+        packing,
+        bytes: metadata.len(),
+        identity: Some(FileIdentity::of(&metadata)),
+        opened,
+        parts: Vec::new(),
+        contiguous: false,
+    })
+}
+
+impl Source {
+    /// A recording in memory: names with columns of equal length. Used by simulations and tests.
+    ///
+    /// # Errors
+    /// [`IngestErrorKind::Empty`] without columns or rows or with columns of different length.
+    pub fn from_columns(
+        name: &str,
+        columns: Vec<(String, Vec<f64>)>,
+        block_rows: usize,
+    ) -> Result<Source, IngestError> {
+        let opened = memory::open(Path::new(name), columns, block_rows)?;
+        Ok(Source::alone(PathBuf::from(name), "memory", opened))
+    }
+
+    /// A recording without columns under the path of one that could not be opened, so that its report can name it.
+    pub fn unopened(path: &Path) -> Source {
+        let opened = memory::nothing();
+        Source::alone(path.to_owned(), "unknown", opened)
+    }
+
+    fn alone(path: PathBuf, format: &'static str, opened: Opened) -> Source {
+        let (parts, contiguous) = (Vec::new(), false);
+        Source { path, format, packing: Packing::Plain, bytes: 0, identity: None, opened, parts, contiguous }
+    }
+
+    /// A recording of several files; what describes it comes from the first.
+    pub(super) fn of_parts(
+        path: &Path,
+        parts: Vec<joined::Part>,
+        contiguous: bool,
+        described: Opened,
+    ) -> Source {
+        let first = parts.first().map(|p| &p.source);
+        Source {
+            path: path.to_owned(),
+            format: first.map_or("unknown", |s| s.format),
+            packing: first.map_or(Packing::Plain, |s| s.packing),
+            bytes: parts.iter().map(|p| p.source.bytes).sum(),
+            identity: None,
+            opened: described,
+            parts,
+            contiguous,
+        }
+    }
+
+    /// The files of the recording, in order: one, unless several were joined.
+    pub fn files(&self) -> Vec<&Path> {
+        if self.parts.is_empty() {
+            vec![&self.path]
+        } else {
+            self.parts.iter().map(|p| p.source.path()).collect()
+        }
+    }
+
+    /// The phase of the test that a file belongs to, where a manifest says it.
+    pub fn phase(&self, file: usize) -> Option<&str> {
+        self.parts.get(file)?.phase.as_deref()
+    }
+
+    /// True when each file follows the one before without a gap, as a manifest says.
+    pub fn is_contiguous(&self) -> bool {
+        self.contiguous
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Id of the format, `memory` for a recording in memory.
+    pub fn format(&self) -> &'static str {
+        self.format
+    }
+
+    /// How the file is packed.
+    pub fn packing(&self) -> Packing {
+        self.packing
+    }
+
+    /// Size of the file, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Columns in the order of the file.
+    pub fn columns(&self) -> &[Column] {
+        &self.opened.columns
+    }
+
+    /// Rows, where that is known or can be estimated without reading the file.
+    pub fn rows_estimate(&self) -> Option<u64> {
+        self.opened.rows_estimate
+    }
+
+    /// What was decided about the file and why.
+    pub fn notes(&self) -> &[Note] {
+        &self.opened.notes
+    }
+
+    /// What shows that the end of a file is missing, one sentence a file.
+    pub fn cut_off(&self) -> &[Note] {
+        &self.opened.cut_off
+    }
+
+    /// What the file says of itself, key and value as written.
+    pub fn metadata(&self) -> &[(String, String)] {
+        &self.opened.metadata
+    }
+
+    /// Sample rate that the file states, Hz.
+    pub fn stated_sample_rate_hz(&self) -> Option<f64> {
+        self.opened.stated_sample_rate_hz
+    }
+
+    /// Sample rate where no stamps tell it, Hz: as declared by the user, else as the file states it.
+    pub fn rate_without_stamps_hz(&self, declared_hz: Option<f64>) -> Option<f64> {
+        declared_hz.or(self.stated_sample_rate_hz())
+    }
+
+    /// Finds a column; the result is its position from 0.
+    ///
+    /// # Errors
+    /// [`IngestErrorKind::Column`] when it is not there, stands twice, or holds no numbers.
+    pub fn resolve(&self, column: &ColumnRef) -> Result<usize, IngestError> {
+        let error = |message: Note| IngestError::new(IngestErrorKind::Column, &self.path, message);
+        let columns = self.columns();
+        let index = match column {
+            ColumnRef::Position(p) => p.checked_sub(1).filter(|&i| i < columns.len()).ok_or_else(|| {
+                error(Note::new("ingest.no_column_at").with("position", *p))
+                    .hint(Note::new("ingest.hint.columns_to").with("count", columns.len()))
+            })?,
+            ColumnRef::Name(name) => {
+                let found: Vec<usize> =
+                    (0..columns.len()).filter(|&i| columns.get(i).is_some_and(|c| c.name == *name)).collect();
+                match found.as_slice() {
+                    [one] => *one,
+                    [] => {
+                        let near = columns
+                            .iter()
+                            .map(|c| (strsim::damerau_levenshtein(&c.name, name), &c.name))
+                            .min()
+                            .filter(|(distance, c)| *distance <= 1 + c.chars().count() / 3);
+                        let hint = match near {
+                            Some((_, near)) => {
+                                Note::new("ingest.hint.did_you_mean").with("name", near.as_str())
+                            }
+                            None => {
+                                let names: Vec<&str> =
+                                    columns.iter().take(30).map(|c| c.name.as_str()).collect();
+                                Note::new("ingest.hint.the_file_has").with("names", names.join(", "))
+                            }
+                        };
+                        return Err(
+                            error(Note::new("ingest.no_column_named").with("name", name.as_str())).hint(hint)
+                        );
+                    }
+                    several => {
+                        let places: Vec<String> = several.iter().map(|i| (i + 1).to_string()).collect();
+                        return Err(error(
+                            Note::new("ingest.name_twice")
+                                .with("name", name.as_str())
+                                .with("count", several.len())
+                                .with("places", places.join(", ")),
+                        )
+                        .hint("ingest.hint.give_position"));
+                    }
+                }
+            }
+        };
+        match columns.get(index) {
+            Some(c) if !c.numeric => Err(error(
+                Note::new("ingest.column_no_numbers")
+                    .with("name", c.name.as_str())
+                    .with("storage", c.storage.as_str()),
+            )),
+            _ => Ok(index),
+        }
+    }
+
+    /// Reads wanted columns (positions from 0; one may be wanted twice) in blocks, in order. `None` when the consumer
+    /// stopped the reading.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being read to its end; [`IngestErrorKind::NotNumeric`] when more than half of the
+    /// first 1000 fields of a wanted column are no numbers.
+    pub fn read(
+        &self,
+        wanted: &[usize],
+        on_block: &mut OnBlock<'_>,
+    ) -> Result<Option<FileFacts>, IngestError> {
+        self.read_parts(wanted, on_block, &mut |_, _| {})
+    }
+
+    /// As [`Source::read`]; tells what each file of a recording of several was, once it is read.
+    ///
+    /// # Errors
+    /// As [`Source::read`], for each of the files.
+    pub fn read_parts(
+        &self,
+        wanted: &[usize],
+        on_block: &mut OnBlock<'_>,
+        on_part: &mut dyn FnMut(usize, PartFacts),
+    ) -> Result<Option<FileFacts>, IngestError> {
+        if !self.parts.is_empty() {
+            return joined::read(&self.parts, wanted, on_block, on_part);
+        }
+        let mut unique: Vec<usize> = Vec::new();
+        for &w in wanted {
+            if !unique.contains(&w) {
+                unique.push(w);
+            }
+        }
+        let slots: Vec<usize> = wanted.iter().filter_map(|w| unique.iter().position(|u| u == w)).collect();
+        let mut guard = reduce::FirstRows::new(unique.len());
+        let mut refusal = None;
+        let facts = self.opened.table.read(&unique, &mut |block| {
+            if let Some(fault) = guard.judge(block) {
+                refusal = Some(fault);
+                return ControlFlow::Break(());
+            }
+            reduce::spread(block, &slots);
+            let flow = on_block(block);
+            reduce::gather(block, unique.len());
+            flow
+        });
+        // A file that was still being written is not a damaged one.
+        let facts = match (facts, &self.identity) {
+            (Err(e), Some(identity)) => return Err(identity.still_at(&self.path).err().unwrap_or(e)),
+            (facts, _) => facts?,
+        };
+        if let Some(fault) = refusal.or_else(|| guard.judge_short()) {
+            return Err(reduce::not_numeric(&self.path, &fault, &unique, self.columns()));
+        }
+        if let Some(facts) = &facts {
+            compressed::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;
+            self.identity.as_ref().map_or(Ok(()), |identity| identity.still_at(&self.path))?;
+        }
+        if facts.as_ref().is_some_and(|f| f.rows == 0) {
+            return Err(IngestError::new(IngestErrorKind::Empty, &self.path, "ingest.no_rows")
+                .hint("ingest.hint.check_written"));
+        }
+        Ok(facts)
+    }
+}

@@ -1,0 +1,17 @@
+//! A recording against the model of its family.
+
+use super::Message;
+use super::explanation::Explanation;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// A recording against the model of its family.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ExplainedRecord {
+    /// The model.
+    pub model: String,
+    /// What came of it.
+    pub explanation: Option<Explanation>,
+    /// Why nothing came of it.
+    pub error: Option<Message>,
+}
