@@ -7,7 +7,7 @@ use sagnac::mismatch::figures::{Course, time_course};
 use sagnac::mismatch::finding::Explanation;
 use sagnac::report::Renderer;
 use sagnac::report::explain::{Context, ExplainView};
-use sagnac::text::{Lang, table};
+use sagnac::text::{Bilingual, Lang, table};
 use std::collections::BTreeSet;
 
 fn context() -> Context {
