@@ -37,7 +37,10 @@ offset = 13
 
 fuzz_target!(|data: &[u8]| {
     sagnac_fuzz::with_file("layout.toml", LAYOUT.as_bytes(), |layout| {
-        let options = ReadOptions { layout: Some(layout.to_owned()), ..ReadOptions::default() };
+        let options = ReadOptions {
+            layout: Some(sagnac::ingest::raw::LayoutFile::at(layout.to_owned())),
+            ..ReadOptions::default()
+        };
         sagnac_fuzz::with_file("r.bin", data, |path| sagnac_fuzz::read_all(path, &options, data.len()));
     });
 });

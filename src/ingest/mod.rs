@@ -8,5 +8,5 @@ pub(crate) mod reading;
 pub(crate) mod reading_tables;
 mod recording;
 
-pub use recording::{Recording, RecordingError, each_of, files_read, open_files, open_recording};
+pub use recording::{Recording, RecordingError, each_of, files_read, open_files, open_recording, open_with};
 pub use sagnac_ingest::*;

@@ -4,7 +4,7 @@ use super::joined::{self, PartSpec};
 use super::manifest::{self, Manifest};
 use super::raw::{layout, refused};
 use super::{IngestError, IngestErrorKind};
-use super::{ReadOptions, Source, open_with};
+use super::{ReadOptions, Source};
 use crate::keyed::diagnostics::Problems;
 use crate::text::{Lang, Localize, Note};
 use std::fmt;
@@ -115,6 +115,14 @@ fn with_layout(options: &ReadOptions) -> Result<ReadOptions, IngestError> {
         file.layout = Some(Arc::new(read));
     }
     Ok(options)
+}
+
+/// Opens one file by options whose layout need not be read yet.
+///
+/// # Errors
+/// [`IngestError`] of the layout or the file.
+pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestError> {
+    sagnac_ingest::open_with(path, &with_layout(options)?)
 }
 
 /// Opens files of a manifest as one recording, each with the phase given for it.

@@ -4,6 +4,7 @@ use crate::binary_files::{columns, rate, read, read_error, temperature};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sagnac::ingest::ReadOptions;
+use sagnac::ingest::raw::LayoutFile;
 use std::path::Path;
 use tempfile::tempdir;
 
@@ -59,7 +60,7 @@ unit = "degC"
 fn with_layout(dir: &Path, layout: &str) -> ReadOptions {
     let path = dir.join("layout.toml");
     std::fs::write(&path, layout).unwrap();
-    ReadOptions { layout: Some(path), ..ReadOptions::default() }
+    ReadOptions { layout: Some(LayoutFile::at(path)), ..ReadOptions::default() }
 }
 
 #[test]
@@ -113,7 +114,8 @@ fn a_layout_that_does_not_fit_is_refused() {
         let error = read_error(&path, &options).to_string();
         assert!(error.contains(says), "{error}");
     }
-    let options = ReadOptions { layout: Some(dir.path().join("none.toml")), ..ReadOptions::default() };
+    let options =
+        ReadOptions { layout: Some(LayoutFile::at(dir.path().join("none.toml"))), ..ReadOptions::default() };
     assert!(read_error(&path, &options).to_string().contains("the layout cannot be read"));
 }
 

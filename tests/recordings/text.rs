@@ -6,6 +6,7 @@ use assert_cmd::Command;
 use sagnac::ingest::{Encoding, StampWriting};
 use sagnac::procedure::parse_procedure;
 use sagnac::recording::ColumnRef;
+use sagnac::text::{Lang, Localize};
 use tempfile::tempdir;
 
 const PROCEDURE: &str = r#"format = "procedure/1"
@@ -57,7 +58,7 @@ fn a_procedure_fixes_every_decision() {
     let binary =
         PROCEDURE.replace("comment = \"!\"", "part = \"/imu\"\nlayout = \"l.toml\"\nformat = \"csv\"");
     let read = parse_procedure("folder/p.toml", binary.as_bytes()).unwrap().value.recording.read;
-    assert_eq!(read.layout.as_deref(), Some(std::path::Path::new("folder/l.toml")));
+    assert_eq!(read.layout.as_ref().map(|l| l.path.as_path()), Some(std::path::Path::new("folder/l.toml")));
     assert_eq!((read.part.as_deref(), read.format.as_deref()), (Some("/imu"), Some("csv")));
 }
 
@@ -75,7 +76,7 @@ fn wrong_decisions_are_pointed_at() {
     ] {
         let text = PROCEDURE.replacen(from, to, 1);
         let problems = parse_procedure("p.toml", text.as_bytes()).unwrap_err();
-        let found = problems.list.iter().find(|p| p.message.to_string().contains(message));
+        let found = problems.list.iter().find(|p| p.message.say(Lang::En).contains(message));
         assert_eq!(found.map(|p| p.token.as_str()), Some(token), "{problems}");
     }
 }
