@@ -1,6 +1,9 @@
 //! Speed of the parts of a run on a million samples: `cargo bench --bench throughput`. Nothing here passes or fails.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use sagnac::acceptance::record::UnitUnderTest;
+use sagnac::acceptance::run::{Request, analysis, execute};
+use sagnac::config::procedure::EffectiveLimits;
 use sagnac::ingest::{Source, open};
 use sagnac::noise::allan::{AllanAccumulator, AllanPlan};
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
@@ -8,10 +11,7 @@ use sagnac::noise::family::Estimator;
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::simulate::{Setup, Simulator};
 use sagnac::noise::tau_grid::TauGrid;
-use sagnac::procedure::EffectiveLimits;
-use sagnac::record::UnitUnderTest;
 use sagnac::recording::{Channel, ColumnRef, Role};
-use sagnac::run::{Request, analysis, execute};
 use sagnac::units::Unit;
 use std::fmt::Write;
 use std::ops::ControlFlow;

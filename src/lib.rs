@@ -7,21 +7,16 @@
 //! crate is the harness around them: configuration, acceptance, records, reports, the command line.
 #![forbid(unsafe_code)]
 
-pub mod claim;
+pub mod acceptance;
 pub mod cli;
-pub mod compare;
-pub mod condition;
+pub mod config;
+pub mod i18n;
 pub mod ingest;
-pub mod keyed;
 pub mod output;
-pub mod procedure;
-pub mod record;
 pub mod report;
-pub mod run;
 pub mod selftest;
 pub mod series;
 pub mod simulate;
-pub mod text;
 
 pub use sagnac_core::{
     effect, estimate, figure, ids, influence, measurand, mismatch, noise, numeric, rate_table, temperature,

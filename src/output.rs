@@ -15,7 +15,7 @@ pub use csv::quoted;
 pub use file::StagedFile;
 pub use partial::abandon_all;
 
-use crate::text::{Arg, Lang, Localize, Note, io_reason};
+use crate::i18n::{Arg, Lang, Localize, Note, io_reason};
 use earlier::Earlier;
 use partial::Partial;
 use schemars::JsonSchema;

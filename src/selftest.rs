@@ -1,6 +1,7 @@
 //! Published oracles re-run on this machine: what a QA auditor files with the report.
 
 use crate::estimate::{Spread, chi_square_quantile, normal_quantile};
+use crate::i18n::{Lang, Localize, Note, decimal};
 use crate::noise::allan::{AllanAccumulator, AllanPlan};
 use crate::noise::data::NoiseType;
 use crate::noise::family::Estimator;
@@ -8,7 +9,6 @@ use crate::noise::model::{NoiseModel, unit_allan_variance};
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::noise::tau_grid::TauGrid;
 use crate::noise::windows::edf_of_window_std;
-use crate::text::{Lang, Localize, Note, decimal};
 use crate::units::Unit;
 
 /// One oracle.
@@ -213,6 +213,6 @@ mod tests {
     fn every_oracle_is_met() {
         let result = super::run();
         assert!(result.checks.len() > 30);
-        assert!(result.passed(), "{}", result.text(crate::text::Lang::En));
+        assert!(result.passed(), "{}", result.text(crate::i18n::Lang::En));
     }
 }

@@ -4,7 +4,7 @@
 
 mod support;
 
-use sagnac::text::steers;
+use sagnac::i18n::steers;
 use std::path::Path;
 use support::synthetic::row;
 use support::{Said, altered, procedure, sagnac, shipped};

@@ -6,7 +6,8 @@ use sagnac::ingest::ReadOptions;
 
 fuzz_target!(|data: &[u8]| {
     sagnac_fuzz::with_file("r.bin", data, |path| {
-        let _ = sagnac::run::inspect::inspect(path, Some(10.0), sagnac::text::Lang::Ru, &mut |_, _| {});
+        let _ =
+            sagnac::acceptance::inspect::inspect(path, Some(10.0), sagnac::i18n::Lang::Ru, &mut |_, _| {});
         for format in sagnac::ingest::FORMATS {
             let options = ReadOptions { format: Some(format.id().to_owned()), ..ReadOptions::default() };
             sagnac_fuzz::read_all(path, &options, data.len());

@@ -6,7 +6,7 @@ use std::path::Path;
 
 fuzz_target!(|data: &[u8]| {
     sagnac_fuzz::file_of_keys(data, |bytes| {
-        sagnac::ingest::manifest::parse(
+        sagnac::config::manifest::parse(
             Path::new("manifest.toml"),
             "manifest.toml",
             bytes,

@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use sagnac::i18n::Lang;
 use sagnac::report::{Renderer, render_html};
-use sagnac::text::Lang;
 
 fuzz_target!(|text: &str| {
     let Ok(folder) = tempfile::tempdir() else { return };

@@ -1,13 +1,13 @@
 //! What the fuzz targets share: files made of the input, an eye on memory, an analysis in memory.
 
 use peak_alloc::PeakAlloc;
+use sagnac::acceptance::record::{RunRecord, UnitUnderTest};
+use sagnac::acceptance::run::{Outcome, Request, analysis, execute};
+use sagnac::config::procedure::EffectiveLimits;
 use sagnac::figure::Figure;
 use sagnac::ingest::{ReadOptions, Source, open, open_with};
-use sagnac::procedure::EffectiveLimits;
-use sagnac::record::{RunRecord, UnitUnderTest};
 use sagnac::recording::guess::guess;
 use sagnac::recording::{Channel, ColumnRef, Role};
-use sagnac::run::{Outcome, Request, analysis, execute};
 use sagnac::units::Unit;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -59,7 +59,10 @@ pub fn read_all(path: &Path, options: &ReadOptions, input: usize) {
 }
 
 /// Parses a file of keys; whatever it says must be sayable.
-pub fn file_of_keys<T>(bytes: &[u8], parse: impl Fn(&[u8]) -> Result<T, sagnac::procedure::Problems>) {
+pub fn file_of_keys<T>(
+    bytes: &[u8],
+    parse: impl Fn(&[u8]) -> Result<T, sagnac::config::procedure::Problems>,
+) {
     watched(bytes.len(), || {
         if let Err(problems) = parse(bytes) {
             assert!(!problems.list.is_empty());

@@ -2,14 +2,14 @@
 
 use super::inputs::Inputs;
 use super::{AnalyzeArgs, exit, place, run};
+use crate::acceptance::record::UnitUnderTest;
+use crate::acceptance::run::{Request, analysis};
+use crate::config::procedure::EffectiveLimits;
+use crate::config::procedure::model::Procedure;
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{Source, open_recording};
 use crate::output::Kind;
-use crate::procedure::EffectiveLimits;
-use crate::procedure::model::Procedure;
-use crate::record::UnitUnderTest;
 use crate::recording::{Channel, ColumnRef, Role};
-use crate::run::{Request, analysis};
-use crate::text::{Lang, Localize, Note};
 use crate::units::Unit;
 use chrono::Utc;
 use std::path::{Path, PathBuf};

@@ -1,12 +1,12 @@
 //! `sagnac check`: procedures and limits without data.
 
 use super::{CheckArgs, exit, place};
-use crate::keyed::diagnostics::Problem;
-use crate::procedure::check::{Checked, check, check_report_with};
-use crate::procedure::power::{questions, warnings};
-use crate::procedure::{LimitsFile, Loaded, effective};
-use crate::run::power::warning;
-use crate::text::Lang;
+use crate::acceptance::run::power::warning;
+use crate::config::diagnostics::Problem;
+use crate::config::procedure::check::{Checked, check, check_report_with};
+use crate::config::procedure::power::{questions, warnings};
+use crate::config::procedure::{LimitsFile, Loaded, effective};
+use crate::i18n::Lang;
 use std::path::Path;
 
 pub fn main(args: &CheckArgs, lang: Lang) -> u8 {

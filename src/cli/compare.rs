@@ -3,21 +3,21 @@
 use super::inputs::{self, Inputs};
 use super::progress::Progress;
 use super::{AnalyzeArgs, CompareArgs, GridArgs, analyze, exit, place, run};
-use crate::compare::published::checked;
-use crate::compare::{
+use crate::acceptance::compare::published::checked;
+use crate::acceptance::compare::{
     Comparison, Origin, Unit, csv, figures, not_compared, tell_apart, tell_repeated, units_of,
 };
+use crate::acceptance::record::UnitUnderTest;
+use crate::acceptance::run::{Request, analysis, execute};
+use crate::config::procedure::limits::LimitSpec;
+use crate::config::procedure::{EffectiveLimits, load_limits};
 use crate::figure::Figure;
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
-use crate::procedure::limits::LimitSpec;
-use crate::procedure::{EffectiveLimits, load_limits};
-use crate::record::UnitUnderTest;
 use crate::recording::Role;
 use crate::report::compare::{CompareView, table};
 use crate::report::{Renderer, svg};
-use crate::run::{Request, analysis, execute};
-use crate::text::{Lang, Localize, Note};
 use chrono::{DateTime, SecondsFormat, Utc};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -108,7 +108,7 @@ fn read(
             let bytes = std::fs::read(&file).map_err(|e| {
                 say(Note::new("compare.error.unreadable")
                     .with("path", file.display().to_string())
-                    .with("reason", crate::text::io_reason(&e)))
+                    .with("reason", crate::i18n::io_reason(&e)))
             })?;
             let value: Value = serde_json::from_slice(&bytes).map_err(|e| {
                 let key = if e.is_eof() { "compare.more.cut_short" } else { "compare.more.no_json" };

@@ -2,8 +2,8 @@
 
 use super::{EffectsArgs, exit, place};
 use crate::effect::{EFFECTS, Effect, Param, find};
+use crate::i18n::{Arg, Bilingual, Lang, Localize, Note, decimal};
 use crate::report::unit::pretty;
-use crate::text::{Arg, Bilingual, Lang, Localize, Note, decimal};
 use sagnac_core::spelling::nearest;
 use serde_json::{Value, json};
 

@@ -3,15 +3,15 @@
 use super::inputs::{self, Inputs};
 use super::progress::Progress;
 use super::{ExplainArgs, exit, place, run};
-use crate::claim::{self, Claim};
+use crate::config::model::{self, Claim};
 use crate::effect::{Column, EFFECTS, find};
+use crate::i18n::{Bilingual, Lang, Localize, Note};
 use crate::ingest::{ReadOptions, files_read};
 use crate::mismatch::{self, Options, Outcome};
 use crate::output::{Kind, StagedFolder};
 use crate::report::explain::{Context, ExplainView};
 use crate::report::{Renderer, svg};
 use crate::series::{Series, SeriesOptions, load_series};
-use crate::text::{Bilingual, Lang, Localize, Note};
 use chrono::{SecondsFormat, Utc};
 use sagnac_core::spelling::nearest;
 use std::fmt::Write;
@@ -32,7 +32,7 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let options = options(args).map_err(say)?;
     let renderer = run::renderer(args.templates.as_deref(), lang)?;
     // What is wrong with the model is said before a long recording is read.
-    let stated = args.model.as_deref().map(claim::load).transpose().map_err(|p| p.say(lang))?;
+    let stated = args.model.as_deref().map(model::load).transpose().map_err(|p| p.say(lang))?;
     let now = Utc::now();
     let name = args.recording.first().map(|p| stem(p));
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("explain", name.as_deref(), now));
@@ -185,7 +185,7 @@ pub(super) fn write(
 }
 
 fn augmented(claim: &Claim) -> String {
-    claim::write(claim)
+    model::write(claim)
 }
 
 /// `correction.csv`: the shortest digits from which time and correction come back to the bit.

@@ -5,7 +5,7 @@
 //! `sagnac` for the program itself and `help.common` for what every verb has. The English entries repeat the texts of the
 //! command; the tests hold the two together.
 
-use crate::text::{Lang, Localize, Note, lookup};
+use crate::i18n::{Lang, Localize, Note, lookup};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, Error};
 use std::ffi::OsString;

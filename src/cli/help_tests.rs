@@ -46,7 +46,7 @@ fn the_english_entries_are_the_texts_of_the_command() {
 #[test]
 fn every_entry_of_the_tables_belongs_to_the_command() {
     let commands = all(Lang::En);
-    for key in crate::text::table(Lang::En).keys().filter_map(|k| k.strip_prefix("help.")) {
+    for key in crate::i18n::table(Lang::En).keys().filter_map(|k| k.strip_prefix("help.")) {
         let Some((path, rest)) = key.split_once('.') else { panic!("{key}") };
         if matches!(path, "common" | "error" | "value_name") {
             continue;

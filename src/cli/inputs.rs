@@ -1,9 +1,9 @@
 //! What a result is made from, so that it takes the place of none made from something else.
 
 use super::place;
+use crate::i18n::{Lang, Localize};
 use crate::ingest::{ReadOptions, files_read};
 use crate::output::{Kind, Order, StagedFolder};
-use crate::text::{Lang, Localize};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Debug;

@@ -2,9 +2,9 @@
 
 use super::progress::Progress;
 use super::{InspectArgs, exit, place};
+use crate::acceptance::inspect::inspect_source;
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::open_recording;
-use crate::run::inspect::inspect_source;
-use crate::text::{Lang, Localize, Note};
 
 pub fn main(args: &InspectArgs, lang: Lang) -> u8 {
     let mut progress = Progress::new();

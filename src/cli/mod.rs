@@ -17,7 +17,7 @@ mod schema;
 mod selftest;
 mod simulate;
 
-use crate::text::visible;
+use crate::i18n::visible;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! Where results go, and how text reaches the user.
 
-use crate::text::{Lang, Localize, Note, visible, visible_lines};
+use crate::i18n::{Lang, Localize, Note, visible, visible_lines};
 use chrono::{DateTime, Utc};
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! Progress on stderr, when it is a terminal and the work takes more than about a second.
 
-use crate::text::visible;
+use crate::i18n::visible;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 

@@ -4,18 +4,18 @@ use super::inputs::{self, Inputs};
 use super::progress::Progress;
 use super::run::{code, grid, renderer, serial, summary, write_results};
 use super::{RunArgs, place};
+use crate::acceptance::record::{RunRecord, UnitUnderTest};
+use crate::acceptance::run::phases::{Done, combine, failure, figures, folder};
+use crate::acceptance::run::{Outcome, Request, execute, failed, session};
+use crate::config::manifest::{self, Manifest, ManifestFile, is_manifest};
+use crate::config::procedure::effective;
+use crate::config::procedure::phases::{Phase, Phased, load_phased};
 use crate::figure::Figure;
-use crate::ingest::manifest::{self, Manifest, ManifestFile, is_manifest};
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{ReadOptions, Source, open_files};
 use crate::output::{Kind, StagedFolder};
-use crate::procedure::effective;
-use crate::procedure::phases::{Phase, Phased, load_phased};
-use crate::record::{RunRecord, UnitUnderTest};
 use crate::report::view::PhasePart;
 use crate::report::{Renderer, render_phases, svg};
-use crate::run::phases::{Done, combine, failure, figures, folder};
-use crate::run::{Outcome, Request, execute, failed, session};
-use crate::text::{Lang, Localize, Note};
 use chrono::Utc;
 use std::path::PathBuf;
 
@@ -135,7 +135,7 @@ fn evaluate(request: &Request<'_>, phase: &Phase, lang: Lang) -> Outcome {
     outcome.unwrap_or_else(|e| nothing(request, &e))
 }
 
-fn nothing(request: &Request<'_>, error: &crate::run::RunError) -> Outcome {
+fn nothing(request: &Request<'_>, error: &crate::acceptance::run::RunError) -> Outcome {
     Outcome { record: failed(request, error), figures: vec![], tables: vec![] }
 }
 

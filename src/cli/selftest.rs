@@ -1,7 +1,7 @@
 //! `sagnac selftest`: published oracles re-run on this machine.
 
 use super::{exit, place};
-use crate::text::Lang;
+use crate::i18n::Lang;
 
 pub fn main(lang: Lang) -> u8 {
     let report = crate::selftest::run();

@@ -2,13 +2,13 @@
 
 use super::progress::Progress;
 use super::{SimulateArgs, exit, place};
-use crate::claim::{ModelFile, load_model};
+use crate::config::model::{ModelFile, load_model};
+use crate::config::quantity;
+use crate::i18n::{Arg, Lang, Localize, Note};
 use crate::ingest::{ReadOptions, files_read};
-use crate::keyed::quantity;
 use crate::output::StagedFile;
 use crate::series::{Series, SeriesOptions, load_series};
 use crate::simulate::{Format, Order, Over, Simulation, Written, write};
-use crate::text::{Arg, Lang, Localize, Note};
 use std::path::{Path, PathBuf};
 
 /// Seed where neither the command line nor the model says one.

@@ -1,12 +1,13 @@
 //! From what a user names to one recording: a file, several files, a pattern, a manifest.
 
 use super::joined::{self, PartSpec};
-use super::manifest::{self, Manifest};
-use super::raw::{layout, refused};
 use super::{IngestError, IngestErrorKind};
 use super::{ReadOptions, Source};
-use crate::keyed::diagnostics::Problems;
-use crate::text::{Lang, Localize, Note};
+use crate::config::diagnostics::Problems;
+use crate::config::layout::{layout, refused};
+use crate::config::manifest::{self, Manifest};
+use crate::i18n::{Lang, Localize, Note};
+use sagnac_ingest::pattern;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -90,7 +91,7 @@ pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Record
     let options = &with_layout(options)?;
     let mut files = Vec::new();
     for path in named {
-        match pattern(path) {
+        match pattern_of(path) {
             Some(pattern) => files.extend(expand(path, &pattern)?),
             None => files.push(path.clone()),
         }
@@ -172,14 +173,14 @@ pub fn files_read(named: &[PathBuf], options: &ReadOptions) -> Vec<PathBuf> {
 /// # Errors
 /// [`IngestError`] of a pattern that is wrong or names nothing.
 pub fn each_of(path: &Path) -> Result<Vec<PathBuf>, IngestError> {
-    match pattern(path) {
+    match pattern_of(path) {
         Some(pattern) => expand(path, &pattern),
         None => Ok(vec![path.to_owned()]),
     }
 }
 
 /// The text of a path that is a pattern and no file.
-fn pattern(path: &Path) -> Option<String> {
+fn pattern_of(path: &Path) -> Option<String> {
     let text = path.to_str()?;
     (text.contains(['*', '?', '[']) && !path.exists()).then(|| text.to_owned())
 }
@@ -188,7 +189,7 @@ fn pattern(path: &Path) -> Option<String> {
 fn expand(path: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
     let error = |note: Note| IngestError::new(IngestErrorKind::Io, path, note);
     let most = joined::MOST_FILES;
-    let mut files = super::pattern::files(Path::new(""), pattern, most)
+    let mut files = pattern::files(Path::new(""), pattern, most)
         .map_err(|e| error(e.note("ingest.joined.bad_pattern", "ingest.joined.wide_pattern")))?;
     if files.len() > most {
         let note = Note::new("ingest.joined.too_many").with("count", files.len()).with("most", most);
@@ -197,39 +198,6 @@ fn expand(path: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
     if files.is_empty() {
         return Err(error(Note::new("ingest.joined.no_match")).hint("ingest.joined.hint.quote_pattern"));
     }
-    files.sort_by_cached_key(|f| natural(&f.to_string_lossy()));
+    files.sort_by_cached_key(|f| pattern::natural(&f.to_string_lossy()));
     Ok(files)
-}
-
-/// A key that sorts numbers in names by their value.
-pub(super) fn natural(name: &str) -> Vec<(String, u128, String)> {
-    let mut key = Vec::new();
-    // Without what follows the first dot of the name, so that part.csv comes before part1.csv.
-    let file = name.rfind('/').map_or(0, |slash| slash + 1);
-    let dot = name.get(file..).and_then(|n| n.find('.')).map_or(name.len(), |dot| file + dot);
-    let (mut rest, extension) = name.split_at(dot);
-    while !rest.is_empty() {
-        let words = rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len());
-        let (word, after) = rest.split_at(words);
-        let length = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
-        let (digits, after) = after.split_at(length);
-        // Numbers of more than 38 digits sort as text.
-        let value = digits.parse().unwrap_or(if digits.is_empty() { 0 } else { u128::MAX });
-        key.push((word.to_owned(), value, digits.to_owned()));
-        rest = after;
-    }
-    key.push((extension.to_owned(), 0, String::new()));
-    key
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_in_names_sort_by_value() {
-        let mut names = ["part10.csv", "part2.csv", "part1.csv", "part02.csv", "a.csv", "part.csv"];
-        names.sort_by_cached_key(|n| natural(n));
-        assert_eq!(names, ["a.csv", "part.csv", "part1.csv", "part02.csv", "part2.csv", "part10.csv"]);
-    }
 }

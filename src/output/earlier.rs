@@ -1,7 +1,7 @@
 //! What stands where a result is to go.
 
 use super::{Kind, OutputError, io};
-use crate::text::{Arg, Note};
+use crate::i18n::{Arg, Note};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};

@@ -2,7 +2,7 @@
 
 use super::partial::{self, Partial};
 use super::{OutputError, io, outside_file, parent};
-use crate::text::Note;
+use crate::i18n::Note;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};

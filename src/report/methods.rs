@@ -1,7 +1,7 @@
 //! The methods appendix: every formula a report rests on, with its source. Words are in the locale tables under
 //! `methods.<id>`; formulas are the same in every language.
 
-use crate::record::RunRecord;
+use crate::acceptance::record::RunRecord;
 
 /// One entry of the appendix.
 #[derive(Debug, Clone, Copy)]
@@ -260,7 +260,7 @@ pub fn applicable(record: &RunRecord) -> impl Iterator<Item = &'static Method> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::{Lang, lookup};
+    use crate::i18n::{Lang, lookup};
 
     #[test]
     fn every_method_has_its_words() {

@@ -16,7 +16,7 @@ pub mod view;
 pub use render::{Renderer, ReportError, render_html, render_markdown, render_phases};
 
 use crate::figure::Figure;
-use crate::text::Lang;
+use crate::i18n::Lang;
 use std::path::Path;
 
 /// Writes every figure as `<id>.svg` into a folder, which must exist.

@@ -1,7 +1,7 @@
 //! Numbers as a report shows them: rounded by their uncertainty, with a true minus sign and powers of ten, in the
 //! decimal mark of the language. Values are rounded for the eye only; decisions were made on the unrounded ones.
 
-use crate::text::{Lang, lookup, significant};
+use crate::i18n::{Lang, lookup, significant};
 
 /// Shown where there is nothing to show.
 pub const NOTHING: &str = "–";

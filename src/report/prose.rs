@@ -1,7 +1,7 @@
 //! Sentences in the kind of file they stand in: names between backticks become code.
 
 use super::svg;
-use crate::text::{steers, visible};
+use crate::i18n::{steers, visible};
 use minijinja::value::Value;
 use minijinja::{AutoEscape, State};
 

@@ -3,9 +3,9 @@
 use super::number;
 use super::prose::{self, prose};
 use super::view::{PhasePart, View, Words};
+use crate::acceptance::record::RunRecord;
 use crate::figure::Figure;
-use crate::record::RunRecord;
-use crate::text::{Lang, Localize, Note, io_reason, lookup, table};
+use crate::i18n::{Lang, Localize, Note, io_reason, lookup, table};
 use minijinja::value::{Kwargs, Serde, Value};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use std::collections::BTreeMap;
@@ -335,7 +335,7 @@ fn say(note: &Value, words: Words) -> String {
         return part("text").map_or(id, |v| v.to_string());
     };
     let args = part("args");
-    crate::text::fill(pattern, |name| {
+    crate::i18n::fill(pattern, |name| {
         let value = args.as_ref()?.get_attr(name).ok().filter(|v| !v.is_undefined())?;
         Some(match (value.is_integer(), f64::try_from(value.clone())) {
             (true, _) => u64::try_from(value.clone())

@@ -1,6 +1,6 @@
 //! Units as a report shows them: `deg/sqrt(h)` as `°/√h`, each symbol through the locale table.
 
-use crate::text::{Lang, lookup};
+use crate::i18n::{Lang, lookup};
 
 /// A unit text in print. A symbol that the table lacks shows as it is.
 pub fn pretty(unit: &str, lang: Lang) -> String {

@@ -2,9 +2,9 @@
 
 use super::{ReadFrom, SeriesError, SeriesOptions};
 use crate::effect::Column;
+use crate::i18n::Note;
 use crate::ingest::Source;
 use crate::recording::{Channel, ColumnRef, Role};
-use crate::text::Note;
 use crate::units::Unit;
 
 /// The channels that are read, and what each is.

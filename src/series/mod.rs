@@ -8,9 +8,9 @@ mod collect;
 pub use collect::load_series;
 pub use sagnac_core::series::{Faults, ReadFrom, Series, smooth};
 
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{IngestError, ReadOptions, RecordingError};
 use crate::recording::Channel;
-use crate::text::{Lang, Localize, Note};
 
 /// What the user decides about a recording; the rest is found from it.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::claim::{Claim, parse};
+use crate::config::model::{Claim, parse};
 use crate::effect::Column;
 use crate::noise::data::NoiseType;
 use crate::noise::model::{NoiseModel, unit_allan_variance};
@@ -11,7 +11,7 @@ fn claim(rest: &str) -> Claim {
     model(rest).claim
 }
 
-fn model(rest: &str) -> crate::claim::ModelFile {
+fn model(rest: &str) -> crate::config::model::ModelFile {
     let text = format!("[recording]\nsample_rate_hz = 1\n{rest}");
     parse("test", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"))
 }

@@ -2,8 +2,8 @@
 
 use super::{Rows, SimulateError, Simulation};
 use crate::effect::Column;
+use crate::i18n::Note;
 use crate::output::{OutputError, StagedFile};
-use crate::text::Note;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::data_type::DoubleType;
 use parquet::errors::ParquetError;

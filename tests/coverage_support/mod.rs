@@ -1,6 +1,10 @@
 //! Records with known truth through whole runs.
 
 use realfft::RealFftPlanner;
+use sagnac::acceptance::record::{MeasurandRecord, RunRecord, UnitUnderTest};
+use sagnac::acceptance::run::{Request, analysis, execute};
+use sagnac::config::procedure::EffectiveLimits;
+use sagnac::config::procedure::limits::LimitSpec;
 use sagnac::estimate::{Limit, Rule, Verdict};
 use sagnac::ingest::Source;
 use sagnac::measurand::ids;
@@ -8,11 +12,7 @@ use sagnac::noise::model::NoiseModel;
 use sagnac::noise::russian::predict;
 use sagnac::noise::simulate::{Setup, Simulator};
 use sagnac::noise::static_bias::BiasUncertainty;
-use sagnac::procedure::EffectiveLimits;
-use sagnac::procedure::limits::LimitSpec;
-use sagnac::record::{MeasurandRecord, RunRecord, UnitUnderTest};
 use sagnac::recording::{Channel, ColumnRef, Role};
-use sagnac::run::{Request, analysis, execute};
 use sagnac::units::Unit;
 use std::f64::consts::PI;
 

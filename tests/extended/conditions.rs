@@ -5,7 +5,7 @@ use crate::exact::arithmetic::X;
 use crate::exact::reference as slow;
 use crate::exact::worst::Worst;
 use crate::support::synthetic::white;
-use sagnac::condition::temperature_track::TemperatureTrack;
+use sagnac::acceptance::condition::temperature_track::TemperatureTrack;
 use sagnac::noise::allan::{AllanAccumulator, AllanPlan};
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
 use sagnac::noise::family::Estimator;

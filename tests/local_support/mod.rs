@@ -6,7 +6,7 @@ pub mod inject;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sagnac::claim::{Claim, Uncertainty};
+use sagnac::config::model::{Claim, Uncertainty};
 use sagnac::effect::{ClaimedMean, Column};
 use sagnac::mismatch::candidates::Tried;
 use sagnac::mismatch::problem::Problem;

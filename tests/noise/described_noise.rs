@@ -1,7 +1,9 @@
 //! A description with Markov noise, quasi-periodic disturbances and lines through measurands and figures.
 
+use sagnac::acceptance::run::figures::{allan_family, autocorrelation, residual, sigma_tau, spectrum};
 use sagnac::estimate::{Estimate, Spread};
 use sagnac::figure::{Figure, Layer, Style};
+use sagnac::i18n::{Lang, Localize};
 use sagnac::measurand::{GyroEvidence, Options, evaluate};
 use sagnac::noise::composite::{Composite, Damped, Described, Line, Parameter, Sampling};
 use sagnac::noise::data::NoiseType;
@@ -15,8 +17,6 @@ use sagnac::noise::motion::Motion;
 use sagnac::noise::residual::GoodnessOfFit;
 use sagnac::noise::simulate::{Setup, Simulator};
 use sagnac::noise::spectral_record::SpectralRecord;
-use sagnac::run::figures::{allan_family, autocorrelation, residual, sigma_tau, spectrum};
-use sagnac::text::{Lang, Localize};
 
 fn truth() -> Composite {
     Composite {

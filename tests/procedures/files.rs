@@ -1,17 +1,19 @@
 //! The shipped procedures and limits, the schema, the guide.
 
-use sagnac::claim::tables::MODEL_FILE;
+use sagnac::config::model::tables::MODEL_FILE;
+use sagnac::config::procedure::check::{check, check_report};
+use sagnac::config::procedure::model::{Allowance, EarthRate, Taus};
+use sagnac::config::procedure::spec::{Kind, Need, TableSpec};
+use sagnac::config::procedure::tables::PROCEDURE_FILE;
+use sagnac::config::procedure::tables_limits::LIMITS_FILE;
+use sagnac::config::procedure::tables_phases::PHASES_FILE;
+use sagnac::config::procedure::{
+    effective, guide, load, load_limits, parse_limits, parse_procedure, power, schema,
+};
 use sagnac::estimate::Rule;
+use sagnac::i18n::{Lang, Localize};
 use sagnac::measurand::ids::Test;
-use sagnac::procedure::check::{check, check_report};
-use sagnac::procedure::model::{Allowance, EarthRate, Taus};
-use sagnac::procedure::spec::{Kind, Need, TableSpec};
-use sagnac::procedure::tables::PROCEDURE_FILE;
-use sagnac::procedure::tables_limits::LIMITS_FILE;
-use sagnac::procedure::tables_phases::PHASES_FILE;
-use sagnac::procedure::{effective, guide, load, load_limits, parse_limits, parse_procedure, power, schema};
 use sagnac::recording::{ColumnRef, Role};
-use sagnac::text::{Lang, Localize};
 use std::path::{Path, PathBuf};
 
 fn shipped(path: &str) -> PathBuf {
@@ -194,7 +196,7 @@ fn counts_rails_and_reversed_axes_arrive_ready_for_reading() {
 #[test]
 fn a_limits_file_goes_over_the_limits_of_the_procedure() {
     let procedure = parse_procedure("p", PROCEDURE.as_bytes()).unwrap();
-    let max = |limits: &sagnac::procedure::EffectiveLimits, id: &str, channel: &str| {
+    let max = |limits: &sagnac::config::procedure::EffectiveLimits, id: &str, channel: &str| {
         limits.limit(id, channel).and_then(|l| l.limit.max)
     };
     let own = effective(&procedure, None);
@@ -237,7 +239,7 @@ fn power_is_asked_of_each_limit_on_the_channels_it_judges() {
     assert_eq!(warned[0].line, PROCEDURE.lines().position(|l| l.contains("1 deg/h/sqrt(h)")).unwrap() - 1);
 }
 
-fn keys(root: &'static TableSpec) -> Vec<(String, &'static sagnac::procedure::spec::KeySpec)> {
+fn keys(root: &'static TableSpec) -> Vec<(String, &'static sagnac::config::procedure::spec::KeySpec)> {
     root.walk()
         .into_iter()
         .flat_map(|t| t.keys.iter().map(|k| (format!("{}.{}", t.name, k.name), k)))
@@ -304,7 +306,7 @@ fn every_example_is_accepted_by_its_own_key() {
     parse_limits("examples", text.as_bytes()).unwrap();
     let mut text = String::new();
     written_out(&MODEL_FILE, &mut text);
-    if let Err(problems) = sagnac::claim::parse("examples", text.as_bytes()) {
+    if let Err(problems) = sagnac::config::model::parse("examples", text.as_bytes()) {
         for p in &problems.list {
             // Of the example of a kind, its parameters are no example of their own.
             assert!(p.token == "\"line\"" || p.token == "line", "{p}");
@@ -428,10 +430,10 @@ fn the_files_shown_in_the_guide_are_sound() {
     assert!(procedure.warnings.is_empty());
     let limits = parse_limits("limits.md", page("limits.md").as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(limits.value.set.limits.len(), 4);
-    let layout = sagnac::ingest::raw::layout::parse("layout.md", page("layout.md").as_bytes());
+    let layout = sagnac::config::layout::layout::parse("layout.md", page("layout.md").as_bytes());
     let layout = layout.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((layout.record_bytes, layout.names().count()), (32, 11));
-    let model =
-        sagnac::claim::parse("model.md", page("model.md").as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let model = sagnac::config::model::parse("model.md", page("model.md").as_bytes())
+        .unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((model.claim.effects.len(), model.drivers.len()), (1, 1));
 }

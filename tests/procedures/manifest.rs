@@ -3,7 +3,7 @@
 use crate::support;
 use crate::support::synthetic::white;
 use crate::support::{corpus, result, root, sagnac};
-use sagnac::ingest::manifest;
+use sagnac::config::manifest;
 use sagnac::ingest::{ReadOptions, open_recording};
 use serde_json::Value;
 use std::path::Path;
@@ -242,7 +242,7 @@ fn the_guide_of_manifests_is_that_of_their_tables() {
     let text = std::fs::read_to_string(&path).unwrap();
     let (begin, end) = ("<!-- keys -->\n", "<!-- /keys -->");
     let (from, to) = (text.find(begin).unwrap() + begin.len(), text.find(end).unwrap());
-    let reference = sagnac::procedure::guide::manifest_reference();
+    let reference = sagnac::config::procedure::guide::manifest_reference();
     if std::env::var_os("SAGNAC_WRITE_GUIDE").is_some() {
         std::fs::write(&path, format!("{}{reference}{}", &text[..from], &text[to..])).unwrap();
         return;

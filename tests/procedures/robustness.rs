@@ -1,8 +1,8 @@
 //! What no procedure or limits file may do: panic, hang, or be refused without a reason.
 
 use proptest::prelude::*;
-use sagnac::procedure::tables::PROCEDURE_FILE;
-use sagnac::procedure::{load, parse_limits, parse_procedure};
+use sagnac::config::procedure::tables::PROCEDURE_FILE;
+use sagnac::config::procedure::{load, parse_limits, parse_procedure};
 use std::path::Path;
 
 const SHIPPED: &str = include_str!("../../procedures/static-bias.toml");

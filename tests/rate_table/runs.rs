@@ -197,8 +197,8 @@ fn the_inner_axis_of_a_misalignment_test_shows_mistakes_of_its_own() {
 
 #[test]
 fn twice_the_earth_rate_with_the_opposite_sign_is_no_bias() {
-    use sagnac::condition::table::{ChannelFact, TableFacts, judge};
-    use sagnac::record::ConditionStatus;
+    use sagnac::acceptance::condition::table::{ChannelFact, TableFacts, judge};
+    use sagnac::acceptance::record::ConditionStatus;
     let status = |bias: f64, limit: Option<f64>| {
         let channel = ChannelFact {
             channel: "z".into(),
@@ -251,7 +251,7 @@ fn a_recording_that_repeats_itself_is_invalid() {
 
 #[test]
 fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
-    use sagnac::condition::table::{ChannelFact, TableFacts, judge};
+    use sagnac::acceptance::condition::table::{ChannelFact, TableFacts, judge};
     let channel = |name: &str, factor: f64| ChannelFact {
         channel: name.into(),
         asked: name != "unasked",

@@ -5,7 +5,8 @@ use crate::support;
 fn told(file: &str) -> Option<String> {
     let (name, inner) = file.split_once('/').unwrap();
     let path = support::real::set(name)?.join(inner);
-    let text = sagnac::run::inspect::inspect(&path, None, sagnac::text::Lang::En, &mut |_, _| {}).unwrap();
+    let text =
+        sagnac::acceptance::inspect::inspect(&path, None, sagnac::i18n::Lang::En, &mut |_, _| {}).unwrap();
     Some(text.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 

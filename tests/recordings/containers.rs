@@ -2,9 +2,9 @@
 //! in closed form (tests/fixtures/containers/README.md).
 
 use crate::support::{sagnac, shipped};
+use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::{IngestError, IngestErrorKind, ReadOptions, Source, open_with};
 use sagnac::recording::guess::guess;
-use sagnac::text::{Lang, Localize};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use tempfile::tempdir;

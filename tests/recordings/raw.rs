@@ -73,9 +73,13 @@ fn raw_records_are_read_by_their_layout() {
     let sound = read(&path, &options).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(sound.columns, columns(&[|i| i as f64, |i| 5000.0 * i as f64, rate, temperature]));
     assert_eq!(sound.source.columns()[1].rollover_s, Some(4294.967296));
-    let seen =
-        sagnac::run::inspect::inspect_source(&sound.source, None, sagnac::text::Lang::En, &mut |_, _| {})
-            .unwrap();
+    let seen = sagnac::acceptance::inspect::inspect_source(
+        &sound.source,
+        None,
+        sagnac::i18n::Lang::En,
+        &mut |_, _| {},
+    )
+    .unwrap();
     assert!(seen.contains("200 Hz") && seen.contains("records of 32 bytes"), "{seen}");
 
     // Packed, and with a byte turned over, three bytes dropped, and the end cut off.

@@ -3,10 +3,10 @@
 use crate::support;
 use crate::support::synthetic::white;
 use assert_cmd::Command;
+use sagnac::config::procedure::parse_procedure;
+use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::{Encoding, StampWriting};
-use sagnac::procedure::parse_procedure;
 use sagnac::recording::ColumnRef;
-use sagnac::text::{Lang, Localize};
 use tempfile::tempdir;
 
 const PROCEDURE: &str = r#"format = "procedure/1"

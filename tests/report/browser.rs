@@ -1,8 +1,8 @@
 //! A report opened in a browser without a screen: no network request, no complaint on the console, the verdict shown.
 
 use crate::fixture;
+use sagnac::i18n::Lang;
 use sagnac::report::{Renderer, render_html};
-use sagnac::text::Lang;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;

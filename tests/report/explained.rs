@@ -3,11 +3,11 @@
 use crate::explain_fixture as fixture;
 use sagnac::effect::{Domain, Place, find};
 use sagnac::figure::Figure;
+use sagnac::i18n::{Bilingual, Lang, table};
 use sagnac::mismatch::figures::{Course, time_course};
 use sagnac::mismatch::finding::Explanation;
 use sagnac::report::Renderer;
 use sagnac::report::explain::{Context, ExplainView};
-use sagnac::text::{Bilingual, Lang, table};
 use std::collections::BTreeSet;
 
 fn context() -> Context {

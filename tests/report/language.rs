@@ -1,8 +1,8 @@
 //! The tables of words against one another, and what the program says in Russian.
 
 use crate::support::corpus::{cases, problems};
-use sagnac::procedure::{parse_limits, parse_procedure};
-use sagnac::text::{Lang, Localize, table};
+use sagnac::config::procedure::{parse_limits, parse_procedure};
+use sagnac::i18n::{Lang, Localize, table};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;

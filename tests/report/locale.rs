@@ -1,10 +1,10 @@
 //! Every word of a report stands in the locale tables: none is missing, none idle.
 
 use crate::fixture;
+use sagnac::i18n::{Lang, table};
 use sagnac::measurand::ids::MEASURANDS;
 use sagnac::report::render::TEMPLATES;
 use sagnac::report::{Renderer, render_html, render_markdown};
-use sagnac::text::{Lang, table};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -104,7 +104,9 @@ fn used() -> (BTreeSet<String>, BTreeSet<String>) {
         table(Lang::En).keys().filter_map(|k| k.split('.').next()).map(str::to_owned).collect();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut code = vec![];
-    sources(&root.join("src"), &mut code);
+    for folder in ["src", "crates/sagnac-core/src", "crates/sagnac-ingest/src"] {
+        sources(&root.join(folder), &mut code);
+    }
     let mut fixtures = vec![];
     sources(&root.join("tests/report/fixture"), &mut fixtures);
     let mut keys = BTreeSet::new();

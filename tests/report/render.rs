@@ -1,10 +1,10 @@
 //! Reports of invented runs: what must stand in them, and that nothing breaks out of them.
 
 use crate::fixture;
+use sagnac::acceptance::record::RunRecord;
 use sagnac::estimate::Rule;
-use sagnac::record::RunRecord;
+use sagnac::i18n::Lang;
 use sagnac::report::{Renderer, ReportError, render_html, render_markdown, write_figures};
-use sagnac::text::Lang;
 use std::path::Path;
 
 fn html(record: &RunRecord) -> String {

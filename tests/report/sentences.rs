@@ -7,44 +7,48 @@ use std::path::{Path, PathBuf};
 
 /// Files whose literals are English by design: file, why.
 const ENGLISH: &[(&str, &str)] = &[
-    ("src/procedure/tables.rs", "descriptions of keys for the schema and the guide"),
-    ("src/procedure/tables_conditions.rs", "descriptions of keys for the schema and the guide"),
-    ("src/procedure/tables_influence.rs", "descriptions of keys for the schema and the guide"),
-    ("src/procedure/tables_phases.rs", "descriptions of keys for the schema and the guide"),
-    ("src/procedure/tables_limits.rs", "descriptions of keys for the schema and the guide"),
-    ("src/procedure/tables_rate_table.rs", "descriptions of keys for the schema and the guide"),
-    ("src/procedure/tables_site.rs", "descriptions of keys for the schema and the guide"),
-    ("src/procedure/tables_temperature.rs", "descriptions of keys for the schema and the guide"),
-    ("src/procedure/guide.rs", "the guide is an English document"),
-    ("src/procedure/schema.rs", "the schema is English"),
-    ("src/ids.rs", "descriptions of measurands for the schema and the guide"),
-    ("src/keyed/syntax.rs", "what the TOML parser says, to be recognised"),
-    ("src/temperature/compensation.rs", "declarations of a header in C"),
+    ("src/config/procedure/tables.rs", "descriptions of keys for the schema and the guide"),
+    ("src/config/procedure/tables_conditions.rs", "descriptions of keys for the schema and the guide"),
+    ("src/config/procedure/tables_influence.rs", "descriptions of keys for the schema and the guide"),
+    ("src/config/procedure/tables_phases.rs", "descriptions of keys for the schema and the guide"),
+    ("src/config/procedure/tables_limits.rs", "descriptions of keys for the schema and the guide"),
+    ("src/config/procedure/tables_rate_table.rs", "descriptions of keys for the schema and the guide"),
+    ("src/config/procedure/tables_site.rs", "descriptions of keys for the schema and the guide"),
+    ("src/config/procedure/tables_temperature.rs", "descriptions of keys for the schema and the guide"),
+    ("src/config/procedure/guide.rs", "the guide is an English document"),
+    ("src/config/procedure/schema.rs", "the schema is English"),
+    ("crates/sagnac-core/src/ids.rs", "descriptions of measurands for the schema and the guide"),
+    ("src/config/syntax.rs", "what the TOML parser says, to be recognised"),
+    ("crates/sagnac-core/src/temperature/compensation.rs", "declarations of a header in C"),
     ("src/report/methods.rs", "formulas and names of sources"),
     ("src/cli/mod.rs", "the help in English; a test holds it against the tables"),
     ("src/lib.rs", "documentation"),
-    ("src/ingest/read_words.rs", "words of keys: documentation, as of procedures"),
-    ("src/ingest/manifest_tables.rs", "the key tables of manifests: documentation, as of procedures"),
-    ("src/ingest/reading_tables.rs", "keys of procedures and manifests: documentation, as of procedures"),
-    ("src/ingest/raw/tables.rs", "the key tables of layouts: documentation, as of procedures"),
-    ("src/claim/tables.rs", "the key tables of claims: documentation, as of procedures"),
-    ("src/ingest/matlab/tape.rs", "faults of the decoder, quoted as it says them"),
-    ("src/ingest/matlab/v5.rs", "faults of the decoder, quoted as it says them"),
-    ("src/ingest/binary/lanes.rs", "faults of the decoder, quoted as it says them"),
-    ("src/ingest/tdms/mod.rs", "types of storage, quoted as the format names them"),
-    ("src/ingest/tdms/scale.rs", "faults of the decoder, quoted as it says them"),
-    ("src/ingest/hdf5/walk.rs", "types of storage, quoted as the format names them"),
+    ("src/config/read_words.rs", "words of keys: documentation, as of procedures"),
+    ("src/config/manifest_tables.rs", "the key tables of manifests: documentation, as of procedures"),
+    ("src/config/reading_tables.rs", "keys of procedures and manifests: documentation, as of procedures"),
+    ("src/config/layout/tables.rs", "the key tables of layouts: documentation, as of procedures"),
+    ("src/config/model/tables.rs", "the key tables of claims: documentation, as of procedures"),
+    ("crates/sagnac-ingest/src/matlab/tape.rs", "faults of the decoder, quoted as it says them"),
+    ("crates/sagnac-ingest/src/matlab/v5.rs", "faults of the decoder, quoted as it says them"),
+    ("crates/sagnac-ingest/src/binary/lanes.rs", "faults of the decoder, quoted as it says them"),
+    ("crates/sagnac-ingest/src/tdms/mod.rs", "types of storage, quoted as the format names them"),
+    ("crates/sagnac-ingest/src/tdms/scale.rs", "faults of the decoder, quoted as it says them"),
+    ("crates/sagnac-ingest/src/hdf5/walk.rs", "types of storage, quoted as the format names them"),
 ];
 
 /// Folders whose literals stand there in every language of the program: folder, why.
 const IN_EVERY_LANGUAGE: &[(&str, &str)] =
-    &[("src/effect/kinds/", "what an effect is, in each effect's own file")];
+    &[("crates/sagnac-core/src/effect/kinds/", "what an effect is, in each effect's own file")];
 
 /// Single literals that are no sentence for users: file, part of the text, why.
 const LITERALS: &[(&str, &str, &str)] = &[
-    ("src/ingest/parquet.rs", "the column holds no numbers", "a fault of the decoder, quoted as it says it"),
+    (
+        "crates/sagnac-ingest/src/parquet.rs",
+        "the column holds no numbers",
+        "a fault of the decoder, quoted as it says it",
+    ),
     ("src/report/svg/mod.rs", "system-ui", "names of fonts"),
-    ("src/recording/guess.rs", "the inside units are units", "a message of a programming error"),
+    ("crates/sagnac-ingest/src/guess.rs", "the inside units are units", "a message of a programming error"),
 ];
 
 fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
@@ -119,7 +123,9 @@ fn is_sentence(text: &str) -> bool {
 fn found() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = vec![];
-    sources(&root.join("src"), &mut files);
+    for folder in ["src", "crates/sagnac-core/src", "crates/sagnac-ingest/src"] {
+        sources(&root.join(folder), &mut files);
+    }
     let mut out = vec![];
     for path in files {
         let name = path.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/");

@@ -2,8 +2,8 @@
 //!
 //! Of files of keys it has one line a problem: `[warning ]line:column: offending text: fragment of message or help`.
 
-use sagnac::procedure::{Loaded, Problem, Problems, Severity};
-use sagnac::text::{Lang, Localize};
+use sagnac::config::procedure::{Loaded, Problem, Problems, Severity};
+use sagnac::i18n::{Lang, Localize};
 use std::path::{Path, PathBuf};
 
 /// The files of a folder with an extension, sorted.

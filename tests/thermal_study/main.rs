@@ -160,7 +160,7 @@ fn study(rates: &[f64], dwell_s: f64, runs: u64, first: u64) -> BTreeMap<&'stati
                 let a = f.analysis.as_ref().unwrap();
                 // At the place that the row names: 2 (D r − b'(T) τ r + h), the coil being where the sensor is.
                 let at = rows.first().and_then(|e| match e.notes.first()?.args.get("deg_c")? {
-                    sagnac::text::Arg::Figures { value, .. } => Some(*value),
+                    sagnac::i18n::Arg::Figures { value, .. } => Some(*value),
                     _ => None,
                 });
                 let (rate, Some(t)) = (a.ramp_deg_c_min, at) else { continue };

@@ -139,6 +139,27 @@ impl Walk {
     }
 }
 
+/// A key that sorts numbers in names by their value.
+pub fn natural(name: &str) -> Vec<(String, u128, String)> {
+    let mut key = Vec::new();
+    // Without what follows the first dot of the name, so that part.csv comes before part1.csv.
+    let file = name.rfind('/').map_or(0, |slash| slash + 1);
+    let dot = name.get(file..).and_then(|n| n.find('.')).map_or(name.len(), |dot| file + dot);
+    let (mut rest, extension) = name.split_at(dot);
+    while !rest.is_empty() {
+        let words = rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(words);
+        let length = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
+        let (digits, after) = after.split_at(length);
+        // Numbers of more than 38 digits sort as text.
+        let value = digits.parse().unwrap_or(if digits.is_empty() { 0 } else { u128::MAX });
+        key.push((word.to_owned(), value, digits.to_owned()));
+        rest = after;
+    }
+    key.push((extension.to_owned(), 0, String::new()));
+    key
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -193,5 +214,12 @@ mod tests {
         assert!(started.elapsed().as_secs() < 5);
         // A folder that is a link is looked into by its name, and by `*` once.
         assert_eq!(names(dir.path(), "x/up/a1.csv"), ["x/up/a1.csv"]);
+    }
+
+    #[test]
+    fn numbers_in_names_sort_by_value() {
+        let mut names = ["part10.csv", "part2.csv", "part1.csv", "part02.csv", "a.csv", "part.csv"];
+        names.sort_by_cached_key(|n| natural(n));
+        assert_eq!(names, ["a.csv", "part.csv", "part1.csv", "part02.csv", "part2.csv", "part10.csv"]);
     }
 }

@@ -11,9 +11,9 @@ pub use unit::{Cell, LimitView, RuleCell, ShareView, UnitView};
 use super::number::date_time;
 use super::svg;
 use super::view::{FigureView, Words, caption};
-use crate::compare::Comparison;
+use crate::acceptance::compare::Comparison;
 use crate::figure::Figure;
-use crate::text::Lang;
+use crate::i18n::Lang;
 use serde::Serialize;
 
 /// Everything that a comparison shows.

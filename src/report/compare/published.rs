@@ -1,9 +1,9 @@
 //! The published tables, printed.
 
-use crate::compare::published::{Checked, CheckedRow, Row1};
+use crate::acceptance::compare::published::{Checked, CheckedRow, Row1};
+use crate::i18n::{Lang, decimal};
 use crate::report::number::{digits, limit};
 use crate::report::view::Words;
-use crate::text::{Lang, decimal};
 use serde::Serialize;
 
 /// The tables with their checks.

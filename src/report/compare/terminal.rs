@@ -1,7 +1,7 @@
 //! The short table of the terminal.
 
 use super::CompareView;
-use crate::text::{Lang, lookup, visible};
+use crate::i18n::{Lang, lookup, visible};
 
 /// The table of a comparison, columns in line.
 pub fn table(view: &CompareView, lang: Lang) -> String {

@@ -3,10 +3,10 @@
 use super::print::{chance, difference, parameter, place, stated, title, value};
 use super::sentence;
 use crate::effect::{Doc, find};
+use crate::i18n::Bilingual;
 use crate::mismatch::finding::{Explanation, Finding};
 use crate::report::number::{limit_digits, percent};
 use crate::report::view::Words;
-use crate::text::Bilingual;
 use serde::Serialize;
 
 /// A parameter of a cause.

@@ -2,10 +2,10 @@
 
 use super::kinds::{DOMAINS, PARAMETERS, SIGNED, STATED, TESTS, VIEWS, key};
 use crate::effect::find;
+use crate::i18n::Bilingual;
 use crate::mismatch::finding::{ParameterValue, PlaceRecord};
 use crate::report::number::{Rounding, digits, limit_digits, typographic};
 use crate::report::view::Words;
-use crate::text::Bilingual;
 
 /// Ratio of the sides of an interval from which it is printed by its ends.
 const LOPSIDED: f64 = 1.5;
@@ -158,7 +158,7 @@ pub fn plain(v: f64, words: Words) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::Lang;
+    use crate::i18n::Lang;
 
     const EN: Words = Words { lang: Lang::En };
 

@@ -2,9 +2,9 @@
 
 use super::write::{FONT, width};
 use crate::figure::Scale;
+use crate::i18n::{Lang, lookup};
 use crate::report::number::{limit_digits, superscript, typographic};
 use crate::report::unit;
-use crate::text::{Lang, lookup};
 
 /// Largest magnitude an axis reaches; differences of such values are still finite.
 const HUGE: f64 = 1e300;

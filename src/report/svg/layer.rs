@@ -4,7 +4,7 @@ use super::axis::Ruled;
 use super::style::{Look, Marker, look};
 use super::write::{Anchor, px, text, width};
 use crate::figure::{Layer, Panel, Scale, Style};
-use crate::text::{Lang, Localize};
+use crate::i18n::{Lang, Localize};
 use std::fmt::Write;
 
 /// The rectangle of a pair of axes on paper, with its axes.

@@ -8,7 +8,7 @@ mod style;
 mod write;
 
 use crate::figure::{Axis, Figure, Panel, Scale};
-use crate::text::{Lang, lookup};
+use crate::i18n::{Lang, lookup};
 use axis::{Direction, Ruled};
 use layer::Plot;
 use legend::Legend;

@@ -1,6 +1,6 @@
 //! The small writer of SVG text: escaping, coordinates, the estimated width of words.
 
-use crate::text::steers;
+use crate::i18n::steers;
 use std::fmt::Write;
 
 /// Size of ordinary words in a figure, px of the view box.

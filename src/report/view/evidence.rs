@@ -7,7 +7,7 @@ use super::deviations::{self, Deviations};
 use super::faults::Faults;
 use super::goodness::{self, Goodness};
 use super::{Field, Words};
-use crate::record::{ConditionStatus, LineRecord, MeasurandRecord, NoiseModelRecord, RunRecord};
+use crate::acceptance::record::{ConditionStatus, LineRecord, MeasurandRecord, NoiseModelRecord, RunRecord};
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use serde::Serialize;
 
@@ -303,7 +303,7 @@ pub(super) fn status(status: ConditionStatus) -> &'static str {
 fn row_name(id: &str, words: Words) -> String {
     ["measurand", "condition"]
         .iter()
-        .find_map(|prefix| crate::text::lookup(words.lang, &format!("{prefix}.{id}")))
+        .find_map(|prefix| crate::i18n::lookup(words.lang, &format!("{prefix}.{id}")))
         .map_or_else(|| id.to_owned(), str::to_owned)
 }
 

@@ -1,8 +1,8 @@
 //! The recording against the model of its family, as a report says it.
 
-use crate::record::ExplainedRecord;
+use crate::acceptance::record::ExplainedRecord;
+use crate::i18n::Lang;
 use crate::report::explain::explained_says;
-use crate::text::Lang;
 use serde::Serialize;
 
 /// The recording against the model of its family.

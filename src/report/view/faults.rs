@@ -1,9 +1,9 @@
 //! Faults of the recording: what was found against what is allowed, and the first of each kind one by one.
 
 use super::{Field, Words, conditions::required, evidence::status};
-use crate::record::{ConditionRecord, FaultRecord, Integrity, RunRecord};
+use crate::acceptance::record::{ConditionRecord, FaultRecord, Integrity, RunRecord};
+use crate::i18n::Localize;
 use crate::report::number::{NOTHING, count, duration, limit_digits, percent};
-use crate::text::Localize;
 use serde::Serialize;
 
 /// Faults of one kind that a report lists; more would bury the rest of it.

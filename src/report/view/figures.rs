@@ -1,10 +1,10 @@
 //! Figures as a report shows them.
 
 use super::Words;
+use crate::acceptance::record::RunRecord;
 use crate::figure::Figure;
-use crate::record::RunRecord;
+use crate::i18n::lookup;
 use crate::report::{file_name, svg};
-use crate::text::lookup;
 use serde::Serialize;
 
 /// A figure with its drawing.

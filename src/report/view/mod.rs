@@ -34,13 +34,13 @@ pub use phase::{PhasePart, PhaseView};
 pub use rows::Row;
 pub use table_steps::{TableStep, TableSteps};
 
+use crate::acceptance::record::RunRecord;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::record::RunRecord;
+use crate::i18n;
+use crate::i18n::{Arg, Lang, Localize, Note, fill, lookup};
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::{methods, unit};
-use crate::text;
-use crate::text::{Arg, Lang, Localize, Note, fill, lookup};
 use serde::Serialize;
 
 /// A label and what stands beside it.
@@ -164,7 +164,7 @@ impl Words {
                 Arg::Stated(v) => super::number::limit(*v, self.lang),
                 Arg::Count(v) => count(*v, self.lang),
                 Arg::Text(t) => t.clone(),
-                Arg::Key(k) => text::words(k, self.lang),
+                Arg::Key(k) => i18n::words(k, self.lang),
                 Arg::Note(n) => self.say(n),
                 Arg::Decimals { .. } | Arg::Several(..) => arg.say(self.lang),
                 Arg::Figures { value, digits, zeros: true } => {

@@ -1,7 +1,7 @@
 //! Broken procedures and limits files: every problem is reported at its place, and nothing else.
 
 use crate::support::corpus::{cases, each_problem_at_its_place, problems};
-use sagnac::procedure::{Problem, parse_limits, parse_procedure};
+use sagnac::config::procedure::{Problem, parse_limits, parse_procedure};
 use std::path::Path;
 
 fn name(file: &Path) -> String {

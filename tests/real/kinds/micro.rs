@@ -3,7 +3,7 @@
 use super::{analyse, assert_digits, curve, table, value};
 use crate::support::real::set;
 use crate::support::{result, sagnac};
-use sagnac::run::Outcome;
+use sagnac::acceptance::run::Outcome;
 use std::path::Path;
 
 const ADIS_AXES: [&str; 3] = ["rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s"];
@@ -107,7 +107,7 @@ fn adis16405_gives_the_numbers_of_other_tools() {
         } else {
             // Fourteen spikes beyond eight standard deviations, twelve of them on x; more above our threshold.
             let on = |axis: &str| {
-                let of_axis = |f: &&sagnac::record::FaultRecord| {
+                let of_axis = |f: &&sagnac::acceptance::record::FaultRecord| {
                     f.kind == "outlier" && f.channel.as_deref() == Some(axis)
                 };
                 integrity.faults.iter().filter(of_axis).map(|f| f.count).sum::<u64>()

@@ -1,8 +1,8 @@
 //! What the tests of the binary readers share: the values of the fixtures and reading a file whole.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+use sagnac::i18n::Localize;
 use sagnac::ingest::{FieldFault, IngestError, ReadOptions, Source, open_with};
-use sagnac::text::Localize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -64,7 +64,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Read, IngestError> {
 }
 
 pub fn notes(source: &Source) -> String {
-    source.notes().iter().map(|n| n.say(sagnac::text::Lang::En) + "\n").collect()
+    source.notes().iter().map(|n| n.say(sagnac::i18n::Lang::En) + "\n").collect()
 }
 
 pub fn read_error(path: &Path, options: &ReadOptions) -> IngestError {

@@ -1,0 +1,61 @@
+//! Russian against Allan values over any set of units: the founding paper's Table 2, with what explains each ratio.
+//!
+//! A unit comes from a fresh analysis or from a `result.json`; both go through the same reading of the result, so that
+//! a figure cannot depend on where it came from. Nothing is measured here.
+
+pub mod csv;
+mod faults;
+pub mod figures;
+mod parts;
+pub mod published;
+mod published_checks;
+mod rules;
+mod says;
+mod unit;
+
+pub use parts::{part_key, part_name};
+pub use rules::{RULES, RuleRow};
+pub use unit::{Origin, Quantity, Unit, UnitError, not_compared, tell_apart, tell_repeated, units_of};
+
+use crate::acceptance::record::Program;
+use serde::Serialize;
+
+/// Version of `comparison.json`.
+pub const COMPARISON_FORMAT: &str = "comparison/1";
+
+/// A whole comparison: of units, or of the published tables.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Always `comparison/1`.
+    pub format: &'static str,
+    /// The program that wrote this.
+    pub program: Program,
+    /// When it was made, RFC 3339, UTC.
+    pub compared_at: String,
+    /// The units, one entry a channel.
+    pub units: Vec<Unit>,
+    /// The published tables with their checks.
+    pub published: Option<published::Checked>,
+}
+
+impl Comparison {
+    /// A comparison of units.
+    pub fn of_units(units: Vec<Unit>, compared_at: String) -> Comparison {
+        Comparison { units, ..Comparison::empty(compared_at) }
+    }
+
+    /// The published tables.
+    pub fn of_published(checked: published::Checked, compared_at: String) -> Comparison {
+        Comparison { published: Some(checked), ..Comparison::empty(compared_at) }
+    }
+
+    fn empty(compared_at: String) -> Comparison {
+        Comparison {
+            format: COMPARISON_FORMAT,
+            program: Program { name: "sagnac", version: env!("CARGO_PKG_VERSION").to_owned() },
+            compared_at,
+            units: vec![],
+            published: None,
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Whether the stamps can be what they are taken for: the unit of the time, even steps, a rate that is no round number.
+
+use super::{Condition, Facts, record};
+use crate::acceptance::record::{ConditionRecord, ConditionStatus};
+use crate::i18n::Note;
+
+pub(super) struct Clock;
+
+/// Recordings are shorter.
+const LONGEST_S: f64 = 366.0 * 86_400.0;
+/// Gyros are sampled more slowly.
+const FASTEST_HZ: f64 = 1e6;
+/// Rms scatter of the stamps, in intervals, from which they are not those of a uniform clock.
+const UNEVEN: f64 = 0.15;
+/// Relative difference from a round rate below which it is met.
+const MET: f64 = 1e-3;
+/// Relative difference up to which a round rate is the one that was meant.
+const NEAR: f64 = 0.06;
+
+impl Condition for Clock {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        if !facts.has_stamps {
+            facts.checks.not_made("clock", None, "check_list.no_stamps");
+            return vec![];
+        }
+        facts.checks.made("clock", None, "clock");
+        let rate_hz = 1.0 / facts.sample_interval_s;
+        let note = if facts.duration_s > LONGEST_S {
+            Note::new("clock.too_long")
+                .with("years", facts.duration_s / (365.25 * 86_400.0))
+                .with("hz", rate_hz)
+        } else if rate_hz > FASTEST_HZ {
+            Note::new("clock.too_fast").with("hz", rate_hz)
+        } else if let Some(jitter_s) =
+            facts.integrity.timestamp_jitter_s.filter(|j| *j > UNEVEN * facts.sample_interval_s)
+        {
+            Note::new("clock.uneven")
+                .with("jitter_s", jitter_s)
+                .with("interval_s", facts.sample_interval_s)
+                .with("percent", 100.0 * jitter_s / facts.sample_interval_s)
+        } else if let Some(round_hz) =
+            round_near(rate_hz).filter(|_| facts.procedure.sample_rate_hz.is_none())
+        {
+            Note::new("clock.not_round")
+                .with("hz", rate_hz)
+                .with("round_hz", round_hz)
+                .with("percent", (rate_hz / round_hz - 1.0) * 100.0)
+        } else {
+            return vec![];
+        };
+        let required = Note::new("clock.required");
+        vec![record("clock", ConditionStatus::Remark, &[("measured_hz", rate_hz)], Some(required), note)]
+    }
+}
+
+/// The round rate that a rate is near and does not meet. Round are rates and intervals of two digits, and powers of two
+/// times powers of ten.
+fn round_near(rate_hz: f64) -> Option<f64> {
+    let two_digits = |v: f64| {
+        let scale = 10f64.powf(v.log10().floor() - 1.0);
+        (v / scale).round() * scale
+    };
+    let powers = |v: f64| {
+        (0..=14).map(move |k| {
+            let two = 2f64.powi(k);
+            two * 10f64.powf((v / two).log10().round())
+        })
+    };
+    let met = |round: f64| (rate_hz / round - 1.0).abs() <= MET;
+    if met(two_digits(rate_hz)) || met(1.0 / two_digits(1.0 / rate_hz)) || powers(rate_hz).any(met) {
+        return None;
+    }
+    // What people set: 1, 2, 4, 5, 8 and 10 times a power of ten.
+    let scale = 10f64.powf(rate_hz.log10().floor());
+    let usual = [1.0, 2.0, 4.0, 5.0, 8.0, 10.0].map(|d| d * scale);
+    let off = |r: &f64| (rate_hz / r - 1.0).abs();
+    usual.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|r| off(r) <= NEAR)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_that_is_off_is_told_from_a_rate_that_was_set() {
+        for set in [0.1, 1.0, 100.0, 64.0, 102.4, 1000.0, 250.0, 12.5, 1.0 / 15.0, 8000.0] {
+            assert_eq!(round_near(set), None, "{set}");
+        }
+        for (measured, meant) in [(0.1 / 1.04, 0.1), (1.0 / 1.04, 1.0), (962.4, 1000.0), (103.9, 100.0)] {
+            assert!((round_near(measured).unwrap() / meant - 1.0).abs() < 1e-12, "{measured}");
+        }
+    }
+}

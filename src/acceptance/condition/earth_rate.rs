@@ -1,0 +1,243 @@
+//! The Earth rate in the mean: a gyro at rest shows it, and a wrong unit, sign or axis shows itself by it.
+//!
+//! Judged where the site is declared, a bound of the bias is known (the limit of the static bias, or three times its
+//! typical value) and the Earth rate along the axis is at least five times that bound. The mean agrees when it differs
+//! from the Earth rate by no more than twice the bound and three standard uncertainties. Where it does not, single
+//! mistakes are tried; one that brings it within the bound itself explains it, and the test is not valid. A bias that no
+//! mistake explains is a bias: it fails by its limit.
+//!
+//! Where no bound of the bias is known, a mean of another size than the Earth rate which one of the usual exchanges of
+//! unit (deg/h, deg/s, rad/s) brings to within an eighth of it is taken for that exchange. Over temperature and while a unit
+//! warms up its bias is also seen to move, and one that moves little is thought to be little: three times the movement stands
+//! for the bound, and a mean that a reversed sign or an Earth rate taken out before explains is taken for that. Where the bias
+//! moves too much for this, the record says that the mean was not judged.
+
+use super::{Condition, Facts, GyroFact, id_of, mistakes, noise_level, record};
+use crate::acceptance::record::{ConditionRecord, ConditionStatus};
+use crate::config::procedure::model::EarthRate as Removal;
+use crate::i18n::Note;
+use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
+
+pub(super) struct EarthRate;
+
+/// How many times the bound of the bias the Earth rate must be.
+const PLAIN: f64 = 5.0;
+/// Least Earth rate along the axis that a unit is told by where nothing is known of the bias, deg/h.
+const LEAST_DEG_H: f64 = 1.0;
+/// Share of the Earth rate within which an exchange of unit brings the mean then.
+const USUAL: f64 = 0.125;
+/// Times the typical bias that a unit is still thought to have.
+const TYPICAL: f64 = 3.0;
+
+impl Condition for EarthRate {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        facts.gyros.iter().filter_map(|g| one(g, facts)).collect()
+    }
+}
+
+/// Largest bias that a unit is thought to have, deg/h.
+pub(super) fn bias_bound(gyro: &GyroFact, facts: &Facts<'_>) -> Option<f64> {
+    if kept(facts) {
+        return None;
+    }
+    let bound = facts.limits.limit("static_bias", &gyro.channel).and_then(|l| l.limit.largest_magnitude());
+    let typical = || facts.limits.expected("static_bias").map(|e| TYPICAL * e.abs());
+    bound.or_else(typical).filter(|b| *b > 0.0)
+}
+
+/// Whether the mean shows the Earth rate; `None` where that cannot be judged.
+pub(super) fn agrees(gyro: &GyroFact, facts: &Facts<'_>) -> Option<bool> {
+    let (earth, u_earth) = gyro.earth_deg_h?;
+    let bound = bias_bound(gyro, facts).filter(|b| earth.abs() >= PLAIN * b)?;
+    let u = gyro.mean_uncertainty_deg_h.hypot(u_earth);
+    Some((gyro.mean_deg_h - earth).abs() <= 2.0 * bound + 3.0 * u)
+}
+
+fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    match why_not(gyro, facts) {
+        Some(reason) => facts.checks.not_made("earth_rate", Some(&gyro.channel), reason),
+        None => facts.checks.made("earth_rate", Some(&gyro.channel), "earth_rate"),
+    }
+    let (earth, _) = gyro.earth_deg_h?;
+    let Some(bound) = bias_bound(gyro, facts) else {
+        return exchanged_unit(gyro, earth, facts).or_else(|| by_movement(gyro, earth, facts));
+    };
+    let agrees = agrees(gyro, facts)?;
+    let mistakes = if agrees { vec![] } else { explain(gyro, earth, bound, facts) };
+    let (status, key) = match (agrees, mistakes.is_empty()) {
+        (true, _) => (ConditionStatus::Ok, "earth_rate.seen"),
+        (false, true) => (ConditionStatus::Remark, "earth_rate.not_seen"),
+        (false, false) => (ConditionStatus::Invalid, "earth_rate.mistake"),
+    };
+    let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
+    Some(told(gyro, earth, (status, key, mistakes), required, facts))
+}
+
+/// Why sign, axis and unit cannot be told by the Earth rate.
+fn why_not(gyro: &GyroFact, facts: &Facts<'_>) -> Option<&'static str> {
+    if gyro.earth_deg_h.is_none() {
+        return Some("check_list.no_site");
+    }
+    if bias_bound(gyro, facts).is_none() {
+        return Some("check_list.no_bias_bound");
+    }
+    agrees(gyro, facts).is_none().then_some("check_list.small_earth_rate")
+}
+
+/// The record of a mean beside the Earth rate, with the mistakes that explain their difference.
+fn told(
+    gyro: &GyroFact,
+    earth: f64,
+    (status, key, mistakes): (ConditionStatus, &'static str, Vec<Note>),
+    required: Note,
+    facts: &Facts<'_>,
+) -> ConditionRecord {
+    let difference = gyro.mean_deg_h - earth;
+    let mut note = Note::new(key)
+        .with("channel", gyro.channel.clone())
+        .with("mean", gyro.mean_deg_h)
+        .with("earth", earth)
+        .with("difference", difference);
+    if let Some(why) = mistakes::either(mistakes) {
+        note = note.with("why", why);
+    }
+    let observed = [("mean_deg_h", gyro.mean_deg_h), ("difference_deg_h", difference)];
+    record(id_of("earth_rate", &gyro.channel, facts), status, &observed, Some(required), note)
+}
+
+/// One of the usual exchanges of unit, where nothing is known of the bias but that it will not cancel the Earth rate.
+fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let moved = facts.procedure.rate_table.is_some();
+    let shown = |rate: f64, share: f64| (rate - earth).abs() <= share * earth.abs();
+    if moved || earth.abs() < LEAST_DEG_H || shown(gyro.mean_deg_h, 0.5) {
+        return None;
+    }
+    let declared = &facts.procedure.channel(&gyro.channel)?.unit_in_file;
+    let usual = mistakes::rate_factors(declared).into_iter().filter(|m| m.usual);
+    let fits = |m: &mistakes::Mistake| {
+        let slack = 3.0 * m.factor.abs() * gyro.mean_uncertainty_deg_h;
+        slack <= USUAL * earth.abs()
+            && shown(gyro.mean_deg_h * m.factor, USUAL)
+            && !noise_level::is_far(gyro, m.factor, facts)
+    };
+    let found: Vec<Note> = usual.filter(fits).map(|m| m.note).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let required = Note::new("earth_rate.required_alone").with("earth", earth);
+    Some(told(gyro, earth, (ConditionStatus::Invalid, "earth_rate.mistake", found), required, facts))
+}
+
+/// A reversed sign, or an Earth rate taken out before, told by how little the bias moves in a test over temperature or of the
+/// warm-up.
+fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let moves = gyro.moves_deg_h?;
+    let ids = ["bias_over_temperature_peak_to_peak", "turn_on_transient"];
+    let limits = ids.iter().filter_map(|id| facts.limits.limit(id, &gyro.channel)?.limit.largest_magnitude());
+    let bound = TYPICAL * limits.fold(moves, f64::max);
+    if kept(facts) || earth.abs() < LEAST_DEG_H {
+        return None;
+    }
+    let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
+    let u = 3.0 * gyro.mean_uncertainty_deg_h;
+    if earth.abs() < PLAIN * (bound + u) {
+        let status = (ConditionStatus::Remark, "earth_rate.not_judged", vec![]);
+        return Some(told(gyro, earth, status, required, facts));
+    }
+    let near = |value: f64| (gyro.mean_deg_h - value).abs() <= bound + u;
+    let found = if near(-earth) {
+        Note::new("earth_rate.sign")
+    } else if near(0.0) {
+        Note::new("earth_rate.taken_out")
+    } else {
+        return None;
+    };
+    let status = (ConditionStatus::Invalid, "earth_rate.mistake", vec![found]);
+    Some(told(gyro, earth, status, required, facts))
+}
+
+/// Whether the procedure states the bias with the Earth rate in it.
+fn kept(facts: &Facts<'_>) -> bool {
+    let mut measurands = facts.procedure.measurands.iter();
+    measurands.any(|m| m.id.id == "static_bias" && m.earth_rate == Removal::Keep)
+}
+
+/// The single mistakes that bring the mean into agreement.
+fn explain(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec<Note> {
+    let (mean, u) = (gyro.mean_deg_h, gyro.mean_uncertainty_deg_h);
+    if let Some(exchanged) = exchanged(gyro, earth, bound, facts) {
+        return vec![exchanged];
+    }
+    let near = |value: f64, factor: f64| {
+        let slack = 3.0 * factor.abs() * u;
+        // A mean that noise alone could have put there says nothing.
+        slack <= 0.25 * earth.abs() && (value - earth).abs() <= bound + slack
+    };
+    let mut found = Vec::new();
+    if near(-mean, 1.0) {
+        found.push(Note::new("earth_rate.sign"));
+    }
+    if let Some(spec) = facts.procedure.channel(&gyro.channel) {
+        let scaled = mistakes::rate_factors(&spec.unit_in_file);
+        // A factor puts right the noise as well; where it would spoil it, the mean is near by chance.
+        let fits = |m: &mistakes::Mistake| {
+            near(mean * m.factor, m.factor) && !noise_level::is_far(gyro, m.factor, facts)
+        };
+        found.extend(scaled.into_iter().filter(fits).map(|m| m.note));
+    }
+    found.extend(other_axis(gyro, earth, bound, facts));
+    if found.is_empty() && mean.abs() <= bound + 3.0 * u {
+        found.push(Note::new("earth_rate.taken_out"));
+    }
+    found
+}
+
+/// The temperature where the rate should be, and the rate where the temperature should be.
+fn exchanged(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Option<Note> {
+    let conditions = facts.procedure.conditions.temperatures.iter().enumerate();
+    conditions
+        .filter_map(|(i, c)| Some((c, facts.held.get(&("temperature".to_owned(), i))?)))
+        .find(|(c, track)| {
+            (gyro.mean_deg_h - c.nominal_deg_c).abs() <= 5.0 * c.tolerance_deg_c
+                && (track.mean - earth).abs() <= bound
+        })
+        .map(|(c, track)| {
+            Note::new("earth_rate.exchanged")
+                .with("temperature", c.channel.clone())
+                .with("rate", gyro.channel.clone())
+                .with("mean", track.mean)
+        })
+}
+
+/// The Earth rate of another channel, or of an axis that points north, south or up instead.
+fn other_axis(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec<Note> {
+    let u = gyro.mean_uncertainty_deg_h;
+    let is = |rate: f64| {
+        let told_apart = (rate - earth).abs() > 2.0 * bound && (rate + earth).abs() > 2.0 * bound;
+        told_apart && rate.abs() > 2.0 * bound && (gyro.mean_deg_h - rate).abs() <= bound + 3.0 * u
+    };
+    let others = facts.gyros.iter().filter(|g| g.channel != gyro.channel);
+    let other = others
+        .filter(|g| g.earth_deg_h.is_some_and(|(rate, _)| is(rate)))
+        .map(|g| Note::new("earth_rate.other_channel").with("other", g.channel.clone()));
+    let mut found: Vec<Note> = other.collect();
+    let Some(site) = facts.procedure.site.as_ref().filter(|_| found.is_empty()) else { return found };
+    let exact = |value: f64| Uncertain { value, uncertainty: 0.0 };
+    let directions = [
+        ("earth_rate.north", 0.0, 0.0),
+        ("earth_rate.south", 180.0, 0.0),
+        ("earth_rate.up", 0.0, 90.0),
+        ("earth_rate.down", 0.0, -90.0),
+    ];
+    for (key, heading, elevation) in directions {
+        let rate = earth_rate(&Orientation {
+            latitude_deg: exact(site.latitude_deg),
+            heading_deg: exact(heading),
+            elevation_deg: exact(elevation),
+        });
+        if rate.value.abs() <= EARTH_RATE_DEG_H && is(rate.value) {
+            found.push(Note::new("earth_rate.axis").with("direction", crate::i18n::Arg::Key(key.to_owned())));
+        }
+    }
+    found
+}

@@ -1,0 +1,109 @@
+//! The level of the noise against what is typical of the family: far off, it is a mistake of units and no bad unit.
+//!
+//! White noise of coefficient N has σ(τ)·√τ = 60·N at every τ (deg/h, s, deg/sqrt(h)). Everything else adds to it at
+//! some τ, and a filter takes away at short ones. So the noise is too high when the least σ(τ)·√τ/60 over octaves up to
+//! a twentieth of the record is more than twenty times the typical N, and too low when the greatest is less than a
+//! twentieth of it. Twenty: above it lies the smallest mistake of the clock, √1000 = 32 for ms taken as s; below it lie
+//! units of one family, which differ by a factor of three at most.
+
+use super::{Condition, Facts, GyroFact, earth_rate, id_of, mistakes, record};
+use crate::acceptance::record::{ConditionRecord, ConditionStatus};
+use crate::i18n::{Arg, Note};
+use crate::recording::Role;
+
+pub(super) struct NoiseLevel;
+
+/// Ratio beyond which a unit is not merely bad.
+const FAR: f64 = 20.0;
+/// Factor within which a mistake explains the ratio.
+const EXPLAINED: f64 = 3.0;
+
+impl Condition for NoiseLevel {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        let Some(typical) = facts.limits.expected("angle_random_walk").filter(|n| *n > 0.0) else {
+            facts.checks.not_made("noise_level", None, "check_list.no_typical_noise");
+            return vec![];
+        };
+        facts.gyros.iter().filter_map(|g| one(g, typical, facts)).collect()
+    }
+}
+
+/// Least and greatest σ(τ)·√τ/60 over octaves, deg/sqrt(h).
+pub(super) fn white_levels(gyro: &GyroFact) -> Option<(f64, f64)> {
+    let longest_s = (gyro.longest_stretch_s / 20.0).max(gyro.tau0_s);
+    let levels = gyro
+        .deviations
+        .iter()
+        .filter(|(tau_s, deviation)| *tau_s <= longest_s * 1.000_001 && deviation.is_finite())
+        .map(|(tau_s, deviation)| deviation * tau_s.sqrt() / 60.0);
+    let range = levels.fold((f64::INFINITY, 0.0f64), |(low, high), n| (low.min(n), high.max(n)));
+    range.0.is_finite().then_some(range)
+}
+
+/// Whether the noise would be far from that of the family if the values were multiplied by a factor.
+pub(super) fn is_far(gyro: &GyroFact, factor: f64, facts: &Facts<'_>) -> bool {
+    let typical = facts.limits.expected("angle_random_walk").filter(|n| *n > 0.0);
+    typical.zip(white_levels(gyro)).is_some_and(|(typical, (low, high))| {
+        let factor = factor.abs();
+        low * factor > FAR * typical || high * factor * FAR < typical
+    })
+}
+
+fn one(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let levels = white_levels(gyro);
+    match levels {
+        Some(_) => facts.checks.made("noise_level", Some(&gyro.channel), "noise_level"),
+        None => facts.checks.not_made("noise_level", Some(&gyro.channel), "check_list.short"),
+    }
+    let (low, high) = levels?;
+    let ratio = if low > FAR * typical {
+        low / typical
+    } else if high * FAR < typical {
+        high / typical
+    } else {
+        1.0
+    };
+    let far = ratio != 1.0;
+    let why = if far { mistakes::either(explain(gyro, ratio, facts)) } else { None };
+    let (status, key) = match (far, why.is_some()) {
+        (false, _) => (ConditionStatus::Ok, "noise_level.usual"),
+        (true, true) => (ConditionStatus::Invalid, "noise_level.mistake"),
+        (true, false) => (ConditionStatus::Invalid, "noise_level.far"),
+    };
+    let mut note = Note::new(key)
+        .with("channel", gyro.channel.clone())
+        .with("low", low)
+        .with("high", high)
+        .with("typical", typical);
+    if let Some(why) = why {
+        note = note.with("why", why);
+    }
+    let observed = [("least_arw", low), ("greatest_arw", high)];
+    let required = Note::new("noise_level.required")
+        .with("typical", Arg::Stated(typical))
+        .with("factor", Arg::Stated(FAR));
+    Some(record(id_of("noise_level", &gyro.channel, facts), status, &observed, Some(required), note))
+}
+
+/// The mistakes that explain a ratio, the nearest first and those as near as a fifth after it. The Earth rate tells a
+/// wrong unit of the rate, which it shows, from a wrong unit of the time, which it does not.
+fn explain(gyro: &GyroFact, ratio: f64, facts: &Facts<'_>) -> Vec<Note> {
+    let spec = facts.procedure.channel(&gyro.channel);
+    let increments = spec.is_some_and(|s| s.channel.role == Role::AngleIncrement);
+    let earth = earth_rate::agrees(gyro, facts);
+    let off = |expected: f64| (ratio / expected).ln().abs();
+    let mut found: Vec<(f64, Note)> = Vec::new();
+    if earth != Some(true) {
+        let unit = spec.map(|s| mistakes::rate_factors(&s.unit_in_file)).unwrap_or_default();
+        found.extend(unit.into_iter().map(|m| (off(1.0 / m.factor), m.note)));
+    }
+    if earth != Some(false) && facts.has_stamps {
+        // σ does not change with the scale of the time, and √τ does; an increment is divided by the interval.
+        let power = if increments { 0.5 } else { -0.5 };
+        found.extend(mistakes::time_factors().into_iter().map(|m| (off(m.factor.powf(power)), m.note)));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = found.first().map_or(f64::INFINITY, |f| f.0);
+    found.retain(|f| f.0 <= EXPLAINED.ln() && f.0 <= nearest + 1.2f64.ln());
+    found.into_iter().take(3).map(|f| f.1).collect()
+}

@@ -1,0 +1,51 @@
+//! What was done to the output before it was recorded: coarse steps, smoothing. Remarks only.
+
+use super::{Condition, Facts, GyroFact, record};
+use crate::acceptance::record::{ConditionRecord, ConditionStatus};
+use crate::i18n::Note;
+
+pub(super) struct Output;
+
+/// Step of the output in units of the noise of a sample from which it adds 2 % to the variance.
+const COARSE: f64 = 0.5;
+/// Scatter of neighbouring samples over that of white noise below which the output is smoothed.
+const SMOOTH: f64 = 0.5;
+
+impl Condition for Output {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        facts.gyros.iter().flat_map(one).collect()
+    }
+}
+
+fn one(gyro: &GyroFact) -> Vec<ConditionRecord> {
+    let Some(&(_, sample)) = gyro.deviations.first().filter(|(tau, d)| *tau <= 1.5 * gyro.tau0_s && *d > 0.0)
+    else {
+        return vec![];
+    };
+    let mut found = Vec::new();
+    let mut remark = |note: Note| {
+        let required = Note::new("output.required");
+        let id = format!("output.{}", gyro.channel);
+        found.push(record(id, ConditionStatus::Remark, &[("sample_deg_h", sample)], Some(required), note));
+    };
+    if let Some(step) = gyro.quantization_step_deg_h.filter(|q| *q > COARSE * sample) {
+        remark(
+            Note::new("output.coarse")
+                .with("channel", gyro.channel.clone())
+                .with("step", step)
+                .with("ratio", step / sample),
+        );
+    }
+    if let Some(n) = gyro.angle_random_walk {
+        let white = 60.0 * n / gyro.tau0_s.sqrt();
+        if sample < SMOOTH * white {
+            remark(
+                Note::new("output.smoothed")
+                    .with("channel", gyro.channel.clone())
+                    .with("sample", sample)
+                    .with("white", white),
+            );
+        }
+    }
+    found
+}

@@ -1,0 +1,37 @@
+//! Whether the record is of one piece: a step of the mean, a change of the noise. Remarks only: a unit may do so, and
+//! then its limits judge it; but so does a record that was put together from two.
+
+use super::{Condition, Facts, record};
+use crate::acceptance::record::{ConditionRecord, ConditionStatus};
+use crate::i18n::Note;
+
+pub(super) struct Steadiness;
+
+impl Condition for Steadiness {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        let mut found = Vec::new();
+        for gyro in facts.gyros {
+            let id = format!("steadiness.{}", gyro.channel);
+            let required = || Some(Note::new("steadiness.required"));
+            if let Some(step) = gyro.bias_step {
+                let note = Note::new("steadiness.step")
+                    .with("channel", gyro.channel.clone())
+                    .with("size", step.size_deg_h)
+                    .with("time_h", step.time_s / 3600.0)
+                    .with("significance", step.significance);
+                let observed = [("step_deg_h", step.size_deg_h), ("step_at_s", step.time_s)];
+                found.push(record(id.clone(), ConditionStatus::Remark, &observed, required(), note));
+            }
+            if let Some(change) = gyro.noise_change {
+                let note = Note::new("steadiness.noise")
+                    .with("channel", gyro.channel.clone())
+                    .with("ratio", change.ratio)
+                    .with("loudest_h", change.loudest_s / 3600.0)
+                    .with("quietest_h", change.quietest_s / 3600.0);
+                let observed = [("noise_ratio", change.ratio)];
+                found.push(record(id, ConditionStatus::Remark, &observed, required(), note));
+            }
+        }
+        found
+    }
+}

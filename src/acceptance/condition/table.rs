@@ -1,0 +1,426 @@
+//! What a test on a rate table must have been: steps found, the rates reached, the angle in agreement, and an output that
+//! follows the table. A mistake of sign, unit or axis is named.
+
+use super::checks::CheckLog;
+use super::table_motion::{self, Settling};
+use super::{mistakes, record};
+use crate::acceptance::record::{ConditionRecord, ConditionStatus};
+use crate::i18n::{Arg, Note};
+use crate::units::RateUnit;
+
+/// What was found of the table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TableFacts {
+    /// Time by the angle of the table over time by the stamps.
+    pub time_factor: Option<f64>,
+    /// Steps that are evaluated from too early on.
+    pub settling: Settling,
+    /// Steps that were evaluated.
+    pub steps: usize,
+    /// Stretches that were too short.
+    pub too_short: usize,
+    /// Least time at one rate, s.
+    pub minimum_step_s: f64,
+    /// Lowest and highest rate of a step, deg/h.
+    pub lowest: f64,
+    /// Highest rate of a step, deg/h.
+    pub highest: f64,
+    /// True when the table turns about its other axis.
+    pub about_outer: bool,
+    /// Rates that differ.
+    pub levels: usize,
+    /// Full scale that must be reached, deg/h.
+    pub full_scale: Option<f64>,
+    /// Relative tolerance of it.
+    pub tolerance: f64,
+    /// Largest relative difference between the angle and the rate of the table, with the rate at which it was, deg/h.
+    pub disagreement: Option<(f64, f64)>,
+    /// Mean rate of the inner axis during the step of the outer one in which it is largest beside it, and the rate of the
+    /// step, deg/h.
+    pub inner_during_step: Option<(f64, f64)>,
+    /// The channels.
+    pub channels: Vec<ChannelFact>,
+}
+
+/// How a channel follows the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelFact {
+    /// Channel.
+    pub channel: String,
+    /// Whether something is asked of it.
+    pub asked: bool,
+    /// Unit declared for it.
+    pub unit: String,
+    /// Output per input; `None` where no line could be drawn.
+    pub factor: Option<f64>,
+    /// Standard uncertainty of it.
+    pub standard: f64,
+    /// What the line leaves at rest once the Earth rate along the axis is taken out, deg/h, and that Earth rate, where the
+    /// site tells it.
+    pub bias_and_earth: Option<(f64, f64)>,
+    /// Largest bias that the limits allow, deg/h.
+    pub bias_limit: Option<f64>,
+}
+
+/// Factors that a unit may have, a dead zone or a bent response included; mistakes of unit lie beyond.
+const FOLLOWS: std::ops::RangeInclusive<f64> = 0.3..=2.0;
+
+/// Degrees in a radian.
+const RADIAN: f64 = 180.0 / std::f64::consts::PI;
+/// Times full scale from which the value stated for it, or the unit of the table, is wrong.
+const BEYOND: f64 = 3.0;
+/// Rate of the inner axis beside that of the outer one from which it does not rest: a misalignment of 0.3 mrad.
+const RESTS: f64 = 3e-4;
+/// Share of the Earth rate within which a bias is twice that of the other sign.
+const TWICE: f64 = 0.05;
+/// Least Earth rate along the axis by which that is told, deg/h.
+const LEAST_EARTH: f64 = 3.0;
+
+/// Judges a test on a table, and tells which checks were made.
+pub fn judge_and_tell(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRecord> {
+    let all = judge(facts);
+    let made = |id: &str| all.iter().any(|c| c.id.split('.').next() == Some(id));
+    let tell = |id: &str, condition: &str, reason: &'static str| {
+        if made(condition) {
+            checks.made(id, None, condition);
+        } else {
+            checks.not_made(id, None, reason);
+        }
+    };
+    tell("table_response", "table_response", "check_list.no_response");
+    tell("table_reached", "table_reached", "check_list.no_full_scale");
+    tell("table_agreement", "table_agreement", "check_list.angle_or_rate_alone");
+    match facts.time_factor {
+        Some(_) => checks.made("clock_by_turns", None, "table_stamps"),
+        None => checks.not_made("clock_by_turns", None, "check_list.angle_or_rate_alone"),
+    }
+    for c in facts.channels.iter().filter(|c| c.asked) {
+        let reason = match c.bias_and_earth {
+            None => "check_list.no_site",
+            Some(_) if facts.about_outer => "check_list.other_axis",
+            Some((_, earth)) if earth.abs() < LEAST_EARTH => "check_list.small_earth_rate",
+            Some(_) => {
+                checks.made("earth_sign", Some(&c.channel), "table_earth_rate");
+                continue;
+            }
+        };
+        checks.not_made("earth_sign", Some(&c.channel), reason);
+    }
+    all
+}
+
+/// Judges a test on a table.
+pub fn judge(facts: &TableFacts) -> Vec<ConditionRecord> {
+    let mut all = vec![steps(facts)];
+    // With stamps in a wrong unit every rate is wrong, and nothing else is worth a word.
+    if let Some(wrong) = table_motion::stamps(facts) {
+        all.push(wrong);
+        return all;
+    }
+    // A table that was not at its rate yet falls short of it, and its angle of its rate.
+    let settling = table_motion::settling(facts);
+    if settling.as_ref().is_none_or(|s| s.status != ConditionStatus::Invalid) {
+        all.extend(reached(facts));
+        all.extend(agreement(facts));
+    }
+    all.extend(settling);
+    all.extend(still(facts));
+    // A channel of which nothing is asked may lie across the axis that turns.
+    let asked = || facts.channels.iter().filter(|c| c.asked);
+    all.extend(asked().filter_map(|c| follows(c, facts)));
+    all.extend(asked().filter_map(|c| earth_sign(c, facts)));
+    all
+}
+
+/// The id of a condition on a channel: the channel is named where there are several.
+fn id_of(id: &str, channel: &ChannelFact, facts: &TableFacts) -> String {
+    if facts.channels.len() > 1 { format!("{id}.{}", channel.channel) } else { id.to_owned() }
+}
+
+/// Whether the inner axis rested while the outer one turned.
+fn still(facts: &TableFacts) -> Option<ConditionRecord> {
+    let (inner, outer) = facts.inner_during_step.filter(|_| facts.about_outer)?;
+    let moves = (inner / outer).abs() > RESTS;
+    let (status, key) = if moves {
+        (ConditionStatus::Invalid, "on_table.inner_moves")
+    } else {
+        (ConditionStatus::Ok, "on_table.inner_rests")
+    };
+    let note = Note::new(key)
+        .with("inner", RateUnit::up_to(outer).figures(inner, 3))
+        .with("outer", RateUnit::up_to(outer).figures(outer, 4));
+    let required = Note::new("on_table.required.inner_rests");
+    Some(record("inner_axis_still", status, &[("inner_deg_s", inner / 3600.0)], Some(required), note))
+}
+
+/// A bias that is the Earth rate taken out with the wrong sign, twice.
+fn earth_sign(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
+    let (bias, earth) =
+        channel.bias_and_earth.filter(|(_, e)| !facts.about_outer && e.abs() >= LEAST_EARTH)?;
+    let within = channel.bias_limit.unwrap_or(0.0).clamp(TWICE * earth.abs(), 0.5 * earth.abs());
+    if (bias + 2.0 * earth).abs() > within {
+        return None;
+    }
+    // Without a limit on the bias nothing that is judged rests on it.
+    let status =
+        if channel.bias_limit.is_some() { ConditionStatus::Invalid } else { ConditionStatus::Remark };
+    let note = Note::new("on_table.earth_sign")
+        .with("bias", Arg::figures(bias, 4))
+        .with("earth", Arg::figures(earth, 4));
+    let id = id_of("table_earth_rate", channel, facts);
+    Some(record(id, status, &[("bias_deg_h", bias)], Some(Note::new("on_table.required.earth_sign")), note))
+}
+
+impl TableFacts {
+    /// A rate of the table, in the unit that its highest one reads well in.
+    fn rate(&self, rate_deg_h: f64) -> Arg {
+        RateUnit::up_to(self.highest.abs().max(self.lowest.abs())).figures(rate_deg_h, 5)
+    }
+}
+
+fn steps(facts: &TableFacts) -> ConditionRecord {
+    let enough = facts.levels >= 2;
+    let (status, key) = match (enough, facts.steps) {
+        (true, _) if facts.about_outer => (ConditionStatus::Ok, "on_table.steps_found_outer"),
+        (true, _) => (ConditionStatus::Ok, "on_table.steps_found"),
+        (false, 0) if facts.too_short > 0 => (ConditionStatus::Invalid, "on_table.steps_too_short"),
+        (false, 0) => (ConditionStatus::Invalid, "on_table.steps_none"),
+        (false, found) if facts.too_short > found => {
+            (ConditionStatus::Invalid, "on_table.steps_mostly_short")
+        }
+        (false, _) => (ConditionStatus::Invalid, "on_table.steps_one"),
+    };
+    let note = Note::new(key)
+        .with("steps", facts.steps)
+        .with("levels", facts.levels)
+        .with("short", facts.too_short)
+        .with("least", Arg::figures(facts.minimum_step_s, 3))
+        .with("low", facts.rate(facts.lowest))
+        .with("high", facts.rate(facts.highest));
+    let observed = [("steps", facts.steps as f64), ("levels", facts.levels as f64)];
+    record("table_steps", status, &observed, Some(Note::new("on_table.required.steps")), note)
+}
+
+/// Whether full scale was reached, on every side that was turned to.
+fn reached(facts: &TableFacts) -> Option<ConditionRecord> {
+    let full = facts.full_scale.filter(|_| facts.steps > 0)?;
+    let least = full * (1.0 - facts.tolerance);
+    let sides = [facts.highest, -facts.lowest];
+    let turned = sides.iter().filter(|s| **s > 0.0);
+    let worst = turned.fold(f64::INFINITY, |m, s| m.min(*s));
+    let one_side = sides.iter().any(|s| *s <= 0.0);
+    let worst = if worst.is_finite() { worst } else { 0.0 };
+    let (status, key) = if worst < least {
+        (ConditionStatus::Invalid, "on_table.not_reached")
+    } else if sides.iter().any(|s| *s > BEYOND * full) {
+        (ConditionStatus::Invalid, "on_table.beyond")
+    } else if one_side {
+        (ConditionStatus::Remark, "on_table.one_side")
+    } else {
+        (ConditionStatus::Ok, "on_table.reached")
+    };
+    let note = Note::new(key)
+        .with("low", facts.rate(facts.lowest))
+        .with("high", facts.rate(facts.highest))
+        .with("full", facts.rate(full));
+    let required = Note::new("on_table.required.reached")
+        .with("full", facts.rate(full))
+        .with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
+    Some(record("table_reached", status, &[("worst_deg_s", worst / 3600.0)], Some(required), note))
+}
+
+/// Whether angle and rate of the table tell the same.
+fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
+    let (difference, rate) = facts.disagreement?;
+    let agrees = difference.abs() <= facts.tolerance;
+    let factor = 1.0 + difference;
+    let key = if agrees {
+        "on_table.agrees"
+    } else if (factor + 1.0).abs() <= facts.tolerance {
+        "on_table.angle_reversed"
+    } else if (factor * RADIAN - 1.0).abs() <= facts.tolerance.max(0.01) {
+        "on_table.angle_in_radians"
+    } else if factor.abs() < 0.98 {
+        "on_table.fell_short"
+    } else {
+        "on_table.disagrees"
+    };
+    let status = if agrees { ConditionStatus::Ok } else { ConditionStatus::Invalid };
+    let note = Note::new(key)
+        .with("percent", Arg::figures(100.0 * difference, 3))
+        .with("angle", facts.rate(rate * factor))
+        .with("rate", facts.rate(rate));
+    let required =
+        Note::new("on_table.required.agreement").with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
+    Some(record("table_agreement", status, &[("difference", difference)], Some(required), note))
+}
+
+/// Whether the output follows the table: its factor is near 1, and otherwise what is wrong. Where the input axis is square to
+/// the axis that turns, nothing but a turn of the inner axis tells.
+fn follows(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
+    let id = id_of("table_response", channel, facts);
+    let required = Some(Note::new("on_table.required.response"));
+    let Some(factor) = channel.factor else {
+        let note = Note::new("on_table.no_line");
+        return (!facts.about_outer).then(|| record(id, ConditionStatus::Invalid, &[], required, note));
+    };
+    let observed = [("factor", factor)];
+    if FOLLOWS.contains(&factor) {
+        let note = Note::new("on_table.follows").with("factor", Arg::figures(factor, 5));
+        return Some(record(id, ConditionStatus::Ok, &observed, required, note));
+    }
+    let note = does_not_follow(channel, factor, facts);
+    Some(record(id, ConditionStatus::Invalid, &observed, required, note))
+}
+
+/// What is wrong with an output that does not follow the table.
+fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> Note {
+    let shown = Arg::figures(factor, 4);
+    let mistakes = mistakes::rate_factors(&channel.unit);
+    let mistaken = |why: Note| {
+        Note::new("on_table.mistaken").with("factor", shown.clone()).with("mistake", Arg::from(why))
+    };
+    // An exchange of unit leaves next to nothing of the output, which is known well all the same.
+    let resolved = factor.abs() > 10.0 * channel.standard;
+    let exchanged = |m: &&mistakes::Mistake| m.usual && FOLLOWS.contains(&(m.factor * factor));
+    if let Some(exchange) = mistakes.iter().find(exchanged).filter(|_| resolved) {
+        return mistaken(exchange.note.clone());
+    }
+    let other = facts
+        .channels
+        .iter()
+        .find(|c| c.channel != channel.channel && c.factor.is_some_and(|f| FOLLOWS.contains(&f.abs())));
+    if factor.abs() < 0.1 && factor.abs() < 20.0 * channel.standard.max(0.005) {
+        return match other {
+            Some(other) if facts.channels.len() > 2 => Note::new("table_motion.one_axis")
+                .with("channel", channel.channel.as_str())
+                .with("other", other.channel.as_str())
+                .with("factor", shown),
+            Some(other) => Note::new("on_table.another_axis")
+                .with("channel", channel.channel.as_str())
+                .with("other", other.channel.as_str())
+                .with("factor", shown),
+            None => Note::new("on_table.does_not_follow").with("factor", shown),
+        };
+    }
+    if FOLLOWS.contains(&-factor) {
+        return Note::new("on_table.reversed").with("factor", shown);
+    }
+    let off = |m: &mistakes::Mistake| (m.factor * factor.abs()).ln().abs();
+    let nearest = mistakes.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|m| off(m) < 0.1);
+    match nearest {
+        Some(mistake) => mistaken(mistake.note),
+        None => Note::new("on_table.off").with("factor", shown),
+    }
+}
+
+/// What a channel makes of the Earth's rotation in several positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EarthFact {
+    /// Channel.
+    pub channel: String,
+    /// Whether there are others.
+    pub several: bool,
+    /// Unit declared for it.
+    pub unit: String,
+    /// Output per Earth rate expected.
+    pub factor: f64,
+    /// Standard uncertainty of it.
+    pub standard: f64,
+    /// Bias, deg/h.
+    pub bias: f64,
+    /// Latitude, where all axes are vertical: what the factor says of it.
+    pub latitude_deg: Option<f64>,
+    /// Pairs of positions that were turned in software only.
+    pub software: Vec<(String, String)>,
+    /// Channel that shows the Earth's rotation between these positions in place of this one, and its factor.
+    pub turned_instead: Option<(String, f64)>,
+}
+
+/// Judges whether all stretches of a procedure were found.
+pub fn judge_stretches(stated: usize, missing: usize) -> ConditionRecord {
+    let (status, key) = if missing == 0 {
+        (ConditionStatus::Ok, "known.stretches")
+    } else {
+        (ConditionStatus::Invalid, "known.stretches_missing")
+    };
+    let note = Note::new(key).with("n", stated).with("missing", missing);
+    record("known_stretches", status, &[("stretches", (stated - missing) as f64)], None, note)
+}
+
+/// Largest scale factor, output per input in the declared units, of a unit that works: the worst MEMS gyro is off by
+/// some per cent, and a wrong unit by a factor of 57 or 3600.
+const LARGEST_SCALE: f64 = 5.0;
+
+/// Judges whether a scale factor is possible; nothing where it is. One that is too small is a fault of the unit.
+pub fn judge_scale(channel: &str, factor: f64) -> Option<ConditionRecord> {
+    if factor.abs() <= LARGEST_SCALE {
+        return None;
+    }
+    let high = || Arg::Stated(LARGEST_SCALE);
+    let note = Note::new("plausible.scale").with("channel", Arg::Text(channel.to_owned()));
+    let note = note.with("value", Arg::figures(factor, 5)).with("high", high());
+    let required = Note::new("plausible.scale_required").with("high", high());
+    let observed = [("factor", factor)];
+    Some(record("table_scale", ConditionStatus::Invalid, &observed, Some(required), note))
+}
+
+/// Judges whether positions show the Earth's rotation as it is.
+pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
+    let id = if fact.several { format!("known_earth.{}", fact.channel) } else { "known_earth".to_owned() };
+    let required = Some(Note::new("known.required.earth"));
+    let observed = [("factor", fact.factor)];
+    let allowed = 4.0 * fact.standard;
+    let shown = Arg::figures(fact.factor, 4);
+    let invalid =
+        |note: Note| record(id.clone(), ConditionStatus::Invalid, &observed, required.clone(), note);
+    if let Some((first, second)) = fact.software.first() {
+        return invalid(
+            Note::new("known.software").with("first", first.as_str()).with("second", second.as_str()),
+        );
+    }
+    if let Some((other, their)) = &fact.turned_instead {
+        return invalid(
+            Note::new("known.software_axis")
+                .with("channel", fact.channel.as_str())
+                .with("other", other.as_str())
+                .with("theirs", Arg::figures(*their, 4))
+                .with("factor", shown),
+        );
+    }
+    if (fact.factor - 1.0).abs() <= allowed.max(0.02) {
+        let key = if fact.standard > 0.25 { "known.earth_weak" } else { "known.earth_seen" };
+        let note = Note::new(key).with("factor", shown).with("uncertainty", Arg::figures(fact.standard, 2));
+        return record(id, ConditionStatus::Ok, &observed, required, note);
+    }
+    if (fact.factor + 1.0).abs() <= allowed.max(0.02) {
+        return invalid(Note::new("known.reversed").with("factor", shown));
+    }
+    // A factor that is not known to a tenth says nothing of units, nor of a latitude.
+    let known = allowed <= 0.1 * fact.factor.abs();
+    let units = || mistakes::rate_factors(&fact.unit).into_iter().filter(|_| known);
+    let off = |m: &mistakes::Mistake| (m.factor * fact.factor - 1.0).abs();
+    let usual = units().any(|m| m.usual && off(&m) <= 0.02);
+    if fact.factor.abs() <= allowed.max(0.02) && !usual {
+        return invalid(Note::new("known.not_turned").with("factor", shown));
+    }
+    let mistake = units().filter(|m| off(m) <= (allowed / fact.factor.abs()).max(0.02)).min_by(|a, b| {
+        let off = |m: &mistakes::Mistake| (m.factor * fact.factor).ln().abs();
+        off(a).total_cmp(&off(b))
+    });
+    if let Some(mistake) = mistake {
+        let note =
+            Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note));
+        return invalid(note);
+    }
+    let sine = fact.latitude_deg.map(|l| l.to_radians().sin() * fact.factor);
+    match sine.filter(|s| s.abs() <= 1.0 && known) {
+        Some(sine) => invalid(
+            Note::new("known.latitude")
+                .with("factor", shown)
+                .with("stated", Arg::figures(fact.latitude_deg.unwrap_or(0.0), 4))
+                .with("fits", Arg::figures(sine.asin().to_degrees(), 3)),
+        ),
+        None => invalid(Note::new("known.off").with("factor", shown)),
+    }
+}

@@ -1,0 +1,45 @@
+//! Whether the values are spread as noise is. Noise of many causes is normal or has longer tails; values that were clipped,
+//! thinned out or replaced have shorter ones, and then every figure of their noise is too small.
+
+use super::{Condition, Facts, id_of, record};
+use crate::acceptance::record::{ConditionRecord, ConditionStatus};
+use crate::i18n::Note;
+
+pub(super) struct Tails;
+
+/// Excess kurtosis of Gaussian noise clipped beyond three standard deviations is −0.16, and its N 1.5 % too small.
+const SHORT: f64 = -0.1;
+/// Standard errors that it must lie below zero by.
+const CLEAR: f64 = 8.0;
+
+impl Condition for Tails {
+    fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
+        let one = |gyro: &super::GyroFact| {
+            let Some(shape) = gyro.tails.filter(|s| s.samples > 0) else {
+                facts.checks.not_made("distribution", Some(&gyro.channel), "check_list.no_plain_noise");
+                return None;
+            };
+            facts.checks.made("distribution", Some(&gyro.channel), "tails");
+            let error = (24.0 / shape.samples as f64).sqrt();
+            if shape.excess_kurtosis > (SHORT - shape.explained).min(-CLEAR * error - shape.explained) {
+                return None;
+            }
+            let note = Note::new("tails.short")
+                .with("channel", gyro.channel.clone())
+                .with("kurtosis", shape.excess_kurtosis)
+                .with("error", error)
+                .with("beyond", shape.beyond)
+                .with("sigma", shape.sigma)
+                .with("expected", shape.expected_beyond);
+            let observed = [
+                ("excess_kurtosis", shape.excess_kurtosis),
+                ("beyond", shape.beyond as f64),
+                ("expected_beyond", shape.expected_beyond),
+            ];
+            let required = Some(Note::new("tails.required"));
+            let id = id_of("tails", &gyro.channel, facts);
+            Some(record(id, ConditionStatus::Invalid, &observed, required, note))
+        };
+        facts.gyros.iter().filter_map(one).collect()
+    }
+}

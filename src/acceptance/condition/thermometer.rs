@@ -1,0 +1,77 @@
+//! The scale of a thermometer by its readings alone, where no temperature is stated that would tell it.
+
+use super::record;
+use crate::acceptance::record::{ConditionRecord, ConditionStatus};
+use crate::i18n::{Arg, Note};
+use crate::units::Unit;
+
+/// Temperatures of rooms with tables in them, degC.
+const ROOM: std::ops::RangeInclusive<f64> = 5.0..=45.0;
+
+/// Temperatures that a unit is tested at, degC: beyond, the readings are none.
+const POSSIBLE: std::ops::RangeInclusive<f64> = -100.0..=200.0;
+
+/// Units of temperatures.
+const UNITS: [&str; 3] = ["degC", "K", "degF"];
+
+/// A thermometer with what it read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thermometer {
+    /// Its channel.
+    pub channel: String,
+    /// Unit declared for it.
+    pub unit: String,
+    /// Mean of its readings as declared, degC.
+    pub mean_deg_c: f64,
+    /// Whether something that is asked for rests on it.
+    pub counts: bool,
+}
+
+/// Judges the scale of a thermometer: nothing where its readings are those of a room, or of no room on any scale and
+/// possible.
+pub fn judge_scale_of_temperature(t: &Thermometer) -> Option<ConditionRecord> {
+    let (inside, own) = (Unit::parse("degC").ok()?, Unit::parse(&t.unit).ok()?);
+    if ROOM.contains(&t.mean_deg_c) {
+        return None;
+    }
+    let as_read = inside.convert(t.mean_deg_c, &own).ok()?;
+    let of_room = UNITS.iter().filter(|u| **u != own.text()).find_map(|u| {
+        let meant = Unit::parse(u).ok()?.convert(as_read, &inside).ok()?;
+        ROOM.contains(&meant).then_some((*u, meant))
+    });
+    let note = match of_room {
+        Some((unit, meant)) => {
+            Note::new("units.thermometer").with("unit", unit).with("meant", Arg::figures(meant, 3))
+        }
+        None if !POSSIBLE.contains(&t.mean_deg_c) => Note::new("units.thermometer_impossible"),
+        None => return None,
+    };
+    let note = note
+        .with("channel", Arg::Text(t.channel.clone()))
+        .with("value", Arg::figures(as_read, 4))
+        .with("declared", t.unit.as_str());
+    let status = if t.counts { ConditionStatus::Invalid } else { ConditionStatus::Remark };
+    let required = Note::new("units.required").with("unit", t.unit.as_str());
+    let observed = [("mean_deg_c", t.mean_deg_c)];
+    Some(record(format!("units.{}", t.channel), status, &observed, Some(required), note))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn judged(unit: &str, mean_deg_c: f64) -> Option<String> {
+        let t = Thermometer { channel: "t".to_owned(), unit: unit.to_owned(), mean_deg_c, counts: true };
+        judge_scale_of_temperature(&t).map(|r| r.note)
+    }
+
+    #[test]
+    fn readings_of_a_room_on_another_scale_are_named() {
+        assert_eq!(judged("degC", 21.0), None);
+        assert_eq!(judged("degC", -40.0), None);
+        assert!(judged("degC", 293.0).is_some() && judged("degC", 70.0).is_some());
+        // 20 read as K and as degF.
+        assert!(judged("K", -253.15).is_some() && judged("degF", -6.7).is_some());
+        assert!(judged("degC", 500.0).is_some());
+    }
+}

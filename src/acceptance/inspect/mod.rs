@@ -1,0 +1,50 @@
+//! `sagnac inspect`: what a recording holds and which tests it can support, in plain text.
+//!
+//! Columns are told apart first (`columns`), the recording is read once (`gather`), every judgement is made from
+//! what was gathered (`judge`, `support`), and the words are laid out last (`show`).
+
+mod columns;
+mod gather;
+mod judge;
+mod layout;
+mod quantity;
+mod show;
+mod show_gyro;
+mod support;
+mod tracks;
+
+use crate::acceptance::run::RunError;
+use crate::i18n::Lang;
+use crate::ingest::Source;
+use std::path::Path;
+
+/// Reads a recording and says what it holds. `sample_rate_hz` is used where no time column serves, and
+/// before what the file states; `progress` is told bytes read and bytes in all.
+///
+/// # Errors
+/// [`RunError::Ingest`] when the file cannot be read at all, or holds no column of numbers.
+pub fn inspect(
+    path: &Path,
+    sample_rate_hz: Option<f64>,
+    lang: Lang,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<String, RunError> {
+    inspect_source(&crate::ingest::open(path)?, sample_rate_hz, lang, progress)
+}
+
+/// The same for an opened recording.
+///
+/// # Errors
+/// As [`inspect`].
+pub fn inspect_source(
+    source: &Source,
+    sample_rate_hz: Option<f64>,
+    lang: Lang,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<String, RunError> {
+    let seen = gather::gather(source, sample_rate_hz, progress)?;
+    Ok(show::text(source, &seen, lang))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,337 @@
+//! The words: file, columns, time base, faults.
+
+use super::columns::{Content, Listed};
+use super::gather::{Seen, TimeBase};
+use super::layout::{Page, SAME, word};
+use super::quantity::{count, plain, time};
+use super::{show_gyro, support};
+use crate::i18n::{Arg, Lang, Localize, Note, decimal};
+use crate::ingest::{ChannelFacts, Packing, Source};
+use crate::recording::Role;
+use crate::recording::timebase::Measured;
+use crate::units::Unit;
+
+/// Faults listed one by one.
+const LISTED: usize = 3;
+
+/// Everything that was found, in words.
+pub(super) fn text(source: &Source, seen: &Seen, lang: Lang) -> String {
+    let mut page = Page::new(lang);
+    page.title(&source.path().display().to_string());
+    file(&mut page, source, seen);
+    columns(&mut page, seen);
+    time_base(&mut page, seen);
+    faults(&mut page, seen);
+    show_gyro::gyros(&mut page, seen);
+    show_gyro::others(&mut page, seen);
+    support::statements(&mut page, seen);
+    page.finish()
+}
+
+fn file(page: &mut Page, source: &Source, seen: &Seen) {
+    page.heading(word("inspect.file"));
+    let key = match source.packing() {
+        Packing::Plain => "inspect.format_plain",
+        Packing::Gzip | Packing::Zstd => "inspect.format_packed",
+    };
+    let format = Note::new(key).with("format", source.format()).with("packing", source.packing().id());
+    page.row(word("inspect.format"), format);
+    page.row(word("inspect.rows"), count(seen.report.rows));
+    if seen.report.files.len() > 1 {
+        joined(page, seen);
+    }
+    if seen.report.facts.bytes > 0 && seen.report.files.len() < 2 {
+        let size = Note::new("inspect.bytes").with("bytes", count(seen.report.facts.bytes));
+        page.row(word("inspect.size"), size);
+        page.row("SHA-256", seen.report.facts.sha256.as_str());
+    }
+    for (i, note) in source.notes().iter().enumerate() {
+        page.row(if i == 0 { word("inspect.reader") } else { SAME.into() }, note.clone());
+    }
+    for (i, (key, value)) in source.metadata().iter().enumerate() {
+        let label = if i == 0 { word("inspect.stated.label") } else { SAME.into() };
+        page.row(label, format!("{key}: {value}"));
+    }
+    for serial in source.stated_serials() {
+        page.row(SAME, Note::new("inspect.stated.serial").with("serial", serial));
+    }
+}
+
+/// The files of a recording of several.
+fn joined(page: &mut Page, seen: &Seen) {
+    for file in &seen.report.files {
+        let note = Note::new("time_base.file")
+            .with("file", file.path.display().to_string())
+            .with("rows", count(file.facts.rows))
+            .with("start", file.start.clone().unwrap_or_else(|| "-".to_owned()))
+            .with("length", if seen.time.is_known() { time(file.duration_s) } else { "-".into() })
+            .with("sha256", file.facts.sha256.as_str());
+        page.row(word("time_base.joined"), note);
+    }
+}
+
+fn columns(page: &mut Page, seen: &Seen) {
+    page.heading(word("inspect.columns"));
+    let lang = page.lang();
+    let header = [
+        word("inspect.name"),
+        word("inspect.role"),
+        word("inspect.unit"),
+        word("inspect.least"),
+        word("inspect.greatest"),
+        word("inspect.mean"),
+        word("inspect.no_value"),
+    ];
+    let mut rows = vec![header.map(|w| w.say(lang)).to_vec()];
+    let mut remarks = Vec::new();
+    for (place, column) in seen.listed.iter().enumerate() {
+        let slot = seen.places.iter().position(|p| *p == place);
+        let facts = slot.and_then(|s| seen.report.channels.get(s));
+        rows.push(row(column, facts, seen.report.tau0_nominal_s, lang));
+        remarks.extend(remark(column, facts));
+    }
+    page.table(&rows, 3);
+    for remark in remarks {
+        page.row(word("inspect.remark"), remark);
+    }
+}
+
+fn row(column: &Listed, facts: Option<&ChannelFacts>, tau0_s: f64, lang: Lang) -> Vec<String> {
+    let name = column.name.clone();
+    let Some(facts) = facts else {
+        let role = match column.content {
+            Content::Text(_) => word("inspect.text"),
+            _ => word("inspect.empty"),
+        };
+        return vec![name, role.say(lang)];
+    };
+    let guess = &column.guess;
+    let unit = match (guess.unit.text(), guess.unit_is_named) {
+        ("1", _) => "-".to_owned(),
+        (unit, true) => unit.to_owned(),
+        (unit, false) => format!("{unit}?"),
+    };
+    let recorded = |value: f64| as_recorded(value, facts, &guess.unit, tau0_s);
+    let digits = digits(recorded(facts.values.min), recorded(facts.values.max));
+    let shown = |value: f64| {
+        if value.is_finite() { decimal(&figure(recorded(value), digits), lang) } else { "-".into() }
+    };
+    let none = match facts.values.non_finite {
+        0 => "-".to_owned(),
+        n => count(n),
+    };
+    let v = &facts.values;
+    // What rounding leaves of a mean that is zero.
+    let mean = if v.mean.abs() < 1e-12 * v.min.abs().max(v.max.abs()) { 0.0 } else { v.mean };
+    let role = Arg::key("role", facts.role.id()).say(lang);
+    vec![name, role, unit, shown(v.min), shown(v.max), shown(mean), none]
+}
+
+/// Significant digits in which values between two extremes can be told apart.
+fn digits(min: f64, max: f64) -> usize {
+    let ratio = min.abs().max(max.abs()) / (max - min);
+    if ratio.is_finite() && ratio > 1.0 { (4 + ratio.log10().ceil() as usize).clamp(6, 12) } else { 6 }
+}
+
+/// A value for the table: plain between 1e-4 and 1e9.
+fn figure(value: f64, digits: usize) -> String {
+    let exponent = value.abs().log10().floor();
+    if value == 0.0 || !(-4.0..9.0).contains(&exponent) {
+        return plain(value, digits).say(Lang::En);
+    }
+    let decimals = (digits as f64 - 1.0 - exponent).max(0.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A value of a channel in the unit of the file.
+fn as_recorded(value: f64, facts: &ChannelFacts, unit: &Unit, tau0_s: f64) -> f64 {
+    let (value, inside) = match facts.role {
+        Role::AngleIncrement => (value * tau0_s, "arcsec"),
+        _ => (value, facts.unit_inside.as_str()),
+    };
+    Unit::parse(inside).and_then(|inside| inside.convert(value, unit)).unwrap_or(value)
+}
+
+fn remark(column: &Listed, facts: Option<&ChannelFacts>) -> Option<Note> {
+    let about = |key| Note::new(key).with("column", column.name.as_str());
+    match &column.content {
+        Content::Text(sample) if column.guess.role == Role::Time => {
+            return Some(about("inspect.time_is_text").with("sample", sample.as_str()));
+        }
+        Content::Nothing => return Some(about("inspect.nothing_in_it")),
+        _ => {}
+    }
+    let facts = facts?;
+    if column.counts_of_a_gyro() {
+        return Some(about("inspect.gyro_in_counts"));
+    }
+    if facts.values.count > 0 && facts.values.min == facts.values.max {
+        return Some(about("inspect.never_changes"));
+    }
+    let unitless = matches!(column.guess.role, Role::Auxiliary | Role::Counter);
+    let guessed = !column.guess.unit_is_named && !unitless;
+    guessed.then(|| Note::new("inspect.unit_guessed").with("reason", column.guess.reason.clone()))
+}
+
+fn time_base(page: &mut Page, seen: &Seen) {
+    page.heading(word("inspect.time_base"));
+    let report = &seen.report;
+    match &seen.time {
+        TimeBase::Rows(why) | TimeBase::Declared(_, why) => {
+            if let Some(why) = why {
+                page.row(
+                    word("inspect.source"),
+                    Note::new("inspect.stamps_unusable").with("why", why.clone()),
+                );
+            }
+        }
+        TimeBase::Stamps(name) => {
+            let key = if name.to_lowercase().contains("nominal") {
+                "inspect.stamps_nominal"
+            } else {
+                "inspect.stamps"
+            };
+            page.row(word("inspect.source"), Note::new(key).with("column", name.as_str()));
+        }
+    }
+    match &seen.time {
+        TimeBase::Rows(_) => {
+            let note = Note::new("inspect.rows_counted").with("rows", count(report.rows));
+            page.row(word("inspect.rate"), note);
+            return;
+        }
+        TimeBase::Declared(hz, _) => {
+            let note = Note::new("inspect.declared").with("rate", plain(*hz, 6));
+            page.row(word("inspect.source"), note);
+        }
+        TimeBase::Stamps(_) => {}
+    }
+    let rate = Note::new("inspect.rate_is")
+        .with("rate", plain(1.0 / seen.tau0_s, 6))
+        .with("interval", interval(seen.tau0_s));
+    page.row(word("inspect.rate"), rate);
+    if let (TimeBase::Stamps(_), Some(given)) = (&seen.time, seen.declared_hz) {
+        let off = (given * seen.tau0_s - 1.0) * 100.0;
+        let note = Note::new("inspect.rate_given").with("given", plain(given, 6)).with("off", plain(off, 2));
+        page.row(SAME, note);
+    }
+    if let (TimeBase::Stamps(_), Some(clock)) = (&seen.time, &report.clock) {
+        clock_facts(page, clock);
+    }
+    if let TimeBase::Stamps(_) = &seen.time {
+        for note in &report.notes {
+            page.row(SAME, note.clone());
+        }
+    }
+    page.row(word("inspect.length"), time(report.duration_s));
+    if let TimeBase::Stamps(_) = seen.time {
+        if let Some(start) = &report.start {
+            page.row(word("inspect.start"), start.as_str());
+        } else {
+            let start = decimals(report.first_stamp_s, 3);
+            page.row(word("inspect.start"), Note::new("inspect.start_at").with("s", start));
+        }
+        if let Some(jitter) = report.jitter_s {
+            let note = if jitter > 1e-6 * seen.tau0_s {
+                Note::new("inspect.jitter_is")
+                    .with("jitter", time(jitter))
+                    .with("percent", plain(100.0 * jitter / seen.tau0_s, 2))
+            } else {
+                Note::new("inspect.jitter_none")
+            };
+            page.row(word("inspect.jitter"), note);
+        }
+        let i = &report.integrity;
+        let note = match (i.gaps, i.duplicate_timestamps, i.backward_timestamps) {
+            (0, 0, 0) => Note::new("inspect.unbroken"),
+            (gaps, duplicate, backward) => Note::new("inspect.broken")
+                .with("gaps", gaps)
+                .with("missing", i.missing_samples)
+                .with("duplicate", duplicate)
+                .with("backward", backward),
+        };
+        page.row(word("inspect.breaks"), note);
+        list(page, seen, &["gap", "duplicate_timestamp", "backward_timestamp", "rollover"]);
+    }
+}
+
+/// How well the stamps tell the rate, and whether it drifts.
+fn clock_facts(page: &mut Page, clock: &Measured) {
+    let ppm = clock.uncertainty_s / clock.interval_s * 1e6;
+    if ppm > 0.001 {
+        page.row(SAME, Note::new("time_base.uncertainty").with("ppm", plain(ppm, 2)));
+    }
+    if let (Some(drift), Some(sigma)) = (clock.drift, clock.drift_uncertainty)
+        && drift.abs() > 4.0 * sigma
+        && drift.abs() > 1e-7
+    {
+        let note = Note::new("time_base.drift").with("ppm", plain(drift * 1e6, 2));
+        page.row(SAME, note.with("sigma", plain(sigma * 1e6, 2)));
+    }
+}
+
+/// A sample interval with enough digits to tell it from the nominal one.
+fn interval(s: f64) -> Note {
+    let (key, value) = if s < 0.1 { ("amount.ms", s * 1e3) } else { ("amount.s", s) };
+    Note::new(key).with("value", plain(value, 7))
+}
+
+/// A number with at most so many decimals, whatever its size.
+fn decimals(value: f64, count: usize) -> Arg {
+    Arg::decimals(value, count)
+}
+
+fn faults(page: &mut Page, seen: &Seen) {
+    page.heading(word("inspect.faults"));
+    let i = &seen.report.integrity;
+    let kinds = [
+        (word("fault.non_finite"), i.non_finite, "inspect.non_finite"),
+        (word("fault.unparsable"), i.unparsable, "inspect.unparsable"),
+        (word("fault.outlier"), i.outliers, "inspect.outliers"),
+        (word("fault.saturated"), i.saturated, "inspect.saturated"),
+        (word("fault.stuck"), i.stuck, "inspect.stuck"),
+        (word("fault.repeated"), i.repeated, "repeated.inspect"),
+        (word("fault.implausible"), i.implausible, "plausible.inspect"),
+        (word("fault.cut_off"), i.cut_off, "plausible.inspect_cut_off"),
+    ];
+    let gyros = seen.channels.iter().any(|c| c.role.is_gyro());
+    if kinds.iter().all(|(_, n, _)| *n == 0) {
+        let key = if gyros { "inspect.no_fault" } else { "inspect.no_fault_plain" };
+        page.row(word("inspect.values"), Note::new(key));
+        return;
+    }
+    for (label, n, key) in kinds.iter().filter(|(_, n, _)| *n > 0) {
+        page.row(label.clone(), Note::new(*key).with("n", count(*n)));
+    }
+    list(
+        page,
+        seen,
+        &["non_finite", "unparsable", "outlier", "saturated", "stuck", "repeated", "implausible", "cut_off"],
+    );
+}
+
+/// The first faults of some kinds, where they are.
+fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
+    let all = seen.report.integrity.faults.iter().filter(|f| kinds.contains(&f.kind.as_str()));
+    let timed = seen.time.is_known();
+    for fault in all.take(LISTED) {
+        let place = match fault.time_s.filter(|_| timed) {
+            Some(t) => Note::new("inspect.fault_at_time").with("row", fault.row).with("time", decimals(t, 6)),
+            None => Note::new("inspect.fault_at").with("row", fault.row),
+        };
+        let channel = fault.channel.as_deref().filter(|c| !fault.message.say(Lang::En).contains(c));
+        let what = Arg::from(fault.message.clone());
+        let row = match channel {
+            Some(channel) => Note::new("inspect.fault_of").with("channel", channel),
+            None => Note::new("inspect.fault_row"),
+        };
+        let row = match &fault.file {
+            Some(file) => Note::new("time_base.fault_in")
+                .with("file", file.as_str())
+                .with("row", row.with("place", place).with("what", what)),
+            None => row.with("place", place).with("what", what),
+        };
+        page.row(SAME, row);
+    }
+}

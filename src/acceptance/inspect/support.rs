@@ -1,0 +1,278 @@
+//! What a recording can support, each statement with its reason. Nothing is promised that the data cannot give.
+
+use super::gather::{Driven, Gyro, Seen, Temperature};
+use super::judge::{ClockRemark, clock_remark, earth, is_mains};
+use super::layout::{Page, SAME, word};
+use super::quantity::{count, names, plain, rates, time, time_both};
+use super::show_gyro::{described, strongest};
+use crate::i18n::Note;
+use crate::noise::data::NoiseType;
+use crate::noise::expected::expected_upper_limit;
+use crate::noise::motion::Motion;
+use crate::recording::Role;
+
+/// Usable time that the programme for random drift asks for, s.
+const STATIC_S: f64 = 36_000.0;
+/// Range of temperature from which a bias can be fitted against it with profit, degC.
+const TEMPERATURE_RANGE_DEG_C: f64 = 10.0;
+/// Levels of a table rate that a straight line with a judgement of its linearity needs.
+const LEVELS: usize = 5;
+/// Lines of a channel that are held against the mains.
+const STRONGEST: usize = 3;
+
+/// The last section.
+pub(super) fn statements(page: &mut Page, seen: &Seen) {
+    page.heading(word("inspect.support"));
+    let gyro = seen.channels.iter().any(|c| c.role.is_gyro());
+    let counts = seen.listed.iter().any(|c| c.counts_of_a_gyro());
+    if !gyro && !counts {
+        page.row(word("inspect.tests"), Note::new("inspect.no_gyro_no_test"));
+        return;
+    }
+    assumed(page, seen);
+    page.row(word("inspect.static_test"), static_test(seen));
+    averaging(page, seen);
+    flicker(page, seen);
+    page.row(word("inspect.temperature_test"), temperature(seen));
+    page.row(word("inspect.scale_factor"), scale_factor(seen));
+    known_angle(page, seen);
+    clock(page, seen);
+    earth_rate(page, seen);
+}
+
+/// Units that were assumed carry through everything.
+fn assumed(page: &mut Page, seen: &Seen) {
+    let of = |c: &&super::columns::Listed| c.guess.role.is_gyro() && !c.guess.unit_is_named;
+    let list = names(seen.listed.iter().filter(of).map(|c| c.name.as_str()));
+    if !list.is_empty() {
+        page.row(word("inspect.unit"), Note::new("inspect.unit_assumed").with("columns", list));
+    }
+}
+
+fn usable_s(seen: &Seen, gyro: &Gyro) -> f64 {
+    gyro.digest.samples as f64 * seen.tau0_s
+}
+
+fn table_moves(seen: &Seen) -> Option<&Driven> {
+    let moving = |d: &&Driven| d.role != Role::TableAngle && d.facts.max - d.facts.min > 360.0;
+    seen.driven.iter().find(moving)
+}
+
+fn static_test(seen: &Seen) -> Note {
+    if let Some(table) = table_moves(seen) {
+        return Note::new("inspect.static_table").with("name", table.name.as_str());
+    }
+    if !seen.time.is_known() {
+        return Note::new("inspect.static_no_time");
+    }
+    if seen.gyros.is_empty() {
+        return Note::new("inspect.static_counts");
+    }
+    let of = |wanted: fn(&Motion) -> bool| {
+        names(seen.gyros.iter().filter(|g| wanted(&g.motion)).map(|g| g.name.as_str()))
+    };
+    let moved = of(|m| matches!(m, Motion::Moved { .. }));
+    if !moved.is_empty() {
+        return Note::new("inspect.static_moved").with("channels", moved);
+    }
+    let slow = of(|m| matches!(m, Motion::Slow { .. }));
+    if !slow.is_empty() {
+        return Note::new("inspect.static_slow").with("channels", slow);
+    }
+    if seen.gyros.iter().any(|g| g.motion == Motion::Unknown) {
+        return Note::new("inspect.static_too_few");
+    }
+    let length = seen.gyros.iter().map(|g| usable_s(seen, g)).fold(f64::INFINITY, f64::min);
+    let key = if length >= STATIC_S { "inspect.static_yes" } else { "inspect.static_short" };
+    Note::new(key).with("length", time(length))
+}
+
+/// Channels that stood still, with enough samples for their noise.
+fn resting(seen: &Seen) -> impl Iterator<Item = &Gyro> {
+    let still = table_moves(seen).is_none();
+    seen.gyros.iter().filter(move |g| still && g.motion.is_rest() && g.digest.samples >= 64)
+}
+
+fn averaging(page: &mut Page, seen: &Seen) {
+    let Some(shortest) = resting(seen).min_by(|a, b| a.digest.samples.cmp(&b.digest.samples)) else { return };
+    let stretches = &shortest.digest.deviations.stretches;
+    let longest_s = stretches.longest() as f64 * seen.tau0_s;
+    let label = word("inspect.averaging");
+    let note = Note::new("inspect.averaging_is")
+        .with("floor", time_both(longest_s / 10.0))
+        .with("fit", time_both(longest_s / 5.0));
+    page.row(label, note);
+    if stretches.count() > 1 {
+        let note = Note::new("inspect.averaging_broken")
+            .with("n", count(stretches.count()))
+            .with("longest", time(longest_s));
+        page.row(SAME, note);
+    }
+}
+
+/// A statement on one channel.
+fn of_channel(gyro: &Gyro, statement: Note) -> Note {
+    Note::new("inspect.of_column").with("column", gyro.name.as_str()).with("what", statement)
+}
+
+fn flicker(page: &mut Page, seen: &Seen) {
+    let mut label = word("inspect.flicker");
+    for gyro in resting(seen) {
+        if !described(gyro) {
+            let note = Note::new("inspect.flicker_undescribed");
+            page.row(std::mem::replace(&mut label, SAME.into()), of_channel(gyro, note));
+            continue;
+        }
+        let found = &gyro.identification.bias_instability;
+        let background = gyro.identification.supported.with(NoiseType::Flicker, 0.0);
+        let smallest =
+            expected_upper_limit(NoiseType::Flicker, &background, gyro.digest.samples, seen.tau0_s);
+        let note = match (smallest, found.value) {
+            (Some(smallest), Some(b)) => {
+                Note::new("inspect.flicker_found").with("b", plain(b, 3)).with("smallest", plain(smallest, 2))
+            }
+            (Some(smallest), None) => {
+                Note::new("inspect.flicker_smallest").with("smallest", plain(smallest, 2))
+            }
+            (None, _) => Note::new("inspect.flicker_unknown"),
+        };
+        page.row(std::mem::replace(&mut label, SAME.into()), of_channel(gyro, note));
+    }
+}
+
+fn temperature(seen: &Seen) -> Note {
+    let widest = seen.temperatures.iter().max_by(|a, b| a.range().total_cmp(&b.range()));
+    let Some(widest) = widest else { return Note::new("inspect.temperature_none") };
+    let about = |key| {
+        Note::new(key)
+            .with("name", widest.name.as_str())
+            .with("low", plain(widest.min_deg_c, 3))
+            .with("high", plain(widest.max_deg_c, 3))
+            .with("range", plain(widest.range(), 3))
+    };
+    let Temperature { runs: (up, down), .. } = *widest;
+    if widest.range() < 1.0 {
+        about("inspect.temperature_constant")
+    } else if widest.range() < TEMPERATURE_RANGE_DEG_C {
+        about("inspect.temperature_narrow")
+    } else if !seen.time.is_known() {
+        about("inspect.temperature_untimed")
+    } else if table_moves(seen).is_some() || seen.gyros.iter().any(|g| g.motion.is_motion()) {
+        about("inspect.temperature_moving")
+    } else if up > 0 && down > 0 {
+        about("inspect.temperature_both")
+    } else {
+        about("inspect.temperature_one_way")
+    }
+}
+
+fn scale_factor(seen: &Seen) -> Note {
+    let Some(table) = seen.driven.iter().find(|d| d.role == Role::TableRate) else {
+        return Note::new("inspect.scale_no_table");
+    };
+    let facts = &table.facts;
+    let (low, high, unit) = rates(facts.min, facts.max);
+    let about = |key| {
+        Note::new(key)
+            .with("name", table.name.as_str())
+            .with("low", low.clone())
+            .with("high", high.clone())
+            .with("unit", unit.clone())
+            .with("n", facts.levels.len())
+    };
+    if facts.max == facts.min {
+        return about("inspect.scale_still");
+    }
+    if facts.levels.is_empty() {
+        return about("inspect.scale_sweeps");
+    }
+    if facts.levels.len() < LEVELS {
+        return about("inspect.scale_few");
+    }
+    if facts.min < 0.0 && facts.max > 0.0 {
+        about("inspect.scale_both_signs")
+    } else {
+        about("inspect.scale_one_sign")
+    }
+}
+
+/// Largest angle that a unit is turned by without a table, deg: a hundred turns.
+const LARGEST_TURN_DEG: f64 = 36_000.0;
+
+fn known_angle(page: &mut Page, seen: &Seen) {
+    // Numbers that no sensor shows sum up to no angle.
+    if seen.report.integrity.implausible > 0 {
+        return;
+    }
+    let moved = |g: &&Gyro| matches!(g.motion, Motion::Moved { .. });
+    let swing = |g: &Gyro| g.angle.max_deg - g.angle.min_deg;
+    let most = seen.gyros.iter().filter(moved).max_by(|a, b| swing(a).total_cmp(&swing(b)));
+    // Nor does an output that sums up to more than anyone turns a unit by without a table.
+    let Some(most) = most.filter(|g| table_moves(seen).is_none() && swing(g) <= LARGEST_TURN_DEG) else {
+        return;
+    };
+    let note = Note::new("inspect.known_angle_is")
+        .with("name", most.name.as_str())
+        .with("swing", plain(swing(most), 4));
+    page.row(word("inspect.known_angle"), note);
+}
+
+/// The strongest remark on the clock, with every channel that bears it out.
+fn clock(page: &mut Page, seen: &Seen) {
+    // Frequency, excess and channel of each line that says something.
+    let mut remarks: Vec<(ClockRemark, f64, f64, String)> = Vec::new();
+    // A line where mains is shows the clock to be right, whatever else stands near another mains frequency.
+    let right = seen.gyros.iter().flat_map(|g| &g.lines).any(is_mains);
+    for gyro in &seen.gyros {
+        for line in strongest(gyro).into_iter().take(STRONGEST) {
+            let remark = clock_remark(line, seen.tau0_s)
+                .filter(|remark| !right || matches!(remark, ClockRemark::AtNyquist { .. }));
+            if let Some(remark) = remark {
+                remarks.push((remark, line.frequency_hz, line.excess, gyro.name.clone()));
+            }
+        }
+    }
+    remarks.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let mut label = word("inspect.clock");
+    let mut said: Vec<f64> = Vec::new();
+    for (remark, line_hz, _, _) in &remarks {
+        let near = |f: f64| (f / line_hz - 1.0).abs() < 0.003;
+        if said.iter().any(|f| near(*f)) {
+            continue;
+        }
+        said.push(*line_hz);
+        let channels = remarks.iter().filter(|r| near(r.1)).map(|r| r.3.as_str());
+        let mut unique: Vec<&str> = channels.collect();
+        unique.sort_unstable();
+        unique.dedup();
+        let note = clock_note(remark, seen.tau0_s).with("channels", names(unique.into_iter()));
+        page.row(std::mem::replace(&mut label, SAME.into()), note);
+    }
+}
+
+fn clock_note(remark: &ClockRemark, tau0_s: f64) -> Note {
+    match *remark {
+        ClockRemark::Off { line_hz, mains_hz, factor } => Note::new("inspect.clock_off")
+            .with("line", plain(line_hz, 5))
+            .with("mains", plain(mains_hz, 4))
+            .with("percent", plain((factor - 1.0) * 100.0, 2))
+            .with("rate", plain(1.0 / (tau0_s * factor), 4))
+            .with("shown", plain(1.0 / tau0_s, 5)),
+        ClockRemark::AtNyquist { line_hz } => {
+            Note::new("inspect.clock_nyquist").with("line", plain(line_hz, 5))
+        }
+        ClockRemark::Alias { line_hz, mains_hz } => {
+            Note::new("inspect.clock_alias").with("line", plain(line_hz, 5)).with("mains", plain(mains_hz, 4))
+        }
+    }
+}
+
+fn earth_rate(page: &mut Page, seen: &Seen) {
+    if !seen.gyros.iter().all(|g| g.motion.is_rest()) {
+        return;
+    }
+    let means: Vec<f64> = seen.gyros.iter().map(|g| g.digest.mean).collect();
+    if let Some(length) = earth(&means) {
+        page.row(word("inspect.earth"), Note::new("inspect.earth_is").with("length", plain(length, 4)));
+    }
+}

@@ -1,0 +1,153 @@
+//! The angle random walk without and with an influence: each state is identified from its own samples.
+
+use super::evaluate::{self, Found};
+use super::reading;
+use super::{Request, RunError};
+use crate::estimate::{Estimate, Spread, normal_quantile};
+use crate::i18n::{Arg, Note};
+use crate::influence::comparison::level_name;
+use crate::influence::intervals::Intervals;
+use crate::noise::digest::{DigestPlan, RateAccumulator};
+use crate::rate_table::blocks::Blocks;
+use crate::recording::{Sink, Slab};
+
+/// N of one channel in one state.
+struct State {
+    /// Axis and level; `None` without the influence.
+    level: Option<(String, f64)>,
+    /// N with its standard uncertainty, deg/sqrt(h); `None` where it is not shown.
+    n: Option<(f64, f64)>,
+}
+
+/// The change of N at one level.
+pub(super) struct ChangeOfNoise {
+    /// Gyro channel.
+    pub gyro: String,
+    channel: String,
+    without: Option<(f64, f64)>,
+    with: Option<(f64, f64)>,
+}
+
+impl ChangeOfNoise {
+    /// The estimate, where it is asked for.
+    pub(super) fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
+        if id != "angle_random_walk_shift" {
+            return None;
+        }
+        let method = "whittle";
+        let (Some(a), Some(b)) = (self.without, self.with) else {
+            let e = Estimate::not_identifiable(id, &self.channel, None, unit, method);
+            return Some(e.note(Note::new("compared.noise_not_shown")));
+        };
+        let spread = Spread::Normal { standard_uncertainty: a.1.hypot(b.1) };
+        let note = Note::new("compared.noise")
+            .with("without", Arg::figures(a.0, 4))
+            .with("with", Arg::figures(b.0, 4));
+        Some(Estimate::measured(id, &self.channel, b.0 - a.0, unit, spread, method).note(note))
+    }
+}
+
+/// Digests of the states of every gyro channel, collected while the recording goes by.
+struct Collector {
+    /// First position and position after the last, and the state.
+    spans: Vec<(u64, u64, usize)>,
+    /// Position of every gyro among the channels, and a digest a state.
+    gyros: Vec<(usize, Vec<RateAccumulator>)>,
+    last: Option<usize>,
+}
+
+impl Sink for Collector {
+    fn push(&mut self, slab: &Slab<'_>) {
+        let end = slab.first_index + slab.len() as u64;
+        for (at, (from, to, state)) in self.spans.iter().enumerate() {
+            let (first, last) = ((*from).max(slab.first_index), (*to).min(end));
+            if first >= last {
+                continue;
+            }
+            let continues = slab.continues && first == slab.first_index && self.last == Some(at);
+            self.last = Some(at);
+            let inside = (first - slab.first_index) as usize..(last - slab.first_index) as usize;
+            for (slot, digests) in &mut self.gyros {
+                let values = slab.values.get(*slot).and_then(|v| v.get(inside.clone()));
+                if let (Some(values), Some(digest)) = (values, digests.get_mut(*state)) {
+                    digest.push(values, first, continues);
+                }
+            }
+        }
+    }
+}
+
+/// Identifies the noise of every state of every channel in a second pass over the recording.
+pub(super) fn find(
+    request: &Request<'_>,
+    found: &Found,
+    blocks: &Blocks,
+    series: &Intervals,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Vec<ChangeOfNoise>, RunError> {
+    let mut levels: Vec<Option<(String, f64)>> = vec![None];
+    let mut spans = Vec::new();
+    for interval in &series.list {
+        let level = (!series.is_off(interval)).then(|| {
+            let away = |a: &usize| (interval.levels[*a] - series.reference).abs();
+            let axis = (0..interval.levels.len()).max_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
+            (series.axes[axis].clone(), interval.levels[axis])
+        });
+        let same = |l: &Option<(String, f64)>| match (l, &level) {
+            (None, None) => true,
+            (Some(a), Some(b)) => a.0 == b.0 && (a.1 - b.1).abs() <= series.tolerance,
+            _ => false,
+        };
+        let state = levels.iter().position(same).unwrap_or_else(|| {
+            levels.push(level.clone());
+            levels.len() - 1
+        });
+        let (first, last) = (&blocks.list[interval.blocks.0], &blocks.list[interval.blocks.1 - 1]);
+        spans.push((first.first_index, last.first_index + u64::from(last.samples), state));
+    }
+    let mut plan = reading::plan(request, &found.channels)?;
+    if plan.reads_angles() {
+        plan.set_increment_interval(found.report.tau0_measured_s);
+    }
+    let digest = || RateAccumulator::new(DigestPlan { estimators: vec![], ..DigestPlan::new(found.tau0_s) });
+    let gyros = found
+        .channels
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| c.role.is_gyro())
+        .map(|(slot, _)| (slot, levels.iter().map(|_| digest()).collect()))
+        .collect();
+    let mut collector = Collector { spans, gyros, last: None };
+    plan.stream(&mut [&mut collector], progress)?;
+    let mut changes = Vec::new();
+    for (slot, digests) in collector.gyros {
+        let step_deg_h = found.report.channels.get(slot).and_then(|c| c.values.quantization_step);
+        let channel = found.channels.get(slot).map_or_else(String::new, |c| c.id.clone());
+        let states: Vec<State> = digests
+            .into_iter()
+            .zip(&levels)
+            .map(|(digest, level)| {
+                let digest = digest.finish();
+                let alarm = request.procedure.analysis.line_false_alarm;
+                let (_, noise) = evaluate::spectral(&channel, &digest, found.tau0_s, alarm, step_deg_h);
+                let n = noise.read_angle_random_walk();
+                let half = n.interval95().map(|i| 0.5 * (i.high - i.low) / normal_quantile(0.975));
+                State { level: level.clone(), n: n.value.zip(half) }
+            })
+            .collect();
+        let without = states.iter().find(|s| s.level.is_none()).and_then(|s| s.n);
+        for state in &states {
+            let Some((axis, level)) = &state.level else { continue };
+            let level = level_name(*level);
+            let place = if axis.is_empty() { level } else { format!("{axis}:{level}") };
+            let channel_at = format!("{channel}@{place}");
+            changes.push(ChangeOfNoise {
+                gyro: channel.clone(),
+                channel: channel_at,
+                without,
+                with: state.n,
+            });
+        }
+    }
+    Ok(changes)
+}

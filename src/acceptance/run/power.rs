@@ -1,0 +1,153 @@
+//! What a test can decide: for every limit the probability that a unit 1.5 times over it would be failed and that one
+//! at half of it would be passed. Asked with the noise that was found (report) or with the typical noise of the family
+//! (validation of a procedure, no data).
+
+use crate::acceptance::record::PowerRecord;
+use crate::config::procedure::EffectiveLimits;
+use crate::config::procedure::power::{PowerQuestion, TypicalNoise};
+use crate::estimate::Limit;
+use crate::i18n::{Arg, Note};
+use crate::measurand::GyroEvidence;
+use crate::noise::data::NoiseType;
+use crate::noise::expected::{Power, bias_power, decision_power, deviation_power};
+use crate::noise::model::NoiseModel;
+use crate::noise::static_bias::BiasUncertainty;
+use crate::noise::windows::edf_of_window_std;
+
+/// The situation a limit is to be decided in.
+#[derive(Debug, Clone, Copy)]
+pub struct Situation {
+    /// Noise of the unit apart from the term in question.
+    pub background: NoiseModel,
+    /// Usable time, s.
+    pub duration_s: f64,
+    /// Sample interval, s.
+    pub tau0_s: f64,
+    /// Standard uncertainty of the Earth rate on the axis, deg/h.
+    pub earth_uncertainty_deg_h: f64,
+}
+
+/// Power of the limit on a measurand; `None` for measurands whose power is not a question of statistics here.
+pub fn of_limit(id: &str, limit: &Limit, situation: &Situation) -> Option<Power> {
+    let max = limit.max.filter(|m| *m > 0.0)?;
+    let s = situation;
+    let samples = (s.duration_s / s.tau0_s).floor() as u64;
+    let term = match id {
+        "angle_random_walk" => Some(NoiseType::AngleRandomWalk),
+        "bias_instability" => Some(NoiseType::Flicker),
+        "rate_random_walk" => Some(NoiseType::RateRandomWalk),
+        "rate_ramp" => Some(NoiseType::RateRamp),
+        "quantization" => Some(NoiseType::Quantization),
+        _ => None,
+    };
+    if let Some(term) = term {
+        let background = s.background.with(term, 0.0);
+        return decision_power(term, max, &background, samples, s.tau0_s, limit.risk);
+    }
+    let hours = s.duration_s / 3600.0;
+    let window_s = match id {
+        "russian_drift_100s" | "russian_drift_100s_3sigma" => 100.0,
+        "russian_sigma_10s" | "russian_arw_10s" => 10.0,
+        "static_bias" => {
+            let uncertainty = |h: f64| {
+                let others = [("earth_rate", s.earth_uncertainty_deg_h)];
+                BiasUncertainty::of_mean(&s.background.into(), h * 3600.0, None, &others).standard()
+            };
+            return Some(bias_power(max, uncertainty, hours, limit.risk));
+        }
+        _ => return None,
+    };
+    let mut model = s.background;
+    model.r = 0.0;
+    let edf = |h: f64| {
+        let n = (h * 3600.0 / window_s).floor() as u64;
+        edf_of_window_std(n, window_s, |t| model.mean_variance(t)).unwrap_or(1.0)
+    };
+    Some(deviation_power(edf, hours, limit.risk))
+}
+
+/// The power rows of a report, one for each limit and channel.
+pub fn records(limits: &EffectiveLimits, gyros: &[GyroEvidence]) -> Vec<PowerRecord> {
+    let mut rows = Vec::new();
+    for spec in &limits.set.limits {
+        for gyro in gyros {
+            if limits.limit(spec.measurand.id, &gyro.channel) != Some(spec) {
+                continue;
+            }
+            let situation = Situation {
+                background: gyro.identification.supported,
+                duration_s: gyro.usable_s(),
+                tau0_s: gyro.tau0_s,
+                earth_uncertainty_deg_h: gyro.earth.map_or(0.0, |e| e.uncertainty_deg_h),
+            };
+            let Some(power) = of_limit(spec.measurand.id, &spec.limit, &situation) else { continue };
+            let Some(limit) = spec.limit.max else { continue };
+            rows.push(PowerRecord {
+                id: spec.measurand.id.to_owned(),
+                channel: gyro.channel.clone(),
+                limit,
+                unit: spec.measurand.unit.to_owned(),
+                power: power.fail_probability_at_1_5,
+                pass_probability: power.pass_probability_at_half,
+                needed_h: power.needed_duration_h.filter(|_| !power.is_enough()),
+                message: message(&power, gyro.usable_s() / 3600.0).into(),
+            });
+        }
+    }
+    rows
+}
+
+fn message(power: &Power, hours: f64) -> Note {
+    if power.is_enough() {
+        return Note::new("power.enough").with("hours", hours);
+    }
+    match power.needed_duration_h {
+        Some(needed) => Note::new("power.too_short").with("hours", hours).with("needed_h", needed),
+        None => Note::new("power.never").with("hours", hours),
+    }
+}
+
+/// The warning of a procedure's limit that a record of its least length cannot decide, with what to do.
+pub fn warning(question: &PowerQuestion) -> Option<(Note, Option<Note>)> {
+    let background = background(&question.typical)?;
+    let situation = Situation {
+        background,
+        duration_s: question.duration_s,
+        // An open sample rate: one output a second is what static records of this kind have at least.
+        tau0_s: question.sample_rate_hz.map_or(1.0, |hz| 1.0 / hz),
+        earth_uncertainty_deg_h: 0.0,
+    };
+    let limit = &question.limit;
+    let power = of_limit(limit.measurand.id, &limit.limit, &situation)?;
+    if power.is_enough() {
+        return None;
+    }
+    let max = limit.limit.max?;
+    let hours = question.duration_s / 3600.0;
+    let key = match question.sample_rate_hz {
+        Some(_) => "check.power.undecided",
+        None => "check.power.undecided_at_1_hz",
+    };
+    let message = Note::new(key)
+        .with("hours", Arg::Stated(hours))
+        .with("limit", format!("{} <= {max} {}", limit.measurand.id, limit.measurand.unit))
+        .with("noise", Arg::Stated(background.n))
+        .with("fail", Arg::fixed(power.fail_probability_at_1_5, 2))
+        .with("pass", Arg::fixed(power.pass_probability_at_half, 2));
+    let help = match power.needed_duration_h {
+        Some(h) => Note::new("check.power.needed").with("hours", format!("{h:.0}")),
+        None => Note::new("check.power.never"),
+    };
+    Some((message, Some(help)))
+}
+
+/// The typical noise of a family; `None` when even the angle random walk is not stated.
+fn background(typical: &TypicalNoise) -> Option<NoiseModel> {
+    Some(NoiseModel {
+        n: typical.angle_random_walk?,
+        b: typical.bias_instability.unwrap_or(0.0),
+        k: typical.rate_random_walk.unwrap_or(0.0),
+        r: typical.rate_ramp.unwrap_or(0.0),
+        q: typical.quantization.unwrap_or(0.0),
+    })
+}

@@ -1,0 +1,117 @@
+//! What a procedure asks for and no evaluation gave a row: a limit on it would be met by saying nothing.
+
+use super::{Request, verdict};
+use crate::acceptance::record::MeasurandRecord;
+use crate::config::procedure::limits::gyro_of;
+use crate::config::procedure::model::{MeasurandSpec, Procedure};
+use crate::config::procedure::obtainable;
+use crate::config::procedure::recorded::scale_factor_unit;
+use crate::estimate::Estimate;
+use crate::i18n::Note;
+use crate::ids::{MeasurandId, Test};
+use crate::recording::Channel;
+
+/// Adds a row that says why to everything asked for that has none, in the order of the procedure.
+pub(super) fn complete(
+    request: &Request<'_>,
+    channels: &[Channel],
+    mut rows: Vec<MeasurandRecord>,
+) -> Vec<MeasurandRecord> {
+    // An analysis shows what the recording has; nobody asked for one value by name.
+    if request.kind != "run" {
+        return rows;
+    }
+    let procedure = request.procedure;
+    for spec in &procedure.measurands {
+        for channel in asked(request, spec, channels) {
+            let given = rows.iter().any(|r| r.id == spec.id.id && gyro_of(&r.channel) == channel);
+            if !given {
+                let estimate = not_shown(procedure, spec.id, channel);
+                rows.push(verdict::row(&estimate, request.limits, procedure));
+            }
+        }
+    }
+    let place = |row: &MeasurandRecord| {
+        let of = |m: &MeasurandSpec| {
+            m.id.id == row.id && m.channel.as_deref().is_none_or(|c| c == gyro_of(&row.channel))
+        };
+        procedure.measurands.iter().position(of).unwrap_or(usize::MAX)
+    };
+    rows.sort_by_key(place);
+    rows
+}
+
+/// The channels that a measurand is asked for: the one named, or every gyro that was read and those that a limit names.
+fn asked<'a>(request: &'a Request<'_>, spec: &'a MeasurandSpec, channels: &'a [Channel]) -> Vec<&'a str> {
+    if let Some(own) = &spec.channel {
+        return vec![own];
+    }
+    let mut list: Vec<&str> = channels.iter().filter(|c| c.role.is_gyro()).map(|c| c.id.as_str()).collect();
+    let limited = request.limits.set.limits.iter().filter(|l| l.measurand.id == spec.id.id);
+    for channel in limited.filter_map(|l| l.channel.as_deref()) {
+        // A limits file may serve procedures with other channels.
+        if request.procedure.channel(channel).is_some() && !list.contains(&channel) {
+            list.push(channel);
+        }
+    }
+    list
+}
+
+fn not_shown(procedure: &Procedure, measurand: &'static MeasurandId, channel: &str) -> Estimate {
+    let id = measurand.id;
+    let unit = match measurand.unit {
+        "" => scale_factor_unit(procedure, channel).0,
+        unit => unit,
+    };
+    let why = obtainable::why_not(procedure, id, channel)
+        .unwrap_or_else(|| Note::new(general(procedure, measurand)));
+    Estimate::not_identifiable(id, channel, None, unit, "not_evaluated").note(why)
+}
+
+/// What a test lacks where the evaluation of a channel gave nothing at all.
+fn general(procedure: &Procedure, measurand: &MeasurandId) -> &'static str {
+    match measurand.test {
+        Test::RateTable => match &procedure.rate_table {
+            Some(setup) if setup.known.is_empty() => "unshown.no_line",
+            _ => "unshown.few_positions",
+        },
+        Test::Influence if procedure.repeatability_test.is_some() => "unshown.few_runs",
+        Test::Influence => "unshown.no_intervals",
+        Test::Temperature => "unshown.no_course",
+        Test::Static => "unshown.nothing",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::procedure::EffectiveLimits;
+    use crate::config::procedure::limits::LimitSpec;
+    use crate::estimate::{Limit, Rule};
+
+    #[test]
+    fn the_limit_of_a_gyro_judges_its_rows_by_zone_and_axis() {
+        let mut limits = EffectiveLimits::default();
+        for (channel, max) in [(None, 1.0), (Some("rate"), 2.0), (Some("rate@20"), 3.0)] {
+            limits.set.limits.push(LimitSpec {
+                measurand: crate::ids::find("angle_random_walk_at_temperature").unwrap(),
+                channel: channel.map(str::to_owned),
+                limit: Limit {
+                    min: None,
+                    max: Some(max),
+                    rule: Rule::GuardBand,
+                    risk: 0.05,
+                    source: String::new(),
+                },
+                recorded_unit: None,
+                span: 0..0,
+            });
+        }
+        let of = |channel: &str| limits.limit("angle_random_walk_at_temperature", channel).unwrap().limit.max;
+        assert_eq!(
+            [of("rate@-40"), of("rate@20"), of("rate"), of("x@-40")].map(Option::unwrap),
+            [2.0, 3.0, 2.0, 1.0]
+        );
+        assert_eq!([gyro_of("x<-y"), gyro_of("rate@x:0.5"), gyro_of("rate")], ["x", "rate", "rate"]);
+    }
+}

@@ -1,0 +1,182 @@
+//! Rows with their limits, and the verdict of the whole.
+
+use crate::acceptance::record::{ConditionRecord, ConditionStatus, Evidence, LimitRecord, MeasurandRecord};
+use crate::config::procedure::{EffectiveLimits, Procedure};
+use crate::estimate::{Estimate, Verdict, judge};
+use crate::i18n::{Arg, Note};
+
+/// Judges one estimate.
+pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure) -> MeasurandRecord {
+    let spec = limits.limit(estimate.id, &estimate.channel);
+    let limit = spec.map(|l| &l.limit);
+    // A limit in another unit than the value decides nothing.
+    let other = spec.and_then(|l| l.recorded_unit).filter(|unit| *unit != estimate.unit);
+    let nothing = Estimate::not_identifiable(estimate.id, "", None, estimate.unit, "");
+    // Of what can be negative and is not shown, no lower limit is known to be met.
+    let signed = crate::ids::find(estimate.id).is_some_and(|m| m.signed);
+    let judgement = limit.map(|l| {
+        let undecided = other.is_some() || estimate.disputed;
+        let mut judged = judge(if undecided { &nothing } else { estimate }, l);
+        if undecided || estimate.value.is_none() && signed && l.min.is_some() {
+            judged.verdict = Verdict::Indeterminate;
+        }
+        judged
+    });
+    let mut notes = estimate.notes.clone();
+    notes.extend(
+        other.map(|unit| Note::new("note.limit_other_unit").with("given", unit).with("unit", estimate.unit)),
+    );
+    let reference = limits
+        .reference(estimate.id, &estimate.channel)
+        .filter(|_| procedure.report.show_reference)
+        .map(|r| r.record.clone());
+    MeasurandRecord {
+        id: estimate.id.to_owned(),
+        channel: estimate.channel.clone(),
+        phase: None,
+        value: estimate.value,
+        unit: estimate.unit.to_owned(),
+        interval: estimate.interval95(),
+        identifiable: estimate.value.is_some(),
+        upper_limit: estimate.upper_limit,
+        most_likely: estimate.most_likely,
+        lower_limit: estimate.lower_limit,
+        method: estimate.method.to_owned(),
+        limit: limit
+            .zip(judgement.as_ref())
+            .map(|(l, j)| LimitRecord::new(l, other.unwrap_or(estimate.unit), j)),
+        reference,
+        verdict: judgement.as_ref().map_or(Verdict::None, |j| j.verdict),
+        margin: judgement.as_ref().and_then(|j| j.margin),
+        specific_risk: judgement.as_ref().and_then(|j| j.specific_risk),
+        notes: notes.into_iter().map(Into::into).collect(),
+    }
+}
+
+/// The verdict of the whole and the reasons for it.
+///
+/// Worst wins; an invalid condition makes the whole indeterminate, whatever the rows say, for a test that was not done
+/// right neither passes nor fails a unit; an error stays an error.
+pub fn whole(
+    rows: &[MeasurandRecord],
+    conditions: &[ConditionRecord],
+    errors: &[Note],
+) -> (Verdict, Vec<Note>) {
+    if !errors.is_empty() {
+        return (Verdict::Error, errors.to_vec());
+    }
+    let invalid: Vec<&ConditionRecord> =
+        conditions.iter().filter(|c| c.status == ConditionStatus::Invalid).collect();
+    let judged = rows.iter().filter(|r| r.verdict != Verdict::None).count();
+    let of = |v: Verdict| rows.iter().filter(move |r| r.verdict == v);
+    let mut reasons: Vec<Note> = Vec::new();
+    if !invalid.is_empty() {
+        reasons.push(Note::new("summary.conditions_invalid").with("n", invalid.len()));
+    }
+    reasons.extend(invalid.iter().map(|c| {
+        let why = c.message.clone().map_or_else(|| Arg::Text(c.note.clone()), Arg::from);
+        Note::new("summary.condition_invalid")
+            .with("condition", Arg::key("condition", c.id.split('.').next().unwrap_or(&c.id)))
+            .with("why", why)
+    }));
+    let several = rows.iter().any(|r| Some(&r.channel) != rows.first().map(|f| &f.channel));
+    for verdict in [Verdict::Fail, Verdict::Indeterminate] {
+        for r in of(verdict) {
+            let key = match (verdict, r.value.is_none(), several) {
+                (Verdict::Fail, _, false) => "summary.row_failed",
+                (Verdict::Fail, _, true) => "summary.row_failed_of",
+                (_, true, false) => "summary.row_not_shown",
+                (_, true, true) => "summary.row_not_shown_of",
+                (_, false, false) => "summary.row_indeterminate",
+                (_, false, true) => "summary.row_indeterminate_of",
+            };
+            reasons.push(
+                Note::new(key)
+                    .with("measurand", Arg::key("measurand", &r.id))
+                    .with("channel", r.channel.clone()),
+            );
+        }
+    }
+    let worst = rows.iter().map(|r| r.verdict).max().unwrap_or(Verdict::None);
+    let verdict = if invalid.is_empty() { worst } else { Verdict::Indeterminate };
+    match verdict {
+        Verdict::Pass => reasons.push(Note::new("summary.all_passed").with("n", judged)),
+        Verdict::None => reasons.push(Note::new("summary.no_limits")),
+        _ => {}
+    }
+    let declared = |c: &&ConditionRecord| c.id == "influence_acted" && c.evidence == Some(Evidence::Declared);
+    if judged > 0 && conditions.iter().any(|c| declared(&c)) {
+        reasons.push(Note::new("summary.influence_declared"));
+    }
+    (verdict, reasons)
+}
+
+/// The verdict where a limits file was given: one that decides nothing leaves open what was to be judged by it.
+pub fn with_idle_limits(
+    (verdict, mut reasons): (Verdict, Vec<Note>),
+    idle: Option<&Note>,
+) -> (Verdict, Vec<Note>) {
+    let Some(why) = idle else { return (verdict, reasons) };
+    if verdict == Verdict::None {
+        reasons.clear();
+    }
+    reasons.insert(0, why.clone());
+    let open = matches!(verdict, Verdict::None | Verdict::Pass);
+    (if open { Verdict::Indeterminate } else { verdict }, reasons)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(verdict: Verdict) -> MeasurandRecord {
+        MeasurandRecord {
+            id: "static_bias".into(),
+            channel: "rate".into(),
+            phase: None,
+            value: Some(1.0),
+            unit: "deg/h".into(),
+            interval: None,
+            identifiable: true,
+            upper_limit: None,
+            most_likely: None,
+            lower_limit: None,
+            method: "mean".into(),
+            limit: None,
+            reference: None,
+            verdict,
+            margin: None,
+            specific_risk: None,
+            notes: vec![],
+        }
+    }
+
+    fn condition(status: ConditionStatus) -> ConditionRecord {
+        ConditionRecord {
+            id: "temperature".into(),
+            phase: None,
+            status,
+            evidence: None,
+            observed: Default::default(),
+            required: String::new(),
+            requirement: None,
+            note: String::new(),
+            message: None,
+        }
+    }
+
+    #[test]
+    fn worst_wins_and_an_invalid_condition_neither_passes_nor_fails() {
+        let ok = [condition(ConditionStatus::Ok), condition(ConditionStatus::Remark)];
+        let bad = [condition(ConditionStatus::Invalid)];
+        let rows = |v: &[Verdict]| v.iter().map(|v| row(*v)).collect::<Vec<_>>();
+        use Verdict::{Error, Fail, Indeterminate, None, Pass};
+        assert_eq!(whole(&rows(&[Pass, None]), &ok, &[]).0, Pass);
+        assert_eq!(whole(&rows(&[Pass, Indeterminate]), &ok, &[]).0, Indeterminate);
+        assert_eq!(whole(&rows(&[Pass, Indeterminate, Fail]), &ok, &[]).0, Fail);
+        assert_eq!(whole(&rows(&[None]), &ok, &[]).0, None);
+        assert_eq!(whole(&rows(&[Pass]), &bad, &[]).0, Indeterminate);
+        assert_eq!(whole(&rows(&[Fail]), &bad, &[]).0, Indeterminate);
+        assert_eq!(whole(&rows(&[Pass]), &ok, &[Note::new("error.serial_missing")]).0, Error);
+    }
+}

@@ -1,0 +1,120 @@
+//! A file of keys as text: the bound on its size, UTF-8, the byte order mark, and what keeps it from being read.
+
+use super::diagnostics::{Problem, Problems, SourceText};
+use crate::i18n::{Note, io_reason};
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+/// Largest file that is taken, bytes. A procedure is a few kilobytes.
+const LARGEST: usize = 1 << 20;
+
+/// The byte order mark of UTF-8; it is no part of the text.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Most bytes that are read: enough to know that a file is too large.
+const MOST_READ: u64 = (LARGEST + MARK.len() + 1) as u64;
+
+/// The sentences about a file of one kind that cannot be read at all, by their keys.
+pub(crate) struct Wording {
+    /// The file system refuses it; takes the `reason`.
+    pub unreadable: &'static str,
+    /// It is a folder.
+    pub folder: &'static str,
+}
+
+/// The bytes of a file, one more than allowed at the most.
+///
+/// # Errors
+/// One problem without a place.
+pub(crate) fn bytes(path: &Path, wording: &Wording) -> Result<Vec<u8>, Problems> {
+    let name = path.display().to_string();
+    if path.is_dir() {
+        return Err(Problem::of_file(&name, wording.folder, None).into());
+    }
+    read(path).map_err(|e| {
+        let help = (e.kind() == ErrorKind::NotFound).then(|| "text_file.check_path".into());
+        let message = Note::new(wording.unreadable).with("reason", io_reason(&e));
+        Problem::of_file(&name, message, help).into()
+    })
+}
+
+/// The text of a file, to tell what kind it is; `None` where it cannot be read: reading it says why.
+pub(crate) fn peek(path: &Path) -> Option<String> {
+    read(path).ok().map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+}
+
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MOST_READ).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The text in the bytes of a file; `name` stands in diagnostics.
+///
+/// # Errors
+/// Too many bytes, or bytes that are no UTF-8, at their place.
+pub(crate) fn source(name: &str, bytes: &[u8]) -> Result<SourceText, Problems> {
+    let body = bytes.strip_prefix(MARK).unwrap_or(bytes);
+    if body.len() > LARGEST {
+        let message = Note::new("keyed.too_large").with("bytes", LARGEST);
+        return Err(Problem::of_file(name, message, None).into());
+    }
+    std::str::from_utf8(body).map(|text| SourceText::new(name, text.to_owned())).map_err(|e| {
+        let sound = String::from_utf8_lossy(body.get(..e.valid_up_to()).unwrap_or(b"")).into_owned();
+        let at = sound.len();
+        SourceText::new(name, sound).error(&(at..at), "text_file.not_utf8").help("text_file.save_utf8").into()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
+
+    fn said(name: &str, bytes: &[u8]) -> String {
+        source(name, bytes).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_file_of_the_largest_size_is_text_with_or_without_its_mark() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.toml");
+        for mark in [&b""[..], MARK] {
+            for (length, fits) in [(LARGEST, true), (LARGEST + 1, false), (3 * LARGEST, false)] {
+                std::fs::write(&path, [mark, &vec![b'#'; length]].concat()).unwrap();
+                let read = bytes(&path, &WORDING).unwrap();
+                match source("a.toml", &read) {
+                    Ok(source) => assert!(fits && source.text.len() == length, "{length}"),
+                    Err(e) => assert!(!fits && e.to_string().contains("larger than"), "{length}: {e}"),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_large_file_is_too_large_wherever_a_character_is_cut() {
+        for shift in 0..3 {
+            let text = format!("{}{}", "#".repeat(shift), "ж".repeat(LARGEST));
+            let cut = &text.as_bytes()[..MOST_READ as usize];
+            assert!(said("a.toml", cut).contains("larger than"), "{shift}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_utf_8_is_told_at_its_place() {
+        let shown = said("a.toml", b"\xef\xbb\xbfa = 1\nb = \"\xc4\"\n");
+        assert!(shown.contains("--> a.toml:2:6") && shown.contains("not UTF-8"), "{shown}");
+    }
+
+    #[test]
+    fn what_cannot_be_opened_is_told_with_its_reason() {
+        let folder = tempfile::tempdir().unwrap();
+        let none = bytes(&folder.path().join("none.toml"), &WORDING).unwrap_err().to_string();
+        assert!(none.contains("cannot be read: ") && none.contains("check the path"), "{none}");
+        let is_folder = bytes(folder.path(), &WORDING).unwrap_err().to_string();
+        assert!(is_folder.contains("this is a folder"), "{is_folder}");
+        assert!(peek(folder.path()).is_none() && peek(&folder.path().join("none.toml")).is_none());
+    }
+}

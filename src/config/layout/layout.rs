@@ -1,0 +1,308 @@
+//! The layout of the records of a raw binary file, read from TOML with every problem at its place.
+
+use super::tables::LAYOUT_FILE;
+use crate::config::diagnostics::{Problems, Span};
+use crate::config::file::{self, Wording};
+use crate::config::reader::{Reader, checked};
+use crate::config::section::{Entry, Section};
+use crate::i18n::Note;
+use crate::units::Unit;
+use sagnac_ingest::raw::{ByteOrder, Field, NumberType};
+use sagnac_ingest::raw::{Checksum, LONGEST_RECORD, Layout, LayoutColumn, MOST_COLUMNS, Sum};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// What is said of a layout that cannot be read at all.
+const WORDING: Wording = Wording { unreadable: "layout.unreadable", folder: "layout.folder" };
+
+/// Longest sync word, bytes.
+const LONGEST_SYNC: usize = 16;
+
+/// Reads a layout file.
+///
+/// # Errors
+/// Every problem of the file, each with its place; a file that cannot be read is one problem without a place.
+pub fn load(path: &Path) -> Result<Layout, Problems> {
+    parse(&path.display().to_string(), &file::bytes(path, &WORDING)?)
+}
+
+/// Reads a layout from the bytes of a file; `name` stands in diagnostics.
+///
+/// # Errors
+/// Every problem of the text.
+pub fn parse(name: &str, bytes: &[u8]) -> Result<Layout, Problems> {
+    let (layout, problems) = checked(&file::source(name, bytes)?, &LAYOUT_FILE, build);
+    layout.flatten().ok_or(problems)
+}
+
+/// A whole number of a key.
+fn whole(section: &Section, key: &str, reader: &mut Reader<'_>) -> Option<u64> {
+    let value = section.number(key)?;
+    if value.fract() != 0.0 || value < 0.0 {
+        let message = Note::new("reading.whole").with("key", key);
+        reader.error(&section.span_of(key), message, None);
+        return None;
+    }
+    Some(value as u64)
+}
+
+fn size(section: &Section, key: &str, reader: &mut Reader<'_>) -> Option<usize> {
+    whole(section, key, reader).and_then(|n| usize::try_from(n).ok())
+}
+
+fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
+    let order = if root.word("byte_order") == Some("big") { ByteOrder::Big } else { ByteOrder::Little };
+    let sync = sync(root, reader);
+    let header_bytes = whole(root, "header_bytes", reader).unwrap_or(0);
+    let declared = size(root, "record_bytes", reader);
+    let mut columns = Vec::new();
+    let mut taken: Vec<Taken> = Vec::new();
+    if !sync.is_empty() {
+        taken.push(Taken { from: 0, to: sync.len(), bits: false, what: "sync".to_owned() });
+    }
+    let mut next = sync.len();
+    for section in root.tables("field") {
+        if let Some(end) = field(section, order, next, &mut columns, &mut taken, reader) {
+            next = end;
+        }
+    }
+    names(root, &columns, reader);
+    if columns.len() > MOST_COLUMNS {
+        let message = Note::new("layout.columns").with("most", MOST_COLUMNS);
+        reader.error(&root.span_of("field"), message, None);
+    }
+    let mut end = taken.iter().map(|t| t.to).max().unwrap_or(0);
+    let checksum = root.table("checksum").and_then(|section| {
+        let checksum = checksum(section, order, declared.unwrap_or(end), declared.is_some(), reader)?;
+        let what = "checksum".to_owned();
+        let place = Taken { from: checksum.at, to: checksum.at + checksum.sum.bytes(), bits: false, what };
+        overlap(&place, &taken, &section.span, reader);
+        end = end.max(place.to);
+        Some(checksum)
+    });
+    let record_bytes = declared.unwrap_or(end);
+    if record_bytes < end {
+        let last = taken.iter().max_by_key(|t| t.to).filter(|t| t.to == end);
+        let what = last.map_or("checksum", |t| t.what.as_str());
+        let message =
+            Note::new("layout.too_short").with("bytes", record_bytes).with("what", what).with("end", end);
+        let help = Note::new("layout.write_bytes").with("end", end);
+        reader.error(&root.span_of("record_bytes"), message, Some(help));
+    }
+    if record_bytes > LONGEST_RECORD {
+        let message = Note::new("layout.too_long").with("most", LONGEST_RECORD).with("bytes", record_bytes);
+        reader.error(&root.span, message, None);
+        return None;
+    }
+    if let Some(c) = &checksum
+        && c.to > record_bytes
+    {
+        let section = root.table("checksum").map(|s| s.span_of("to")).unwrap_or_default();
+        reader.error(&section, Note::new("layout.to_beyond").with("bytes", record_bytes), None);
+    }
+    let sample_rate_hz = root.number("sample_rate");
+    (record_bytes > 0).then_some(Layout {
+        header_bytes,
+        record_bytes,
+        sync,
+        sample_rate_hz,
+        checksum,
+        columns,
+    })
+}
+
+/// The bytes of the sync word.
+fn sync(root: &Section, reader: &mut Reader<'_>) -> Vec<u8> {
+    let Some(text) = root.text("sync") else { return Vec::new() };
+    let digits: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+    let plain = digits.strip_prefix("0x").unwrap_or(&digits);
+    let byte = |pair: &[u8]| std::str::from_utf8(pair).ok().and_then(|p| u8::from_str_radix(p, 16).ok());
+    let hex = plain.bytes().all(|b| b.is_ascii_hexdigit());
+    let bytes: Option<Vec<u8>> = plain.as_bytes().chunks(2).map(byte).collect();
+    match bytes {
+        Some(bytes) if hex && plain.len().is_multiple_of(2) && (1..=LONGEST_SYNC).contains(&bytes.len()) => {
+            bytes
+        }
+        _ => {
+            let help = Note::new("layout.write_sync").with("most", LONGEST_SYNC);
+            reader.error(&root.span_of("sync"), "layout.sync", Some(help));
+            Vec::new()
+        }
+    }
+}
+
+/// Bytes of the record that are in use.
+struct Taken {
+    from: usize,
+    to: usize,
+    /// True when only some bits of them are.
+    bits: bool,
+    what: String,
+}
+
+fn overlap(place: &Taken, taken: &[Taken], span: &Span, reader: &mut Reader<'_>) {
+    let clash = |t: &&Taken| t.from < place.to && place.from < t.to && !(t.bits && place.bits);
+    if let Some(other) = taken.iter().find(clash) {
+        let message =
+            Note::new("layout.overlap").with("one", place.what.as_str()).with("other", other.what.as_str());
+        reader.error(span, message, Some("layout.own_bytes".into()));
+    }
+}
+
+/// Reads a field; gives the byte behind it.
+fn field(
+    section: &Section,
+    order: ByteOrder,
+    next: usize,
+    columns: &mut Vec<LayoutColumn>,
+    taken: &mut Vec<Taken>,
+    reader: &mut Reader<'_>,
+) -> Option<usize> {
+    let name = section.text("name");
+    let (storage, kind) = section.word("type").and_then(number_type)?;
+    let from = if section.entry("offset").is_some() { size(section, "offset", reader)? } else { next };
+    let count = size(section, "count", reader)?;
+    let to =
+        count.checked_mul(kind.bytes()).and_then(|n| n.checked_add(from)).filter(|n| *n <= LONGEST_RECORD);
+    let Some(to) = to else {
+        let message = Note::new("layout.field_beyond").with("most", LONGEST_RECORD);
+        reader.error(&section.span_of("offset"), message, None);
+        return None;
+    };
+    let name = name?;
+    let bits = bits(section, kind, reader);
+    let scale = section.number("scale").unwrap_or(1.0);
+    if scale == 0.0 {
+        reader.error(&section.span_of("scale"), "layout.scale", None);
+    }
+    let unit = match section.entry("unit") {
+        Some(Entry::Unit(unit)) => Some(unit.clone()),
+        _ => None,
+    };
+    let rollover_s = section.number("rolls_over");
+    let is_time = |u: &Unit| Unit::parse("s").is_ok_and(|s| s.same_dimension(u));
+    if rollover_s.is_some() && !unit.as_ref().is_some_and(is_time) {
+        let help = Some("layout.unit_of_time".into());
+        reader.error(&section.span_of("rolls_over"), "layout.no_rollover", help);
+    }
+    let summand = section.number("offset_value").unwrap_or(0.0);
+    let linear = (scale != 1.0 || summand != 0.0).then_some((scale, summand));
+    let place = Taken { from, to, bits: bits.is_some(), what: name.clone() };
+    overlap(&place, taken, &section.span, reader);
+    taken.push(place);
+    for i in 0..count {
+        let offset = from + i * kind.bytes();
+        columns.push(LayoutColumn {
+            name: if count == 1 { name.clone() } else { format!("{name}[{i}]") },
+            storage,
+            unit: unit.clone(),
+            rollover_s,
+            field: Field { bits, linear, ..Field::plain(offset, kind, order) },
+        });
+    }
+    Some(to)
+}
+
+/// Mask and shift of a field.
+fn bits(section: &Section, kind: NumberType, reader: &mut Reader<'_>) -> Option<(u64, u32)> {
+    let given = |key: &str| section.entry(key).is_some();
+    let key = if given("mask") { "mask" } else { "shift" };
+    if !given("mask") && !given("shift") {
+        return None;
+    }
+    if !kind.is_whole() {
+        let message = Note::new("layout.needs_whole").with("key", key);
+        reader.error(&section.span_of(key), message, None);
+        return None;
+    }
+    let width = 8 * kind.bytes() as u32;
+    let all = u64::MAX >> (64 - width);
+    let mask = if given("mask") { whole(section, "mask", reader)? } else { all };
+    let shift = if given("shift") { whole(section, "shift", reader)? as u32 } else { 0 };
+    if mask == 0 || mask & !all != 0 {
+        let message = Note::new("layout.mask").with("width", u64::from(width));
+        reader.error(&section.span_of("mask"), message, None);
+        return None;
+    }
+    if shift >= width || mask >> shift == 0 {
+        reader.error(&section.span_of("shift"), "layout.shift", None);
+        return None;
+    }
+    Some((mask, shift))
+}
+
+fn number_type(word: &'static str) -> Option<(&'static str, NumberType)> {
+    Some((
+        word,
+        match word {
+            "u8" => NumberType::U8,
+            "i8" => NumberType::I8,
+            "u16" => NumberType::U16,
+            "i16" => NumberType::I16,
+            "u24" => NumberType::U24,
+            "i24" => NumberType::I24,
+            "u32" => NumberType::U32,
+            "i32" => NumberType::I32,
+            "u64" => NumberType::U64,
+            "i64" => NumberType::I64,
+            "f32" => NumberType::F32,
+            "f64" => NumberType::F64,
+            _ => return None,
+        },
+    ))
+}
+
+fn names(root: &Section, columns: &[LayoutColumn], reader: &mut Reader<'_>) {
+    let mut seen = BTreeSet::new();
+    for section in root.tables("field") {
+        let Some(name) = section.text("name") else { continue };
+        if !seen.insert(name.clone()) {
+            let message = Note::new("layout.field_twice").with("name", name.as_str());
+            reader.error(&section.span_of("name"), message, Some("layout.own_name".into()));
+        }
+    }
+    let all: BTreeSet<&str> = columns.iter().map(|c| c.name.as_str()).collect();
+    if all.len() < columns.len() && seen.len() == root.tables("field").len() {
+        reader.error(&root.span_of("field"), "layout.columns_twice", None);
+    }
+}
+
+fn checksum(
+    section: &Section,
+    order: ByteOrder,
+    end: usize,
+    is_declared: bool,
+    reader: &mut Reader<'_>,
+) -> Option<Checksum> {
+    let word = section.word("type")?;
+    let sum = Sum::of(word)?;
+    let given = |key: &str| section.entry(key).is_some();
+    let at = match (given("offset"), is_declared) {
+        (true, _) => size(section, "offset", reader)?,
+        (false, true) => end.saturating_sub(sum.bytes()),
+        (false, false) => end,
+    };
+    let from = size(section, "from", reader)?;
+    let to = if given("to") { size(section, "to", reader)? } else { at };
+    if at > LONGEST_RECORD {
+        reader.error(&section.span_of("offset"), "layout.offset", None);
+        return None;
+    }
+    if from >= to {
+        let key = if given("to") { "to" } else { "from" };
+        let message = Note::new("layout.no_bytes").with("from", from).with("to", to);
+        reader.error(&section.span_of(key), message, None);
+        return None;
+    }
+    if from < at + sum.bytes() && at < to {
+        let key = if given("to") { "to" } else { "from" };
+        let message = "layout.own_sum";
+        reader.error(&section.span_of(key), message, Some(Note::new("layout.stands_at").with("at", at)));
+        return None;
+    }
+    Some(Checksum { sum, word, at, from, to, order })
+}
+
+#[cfg(test)]
+#[path = "layout_tests.rs"]
+mod tests;

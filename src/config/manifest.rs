@@ -1,0 +1,240 @@
+//! Manifests: the files of a recording in their order, with what must be known to read them.
+//!
+//! A manifest is checked as a whole before a file is read: every problem has its place in it.
+
+use super::manifest_tables::MANIFEST_FILE;
+use super::reading;
+use crate::config::diagnostics::{Problems, Span};
+use crate::config::file::{self, Wording};
+use crate::config::inside::{self, Inside};
+use crate::config::reader::{Reader, checked};
+use crate::config::section::Section;
+use crate::i18n::Note;
+use sagnac_ingest::joined::PartSpec;
+use sagnac_ingest::pattern::natural;
+use sagnac_ingest::raw::LayoutFile;
+use sagnac_ingest::{ReadOptions, TextOptions, compressed, pattern};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What is said of a manifest that cannot be read at all.
+const WORDING: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
+
+/// A manifest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Manifest {
+    /// The manifest file, as given.
+    pub path: PathBuf,
+    /// Serial number of the unit that was recorded.
+    pub serial: Option<String>,
+    /// True when each file follows the one before without a gap.
+    pub contiguous: bool,
+    /// How the files are to be read.
+    pub options: ReadOptions,
+    /// The files, in order.
+    pub files: Vec<ManifestFile>,
+}
+
+/// One file of a manifest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ManifestFile {
+    /// Path as it can be opened.
+    pub path: PathBuf,
+    /// SHA-256 stated for it, hexadecimal.
+    pub sha256: Option<String>,
+    /// Phase of the test that it belongs to.
+    pub phase: Option<String>,
+}
+
+impl Manifest {
+    /// The files to be joined.
+    pub fn parts(&self) -> Vec<PartSpec> {
+        let part = |f: &ManifestFile| PartSpec {
+            path: f.path.clone(),
+            sha256: f.sha256.clone(),
+            phase: f.phase.clone(),
+        };
+        self.files.iter().map(part).collect()
+    }
+
+    /// What the manifest decides, over what was decided elsewhere.
+    pub fn options_over(&self, other: &ReadOptions) -> ReadOptions {
+        let (own, text) = (self.options.clone(), self.options.text.clone());
+        ReadOptions {
+            format: own.format.or_else(|| other.format.clone()),
+            text: TextOptions {
+                encoding: text.encoding.or(other.text.encoding),
+                delimiter: text.delimiter.or(other.text.delimiter),
+                decimal: text.decimal.or(other.text.decimal),
+                header_line: text.header_line.or(other.text.header_line),
+                first_line: text.first_line.or(other.text.first_line),
+                comment: text.comment.or_else(|| other.text.comment.clone()),
+                stamps: other.text.stamps.clone(),
+            },
+            part: own.part.or_else(|| other.part.clone()),
+            layout: own.layout.or_else(|| other.layout.clone()),
+        }
+    }
+}
+
+/// True when a file says at its beginning that it is a manifest, or is named like one and is no other kind of TOML.
+pub fn is_manifest(path: &Path) -> bool {
+    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
+        return false;
+    }
+    let Some(text) = file::peek(path) else { return false };
+    let said = text.lines().map(str::trim).find_map(|l| l.strip_prefix("format"));
+    said.map_or_else(|| path.file_stem().is_some_and(|s| s == "manifest"), |rest| rest.contains("manifest/"))
+}
+
+/// Reads a manifest and checks that its files are there and are what it says.
+///
+/// # Errors
+/// Every problem, each with its place.
+pub fn load(path: &Path) -> Result<Manifest, Problems> {
+    parse(path, &path.display().to_string(), &file::bytes(path, &WORDING)?, inside::folder_of(path))
+}
+
+/// Reads a manifest from its bytes; its files are looked for in `folder`.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Manifest, Problems> {
+    let (manifest, problems) =
+        checked(&file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| Manifest {
+            path: path.to_owned(),
+            serial: root.text("serial"),
+            contiguous: root.flag("contiguous"),
+            options: root.table("recording").map(|r| options(r, folder, reader)).unwrap_or_default(),
+            files: files(root, folder, reader),
+        });
+    manifest.ok_or(problems)
+}
+
+fn complain(reader: &mut Reader<'_>, span: &Span, note: Note, help: Option<&'static str>) {
+    reader.error(span, note, help.map(Note::new));
+}
+
+fn files(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
+    let (pattern, listed) = (root.text("files"), root.tables("file"));
+    match (pattern, root.entry("file").is_some()) {
+        (Some(_), true) => {
+            let at = root.span_of("files");
+            complain(reader, &at, Note::new("manifest.both"), Some("manifest.help.both"));
+            vec![]
+        }
+        (None, false) => {
+            // A wrong value of `files` has been reported already.
+            if root.entry("files").is_none() {
+                complain(
+                    reader,
+                    &root.span.clone(),
+                    Note::new("manifest.no_files"),
+                    Some("manifest.help.no_files"),
+                );
+            }
+            vec![]
+        }
+        (Some(pattern), false) => by_pattern(&pattern, &root.span_of("files"), folder, reader),
+        (None, true) => by_list(listed, root.flag("several_phases"), folder, reader),
+    }
+}
+
+fn by_list(
+    listed: &[Section],
+    several_phases: bool,
+    folder: &Path,
+    reader: &mut Reader<'_>,
+) -> Vec<ManifestFile> {
+    let mut found: Vec<ManifestFile> = Vec::new();
+    let mut real: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    let most = sagnac_ingest::joined::MOST_FILES;
+    if let Some(beyond) = listed.get(most) {
+        complain(reader, &beyond.span, Note::new("manifest.too_many").with("most", most), None);
+        return found;
+    }
+    for section in listed {
+        let Some(text) = section.text("path") else { continue };
+        let at = reader.source.inside_quotes(&section.span_of("path"));
+        let Some(Inside { path, canonical }) = inside::file(&text, folder, &at, reader) else { continue };
+        if let Some(line) = real.get(&canonical) {
+            let note = Note::new("manifest.twice").with("path", text.as_str()).with("line", *line);
+            complain(reader, &at, note, Some("manifest.help.twice"));
+            continue;
+        }
+        real.insert(canonical, reader.source.error(&at, "").line);
+        let sha256 = section.text("sha256").filter(|stated| hash_holds(stated, &path, section, reader));
+        let phase = section.text("phase");
+        if let Some(other) = found.last().filter(|f| f.phase != phase && !several_phases) {
+            let span = if phase.is_some() { section.span_of("phase") } else { section.span.clone() };
+            let word = |p: &Option<String>| p.clone().unwrap_or_else(|| "-".to_owned());
+            let note =
+                Note::new("manifest.phases").with("phase", word(&phase)).with("other", word(&other.phase));
+            complain(reader, &reader.source.inside_quotes(&span), note, Some("manifest.help.phases"));
+        }
+        found.push(ManifestFile { path, sha256, phase });
+    }
+    found
+}
+
+/// True when a stated hash is that of the file.
+fn hash_holds(stated: &str, path: &Path, section: &Section, reader: &mut Reader<'_>) -> bool {
+    let at = reader.source.inside_quotes(&section.span_of("sha256"));
+    if stated.len() != 64 || !stated.chars().all(|c| c.is_ascii_hexdigit()) {
+        complain(reader, &at, Note::new("manifest.no_hash"), Some("manifest.help.no_hash"));
+        return false;
+    }
+    match compressed::digest(path) {
+        Ok(found) if found.sha256.eq_ignore_ascii_case(stated) => true,
+        Ok(found) => {
+            let note = Note::new("manifest.wrong_hash")
+                .with("path", path.display().to_string())
+                .with("found", found.sha256);
+            complain(reader, &at, note, Some("manifest.help.wrong_hash"));
+            false
+        }
+        Err(e) => {
+            complain(reader, &at, Note::new("manifest.unreadable").with("reason", e.note()), None);
+            false
+        }
+    }
+}
+
+fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
+    let at = reader.source.inside_quotes(span);
+    if !inside::stays(pattern, &at, reader) {
+        return vec![];
+    }
+    let most = sagnac_ingest::joined::MOST_FILES;
+    let mut names = match pattern::files(&inside::joined(folder, ""), pattern, most) {
+        Ok(names) => names,
+        Err(e) => {
+            complain(reader, &at, e.note("manifest.bad_pattern", "manifest.wide_pattern"), None);
+            return vec![];
+        }
+    };
+    names.sort_by_cached_key(|f| natural(&f.to_string_lossy()));
+    if names.is_empty() {
+        let note = Note::new("manifest.no_match").with("folder", folder.display().to_string());
+        complain(reader, &at, note, Some("manifest.help.no_match"));
+    } else if names.len() > most {
+        complain(reader, &at, Note::new("manifest.too_many").with("most", most), None);
+        return vec![];
+    }
+    let mut found = Vec::new();
+    for path in names {
+        let relative = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().into_owned();
+        if let Some(file) = inside::file(&relative, folder, &at, reader) {
+            found.push(ManifestFile { path: file.path, sha256: None, phase: None });
+        }
+    }
+    found
+}
+
+fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOptions {
+    let layout = section.text("layout").and_then(|text| {
+        let at = reader.source.inside_quotes(&section.span_of("layout"));
+        inside::file(&text, folder, &at, reader).map(|f| LayoutFile::at(f.path))
+    });
+    ReadOptions { layout, ..reading::options(section, reader) }
+}

@@ -1,0 +1,77 @@
+//! The tables of a manifest.
+
+use super::reading_tables;
+use crate::config::spec::{Kind, TableSpec, optional, required, with_default};
+
+/// A manifest as a whole.
+pub static MANIFEST_FILE: TableSpec = TableSpec {
+    name: "",
+    doc: "A manifest: the files of one recording, in their order.",
+    keys: &[
+        required("format", Kind::Format("manifest/1"), "\"manifest/1\"", "Version of the format."),
+        optional("serial", Kind::Text, "\"SN-0042\"", "Serial number of the unit that was recorded."),
+        optional(
+            "files",
+            Kind::Text,
+            "\"part*.csv\"",
+            "Pattern of the files, relative to the manifest: `*`, `?`, `[...]`. Numbers in names sort by their value. In place of [[file]].",
+        ),
+        with_default(
+            "contiguous",
+            Kind::Flag,
+            "false",
+            "true",
+            "True when each file follows the one before without a gap, whatever its stamps are; needed for files without stamps, whose joints are gaps of unknown length otherwise.",
+        ),
+        with_default(
+            "several_phases",
+            Kind::Flag,
+            "false",
+            "true",
+            "True when files of several phases belong to one test: positions or turns, which a procedure names by their phases.",
+        ),
+        optional(
+            "recording",
+            Kind::Table(&READING),
+            "",
+            "How the files are read, where it is not to be found out.",
+        ),
+        optional("file", Kind::Tables(&FILE), "", "The files, one table each, in their order."),
+    ],
+};
+
+static FILE: TableSpec = TableSpec {
+    name: "file",
+    doc: "One file.",
+    keys: &[
+        required(
+            "path",
+            Kind::Text,
+            "\"part1.csv\"",
+            "Path relative to the manifest, with `/`. It cannot lead out of the manifest's folder.",
+        ),
+        optional(
+            "sha256",
+            Kind::Text,
+            "\"e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855\"",
+            "SHA-256 of the file; checked before anything is read.",
+        ),
+        optional("phase", Kind::Id, "\"soak\"", "Phase of the test that the file belongs to."),
+    ],
+};
+
+static READING: TableSpec = TableSpec {
+    name: "recording",
+    doc: "How the files are read. What is left out is found from each file.",
+    keys: &[
+        reading_tables::FORMAT,
+        reading_tables::ENCODING,
+        reading_tables::DELIMITER,
+        reading_tables::DECIMAL,
+        reading_tables::HEADER_LINE,
+        reading_tables::FIRST_LINE,
+        reading_tables::COMMENT,
+        reading_tables::PART,
+        optional("layout", Kind::Text, "\"layout.toml\"", "Layout of the records of raw binary files."),
+    ],
+};

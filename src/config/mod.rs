@@ -1,0 +1,22 @@
+//! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
+//! guide that follow from the description.
+//!
+//! [`procedure`], [`model`], [`manifest`] and [`layout`] are the files; the other modules know none of them.
+
+pub mod diagnostics;
+pub(crate) mod file;
+pub(crate) mod inside;
+pub mod layout;
+pub mod manifest;
+pub mod manifest_tables;
+pub mod model;
+pub mod procedure;
+pub mod quantity;
+pub mod read_words;
+pub(crate) mod reader;
+pub(crate) mod reading;
+pub(crate) mod reading_tables;
+pub(crate) mod section;
+pub mod spec;
+mod syntax;
+pub(crate) mod values;

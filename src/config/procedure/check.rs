@@ -1,0 +1,198 @@
+//! Validates procedures and limits files with no data.
+
+use super::diagnostics::{Problem, Problems};
+use super::limits::{LimitsFile, effective};
+use super::load::{load, load_limits};
+use super::model::{Loaded, Procedure};
+use super::phases::{Phase, Phased, is_phased, load_phased};
+use super::slips;
+use crate::config::file;
+use crate::config::layout::layout;
+use crate::config::manifest::{self, Manifest, is_manifest};
+use crate::config::model;
+use crate::i18n::{Lang, Localize, Note, visible};
+use crate::ingest::raw::Layout;
+use std::path::Path;
+
+/// What a file turned out to be.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Checked {
+    /// A sound procedure.
+    Procedure(Box<Loaded<Procedure>>),
+    /// A sound limits file.
+    Limits(Box<Loaded<LimitsFile>>),
+    /// A manifest whose files are there and what it says.
+    Manifest(Box<Manifest>),
+    /// A layout of raw binary records.
+    Layout(Box<Layout>),
+    /// A sound procedure of several phases, whose procedures are sound too.
+    Phased(Box<Phased>),
+}
+
+/// Reads a file as what its first table says it is, and every file that it names: a file with `[limits]` or `format = "limits/..."` is a limits file,
+/// one with `format = "manifest/..."` a manifest, one with `format = "layout/..."` a layout, any other a procedure.
+///
+/// # Errors
+/// Every problem of the file.
+pub fn check(path: &Path) -> Result<Checked, Problems> {
+    if is_manifest(path) {
+        let manifest = manifest::load(path)?;
+        manifest.options.layout.as_ref().map(|l| layout::load(&l.path)).transpose()?;
+        Ok(Checked::Manifest(Box::new(manifest)))
+    } else if says(path, |line| line.strip_prefix("format").is_some_and(|rest| rest.contains("\"layout/"))) {
+        layout::load(path).map(|l| Checked::Layout(Box::new(l)))
+    } else if is_phased(path) {
+        let phased = load_phased(path)?;
+        all_named(phased.phases.iter().map(|p| &p.procedure.value))?;
+        Ok(Checked::Phased(Box::new(phased)))
+    } else if is_limits(path) {
+        load_limits(path).map(|l| Checked::Limits(Box::new(l)))
+    } else {
+        let procedure = load(path)?;
+        all_named([&procedure.value].into_iter())?;
+        Ok(Checked::Procedure(Box::new(procedure)))
+    }
+}
+
+/// Reads every file that procedures name: a procedure whose layout or model is missing or wrong cannot be used.
+fn all_named<'a>(procedures: impl Iterator<Item = &'a Procedure>) -> Result<(), Problems> {
+    let mut found = Problems::default();
+    for p in procedures {
+        let layout = p.recording.read.layout.as_ref().map(|l| layout::load(&l.path)).and_then(Result::err);
+        let model = p.explain.as_ref().map(|e| model::load(&e.model)).and_then(Result::err);
+        found.list.extend([layout, model].into_iter().flatten().flat_map(|problems| problems.list));
+    }
+    if found.has_errors() { Err(found) } else { Ok(()) }
+}
+
+/// The result of checking several files, ready to be shown.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct CheckReport {
+    /// One paragraph a file, problems first.
+    pub text: String,
+    /// Files that cannot be used.
+    pub failed: usize,
+}
+
+/// Checks files one by one. With `limits`, each procedure is also checked against those limits.
+pub fn check_report(paths: &[&Path], limits: Option<&Loaded<LimitsFile>>, lang: Lang) -> CheckReport {
+    check_report_with(paths, limits, lang, |_, _| vec![])
+}
+
+/// As [`check_report`]; `extra` gives further warnings for a procedure with its limits, such as those of
+/// [`super::power::warnings`].
+pub fn check_report_with(
+    paths: &[&Path],
+    limits: Option<&Loaded<LimitsFile>>,
+    lang: Lang,
+    extra: impl Fn(&Loaded<Procedure>, Option<&Loaded<LimitsFile>>) -> Vec<Problem>,
+) -> CheckReport {
+    let mut report = CheckReport::default();
+    for path in paths {
+        match check(path) {
+            Ok(checked) => {
+                let (sentence, warnings) = match &checked {
+                    Checked::Procedure(p) => {
+                        let mut warnings = p.warnings.clone();
+                        warnings.extend(effective(p, limits).warnings);
+                        warnings.extend(slips::instruments(p));
+                        warnings.extend(extra(p, limits));
+                        (procedure_sentence(p), warnings)
+                    }
+                    Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
+                    Checked::Manifest(m) => (manifest_sentence(m), vec![]),
+                    Checked::Layout(l) => (layout_sentence(l), vec![]),
+                    Checked::Phased(p) => (phased_sentence(p), p.phases.iter().flat_map(of_phase).collect()),
+                };
+                for warning in warnings {
+                    report.text.push_str(&format!("{}\n", warning.say(lang)));
+                }
+                report.text.push_str(&format!(
+                    "{}: {}\n",
+                    visible(&path.display().to_string()),
+                    sentence.say(lang)
+                ));
+            }
+            Err(problems) => {
+                report.failed += 1;
+                let summary = count(problems.list.len(), "check.one_problem", "check.problems").say(lang);
+                report.text.push_str(&format!(
+                    "{}\n{}: {summary}\n",
+                    problems.say(lang),
+                    visible(&path.display().to_string())
+                ));
+            }
+        }
+    }
+    report
+}
+
+/// What is worth knowing of a phase: what its own files say, and that no verdict can come from them.
+fn of_phase(phase: &Phase) -> Vec<Problem> {
+    let mut found = phase.procedure.warnings.clone();
+    let effective = effective(&phase.procedure, phase.limits.as_ref());
+    found.extend(effective.warnings);
+    found.extend(slips::instruments(&phase.procedure));
+    let unjudged = effective
+        .set
+        .limits
+        .is_empty()
+        .then(|| Note::new("check.no_limits").with("procedure", phase.procedure.value.id.as_str()));
+    let path = phase.limits.as_ref().map_or(phase.procedure.path.as_str(), |l| l.path.as_str());
+    found.extend(effective.idle.or(unjudged).map(|note| Problem::remark_on_file(path, note)));
+    found
+}
+
+/// A count with its noun: one key for one, another for any other number.
+fn count(n: usize, one: &'static str, several: &'static str) -> Note {
+    if n == 1 { Note::new(one) } else { Note::new(several).with("n", n) }
+}
+
+fn procedure_sentence(p: &Loaded<Procedure>) -> Note {
+    let p = &p.value;
+    let key = if p.limits.limits.is_empty() { "check.procedure_no_limits" } else { "check.procedure" };
+    Note::new(key)
+        .with("id", p.id.as_str())
+        .with("revision", p.revision.as_str())
+        .with("channels", count(p.channels.len(), "check.one_channel", "check.channels"))
+        .with("measurands", count(p.measurands.len(), "check.one_measurand", "check.measurands"))
+        .with("limits", count(p.limits.limits.len(), "check.one_limit", "check.limits"))
+}
+
+fn limits_sentence(l: &Loaded<LimitsFile>) -> Note {
+    let l = &l.value;
+    let key = if l.set.limits.is_empty() { "check.limits_file_no_limits" } else { "check.limits_file" };
+    Note::new(key)
+        .with("id", l.id.as_str())
+        .with("revision", l.revision.as_str())
+        .with("limits", count(l.set.limits.len(), "check.one_limit", "check.limits"))
+        .with("references", count(l.set.references.len(), "check.one_reference", "check.references"))
+}
+
+fn manifest_sentence(m: &Manifest) -> Note {
+    Note::new("manifest.sound").with("count", m.files.len())
+}
+
+fn layout_sentence(l: &Layout) -> Note {
+    Note::new("layout.sound").with("bytes", l.record_bytes).with("count", l.names().count())
+}
+
+fn phased_sentence(p: &Phased) -> Note {
+    let phases: Vec<&str> = p.phases.iter().map(|phase| phase.id.as_str()).collect();
+    Note::new("phases.sound")
+        .with("id", p.identity.id.as_str())
+        .with("revision", p.identity.revision.as_str())
+        .with("phases", phases.join(", "))
+}
+
+/// True when the file says that it holds limits.
+fn is_limits(path: &Path) -> bool {
+    says(path, |line| {
+        line == "[limits]" || line.strip_prefix("format").is_some_and(|rest| rest.contains("\"limits/"))
+    })
+}
+
+/// True when a line of a file is as wanted. Nothing is reported here: reading does that.
+fn says(path: &Path, wanted: impl Fn(&str) -> bool) -> bool {
+    file::peek(path).is_some_and(|text| text.lines().map(str::trim).any(wanted))
+}

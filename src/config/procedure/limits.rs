@@ -1,0 +1,410 @@
+//! Limits, reference values and typical values; and how a limits file goes over the limits of a procedure.
+
+use super::diagnostics::{Problem, SourceText, Span};
+use super::model::{Loaded, Procedure};
+use super::quantity::AS_RECORDED;
+use super::reader::Reader;
+use super::recorded;
+use super::section::{Entry, Section};
+use super::slips::{self, FastUnit};
+use crate::acceptance::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
+use crate::estimate::{Limit, Rule};
+use crate::i18n::Note;
+use crate::ids::MeasurandId;
+
+/// Limits, references and typical values of one file, in the units of the measurands.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LimitSet {
+    /// Limits.
+    pub limits: Vec<LimitSpec>,
+    /// Published values, in the order of the file.
+    pub references: Vec<Reference>,
+    /// Typical values of the family.
+    pub expected: Vec<Expected>,
+    /// Limits that are written per second or in radians.
+    pub fast_units: Vec<FastUnit>,
+}
+
+/// A limit and what it is for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitSpec {
+    /// Measurand judged.
+    pub measurand: &'static MeasurandId,
+    /// Channel judged; `None`: every one without a limit of its own.
+    pub channel: Option<String>,
+    /// The limit, in the unit of the measurand.
+    pub limit: Limit,
+    /// The unit of the limit where that of the measurand is as recorded.
+    pub recorded_unit: Option<&'static str>,
+    /// Where it is declared, in the file `limit.source`.
+    pub span: Span,
+}
+
+/// A published value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// Measurand.
+    pub measurand: &'static MeasurandId,
+    /// Channel; `None`: every one.
+    pub channel: Option<String>,
+    /// Value and where it was published.
+    pub record: ReferenceRecord,
+    /// Conventions a reader must know.
+    pub note: Option<String>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A typical value of the family.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// Measurand.
+    pub measurand: &'static MeasurandId,
+    /// Value in its unit.
+    pub value: f64,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A limits file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitsFile {
+    /// Id.
+    pub id: String,
+    /// Title.
+    pub title: String,
+    /// Revision.
+    pub revision: String,
+    /// Family of devices.
+    pub family: Option<String>,
+    /// Where the values come from.
+    pub source: Option<String>,
+    /// What it states. Limits made by a factor are among them.
+    pub set: LimitSet,
+}
+
+impl Loaded<LimitsFile> {
+    /// The identity of the file as it stands in results.
+    pub fn record(&self) -> LimitsFileRecord {
+        LimitsFileRecord {
+            id: self.value.id.clone(),
+            title: self.value.title.clone(),
+            revision: self.value.revision.clone(),
+            source: self.value.source.clone(),
+            path: self.path.clone(),
+            sha256: self.sha256.clone(),
+        }
+    }
+}
+
+/// The limits that hold in a run: those of the procedure with those of a limits file over them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct EffectiveLimits {
+    /// What holds.
+    pub set: LimitSet,
+    /// Things worth knowing, such as limits that this procedure does not measure.
+    pub warnings: Vec<Problem>,
+    /// Why no limit of the file that was given can decide anything here.
+    pub idle: Option<Note>,
+}
+
+impl EffectiveLimits {
+    /// The limit of a measurand on a channel: one for that channel goes before one for every channel. Rows by zone, axis
+    /// or level (`rate@-40`, `x<-y`) are judged by the limit of the gyro whose they are.
+    pub fn limit(&self, measurand: &str, channel: &str) -> Option<&LimitSpec> {
+        let of = |channel: &str| {
+            let limits = self.set.limits.iter().map(|l| (l, l.measurand.id, l.channel.as_deref()));
+            best(limits, measurand, channel)
+        };
+        of(channel).filter(|l| l.channel.is_some()).or_else(|| of(gyro_of(channel)))
+    }
+
+    /// The reference value of a measurand on a channel; the first where there are several.
+    pub fn reference(&self, measurand: &str, channel: &str) -> Option<&Reference> {
+        best(
+            self.set.references.iter().map(|r| (r, r.measurand.id, r.channel.as_deref())),
+            measurand,
+            channel,
+        )
+    }
+
+    /// The typical value of a measurand.
+    pub fn expected(&self, measurand: &str) -> Option<f64> {
+        self.set.expected.iter().find(|e| e.measurand.id == measurand).map(|e| e.value)
+    }
+}
+
+/// The gyro channel of a row: `rate` of `rate@-40`, `x` of `x<-y`.
+pub fn gyro_of(channel: &str) -> &str {
+    let end = channel.find('@').or_else(|| channel.find("<-")).unwrap_or(channel.len());
+    channel.get(..end).unwrap_or(channel)
+}
+
+/// The first entry for the channel, or else the first for every channel.
+fn best<'a, T>(
+    entries: impl Iterator<Item = (&'a T, &'static str, Option<&'a str>)> + Clone,
+    measurand: &str,
+    channel: &str,
+) -> Option<&'a T> {
+    let of = |wanted: Option<&str>| {
+        entries.clone().find(|(_, id, own)| *id == measurand && *own == wanted).map(|(entry, _, _)| entry)
+    };
+    of(Some(channel)).or_else(|| of(None))
+}
+
+/// Puts a limits file over the limits of a procedure.
+///
+/// A limit of the file replaces those of the procedure for the same measurand and channel; one for every channel
+/// replaces all of that measurand. References and typical values go the same way.
+pub fn effective(procedure: &Loaded<Procedure>, file: Option<&Loaded<LimitsFile>>) -> EffectiveLimits {
+    let own = &procedure.value.limits;
+    let Some(file) = file else {
+        return EffectiveLimits { set: own.clone(), ..EffectiveLimits::default() };
+    };
+    let over = &file.value.set;
+    let replaced = |id: &str, channel: &Option<String>, by: &[(&str, &Option<String>)]| {
+        by.iter().any(|(other, c)| *other == id && (c.is_none() || *c == channel))
+    };
+    let limits: Vec<_> = over.limits.iter().map(|l| (l.measurand.id, &l.channel)).collect();
+    let references: Vec<_> = over.references.iter().map(|r| (r.measurand.id, &r.channel)).collect();
+    let mut set = over.clone();
+    set.limits.extend(own.limits.iter().filter(|l| !replaced(l.measurand.id, &l.channel, &limits)).cloned());
+    set.references.extend(
+        own.references.iter().filter(|r| !replaced(r.measurand.id, &r.channel, &references)).cloned(),
+    );
+    set.expected.extend(
+        own.expected.iter().filter(|e| over.expected.iter().all(|o| o.measurand != e.measurand)).cloned(),
+    );
+    let mut warnings = not_measured(&procedure.value, file);
+    warnings.extend(slips::against_channels(&procedure.value, over, &file.source));
+    EffectiveLimits { set, warnings, idle: idle(&procedure.value, file) }
+}
+
+/// Why no limit of a file decides anything with a procedure; `None` where one does.
+fn idle(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Option<Note> {
+    let limits = &file.value.set.limits;
+    let applies = |l: &LimitSpec| {
+        procedure.measures(l.measurand.id, l.channel.as_deref())
+            && l.channel.as_deref().is_none_or(|c| procedure.channel(gyro_of(c)).is_some())
+            && recorded::other_unit(procedure, l).is_none()
+    };
+    if limits.iter().any(applies) {
+        return None;
+    }
+    let key = if limits.is_empty() { "check.references_only" } else { "check.none_applies" };
+    Some(Note::new(key).with("path", file.path.as_str()).with("procedure", procedure.id.as_str()))
+}
+
+/// Limits of a file that the procedure does not measure. The file may serve other procedures too, so this is worth
+/// knowing and no error.
+fn not_measured(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Vec<Problem> {
+    let mut warnings = vec![];
+    for limit in &file.value.set.limits {
+        if !procedure.measures(limit.measurand.id, limit.channel.as_deref()) {
+            let message = Note::new("check.not_judged").with("procedure", procedure.id.as_str());
+            let help = Note::new("check.help.measure").with("id", limit.measurand.id);
+            warnings.push(file.source.warning(&limit.span, message).help(help));
+        } else if let Some(channel) = limit.channel.as_deref()
+            && procedure.channel(channel).is_none()
+        {
+            let message = Note::new("check.no_such_channel")
+                .with("procedure", procedure.id.as_str())
+                .with("channel", channel);
+            warnings.push(file.source.warning(&limit.span, message));
+        } else if let Some(message) = recorded::other_unit(procedure, limit) {
+            warnings.push(file.source.warning(&limit.span, message));
+        }
+    }
+    warnings
+}
+
+/// Reads limits, references and typical values from the root of a file.
+pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut Reader<'_>) -> LimitSet {
+    let mut set = LimitSet::default();
+    for section in root.tables("reference") {
+        let (Some(measurand), Some(value)) = (section.measurand("measurand"), section.number("value")) else {
+            continue;
+        };
+        if value < 0.0 && !measurand.signed {
+            reader.error(&section.span_of("value"), about("check.never_negative", measurand), None);
+        }
+        set.references.push(Reference {
+            measurand,
+            channel: section.text("channel"),
+            record: ReferenceRecord { value, source: section.text("source").unwrap_or_default() },
+            note: section.text("note"),
+            span: section.span.clone(),
+        });
+    }
+    if let Some(Entry::Quantities(list)) = root.entry("expected") {
+        for (measurand, value, span) in list {
+            if *value < 0.0 && !measurand.signed {
+                reader.error(span, about("check.cannot_be_negative", measurand), None);
+            }
+            set.expected.push(Expected { measurand, value: *value, span: span.clone() });
+        }
+    }
+    for section in root.tables("limit") {
+        if let Some(limit) = read_limit(section, &set.references, reader) {
+            set.limits.push(limit);
+            set.fast_units.extend(slips::fast_unit(section, reader));
+        }
+    }
+    if let Some(factor) = general_factor {
+        add_limits_by_factor(&mut set, factor, &reader.source.name);
+    }
+    duplicates(&set, reader);
+    set
+}
+
+/// A sentence about a measurand.
+fn about(key: &'static str, measurand: &MeasurandId) -> Note {
+    Note::new(key).with("measurand", measurand.id)
+}
+
+/// The limit that a factor makes of a typical value: an upper one, or one on the magnitude of what can be negative.
+/// `None` when no unit could meet it or no number could hold it.
+fn by_factor(measurand: &MeasurandId, factor: f64, typical: f64) -> Option<(Option<f64>, Option<f64>)> {
+    let bound = factor * typical.abs();
+    let usable = bound.is_finite() && bound > 0.0;
+    usable.then_some((measurand.signed.then_some(-bound), Some(bound)))
+}
+
+/// Makes a limit of every first reference value that has no limit of its own.
+fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
+    // A multiple of an output per input bounds nothing that anybody means.
+    for reference in set.references.iter().filter(|r| !r.measurand.unit.is_empty()) {
+        let taken = |l: &LimitSpec| {
+            l.measurand == reference.measurand && (l.channel.is_none() || l.channel == reference.channel)
+        };
+        let made = by_factor(reference.measurand, factor, reference.record.value);
+        let Some((min, max)) = made.filter(|_| !set.limits.iter().any(taken)) else { continue };
+        set.limits.push(LimitSpec {
+            measurand: reference.measurand,
+            channel: reference.channel.clone(),
+            limit: Limit { min, max, rule: Rule::GuardBand, risk: 0.05, source: source.to_owned() },
+            recorded_unit: None,
+            span: reference.span.clone(),
+        });
+    }
+}
+
+fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'_>) -> Option<LimitSpec> {
+    let measurand = section.measurand("measurand")?;
+    let channel = section.text("channel");
+    let given = ["min", "max", "max_abs", "factor"].map(|key| section.number(key));
+    let [mut min, mut max, max_abs, factor] = given;
+    let states = |key: &str| section.entry(key).is_some();
+    if !["min", "max", "max_abs", "factor"].iter().any(|key| states(key)) {
+        reader.error(
+            &section.span,
+            about("check.limit_without_value", measurand),
+            Some("check.help.limit_value".into()),
+        );
+        return None;
+    }
+    let alone =
+        |key: &str| states(key) && ["min", "max", "max_abs", "factor"].iter().any(|k| *k != key && states(k));
+    for key in ["max_abs", "factor"] {
+        if alone(key) {
+            let message = Note::new("check.stands_alone").with("key", key);
+            reader.error(&section.span_of(key), message, Some("check.help.stands_alone".into()));
+            return None;
+        }
+    }
+    if let Some(bound) = max_abs {
+        let at = section.span_of("max_abs");
+        if !measurand.signed {
+            reader.error(
+                &at,
+                about("check.never_negative", measurand),
+                Some("check.help.max_for_max_abs".into()),
+            );
+            return None;
+        }
+        if bound <= 0.0 {
+            reader.error(&at, "check.max_abs_zero", None);
+            return None;
+        }
+        (min, max) = (Some(-bound), Some(bound));
+    }
+    let units: Vec<&'static str> =
+        ["min", "max", "max_abs"].into_iter().filter_map(|key| section.recorded_unit(key)).collect();
+    if units.windows(2).any(|pair| pair[0] != pair[1]) || factor.is_some() && measurand.unit.is_empty() {
+        let help = Note::new("keyed_more.help.as_recorded").with("units", AS_RECORDED.join(", "));
+        reader.error(&section.span, about("check.limit_as_recorded", measurand), Some(help));
+        return None;
+    }
+    if let Some(factor) = factor {
+        let matching =
+            |r: &&Reference| r.measurand == measurand && (r.channel == channel || r.channel.is_none());
+        match references.iter().find(matching) {
+            Some(reference) => match by_factor(measurand, factor, reference.record.value) {
+                Some(made) => (min, max) = made,
+                None => {
+                    let message = Note::new("check.factor_gives_none")
+                        .with("value", reference.record.value.to_string());
+                    let help = "check.help.max_for_factor";
+                    reader.error(&section.span_of("factor"), message, Some(help.into()));
+                    return None;
+                }
+            },
+            None => {
+                reader.error(
+                    &section.span_of("factor"),
+                    about("check.factor_without_reference", measurand),
+                    Some("check.help.factor".into()),
+                );
+                return None;
+            }
+        }
+    }
+    if let (Some(low), Some(high)) = (min, max)
+        && low > high
+    {
+        let message = Note::new("check.min_above_max")
+            .with("low", low.to_string())
+            .with("high", high.to_string())
+            .with("unit", measurand.unit);
+        reader.error(&section.span_of("min"), message, Some("check.help.nothing_meets".into()));
+        return None;
+    }
+    if let Some(high) = max.filter(|high| !measurand.signed && *high <= 0.0) {
+        let key = if high < 0.0 { "check.unmet_negative" } else { "check.unmet_zero" };
+        let message = about(key, measurand);
+        reader.error(&section.span_of(if factor.is_some() { "factor" } else { "max" }), message, None);
+        return None;
+    }
+    if min.is_none() && max.is_none() {
+        return None;
+    }
+    let rule = if section.word("rule") == Some("simple") { Rule::Simple } else { Rule::GuardBand };
+    let risk = section.number("risk").unwrap_or(0.05);
+    let limit = Limit { min, max, rule, risk, source: reader.source.name.clone() };
+    let recorded_unit = units.first().copied();
+    Some(LimitSpec { measurand, channel, limit, recorded_unit, span: section.span.clone() })
+}
+
+/// Two limits for the same measurand and channel contradict each other.
+fn duplicates(set: &LimitSet, reader: &mut Reader<'_>) {
+    for (i, limit) in set.limits.iter().enumerate() {
+        if set.limits[..i].iter().any(|l| l.measurand == limit.measurand && l.channel == limit.channel) {
+            let message = about("check.second_limit", limit.measurand);
+            reader.error(&limit.span, message, Some("check.help.second_limit".into()));
+        }
+    }
+}
+
+/// Says what is worth knowing about limits that can be used.
+pub(super) fn warnings(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
+    let mut found = slips::of_set(set, source);
+    for limit in &set.limits {
+        let typical = set.references.iter().find(|r| r.measurand == limit.measurand).map(|r| r.record.value);
+        let too_tight = matches!((limit.limit.max, typical), (Some(max), Some(value)) if max <= value);
+        if too_tight && limit.limit.rule == Rule::GuardBand {
+            let message = about("check.limit_at_typical", limit.measurand);
+            found.push(source.warning(&limit.span, message).help("check.help.above_typical"));
+        }
+    }
+    found
+}

@@ -1,0 +1,36 @@
+//! Procedures and limits as data: what is recorded, under which conditions, what is determined, by which limits it is
+//! judged. TOML in, typed values in inside units out; every problem of a file is reported at once with its place.
+
+mod channel;
+pub mod check;
+pub mod guide;
+pub mod limits;
+mod load;
+pub mod model;
+pub mod obtainable;
+mod parse;
+pub mod phases;
+pub mod power;
+pub mod reading;
+pub mod recorded;
+pub mod schema;
+pub mod site;
+pub mod slips;
+pub mod tables;
+mod tables_conditions;
+mod tables_influence;
+pub mod tables_limits;
+pub mod tables_phases;
+mod tables_rate_table;
+mod tables_site;
+pub mod tables_temperature;
+mod validate;
+
+pub use crate::config::diagnostics;
+pub use crate::config::quantity;
+pub use crate::config::spec;
+use crate::config::{reader, section};
+pub use diagnostics::{Problem, Problems, Severity};
+pub use limits::{EffectiveLimits, LimitsFile, effective};
+pub use load::{load, load_limits, parse_limits, parse_procedure};
+pub use model::{Loaded, Procedure};

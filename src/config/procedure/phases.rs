@@ -1,0 +1,152 @@
+//! Procedures of several phases: each phase is a procedure of its own, on recordings of its own.
+
+use super::LimitsFile;
+use super::diagnostics::{Problems, SourceText};
+use super::load::{load, load_limits};
+use super::model::{Loaded, Procedure};
+use super::reader::{Reader, checked};
+use super::section::Section;
+use super::tables_phases::PHASES_FILE;
+use crate::acceptance::record::{ClauseRecord, ProcedureRecord};
+use crate::config::file::{self, Wording};
+use crate::config::inside;
+use crate::i18n::Note;
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+
+const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
+
+/// A procedure of several phases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phased {
+    /// Identity of the whole.
+    pub identity: ProcedureRecord,
+    /// Family of the unit.
+    pub family: Option<String>,
+    /// Part number.
+    pub part: Option<String>,
+    /// Revision of the part.
+    pub part_revision: Option<String>,
+    /// True when a run without a serial number is an error.
+    pub serial_required: bool,
+    /// The phases in their order.
+    pub phases: Vec<Phase>,
+    /// Clauses of the standard.
+    pub clauses: Vec<ClauseRecord>,
+}
+
+/// One phase.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phase {
+    /// Id: files of a manifest with this phase, or with one that begins with it and a point, belong to it.
+    pub id: String,
+    /// Title; that of its procedure where none is given.
+    pub title: String,
+    /// Its procedure.
+    pub procedure: Loaded<Procedure>,
+    /// Its limits file.
+    pub limits: Option<Loaded<LimitsFile>>,
+}
+
+/// What the file itself says of a phase.
+struct Stated {
+    id: String,
+    title: Option<String>,
+    procedure: PathBuf,
+    limits: Option<PathBuf>,
+}
+
+/// True when a file states phases.
+pub fn is_phased(path: &Path) -> bool {
+    file::peek(path).is_some_and(|text| text.lines().any(|l| l.trim().starts_with("[[phase]]")))
+}
+
+/// Reads a procedure of several phases with the procedures of all of them.
+///
+/// # Errors
+/// Every problem of the file; when it is sound, those of the files that it names.
+pub fn load_phased(path: &Path) -> Result<Phased, Problems> {
+    let name = path.display().to_string();
+    let bytes = file::bytes(path, &WORDING)?;
+    let source = file::source(&name, &bytes)?;
+    let folder = inside::folder_of(path);
+    let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    let (read, problems) = read(&source, &name, sha256, folder);
+    let Some((mut phased, stated)) = read else { return Err(problems) };
+    let mut found: Option<Problems> = None;
+    let mut keep = |problems: Problems| match &mut found {
+        Some(all) => all.list.extend(problems.list),
+        None => found = Some(problems),
+    };
+    for s in stated {
+        let procedure = load(&s.procedure).map_err(&mut keep).ok();
+        let limits = s.limits.as_ref().map(|l| load_limits(l).map_err(&mut keep));
+        let (Some(procedure), Some(limits)) = (procedure, limits.transpose().ok()) else { continue };
+        let title = s.title.unwrap_or_else(|| procedure.value.title.clone());
+        phased.phases.push(Phase { id: s.id, title, procedure, limits });
+    }
+    match found {
+        Some(problems) => Err(problems),
+        None => Ok(phased),
+    }
+}
+
+fn read(
+    source: &SourceText,
+    path: &str,
+    sha256: String,
+    folder: &Path,
+) -> (Option<(Phased, Vec<Stated>)>, Problems) {
+    checked(source, &PHASES_FILE, |root, reader| {
+        let stated = stated(root, folder, reader);
+        let identity = root.table("procedure");
+        let text = |key| identity.and_then(|i| i.text(key));
+        let unit = root.table("unit_under_test");
+        let of_unit = |key| unit.and_then(|u| u.text(key));
+        let phased = Phased {
+            identity: ProcedureRecord {
+                id: text("id").unwrap_or_default(),
+                title: text("title").unwrap_or_default(),
+                revision: text("revision").unwrap_or_default(),
+                standard: text("standard"),
+                clause: text("clause"),
+                author: text("author"),
+                path: path.to_owned(),
+                sha256,
+                limits: None,
+            },
+            family: of_unit("family"),
+            part: of_unit("part"),
+            part_revision: of_unit("revision"),
+            serial_required: unit.is_none_or(|u| u.flag("serial_required")),
+            phases: vec![],
+            clauses: root.tables("clause").iter().map(super::parse::clause).collect(),
+        };
+        (phased, stated)
+    })
+}
+
+fn stated(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Stated> {
+    let mut list: Vec<Stated> = Vec::new();
+    for section in root.tables("phase") {
+        let Some(id) = section.text("id") else { continue };
+        let mut named = |key: &str| {
+            let text = section.text(key)?;
+            let at = reader.source.inside_quotes(&section.span_of(key));
+            inside::file(&text, folder, &at, reader).map(|f| f.path)
+        };
+        let (procedure, limits) = (named("procedure"), named("limits"));
+        let procedure = procedure.unwrap_or_default();
+        let clash = |other: &Stated| {
+            other.id == id
+                || other.id.starts_with(&format!("{id}."))
+                || id.starts_with(&format!("{}.", other.id))
+        };
+        if let Some(other) = list.iter().find(|o| clash(o)) {
+            let message = Note::new("phases.twice").with("id", id.as_str()).with("other", other.id.as_str());
+            reader.error(&section.span_of("id"), message, None);
+        }
+        list.push(Stated { id, title: section.text("title"), procedure, limits });
+    }
+    list
+}

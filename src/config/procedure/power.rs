@@ -1,0 +1,95 @@
+//! What a procedure can decide, asked before there are data.
+//!
+//! Each limit on noise becomes a question: with this record length and this typical noise, would a unit over the
+//! limit be failed, and one well inside be passed? The answer comes from the statistics of the estimators, which
+//! know no procedure; this file only puts the question and places the answer in the text.
+
+use super::diagnostics::{Problem, SourceText};
+use super::limits::{EffectiveLimits, LimitSpec, LimitsFile};
+use super::model::{Loaded, Procedure};
+use crate::i18n::Note;
+use std::ops::Range;
+
+/// Typical noise of a family, in inside units. `None`: not stated.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TypicalNoise {
+    /// N, deg/sqrt(h).
+    pub angle_random_walk: Option<f64>,
+    /// B, deg/h.
+    pub bias_instability: Option<f64>,
+    /// K, deg/h/sqrt(h).
+    pub rate_random_walk: Option<f64>,
+    /// R, deg/h/h.
+    pub rate_ramp: Option<f64>,
+    /// Q, arcsec.
+    pub quantization: Option<f64>,
+}
+
+/// A limit and the record it is to be decided with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PowerQuestion {
+    /// The limit.
+    pub limit: LimitSpec,
+    /// Channels it holds for.
+    pub channels: Vec<String>,
+    /// Least usable time of a valid record, s.
+    pub duration_s: f64,
+    /// Declared sample rate, Hz; `None` where the procedure leaves it open.
+    pub sample_rate_hz: Option<f64>,
+    /// Typical noise of the family.
+    pub typical: TypicalNoise,
+}
+
+/// The questions of a procedure with its limits; none when it states no least duration.
+pub fn questions(procedure: &Procedure, effective: &EffectiveLimits) -> Vec<PowerQuestion> {
+    let Some(duration_s) = procedure.conditions.minimum_duration_s else { return vec![] };
+    let typical = TypicalNoise {
+        angle_random_walk: effective.expected("angle_random_walk"),
+        bias_instability: effective.expected("bias_instability"),
+        rate_random_walk: effective.expected("rate_random_walk"),
+        rate_ramp: effective.expected("rate_ramp"),
+        quantization: effective.expected("quantization"),
+    };
+    let gyro: Vec<&str> = procedure.gyro_channels().map(|c| c.channel.id.as_str()).collect();
+    let mut list = vec![];
+    for limit in &effective.set.limits {
+        let id = limit.measurand.id;
+        // A channel with a limit of its own is not judged by the limit for every channel.
+        let holds = |channel: &str| {
+            procedure.measures(id, Some(channel)) && effective.limit(id, channel).is_some_and(|l| l == limit)
+        };
+        let channels: Vec<String> = gyro.iter().filter(|c| holds(c)).map(|c| (*c).to_owned()).collect();
+        if !channels.is_empty() {
+            let sample_rate_hz = procedure.sample_rate_hz;
+            list.push(PowerQuestion { limit: limit.clone(), channels, duration_s, sample_rate_hz, typical });
+        }
+    }
+    list
+}
+
+/// Turns answers into warnings at the place of each limit.
+///
+/// `answer` gives the sentence and what to do, or `None` when the limit can be decided.
+pub fn warnings(
+    questions: &[PowerQuestion],
+    procedure: &Loaded<Procedure>,
+    limits: Option<&Loaded<LimitsFile>>,
+    mut answer: impl FnMut(&PowerQuestion) -> Option<(Note, Option<Note>)>,
+) -> Vec<Problem> {
+    let source_of = |name: &str| -> &SourceText {
+        match limits {
+            Some(file) if file.source.name == name => &file.source,
+            _ => &procedure.source,
+        }
+    };
+    let mut found = vec![];
+    for question in questions {
+        if let Some((message, help)) = answer(question) {
+            let span: &Range<usize> = &question.limit.span;
+            let mut problem = source_of(&question.limit.limit.source).warning(span, message);
+            problem.help = help;
+            found.push(problem);
+        }
+    }
+    found
+}

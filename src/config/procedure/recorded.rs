@@ -1,0 +1,43 @@
+//! The unit of a quantity that is given as it was recorded: the scale factor.
+
+use super::limits::LimitSpec;
+use super::model::Procedure;
+use crate::i18n::Note;
+use crate::recording::Role;
+use crate::units::Unit;
+
+/// Unit of the scale factor of a channel, and its size at K = 1: counts per input where the file holds counts, and a pure
+/// number where it holds rates or angles, or where the test is one of positions and turns.
+pub fn scale_factor_unit(procedure: &Procedure, channel: &str) -> (&'static str, f64) {
+    let steps = procedure.rate_table.as_ref().is_none_or(|setup| setup.known.is_empty());
+    let Some(spec) = procedure.channel(channel).filter(|_| steps) else { return ("1", 1.0) };
+    let counts = matches!(spec.unit_in_file.as_str(), "count" | "counts");
+    let role = spec.channel.role;
+    let Some(inside) = role.internal_unit().and_then(|u| Unit::parse(u).ok()) else {
+        return ("1", 1.0);
+    };
+    match spec.channel.unit.factor_to(&inside) {
+        Ok(factor) if counts && factor * spec.channel.scale != 0.0 => {
+            let per_inside = 1.0 / (factor * spec.channel.scale);
+            if role == Role::Rate { ("count/(deg/h)", per_inside) } else { ("count/arcsec", per_inside) }
+        }
+        _ => ("1", 1.0),
+    }
+}
+
+/// What is wrong with the unit of a limit on what is given as recorded; `None` where it is that of its channels.
+pub fn other_unit(procedure: &Procedure, limit: &LimitSpec) -> Option<Note> {
+    let given = limit.recorded_unit?;
+    let concerned = |id: &str| limit.channel.as_deref().is_none_or(|c| c == id);
+    let mut channels = procedure.gyro_channels().map(|c| c.channel.id.as_str()).filter(|id| concerned(id));
+    channels.find_map(|id| {
+        let (unit, _) = scale_factor_unit(procedure, id);
+        (unit != given).then(|| {
+            Note::new("check.limit_other_unit")
+                .with("measurand", limit.measurand.id)
+                .with("channel", id)
+                .with("unit", unit)
+                .with("given", given)
+        })
+    })
+}

@@ -1,0 +1,329 @@
+//! The tables of a procedure that ask for a series of switching off and on, and for comparisons without and with an
+//! influence.
+
+use super::model::Procedure;
+use super::reader::Reader;
+use super::section::Section;
+use super::spec::{
+    KeySpec, Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
+};
+use crate::i18n::Note;
+use crate::ids::Test;
+use crate::influence::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};
+use crate::recording::Role;
+
+const PHASE: KeySpec =
+    optional("phase", Kind::Id, "\"on\"", "Phase of the manifest that it is; every file of it counts.");
+const FROM: KeySpec = optional(
+    "from",
+    quantity("s", Range::NOT_NEGATIVE),
+    "\"10 min\"",
+    "Start, from the start of the recording.",
+);
+const TO: KeySpec =
+    optional("to", quantity("s", Range::POSITIVE), "\"20 min\"", "End, from the start of the recording.");
+const TEMPERATURE: KeySpec =
+    optional("temperature", Kind::Id, "\"temp\"", "Channel of the unit's temperature; left out: the first.");
+const AXIS: KeySpec =
+    optional("axis", Kind::Id, "\"x\"", "Axis that it acts along, where several are tested.");
+
+pub(super) static REPEATABILITY_TEST: TableSpec = TableSpec {
+    name: "repeatability_test",
+    doc: "A series of switching off and on. Without [[repeatability_test.run]] every file of a manifest is one run, and \
+          within one file every stretch between times without output.",
+    keys: &[
+        with_default(
+            "settling",
+            quantity("s", Range::NOT_NEGATIVE),
+            "\"0 s\"",
+            "\"5 min\"",
+            "Time after switching on that is left out of every run.",
+        ),
+        with_default(
+            "minimum_run",
+            quantity("s", Range::POSITIVE),
+            "\"60 s\"",
+            "\"10 min\"",
+            "Least length of a run without its settling; shorter ones are not evaluated.",
+        ),
+        with_default(
+            "off",
+            quantity("s", Range::POSITIVE),
+            "\"60 s\"",
+            "\"5 min\"",
+            "Least time without output that divides two runs of one file.",
+        ),
+        with_default(
+            "runs",
+            Kind::Number(Range::between(2.0, 1000.0)),
+            "6",
+            "6",
+            "Runs that there must be at least. From 6 runs the deviation is known from 0.62 to 2.45 times its value.",
+        ),
+        TEMPERATURE,
+        optional(
+            "run",
+            Kind::Tables(&RUN),
+            "",
+            "The runs, where they are not files and not divided by pauses.",
+        ),
+    ],
+};
+
+static RUN: TableSpec = TableSpec {
+    name: "repeatability_test.run",
+    doc: "One run, in the order of time.",
+    keys: &[PHASE, FROM, TO],
+};
+
+const SETTLING: KeySpec = with_default(
+    "settling",
+    quantity("s", Range::NOT_NEGATIVE),
+    "\"5 s\"",
+    "\"10 s\"",
+    "Time after a change of level that is left out.",
+);
+const MINIMUM: KeySpec = with_default(
+    "minimum_interval",
+    quantity("s", Range::POSITIVE),
+    "\"30 s\"",
+    "\"60 s\"",
+    "Least length of an interval without its settling; shorter ones are not evaluated.",
+);
+const ALTERNATIONS: KeySpec = with_default(
+    "alternations",
+    Kind::Number(Range::between(1.0, 1000.0)),
+    "2",
+    "3",
+    "Intervals with the influence, each between two without, that there must be at least. One takes out a steady drift; a second shows whether the change comes back.",
+);
+const LEVEL_UNCERTAINTY: KeySpec = with_default(
+    "level_uncertainty",
+    quantity("1", Range::between(0.0, 1.0)),
+    "\"0 %\"",
+    "\"2 %\"",
+    "Standard uncertainty (k = 1) of the level.",
+);
+const TEMPERATURE_DIFFERENCE: KeySpec = with_default(
+    "temperature_difference",
+    difference("degC", Range::POSITIVE),
+    "\"0.3 degC\"",
+    "\"0.3 degC\"",
+    "How much the temperature may differ between any two levels, the one without among them: what more would do to the bias cannot be told from the influence.",
+);
+const TEMPERATURE_COEFFICIENT: KeySpec = optional(
+    "temperature_coefficient",
+    quantity("deg/h/degC", Range::NOT_NEGATIVE),
+    "\"0.003 deg/h/degC\"",
+    "Largest change of the bias with the temperature, from a test over temperature: what a temperature that goes with the levels may do within `temperature_difference` is then part of the uncertainty.",
+);
+const EVIDENCE: KeySpec = optional(
+    "evidence",
+    Kind::Choice(EVIDENCES),
+    "\"declared\"",
+    "Where nothing in the recording shows that the influence acted, the test is not valid, unless this says that it was declared; report and verdict then say so.",
+);
+
+/// Evidence that a procedure may do with.
+const EVIDENCES: &[Word] =
+    &[("declared", "that the influence acted, and at which levels, is taken from the procedure")];
+
+macro_rules! comparison_table {
+    ($table:ident, $interval:ident, $name:literal, $interval_name:literal, $unit:literal, $reference:literal,
+     $level:literal, $range:expr, $doc:literal) => {
+        pub(super) static $table: TableSpec = TableSpec {
+            name: $name,
+            doc: $doc,
+            keys: &[
+                with_default(
+                    "reference",
+                    quantity($unit, $range),
+                    $reference,
+                    $reference,
+                    "Level that counts as without the influence.",
+                ),
+                SETTLING,
+                MINIMUM,
+                ALTERNATIONS,
+                LEVEL_UNCERTAINTY,
+                TEMPERATURE_DIFFERENCE,
+                TEMPERATURE_COEFFICIENT,
+                TEMPERATURE,
+                EVIDENCE,
+                optional(
+                    "interval",
+                    Kind::Tables(&$interval),
+                    "",
+                    "The intervals with and without, in place of a channel that tells the level.",
+                ),
+            ],
+        };
+        static $interval: TableSpec = TableSpec {
+            name: $interval_name,
+            doc: "One interval at a level.",
+            keys: &[
+                PHASE,
+                FROM,
+                TO,
+                required("level", quantity($unit, $range), $level, "Level during the interval."),
+                AXIS,
+            ],
+        };
+    };
+}
+
+comparison_table!(
+    MAGNETIC_TEST,
+    MAGNETIC_INTERVAL,
+    "magnetic_test",
+    "magnetic_test.interval",
+    "mT",
+    "\"0 mT\"",
+    "\"0.5 mT\"",
+    Range::ANY,
+    "A comparison without and with a magnetic field. The level is read from the channels with the role `magnetic_field`, \
+     one an axis, or stated in [[magnetic_test.interval]]."
+);
+comparison_table!(
+    SUPPLY_TEST,
+    SUPPLY_INTERVAL,
+    "supply_test",
+    "supply_test.interval",
+    "V",
+    "\"5 V\"",
+    "\"5.25 V\"",
+    Range::ANY,
+    "A comparison at several supply voltages. The level is read from the channel with the role `supply`, or stated in \
+     [[supply_test.interval]]."
+);
+comparison_table!(
+    VIBRATION_TEST,
+    VIBRATION_INTERVAL,
+    "vibration_test",
+    "vibration_test.interval",
+    "g",
+    "\"0 g\"",
+    "\"2 g\"",
+    Range::NOT_NEGATIVE,
+    "A comparison without and with vibration: the bias that is rectified, proportional to the square of the rms level, \
+     and the change of N. The level is read from the channels with the role `vibration`, one an axis, or stated in \
+     [[vibration_test.interval]]."
+);
+
+fn stretch(s: &Section) -> Stated {
+    Stated { phase: s.text("phase"), from_s: s.number("from"), to_s: s.number("to") }
+}
+
+/// The series of switching off and on that a table declares.
+pub(super) fn repeatability(section: &Section) -> RepeatabilityTest {
+    let number = |key| section.number(key);
+    RepeatabilityTest {
+        settling_s: number("settling").unwrap_or(0.0),
+        minimum_run_s: number("minimum_run").unwrap_or(60.0),
+        off_s: number("off").unwrap_or(60.0),
+        fewest: number("runs").unwrap_or(6.0) as usize,
+        temperature: section.text("temperature"),
+        runs: section.tables("run").iter().map(stretch).collect(),
+    }
+}
+
+/// The comparison that a procedure declares.
+pub(super) fn comparison(root: &Section) -> Option<ComparisonTest> {
+    let (influence, section) = Influence::ALL.into_iter().find_map(|i| Some((i, root.table(i.table())?)))?;
+    let number = |key| section.number(key);
+    let usual = if influence == Influence::Supply { 5.0 } else { 0.0 };
+    Some(ComparisonTest {
+        influence,
+        reference: number("reference").unwrap_or(usual),
+        settling_s: number("settling").unwrap_or(5.0),
+        minimum_interval_s: number("minimum_interval").unwrap_or(30.0),
+        alternations: number("alternations").unwrap_or(2.0) as usize,
+        level_uncertainty: number("level_uncertainty").unwrap_or(0.0),
+        temperature_difference_deg_c: number("temperature_difference").unwrap_or(0.3),
+        temperature_coefficient: number("temperature_coefficient"),
+        declared: section.word("evidence") == Some("declared"),
+        temperature: section.text("temperature"),
+        intervals: section
+            .tables("interval")
+            .iter()
+            .map(|s| StatedLevel {
+                stretch: stretch(s),
+                level: s.number("level").unwrap_or(0.0),
+                axis: s.text("axis"),
+            })
+            .collect(),
+    })
+}
+
+/// The table that a measurand of an influence needs.
+fn table_of(id: &str) -> &'static str {
+    match Influence::ALL.into_iter().find(|i| i.sensitivity() == id) {
+        Some(influence) => influence.table(),
+        None if id.starts_with("bias_repeatability") => REPEATABILITY_TEST.name,
+        None => VIBRATION_TEST.name,
+    }
+}
+
+/// What such tests and their measurands need of each other.
+pub(super) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+    let tests = [REPEATABILITY_TEST.name, MAGNETIC_TEST.name, SUPPLY_TEST.name, VIBRATION_TEST.name];
+    let others = ["rate_table", "temperature_test", "warm_up_test"];
+    let asked: Vec<&str> = tests.into_iter().chain(others).filter(|t| root.table(t).is_some()).collect();
+    let own = tests.iter().find(|t| root.table(t).is_some());
+    if let (Some(own), [first, second, ..]) = (own, asked.as_slice()) {
+        let other = if first == own { second } else { first };
+        let message = Note::new("influence_check.two_tests").with("first", *own).with("second", *other);
+        let at = root.table(own).map_or(0..0, |s| s.span.clone());
+        reader.error(&at, message, Some("influence_check.help.two_tests".into()));
+    }
+    for section in root.tables("measurand") {
+        let Some(measurand) = section.measurand("id") else { continue };
+        let at = section.span_of("id");
+        let shift = matches!(measurand.id, "bias_shift" | "angle_random_walk_shift");
+        let compares = Influence::ALL.into_iter().any(|i| root.table(i.table()).is_some());
+        match measurand.test {
+            Test::Influence if shift && compares => {}
+            Test::Influence if root.table(table_of(measurand.id)).is_some() => {}
+            Test::Influence => {
+                let message = Note::new("influence_check.no_table")
+                    .with("id", measurand.id)
+                    .with("table", table_of(measurand.id));
+                reader.error(&at, message, None);
+            }
+            Test::Static if own.is_some() && measurand.id != "earth_rate_component" => {
+                let message = Note::new("influence_check.static").with("id", measurand.id);
+                reader.error(&at, message, None);
+            }
+            _ => {}
+        }
+    }
+    for name in tests {
+        let Some(section) = root.table(name) else { continue };
+        if let Some(id) = section.text("temperature")
+            && procedure.channel(&id).is_none_or(|c| c.channel.role != Role::Temperature)
+        {
+            let message = Note::new("rate_table_check.no_temperature").with("id", id);
+            reader.error(&section.span_of("temperature"), message, None);
+        }
+        for part in ["run", "interval"].iter().flat_map(|list| section.tables(list)) {
+            let (from, to) = (part.number("from"), part.number("to"));
+            if let (Some(from), Some(to)) = (from, to)
+                && to <= from
+            {
+                reader.error(&part.span_of("to"), "check.to_before_from", None);
+            }
+            if part.text("phase").is_none() && from.is_none() && to.is_none() {
+                reader.error(&part.span.clone(), "influence_check.no_place", None);
+            }
+        }
+    }
+    if let Some(test) = &procedure.comparison_test {
+        let told = procedure.channels.iter().any(|c| c.channel.role == test.influence.role());
+        if !told && test.intervals.is_empty() {
+            let at = root.table(test.influence.table()).map_or(0..0, |s| s.span.clone());
+            let message = Note::new("influence_check.no_level").with("role", test.influence.id());
+            let help = Note::new("influence_check.help.no_level").with("table", test.influence.table());
+            reader.error(&at, message, Some(help));
+        }
+    }
+}

@@ -1,0 +1,389 @@
+//! Single values: texts, numbers, dates, words, quantities, each checked against its kind.
+
+use super::diagnostics::Span;
+use super::quantity::{self, QuantityError};
+use super::reader::{Reader, for_example, shorten};
+use super::section::{Allowance, Entry, Given, Named, Taus};
+use super::spec::{KeySpec, Kind, Range, Word};
+use crate::i18n::Note;
+use crate::recording::ColumnRef;
+use crate::units::Unit;
+use chrono::NaiveDate;
+use sagnac_core::spelling::nearest;
+use toml::de::DeValue;
+
+/// Longest text that is taken, characters.
+const LONGEST_TEXT: usize = 2000;
+
+/// Most averaging times in a list.
+const MOST_TAUS: usize = 1000;
+
+/// Most numbers in a list.
+const MOST_NUMBERS: usize = 100_000;
+
+/// Most names in a table of values.
+const MOST_NAMES: usize = 100;
+
+/// Reads a value that is no table.
+pub(crate) fn scalar(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Entry> {
+    match key.kind {
+        Kind::Text => text(reader, key, value, span).map(Entry::Text),
+        Kind::Format(_) => text(reader, key, value, span).map(Entry::Text),
+        Kind::Id => id(reader, key, value, span).map(Entry::Text),
+        Kind::Flag => match value {
+            DeValue::Boolean(flag) => Some(Entry::Flag(*flag)),
+            _ => reader.wrong(key, value, span),
+        },
+        Kind::Number(range) => {
+            let Some(given) = number(value) else { return reader.wrong(key, value, span) };
+            in_range(reader, key, given, range, "", span).then_some(Entry::Number(given))
+        }
+        Kind::Numbers(range) => numbers(reader, key, range, value, span).map(Entry::Numbers),
+        Kind::Values => named(reader, key, value, span).map(Entry::Values),
+        Kind::Remark => match value {
+            DeValue::String(given) if given.trim().is_empty() => Some(Entry::Text(String::new())),
+            _ => text(reader, key, value, span).map(Entry::Text),
+        },
+        Kind::Date => date(reader, key, value, span).map(Entry::Date),
+        Kind::Choice(words) => word(reader, key, words, value, span).map(Entry::Word),
+        Kind::Choices(words) => {
+            let DeValue::Array(items) = value else { return reader.wrong(key, value, span) };
+            let found =
+                items.iter().filter_map(|v| word(reader, key, words, v.get_ref(), &v.span())).collect();
+            Some(Entry::Words(found))
+        }
+        Kind::Quantity { unit, difference, range } => {
+            quantity_in(reader, key, unit, difference, range, value, span).map(Entry::Number)
+        }
+        Kind::UnitText => unit(reader, key, value, span).map(Entry::Unit),
+        Kind::Column => column(reader, key, value, span).map(Entry::Column),
+        Kind::Taus => taus(reader, key, value, span).map(Entry::Taus),
+        Kind::Allowance => allowance(reader, key, value, span).map(Entry::Allowance),
+        Kind::Measurand => {
+            let name = text(reader, key, value, span)?;
+            reader.measurand(&name, &inside_quotes(reader, &name, span)).map(Entry::Measurand)
+        }
+        Kind::QuantityBy(_)
+        | Kind::QuantityMap
+        | Kind::Table(_)
+        | Kind::Tables(_)
+        | Kind::TableOrTables(_) => reader.wrong(key, value, span),
+    }
+}
+
+fn text(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<String> {
+    let DeValue::String(text) = value else { return reader.wrong(key, value, span) };
+    if text.trim().is_empty() {
+        let message = Note::new("keyed.empty").with("key", key.name);
+        reader.error(span, message, Some("keyed.help.fill_in".into()));
+        return None;
+    }
+    if text.chars().count() > LONGEST_TEXT || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t') {
+        let message = Note::new("keyed.no_text").with("key", key.name);
+        let help = Note::new("keyed.help.text").with("most", LONGEST_TEXT);
+        reader.error(span, message, Some(help));
+        return None;
+    }
+    Some(text.trim().to_owned())
+}
+
+fn id(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<String> {
+    let given = text(reader, key, value, span)?;
+    let plain = given.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
+    if plain && given.len() <= 64 && given.starts_with(|c: char| c.is_ascii_alphanumeric()) {
+        return Some(given);
+    }
+    let message = Note::new("keyed.no_name").with("given", shorten(&given)).with("key", key.name);
+    reader.error(span, message, Some("keyed.help.name".into()));
+    None
+}
+
+/// A TOML number as a float; `None` for anything else and for what a float cannot hold.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    let parsed = match value {
+        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|i| i as f64),
+        DeValue::Float(f) => f.as_str().parse::<f64>().ok(),
+        _ => None,
+    };
+    parsed.filter(|v| v.is_finite())
+}
+
+/// The numbers of a list; `None` where it is none, is empty or too long, or holds anything else.
+fn list(value: &DeValue<'_>) -> Option<Vec<f64>> {
+    match value {
+        DeValue::Array(items) if !items.is_empty() && items.len() <= MOST_NUMBERS => {
+            items.iter().map(|v| number(v.get_ref())).collect()
+        }
+        _ => None,
+    }
+}
+
+fn numbers(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    range: Range,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Vec<f64>> {
+    let Some(found) = list(value) else { return reader.wrong(key, value, span) };
+    found.iter().all(|v| in_range(reader, key, *v, range, "", span)).then_some(found)
+}
+
+/// A table of names with numbers or lists of numbers. What the names mean is not known here.
+fn named(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Vec<Named>> {
+    let DeValue::Table(table) = value else { return reader.wrong(key, value, span) };
+    let mut found = vec![];
+    for (name, value) in table.iter().take(MOST_NAMES) {
+        let given = match number(value.get_ref()) {
+            Some(number) => Some(Given::Number(number)),
+            None => list(value.get_ref()).map(Given::List),
+        };
+        let Some(given) = given else {
+            let message = Note::new("keyed_more.no_value").with("name", shorten(name.get_ref()));
+            reader.error(&value.span(), message, Some("keyed_more.help.value".into()));
+            continue;
+        };
+        found.push(Named { name: name.get_ref().to_string(), at: name.span(), given, span: value.span() });
+    }
+    Some(found)
+}
+
+fn in_range(
+    reader: &mut Reader<'_>,
+    key: &KeySpec,
+    value: f64,
+    range: Range,
+    unit: &str,
+    span: &Span,
+) -> bool {
+    let fits = range.holds(value);
+    if !fits {
+        let message =
+            Note::new("keyed.out_of_range").with("key", key.name).with("range", range.describe(unit));
+        reader.error(span, message, Some(for_example(key)));
+    }
+    fits
+}
+
+fn date(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<NaiveDate> {
+    let parsed = match value {
+        DeValue::Datetime(stamp) if stamp.time.is_none() && stamp.offset.is_none() => stamp
+            .date
+            .and_then(|d| NaiveDate::from_ymd_opt(i32::from(d.year), u32::from(d.month), u32::from(d.day))),
+        DeValue::String(text) => NaiveDate::parse_from_str(text.trim(), "%Y-%m-%d").ok(),
+        DeValue::Datetime(_) => None,
+        _ => return reader.wrong(key, value, span),
+    };
+    if parsed.is_none() {
+        let message = Note::new("keyed.no_date").with("key", key.name);
+        reader.error(span, message, Some(Note::new("keyed.help.date").with("key", key.name)));
+    }
+    parsed
+}
+
+fn word(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    words: &'static [Word],
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<&'static str> {
+    let DeValue::String(given) = value else { return reader.wrong(key, value, span) };
+    if let Some((known, _)) = words.iter().find(|(known, _)| known == given) {
+        return Some(known);
+    }
+    let help = match nearest(given, words.iter().map(|(known, _)| *known)) {
+        Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
+        None => {
+            let all: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
+            Note::new("keyed.help.one_of").with("values", all.join(", "))
+        }
+    };
+    let at = inside_quotes(reader, given, span);
+    reader.error(&at, no_value(given, key), Some(help));
+    None
+}
+
+fn unit(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<Unit> {
+    let given = text(reader, key, value, span)?;
+    match Unit::parse(&given) {
+        Ok(unit) => Some(unit),
+        Err(e) => {
+            let at = inside_quotes(reader, &given, span);
+            reader.error(&at, e.note(), Some("keyed.help.units".into()));
+            None
+        }
+    }
+}
+
+fn column(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<ColumnRef> {
+    match value {
+        DeValue::String(_) => text(reader, key, value, span).map(ColumnRef::Name),
+        DeValue::Integer(_) => match number(value) {
+            Some(position) if (1.0..=100_000.0).contains(&position) => {
+                Some(ColumnRef::Position(position as usize))
+            }
+            _ => {
+                reader.error(span, "keyed.counted_from_1", None);
+                None
+            }
+        },
+        _ => reader.wrong(key, value, span),
+    }
+}
+
+fn allowance(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Allowance> {
+    match value {
+        DeValue::Integer(_) => match number(value) {
+            Some(count) if count >= 0.0 => Some(Allowance::Count(count as u64)),
+            _ => {
+                reader.error(span, Note::new("keyed.no_count").with("key", key.name), None);
+                None
+            }
+        },
+        DeValue::String(_) => {
+            quantity_in(reader, key, "1", false, Range::SHARE, value, span).map(Allowance::Share)
+        }
+        _ => reader.wrong(key, value, span),
+    }
+}
+
+fn taus(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<Taus> {
+    match value {
+        DeValue::String(name) => match name.as_ref() {
+            "octave" => Some(Taus::Octave),
+            "decade" => Some(Taus::Decade),
+            "all" => Some(Taus::All),
+            other => {
+                let at = inside_quotes(reader, other, span);
+                reader.error(&at, no_value(other, key), Some(key.kind.describe()));
+                None
+            }
+        },
+        DeValue::Array(items) if !items.is_empty() && items.len() <= MOST_TAUS => {
+            let list: Vec<f64> = items
+                .iter()
+                .filter_map(|v| quantity_in(reader, key, "s", false, Range::POSITIVE, v.get_ref(), &v.span()))
+                .collect();
+            Some(Taus::List(list))
+        }
+        _ => reader.wrong(key, value, span),
+    }
+}
+
+fn quantity_in(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    unit: &str,
+    difference: bool,
+    range: Range,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<f64> {
+    let number = quantity_text(reader, key, unit, difference, value, span)?;
+    in_range(reader, key, number, range, unit, span).then_some(number)
+}
+
+/// Reads a quantity whose unit follows from elsewhere.
+pub(crate) fn quantity_by(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    unit: &str,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<Entry> {
+    if !unit.is_empty() {
+        return quantity_text(reader, key, unit, false, value, span).map(Entry::Number);
+    }
+    let DeValue::String(text) = value else {
+        reader.error(span, Note::new("keyed.no_unit").with("name", key.name), Some(as_recorded_help()));
+        return None;
+    };
+    match quantity::parse_as_recorded(text) {
+        Ok((number, unit)) => Some(Entry::AsRecorded(number, unit)),
+        Err(QuantityError { message, help, .. }) => {
+            let at = inside_quotes(reader, text, span);
+            reader.error(&at, message, Some(help.unwrap_or_else(as_recorded_help)));
+            None
+        }
+    }
+}
+
+/// How a quantity is written whose unit is as recorded.
+fn as_recorded_help() -> Note {
+    Note::new("keyed_more.help.as_recorded").with("units", quantity::AS_RECORDED.join(", "))
+}
+
+fn quantity_text(
+    reader: &mut Reader<'_>,
+    key: &'static KeySpec,
+    unit: &str,
+    difference: bool,
+    value: &DeValue<'_>,
+    span: &Span,
+) -> Option<f64> {
+    let bare = matches!(key.kind, Kind::QuantityBy(_) | Kind::QuantityMap);
+    match value {
+        DeValue::String(text) => match quantity::parse(text, unit, difference, bare) {
+            Ok(number) => Some(number),
+            Err(QuantityError { span: part, message, help }) => {
+                let inner = inside_quotes(reader, text, span);
+                let at =
+                    if inner == *span { inner } else { inner.start + part.start..inner.start + part.end };
+                reader.error(&at, message, Some(help.unwrap_or_else(|| quantity_help(key, unit))));
+                None
+            }
+        },
+        DeValue::Integer(_) | DeValue::Float(_) => {
+            let message = Note::new("keyed.no_unit").with("name", key.name);
+            reader.error(span, message, Some(quantity_help(key, unit)));
+            None
+        }
+        _ => reader.wrong(key, value, span),
+    }
+}
+
+/// How a quantity is written. The example of a key stands in only where its unit is the one needed: a guessed unit
+/// would turn hours into seconds.
+fn quantity_help(key: &KeySpec, unit: &str) -> Note {
+    match key.kind {
+        Kind::QuantityBy(_) | Kind::QuantityMap => Note::new("keyed.help.quantity_like").with("unit", unit),
+        _ => Note::new("keyed.help.quantity").with("key", key.name).with("example", key.example),
+    }
+}
+
+/// A word that a key does not know.
+fn no_value(given: &str, key: &KeySpec) -> Note {
+    Note::new("keyed.no_value").with("given", shorten(given)).with("key", key.name)
+}
+
+/// The place of a text between its quotes; the whole value where escapes make the two differ.
+fn inside_quotes(reader: &Reader<'_>, text: &str, span: &Span) -> Span {
+    let inner = reader.source.inside_quotes(span);
+    if reader.source.text.get(inner.clone()) == Some(text) { inner } else { span.clone() }
+}
