@@ -1,7 +1,6 @@
 //! Speed of the parts of a run on a million samples: `cargo bench --bench throughput`. Nothing here passes or fails.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use sagnac::acceptance::record::UnitUnderTest;
 use sagnac::acceptance::run::{Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::ingest::{Source, open};
@@ -11,6 +10,7 @@ use sagnac::noise::family::Estimator;
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::simulate::{Setup, Simulator};
 use sagnac::noise::tau_grid::TauGrid;
+use sagnac::record::UnitUnderTest;
 use sagnac::recording::{Channel, ColumnRef, Role};
 use sagnac::units::Unit;
 use std::fmt::Write;

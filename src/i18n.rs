@@ -8,6 +8,8 @@ mod system;
 
 pub use lang::Lang;
 pub use sagnac_core::message::{Arg, Note};
+use sagnac_core::render;
+pub use sagnac_core::render::{fill, significant};
 pub use sagnac_core::visible::{steers, visible, visible_lines};
 pub use system::io_reason;
 
@@ -56,7 +58,12 @@ pub fn lookup(lang: Lang, key: &str) -> Option<&'static str> {
 
 /// The words of a key: what the table says, or else the last part of the key.
 pub fn words(key: &str, lang: Lang) -> String {
-    lookup(lang, key).map_or_else(|| key.rsplit('.').next().unwrap_or(key).replace('_', " "), str::to_owned)
+    render::words(key, &|key| lookup(lang, key))
+}
+
+/// An ASCII number with the decimal mark of a language. What was rounded to zero has no sign.
+pub fn decimal(ascii: &str, lang: Lang) -> String {
+    render::decimal(ascii, &|key| lookup(lang, key))
 }
 
 /// What can be said in a language.
@@ -67,30 +74,14 @@ pub trait Localize {
 
 impl Localize for Arg {
     fn say(&self, lang: Lang) -> String {
-        match self {
-            Arg::Number(v) => decimal(&trimmed(significant(*v, 4)), lang),
-            Arg::Stated(v) => decimal(&trimmed(significant(*v, 12)), lang),
-            Arg::Figures { value, digits, zeros: true } => decimal(&significant(*value, *digits), lang),
-            Arg::Figures { value, digits, zeros: false } => {
-                decimal(&trimmed(significant(*value, *digits)), lang)
-            }
-            Arg::Decimals { value, digits, zeros: true } => decimal(&format!("{value:.digits$}"), lang),
-            Arg::Decimals { value, digits, zeros: false } => {
-                decimal(&trimmed(format!("{value:.digits$}")), lang)
-            }
-            Arg::Count(v) => v.to_string(),
-            Arg::Text(t) => visible(t).into_owned(),
-            Arg::Key(k) => words(k, lang),
-            Arg::Note(n) => n.say(lang),
-            Arg::Several(list, between) => list.iter().map(|a| a.say(lang)).collect::<Vec<_>>().join(between),
-        }
+        self.render(&|key| lookup(lang, key))
     }
 }
 
 impl Localize for Note {
     /// The sentence. A key that the table lacks shows as itself, so that it is noticed.
     fn say(&self, lang: Lang) -> String {
-        fill(lookup(lang, &self.id).unwrap_or(&self.id), |name| self.args.get(name).map(|arg| arg.say(lang)))
+        self.render(&|key| lookup(lang, key))
     }
 }
 
@@ -113,66 +104,6 @@ impl Bilingual for sagnac_core::effect::Both {
             Lang::En => self.en,
             Lang::Ru => self.ru,
         }
-    }
-}
-
-/// Replaces every `{name}` in a pattern.
-pub(crate) fn fill(pattern: &str, value: impl Fn(&str) -> Option<String>) -> String {
-    let mut out = String::with_capacity(pattern.len() + 16);
-    let mut rest = pattern;
-    while let Some(open) = rest.find('{') {
-        let Some(close) = rest[open..].find('}').map(|i| open + i) else { break };
-        out.push_str(&rest[..open]);
-        let name = &rest[open + 1..close];
-        match value(name) {
-            Some(text) => out.push_str(&text),
-            None => out.push_str(&rest[open..=close]),
-        }
-        rest = &rest[close + 1..];
-    }
-    out.push_str(rest);
-    out
-}
-
-/// Without zeros behind the decimal mark that say nothing.
-fn trimmed(text: String) -> String {
-    let (mantissa, exponent) = match text.split_once('e') {
-        Some((m, e)) => (m, Some(e)),
-        None => (text.as_str(), None),
-    };
-    if !mantissa.contains('.') {
-        return text;
-    }
-    let short = mantissa.trim_end_matches('0').trim_end_matches('.');
-    exponent.map_or_else(|| short.to_owned(), |e| format!("{short}e{e}"))
-}
-
-/// An ASCII number with the decimal mark of a language. What was rounded to zero has no sign.
-pub fn decimal(ascii: &str, lang: Lang) -> String {
-    let zero = |rest: &&str| rest.bytes().all(|b| matches!(b, b'0' | b'.'));
-    let ascii = ascii.strip_prefix('-').filter(zero).unwrap_or(ascii);
-    ascii.replace('.', lookup(lang, "number.decimal").unwrap_or("."))
-}
-
-/// A number with the given count of significant digits, plain where that reads well and with an exponent elsewhere.
-pub fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    if !value.is_finite() {
-        return "–".to_owned();
-    }
-    let digits = digits.max(1);
-    // Rounding may carry into the next decade (9.9996 → 10.00), so the exponent is read after rounding.
-    let scientific = format!("{:.*e}", digits - 1, value);
-    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    if (-5..7).contains(&exponent) {
-        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-        let plain = format!("{value:.decimals$}");
-        if plain.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".into() } else { plain }
-    } else {
-        format!("{mantissa}e{exponent}")
     }
 }
 

@@ -13,6 +13,7 @@ pub mod config;
 pub mod i18n;
 pub mod ingest;
 pub mod output;
+pub mod record;
 pub mod report;
 pub mod selftest;
 pub mod series;

@@ -5,6 +5,7 @@
 
 mod support;
 
+use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::{IngestError, IngestErrorKind, open};
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -51,7 +52,7 @@ fn a_recording_that_changes_while_it_is_read_is_refused() {
     for (name, bytes) in [("r.csv", &plain), ("r.csv.gz", &packed), ("r.parquet", &parquet)] {
         let refused = |what: &str, change: &dyn Fn(&Path), fragments: &[&str]| {
             let e = changed_after_the_first_block(name, bytes, change);
-            let said = e.to_string();
+            let said = e.say(Lang::En);
             assert_eq!(e.kind(), IngestErrorKind::Changed, "{name} {what}: {said}");
             assert!(
                 said.contains(name) && fragments.iter().any(|f| said.contains(f)),
@@ -89,7 +90,7 @@ fn a_recording_that_shrinks_while_it_is_read_is_refused() {
             std::fs::OpenOptions::new().write(true).open(p).unwrap().set_len(shorter).unwrap();
         });
         assert!(matches!(e.kind(), IngestErrorKind::Changed | IngestErrorKind::Damaged), "{name}: {e}");
-        assert!(e.to_string().contains(name), "{e}");
+        assert!(e.say(Lang::En).contains(name), "{e}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod support;
 
+use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::{IngestErrorKind, open};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -32,7 +33,7 @@ fn a_panic_of_a_decoder_is_a_damaged_file() {
             Ok(_) => read += 1,
             Err(e) => {
                 refused += 1;
-                if e.to_string().contains("the decoder gave up") {
+                if e.say(Lang::En).contains("the decoder gave up") {
                     assert_eq!(e.kind(), IngestErrorKind::Damaged);
                     gave_up += 1;
                 }

@@ -1,11 +1,11 @@
 //! What the fuzz targets share: files made of the input, an eye on memory, an analysis in memory.
 
 use peak_alloc::PeakAlloc;
-use sagnac::acceptance::record::{RunRecord, UnitUnderTest};
 use sagnac::acceptance::run::{Outcome, Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::figure::Figure;
 use sagnac::ingest::{ReadOptions, Source, open, open_with};
+use sagnac::record::{RunRecord, UnitUnderTest};
 use sagnac::recording::guess::guess;
 use sagnac::recording::{Channel, ColumnRef, Role};
 use sagnac::units::Unit;

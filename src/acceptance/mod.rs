@@ -1,7 +1,6 @@
-//! A procedure applied to a recording: conditions, the run, the record that comes of it, and what is done with records.
+//! A procedure applied to a recording: conditions, the run, and what is done with its record.
 
 pub mod compare;
 pub mod condition;
 pub mod inspect;
-pub mod record;
 pub mod run;

@@ -2,13 +2,13 @@
 
 use super::inputs::Inputs;
 use super::{AnalyzeArgs, exit, place, run};
-use crate::acceptance::record::UnitUnderTest;
 use crate::acceptance::run::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::model::Procedure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{Source, open_recording};
 use crate::output::Kind;
+use crate::record::UnitUnderTest;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::Unit;
 use chrono::Utc;

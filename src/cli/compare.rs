@@ -7,7 +7,6 @@ use crate::acceptance::compare::published::checked;
 use crate::acceptance::compare::{
     Comparison, Origin, Unit, csv, figures, not_compared, tell_apart, tell_repeated, units_of,
 };
-use crate::acceptance::record::UnitUnderTest;
 use crate::acceptance::run::{Request, analysis, execute};
 use crate::config::procedure::limits::LimitSpec;
 use crate::config::procedure::{EffectiveLimits, load_limits};
@@ -15,6 +14,7 @@ use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
+use crate::record::UnitUnderTest;
 use crate::recording::Role;
 use crate::report::compare::{CompareView, table};
 use crate::report::{Renderer, svg};

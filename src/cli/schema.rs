@@ -1,8 +1,8 @@
 //! `sagnac schema`: JSON Schema of the formats.
 
 use super::{SchemaArgs, SchemaKind, exit};
-use crate::acceptance::record::RunRecord;
 use crate::output::Listed;
+use crate::record::RunRecord;
 
 pub fn main(args: &SchemaArgs) -> u8 {
     let schema = match args.kind {

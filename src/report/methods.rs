@@ -1,7 +1,7 @@
 //! The methods appendix: every formula a report rests on, with its source. Words are in the locale tables under
 //! `methods.<id>`; formulas are the same in every language.
 
-use crate::acceptance::record::RunRecord;
+use crate::record::RunRecord;
 
 /// One entry of the appendix.
 #[derive(Debug, Clone, Copy)]

@@ -3,9 +3,9 @@
 use super::number;
 use super::prose::{self, prose};
 use super::view::{PhasePart, View, Words};
-use crate::acceptance::record::RunRecord;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note, io_reason, lookup, table};
+use crate::record::RunRecord;
 use minijinja::value::{Kwargs, Serde, Value};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use std::collections::BTreeMap;

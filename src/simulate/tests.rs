@@ -1,6 +1,7 @@
 use super::*;
 use crate::config::model::{Claim, parse};
 use crate::effect::Column;
+use crate::i18n::{Lang, Localize};
 use crate::noise::data::NoiseType;
 use crate::noise::model::{NoiseModel, unit_allan_variance};
 use crate::numeric::cosine::dct2;
@@ -290,7 +291,7 @@ fn the_rows_of_a_recording_are_kept_with_their_gaps() {
 fn what_cannot_be_simulated_is_said() {
     let refused = |claim: &Claim, over: Over<'_>| {
         let begun = Simulation::begin(Order { claim, seed: 1, over });
-        begun.err().map(|e| e.to_string()).unwrap_or_default()
+        begun.err().map(|e| e.note().say(Lang::En)).unwrap_or_default()
     };
     let over = |duration_s: f64| Over::Duration { duration_s, start_s: 0.0, drivers: &[] };
     let quiet = claim("");

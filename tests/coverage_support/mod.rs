@@ -1,7 +1,6 @@
 //! Records with known truth through whole runs.
 
 use realfft::RealFftPlanner;
-use sagnac::acceptance::record::{MeasurandRecord, RunRecord, UnitUnderTest};
 use sagnac::acceptance::run::{Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::config::procedure::limits::LimitSpec;
@@ -12,6 +11,7 @@ use sagnac::noise::model::NoiseModel;
 use sagnac::noise::russian::predict;
 use sagnac::noise::simulate::{Setup, Simulator};
 use sagnac::noise::static_bias::BiasUncertainty;
+use sagnac::record::{MeasurandRecord, RunRecord, UnitUnderTest};
 use sagnac::recording::{Channel, ColumnRef, Role};
 use sagnac::units::Unit;
 use std::f64::consts::PI;

@@ -1,8 +1,8 @@
 //! A spoilt recording under the static procedure, by the library.
 
 use crate::support::tested::tested;
-use sagnac::acceptance::record::RunRecord;
 use sagnac::config::procedure::load;
+use sagnac::record::RunRecord;
 use std::path::Path;
 
 /// The record, or what was said instead.

@@ -198,7 +198,7 @@ fn the_inner_axis_of_a_misalignment_test_shows_mistakes_of_its_own() {
 #[test]
 fn twice_the_earth_rate_with_the_opposite_sign_is_no_bias() {
     use sagnac::acceptance::condition::table::{ChannelFact, TableFacts, judge};
-    use sagnac::acceptance::record::ConditionStatus;
+    use sagnac::record::ConditionStatus;
     let status = |bias: f64, limit: Option<f64>| {
         let channel = ChannelFact {
             channel: "z".into(),

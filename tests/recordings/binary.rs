@@ -5,6 +5,7 @@ use crate::binary_files::*;
 use crate::support::sagnac;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::{IngestErrorKind, ReadOptions};
 use std::path::{Path, PathBuf};
 use tempfile::tempdir;
@@ -125,7 +126,7 @@ fn containers_say_what_they_hold_and_what_is_left_out() {
     let error = read_error(&fixture("v7.mat"), &part("rote"));
     assert_eq!(error.kind(), IngestErrorKind::Column);
     assert!(
-        error.to_string().contains("there is no array `rote`; the file has: time_s, rate_deg_h"),
+        error.say(Lang::En).contains("there is no array `rote`; the file has: time_s, rate_deg_h"),
         "{error}"
     );
 }
@@ -137,24 +138,24 @@ fn read_names(name: &str, options: &ReadOptions) -> Vec<String> {
 #[test]
 fn what_holds_no_numbers_is_refused_with_advice() {
     let plain = ReadOptions::default();
-    let error = read_error(&fixture("objects.npy"), &plain).to_string();
+    let error = read_error(&fixture("objects.npy"), &plain).say(Lang::En);
     assert!(error.contains("Python objects; objects are never unpacked"), "{error}");
-    let error = read_error(&fixture("nothing.mat"), &plain).to_string();
+    let error = read_error(&fixture("nothing.mat"), &plain).say(Lang::En);
     assert!(error.contains("`z` is left out: its numbers are complex; save plain arrays"), "{error}");
     let format = |id: &str| ReadOptions { format: Some(id.into()), ..ReadOptions::default() };
-    let error = read_error(&fixture("v7.mat"), &format("nyp")).to_string();
+    let error = read_error(&fixture("v7.mat"), &format("nyp")).say(Lang::En);
     assert!(error.contains("there is no format `nyp`; did you mean `npy`?"), "{error}");
-    let error = read_error(&fixture("v7.mat"), &format("excel")).to_string();
+    let error = read_error(&fixture("v7.mat"), &format("excel")).say(Lang::En);
     assert!(error.contains("formats: raw, parquet, npy, npz, hdf5, mat"), "{error}");
-    let error = read_error(&fixture("v7.mat"), &format("npy")).to_string();
+    let error = read_error(&fixture("v7.mat"), &format("npy")).say(Lang::En);
     assert!(error.contains("npy"), "{error}");
     let error = read_error(&fixture("v7.mat"), &format("raw"));
     assert_eq!(error.kind(), IngestErrorKind::Layout);
-    assert!(error.to_string().contains("need a layout; describe the records in a TOML file"), "{error}");
+    assert!(error.say(Lang::En).contains("need a layout; describe the records in a TOML file"), "{error}");
     let dir = tempdir().unwrap();
     let path = dir.path().join("x.bin");
     std::fs::write(&path, [7u8, 0, 3, 0, 1, 0]).unwrap();
-    let error = read_error(&path, &plain).to_string();
+    let error = read_error(&path, &plain).say(Lang::En);
     assert!(error.contains("raw binary records need a layout (--layout layout.toml)"), "{error}");
 }
 
@@ -219,7 +220,7 @@ fn files_cut_anywhere_are_refused_or_right() {
         for n in places {
             std::fs::write(&path, &whole[..n]).unwrap();
             match read(&path, &options) {
-                Err(error) => assert!(error.to_string().contains(name), "{name} cut at {n}: {error}"),
+                Err(error) => assert!(error.say(Lang::En).contains(name), "{name} cut at {n}: {error}"),
                 Ok(cut) => {
                     let right = right.as_ref().unwrap();
                     for (name_of, column) in cut.names.iter().zip(&cut.columns) {
@@ -254,7 +255,7 @@ fn files_with_changed_bytes_are_refused_or_read_without_harm() {
                 if k % 3 == 0 { random.random() } else { broken[at] ^ (1 << random.random_range(0..8)) };
             std::fs::write(&path, &broken).unwrap();
             match read(&path, &ReadOptions::default()) {
-                Err(error) => assert!(error.to_string().contains(name), "{name} byte {at}: {error}"),
+                Err(error) => assert!(error.say(Lang::En).contains(name), "{name} byte {at}: {error}"),
                 // The checksums of archives leave no way for a wrong value.
                 Ok(read) if name.ends_with(".npz") => {
                     let right = right.as_ref().unwrap();

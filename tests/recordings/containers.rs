@@ -149,7 +149,7 @@ fn the_same_record_gives_the_same_deviations_in_every_format() {
 
 fn refused(name: &str, part: Option<&str>, fragments: &[&str]) {
     let Err(error) = open(name, part).map(|_| ()) else { panic!("{name} was read") };
-    let said = error.to_string();
+    let said = error.say(Lang::En);
     for fragment in [&[name], fragments].concat() {
         assert!(said.contains(fragment), "{name}: no `{fragment}` in {said}");
     }
@@ -181,7 +181,7 @@ fn refused_bytes(bytes: &[u8], fragments: &[&str]) {
     let Err(error) = open_with(&path, &options(None)).and_then(|s| columns(&s).map(|_| ())) else {
         panic!("the file was read, expected {fragments:?}")
     };
-    let said = error.to_string();
+    let said = error.say(Lang::En);
     for fragment in fragments {
         assert!(said.contains(fragment), "no `{fragment}` in {said}");
     }
@@ -331,7 +331,7 @@ impl Random {
 fn survives(path: &Path, what: &str) {
     let outcome = open_with(path, &options(None)).and_then(|s| columns(&s).map(|_| ()));
     if let Err(e) = outcome {
-        let said = e.to_string();
+        let said = e.say(Lang::En);
         assert!(said.contains("damaged"), "{what}: the file is not named in {said}");
         assert_ne!(e.message().id, "ingest.thread_stopped", "{what}: {said}");
         assert_ne!(e.kind(), IngestErrorKind::Changed, "{what}: {said}");

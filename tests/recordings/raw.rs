@@ -3,6 +3,7 @@
 use crate::binary_files::{columns, rate, read, read_error, temperature};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::ReadOptions;
 use sagnac::ingest::raw::LayoutFile;
 use std::path::Path;
@@ -115,12 +116,12 @@ fn a_layout_that_does_not_fit_is_refused() {
         ("\"i16\"", "\"int16\"", "layout.toml:27:9: `int16` is not a value of `type`"),
     ] {
         let options = with_layout(dir.path(), &IMU.replace(change, to));
-        let error = read_error(&path, &options).to_string();
+        let error = read_error(&path, &options).say(Lang::En);
         assert!(error.contains(says), "{error}");
     }
     let options =
         ReadOptions { layout: Some(LayoutFile::at(dir.path().join("none.toml"))), ..ReadOptions::default() };
-    assert!(read_error(&path, &options).to_string().contains("the layout cannot be read"));
+    assert!(read_error(&path, &options).say(Lang::En).contains("the layout cannot be read"));
 }
 
 #[test]

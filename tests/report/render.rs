@@ -1,9 +1,9 @@
 //! Reports of invented runs: what must stand in them, and that nothing breaks out of them.
 
 use crate::fixture;
-use sagnac::acceptance::record::RunRecord;
 use sagnac::estimate::Rule;
 use sagnac::i18n::Lang;
+use sagnac::record::RunRecord;
 use sagnac::report::{Renderer, ReportError, render_html, render_markdown, write_figures};
 use std::path::Path;
 

@@ -8,12 +8,12 @@ use sagnac::acceptance::condition::temperature_track::{Extreme, TemperatureFacts
 use sagnac::acceptance::condition::{
     BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, TailShape, WarmUpFact, judge_all,
 };
-use sagnac::acceptance::record::RunRecord;
 use sagnac::config::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
 use sagnac::config::procedure::{EffectiveLimits, effective, load, load_limits};
 use sagnac::i18n::{Lang, Localize, lookup};
 use sagnac::measurand::ids::{MEASURANDS, Test};
 use sagnac::noise::model::TERMS;
+use sagnac::record::RunRecord;
 use sagnac::recording::integrity::Integrity;
 use sagnac::temperature::SegmentKind;
 use sagnac::temperature::course::Span;

@@ -1,8 +1,8 @@
 //! A recording tested by the library under a procedure and the limits of the samples.
 
-use sagnac::acceptance::record::{RunRecord, UnitUnderTest};
 use sagnac::acceptance::run::{Request, RunError, execute};
 use sagnac::config::procedure::{Loaded, Procedure, effective, load_limits};
+use sagnac::record::{RunRecord, UnitUnderTest};
 use std::path::Path;
 
 /// The record of the run; the time of it is always the same.

@@ -29,6 +29,7 @@ pub mod noise;
 pub mod numeric;
 pub mod rate_table;
 pub mod recording;
+pub mod render;
 pub mod series;
 pub mod simulate;
 pub mod spelling;

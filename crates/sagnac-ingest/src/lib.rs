@@ -10,6 +10,8 @@ mod choice;
 mod column;
 pub mod compressed;
 mod delimited;
+#[cfg(test)]
+mod english;
 mod error;
 pub mod faults;
 mod field_faults;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::english::english;
 use sagnac_core::recording::ColumnRef;
 use sagnac_core::recording::Slab;
 use sagnac_core::units::Unit;
@@ -87,11 +88,11 @@ fn a_unit_that_does_not_fit_is_refused() {
     let e = run(columns(), &[channel("r", Role::Rate, "degC", 1.0)], spec, 5).err().unwrap();
     assert_eq!(e.kind(), IngestErrorKind::Unit);
     let e = run(columns(), &[channel("r", Role::Rate, "deg/h", 0.0)], spec, 5).err().unwrap();
-    assert!(e.to_string().contains("scale"), "{e}");
+    assert!(english(&e.note()).contains("scale"), "{e}");
     let e =
         run(columns(), &[channel("r", Role::Rate, "deg/h", 1.0)], TimeBaseSpec::default(), 5).err().unwrap();
     assert_eq!(e.kind(), IngestErrorKind::TimeBase);
-    assert!(e.to_string().contains("declare the sample rate"), "{e}");
+    assert!(english(&e.note()).contains("declare the sample rate"), "{e}");
 }
 
 #[test]

@@ -1,4 +1,5 @@
 use super::*;
+use crate::english::english;
 use sagnac_core::recording::ColumnRef;
 use std::io::Write;
 use std::path::Path;
@@ -81,14 +82,16 @@ fn names_are_found_and_wrong_ones_get_a_hint() {
     let source = open(f.path()).unwrap();
     let name = |n: &str| source.resolve(&ColumnRef::Name(n.to_owned()));
     assert_eq!(name("time_s").unwrap(), 0);
-    assert!(name("tme_s").unwrap_err().to_string().contains("did you mean `time_s`"));
-    assert!(name("voltage").unwrap_err().to_string().contains("the file has: time_s, rate, rate"));
+    assert!(english(&name("tme_s").unwrap_err().note()).contains("did you mean `time_s`"));
+    assert!(english(&name("voltage").unwrap_err().note()).contains("the file has: time_s, rate, rate"));
     let twice = name("rate").unwrap_err();
     assert_eq!(twice.kind(), IngestErrorKind::Column);
-    assert!(twice.to_string().contains("stands over 2 columns (2, 3)"), "{twice}");
+    assert!(english(&twice.note()).contains("stands over 2 columns (2, 3)"), "{twice}");
     assert_eq!(source.resolve(&ColumnRef::Position(3)).unwrap(), 2);
     for p in [0, 4] {
-        assert!(source.resolve(&ColumnRef::Position(p)).unwrap_err().to_string().contains("columns 1 to 3"));
+        assert!(
+            english(&source.resolve(&ColumnRef::Position(p)).unwrap_err().note()).contains("columns 1 to 3")
+        );
     }
     let bare = file(b"0,1\n1,2\n");
     let names: Vec<String> = open(bare.path()).unwrap().columns().iter().map(|c| c.name.clone()).collect();
@@ -99,7 +102,7 @@ fn names_are_found_and_wrong_ones_get_a_hint() {
 fn unreadable_files_are_refused_with_their_reason() {
     use IngestErrorKind::*;
     let dir = TempDir::new().unwrap();
-    assert!(open(dir.path()).err().unwrap().to_string().contains("is a folder"));
+    assert!(english(&open(dir.path()).err().unwrap().note()).contains("is a folder"));
     assert_eq!(open(&dir.path().join("none.csv")).err().unwrap().kind(), Io);
     let long_line = vec![b'1'; 3 << 20];
     for (content, kind, says) in [
@@ -119,7 +122,7 @@ fn unreadable_files_are_refused_with_their_reason() {
     ] {
         let e = refused(content);
         assert_eq!(e.kind(), kind, "{e}");
-        assert!(e.to_string().contains(says), "{e}");
+        assert!(english(&e.note()).contains(says), "{e}");
     }
 }
 
@@ -197,7 +200,7 @@ fn bad_fields_are_counted_and_a_column_of_words_is_refused() {
     let f = file(content.as_bytes());
     let e = read(f.path(), &[0, 2]).unwrap_err();
     assert_eq!((e.kind(), e.line(), e.column()), (IngestErrorKind::NotNumeric, Some(2), Some(7)));
-    assert!(e.to_string().contains("`section`") && e.text() == Some("word"), "{e}");
+    assert!(english(&e.note()).contains("`section`") && e.text() == Some("word"), "{e}");
     // Half of the rows cut short.
     let mut ragged = String::from("t,r\n");
     (0..5000).for_each(|i| ragged.push_str(if i % 3 == 0 { "1,2\n" } else { "1\n" }));
@@ -277,7 +280,7 @@ fn parquet_numbers_nulls_and_words() {
     assert_eq!(kinds, [true, true, true, true, false, true]);
     assert_eq!(source.columns()[5].unit.as_deref(), Some("ms"));
     let e = source.resolve(&ColumnRef::Name("word".to_owned())).unwrap_err();
-    assert!(e.to_string().contains("not numbers"), "{e}");
+    assert!(english(&e.note()).contains("not numbers"), "{e}");
     let (columns, faults, facts) = read(f.path(), &[0, 1, 2, 3, 5]).unwrap();
     assert_eq!(facts.rows, 6);
     assert_eq!((columns[0][3], columns[0][4]), (3.0, 4.0));

@@ -17,7 +17,7 @@ pub use parts::{part_key, part_name};
 pub use rules::{RULES, RuleRow};
 pub use unit::{Origin, Quantity, Unit, UnitError, not_compared, tell_apart, tell_repeated, units_of};
 
-use crate::acceptance::record::Program;
+use crate::record::Program;
 use serde::Serialize;
 
 /// Version of `comparison.json`.

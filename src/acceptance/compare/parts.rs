@@ -1,7 +1,7 @@
 //! The parts of a model by name.
 
-use crate::acceptance::record::{ModelRecord, ShareRecord};
 use crate::i18n::{Arg, Note};
+use crate::record::{ModelRecord, ShareRecord};
 
 /// The name of a part of a model, by its id.
 pub fn part_key(id: &str) -> &'static str {

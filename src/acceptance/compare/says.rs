@@ -2,8 +2,8 @@
 
 use super::parts::grouped;
 use super::unit::{Origin, Unit};
-use crate::acceptance::record::{ComparisonRecord, WindowRecord};
 use crate::i18n::{Arg, Note};
+use crate::record::{ComparisonRecord, WindowRecord};
 
 /// Smallest share that is named.
 const NAMED: f64 = 0.005;

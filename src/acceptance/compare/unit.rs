@@ -3,9 +3,9 @@
 use super::faults;
 use super::rules::{RuleRow, rules};
 use super::says;
-use crate::acceptance::record::ComparisonRecord;
 use crate::estimate::{Interval, UpperLimit};
 use crate::i18n::{Arg, Note};
+use crate::record::ComparisonRecord;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -93,10 +93,10 @@ pub struct Unit {
     /// True where the model departs from the record, so that what it predicts is indicative.
     pub indicative: bool,
     /// What it all says.
-    #[serde(serialize_with = "crate::acceptance::record::message::messages")]
+    #[serde(serialize_with = "crate::record::message::messages")]
     pub says: Vec<Note>,
     /// What could not be compared, and why.
-    #[serde(serialize_with = "crate::acceptance::record::message::messages")]
+    #[serde(serialize_with = "crate::record::message::messages")]
     pub missing: Vec<Note>,
 }
 
@@ -143,7 +143,7 @@ impl Unit {
 /// A result of another format, or one whose run failed.
 pub fn units_of(result: &Value, path: &str, stem: &str, origin: Origin) -> Result<Vec<Unit>, UnitError> {
     let refuse = |key: &'static str| UnitError(Note::new(key).with("path", path));
-    if result.get("format").and_then(Value::as_str) != Some(crate::acceptance::record::RESULT_FORMAT) {
+    if result.get("format").and_then(Value::as_str) != Some(crate::record::RESULT_FORMAT) {
         return Err(refuse("compare.error.not_a_result"));
     }
     let rows = result.get("measurands").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);

@@ -4,9 +4,9 @@
 //! One more check: one line in [`CHECKS`], its name `check_name.<id>` in the tables, and a call of [`CheckLog::made`] or
 //! [`CheckLog::not_made`] where it runs.
 
-use crate::acceptance::record::{CheckRecord, CheckStatus};
 use crate::config::procedure::Procedure;
 use crate::i18n::Note;
+use crate::record::{CheckRecord, CheckStatus};
 use std::sync::Mutex;
 
 /// A kind of test.

@@ -1,8 +1,8 @@
 //! Usable time after warm-up, exclusions and gaps: not "last minus first stamp".
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Duration;
 

@@ -13,10 +13,10 @@
 //! moves too much for this, the record says that the mean was not judged.
 
 use super::{Condition, Facts, GyroFact, id_of, mistakes, noise_level, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::config::procedure::model::EarthRate as Removal;
 use crate::i18n::Note;
 use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct EarthRate;
 

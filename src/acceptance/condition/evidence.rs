@@ -1,6 +1,6 @@
 //! What stands behind each condition: the recording, what is inferred from the output, or what somebody declared.
 
-use crate::acceptance::record::{ConditionRecord, Evidence};
+use crate::record::{ConditionRecord, Evidence};
 
 /// Judged by what the output does.
 const INFERRED: &[&str] = &[

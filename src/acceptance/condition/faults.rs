@@ -1,9 +1,9 @@
 //! Faults of the recording against the budget of the procedure.
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::config::procedure::model::Allowance;
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Faults;
 

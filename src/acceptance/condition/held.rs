@@ -2,8 +2,8 @@
 
 use super::temperature_track::TemperatureFacts;
 use super::{Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 
 /// What must be held.
 pub(super) struct Held<'a> {

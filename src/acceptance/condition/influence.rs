@@ -1,10 +1,10 @@
 //! What a series of switching off and on, and a comparison without and with an influence, must have been.
 
 use super::record;
-use crate::acceptance::record::{ConditionRecord, ConditionStatus, Evidence};
 use crate::i18n::{Arg, Note};
 use crate::influence::nuisance::Following;
 use crate::influence::repeatability::factors;
+use crate::record::{ConditionRecord, ConditionStatus, Evidence};
 
 /// What was found of a series.
 #[derive(Debug, Clone, PartialEq)]

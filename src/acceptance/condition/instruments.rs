@@ -1,8 +1,8 @@
 //! Calibration of the instruments on the day of the test.
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::Note;
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Instruments;
 

@@ -33,9 +33,9 @@ mod warm_up;
 
 pub use gyro_fact::{BiasStep, ColumnFact, GyroFact, NoiseChange, TailShape};
 
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::i18n::{Lang, Localize, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::integrity::Integrity;
 use crate::temperature::findings::Schedule;
 use chrono::NaiveDate;

@@ -7,8 +7,8 @@
 //! units of one family, which differ by a factor of three at most.
 
 use super::{Condition, Facts, GyroFact, earth_rate, id_of, mistakes, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::Role;
 
 pub(super) struct NoiseLevel;

@@ -1,8 +1,8 @@
 //! What was done to the output before it was recorded: coarse steps, smoothing. Remarks only.
 
 use super::{Condition, Facts, GyroFact, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::Note;
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Output;
 

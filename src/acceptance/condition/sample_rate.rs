@@ -1,8 +1,8 @@
 //! The measured sample rate against the declared one.
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct SampleRate;
 

@@ -2,8 +2,8 @@
 //! mistake.
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 use crate::temperature::findings::{LEAST_SPAN_DEG_C, Schedule as Run};
 use crate::temperature::segments::Segment;
 use crate::temperature::{SegmentKind, TemperatureTest};

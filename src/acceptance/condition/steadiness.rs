@@ -2,8 +2,8 @@
 //! then its limits judge it; but so does a record that was put together from two.
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::Note;
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Steadiness;
 

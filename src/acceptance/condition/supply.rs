@@ -1,7 +1,7 @@
 //! Supply voltage held over the evaluated window.
 
 use super::{Condition, Facts, held};
-use crate::acceptance::record::ConditionRecord;
+use crate::record::ConditionRecord;
 
 pub(super) struct Supply;
 

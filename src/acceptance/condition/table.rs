@@ -4,8 +4,8 @@
 use super::checks::CheckLog;
 use super::table_motion::{self, Settling};
 use super::{mistakes, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 use crate::units::RateUnit;
 
 /// What was found of the table.

@@ -2,8 +2,8 @@
 
 use super::table::TableFacts;
 use super::{mistakes, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 
 /// Share of the tolerance of the rate by which steps may be off on average where the settling is a little short.
 const OFF: f64 = 0.1;

@@ -2,8 +2,8 @@
 //! thinned out or replaced have shorter ones, and then every figure of their noise is too small.
 
 use super::{Condition, Facts, id_of, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::Note;
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Tails;
 

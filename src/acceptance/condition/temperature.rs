@@ -1,7 +1,7 @@
 //! Temperature held over the evaluated window (static test: 20 ± 0.4 °C).
 
 use super::{Condition, Facts, held};
-use crate::acceptance::record::ConditionRecord;
+use crate::record::ConditionRecord;
 
 pub(super) struct Temperature;
 

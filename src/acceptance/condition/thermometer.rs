@@ -1,8 +1,8 @@
 //! The scale of a thermometer by its readings alone, where no temperature is stated that would tell it.
 
 use super::record;
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 use crate::units::Unit;
 
 /// Temperatures of rooms with tables in them, degC.

@@ -1,8 +1,8 @@
 //! The serial number that the recording states against the one under which it is tested.
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::Note;
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct UnitNamed;
 

@@ -1,9 +1,9 @@
 //! Units: that of a column's name against the declared one, and that of a temperature by its values.
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::config::procedure::model::TemperatureCondition;
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::guess;
 use crate::units::Unit;
 

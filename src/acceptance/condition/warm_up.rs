@@ -1,8 +1,8 @@
 //! Whether the warm-up left out was long enough.
 
 use super::{Condition, Facts, record};
-use crate::acceptance::record::{ConditionRecord, ConditionStatus};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct WarmUp;
 

@@ -1,9 +1,5 @@
 //! Russian and Allan values of each channel, for `compare` and for results that are compared later.
 
-use crate::acceptance::record::{
-    ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord, OctavesRecord, ParameterRecord,
-    ShareRecord, WindowRecord,
-};
 use crate::estimate::chi_square_quantile;
 use crate::measurand::allan_minimum::{FLICKER_FLOOR, lowest, readable};
 use crate::measurand::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S};
@@ -14,6 +10,10 @@ use crate::noise::identifiable::hours_until_identifiable_among;
 use crate::noise::null_ratio::null_ratio;
 use crate::noise::prediction::Agreement;
 use crate::noise::russian::{null_minimum, octave_identity};
+use crate::record::{
+    ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord, OctavesRecord, ParameterRecord,
+    ShareRecord, WindowRecord,
+};
 
 /// The record of a channel; `None` when the record is too short for two windows of 100 s.
 pub fn record(gyro: &GyroEvidence) -> Option<ComparisonRecord> {

@@ -8,7 +8,6 @@ use super::{
 use crate::acceptance::condition::checks::CheckLog;
 use crate::acceptance::condition::temperature_track::TemperatureFacts;
 use crate::acceptance::condition::{Facts, WarmUpFact, judge_all};
-use crate::acceptance::record::{ConditionStatus, Window};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::{EarthRate, Taus};
 use crate::estimate::Estimate;
@@ -29,6 +28,7 @@ use crate::noise::residual::GoodnessOfFit;
 use crate::noise::spectral_record::SpectralRecord;
 use crate::noise::tau_grid::TauGrid;
 use crate::noise::whole::Whole;
+use crate::record::{ConditionStatus, Window};
 use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
 use crate::temperature::findings::Schedule;
@@ -291,7 +291,7 @@ fn evidence(
     }
 }
 
-fn measure(request: &Request<'_>, found: &Found) -> Vec<crate::acceptance::record::MeasurandRecord> {
+fn measure(request: &Request<'_>, found: &Found) -> Vec<crate::record::MeasurandRecord> {
     let mut rows = Vec::new();
     for spec in &request.procedure.measurands {
         for gyro in &found.gyros {

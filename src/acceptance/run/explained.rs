@@ -1,12 +1,12 @@
 //! The recording of a run against the model of its family: a unit that passes its limits and yet behaves unlike its
 //! siblings is what quality assurance wants to know of. The finding stands beside the verdict and is no part of it.
 
-use crate::acceptance::record::ExplainedRecord;
 use crate::config::model::{self, Claim};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::ExplainSpec;
 use crate::i18n::{Lang, Note};
 use crate::mismatch::{self, Options, Outcome, Progress};
+use crate::record::ExplainedRecord;
 use crate::series::{SeriesOptions, load_series};
 use std::path::PathBuf;
 

@@ -1,9 +1,9 @@
 //! Goodness of fit in words: where the model fails, and by how much.
 
-use crate::acceptance::record::GoodnessOfFitRecord;
 use crate::i18n::{Arg, Note};
 use crate::measurand::GyroEvidence;
 use crate::noise::residual::{GoodnessOfFit, Judged, TAIL, View};
+use crate::record::GoodnessOfFitRecord;
 
 /// The views of a channel.
 pub(super) fn records(gyro: &GyroEvidence) -> Vec<GoodnessOfFitRecord> {

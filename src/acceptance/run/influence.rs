@@ -7,7 +7,6 @@ use super::{
     Outcome, Request, RunError, drawn, figures, influence_acted, interval_means, settle, table, verdict,
 };
 use crate::acceptance::condition::influence::{ComparedFacts, RunFacts, judge_compared, judge_runs};
-use crate::acceptance::record::{ConditionRecord, Evidence, IntervalMeanRecord, OptionRecord};
 use crate::config::procedure::Procedure;
 use crate::estimate::Estimate;
 use crate::figure::Figure;
@@ -18,6 +17,7 @@ use crate::influence::nuisance::{Following, Nuisance};
 use crate::influence::repeatability::{self, Repeatability};
 use crate::influence::{ComparisonTest, RepeatabilityTest, runs};
 use crate::rate_table::blocks::Collector;
+use crate::record::{ConditionRecord, Evidence, IntervalMeanRecord, OptionRecord};
 use crate::recording::{Channel, Role};
 
 /// The files of a recording with their rows.
@@ -40,7 +40,7 @@ fn rows(
     request: &Request<'_>,
     channels: &[String],
     of: &dyn Fn(usize, &'static str, &'static str) -> Vec<Estimate>,
-) -> Vec<crate::acceptance::record::MeasurandRecord> {
+) -> Vec<crate::record::MeasurandRecord> {
     let mut rows = Vec::new();
     for spec in &request.procedure.measurands {
         for (at, channel) in channels.iter().enumerate() {
@@ -62,7 +62,7 @@ fn finish(
     request: &Request<'_>,
     found: &Found,
     mut conditions: Vec<ConditionRecord>,
-    rows: Vec<crate::acceptance::record::MeasurandRecord>,
+    rows: Vec<crate::record::MeasurandRecord>,
     drawn: Vec<Figure>,
     means: Vec<IntervalMeanRecord>,
 ) -> Outcome {

@@ -1,11 +1,11 @@
 //! Runs and intervals as records and as a table.
 
-use crate::acceptance::record::{Evidence, IntervalMeanRecord};
 use crate::estimate::Spread;
 use crate::influence::comparison::{Comparison, IntervalMean};
 use crate::influence::repeatability::{Repeatability, RunMean};
 use crate::numeric::reml::Combination;
 use crate::output::quoted;
+use crate::record::{Evidence, IntervalMeanRecord};
 
 /// The 95 % interval of a mean.
 pub(super) fn interval(c: &Combination) -> (f64, f64) {

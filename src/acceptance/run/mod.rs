@@ -31,12 +31,12 @@ mod unshown;
 mod verdict;
 mod warm_up;
 
-use crate::acceptance::record::{ProcedureRecord, RunRecord, Session, UnitUnderTest};
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{IngestError, Source};
 use crate::noise::tau_grid::{TauGrid, TauGridError};
+use crate::record::{ProcedureRecord, RunRecord, Session, UnitUnderTest};
 use chrono::{DateTime, Utc};
 use std::fmt;
 

@@ -2,14 +2,14 @@
 
 use super::Outcome;
 use crate::acceptance::condition::checks::{Kind, none_made};
-use crate::acceptance::record::{
-    CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunRecord, Session,
-    UnitUnderTest, Window,
-};
 use crate::config::procedure::phases::{Phase, Phased};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::{Arg, Note};
+use crate::record::{
+    CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunRecord, Session,
+    UnitUnderTest, Window,
+};
 
 /// A phase that was run, or why it was not.
 pub struct Done<'a> {
@@ -144,7 +144,7 @@ fn of(done: &Done<'_>) -> PhaseRecord {
             .iter()
             .map(|f| {
                 let sub = f.phase.as_ref().map(|s| format!("{}.{s}", phase.id));
-                crate::acceptance::record::RecordingFile { phase: sub.or_else(own), ..f.clone() }
+                crate::record::RecordingFile { phase: sub.or_else(own), ..f.clone() }
             })
             .collect(),
         verdict: r.verdict,
@@ -152,13 +152,13 @@ fn of(done: &Done<'_>) -> PhaseRecord {
         conditions: r
             .conditions
             .iter()
-            .map(|c| crate::acceptance::record::ConditionRecord { phase: own(), ..c.clone() })
+            .map(|c| crate::record::ConditionRecord { phase: own(), ..c.clone() })
             .collect(),
         integrity: r.integrity.clone(),
         measurands: r
             .measurands
             .iter()
-            .map(|m| crate::acceptance::record::MeasurandRecord { phase: own(), ..m.clone() })
+            .map(|m| crate::record::MeasurandRecord { phase: own(), ..m.clone() })
             .collect(),
         figures: figures(done)
             .iter()

@@ -2,7 +2,6 @@
 //! at half of it would be passed. Asked with the noise that was found (report) or with the typical noise of the family
 //! (validation of a procedure, no data).
 
-use crate::acceptance::record::PowerRecord;
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::power::{PowerQuestion, TypicalNoise};
 use crate::estimate::Limit;
@@ -13,6 +12,7 @@ use crate::noise::expected::{Power, bias_power, decision_power, deviation_power}
 use crate::noise::model::NoiseModel;
 use crate::noise::static_bias::BiasUncertainty;
 use crate::noise::windows::edf_of_window_std;
+use crate::record::PowerRecord;
 
 /// The situation a limit is to be decided in.
 #[derive(Debug, Clone, Copy)]

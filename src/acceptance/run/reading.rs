@@ -2,11 +2,11 @@
 
 use super::pass::Overview;
 use super::{Request, RunError};
-use crate::acceptance::record::Window;
 use crate::config::procedure::Procedure;
 use crate::i18n::Note;
 use crate::ingest::{Pauses, Plan, Source, StreamReport, TimeBaseSpec, locate, prepare};
 use crate::measurand::GyroEvidence;
+use crate::record::Window;
 use crate::recording::integrity::{Fault, Integrity};
 use crate::recording::window::WindowSpec;
 use crate::recording::{Channel, Role};

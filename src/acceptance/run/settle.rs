@@ -4,14 +4,14 @@ use super::evaluate::Found;
 use super::{Request, RunError, described, goodness, session, sigma_tau, verdict};
 use crate::acceptance::condition::checks::{Kind, none_made};
 use crate::acceptance::condition::evidence;
-use crate::acceptance::record::{
-    ClauseRecord, ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord,
-    NoiseModelRecord, OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
-};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::Note;
 use crate::measurand::GyroEvidence;
+use crate::record::{
+    ClauseRecord, ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord,
+    NoiseModelRecord, OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
+};
 use crate::recording::Role;
 use crate::temperature::start::Start;
 use std::path::Path;

@@ -1,10 +1,10 @@
 //! `sigma_tau.csv`: every point of the Allan family with its interval.
 
-use crate::acceptance::record::DeviationRecord;
 use crate::measurand::GyroEvidence;
 use crate::noise::composite::Composite;
 use crate::noise::family::Estimator;
 use crate::noise::intervals::bounded;
+use crate::record::DeviationRecord;
 use std::fmt::Write;
 
 /// What makes a deviation scatter: all of a description but its lines. A line adds to a deviation and does not scatter,

@@ -10,7 +10,6 @@ use crate::acceptance::condition::table::{ChannelFact, TableFacts, judge_and_tel
 use crate::acceptance::condition::table_motion::Settling;
 use crate::acceptance::condition::thermometer::{Thermometer, judge_scale_of_temperature};
 use crate::acceptance::condition::{Facts, judge_all};
-use crate::acceptance::record::{ConditionRecord, OptionRecord};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::recorded::scale_factor_unit;
 use crate::estimate::Estimate;
@@ -23,6 +22,7 @@ use crate::rate_table::inner_axis::InnerAxis;
 use crate::rate_table::scale_factor::{self, ScaleFactor};
 use crate::rate_table::settling::Unsettled;
 use crate::rate_table::{Setup, TableRun, combine, stamps};
+use crate::record::{ConditionRecord, OptionRecord};
 use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
 

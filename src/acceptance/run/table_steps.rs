@@ -1,9 +1,9 @@
 //! The steps of a table test as records and as a table.
 
-use crate::acceptance::record::TableStepRecord;
 use crate::output::quoted;
 use crate::rate_table::TableRun;
 use crate::rate_table::scale_factor::ScaleFactor;
+use crate::record::TableStepRecord;
 
 /// The steps of a channel.
 pub(super) fn records(run: &TableRun, channel: &ScaleFactor, gyro: usize) -> Vec<TableStepRecord> {

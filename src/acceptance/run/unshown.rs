@@ -1,7 +1,6 @@
 //! What a procedure asks for and no evaluation gave a row: a limit on it would be met by saying nothing.
 
 use super::{Request, verdict};
-use crate::acceptance::record::MeasurandRecord;
 use crate::config::procedure::limits::gyro_of;
 use crate::config::procedure::model::{MeasurandSpec, Procedure};
 use crate::config::procedure::obtainable;
@@ -9,6 +8,7 @@ use crate::config::procedure::recorded::scale_factor_unit;
 use crate::estimate::Estimate;
 use crate::i18n::Note;
 use crate::ids::{MeasurandId, Test};
+use crate::record::MeasurandRecord;
 use crate::recording::Channel;
 
 /// Adds a row that says why to everything asked for that has none, in the order of the procedure.

@@ -1,9 +1,9 @@
 //! Rows with their limits, and the verdict of the whole.
 
-use crate::acceptance::record::{ConditionRecord, ConditionStatus, Evidence, LimitRecord, MeasurandRecord};
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::estimate::{Estimate, Verdict, judge};
 use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus, Evidence, LimitRecord, MeasurandRecord};
 
 /// Judges one estimate.
 pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure) -> MeasurandRecord {

@@ -7,10 +7,10 @@ use super::reader::Reader;
 use super::recorded;
 use super::section::{Entry, Section};
 use super::slips::{self, FastUnit};
-use crate::acceptance::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
 use crate::estimate::{Limit, Rule};
 use crate::i18n::Note;
 use crate::ids::MeasurandId;
+use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
 
 /// Limits, references and typical values of one file, in the units of the measurands.
 #[derive(Debug, Clone, PartialEq, Default)]

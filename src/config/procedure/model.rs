@@ -4,15 +4,13 @@ use super::diagnostics::{Problem, SourceText, Span};
 use super::limits::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
-use crate::acceptance::record::{
-    ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord,
-};
 use crate::ids::MeasurandId;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
-use crate::ingest::ReadOptions;
+use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
 use crate::temperature::{TemperatureTest, WarmUpTest};
 use chrono::NaiveDate;
+use sagnac_ingest::ReadOptions;
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -13,10 +13,10 @@ use super::site::{Orientation, Site};
 use super::tables::PROCEDURE_FILE;
 use super::tables_limits::LIMITS_FILE;
 use super::{channel, reading, validate};
-use crate::acceptance::record::{ClauseRecord, WaiverRecord};
 use crate::config::inside;
-use crate::ingest::raw::LayoutFile;
+use crate::record::{ClauseRecord, WaiverRecord};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
+use sagnac_ingest::raw::LayoutFile;
 use std::path::{Path, PathBuf};
 
 /// Reads a procedure from its text. The second value holds every problem, warnings among them. With its folder, the

@@ -7,10 +7,10 @@ use super::model::{Loaded, Procedure};
 use super::reader::{Reader, checked};
 use super::section::Section;
 use super::tables_phases::PHASES_FILE;
-use crate::acceptance::record::{ClauseRecord, ProcedureRecord};
 use crate::config::file::{self, Wording};
 use crate::config::inside;
 use crate::i18n::Note;
+use crate::record::{ClauseRecord, ProcedureRecord};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 

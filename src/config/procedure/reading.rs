@@ -4,8 +4,8 @@ use super::reader::Reader;
 use super::section::{Entry, Section};
 use crate::config::reading;
 use crate::i18n::Note;
-use crate::ingest::{ReadOptions, StampOptions, StampWriting};
 use crate::recording::{ColumnRef, Role};
+use sagnac_ingest::{ReadOptions, StampOptions, StampWriting};
 
 /// The decisions of `[recording]` and of the time channels, but for the layout.
 pub(super) fn options(

@@ -1,8 +1,8 @@
 //! One unit of a comparison, printed.
 
 use crate::acceptance::compare::{Origin, Quantity, Unit, part_name};
-use crate::acceptance::record::{ModelRecord, ShareRecord, WindowRecord};
 use crate::estimate::{Interval, UpperLimit};
+use crate::record::{ModelRecord, ShareRecord, WindowRecord};
 use crate::report::number::{Rounding, bound, digits, duration, limit, limit_digits, percent};
 use crate::report::view::{FigureView, Words};
 use serde::Serialize;

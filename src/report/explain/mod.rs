@@ -14,10 +14,10 @@ pub use tables::{CandidateRow, FitRow, TestRow};
 use super::compare::figure;
 use super::number::{count, date_time, digits, duration};
 use super::view::{Field, FigureView, Words};
-use crate::acceptance::record::ExplainedRecord;
-use crate::acceptance::record::explanation::Explanation;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Note};
+use crate::record::ExplainedRecord;
+use crate::record::explanation::Explanation;
 use serde::Serialize;
 
 /// Where an explanation comes from and goes to.

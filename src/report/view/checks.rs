@@ -2,7 +2,7 @@
 
 use super::Words;
 use super::evidence::Unmade;
-use crate::acceptance::record::{CheckRecord, CheckStatus, RunRecord};
+use crate::record::{CheckRecord, CheckStatus, RunRecord};
 
 /// Checks not made, those for one reason on several channels together.
 pub fn unmade(record: &RunRecord, words: Words) -> Vec<Unmade> {

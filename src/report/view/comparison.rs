@@ -1,7 +1,7 @@
 //! Russian and Allan values of the same record, side by side, each with its convention.
 
 use super::{Words, rows};
-use crate::acceptance::record::{MeasurandRecord, RunRecord};
+use crate::record::{MeasurandRecord, RunRecord};
 use crate::report::number::{bound, limit_digits};
 use serde::Serialize;
 

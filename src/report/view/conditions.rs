@@ -1,7 +1,7 @@
 //! Conditions of the test with what was found, and how it is known, in words and units.
 
 use super::{Words, evidence::status, faults};
-use crate::acceptance::record::{ConditionRecord, RunRecord};
+use crate::record::{ConditionRecord, RunRecord};
 use crate::report::number::{NOTHING, count, duration, limit_digits};
 use serde::Serialize;
 use serde_json::Value;
@@ -62,7 +62,7 @@ fn condition(c: &ConditionRecord, words: Words) -> Condition {
         status: status(c.status),
         status_word: words.name("status", status(c.status)),
         required: required(c, words),
-        evidence: words.name("evidence", c.evidence.map_or("none", crate::acceptance::record::Evidence::id)),
+        evidence: words.name("evidence", c.evidence.map_or("none", crate::record::Evidence::id)),
         found: found(kind, c, words),
         note: c.message.as_ref().map_or_else(|| c.note.clone(), |m| words.say(m)),
     }

@@ -1,7 +1,7 @@
 //! The Allan family as a table: one line for each averaging time, one column for each estimator.
 
 use super::Words;
-use crate::acceptance::record::{DeviationRecord, RunRecord};
+use crate::record::{DeviationRecord, RunRecord};
 use crate::report::number::{Rounding, limit_digits};
 use serde::Serialize;
 

@@ -7,7 +7,7 @@ use super::deviations::{self, Deviations};
 use super::faults::Faults;
 use super::goodness::{self, Goodness};
 use super::{Field, Words};
-use crate::acceptance::record::{ConditionStatus, LineRecord, MeasurandRecord, NoiseModelRecord, RunRecord};
+use crate::record::{ConditionStatus, LineRecord, MeasurandRecord, NoiseModelRecord, RunRecord};
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use serde::Serialize;
 

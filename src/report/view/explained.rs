@@ -1,7 +1,7 @@
 //! The recording against the model of its family, as a report says it.
 
-use crate::acceptance::record::ExplainedRecord;
 use crate::i18n::Lang;
+use crate::record::ExplainedRecord;
 use crate::report::explain::explained_says;
 use serde::Serialize;
 

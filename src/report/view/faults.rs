@@ -1,8 +1,8 @@
 //! Faults of the recording: what was found against what is allowed, and the first of each kind one by one.
 
 use super::{Field, Words, conditions::required, evidence::status};
-use crate::acceptance::record::{ConditionRecord, FaultRecord, Integrity, RunRecord};
 use crate::i18n::Localize;
+use crate::record::{ConditionRecord, FaultRecord, Integrity, RunRecord};
 use crate::report::number::{NOTHING, count, duration, limit_digits, percent};
 use serde::Serialize;
 

@@ -1,9 +1,9 @@
 //! Figures as a report shows them.
 
 use super::Words;
-use crate::acceptance::record::RunRecord;
 use crate::figure::Figure;
 use crate::i18n::lookup;
+use crate::record::RunRecord;
 use crate::report::{file_name, svg};
 use serde::Serialize;
 

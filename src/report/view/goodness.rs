@@ -2,7 +2,7 @@
 
 use super::Words;
 use super::evidence::probability;
-use crate::acceptance::record::RunRecord;
+use crate::record::RunRecord;
 use serde::Serialize;
 
 /// One view of the residual of one channel, printed.

@@ -1,7 +1,7 @@
 //! Runs of a series, or intervals without and with an influence, printed.
 
 use super::Words;
-use crate::acceptance::record::{IntervalMeanRecord, RunRecord};
+use crate::record::{IntervalMeanRecord, RunRecord};
 use crate::report::number::{Rounding, digits, limit_digits};
 use serde::Serialize;
 

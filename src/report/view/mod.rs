@@ -34,11 +34,11 @@ pub use phase::{PhasePart, PhaseView};
 pub use rows::Row;
 pub use table_steps::{TableStep, TableSteps};
 
-use crate::acceptance::record::RunRecord;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n;
 use crate::i18n::{Arg, Lang, Localize, Note, fill, lookup};
+use crate::record::RunRecord;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::{methods, unit};
 use serde::Serialize;

@@ -1,9 +1,9 @@
 //! The phases of a test of several: each with a view of its own.
 
 use super::{View, Words};
-use crate::acceptance::record::{PhaseRecord, RunRecord};
 use crate::figure::Figure;
 use crate::i18n::Lang;
+use crate::record::{PhaseRecord, RunRecord};
 use serde::Serialize;
 
 /// A phase as the report needs it.

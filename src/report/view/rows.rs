@@ -2,8 +2,8 @@
 
 use super::evidence::MODEL_NOTES;
 use super::{Words, verdict_word};
-use crate::acceptance::record::{LimitRecord, MeasurandRecord, RunRecord};
 use crate::estimate::Rule;
+use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
 use crate::report::number::{Rounding, acceptance, bound, digits, limit, limit_digits, percent};
 use serde::Serialize;
 

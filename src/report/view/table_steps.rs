@@ -1,7 +1,7 @@
 //! The steps of a rate table, printed.
 
 use super::Words;
-use crate::acceptance::record::{RunRecord, TableStepRecord};
+use crate::record::{RunRecord, TableStepRecord};
 use crate::report::number::{Rounding, digits, limit_digits};
 use crate::units::RateUnit;
 use serde::Serialize;

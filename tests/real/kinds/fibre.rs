@@ -44,7 +44,7 @@ fn blueseis_shows_the_comb_of_its_loop() {
     }
     // The author's correction takes the comb away and leaves what has another cause.
     let after = |hz: f64| {
-        let near = |l: &&sagnac::acceptance::record::LineRecord| {
+        let near = |l: &&sagnac::record::LineRecord| {
             l.channel == rates[1] && (l.frequency_hz - hz).abs() < 2.0 * l.resolution_hz
         };
         outcome.record.lines.iter().find(near).map(|l| l.amplitude_deg_h)

@@ -107,7 +107,7 @@ fn adis16405_gives_the_numbers_of_other_tools() {
         } else {
             // Fourteen spikes beyond eight standard deviations, twelve of them on x; more above our threshold.
             let on = |axis: &str| {
-                let of_axis = |f: &&sagnac::acceptance::record::FaultRecord| {
+                let of_axis = |f: &&sagnac::record::FaultRecord| {
                     f.kind == "outlier" && f.channel.as_deref() == Some(axis)
                 };
                 integrity.faults.iter().filter(of_axis).map(|f| f.count).sum::<u64>()

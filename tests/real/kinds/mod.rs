@@ -6,11 +6,11 @@ mod laser;
 mod micro;
 mod micro_temperature;
 
-use sagnac::acceptance::record::UnitUnderTest;
 use sagnac::acceptance::run::{Outcome, Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::ingest::{Source, open};
 use sagnac::noise::tau_grid::TauGrid;
+use sagnac::record::UnitUnderTest;
 use sagnac::recording::{Channel, ColumnRef, Role};
 use sagnac::units::Unit;
 use std::collections::BTreeMap;

@@ -229,7 +229,7 @@ mod tests {
             .factor_to(&Unit::parse("deg/h").unwrap())
             .unwrap_err()
             .to_string();
-        assert!(e.contains("an angle random walk") && e.contains("an angular rate"), "{e}");
+        assert!(e.contains("dimension.angle_random_walk") && e.contains("dimension.rate"), "{e}");
     }
 
     #[test]

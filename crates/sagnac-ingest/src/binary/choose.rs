@@ -66,6 +66,7 @@ pub(crate) fn notes(left: Vec<Note>) -> Vec<Note> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::english::english;
 
     fn array(name: &str, rows: u64, columns: usize) -> Array {
         Array { name: name.into(), rows, columns, in_structure: false }
@@ -80,7 +81,7 @@ mod tests {
         assert_eq!(rows(path, &all, Some("t")).unwrap(), Some(500));
         assert!(belongs(&all[1], 500, Some("t"), &all), "a vector comes with those of its length");
         assert!(!belongs(&all[1], 50, Some("temp"), &all));
-        let error = rows(path, &all, Some("x")).unwrap_err().to_string();
+        let error = english(&rows(path, &all, Some("x")).unwrap_err().note());
         assert!(error.contains("`x`") && error.contains("t, rate, temp, long"), "{error}");
         assert_eq!(rows(path, &[], None).unwrap(), None);
     }

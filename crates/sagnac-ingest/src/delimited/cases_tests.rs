@@ -1,5 +1,6 @@
 //! Small files written by hand, and what is in them by hand.
 
+use crate::english::english;
 use crate::{Column, Encoding, ReadOptions, Source, StampOptions, StampWriting, TextOptions, open_with};
 use sagnac_core::recording::{ColumnRef, Role};
 use std::io::Write;
@@ -19,7 +20,7 @@ fn file(bytes: &[u8]) -> NamedTempFile {
 fn read(bytes: &[u8], text: TextOptions) -> Result<(Source, Vec<Vec<f64>>, u64), String> {
     let f = file(bytes);
     let options = ReadOptions { text, ..ReadOptions::default() };
-    let source = open_with(f.path(), &options).map_err(|e| e.to_string())?;
+    let source = open_with(f.path(), &options).map_err(|e| english(&e.note()))?;
     let all: Vec<usize> = (0..source.columns().len()).collect();
     let mut columns = vec![Vec::new(); all.len()];
     let mut unparsable = 0;
@@ -44,7 +45,7 @@ fn read(bytes: &[u8], text: TextOptions) -> Result<(Source, Vec<Vec<f64>>, u64),
             }
             ControlFlow::Continue(())
         })
-        .map_err(|e| e.to_string())?;
+        .map_err(|e| english(&e.note()))?;
     for (whole, &i) in together.iter().zip(&numbers) {
         assert!(whole.iter().zip(&columns[i]).all(|(a, b)| a.to_bits() == b.to_bits() || a.is_nan()));
     }

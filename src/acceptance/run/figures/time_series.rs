@@ -1,10 +1,10 @@
 //! Rate and temperatures over the whole recording, with what was left out.
 
 use super::{axis, line};
-use crate::acceptance::record::Window;
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::i18n::Note;
 use crate::noise::envelope::Envelope;
+use crate::record::Window;
 
 /// A channel to be drawn under the rate.
 pub struct Below<'a> {
