@@ -307,5 +307,5 @@ fn what_cannot_be_simulated_is_said() {
     assert!(refused(&quiet, Over::Like(&Series::default())).contains("no row"));
     let unfinished = claim("[[effect]]\nkind = \"bias_step\"\n[effect.parameters]\nstep_deg_h = 5.0\n");
     let run = Simulation::begin(order(&unfinished, 1, 10.0)).unwrap().all();
-    assert!(run.unwrap_err().to_string().contains("lacks parameters"));
+    assert!(run.unwrap_err().note().say(Lang::En).contains("lacks parameters"));
 }
