@@ -11,6 +11,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
         "crates/sagnac-core/src",
         &[
             &["visible", "message", "spelling"],
+            &["render"],
             &["numeric", "units"],
             &["estimate", "figure", "ids"],
             &["recording"],
