@@ -4,5 +4,5 @@
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|data: &[u8]| {
-    sagnac_fuzz::file_of_keys(data, |bytes| sagnac::config::layout::layout::parse("layout.toml", bytes));
+    sagnac_fuzz::file_of_keys(data, |bytes| sagnac::config::layout::parse("layout.toml", bytes));
 });

@@ -4,7 +4,7 @@ use super::joined::{self, PartSpec};
 use super::{IngestError, IngestErrorKind};
 use super::{ReadOptions, Source};
 use crate::config::diagnostics::Problems;
-use crate::config::layout::{layout, refused};
+use crate::config::layout::{self, refused};
 use crate::config::manifest::{self, Manifest};
 use crate::i18n::{Lang, Localize, Note};
 use sagnac_ingest::pattern;

@@ -430,7 +430,7 @@ fn the_files_shown_in_the_guide_are_sound() {
     assert!(procedure.warnings.is_empty());
     let limits = parse_limits("limits.md", page("limits.md").as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(limits.value.set.limits.len(), 4);
-    let layout = sagnac::config::layout::layout::parse("layout.md", page("layout.md").as_bytes());
+    let layout = sagnac::config::layout::parse("layout.md", page("layout.md").as_bytes());
     let layout = layout.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((layout.record_bytes, layout.names().count()), (32, 11));
     let model = sagnac::config::model::parse("model.md", page("model.md").as_bytes())

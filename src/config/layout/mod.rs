@@ -1,7 +1,9 @@
 //! Layouts of raw binary records: read from TOML before a recording is opened by them.
 
-pub mod layout;
+mod read;
 pub mod tables;
+
+pub use read::{load, parse};
 
 use crate::config::diagnostics::Problems;
 use crate::i18n::Note;

@@ -7,7 +7,7 @@ use super::model::{Loaded, Procedure};
 use super::phases::{Phase, Phased, is_phased, load_phased};
 use super::slips;
 use crate::config::file;
-use crate::config::layout::layout;
+use crate::config::layout;
 use crate::config::manifest::{self, Manifest, is_manifest};
 use crate::config::model;
 use crate::i18n::{Lang, Localize, Note, visible};

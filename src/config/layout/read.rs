@@ -304,5 +304,5 @@ fn checksum(
 }
 
 #[cfg(test)]
-#[path = "layout_tests.rs"]
+#[path = "read_tests.rs"]
 mod tests;
