@@ -60,12 +60,13 @@ fn floor(floors: &[&[&str]], module: &str) -> Option<usize> {
     floors.iter().position(|f| f.contains(&module))
 }
 
-fn sources(dir: &Path, out: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(dir).unwrap().flatten() {
+/// The files below a folder whose name ends in `.extension`.
+fn files_below(folder: &Path, extension: &str, out: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap().flatten() {
         let path = entry.path();
         if path.is_dir() {
-            sources(&path, out);
-        } else if path.extension().is_some_and(|e| e == "rs") {
+            files_below(&path, extension, out);
+        } else if path.extension().is_some_and(|e| e == extension) {
             out.push(path);
         }
     }
@@ -94,7 +95,7 @@ fn every_module_stands_on_a_floor_and_looks_down_only() {
     for (folder, floors) in PACKAGES {
         let src = root.join(folder);
         let mut files = Vec::new();
-        sources(&src, &mut files);
+        files_below(&src, "rs", &mut files);
         for file in files {
             let relative = file.strip_prefix(&src).unwrap();
             let first = relative.components().next().unwrap().as_os_str().to_string_lossy().into_owned();
@@ -136,13 +137,13 @@ fn documents_name_tests_that_there_are() {
     let mut documents = Vec::new();
     for name in DOCUMENTS.iter().map(|d| root.join(d)) {
         if name.is_dir() {
-            documents.extend(fs::read_dir(&name).unwrap().flatten().map(|e| e.path()));
+            files_below(&name, "md", &mut documents);
         } else {
             documents.push(name);
         }
     }
     let (mut named, mut missing) = (0, Vec::new());
-    for document in documents.iter().filter(|d| d.extension().is_some_and(|e| e == "md")) {
+    for document in &documents {
         // A command may go on in the next line.
         let text = fs::read_to_string(document).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
         for (option, folder) in TARGETS {
