@@ -1,4 +1,9 @@
-//! Records with known truth through whole runs.
+//! Whole runs against simulated truth: coverage of intervals, verdicts of units exactly at their limit, lines.
+//!
+//! Every record goes through `run::execute`, as a file would.
+
+use crate::study::{Asked, Case, Row, Study};
+use rayon::prelude::*;
 
 use realfft::RealFftPlanner;
 use sagnac::acceptance::run::{Request, analysis, execute};
@@ -16,70 +21,143 @@ use sagnac::recording::{Channel, ColumnRef, Role};
 use sagnac::units::Unit;
 use std::f64::consts::PI;
 
-/// Number of records of a long study.
-pub fn records(default: u64) -> u64 {
-    std::env::var("RECORDS").ok().and_then(|r| r.parse().ok()).unwrap_or(default)
+/// Static bias, Russian and Allan measurands.
+pub static INTERVALS: Study = Study {
+    id: "whole-runs",
+    title: "Intervals and verdicts of whole runs",
+    method: "Records of 10 and 100 h, one sample in 10 s, of four mixes of noise. Each has a limit exactly at its truth for every \
+             measurand, judged with a guard band at a risk of 5 %. The bias that is asked for is the mean over the record of what \
+             is slower than the record. Where no interval is given, the upper limit must lie above the truth.",
+    records: 1000,
+    cases: interval_cases,
+};
+
+/// Frequency and amplitude of a line.
+pub static LINES: Study = Study {
+    id: "lines",
+    title: "Frequency and amplitude of a line",
+    method: "White noise with a sinusoid of known frequency and amplitude. The excess is its peak over the floor of a Hann \
+             periodogram when it lies on a bin. Shares are of the records in which a line is found.",
+    records: 1000,
+    cases: line_cases,
+};
+
+/// Mixes of noise of the study of intervals.
+pub fn mixes() -> [Mix; 4] {
+    let model = |n, b, k| NoiseModel { n, b, k, ..Default::default() };
+    [
+        Mix { name: "N", model: model(0.0023, 0.0, 0.0) },
+        Mix { name: "N+B", model: model(0.002, 0.006, 0.0) },
+        Mix { name: "N+K", model: model(0.0023, 0.0, 0.006) },
+        Mix { name: "N+B+K", model: model(0.002, 0.004, 0.006) },
+    ]
+}
+
+fn interval_cases() -> Vec<Case> {
+    let mut cases = vec![];
+    for hours in [10.0, 100.0] {
+        for (i, mix) in (0u64..).zip(mixes()) {
+            let first = 7_500_000 + 100_000 * i + 1_000_000 * hours as u64;
+            cases.push(Case::new(format!("{}, {hours} h", mix.name), move |records, seed| {
+                study(&mix, hours, 10.0, records, first + 200_000_000 * (seed - 1)).rows()
+            }));
+        }
+    }
+    cases
+}
+
+fn line_cases() -> Vec<Case> {
+    let mut cases = vec![];
+    for (j, samples) in (0u64..).zip([9_000, 36_000, 360_000]) {
+        for (i, excess) in (0u64..).zip([5.0, 10.0, 30.0, 100.0, 1000.0]) {
+            let first = 8_000_000 + 100_000 * i + 1_000_000 * j;
+            cases.push(Case::new(format!("{samples} samples, excess {excess}"), move |records, seed| {
+                let records = records.min(36_000_000 / samples as u64 * 4);
+                line_study(excess, samples, records, first + 200_000_000 * (seed - 1)).rows()
+            }));
+        }
+    }
+    cases
 }
 
 /// A noise model with a name.
 pub struct Mix {
+    /// Letters of its terms.
     pub name: &'static str,
+    /// Its terms.
     pub model: NoiseModel,
 }
 
-/// One quantity over many records.
+/// One measurand over many records.
 #[derive(Debug, Clone)]
-pub struct Row {
+pub struct Count {
+    /// Id of the measurand.
     pub id: &'static str,
+    /// Records.
     pub records: usize,
-    pub shown: usize,
+    /// Records with a value and its interval.
+    pub stated: usize,
+    /// Intervals that hold the truth.
     pub covered: usize,
+    /// Upper limits, where there is no interval, that lie above the truth.
     pub limits_hold: usize,
+    /// Units passed.
     pub passed: usize,
+    /// Units failed.
     pub failed: usize,
     /// Half widths of the intervals over that of an estimate that knows the noise, ascending.
     pub widths: Vec<f64>,
 }
 
-impl Row {
+impl Count {
     /// Records in which the interval, or the upper limit, holds the truth.
     pub fn holds(&self) -> usize {
         self.covered + self.limits_hold
+    }
+
+    fn rows(&self) -> [Row; 5] {
+        let of = self.records as u64;
+        let share = |claim: &str, asked, hits: usize| Row::share(self.id, claim, asked, hits as u64, of);
+        let median = self.widths.get(self.widths.len() / 2).copied().unwrap_or(f64::NAN);
+        [
+            share("95 % interval or limit holds the truth", Asked::AtLeast(0.93), self.holds()),
+            share("a unit at its limit passes", Asked::AtMost(0.05), self.passed),
+            share("a unit at its limit fails", Asked::AtMost(0.05), self.failed),
+            share("a value is stated", Asked::Nothing, self.stated),
+            Row::number(
+                self.id,
+                "median half width over a reference (bias: known noise; others: the truth)",
+                Asked::Nothing,
+                median,
+                self.widths.len() as u64,
+            ),
+        ]
     }
 }
 
 /// What a study gave.
 pub struct Tally {
+    /// Name of the mix.
     pub name: &'static str,
+    /// Length of a record.
     pub hours: f64,
-    pub rows: Vec<Row>,
+    /// A count for each measurand.
+    pub counts: Vec<Count>,
     /// Records in which a line was found though there is none.
     pub false_lines: usize,
 }
 
 impl Tally {
-    pub fn print(&self) {
-        println!("{:>6} {:>4} h records with a false line: {}", self.name, self.hours, self.false_lines);
-        for r in &self.rows {
-            let share = |n: usize| n as f64 / r.records as f64;
-            let width = |q: f64| {
-                let at = (q * r.widths.len() as f64) as usize;
-                r.widths.get(at.min(r.widths.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
-            };
-            println!(
-                "{:>6} {:>4} h {:<20} shown {:.3} holds {:.3} passed {:.3} failed {:.3} half width {:.3e} {:.3e} {:.3e}",
-                self.name,
-                self.hours,
-                r.id,
-                share(r.shown),
-                share(r.holds()),
-                share(r.passed),
-                share(r.failed),
-                width(0.1),
-                width(0.5),
-                width(0.9)
-            );
-        }
+    fn rows(&self) -> Vec<Row> {
+        let of = self.counts.first().map_or(0, |c| c.records) as u64;
+        let lines = Row::share(
+            "line_frequency",
+            "a line is found where there is none",
+            Asked::AtMost(0.015),
+            self.false_lines as u64,
+            of,
+        );
+        self.counts.iter().flat_map(Count::rows).chain([lines]).collect()
     }
 }
 
@@ -165,10 +243,10 @@ pub fn study(mix: &Mix, hours: f64, tau0_s: f64, records: u64, seed: u64) -> Tal
         predict(&mix.model, window_s, (length_s / window_s).round() as u64).expect("a prediction").sigma
     };
     let ids = &IDS[..if mix.model.b > 0.0 { 5 } else { 4 }];
-    let blank = |id: &&'static str| Row {
+    let blank = |id: &&'static str| Count {
         id,
         records: records as usize,
-        shown: 0,
+        stated: 0,
         covered: 0,
         limits_hold: 0,
         passed: 0,
@@ -176,8 +254,8 @@ pub fn study(mix: &Mix, hours: f64, tau0_s: f64, records: u64, seed: u64) -> Tal
         widths: vec![],
     };
     let mut false_lines = 0;
-    let mut rows: Vec<Row> = ids.iter().map(blank).collect();
-    for run_number in 0..records {
+    let mut counts: Vec<Count> = ids.iter().map(blank).collect();
+    let one = |run_number: u64| {
         let seed = seed + run_number;
         let (slow_noise, slow) = flicker(mix.model.b, samples, tau0_s, seed);
         let setup = Setup { bias_deg_h: 7.31, ..Setup::for_record(seed, tau0_s, samples as u64) };
@@ -186,55 +264,66 @@ pub fn study(mix: &Mix, hours: f64, tau0_s: f64, records: u64, seed: u64) -> Tal
         let truths = [7.31 + slow, sigma(100.0), sigma(10.0), mix.model.n, mix.model.b];
         let pairs: Vec<(&'static str, f64)> = ids.iter().copied().zip(truths).collect();
         let record = run(rate, tau0_s, &limits(&pairs));
+        (record, pairs)
+    };
+    // In the order of the records, whichever is finished first.
+    let runs: Vec<_> = (0..records).into_par_iter().map(one).collect();
+    for (record, pairs) in runs {
         false_lines += usize::from(!record.lines.is_empty());
-        for (row, (id, truth)) in rows.iter_mut().zip(pairs) {
+        for (count, (id, truth)) in counts.iter_mut().zip(pairs) {
             let found = record.measurands.iter().find(|m| m.id == id).expect("a row");
-            tally(row, found, truth, if id == "static_bias" { known } else { truth });
+            tally(count, found, truth, if id == "static_bias" { known } else { truth });
         }
     }
-    rows.iter_mut().for_each(|r| r.widths.sort_by(f64::total_cmp));
-    Tally { name: mix.name, hours, rows, false_lines }
+    counts.iter_mut().for_each(|c| c.widths.sort_by(f64::total_cmp));
+    Tally { name: mix.name, hours, counts, false_lines }
 }
 
-fn tally(row: &mut Row, found: &MeasurandRecord, truth: f64, known: f64) {
+fn tally(count: &mut Count, found: &MeasurandRecord, truth: f64, known: f64) {
     match (found.interval, found.upper_limit) {
         (Some(interval), _) => {
-            row.shown += 1;
-            row.covered += usize::from(interval.low <= truth && truth <= interval.high);
-            row.widths.push(0.5 * (interval.high - interval.low) / known);
+            count.stated += 1;
+            count.covered += usize::from(interval.low <= truth && truth <= interval.high);
+            count.widths.push(0.5 * (interval.high - interval.low) / known);
         }
-        (None, Some(limit)) => row.limits_hold += usize::from(truth <= limit.value),
+        (None, Some(limit)) => count.limits_hold += usize::from(truth <= limit.value),
         (None, None) => {}
     }
-    row.passed += usize::from(found.verdict == Verdict::Pass);
-    row.failed += usize::from(found.verdict == Verdict::Fail);
+    count.passed += usize::from(found.verdict == Verdict::Pass);
+    count.failed += usize::from(found.verdict == Verdict::Fail);
 }
 
 /// What a study of a line gave. Errors in standard uncertainties.
 #[derive(Debug, Clone, Default)]
 pub struct LineTally {
+    /// Records.
     pub records: usize,
+    /// Records in which a line is found.
     pub found: usize,
+    /// Intervals that hold the frequency.
     pub frequency_holds: usize,
+    /// Intervals that hold the amplitude.
     pub amplitude_holds: usize,
+    /// Root mean square error of the frequency.
     pub frequency_rms: f64,
+    /// Root mean square error of the amplitude.
     pub amplitude_rms: f64,
+    /// Mean error of the amplitude.
     pub amplitude_bias: f64,
 }
 
-impl std::fmt::Display for LineTally {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let share = |n: usize| n as f64 / self.found.max(1) as f64;
-        write!(
-            f,
-            "found {:.3}, frequency holds {:.3} (rms error {:.2} u), amplitude holds {:.3} (rms {:.2} u, mean {:+.2} u)",
-            self.found as f64 / self.records as f64,
-            share(self.frequency_holds),
-            self.frequency_rms,
-            share(self.amplitude_holds),
-            self.amplitude_rms,
-            self.amplitude_bias
-        )
+impl LineTally {
+    fn rows(&self) -> Vec<Row> {
+        let (records, found) = (self.records as u64, self.found as u64);
+        let holds = "95 % interval holds the truth";
+        let rms = "rms error in standard uncertainties";
+        vec![
+            Row::share("line_frequency", "found", Asked::Nothing, found, records),
+            Row::share("line_frequency", holds, Asked::AtLeast(0.93), self.frequency_holds as u64, found),
+            Row::share("line_amplitude", holds, Asked::AtLeast(0.93), self.amplitude_holds as u64, found),
+            Row::number("line_frequency", rms, Asked::Nothing, self.frequency_rms, found),
+            Row::number("line_amplitude", rms, Asked::Nothing, self.amplitude_rms, found),
+        ]
     }
 }
 

@@ -1,0 +1,60 @@
+//! Commands for people who work on Sagnac.
+
+mod same_results;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+const USAGE: &str = "usage: cargo xtask COMMAND
+
+validate [STUDY]... [--records N] [--seed N] [--list]
+    Run Monte Carlo studies and write docs/validation/.
+same-results OLD NEW [--only TEXT]
+    Run every shipped sample with two binaries and compare their result.json: numbers to the last digit.
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let Some(root) = Path::new(env!("CARGO_MANIFEST_DIR")).parent() else { return ExitCode::from(2) };
+    match arguments.split_first() {
+        Some((command, rest)) if command == "validate" => validate(root, rest),
+        Some((command, rest)) if command == "same-results" => match same_results_options(rest) {
+            Some((old, new, only)) => same_results::compare(root, &old, &new, &only),
+            None => usage(),
+        },
+        _ => usage(),
+    }
+}
+
+fn usage() -> ExitCode {
+    eprint!("{USAGE}");
+    ExitCode::from(2)
+}
+
+/// Studies run optimised, whatever profile this program has.
+fn validate(root: &Path, arguments: &[String]) -> ExitCode {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo)
+        .current_dir(root)
+        .args(["run", "--release", "--quiet", "--package", "sagnac-studies", "--"])
+        .args(arguments)
+        .status();
+    match status {
+        Ok(status) => ExitCode::from(status.code().and_then(|c| u8::try_from(c).ok()).unwrap_or(1)),
+        Err(error) => {
+            eprintln!("failed to start cargo: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn same_results_options(arguments: &[String]) -> Option<(PathBuf, PathBuf, String)> {
+    let (files, only) = match arguments {
+        [old, new] => ([old, new], String::new()),
+        [old, new, option, text] if option == "--only" => ([old, new], text.clone()),
+        _ => return None,
+    };
+    // The programs are started in the root folder.
+    let [old, new] = files.map(std::path::absolute);
+    Some((old.ok()?, new.ok()?, only))
+}
