@@ -68,7 +68,7 @@ fn steps_of_the_output_are_nothing_else() {
         let (problem, tried) = WHITE.problem(6000, 1000 + seed, |r| {
             r.iter_mut().for_each(|y| *y = ((*y + 7.3) / lsb).round() * lsb);
         });
-        assert!(problem.scenes.lattice_arcsec.is_some());
+        assert!(problem.spectra.grid_step_arcsec.is_some());
         assert!(bursts(&problem, &tried).is_none_or(|b| b.p_value > 1e-4));
         assert!(level(&problem, &tried).is_empty());
         assert!(telegraph(&problem, &tried).is_none());

@@ -4,7 +4,7 @@ use crate::explain_fixture as fixture;
 use sagnac::effect::{Domain, Place, find};
 use sagnac::figure::Figure;
 use sagnac::i18n::{Bilingual, Lang, table};
-use sagnac::mismatch::figures::{Course, time_course};
+use sagnac::mismatch::figures::{TimeSeries, time_course};
 use sagnac::mismatch::finding::Explanation;
 use sagnac::report::Renderer;
 use sagnac::report::explain::{Context, ExplainView};
@@ -29,7 +29,7 @@ fn view(all: &Explanation, lang: Lang) -> ExplainView {
 fn figure() -> Figure {
     let time: Vec<f64> = (0..2000).map(f64::from).collect();
     let step: Vec<f64> = time.iter().map(|t| if *t < 900.0 { 0.0 } else { 1.0 }).collect();
-    time_course(&Course {
+    time_course(&TimeSeries {
         time_s: &time,
         before: &step,
         after: Some(&vec![0.0; 2000]),

@@ -1,6 +1,6 @@
 //! The registry: one line an effect.
 
-use super::{Domain, Effect, Place, SpectralLook};
+use super::{Domain, Effect, Place, SpectralContext};
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_density;
 
@@ -52,13 +52,13 @@ macro_rules! frees {
             fn density(&self, _fitted: &[f64], _bin: &$crate::effect::ModeBin) -> f64 {
                 0.0
             }
-            fn starts(&self, _look: &$crate::effect::SpectralLook<'_>) -> Vec<Vec<f64>> {
+            fn starts(&self, _look: &$crate::effect::SpectralContext<'_>) -> Vec<Vec<f64>> {
                 vec![vec![]]
             }
-            fn bounds(&self, _look: &$crate::effect::SpectralLook<'_>) -> Vec<(f64, f64)> {
+            fn bounds(&self, _look: &$crate::effect::SpectralContext<'_>) -> Vec<(f64, f64)> {
                 vec![]
             }
-            fn looked(&self, _look: &$crate::effect::SpectralLook<'_>) -> f64 {
+            fn trials(&self, _look: &$crate::effect::SpectralContext<'_>) -> f64 {
                 1.0
             }
             fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
@@ -75,9 +75,9 @@ macro_rules! frees {
             fn places(
                 &self,
                 fitted: &[f64],
-                look: &$crate::effect::SpectralLook<'_>,
+                context: &$crate::effect::SpectralContext<'_>,
             ) -> Vec<$crate::effect::Place> {
-                super::power_law_places($crate::noise::data::NoiseType::$term, fitted, look)
+                super::power_law_places($crate::noise::data::NoiseType::$term, fitted, context)
             }
             fn has_course(&self) -> bool {
                 $course
@@ -89,9 +89,9 @@ macro_rules! frees {
 /// A course that is one column times its only parameter: `column(drivers)`, where `applies(drivers)`.
 macro_rules! linear {
     ($name:ident, replaces $nuisance:expr, places $places:ident) => {
-        impl $crate::effect::Course for $name {
-            fn pace(&self) -> $crate::effect::Pace {
-                $crate::effect::Pace::Fast
+        impl $crate::effect::MeanModel for $name {
+            fn resolution(&self) -> $crate::effect::Resolution {
+                $crate::effect::Resolution::FullRate
             }
             fn replaces(&self) -> Option<$crate::effect::Nuisance> {
                 $nuisance
@@ -99,14 +99,21 @@ macro_rules! linear {
             fn applies(&self, drivers: &Drivers) -> bool {
                 applies(drivers)
             }
-            fn starts(&self, _drivers: &Drivers, _look: &$crate::effect::Look<'_>) -> $crate::effect::Starts {
+            fn starts(
+                &self,
+                _drivers: &Drivers,
+                _look: &$crate::effect::SearchContext<'_>,
+            ) -> $crate::effect::Starts {
                 $crate::effect::Starts::linear()
             }
             fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
                 vec![]
             }
-            fn parts(&self, _shape: &[f64], drivers: &Drivers) -> $crate::effect::Parts {
-                $crate::effect::Parts { free: column(drivers).into_iter().collect(), ..Default::default() }
+            fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> $crate::effect::Regressors {
+                $crate::effect::Regressors {
+                    columns: column(drivers).into_iter().collect(),
+                    ..Default::default()
+                }
             }
             fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
                 vec![coefficients.first().copied().unwrap_or(f64::NAN)]
@@ -208,17 +215,18 @@ pub fn find(kind: &str) -> Option<&'static dyn Effect> {
 
 /// Where a power-law term lives: the frequencies at which it is the largest part of the observed spectrum, or, where it
 /// nowhere is, those at which it comes nearest to that.
-fn power_law_places(term: NoiseType, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+fn power_law_places(term: NoiseType, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
     let Some(coefficient) = fitted.first() else { return vec![] };
     let share = |i: usize| {
-        let bin = &look.bins[i];
+        let bin = &context.bins[i];
         coefficient * coefficient * unit_density(term, bin.frequency_hz, bin.dt_s)
-            / look.observed[i].max(look.expected[i])
+            / context.observed[i].max(context.expected[i])
     };
-    let shares: Vec<f64> = (0..look.bins.len()).map(share).collect();
+    let shares: Vec<f64> = (0..context.bins.len()).map(share).collect();
     let largest = shares.iter().copied().fold(0.0, f64::max);
     let enough = (0.5f64).min(0.5 * largest);
-    let among = || look.bins.iter().zip(&shares).filter(|(_, s)| **s >= enough).map(|(b, _)| b.frequency_hz);
+    let among =
+        || context.bins.iter().zip(&shares).filter(|(_, s)| **s >= enough).map(|(b, _)| b.frequency_hz);
     let (from, to) = (among().fold(f64::INFINITY, f64::min), among().fold(0.0, f64::max));
     if from <= to { vec![Place { domain: Domain::Frequency, from, to }] } else { vec![] }
 }

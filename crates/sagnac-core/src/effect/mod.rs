@@ -14,7 +14,7 @@ pub use doc::{Both, Doc};
 pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature, averages};
 pub use kinds::{EFFECTS, find};
 pub use low_pass::LowPass;
-pub use spectral::{ModeBin, SpectralLook, Spectrum, SpectrumAct};
+pub use spectral::{ModeBin, SpectralContext, Spectrum, SpectrumAct};
 
 use std::collections::BTreeMap;
 
@@ -180,7 +180,7 @@ pub trait Effect: Sync {
     fn confusers(&self) -> &'static [&'static str];
     /// How it acts.
     fn model(&self) -> Model;
-    /// The course that stated parameters give where the effect is no [`Course`] for fitting, deg/h; `None` where they
+    /// The course that stated parameters give where the effect is no [`MeanModel`] for fitting, deg/h; `None` where they
     /// give none.
     fn stated_course(&self, _values: &Values, _drivers: &Drivers) -> Option<Vec<f64>> {
         None
@@ -191,7 +191,7 @@ pub trait Effect: Sync {
 #[derive(Clone, Copy)]
 pub enum Model {
     /// Adds a course to the rate that its parameters and the columns determine.
-    Course(&'static dyn Course),
+    Mean(&'static dyn MeanModel),
     /// Changes the spectrum of the noise.
     Spectrum(&'static dyn Spectrum),
     /// Acts on single samples: rows, outliers, jumps, the level of the noise.
@@ -217,26 +217,26 @@ pub enum Nuisance {
 
 /// Whether a course is seen at the sample rate, or whole in averages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pace {
+pub enum Resolution {
     /// Averages over many samples hold all of it.
-    Slow,
+    Averaged,
     /// It has to be fitted to the samples themselves.
-    Fast,
+    FullRate,
 }
 
 /// A course for one shape: `fixed + Σ coefficient·free + Σ coefficient·beside`.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Parts {
+pub struct Regressors {
     /// What the shape alone determines, deg/h.
-    pub fixed: Option<Vec<f64>>,
+    pub offset: Option<Vec<f64>>,
     /// Columns of the effect, deg/h for a coefficient of 1.
-    pub free: Vec<Vec<f64>>,
+    pub columns: Vec<Vec<f64>>,
     /// Columns that must be free for the fit to be right and are no part of the effect, as an unknown initial state.
-    pub beside: Vec<Vec<f64>>,
+    pub nuisance: Vec<Vec<f64>>,
 }
 
 /// What the search for a shape may look at. All series are on the grid of the drivers.
-pub struct Look<'a> {
+pub struct SearchContext<'a> {
     /// C⁻¹r in the time domain: the residual weighted by the inverse covariance of the noise.
     pub score: &'a [f64],
     /// Orthonormal cosine modes of the residual, deg/h.
@@ -245,7 +245,7 @@ pub struct Look<'a> {
     pub powers: &'a [f64],
 }
 
-impl Look<'_> {
+impl SearchContext<'_> {
     /// Log-likelihood gain of one column with a free coefficient, noise and everything else held.
     pub fn gain(&self, column: &[f64]) -> f64 {
         let modes = crate::numeric::cosine::dct2(column);
@@ -262,23 +262,23 @@ impl Look<'_> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Starts {
     /// The shapes, the most promising first. One empty shape for a course that is linear in its coefficients.
-    pub shapes: Vec<Vec<f64>>,
+    pub points: Vec<Vec<f64>>,
     /// How many independent places were looked at: what the p-value is multiplied by.
-    pub looked: f64,
+    pub trials: f64,
 }
 
 impl Starts {
     /// The only start of a course that has no shape.
     pub fn linear() -> Starts {
-        Starts { shapes: vec![vec![]], looked: 1.0 }
+        Starts { points: vec![vec![]], trials: 1.0 }
     }
 }
 
 /// An effect that adds a determined course to the rate.
-pub trait Course: Sync {
+pub trait MeanModel: Sync {
     /// Whether averages hold all of it.
-    fn pace(&self) -> Pace {
-        Pace::Slow
+    fn resolution(&self) -> Resolution {
+        Resolution::Averaged
     }
 
     /// The nuisance whose prior has to go when the effect is fitted, since both are the same column.
@@ -290,13 +290,13 @@ pub trait Course: Sync {
     fn applies(&self, drivers: &Drivers) -> bool;
 
     /// Where to begin the search of the shape.
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts;
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts;
 
     /// Bounds of each number of the shape.
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)>;
 
     /// The course for a shape.
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts;
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors;
 
     /// Orthonormal cosine modes of the free columns over all samples of the grid, of a course that has nothing but these
     /// and whose transform is known in closed form.
@@ -304,9 +304,9 @@ pub trait Course: Sync {
         None
     }
 
-    /// The parameters in the order of [`Effect::params`], from a shape and the coefficients of `free`; NaN for one that
+    /// The parameters in the order of [`Effect::params`], from a shape and the coefficients of `columns`; NaN for one that
     /// the fit does not determine.
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64>;
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64>;
 
     /// Lists that the forward model needs beside the numbers, by name.
     fn lists(
@@ -322,7 +322,7 @@ pub trait Course: Sync {
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>>;
 
     /// Where it lives, principal first, at most three.
-    fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place>;
+    fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place>;
 
     /// First step of a local search in each number of the shape, where the likelihood has a peak much narrower than the
     /// bounds; empty: by the bounds.
@@ -330,7 +330,7 @@ pub trait Course: Sync {
         vec![]
     }
 
-    /// Positions of numbers of the shape that are whole: tried by [`Course::starts`] and not refined.
+    /// Positions of numbers of the shape that are whole: tried by [`MeanModel::starts`] and not refined.
     fn whole(&self) -> &'static [usize] {
         &[]
     }
@@ -342,7 +342,7 @@ pub trait Course: Sync {
     }
 
     /// Columns that stay free when a claim states the effect: a state before the record that no claim can know.
-    fn beside(&self, _values: &Values, _drivers: &Drivers) -> Vec<Vec<f64>> {
+    fn nuisance_columns(&self, _values: &Values, _drivers: &Drivers) -> Vec<Vec<f64>> {
         vec![]
     }
 

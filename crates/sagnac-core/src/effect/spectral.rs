@@ -23,7 +23,7 @@ pub struct ModeBin {
 }
 
 /// What a search for spectral effects may look at.
-pub struct SpectralLook<'a> {
+pub struct SpectralContext<'a> {
     /// The bins, by frequency.
     pub bins: &'a [ModeBin],
     /// Mean square of the modes of the residual in each, as a two-sided density, (deg/h)²/Hz.
@@ -31,7 +31,7 @@ pub struct SpectralLook<'a> {
     /// Density of the current noise, (deg/h)²/Hz.
     pub expected: &'a [f64],
     /// Steps of a lattice that the values were found to lie on, as an angle increment, arcsec.
-    pub lattice_arcsec: Option<f64>,
+    pub grid_step_arcsec: Option<f64>,
 }
 
 /// How an effect changes the spectrum.
@@ -86,13 +86,13 @@ pub trait Spectrum: Sync {
     }
 
     /// Fitted parameters to begin from, several.
-    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>>;
+    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>>;
 
     /// Bounds of the fitted parameters.
-    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)>;
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)>;
 
     /// How many independent places a search looks at.
-    fn looked(&self, look: &SpectralLook<'_>) -> f64;
+    fn trials(&self, context: &SpectralContext<'_>) -> f64;
 
     /// The parameters in the order of [`super::Effect::params`]; NaN for one not determined.
     fn parameters(&self, fitted: &[f64]) -> Vec<f64>;
@@ -109,7 +109,7 @@ pub trait Spectrum: Sync {
     }
 
     /// Where it lives, principal first, at most three. `excess` is the density of the bins without it and with it.
-    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place>;
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place>;
 
     /// True when the course of the process can be estimated sample by sample (slow or narrow-band).
     fn has_course(&self) -> bool {

@@ -1,5 +1,6 @@
 //! The result of an explanation, put together from its parts.
 
+use super::ambiguous_oscillation::driver_beside;
 use super::augmented::augmented;
 use super::candidates::{Candidate as Fitted, Tried};
 use super::contribution;
@@ -7,7 +8,6 @@ use super::departures::{self, Departure};
 use super::draw::{self, Drawn};
 use super::estimates;
 use super::experiment;
-use super::few_swings::driver_beside;
 use super::finding::{
     Candidate, Explanation, Finding, Fit, FitFigures, ParameterValue, PlaceRecord, RecordingFacts, Test,
 };
@@ -22,14 +22,14 @@ use super::samples::Named;
 use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::single_cause;
 use crate::claim::{Claim, Stated};
-use crate::effect::{Column, Domain, Effect, Model, Place, SpectralLook, UNKNOWN, stateable};
+use crate::effect::{Column, Domain, Effect, Model, Place, SpectralContext, UNKNOWN, stateable};
 use std::collections::BTreeMap;
 
 /// A residual test counts as departed below this, its own scan and the number of tests counted.
 const DEPARTED: f64 = 1e-4;
 
 /// Everything that an explanation rests on.
-pub(super) struct Parts<'a> {
+pub(super) struct Evidence<'a> {
     /// Recording and claim, with what was taken out.
     pub problem: &'a Problem,
     /// The claim as given.
@@ -62,10 +62,10 @@ pub(super) struct Recorded {
 }
 
 /// Puts everything together.
-pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
-    let Parts { problem, claim, base, held_base, selection, mut found, before, after, recorded, options } =
+pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
+    let Evidence { problem, claim, base, held_base, selection, mut found, before, after, recorded, options } =
         parts;
-    let scenes = &problem.scenes;
+    let spectra = &problem.spectra;
     let local_gain = found.local_gain();
     // What was observed, with everything that was taken out of it since.
     let mut observed = problem.residual.clone();
@@ -78,7 +78,7 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     let nothing = selection.chosen.is_empty() && found.named.is_empty();
     let held_best = if nothing { held_base } else { halves.judge(&selection.best) };
     for chosen in &selection.chosen {
-        let gained = improvement::of(chosen, selection, &scenes.full, &halves, held_best.log_likelihood);
+        let gained = improvement::of(chosen, selection, &spectra.full, &halves, held_best.log_likelihood);
         found
             .named
             .push(Named { improvement: Some(gained), ..named(chosen, &selection.best, problem, options) });
@@ -110,7 +110,7 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
     } else {
         "mismatch"
     };
-    let mut correction = contribution::correction(&selection.best, scenes);
+    let mut correction = contribution::correction(&selection.best, spectra);
     let stated = found
         .named
         .into_iter()
@@ -127,9 +127,9 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         log_likelihood: selection.best.fit.log_likelihood + local_gain,
         heldout_log_likelihood: held_best.log_likelihood + 0.5 * local_gain,
         heldout_rms_deg_h: held_best.rms_deg_h,
-        bic: selection.best.bic(scenes.rows) - 2.0 * local_gain,
+        bic: selection.best.bic(spectra.rows) - 2.0 * local_gain,
     };
-    let baseline = figures(base, &held_base, scenes.rows);
+    let baseline = figures(base, &held_base, spectra.rows);
     let explanation = Explanation {
         format: "explain/1".to_owned(),
         case: problem.claim.case.clone(),
@@ -147,7 +147,7 @@ pub(super) fn assemble(parts: Parts<'_>) -> Outcome {
         tests: tests(before, after),
         nuisances: nuisances(problem, base, &selection.best),
         recording: facts(problem, recorded, options),
-        experiments: experiment::deciding(&selection.chosen, &selection.best, scenes),
+        experiments: experiment::deciding(&selection.chosen, &selection.best, spectra),
     };
     let figures = draw::all(
         problem,
@@ -196,7 +196,7 @@ fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
 
 /// A chosen effect with its parameters and places.
 fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) -> Named {
-    let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.scenes);
+    let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.spectra);
     if chosen.effect.kind() == "unobserved_driver"
         && let Slot::Spectrum(i) = chosen.slot
     {
@@ -292,26 +292,26 @@ fn places(
     problem: &Problem,
 ) -> Vec<Place> {
     let mut out = match (effect.model(), slot) {
-        (Model::Course(course), Slot::Course(i)) => {
-            let scene = problem.scenes.of(course.pace());
+        (Model::Mean(course), Slot::Mean(i)) => {
+            let spectral = problem.spectra.of(course.resolution());
             let inside = &best.hypothesis.courses[i];
-            course.places(&inside.shape, &inside.coefficients, &scene.drivers)
+            course.places(&inside.nonlinear_parameters, &inside.coefficients, &spectral.drivers)
         }
         (Model::Spectrum(spectrum), Slot::Spectrum(i)) => {
-            let scene = &problem.scenes.full;
-            let look = SpectralLook {
-                bins: &scene.bins,
+            let spectral = &problem.spectra.full;
+            let context = SpectralContext {
+                bins: &spectral.bins,
                 observed: &best.fit.observed,
                 expected: &chosen.without.fit.densities,
-                lattice_arcsec: problem.scenes.lattice_arcsec,
+                grid_step_arcsec: problem.spectra.grid_step_arcsec,
             };
-            spectrum.places(&best.hypothesis.noise.spectra[i].fitted, &look)
+            spectrum.places(&best.hypothesis.noise.spectra[i].fitted, &context)
         }
         _ => return vec![],
     };
     // Whatever it follows, it acts at some times more than at others.
     if out.len() < 3 && !out.iter().any(|p| p.domain == Domain::Time) {
-        out.extend(contribution::time_of(slot, best, &problem.scenes));
+        out.extend(contribution::time_of(slot, best, &problem.spectra));
     }
     out
 }
@@ -367,7 +367,7 @@ fn dropped(problem: &Problem, options: &Options) -> Option<Finding> {
         equivalents: vec![],
         parameters: parameters.collect(),
         places: vec![place],
-        delta_bic: count * (problem.scenes.rows as f64).ln(),
+        delta_bic: count * (problem.spectra.rows as f64).ln(),
         p_value: 1e-300,
         heldout_gain: None,
         removed_share: None,

@@ -5,8 +5,8 @@ mod spectrum;
 
 use super::hypothesis::{CourseIn, Fit, Hypothesis, PartModes, part_modes, part_modes_of_averages, residual};
 use super::options::Options;
-use super::scene::Scene;
-use crate::effect::{EFFECTS, Effect, Model, Pace};
+use super::spectral_data::SpectralData;
+use crate::effect::{EFFECTS, Effect, Model, Resolution};
 use crate::estimate::chi_square_tail;
 use course::{Grounds, try_course};
 use rayon::prelude::*;
@@ -16,30 +16,30 @@ use spectrum::try_spectrum;
 const LONG: usize = 1 << 20;
 
 /// The two resolutions a problem is looked at.
-pub struct Scenes {
+pub struct SpectralDataSet {
     /// At the sample rate.
-    pub full: Scene,
+    pub full: SpectralData,
     /// Averages, for courses that they hold; `None` where the record is short enough as it is.
-    pub slow: Option<Scene>,
+    pub slow: Option<SpectralData>,
     /// Angle increment of a lattice that the values lie on, arcsec.
-    pub lattice_arcsec: Option<f64>,
+    pub grid_step_arcsec: Option<f64>,
     /// Rows of the recording.
     pub rows: usize,
 }
 
-impl Scenes {
+impl SpectralDataSet {
     /// The scene that a course of some pace is looked for on.
-    pub fn of(&self, pace: Pace) -> &Scene {
-        match (pace, &self.slow) {
-            (Pace::Slow, Some(slow)) => slow,
+    pub fn of(&self, resolution: Resolution) -> &SpectralData {
+        match (resolution, &self.slow) {
+            (Resolution::Averaged, Some(slow)) => slow,
             _ => &self.full,
         }
     }
 
     /// Modes of courses on the scene that one of some pace is looked for on.
-    pub fn part_modes(&self, pace: Pace, courses: &[CourseIn]) -> Vec<PartModes> {
-        match (pace, &self.slow) {
-            (Pace::Slow, Some(slow)) => part_modes_of_averages(slow, &self.full, courses),
+    pub fn part_modes(&self, resolution: Resolution, courses: &[CourseIn]) -> Vec<PartModes> {
+        match (resolution, &self.slow) {
+            (Resolution::Averaged, Some(slow)) => part_modes_of_averages(slow, &self.full, courses),
             _ => part_modes(&self.full, courses),
         }
     }
@@ -65,13 +65,13 @@ impl Tried {
     }
 
     /// Modes of what the hypothesis leaves of the full scene.
-    pub fn residual(&self, scenes: &Scenes) -> Vec<f64> {
-        residual(&scenes.full, &self.hypothesis, &self.fit.mean)
+    pub fn residual(&self, spectra: &SpectralDataSet) -> Vec<f64> {
+        residual(&spectra.full, &self.hypothesis, &self.fit.mean)
     }
 
     /// Variance of each mode of the full scene, (deg/h)².
-    pub fn powers(&self, scenes: &Scenes) -> Vec<f64> {
-        scenes.full.powers(&self.fit.densities)
+    pub fn powers(&self, spectra: &SpectralDataSet) -> Vec<f64> {
+        spectra.full.powers(&self.fit.densities)
     }
 
     /// What hypotheses are ordered by: BIC, and between equals what else speaks for their kinds.
@@ -97,38 +97,42 @@ pub struct Candidate {
     pub p_value: f64,
 }
 
-fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, looked: f64, rows: usize) -> Candidate {
+fn rated(effect: &'static dyn Effect, tried: Tried, before: &Tried, trials: f64, rows: usize) -> Candidate {
     let gain = tried.fit.log_likelihood - before.fit.log_likelihood;
     let parameters = tried.parameters - before.parameters;
-    let p_value = (looked.max(1.0) * chi_square_tail(2.0 * gain.max(0.0), parameters as f64)).min(1.0);
+    let p_value = (trials.max(1.0) * chi_square_tail(2.0 * gain.max(0.0), parameters as f64)).min(1.0);
     let delta_bic = before.bic(rows) - tried.bic(rows);
     Candidate { effect, tried, gain, parameters, delta_bic, p_value }
 }
 
 /// Fits every effect that is thought of and not in the hypothesis yet as an addition to it; those that gain something,
 /// the largest ΔBIC first.
-pub fn all(before: &Tried, scenes: &Scenes, options: &Options) -> Vec<Candidate> {
-    among(before, scenes, |e| options.allows(e.kind()))
+pub fn all(before: &Tried, spectra: &SpectralDataSet, options: &Options) -> Vec<Candidate> {
+    among(before, spectra, |e| options.allows(e.kind()))
 }
 
 /// As [`all`], of some effects only.
-pub fn among(before: &Tried, scenes: &Scenes, wanted: impl Fn(&dyn Effect) -> bool + Sync) -> Vec<Candidate> {
-    let grounds = Grounds::new(before, scenes);
+pub fn among(
+    before: &Tried,
+    spectra: &SpectralDataSet,
+    wanted: impl Fn(&dyn Effect) -> bool + Sync,
+) -> Vec<Candidate> {
+    let grounds = Grounds::new(before, spectra);
     let tried = |effect: &&'static dyn Effect| match effect.model() {
-        Model::Course(course) => try_course(*effect, course, before, scenes, &grounds),
-        Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, scenes),
+        Model::Mean(course) => try_course(*effect, course, before, spectra, &grounds),
+        Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, spectra),
         Model::Samples(_) => None,
     };
     // Two long ones at once would not fit into the memory that a record is granted.
     let long = |effect: &&'static dyn Effect| {
-        scenes.full.length > LONG
-            && matches!(effect.model(), Model::Course(c) if grounds.of(c.pace()).scene.length > LONG)
+        spectra.full.length > LONG
+            && matches!(effect.model(), Model::Mean(c) if grounds.of(c.resolution()).spectral.length > LONG)
     };
     let (alone, together): (Vec<_>, Vec<_>) = EFFECTS.iter().filter(|e| wanted(**e)).partition(|e| long(e));
     let mut found: Vec<Candidate> = together.into_par_iter().filter_map(tried).collect();
     found.extend(alone.into_iter().filter_map(tried));
     // Kinds with the same course are ordered by what else speaks for them.
-    found.sort_by(|a, b| a.tried.rank(scenes.rows).total_cmp(&b.tried.rank(scenes.rows)));
+    found.sort_by(|a, b| a.tried.rank(spectra.rows).total_cmp(&b.tried.rank(spectra.rows)));
     found
 }
 

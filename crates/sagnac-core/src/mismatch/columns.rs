@@ -2,7 +2,7 @@
 //! two; and the size of the residual over each.
 
 use super::departures::{Departure, White, f_normal};
-use super::scene::{Scene, smoothed};
+use super::spectral_data::{SpectralData, smoothed};
 use crate::effect::{Column, Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_normal_two_sided};
 use crate::numeric::cosine::dct2;
@@ -25,14 +25,14 @@ fn domain(column: Column) -> Domain {
 }
 
 /// Every test against columns.
-pub fn all(scene: &Scene, white: &White) -> Vec<Departure> {
+pub fn all(spectral: &SpectralData, white: &White) -> Vec<Departure> {
     let mut named: Vec<(Domain, Cow<'_, [f64]>)> = vec![];
     for column in Column::ALL {
-        let Some(values) = scene.drivers.column(column) else { continue };
+        let Some(values) = spectral.drivers.column(column) else { continue };
         let values =
             if column == Column::Temperature { smoothed(values).into() } else { Cow::Borrowed(values) };
         if column == Column::Temperature {
-            let per_minute = 60.0 / scene.drivers.dt_s;
+            let per_minute = 60.0 / spectral.drivers.dt_s;
             let rate: Vec<f64> = derivative(&values).iter().map(|d| d * per_minute).collect();
             named.push((Domain::TemperatureRate, rate.into()));
         }
@@ -41,7 +41,7 @@ pub fn all(scene: &Scene, white: &White) -> Vec<Departure> {
     let mut out: Vec<Departure> = vec![];
     for (place, values) in &named {
         let found = [function_of(white, "column_mean", *place, values), size_over(white, *place, values)];
-        out.extend(found.into_iter().flatten().map(|d| when(d, scene, values)));
+        out.extend(found.into_iter().flatten().map(|d| when(d, spectral, values)));
     }
     for i in 0..named.len() {
         for j in 0..i {
@@ -108,7 +108,7 @@ fn gain_of(white: &White, columns: impl Iterator<Item = Vec<f64>>) -> Option<f64
 }
 
 /// The times between which a column has the values of a departure.
-fn when(departure: Departure, scene: &Scene, values: &[f64]) -> Departure {
+fn when(departure: Departure, spectral: &SpectralData, values: &[f64]) -> Departure {
     let Place { domain, from, to } = departure.place;
     // Sizes of the rate stand for both signs of it.
     let inside = |v: &f64| {
@@ -118,8 +118,8 @@ fn when(departure: Departure, scene: &Scene, values: &[f64]) -> Departure {
     let ends = values.iter().position(inside).zip(values.iter().rposition(inside));
     let beside = ends.map(|(a, b)| Place {
         domain: Domain::Time,
-        from: scene.drivers.time_s(a),
-        to: scene.drivers.time_s(b),
+        from: spectral.drivers.time_s(a),
+        to: spectral.drivers.time_s(b),
     });
     Departure { beside, ..departure }
 }
@@ -182,7 +182,7 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
     order.sort_by(|a, b| by(*a).total_cmp(&by(*b)));
     let whole: f64 = white.series.iter().map(|e| e * e).sum();
     let mut best = (0.0, 0.0, 0.0);
-    let mut looks = 0.0f64;
+    let mut trials = 0.0f64;
     for group in order.chunks(n / GROUPS) {
         if group.len() < 32 {
             continue;
@@ -191,12 +191,12 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
         let (length, rest) = (group.len() as f64, (n - group.len()) as f64);
         let z = f_normal((inside / length) / ((whole - inside) / rest), length, rest);
         let p = ln_normal_two_sided(z);
-        looks += 1.0;
+        trials += 1.0;
         if p < best.0 {
             let (a, b) = (by(group[0]), by(group[group.len() - 1]));
             best = (p, a.min(b), a.max(b));
         }
     }
     let place = Place { domain, from: best.1, to: best.2 };
-    Some(Departure { test: "size", place, beside: None, ln_p: (best.0 + looks.ln()).min(0.0) })
+    Some(Departure { test: "size", place, beside: None, ln_p: (best.0 + trials.ln()).min(0.0) })
 }

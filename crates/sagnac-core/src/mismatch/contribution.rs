@@ -1,6 +1,6 @@
 //! What chosen effects add to the rate, sample by sample.
 
-use super::candidates::{Scenes, Tried};
+use super::candidates::{SpectralDataSet, Tried};
 use super::select::Slot;
 use crate::effect::{Domain, Model, Place};
 use crate::numeric::cosine::inverse_dct2;
@@ -8,11 +8,11 @@ use crate::numeric::sums::cumulated;
 
 /// What everything that a hypothesis adds to the claim contributes to the rate, deg/h on the grid: courses, and the best
 /// linear estimate of processes that are slow or narrow-band. `None` where nothing can be predicted sample by sample.
-pub fn correction(best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
-    let courses = (0..best.hypothesis.courses.len()).map(Slot::Course);
+pub fn correction(best: &Tried, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
+    let courses = (0..best.hypothesis.courses.len()).map(Slot::Mean);
     let processes = (0..best.hypothesis.noise.spectra.len()).map(Slot::Spectrum);
     let mut sum: Option<Vec<f64>> = None;
-    for course in courses.chain(processes).filter_map(|slot| of(slot, best, scenes)) {
+    for course in courses.chain(processes).filter_map(|slot| of(slot, best, spectra)) {
         match &mut sum {
             Some(sum) => sum.iter_mut().zip(course).for_each(|(s, c)| *s += c),
             None => sum = Some(course),
@@ -36,48 +36,48 @@ pub(super) fn summed(
 }
 
 /// What one effect adds to each sample, deg/h.
-fn of(slot: Slot, best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
+fn of(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
     match slot {
-        Slot::Course(i) => {
+        Slot::Mean(i) => {
             let inside = &best.hypothesis.courses[i];
-            let parts = inside.course()?.parts(&inside.shape, &scenes.full.drivers);
-            let samples = scenes.full.drivers.samples;
-            Some(summed(&parts.free, &inside.coefficients, parts.fixed.as_ref(), samples))
+            let parts = inside.course()?.regressors(&inside.nonlinear_parameters, &spectra.full.drivers);
+            let samples = spectra.full.drivers.samples;
+            Some(summed(&parts.columns, &inside.coefficients, parts.offset.as_ref(), samples))
         }
-        Slot::Spectrum(i) => course_of_process(i, best, scenes),
+        Slot::Spectrum(i) => course_of_process(i, best, spectra),
     }
 }
 
 /// The best linear estimate of what a process that was found adds to each sample, deg/h; `None` for one that is stated, and
 /// for one that is neither slow nor narrow-band.
-fn course_of_process(index: usize, best: &Tried, scenes: &Scenes) -> Option<Vec<f64>> {
-    let scene = &scenes.full;
+fn course_of_process(index: usize, best: &Tried, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
+    let spectral = &spectra.full;
     let part = &best.hypothesis.noise.spectra[index];
     let Model::Spectrum(spectrum) = part.effect.model() else { return None };
     if part.stated || !spectrum.has_course() {
         return None;
     }
-    let own = scene.powers(&best.hypothesis.noise.added_densities(index, scene));
+    let own = spectral.powers(&best.hypothesis.noise.added_densities(index, spectral));
     let modes: Vec<f64> = best
-        .residual(scenes)
+        .residual(spectra)
         .iter()
-        .zip(own.iter().zip(&best.powers(scenes)))
+        .zip(own.iter().zip(&best.powers(spectra)))
         .map(|(x, (s, p))| if s.is_finite() && p.is_finite() { x * s / p } else { 0.0 })
         .collect();
     Some(inverse_dct2(&modes))
 }
 
 /// When an effect is away from its median: between the instants before and after which lie half a hundredth of its square.
-pub fn time_of(slot: Slot, best: &Tried, scenes: &Scenes) -> Option<Place> {
+pub fn time_of(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Option<Place> {
     const OUTSIDE: f64 = 0.005;
-    let course = of(slot, best, scenes)?;
+    let course = of(slot, best, spectra)?;
     let mut sorted = course.clone();
     let middle = sorted.len() / 2;
     let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
     let sums = cumulated(course.iter().map(|c| (c - median).powi(2)));
     let all = *sums.last()?;
     let at = |share: f64| sums.partition_point(|s| *s < share * all).saturating_sub(1);
-    let drivers = &scenes.full.drivers;
+    let drivers = &spectra.full.drivers;
     let last = course.len().saturating_sub(1);
     let [from, to] = [at(OUTSIDE), at(1.0 - OUTSIDE)].map(|i| drivers.time_s(i.min(last)));
     (all > 0.0).then_some(Place { domain: Domain::Time, from, to })

@@ -4,8 +4,8 @@
 //! so is their inverse transform. Each test scans them in one view and gives the probability of its largest departure
 //! with everything scanned counted.
 
-use super::candidates::{Scenes, Tried};
-use super::scene::Scene;
+use super::candidates::{SpectralDataSet, Tried};
+use super::spectral_data::SpectralData;
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_two_sided};
 use crate::numeric::cosine::inverse_dct2;
@@ -57,10 +57,10 @@ pub struct White {
 
 impl White {
     /// Whitens what a fitted hypothesis leaves.
-    pub fn of(tried: &Tried, scenes: &Scenes) -> White {
-        let mut roots = tried.powers(scenes);
+    pub fn of(tried: &Tried, spectra: &SpectralDataSet) -> White {
+        let mut roots = tried.powers(spectra);
         roots.iter_mut().for_each(|p| *p = p.sqrt());
-        let mut modes = tried.residual(scenes);
+        let mut modes = tried.residual(spectra);
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(UNSEEN);
         for (k, (x, root)) in modes.iter_mut().zip(&roots).enumerate() {
             // What is left out of the fit is no departure either: a draw stands for it.
@@ -76,26 +76,26 @@ struct Scan {
     ln_smallest: f64,
     from: f64,
     to: f64,
-    looks: f64,
+    trials: f64,
 }
 
 impl Scan {
     fn new() -> Scan {
-        Scan { ln_smallest: 0.0, from: 0.0, to: 0.0, looks: 0.0 }
+        Scan { ln_smallest: 0.0, from: 0.0, to: 0.0, trials: 0.0 }
     }
 
     fn see(&mut self, ln_p: f64, from: f64, to: f64) {
-        self.looks += 1.0;
+        self.trials += 1.0;
         if ln_p < self.ln_smallest {
             (self.ln_smallest, self.from, self.to) = (ln_p, from, to);
         }
     }
 
     fn done(self, test: &'static str, domain: Domain) -> Option<Departure> {
-        if self.looks == 0.0 {
+        if self.trials == 0.0 {
             return None;
         }
-        let ln_p = (self.ln_smallest + self.looks.ln()).min(0.0);
+        let ln_p = (self.ln_smallest + self.trials.ln()).min(0.0);
         Some(Departure { test, place: Place { domain, from: self.from, to: self.to }, beside: None, ln_p })
     }
 }
@@ -115,38 +115,44 @@ pub fn windows(values: usize, shortest: usize, mut see: impl FnMut(usize, usize)
 }
 
 /// Every test of the residual of a fit. `level` is the local deviation of the noise, 1 where it is as the spectrum says.
-pub fn all(scenes: &Scenes, tried: &Tried, level: Option<&[f64]>, usable: &[bool]) -> Vec<Departure> {
-    let scene = &scenes.full;
-    let mut white = White::of(tried, scenes);
+pub fn all(
+    spectra: &SpectralDataSet,
+    tried: &Tried,
+    level: Option<&[f64]>,
+    usable: &[bool],
+) -> Vec<Departure> {
+    let spectral = &spectra.full;
+    let mut white = White::of(tried, spectra);
     if let Some(level) = level {
         white.series.iter_mut().zip(level).for_each(|(e, g)| *e /= g);
         white.modes = crate::numeric::cosine::dct2(&white.series);
     }
     let mut out = vec![];
-    out.extend(spectrum(scene, &white));
+    out.extend(spectrum(spectral, &white));
     if let Some(powers) = periodogram(&white) {
-        out.extend(lines(scene, &powers));
-        out.extend(comb(scene, &powers));
+        out.extend(lines(spectral, &powers));
+        out.extend(comb(spectral, &powers));
     }
-    out.extend(levels(scene, &white));
-    out.extend(super::lags::all(scene, &white));
-    out.extend(super::tiles::all(scene, &white.modes));
+    out.extend(levels(spectral, &white));
+    out.extend(super::lags::all(spectral, &white));
+    out.extend(super::tiles::all(spectral, &white.modes));
     out.extend(
-        off_lattice(scene, &white, scenes.lattice_arcsec).and_then(|values| tails(scene, &values, usable)),
+        off_lattice(spectral, &white, spectra.grid_step_arcsec)
+            .and_then(|values| tails(spectral, &values, usable)),
     );
-    out.extend(skewness(scene, &white));
-    out.extend(super::columns::all(scene, &white));
+    out.extend(skewness(spectral, &white));
+    out.extend(super::columns::all(spectral, &white));
     out
 }
 
 /// Power of the whitened modes over windows of frequency.
-fn spectrum(scene: &Scene, white: &White) -> Option<Departure> {
+fn spectrum(spectral: &SpectralData, white: &White) -> Option<Departure> {
     let n = white.modes.len();
     let sums = cumulated(white.modes.iter().skip(1).map(|u| u * u));
     let mut scan = Scan::new();
     windows(n - 1, 4, |from, to| {
         let p = ln_chi_square_two_sided(sums[to] - sums[from], (to - from) as f64);
-        scan.see(p, scene.frequency_hz(from as f64 + 1.0), scene.frequency_hz(to as f64));
+        scan.see(p, spectral.frequency_hz(from as f64 + 1.0), spectral.frequency_hz(to as f64));
     });
     scan.done("spectrum", Domain::Frequency)
 }
@@ -163,19 +169,19 @@ fn periodogram(white: &White) -> Option<Vec<f64>> {
 }
 
 /// The largest sum of powers at the multiples of a frequency: what repeats without being a sinusoid.
-fn comb(scene: &Scene, powers: &[f64]) -> Option<Departure> {
+fn comb(spectral: &SpectralData, powers: &[f64]) -> Option<Departure> {
     const HARMONICS: [usize; 4] = [4, 8, 16, 32];
     // Periods that the record holds fewer times than this are slow courses.
     const PERIODS: usize = 5;
     let n = powers.len();
     let mut best: Option<(f64, f64, usize)> = None;
-    let mut looks = 0.0f64;
+    let mut trials = 0.0f64;
     for harmonics in HARMONICS {
         // Steps of the fundamental of a cell over the number of harmonics: the highest is met within half a cell.
         let (mut largest, mut at) = (0.0, 0);
         for i in 2 * PERIODS * harmonics..n.saturating_sub(1) {
             let sum: f64 = (1..=harmonics).map(|h| powers[(h * i + harmonics / 2) / harmonics]).sum();
-            looks += 1.0;
+            trials += 1.0;
             if sum > largest {
                 (largest, at) = (sum, i);
             }
@@ -186,13 +192,13 @@ fn comb(scene: &Scene, powers: &[f64]) -> Option<Departure> {
         }
     }
     let (p, cell, harmonics) = best?;
-    let fundamental = cell / (2.0 * n as f64 * scene.drivers.dt_s);
+    let fundamental = cell / (2.0 * n as f64 * spectral.drivers.dt_s);
     let place = Place { domain: Domain::Frequency, from: fundamental, to: fundamental * harmonics as f64 };
-    Some(Departure { test: "comb", place, beside: None, ln_p: (p + looks.ln()).min(0.0) })
+    Some(Departure { test: "comb", place, beside: None, ln_p: (p + trials.ln()).min(0.0) })
 }
 
 /// The largest line of the whitened series.
-fn lines(scene: &Scene, powers: &[f64]) -> Option<Departure> {
+fn lines(spectral: &SpectralData, powers: &[f64]) -> Option<Departure> {
     let n = powers.len();
     let (mut best, mut at) = (0.0, 0);
     for (k, power) in powers.iter().enumerate().skip(2) {
@@ -200,7 +206,7 @@ fn lines(scene: &Scene, powers: &[f64]) -> Option<Departure> {
             (best, at) = (*power, k);
         }
     }
-    let step = 1.0 / (2.0 * n as f64 * scene.drivers.dt_s);
+    let step = 1.0 / (2.0 * n as f64 * spectral.drivers.dt_s);
     // Twice as many looks as independent frequencies cost about a factor of 1.6 (domain: un-padded loses up to 1.57).
     let ln_p = ((0.8 * n as f64).ln() - best).min(0.0);
     let place =
@@ -209,13 +215,13 @@ fn lines(scene: &Scene, powers: &[f64]) -> Option<Departure> {
 }
 
 /// Mean of the whitened series over windows of time.
-fn levels(scene: &Scene, white: &White) -> Option<Departure> {
+fn levels(spectral: &SpectralData, white: &White) -> Option<Departure> {
     let sums = cumulated(white.series.iter().copied());
     let mut scan = Scan::new();
     windows(white.series.len(), 1, |from, to| {
         let z = (sums[to] - sums[from]) / ((to - from) as f64).sqrt();
         if to - from > 1 {
-            scan.see(ln_normal_two_sided(z), scene.drivers.time_s(from), scene.drivers.time_s(to));
+            scan.see(ln_normal_two_sided(z), spectral.drivers.time_s(from), spectral.drivers.time_s(to));
         }
     });
     scan.done("level", Domain::Time)
@@ -230,12 +236,12 @@ pub fn f_normal(ratio: f64, dof: f64, others: f64) -> f64 {
 
 /// The whitened series with counts of a continuous law: values on a lattice are moved by an even draw over its step.
 /// `None` where the steps are too coarse for that.
-fn off_lattice(scene: &Scene, white: &White, lattice_arcsec: Option<f64>) -> Option<Vec<f64>> {
+fn off_lattice(spectral: &SpectralData, white: &White, grid_step_arcsec: Option<f64>) -> Option<Vec<f64>> {
     const FINE: f64 = 0.1;
     const COARSE: f64 = 1.5;
     let n = white.series.len();
     let per_deg_h = white.roots.iter().skip(1).map(|r| 1.0 / r).sum::<f64>() / n.max(2) as f64;
-    let step = lattice_arcsec.map_or(0.0, |a| a / scene.drivers.dt_s * per_deg_h);
+    let step = grid_step_arcsec.map_or(0.0, |a| a / spectral.drivers.dt_s * per_deg_h);
     if step <= FINE {
         return Some(white.series.clone());
     }
@@ -248,7 +254,7 @@ fn off_lattice(scene: &Scene, white: &White, lattice_arcsec: Option<f64>) -> Opt
 }
 
 /// Values of the whitened series beyond 3, 4 and 5 deviations, too many or too few.
-fn tails(scene: &Scene, series: &[f64], usable: &[bool]) -> Option<Departure> {
+fn tails(spectral: &SpectralData, series: &[f64], usable: &[bool]) -> Option<Departure> {
     let values = || series.iter().zip(usable).filter(|(_, u)| **u).map(|(e, _)| e.abs());
     let n = values().count() as f64;
     let mut scan = Scan::new();
@@ -278,12 +284,12 @@ fn tails(scene: &Scene, series: &[f64], usable: &[bool]) -> Option<Departure> {
     let from = far.first().copied().unwrap_or(largest.1);
     let to = far.last().copied().unwrap_or(largest.1);
     found.place =
-        Place { domain: Domain::Time, from: scene.drivers.time_s(from), to: scene.drivers.time_s(to) };
+        Place { domain: Domain::Time, from: spectral.drivers.time_s(from), to: spectral.drivers.time_s(to) };
     Some(found)
 }
 
 /// Third moment of the whitened series at the sample rate and averaged.
-fn skewness(scene: &Scene, white: &White) -> Option<Departure> {
+fn skewness(spectral: &SpectralData, white: &White) -> Option<Departure> {
     let mut scan = Scan::new();
     let mut m = 1;
     while white.series.len() / m >= 256 {
@@ -295,8 +301,8 @@ fn skewness(scene: &Scene, white: &White) -> Option<Departure> {
         // The law has heavier tails than the normal one for few values; a tenth more spread covers them.
         scan.see(
             ln_normal_two_sided(z / (1.0 + 8.0 / n.sqrt())),
-            scene.drivers.start_s,
-            scene.drivers.start_s + scene.drivers.length_s(),
+            spectral.drivers.start_s,
+            spectral.drivers.start_s + spectral.drivers.length_s(),
         );
         m *= 8;
     }

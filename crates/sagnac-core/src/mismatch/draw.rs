@@ -2,7 +2,7 @@
 
 use super::candidates::Tried;
 use super::departures::White;
-use super::figures::{Against, Course, Spectra, against, local_level, spectrum, time_course};
+use super::figures::{Against, Spectra, TimeSeries, against, local_level, spectrum, time_course};
 use super::problem::Problem;
 use crate::effect::{Column, Domain, Drivers, Place};
 use crate::figure::Figure;
@@ -43,7 +43,7 @@ pub fn all(problem: &Problem, drawn: &Drawn<'_>) -> Vec<Figure> {
         let mean = c.iter().sum::<f64>() / c.len().max(1) as f64;
         c.iter().map(|v| v - mean).collect()
     });
-    let course = time_course(&Course {
+    let course = time_course(&TimeSeries {
         time_s: &time,
         before: &before,
         after: after.as_deref(),
@@ -94,9 +94,9 @@ fn column(domain: Domain, drivers: &Drivers) -> Option<Vec<f64>> {
 }
 
 fn spectra(problem: &Problem, drawn: &Drawn<'_>) -> Option<Figure> {
-    let scene = &problem.scenes.full;
-    let frequency: Vec<f64> = scene.bins.iter().map(|b| b.frequency_hz).collect();
-    let dof: Vec<f64> = scene.bins.iter().map(|b| scene.weight(b)).collect();
+    let spectral = &problem.spectra.full;
+    let frequency: Vec<f64> = spectral.bins.iter().map(|b| b.frequency_hz).collect();
+    let dof: Vec<f64> = spectral.bins.iter().map(|b| spectral.weight(b)).collect();
     spectrum(&Spectra {
         frequency_hz: &frequency,
         dof: &dof,
@@ -110,7 +110,7 @@ fn spectra(problem: &Problem, drawn: &Drawn<'_>) -> Option<Figure> {
 
 fn levels(problem: &Problem, drawn: &Drawn<'_>) -> Figure {
     let of = |tried: &Tried| {
-        let series = inverse_dct2(&White::of(tried, &problem.scenes).modes);
+        let series = inverse_dct2(&White::of(tried, &problem.spectra).modes);
         let group = (series.len() / LEVELS).max(1);
         let points: Vec<(f64, f64)> = series
             .chunks_exact(group)

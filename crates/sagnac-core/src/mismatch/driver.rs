@@ -17,10 +17,10 @@ const SEED: u64 = 0x5a67_6e61_6320_0006;
 /// The course of a smooth process of a hypothesis at knots. A draw of what it may have been given the record, not the
 /// expectation: what the expectation leaves of the record is quieter than the noise, and the claim would not fit.
 pub fn knots(best: &Tried, index: usize, problem: &Problem) -> Values {
-    let scene = &problem.scenes.full;
-    let own = scene.powers(&best.hypothesis.noise.part_densities(index, scene));
+    let spectral = &problem.spectra.full;
+    let own = spectral.powers(&best.hypothesis.noise.part_densities(index, spectral));
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
-    let (residual, powers) = (best.residual(&problem.scenes), best.powers(&problem.scenes));
+    let (residual, powers) = (best.residual(&problem.spectra), best.powers(&problem.spectra));
     let modes = residual.iter().zip(own.iter().zip(&powers)).map(|(x, (s, p))| {
         let z: f64 = StandardNormal.sample(&mut rng);
         if s.is_finite() && p.is_finite() { x * s / p + z * (s * (1.0 - s / p).max(0.0)).sqrt() } else { 0.0 }

@@ -1,7 +1,7 @@
 //! The four steps: is there a mismatch and where, what could it be, which is it and how sure, does the fit improve.
 
-use super::assemble::{Parts, Recorded, assemble};
-use super::candidates::{self, Scenes, Tried};
+use super::assemble::{Evidence, Recorded, assemble};
+use super::candidates::{self, SpectralDataSet, Tried};
 use super::coarse;
 use super::departures::{self, Departure};
 use super::filtered;
@@ -9,11 +9,11 @@ use super::found::Found;
 use super::heldout::Halves;
 use super::hypothesis::fit;
 use super::jumps::{take_telegraph, with_stated_jumps};
-use super::lattice::Lattice;
 use super::local;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::problem::{Problem, drivers};
+use super::quantization_grid::QuantizationGrid;
 use super::regular::{Irregular, Regular};
 use super::repeats;
 use super::samples::{self, Named};
@@ -47,28 +47,28 @@ pub fn explain(
     let mut problem = uncoarsened(&regular, claim, &mut found, options);
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
     drop(regular);
-    let rows = problem.scenes.rows;
+    let rows = problem.spectra.rows;
     let mut base = with_stated_jumps(&mut problem, options.alpha);
     let mut before = tests(&problem, &base, problem.level.as_deref());
     before.extend(repeated);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
-    let mut moved = with_table_courses(&base, &problem.scenes, options);
+    let mut moved = with_table_courses(&base, &problem.spectra, options);
     for _ in 0..ROUNDS {
         // What is drawn for them follows the course as it was found with them, so it is found again.
         if !problem.without_bends(&moved) {
             break;
         }
         base = refitted(&base, &problem);
-        moved = with_table_courses(&base, &problem.scenes, options);
+        moved = with_table_courses(&base, &problem.spectra, options);
     }
     let mut held_base = Halves::new(&problem).judge(&base);
     let filtered = filtered::behind(&problem, &moved, options);
-    let filtered = filtered.filter(|f| problem.see_behind(&moved, f)).map(|f| refitted(&f, &problem));
+    let filtered = filtered.filter(|f| problem.impute_edges(&moved, f)).map(|f| refitted(&f, &problem));
     if let Some(filtered) = filtered {
         base = refitted(&base, &problem);
         held_base = Halves::new(&problem).judge(&base);
-        moved = with_table_courses(&filtered, &problem.scenes, options);
+        moved = with_table_courses(&filtered, &problem.spectra, options);
     }
     let mut start = take_bursts(&mut problem, &base, &moved, &mut found, options);
     if problem.level.is_none() {
@@ -83,18 +83,18 @@ pub fn explain(
             start = samples::with_free_level(&start, &problem);
         }
     }
-    let mut selection = select::select(&start, &problem.scenes, options);
-    if problem.see_behind(&selection.best, &selection.best) {
+    let mut selection = select::select(&start, &problem.spectra, options);
+    if problem.impute_edges(&selection.best, &selection.best) {
         base = refitted(&base, &problem);
         held_base = Halves::new(&problem).judge(&base);
         start = refitted(&start, &problem);
-        selection = select::select(&start, &problem.scenes, options);
+        selection = select::select(&start, &problem.spectra, options);
     }
     take_telegraph(&mut problem, &start, &mut selection, &mut found, options);
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
     let level = found.level.clone().or_else(|| problem.level.clone());
     let after = tests(&problem, &selection.best, level.as_deref());
-    Ok(assemble(Parts {
+    Ok(assemble(Evidence {
         problem: &problem,
         claim,
         base: &base,
@@ -148,7 +148,7 @@ fn take_repeats(
 
 /// What departs from a hypothesis.
 fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departure> {
-    departures::all(&problem.scenes, tried, level, &problem.usable)
+    departures::all(&problem.spectra, tried, level, &problem.usable)
 }
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
@@ -158,16 +158,16 @@ pub(super) fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, o
     let as_effect = claim.effects.iter().filter(|e| e.effect.kind() == "quantization");
     let as_effect = as_effect.filter_map(|e| number(&e.values, "lsb_arcsec")).fold(0.0, f64::max);
     let stated = claim.quantization_lsb_arcsec.max(as_effect);
-    let lattice = problem.lattice.filter(|_| options.allows("quantization"));
-    let lsb = if stated > 0.0 { Some(stated) } else { lattice.map(|l| l.increment_arcsec) };
+    let quantization_grid = problem.quantization_grid.filter(|_| options.allows("quantization"));
+    let lsb = if stated > 0.0 { Some(stated) } else { quantization_grid.map(|l| l.increment_arcsec) };
     let m = lsb.map_or(1, |lsb| coarse::group(lsb, &problem.claim, problem.residual.len()));
     let mut claim = claim.clone();
-    let unlike = lattice.filter(|l| (l.increment_arcsec - stated).abs() > 0.01 * stated);
-    if let Some(lattice) = unlike.filter(|_| m == 1 || stated <= 0.0) {
-        claim.quantization_lsb_arcsec = lattice.increment_arcsec;
-        claim.noise.q = lattice.increment_arcsec / 12f64.sqrt();
+    let unlike = quantization_grid.filter(|l| (l.increment_arcsec - stated).abs() > 0.01 * stated);
+    if let Some(quantization_grid) = unlike.filter(|_| m == 1 || stated <= 0.0) {
+        claim.quantization_lsb_arcsec = quantization_grid.increment_arcsec;
+        claim.noise.q = quantization_grid.increment_arcsec / 12f64.sqrt();
         let with = Problem::new(regular, &claim);
-        match as_rounded(lattice, &problem, &with, m > 1, options) {
+        match as_rounded(quantization_grid, &problem, &with, m > 1, options) {
             Some(named) => found.named.push(named),
             None => return problem,
         }
@@ -187,31 +187,31 @@ pub(super) fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, o
 /// spectrum decides; elsewhere the spectrum will have its say among the other effects, and the values decide where it would
 /// say too little. `with` is the problem with the rounding in the claim.
 fn as_rounded(
-    lattice: Lattice,
+    quantization_grid: QuantizationGrid,
     problem: &Problem,
     with: &Problem,
     needed: bool,
     options: &Options,
 ) -> Option<Named> {
-    let rows = problem.scenes.rows;
+    let rows = problem.spectra.rows;
     let gain = with.baseline().fit.log_likelihood - problem.baseline().fit.log_likelihood;
     let chance = |gain: f64| crate::estimate::chi_square_tail(2.0 * gain.max(0.0), 1.0);
     let worth = |total: f64| samples::worth(total, 1, chance(total), rows, options.alpha);
     let by_spectrum = worth(gain);
     if needed {
-        return samples::quantization(lattice, gain, by_spectrum?, chance(gain), problem);
+        return samples::quantization(quantization_grid, gain, by_spectrum?, chance(gain), problem);
     }
     let dt_s = problem.grid.dt_s;
-    let by_values = gain + lattice.gain(rows, 60.0 * problem.claim.noise.n * dt_s.sqrt());
+    let by_values = gain + quantization_grid.gain(rows, 60.0 * problem.claim.noise.n * dt_s.sqrt());
     if by_spectrum.is_some() || gain <= 0.0 {
         return None;
     }
-    samples::quantization(lattice, gain, worth(by_values)?, chance(by_values), problem)
+    samples::quantization(quantization_grid, gain, worth(by_values)?, chance(by_values), problem)
 }
 
 /// What single samples are judged on: the claim with the courses of a moving table that it leaves out. Their corners,
 /// as of a delay, look like bursts and like a changing level; a smooth course does not.
-fn with_table_courses(base: &Tried, scenes: &Scenes, options: &Options) -> Tried {
+fn with_table_courses(base: &Tried, spectra: &SpectralDataSet, options: &Options) -> Tried {
     const COURSES: usize = 2;
     let table = [Column::TableRate, Column::TableAngle, Column::OuterRate];
     // A delay of the claimed mean needs no column of its own, but moves only with the table.
@@ -219,17 +219,17 @@ fn with_table_courses(base: &Tried, scenes: &Scenes, options: &Options) -> Tried
     let follows = |e: &dyn Effect| {
         options.allows(e.kind()) && (e.needs().iter().any(|c| table.contains(c)) || delays(e))
     };
-    let drivers = &scenes.full.drivers;
+    let drivers = &spectra.full.drivers;
     let applies = |e: &dyn Effect| {
         let there = e.needs().iter().all(|c| drivers.column(*c).is_some());
-        follows(e) && there && matches!(e.model(), Model::Course(c) if c.applies(drivers))
+        follows(e) && there && matches!(e.model(), Model::Mean(c) if c.applies(drivers))
     };
     if !EFFECTS.iter().any(|e| applies(*e)) {
         return base.clone();
     }
     let mut out = base.clone();
     for _ in 0..COURSES {
-        let candidates = candidates::among(&out, scenes, applies);
+        let candidates = candidates::among(&out, spectra, applies);
         let family = EFFECTS.len() as f64;
         match candidates.into_iter().next() {
             Some(leader) if select::passes(&leader, family, options.alpha) => out = leader.tried,
@@ -251,7 +251,7 @@ fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
 /// A hypothesis fitted to what a problem has become.
 fn refitted(tried: &Tried, problem: &Problem) -> Tried {
     let mut hypothesis = tried.hypothesis.clone();
-    let fit = fit(&mut hypothesis, &problem.scenes.full);
+    let fit = fit(&mut hypothesis, &problem.spectra.full);
     Tried { hypothesis, fit, ..tried.clone() }
 }
 
@@ -263,7 +263,7 @@ fn take_bursts(
     found: &mut Found,
     options: &Options,
 ) -> Tried {
-    let (rows, alpha) = (problem.scenes.rows, options.alpha);
+    let (rows, alpha) = (problem.spectra.rows, options.alpha);
     let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "outlier_bursts");
     if !stated && !options.allows("outlier_bursts") {
         return base.clone();

@@ -1,12 +1,12 @@
 //! How much longer a record must be to decide between an effect and one that serves as well.
 
-use super::candidates::{Candidate, Scenes, Tried};
+use super::candidates::{Candidate, SpectralDataSet, Tried};
 use super::finding::Experiment;
 use super::hypothesis::{CourseIn, Normal, PartModes, columns, kept, subtract};
 use super::noise_fit;
+use super::nonlinear_search::{first_steps, refine};
 use super::select::{Chosen, ENOUGH, Slot};
-use super::shape::{first_steps, refine};
-use crate::effect::{Course, ModeBin, Model};
+use crate::effect::{MeanModel, ModeBin, Model};
 use rand::SeedableRng as _;
 use rand_distr::{ChiSquared, Distribution as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -25,13 +25,13 @@ const SEED: u64 = 0x5a67_6e61_6320_0007;
 
 /// For each effect and each of its equivalents of the same sort, the shortest record that tells them apart. A process is
 /// not weighed against a course: what either does in a longer record depends on what the record holds.
-pub fn deciding(chosen: &[Chosen], best: &Tried, scenes: &Scenes) -> Vec<Experiment> {
+pub fn deciding(chosen: &[Chosen], best: &Tried, spectra: &SpectralDataSet) -> Vec<Experiment> {
     let mut out = vec![];
     for one in chosen {
         for rival in &one.equivalents {
             let times_longer = match (one.slot, one.effect.model(), rival.effect.model()) {
-                (Slot::Spectrum(_), _, Model::Spectrum(_)) => processes(best, &rival.tried, scenes),
-                (Slot::Course(i), _, Model::Course(course)) => courses(best, i, rival, course, scenes),
+                (Slot::Spectrum(_), _, Model::Spectrum(_)) => processes(best, &rival.tried, spectra),
+                (Slot::Mean(i), _, Model::Mean(course)) => courses(best, i, rival, course, spectra),
                 _ => continue,
             };
             let (kind, against) = (one.effect.kind().to_owned(), rival.effect.kind().to_owned());
@@ -42,21 +42,21 @@ pub fn deciding(chosen: &[Chosen], best: &Tried, scenes: &Scenes) -> Vec<Experim
 }
 
 /// By simulation: spectra are drawn from the hypothesis as longer records would show them, and both are fitted to each.
-fn processes(best: &Tried, rival: &Tried, scenes: &Scenes) -> Option<f64> {
+fn processes(best: &Tried, rival: &Tried, spectra: &SpectralDataSet) -> Option<f64> {
     let told = |times: f64| {
-        let scene = scenes.full.longer(times);
-        let densities = best.hypothesis.noise.densities(&scene);
-        let price = (rival.parameters as f64 - best.parameters as f64) * (scenes.rows as f64 * times).ln();
+        let spectral = spectra.full.longer(times);
+        let densities = best.hypothesis.noise.densities(&spectral);
+        let price = (rival.parameters as f64 - best.parameters as f64) * (spectra.rows as f64 * times).ln();
         let decides = |draw: &u64| {
             let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED + draw);
             let power = |(bin, s): (&ModeBin, &f64)| {
                 let dof = bin.modes as f64;
                 ChiSquared::new(dof).map_or(*s, |law| s * law.sample(&mut rng) / dof)
             };
-            let drawn: Vec<f64> = scene.bins.iter().zip(&densities).map(power).collect();
+            let drawn: Vec<f64> = spectral.bins.iter().zip(&densities).map(power).collect();
             let fitted = |tried: &Tried| {
                 let mut noise = tried.hypothesis.noise.clone();
-                noise_fit::fit(&mut noise, &scene, &drawn).log_likelihood
+                noise_fit::fit(&mut noise, &spectral, &drawn).log_likelihood
             };
             2.0 * (fitted(best) - fitted(rival)) + price >= ENOUGH
         };
@@ -71,15 +71,15 @@ fn courses(
     best: &Tried,
     index: usize,
     rival: &Candidate,
-    course: &'static dyn Course,
-    scenes: &Scenes,
+    course: &'static dyn MeanModel,
+    spectra: &SpectralDataSet,
 ) -> Option<f64> {
     let own = best.hypothesis.courses.get(index)?;
     let other = rival.tried.hypothesis.courses.last()?;
-    let distance = distance(best, own, other, course, scenes)?;
+    let distance = distance(best, own, other, course, spectra)?;
     let parameters = rival.tried.parameters as f64 - best.parameters as f64;
     let told = |times: f64| {
-        let price = parameters * (scenes.rows as f64 * times).ln();
+        let price = parameters * (spectra.rows as f64 * times).ln();
         times * distance - 1.644_854 * 2.0 * (times * distance).sqrt() + price >= ENOUGH
     };
     shortest(told)
@@ -90,28 +90,28 @@ fn distance(
     best: &Tried,
     own: &CourseIn,
     other: &CourseIn,
-    course: &'static dyn Course,
-    scenes: &Scenes,
+    course: &'static dyn MeanModel,
+    spectra: &SpectralDataSet,
 ) -> Option<f64> {
-    let scene = scenes.of(own.course()?.pace());
-    let powers = scene.powers(&best.hypothesis.noise.densities(scene));
-    let parts = PartModes::of_shape(own.course()?, &own.shape, scene);
-    let mut modes = parts.fixed.unwrap_or_else(|| vec![0.0; scene.modes.len()]);
-    for (column, c) in parts.free.iter().zip(&own.coefficients) {
+    let spectral = spectra.of(own.course()?.resolution());
+    let powers = spectral.powers(&best.hypothesis.noise.densities(spectral));
+    let parts = PartModes::of_shape(own.course()?, &own.nonlinear_parameters, spectral);
+    let mut modes = parts.offset.unwrap_or_else(|| vec![0.0; spectral.modes.len()]);
+    for (column, c) in parts.columns.iter().zip(&own.coefficients) {
         subtract(&mut modes, column, -c);
     }
-    let nuisances = kept(scene, std::slice::from_ref(other));
-    let left = |shape: &[f64]| {
-        let rival = PartModes::of_shape(course, shape, scene);
+    let nuisances = kept(spectral, std::slice::from_ref(other));
+    let left = |nonlinear_parameters: &[f64]| {
+        let rival = PartModes::of_shape(course, nonlinear_parameters, spectral);
         let mut data = modes.clone();
-        if let Some(fixed) = &rival.fixed {
+        if let Some(fixed) = &rival.offset {
             subtract(&mut data, fixed, 1.0);
         }
         Normal::new(&columns(&nuisances, [&rival]), &data, &powers).solve().2
     };
-    let bounds = course.bounds(&scene.drivers);
-    let steps = first_steps(course, &scene.drivers);
-    let (_, nearest) = refine(&other.shape, &bounds, &steps, EVALUATIONS, |s| -left(s));
+    let bounds = course.bounds(&spectral.drivers);
+    let steps = first_steps(course, &spectral.drivers);
+    let (_, nearest) = refine(&other.nonlinear_parameters, &bounds, &steps, EVALUATIONS, |s| -left(s));
     Some((-nearest).max(0.0))
 }
 
@@ -139,7 +139,7 @@ mod tests {
     use crate::effect::{Drivers, find};
     use crate::mismatch::hypothesis::{Hypothesis, fit};
     use crate::mismatch::noise_fit::{Noise, SpectrumIn};
-    use crate::mismatch::scene::Scene;
+    use crate::mismatch::spectral_data::SpectralData;
 
     const N: f64 = 0.004;
 
@@ -155,16 +155,16 @@ mod tests {
         }
     }
 
-    fn scenes(samples: usize) -> Scenes {
+    fn spectra(samples: usize) -> SpectralDataSet {
         let drivers = Drivers { dt_s: 1.0, samples, averaged: 1, ..Drivers::default() };
-        let full = Scene::new(drivers, &vec![0.0; samples], &[]);
-        Scenes { full, slow: None, lattice_arcsec: None, rows: samples }
+        let full = SpectralData::new(drivers, &vec![0.0; samples], &[]);
+        SpectralDataSet { full, slow: None, grid_step_arcsec: None, rows: samples }
     }
 
-    fn tried(noise: Noise, courses: Vec<CourseIn>, parameters: usize, scenes: &Scenes) -> Tried {
+    fn tried(noise: Noise, courses: Vec<CourseIn>, parameters: usize, spectra: &SpectralDataSet) -> Tried {
         let mut hypothesis = Hypothesis { noise, courses };
         let kept = hypothesis.clone();
-        let fit = fit(&mut hypothesis, &scenes.full);
+        let fit = fit(&mut hypothesis, &spectra.full);
         Tried { hypothesis: kept, fit, parameters, odds: 0.0 }
     }
 
@@ -172,27 +172,27 @@ mod tests {
     /// another seed, tell the two apart as were asked for, and of half the length fewer.
     #[test]
     fn records_of_that_length_decide_between_processes() {
-        let scenes = scenes(8192);
+        let spectra = spectra(8192);
         let with = |kind: &str, fitted: Vec<f64>| {
             let mut noise = white();
             noise.spectra.push(SpectrumIn { effect: find(kind).unwrap(), fitted, stated: false });
             noise
         };
         // A correlation time of 60 s, a third of the noise of a sample.
-        let markov = tried(with("markov_long", vec![60.0, 0.08]), vec![], 2, &scenes);
+        let markov = tried(with("markov_long", vec![60.0, 0.08]), vec![], 2, &spectra);
         let mut freed = with("excess_flicker", vec![0.1]);
         (freed.base[1], freed.freed[1]) = (0.1, true);
-        let flicker = tried(freed, vec![], 1, &scenes);
-        let times = processes(&markov, &flicker, &scenes).unwrap();
+        let flicker = tried(freed, vec![], 1, &spectra);
+        let times = processes(&markov, &flicker, &spectra).unwrap();
         assert!((1.0..=MOST).contains(&times), "{times}");
         let decided = |times: f64| {
-            let scene = scenes.full.longer(times);
-            let densities = markov.hypothesis.noise.densities(&scene);
+            let spectral = spectra.full.longer(times);
+            let densities = markov.hypothesis.noise.densities(&spectral);
             let mut rng = Xoshiro256PlusPlus::seed_from_u64(77);
             let price = -(8192.0 * times).ln();
             (0..60)
                 .filter(|_| {
-                    let drawn: Vec<f64> = scene
+                    let drawn: Vec<f64> = spectral
                         .bins
                         .iter()
                         .zip(&densities)
@@ -203,7 +203,7 @@ mod tests {
                         .collect();
                     let fitted = |t: &Tried| {
                         let mut noise = t.hypothesis.noise.clone();
-                        noise_fit::fit(&mut noise, &scene, &drawn).log_likelihood
+                        noise_fit::fit(&mut noise, &spectral, &drawn).log_likelihood
                     };
                     2.0 * (fitted(&markov) - fitted(&flicker)) + price >= ENOUGH
                 })
@@ -216,17 +216,17 @@ mod tests {
     /// A linear drift and an exponential of a long time constant, told apart when the quadratic part shows.
     #[test]
     fn the_distance_of_courses_gives_the_length() {
-        let scenes = scenes(4096);
-        let course = |kind: &str, shape: Vec<f64>, coefficients: Vec<f64>| CourseIn {
+        let spectra = spectra(4096);
+        let course = |kind: &str, nonlinear_parameters: Vec<f64>, coefficients: Vec<f64>| CourseIn {
             effect: find(kind).unwrap(),
-            shape,
+            nonlinear_parameters,
             coefficients,
         };
         let warm = course("warmup_exponential", vec![1500.0], vec![0.05]);
         let ramp = course("rate_ramp", vec![], vec![-0.05]);
-        let best = tried(white(), vec![warm.clone()], 2, &scenes);
-        let Model::Course(linear) = ramp.effect.model() else { panic!("a course") };
-        let squared = distance(&best, &warm, &ramp, linear, &scenes).unwrap();
+        let best = tried(white(), vec![warm.clone()], 2, &spectra);
+        let Model::Mean(linear) = ramp.effect.model() else { panic!("a course") };
+        let squared = distance(&best, &warm, &ramp, linear, &spectra).unwrap();
         // Closed form: white noise of 60 N √f; a line through the exponential by least squares.
         let (n, tau, deviation) = (4096usize, 1500.0, 60.0 * N);
         let x: Vec<f64> = (0..n).map(|i| i as f64 - 2047.5).collect();
@@ -237,9 +237,9 @@ mod tests {
         assert!((squared / (left / deviation.powi(2)) - 1.0).abs() < 0.02, "{squared}");
         // Two names of one column cannot be told apart by any length.
         let step = course("bias_step", vec![2000.0], vec![0.4]);
-        let best = tried(white(), vec![step.clone()], 2, &scenes);
-        let Model::Course(same) = find("heading_change").unwrap().model() else { panic!("a course") };
+        let best = tried(white(), vec![step.clone()], 2, &spectra);
+        let Model::Mean(same) = find("heading_change").unwrap().model() else { panic!("a course") };
         let heading = course("heading_change", vec![2000.0], vec![0.4]);
-        assert!(distance(&best, &step, &heading, same, &scenes).unwrap() < 1e-3);
+        assert!(distance(&best, &step, &heading, same, &spectra).unwrap() < 1e-3);
     }
 }

@@ -9,9 +9,9 @@ use super::hypothesis::{Fit, Hypothesis, fit};
 use super::noise_fit::SpectrumIn;
 use super::options::Options;
 use super::problem::Problem;
-use super::scene::Scene;
 use super::select;
-use crate::effect::{EFFECTS, Effect, Model, SpectralLook, Spectrum, SpectrumAct};
+use super::spectral_data::SpectralData;
+use crate::effect::{EFFECTS, Effect, Model, SpectralContext, Spectrum, SpectrumAct};
 
 /// Times that the ends are drawn for one filter, each for what was fitted before.
 const TURNS: usize = 2;
@@ -37,36 +37,36 @@ struct Judged {
 /// The claim behind the filter that it leaves out, where there is one and the ends of the record matter; fitted to what is
 /// seen behind it.
 pub fn behind(problem: &Problem, base: &Tried, options: &Options) -> Option<Tried> {
-    let scene = &problem.scenes.full;
-    let ratios = scene.bins.iter().zip(base.fit.observed.iter().zip(&base.fit.densities));
-    let faint = |share: f64| share * (scene.length as f64) < FAINT;
+    let spectral = &problem.spectra.full;
+    let ratios = spectral.bins.iter().zip(base.fit.observed.iter().zip(&base.fit.densities));
+    let faint = |share: f64| share * (spectral.length as f64) < FAINT;
     if !ratios.filter(|(b, _)| b.modes >= SEEN).any(|(_, (seen, claimed))| faint(seen / claimed)) {
         return None;
     }
     let wanted = |e: &dyn Effect| filter(e).is_some() && options.allows(e.kind());
-    let leader = candidates::among(base, &problem.scenes, wanted).into_iter().next()?;
+    let leader = candidates::among(base, &problem.spectra, wanted).into_iter().next()?;
     if !select::passes(&leader, EFFECTS.len() as f64, options.alpha) {
         return None;
     }
-    let look = SpectralLook {
-        bins: &scene.bins,
+    let context = SpectralContext {
+        bins: &spectral.bins,
         observed: &base.fit.observed,
         expected: &base.fit.densities,
-        lattice_arcsec: problem.scenes.lattice_arcsec,
+        grid_step_arcsec: problem.spectra.grid_step_arcsec,
     };
     let judged: Vec<Judged> = EFFECTS
         .iter()
         .filter(|e| wanted(**e))
         .filter_map(|e| Some((*e, filter(*e)?)))
         .flat_map(|(effect, spectrum)| {
-            let fitted = spectrum.starts(&look).into_iter();
+            let fitted = spectrum.starts(&context).into_iter();
             fitted.map(move |fitted| SpectrumIn { effect, fitted, stated: false })
         })
         .map(|part| judged(problem, base, part))
         .collect();
     // All are compared on the modes that each of them leaves to be judged.
     let common: Vec<bool> =
-        (0..scene.length).map(|k| judged.iter().all(|j| j.powers[k].is_finite())).collect();
+        (0..spectral.length).map(|k| judged.iter().all(|j| j.powers[k].is_finite())).collect();
     let value = |j: &Judged| {
         let modes = j.modes.iter().zip(&j.powers).zip(&common).filter(|(_, c)| **c);
         modes.map(|((x, p), _)| p.ln() + x * x / p).sum::<f64>()
@@ -78,16 +78,16 @@ fn judged(problem: &Problem, base: &Tried, part: SpectrumIn) -> Judged {
     let parameters = base.parameters + part.fitted.len();
     let mut hypothesis = base.hypothesis.clone();
     hypothesis.noise.spectra.push(part);
-    let turn = |hypothesis: &mut Hypothesis| -> (Scene, Fit) {
-        let scene = problem.seen_behind(base, &hypothesis.noise);
-        let fit = fit(hypothesis, &scene);
-        (scene, fit)
+    let turn = |hypothesis: &mut Hypothesis| -> (SpectralData, Fit) {
+        let spectral = problem.edges_imputed(base, &hypothesis.noise);
+        let fit = fit(hypothesis, &spectral);
+        (spectral, fit)
     };
-    let (mut scene, mut fit) = turn(&mut hypothesis);
+    let (mut spectral, mut fit) = turn(&mut hypothesis);
     for _ in 1..TURNS {
-        (scene, fit) = turn(&mut hypothesis);
+        (spectral, fit) = turn(&mut hypothesis);
     }
-    let modes = super::hypothesis::residual(&scene, &hypothesis, &fit.mean);
-    let powers = scene.powers(&fit.densities);
+    let modes = super::hypothesis::residual(&spectral, &hypothesis, &fit.mean);
+    let powers = spectral.powers(&fit.densities);
     Judged { tried: Tried { hypothesis, fit, parameters, odds: base.odds }, modes, powers }
 }

@@ -6,9 +6,9 @@ use super::hypothesis::{
     Hypothesis, LeastSquares, Normal, PartModes, columns, fit, kept, less_fixed, part_modes, subtract,
 };
 use super::noise_fit::whittle;
+use super::nonlinear_search::{first_steps, refine};
 use super::problem::Problem;
-use super::scene::Scene;
-use super::shape::{first_steps, refine};
+use super::spectral_data::SpectralData;
 use crate::numeric::cosine::inverse_dct2;
 
 /// Blocks.
@@ -27,8 +27,8 @@ pub struct HeldOut {
 
 /// The two halves of a problem.
 pub struct Halves {
-    train: Scene,
-    test: Scene,
+    train: SpectralData,
+    test: SpectralData,
     /// Mean residual of each block of the second, deg/h.
     means: Vec<f64>,
     bin: usize,
@@ -38,16 +38,16 @@ impl Halves {
     /// Cuts a problem.
     pub fn new(problem: &Problem) -> Halves {
         let length = problem.drivers.samples / BLOCKS;
-        let scene = |odd: usize| {
+        let spectral = |odd: usize| {
             let blocks = (0..BLOCKS).filter(|b| b % 2 == odd).map(|b| b * length).collect();
             let drivers = problem.drivers.clone();
             let deviations = problem.deviations();
-            Scene::of_blocks(drivers, &problem.residual, &deviations, blocks, length)
+            SpectralData::of_blocks(drivers, &problem.residual, &deviations, blocks, length)
                 .with_states(&problem.claim)
         };
-        let test = scene(1);
+        let test = spectral(1);
         let means = test.block_means(&problem.residual);
-        Halves { train: scene(0), test, means, bin: (length / BINS).max(1) }
+        Halves { train: spectral(0), test, means, bin: (length / BINS).max(1) }
     }
 
     /// Length of the bins, s.
@@ -73,11 +73,11 @@ impl Halves {
         }
         for course in &hypothesis.courses {
             let Some(model) = course.course() else { continue };
-            let parts = model.parts(&course.shape, &self.test.drivers);
-            if let Some(fixed) = &parts.fixed {
+            let parts = model.regressors(&course.nonlinear_parameters, &self.test.drivers);
+            if let Some(fixed) = &parts.offset {
                 take(&self.test.transform(fixed), &self.test.block_means(fixed), 1.0);
             }
-            for column in parts.free.iter().chain(&parts.beside) {
+            for column in parts.columns.iter().chain(&parts.nuisance) {
                 take(&self.test.transform(column), &self.test.block_means(column), coefficient());
             }
         }
@@ -112,24 +112,29 @@ fn known(trained: &LeastSquares, whole: &LeastSquares) -> Vec<f64> {
 }
 
 /// Moves each shape to where the training half has it.
-fn refine_shapes(hypothesis: &mut Hypothesis, scene: &Scene) {
-    let powers = scene.powers(&hypothesis.noise.densities(scene));
+fn refine_shapes(hypothesis: &mut Hypothesis, spectral: &SpectralData) {
+    let powers = spectral.powers(&hypothesis.noise.densities(spectral));
     for i in 0..hypothesis.courses.len() {
         let Some(course) = hypothesis.courses[i].course() else { continue };
-        if hypothesis.courses[i].shape.is_empty() {
+        if hypothesis.courses[i].nonlinear_parameters.is_empty() {
             continue;
         }
-        let bounds = course.bounds(&scene.drivers);
-        let others = part_modes(scene, &hypothesis.courses);
-        let nuisances = kept(scene, &hypothesis.courses);
-        let gain = |shape: &[f64]| {
-            let own = PartModes::of_shape(course, shape, scene);
+        let bounds = course.bounds(&spectral.drivers);
+        let others = part_modes(spectral, &hypothesis.courses);
+        let nuisances = kept(spectral, &hypothesis.courses);
+        let gain = |nonlinear_parameters: &[f64]| {
+            let own = PartModes::of_shape(course, nonlinear_parameters, spectral);
             let parts = || others.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| p).chain([&own]);
-            let data = less_fixed(scene, parts());
+            let data = less_fixed(spectral, parts());
             -0.5 * Normal::new(&columns(&nuisances, parts()), &data, &powers).solve().2
         };
-        let (shape, _) =
-            refine(&hypothesis.courses[i].shape, &bounds, &first_steps(course, &scene.drivers), 40, gain);
-        hypothesis.courses[i].shape = shape;
+        let (nonlinear_parameters, _) = refine(
+            &hypothesis.courses[i].nonlinear_parameters,
+            &bounds,
+            &first_steps(course, &spectral.drivers),
+            40,
+            gain,
+        );
+        hypothesis.courses[i].nonlinear_parameters = nonlinear_parameters;
     }
 }

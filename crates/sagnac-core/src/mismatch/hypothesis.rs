@@ -2,8 +2,8 @@
 //! in turns until neither moves.
 
 use super::noise_fit::{self, Noise, NoiseFit};
-use super::scene::{NuisanceColumn, Scene};
-use crate::effect::{Course, Effect, Model, Pace, Parts, averages};
+use super::spectral_data::{NuisanceColumn, SpectralData};
+use crate::effect::{Effect, MeanModel, Model, Regressors, Resolution, averages};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -14,16 +14,16 @@ pub struct CourseIn {
     /// The effect.
     pub effect: &'static dyn Effect,
     /// Its shape.
-    pub shape: Vec<f64>,
+    pub nonlinear_parameters: Vec<f64>,
     /// Coefficients of its free columns, from the last fit.
     pub coefficients: Vec<f64>,
 }
 
 impl CourseIn {
     /// The forward model.
-    pub fn course(&self) -> Option<&'static dyn Course> {
+    pub fn course(&self) -> Option<&'static dyn MeanModel> {
         match self.effect.model() {
-            Model::Course(c) => Some(c),
+            Model::Mean(c) => Some(c),
             _ => None,
         }
     }
@@ -42,33 +42,38 @@ pub struct Hypothesis {
 #[derive(Debug, Clone, Default)]
 pub struct PartModes {
     /// Modes of the fixed part.
-    pub fixed: Option<Vec<f64>>,
+    pub offset: Option<Vec<f64>>,
     /// Modes of the free columns.
-    pub free: Vec<Vec<f64>>,
+    pub columns: Vec<Vec<f64>>,
     /// Modes of the columns beside.
-    pub beside: Vec<Vec<f64>>,
+    pub nuisance: Vec<Vec<f64>>,
 }
 
 impl PartModes {
     /// Modes of a course on a scene.
-    pub fn of_shape(course: &dyn Course, shape: &[f64], scene: &Scene) -> PartModes {
-        let closed = if scene.is_whole() { course.modes(shape, &scene.drivers) } else { None };
+    pub fn of_shape(
+        course: &dyn MeanModel,
+        nonlinear_parameters: &[f64],
+        spectral: &SpectralData,
+    ) -> PartModes {
+        let closed =
+            if spectral.is_whole() { course.modes(nonlinear_parameters, &spectral.drivers) } else { None };
         match closed {
             Some(mut free) => {
                 free.iter_mut().filter_map(|m| m.first_mut()).for_each(|first| *first = 0.0);
-                PartModes { free, ..PartModes::default() }
+                PartModes { columns: free, ..PartModes::default() }
             }
-            None => PartModes::of(course.parts(shape, &scene.drivers), scene),
+            None => PartModes::of(course.regressors(nonlinear_parameters, &spectral.drivers), spectral),
         }
     }
 
     /// Transforms the parts, those of a kind side by side.
-    fn of(parts: Parts, scene: &Scene) -> PartModes {
-        let modes = |column: Vec<f64>| scene.transform(&column);
+    fn of(parts: Regressors, spectral: &SpectralData) -> PartModes {
+        let modes = |column: Vec<f64>| spectral.transform(&column);
         PartModes {
-            fixed: parts.fixed.map(modes),
-            free: parts.free.into_par_iter().map(modes).collect(),
-            beside: parts.beside.into_par_iter().map(modes).collect(),
+            offset: parts.offset.map(modes),
+            columns: parts.columns.into_par_iter().map(modes).collect(),
+            nuisance: parts.nuisance.into_par_iter().map(modes).collect(),
         }
     }
 }
@@ -107,9 +112,9 @@ impl Fit {
 }
 
 /// Nuisance columns that keep their prior under the courses of a hypothesis.
-pub fn kept<'a>(scene: &'a Scene, courses: &[CourseIn]) -> Vec<&'a NuisanceColumn> {
+pub fn kept<'a>(spectral: &'a SpectralData, courses: &[CourseIn]) -> Vec<&'a NuisanceColumn> {
     let replaced: Vec<_> = courses.iter().filter_map(|c| c.course()?.replaces()).collect();
-    scene.nuisances.iter().filter(|n| !replaced.contains(&n.nuisance)).collect()
+    spectral.nuisances.iter().filter(|n| !replaced.contains(&n.nuisance)).collect()
 }
 
 /// Weighted normal equations of some columns.
@@ -217,7 +222,7 @@ impl Normal {
     }
 }
 
-/// Columns of nuisances and of everything in `parts` (one entry a course), each with its prior deviation.
+/// Columns of nuisances and of everything in `regressors` (one entry a course), each with its prior deviation.
 pub fn columns<'a>(
     nuisances: &[&'a NuisanceColumn],
     parts: impl IntoIterator<Item = &'a PartModes>,
@@ -225,33 +230,33 @@ pub fn columns<'a>(
     let mut columns: Vec<(&[f64], f64)> =
         nuisances.iter().map(|n| (n.modes.as_slice(), n.deviation)).collect();
     for part in parts {
-        columns.extend(part.free.iter().chain(&part.beside).map(|c| (c.as_slice(), f64::INFINITY)));
+        columns.extend(part.columns.iter().chain(&part.nuisance).map(|c| (c.as_slice(), f64::INFINITY)));
     }
     columns
 }
 
 /// Modes of a scene less the fixed parts.
 pub fn less_fixed<'a, 'b>(
-    scene: &'a Scene,
+    spectral: &'a SpectralData,
     parts: impl IntoIterator<Item = &'b PartModes>,
 ) -> Cow<'a, [f64]> {
-    let mut data = Cow::Borrowed(scene.modes.as_slice());
-    for fixed in parts.into_iter().filter_map(|p| p.fixed.as_ref()) {
+    let mut data = Cow::Borrowed(spectral.modes.as_slice());
+    for fixed in parts.into_iter().filter_map(|p| p.offset.as_ref()) {
         subtract(data.to_mut(), fixed, 1.0);
     }
     data
 }
 
-/// Generalised least squares of everything in `parts` (one entry a course) and the kept nuisances, and the modes of what
+/// Generalised least squares of everything in `regressors` (one entry a course) and the kept nuisances, and the modes of what
 /// it leaves.
 fn least_squares<'a>(
-    scene: &'a Scene,
+    spectral: &'a SpectralData,
     hypothesis: &Hypothesis,
     parts: &[PartModes],
     powers: &[f64],
 ) -> (LeastSquares, Cow<'a, [f64]>) {
-    let mut data = less_fixed(scene, parts);
-    let nuisances = kept(scene, &hypothesis.courses);
+    let mut data = less_fixed(spectral, parts);
+    let nuisances = kept(spectral, &hypothesis.courses);
     let columns = columns(&nuisances, parts);
     let (coefficients, covariance, _) = Normal::new(&columns, &data, powers).solve();
     for ((column, _), c) in columns.iter().zip(&coefficients) {
@@ -264,10 +269,10 @@ fn least_squares<'a>(
 
 /// Modes of what a fitted hypothesis leaves of the scene it was fitted to. Not kept with the fit, since many fits are
 /// held at once and a long record has many modes.
-pub fn residual(scene: &Scene, hypothesis: &Hypothesis, mean: &LeastSquares) -> Vec<f64> {
-    let parts = part_modes(scene, &hypothesis.courses);
-    let mut data = less_fixed(scene, &parts).into_owned();
-    let nuisances = kept(scene, &hypothesis.courses);
+pub fn residual(spectral: &SpectralData, hypothesis: &Hypothesis, mean: &LeastSquares) -> Vec<f64> {
+    let parts = part_modes(spectral, &hypothesis.courses);
+    let mut data = less_fixed(spectral, &parts).into_owned();
+    let nuisances = kept(spectral, &hypothesis.courses);
     for ((column, _), c) in columns(&nuisances, &parts).iter().zip(&mean.coefficients) {
         subtract(&mut data, column, *c);
     }
@@ -282,68 +287,79 @@ pub fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
 }
 
 /// Modes of every course of a hypothesis on a scene.
-pub fn part_modes(scene: &Scene, courses: &[CourseIn]) -> Vec<PartModes> {
-    let one = |c: &CourseIn| c.course().map(|x| PartModes::of_shape(x, &c.shape, scene)).unwrap_or_default();
+pub fn part_modes(spectral: &SpectralData, courses: &[CourseIn]) -> Vec<PartModes> {
+    let one = |c: &CourseIn| {
+        c.course().map(|x| PartModes::of_shape(x, &c.nonlinear_parameters, spectral)).unwrap_or_default()
+    };
     courses.iter().map(one).collect()
 }
 
 /// As [`part_modes`] on a scene of averages. A fast course is worked out sample by sample and averaged then: that of averaged
 /// columns is another one.
-pub fn part_modes_of_averages(scene: &Scene, full: &Scene, courses: &[CourseIn]) -> Vec<PartModes> {
-    let samples_each = scene.drivers.averaged / full.drivers.averaged.max(1);
+pub fn part_modes_of_averages(
+    spectral: &SpectralData,
+    full: &SpectralData,
+    courses: &[CourseIn],
+) -> Vec<PartModes> {
+    let samples_each = spectral.drivers.averaged / full.drivers.averaged.max(1);
     let averaged = |column: Vec<f64>| {
         let mut means = averages(&column, samples_each);
-        means.truncate(scene.length);
+        means.truncate(spectral.length);
         means
     };
     let all = |columns: Vec<Vec<f64>>| columns.into_iter().map(averaged).collect();
     let one = |c: &CourseIn| {
         let Some(course) = c.course() else { return PartModes::default() };
-        let parts = match course.pace() {
-            Pace::Slow => course.parts(&c.shape, &scene.drivers),
-            Pace::Fast => {
-                let parts = course.parts(&c.shape, &full.drivers);
-                Parts { fixed: parts.fixed.map(averaged), free: all(parts.free), beside: all(parts.beside) }
+        let parts = match course.resolution() {
+            Resolution::Averaged => course.regressors(&c.nonlinear_parameters, &spectral.drivers),
+            Resolution::FullRate => {
+                let parts = course.regressors(&c.nonlinear_parameters, &full.drivers);
+                Regressors {
+                    offset: parts.offset.map(averaged),
+                    columns: all(parts.columns),
+                    nuisance: all(parts.nuisance),
+                }
             }
         };
-        PartModes::of(parts, scene)
+        PartModes::of(parts, spectral)
     };
     courses.iter().map(one).collect()
 }
 
 /// Fits a hypothesis: its noise parameters and the coefficients of its courses are changed to the best.
-pub fn fit(hypothesis: &mut Hypothesis, scene: &Scene) -> Fit {
-    let parts = part_modes(scene, &hypothesis.courses);
-    fit_with(hypothesis, scene, &parts)
+pub fn fit(hypothesis: &mut Hypothesis, spectral: &SpectralData) -> Fit {
+    let parts = part_modes(spectral, &hypothesis.courses);
+    fit_with(hypothesis, spectral, &parts)
 }
 
 /// As [`fit`], with the modes of the courses at hand.
-pub fn fit_with(hypothesis: &mut Hypothesis, scene: &Scene, parts: &[PartModes]) -> Fit {
-    let columns = parts.iter().map(|p| p.free.len() + p.beside.len()).sum::<usize>() + scene.nuisances.len();
-    let mut fit = turn(hypothesis, scene, parts);
+pub fn fit_with(hypothesis: &mut Hypothesis, spectral: &SpectralData, parts: &[PartModes]) -> Fit {
+    let columns =
+        parts.iter().map(|p| p.columns.len() + p.nuisance.len()).sum::<usize>() + spectral.nuisances.len();
+    let mut fit = turn(hypothesis, spectral, parts);
     for _ in 0..if columns == 0 { 0 } else { 5 } {
-        let next = turn(hypothesis, scene, parts);
+        let next = turn(hypothesis, spectral, parts);
         let settled = (next.log_likelihood - fit.log_likelihood).abs() < 1e-3;
         fit = next;
         if settled {
             break;
         }
     }
-    let mut at = kept(scene, &hypothesis.courses).len();
+    let mut at = kept(spectral, &hypothesis.courses).len();
     for (course, part) in hypothesis.courses.iter_mut().zip(parts) {
         course.coefficients =
-            fit.mean.coefficients.get(at..at + part.free.len()).unwrap_or_default().to_vec();
-        at += part.free.len() + part.beside.len();
+            fit.mean.coefficients.get(at..at + part.columns.len()).unwrap_or_default().to_vec();
+        at += part.columns.len() + part.nuisance.len();
     }
     fit
 }
 
 /// Mean for the noise at hand, then noise for that mean.
-fn turn(hypothesis: &mut Hypothesis, scene: &Scene, parts: &[PartModes]) -> Fit {
-    let densities = hypothesis.noise.densities(scene);
-    let (mean, residual) = least_squares(scene, hypothesis, parts, &scene.powers(&densities));
-    let observed = scene.observed(&residual);
-    let noise = noise_fit::fit(&mut hypothesis.noise, scene, &observed);
-    let densities = hypothesis.noise.densities(scene);
+fn turn(hypothesis: &mut Hypothesis, spectral: &SpectralData, parts: &[PartModes]) -> Fit {
+    let densities = hypothesis.noise.densities(spectral);
+    let (mean, residual) = least_squares(spectral, hypothesis, parts, &spectral.powers(&densities));
+    let observed = spectral.observed(&residual);
+    let noise = noise_fit::fit(&mut hypothesis.noise, spectral, &observed);
+    let densities = hypothesis.noise.densities(spectral);
     Fit { log_likelihood: noise.log_likelihood + mean.prior, noise, mean, densities, observed }
 }

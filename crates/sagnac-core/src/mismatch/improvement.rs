@@ -2,22 +2,22 @@
 
 use super::heldout::Halves;
 use super::hypothesis::Fit;
-use super::scene::Scene;
 use super::select::{Chosen, Selection};
+use super::spectral_data::SpectralData;
 use statrs::function::gamma::digamma;
 
 /// Whittle deviance of a fit from what was observed, less what chance leaves under a true hypothesis: 0 on average there.
 ///
 /// In a bin of n modes of which I is the mean square, the deviance is n (I/S − 1 − ln I/S); under S it is
 /// n (ln(n/2) − ψ(n/2)) on average.
-fn misfit(scene: &Scene, fit: &Fit) -> f64 {
+fn misfit(spectral: &SpectralData, fit: &Fit) -> f64 {
     let one = |((bin, i), s): ((&crate::effect::ModeBin, &f64), &f64)| {
-        let n = scene.weight(bin);
+        let n = spectral.weight(bin);
         let ratio = (i / s).max(1e-300);
         let chance = (0.5 * n).ln() - digamma(0.5 * n);
         n * (ratio - 1.0 - ratio.ln() - chance)
     };
-    scene.bins.iter().zip(&fit.observed).zip(&fit.densities).map(one).sum()
+    spectral.bins.iter().zip(&fit.observed).zip(&fit.densities).map(one).sum()
 }
 
 /// Figures of one chosen effect.
@@ -33,14 +33,14 @@ pub struct Improvement {
 pub fn of(
     chosen: &Chosen,
     selection: &Selection,
-    scene: &Scene,
+    spectral: &SpectralData,
     halves: &Halves,
     held_best: f64,
 ) -> Improvement {
     let heldout_gain = held_best - halves.judge(&chosen.without).log_likelihood;
-    let (before, after) = (misfit(scene, &chosen.without.fit), misfit(scene, &selection.best.fit));
+    let (before, after) = (misfit(spectral, &chosen.without.fit), misfit(spectral, &selection.best.fit));
     // The misfit of a true hypothesis scatters about 0 by the root of twice its bins.
-    let noise = (2.0 * scene.bins.len() as f64).sqrt();
+    let noise = (2.0 * spectral.bins.len() as f64).sqrt();
     let removed_share = (before > 2.0 * noise).then(|| (1.0 - after / before).clamp(0.0, 1.0));
     Improvement { heldout_gain, removed_share }
 }
@@ -63,7 +63,7 @@ mod tests {
             let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
             let series: Vec<f64> = (0..n).map(|_| StandardNormal.sample(&mut rng)).collect();
             let drivers = Drivers { dt_s: 1.0, samples: n, averaged: 1, ..Drivers::default() };
-            let scene = Scene::new(drivers, &series, &[]);
+            let spectral = SpectralData::new(drivers, &series, &[]);
             // White noise of 1 deg/h at 1 Hz is N = 1/60.
             let base = [1.0 / 60.0, 0.0, 0.0];
             let noise = Noise {
@@ -75,9 +75,9 @@ mod tests {
                 quantization_arcsec: 0.0,
                 spectra: vec![],
             };
-            let fitted = fit(&mut Hypothesis { noise, courses: vec![] }, &scene);
-            sum += misfit(&scene, &fitted);
-            bins = scene.bins.len();
+            let fitted = fit(&mut Hypothesis { noise, courses: vec![] }, &spectral);
+            sum += misfit(&spectral, &fitted);
+            bins = spectral.bins.len();
         }
         // Each bin scatters by at most that of one mode, whose deviance has a variance of 4.
         let spread = (4.0 * bins as f64 / 40.0).sqrt();

@@ -4,7 +4,7 @@
 //! confidence. With every instant as likely beforehand, its probability given the recording is the likelihood with the
 //! size of the step fitted; the interval spans the most probable instants that hold 95 % together.
 
-use super::candidates::{Scenes, Tried};
+use super::candidates::{SpectralDataSet, Tried};
 use super::hypothesis::{CourseIn, PartModes};
 use crate::numeric::cosine::{dct2, inverse_dct2};
 
@@ -15,15 +15,15 @@ const PLACES: usize = 48;
 
 /// The interval of the instant of a course that is a step of one size, s on the time of the recording. `None` for other
 /// courses.
-pub fn interval(inside: &CourseIn, tried: &Tried, scenes: &Scenes) -> Option<[f64; 2]> {
-    let scene = &scenes.full;
-    let n = scene.drivers.samples;
-    let parts = PartModes::of_shape(inside.course()?, &inside.shape, scene);
-    let ([column], [size]) = (parts.free.as_slice(), inside.coefficients.as_slice()) else { return None };
+pub fn interval(inside: &CourseIn, tried: &Tried, spectra: &SpectralDataSet) -> Option<[f64; 2]> {
+    let spectral = &spectra.full;
+    let n = spectral.drivers.samples;
+    let parts = PartModes::of_shape(inside.course()?, &inside.nonlinear_parameters, spectral);
+    let ([column], [size]) = (parts.columns.as_slice(), inside.coefficients.as_slice()) else { return None };
     if n < 16 {
         return None;
     }
-    let (residual, powers) = (tried.residual(scenes), tried.powers(scenes));
+    let (residual, powers) = (tried.residual(spectra), tried.powers(spectra));
     let weighted: Vec<f64> = residual
         .iter()
         .zip(column)
@@ -64,6 +64,6 @@ pub fn interval(inside: &CourseIn, tried: &Tried, scenes: &Scenes) -> Option<[f6
         }
     }
     // Sample j is the first behind the step: the step falls into it or into the interval before.
-    let time = |j: f64| scene.drivers.time_s(0) + j * scene.drivers.dt_s;
+    let time = |j: f64| spectral.drivers.time_s(0) + j * spectral.drivers.dt_s;
     (first <= last).then(|| [time(first as f64 - 1.0), time(last as f64)])
 }

@@ -27,7 +27,7 @@ struct Jumps {
 /// The best of jumps on the claim alone, and beside what else was chosen in place of each of its processes: they have the
 /// spectrum of a slow process, and with another effect in the record neither the one nor the other alone comes near a pair.
 fn jumps(problem: &Problem, start: &Tried, selection: &Selection, alpha: f64) -> Option<Jumps> {
-    let rows = problem.scenes.rows;
+    let rows = problem.spectra.rows;
     let several = selection.chosen.len() > 1;
     let processes = selection.chosen.iter().filter(|c| several && matches!(c.slot, Slot::Spectrum(_)));
     let single = selection.chosen.iter().find(|_| !several).map(|c| c.effect.kind());
@@ -109,5 +109,5 @@ pub(super) fn take_telegraph(
     }
     // What was tried on the claim alone is what the jumps stood against.
     let first = std::mem::take(&mut selection.first);
-    *selection = Selection { first, ..select::select(&base, &problem.scenes, options) };
+    *selection = Selection { first, ..select::select(&base, &problem.spectra, options) };
 }

@@ -1,7 +1,7 @@
 //! Autocorrelation of the whitened residual: what comes a second time, some time later.
 
 use super::departures::{Departure, White};
-use super::scene::Scene;
+use super::spectral_data::SpectralData;
 use crate::effect::{Domain, Place};
 use crate::estimate::ln_normal_two_sided;
 use crate::noise::autocorrelation::lagged_products;
@@ -14,7 +14,7 @@ const FEWEST: usize = 256;
 
 /// The lag at which the whitened residual is most correlated with itself; under a true hypothesis the correlation at each
 /// lag has a variance of one over the number of samples.
-pub fn all(scene: &Scene, white: &White) -> Option<Departure> {
+pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
     let n = white.series.len();
     if n < FEWEST {
         return None;
@@ -26,7 +26,7 @@ pub fn all(scene: &Scene, white: &White) -> Option<Departure> {
     let z = |k: usize| sums[k] / (variance * ((n - k) as f64).sqrt());
     let lag = (1..=longest).max_by(|a, b| z(*a).abs().total_cmp(&z(*b).abs()))?;
     let z = z(lag);
-    let dt = scene.drivers.dt_s;
+    let dt = spectral.drivers.dt_s;
     let place = Place { domain: Domain::Lag, from: (lag as f64 - 0.5) * dt, to: (lag as f64 + 0.5) * dt };
     let ln_p = (ln_normal_two_sided(z) + (longest as f64).ln()).min(0.0);
     Some(Departure { test: "lag", place, beside: None, ln_p })
@@ -45,10 +45,10 @@ mod tests {
         let noise: Vec<f64> = (0..n + lag).map(|_| StandardNormal.sample(&mut rng)).collect();
         let series: Vec<f64> = (0..n).map(|i| noise[i + lag] + echo * noise[i]).collect();
         let drivers = Drivers { dt_s: 0.5, samples: n, averaged: 1, ..Drivers::default() };
-        let scene = Scene::new(drivers, &series, &[]);
+        let spectral = SpectralData::new(drivers, &series, &[]);
         let modes = crate::numeric::cosine::dct2(&series);
         let white = White { modes, series, roots: vec![1.0; n] };
-        all(&scene, &white).expect("long enough")
+        all(&spectral, &white).expect("long enough")
     }
 
     #[test]

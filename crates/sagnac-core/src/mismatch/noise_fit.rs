@@ -3,15 +3,15 @@
 //! −ln L = ½ Σ n_b (ln S_b + I_b/S_b) + ½ Σ (ln c − ln c₀)²/σ²: stated coefficients move within their stated
 //! uncertainty and no further. Fisher scoring on logarithms of the parameters, with backtracking.
 
-use super::scene::Scene;
+use super::spectral_data::SpectralData;
 use crate::claim::Claim;
-use crate::effect::{Effect, ModeBin, Model, SpectralLook, Spectrum, SpectrumAct};
+use crate::effect::{Effect, ModeBin, Model, SpectralContext, Spectrum, SpectrumAct};
 use crate::noise::data::NoiseType;
 use nalgebra::{DMatrix, DVector};
 
 /// Index of a base coefficient in arrays.
 pub fn base_index(term: NoiseType) -> Option<usize> {
-    super::scene::BASE.iter().position(|t| *t == term)
+    super::spectral_data::BASE.iter().position(|t| *t == term)
 }
 
 /// A spectral effect with its fitted parameters.
@@ -128,7 +128,7 @@ impl Noise {
     }
 
     /// Density of each bin, (deg/h)²/Hz.
-    pub fn densities(&self, scene: &Scene) -> Vec<f64> {
+    pub fn densities(&self, spectral: &SpectralData) -> Vec<f64> {
         let q2 = self.quantization_arcsec.powi(2);
         let one = |(bin, units): (&ModeBin, &[f64; 3])| {
             let sum: f64 = self.base.iter().zip(units).map(|(c, u)| c * c * u).sum();
@@ -137,14 +137,14 @@ impl Noise {
             };
             if q2 > 0.0 { sum + q2 * unit(bin) } else { sum }
         };
-        let mut out: Vec<f64> = scene.bins.iter().zip(&scene.units).map(one).collect();
+        let mut out: Vec<f64> = spectral.bins.iter().zip(&spectral.units).map(one).collect();
         let parts = || self.spectra.iter().filter_map(|part| Some((part, part.spectrum()?)));
         for (part, spectrum) in parts().filter(|(_, s)| s.act() == SpectrumAct::Adds) {
-            let added = spectrum.densities(&part.fitted, &scene.bins);
+            let added = spectrum.densities(&part.fitted, &spectral.bins);
             out.iter_mut().zip(added).for_each(|(s, a)| *s += a);
         }
         for (part, spectrum) in parts().filter(|(_, s)| s.act() == SpectrumAct::Filters) {
-            let factors = spectrum.densities(&part.fitted, &scene.bins);
+            let factors = spectrum.densities(&part.fitted, &spectral.bins);
             out.iter_mut().zip(factors).for_each(|(s, f)| *s *= f);
         }
         out.iter_mut().for_each(|s| *s = s.max(f64::MIN_POSITIVE * 1e60));
@@ -152,29 +152,29 @@ impl Noise {
     }
 
     /// Density of one found effect alone, filters of others included, (deg/h)²/Hz.
-    pub fn part_densities(&self, index: usize, scene: &Scene) -> Vec<f64> {
-        let Some(part) = self.spectra.get(index) else { return vec![0.0; scene.bins.len()] };
-        let Some(spectrum) = part.spectrum() else { return vec![0.0; scene.bins.len()] };
+    pub fn part_densities(&self, index: usize, spectral: &SpectralData) -> Vec<f64> {
+        let Some(part) = self.spectra.get(index) else { return vec![0.0; spectral.bins.len()] };
+        let Some(spectrum) = part.spectrum() else { return vec![0.0; spectral.bins.len()] };
         match spectrum.act() {
-            SpectrumAct::Adds => spectrum.densities(&part.fitted, &scene.bins),
+            SpectrumAct::Adds => spectrum.densities(&part.fitted, &spectral.bins),
             SpectrumAct::Frees(term) => {
                 let i = base_index(term).unwrap_or(0);
-                scene.units.iter().map(|u| self.base[i].powi(2) * u[i]).collect()
+                spectral.units.iter().map(|u| self.base[i].powi(2) * u[i]).collect()
             }
-            SpectrumAct::Filters => vec![0.0; scene.bins.len()],
+            SpectrumAct::Filters => vec![0.0; spectral.bins.len()],
         }
     }
 
     /// What a part adds to what the claim states, (deg/h)²/Hz by bin: of a coefficient set free, what it exceeds the stated
     /// one by.
-    pub fn added_densities(&self, index: usize, scene: &Scene) -> Vec<f64> {
-        let mut out = self.part_densities(index, scene);
+    pub fn added_densities(&self, index: usize, spectral: &SpectralData) -> Vec<f64> {
+        let mut out = self.part_densities(index, spectral);
         let act = self.spectra.get(index).and_then(|p| p.spectrum()).map(|s| s.act());
         if let Some(SpectrumAct::Frees(term)) = act
             && let Some(i) = base_index(term)
         {
             let stated = self.claimed[i].powi(2);
-            out.iter_mut().zip(&scene.units).for_each(|(d, u)| *d = (*d - stated * u[i]).max(0.0));
+            out.iter_mut().zip(&spectral.units).for_each(|(d, u)| *d = (*d - stated * u[i]).max(0.0));
         }
         out
     }
@@ -235,7 +235,7 @@ impl Noise {
     }
 
     /// Bounds of the logarithm of a parameter.
-    fn log_bounds(&self, which: Which, look: &SpectralLook<'_>) -> (f64, f64) {
+    fn log_bounds(&self, which: Which, context: &SpectralContext<'_>) -> (f64, f64) {
         match which {
             Which::Base(i) => {
                 let c = match self.claimed[i] {
@@ -246,7 +246,7 @@ impl Noise {
                 ((c * 1e-4).ln(), (c * 1e4).ln())
             }
             Which::Effect(e, p) => {
-                let bounds = self.spectra[e].spectrum().map(|s| s.bounds(look)).unwrap_or_default();
+                let bounds = self.spectra[e].spectrum().map(|s| s.bounds(context)).unwrap_or_default();
                 let (low, high) = bounds.get(p).copied().unwrap_or((1e-30, 1e30));
                 (low.max(1e-300).ln(), high.max(1e-300).ln())
             }
@@ -255,33 +255,34 @@ impl Noise {
 }
 
 /// Log-likelihood of mean squares `observed` under densities, constants left out.
-pub fn whittle(scene: &Scene, observed: &[f64], densities: &[f64]) -> f64 {
-    let terms = scene.bins.iter().zip(observed).zip(densities);
-    -0.5 * terms.map(|((bin, i), s)| scene.weight(bin) * (s.ln() + i / s)).sum::<f64>()
+pub fn whittle(spectral: &SpectralData, observed: &[f64], densities: &[f64]) -> f64 {
+    let terms = spectral.bins.iter().zip(observed).zip(densities);
+    -0.5 * terms.map(|((bin, i), s)| spectral.weight(bin) * (s.ln() + i / s)).sum::<f64>()
 }
 
 /// Steps of a whole fit.
 const STEPS: usize = 40;
 
 /// Fits the noise to mean squares of modes, by bin.
-pub fn fit(noise: &mut Noise, scene: &Scene, observed: &[f64]) -> NoiseFit {
-    fit_in(noise, scene, observed, STEPS)
+pub fn fit(noise: &mut Noise, spectral: &SpectralData, observed: &[f64]) -> NoiseFit {
+    fit_in(noise, spectral, observed, STEPS)
 }
 
 /// As [`fit`], in so many steps at most: enough to tell which of several beginnings is worth more.
-pub fn fit_in(noise: &mut Noise, scene: &Scene, observed: &[f64], steps: usize) -> NoiseFit {
+pub fn fit_in(noise: &mut Noise, spectral: &SpectralData, observed: &[f64], steps: usize) -> NoiseFit {
     let which = noise.which();
-    let expected = noise.densities(scene);
-    let look = SpectralLook { bins: &scene.bins, observed, expected: &expected, lattice_arcsec: None };
-    let bounds: Vec<(f64, f64)> = which.iter().map(|w| noise.log_bounds(*w, &look)).collect();
-    let value = |noise: &Noise, densities: &[f64]| whittle(scene, observed, densities) + noise.prior();
+    let expected = noise.densities(spectral);
+    let context =
+        SpectralContext { bins: &spectral.bins, observed, expected: &expected, grid_step_arcsec: None };
+    let bounds: Vec<(f64, f64)> = which.iter().map(|w| noise.log_bounds(*w, &context)).collect();
+    let value = |noise: &Noise, densities: &[f64]| whittle(spectral, observed, densities) + noise.prior();
     let mut densities = expected.clone();
     let mut best = value(noise, &densities);
     let p = which.len();
     let mut information = DMatrix::zeros(p, p);
     let mut damping = 1e-3;
     for _ in 0..steps {
-        let (gradient, fisher) = derivatives(noise, &which, scene, observed, &densities);
+        let (gradient, fisher) = derivatives(noise, &which, spectral, observed, &densities);
         information = fisher;
         if p == 0 {
             break;
@@ -302,7 +303,7 @@ pub fn fit_in(noise: &mut Noise, scene: &Scene, observed: &[f64], steps: usize) 
                     .clamp(bounds[i].0, bounds[i].1);
                 next.set(*w, x.exp());
             }
-            let tried = next.densities(scene);
+            let tried = next.densities(spectral);
             let got = value(&next, &tried);
             if got > best {
                 moved = got - best > 1e-5;
@@ -330,15 +331,15 @@ pub fn fit_in(noise: &mut Noise, scene: &Scene, observed: &[f64], steps: usize) 
 fn derivatives(
     noise: &Noise,
     which: &[Which],
-    scene: &Scene,
+    spectral: &SpectralData,
     observed: &[f64],
     densities: &[f64],
 ) -> (DVector<f64>, DMatrix<f64>) {
     let p = which.len();
     let (mut gradient, mut fisher) = (DVector::zeros(p), DMatrix::zeros(p, p));
-    let slopes = log_slopes(noise, which, scene, densities);
-    for (b, bin) in scene.bins.iter().enumerate() {
-        let n = scene.weight(bin);
+    let slopes = log_slopes(noise, which, spectral, densities);
+    for (b, bin) in spectral.bins.iter().enumerate() {
+        let n = spectral.weight(bin);
         let excess = observed[b] / densities[b] - 1.0;
         for i in 0..p {
             gradient[i] += 0.5 * n * excess * slopes[i][b];
@@ -376,7 +377,7 @@ fn derivatives(
 ///
 /// By differences to one side with a step that a rounded density bears and a narrow resonance does: what is compared with
 /// is at hand.
-fn log_slopes(noise: &Noise, which: &[Which], scene: &Scene, densities: &[f64]) -> Vec<Vec<f64>> {
+fn log_slopes(noise: &Noise, which: &[Which], spectral: &SpectralData, densities: &[f64]) -> Vec<Vec<f64>> {
     const STEP: f64 = 1e-5;
     let filtered = noise.filters().next().is_some();
     // Of one part at a time.
@@ -385,7 +386,7 @@ fn log_slopes(noise: &Noise, which: &[Which], scene: &Scene, densities: &[f64]) 
         let whole = || {
             let mut up = noise.clone();
             up.set(which, noise.value(which) * STEP.exp());
-            up.densities(scene).iter().zip(densities).map(|(a, b)| (a / b).ln() / STEP).collect()
+            up.densities(spectral).iter().zip(densities).map(|(a, b)| (a / b).ln() / STEP).collect()
         };
         if filtered {
             return whole();
@@ -393,14 +394,14 @@ fn log_slopes(noise: &Noise, which: &[Which], scene: &Scene, densities: &[f64]) 
         match which {
             Which::Base(i) => {
                 let c2 = 2.0 * noise.base[i].powi(2);
-                scene.units.iter().zip(densities).map(|(u, s)| c2 * u[i] / s).collect()
+                spectral.units.iter().zip(densities).map(|(u, s)| c2 * u[i] / s).collect()
             }
             // The part alone: differences of the whole would lose it in rounding where it is small.
             Which::Effect(e, p) => {
                 let part = &noise.spectra[e];
                 let Some(spectrum) = part.spectrum() else { return whole() };
                 if alone.as_ref().is_none_or(|(known, _)| *known != e) {
-                    alone = Some((e, spectrum.densities(&part.fitted, &scene.bins)));
+                    alone = Some((e, spectrum.densities(&part.fitted, &spectral.bins)));
                 }
                 let at = alone.iter().flat_map(|(_, at)| at).zip(densities);
                 if let Some(power) = spectrum.scales_with(p) {
@@ -408,7 +409,7 @@ fn log_slopes(noise: &Noise, which: &[Which], scene: &Scene, densities: &[f64]) 
                 }
                 let mut up = part.fitted.clone();
                 up[p] *= STEP.exp();
-                let up = spectrum.densities(&up, &scene.bins);
+                let up = spectrum.densities(&up, &spectral.bins);
                 up.into_iter().zip(at).map(|(up, (a, s))| (up - a) / (STEP * s)).collect()
             }
         }

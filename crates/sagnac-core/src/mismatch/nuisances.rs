@@ -8,7 +8,7 @@ use crate::effect::Nuisance;
 
 /// The value of a nuisance column in a fit; 0 where its prior was given up.
 pub(super) fn nuisance_value(problem: &Problem, tried: &Tried, nuisance: Nuisance) -> f64 {
-    let kept = kept(&problem.scenes.full, &tried.hypothesis.courses);
+    let kept = kept(&problem.spectra.full, &tried.hypothesis.courses);
     let at = kept.iter().position(|n| n.nuisance == nuisance);
     at.and_then(|i| tried.fit.mean.coefficients.get(i)).copied().unwrap_or(0.0)
 }

@@ -1,12 +1,12 @@
 //! Recording and claim brought together: residual, scenes, and the claim's own fit.
 
-use super::candidates::{Scenes, Tried};
+use super::candidates::{SpectralDataSet, Tried};
 use super::hypothesis::{CourseIn, Hypothesis, fit};
 use super::impute;
-use super::lattice::{self, Lattice};
 use super::noise_fit::{Noise, SpectrumIn};
+use super::quantization_grid::{self, QuantizationGrid};
 use super::regular::{Grid, Regular, fast_length};
-use super::scene::{Scene, smoothed};
+use super::spectral_data::{SpectralData, smoothed};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Column, Drivers, Effect, Model, Nuisance, Param, number};
 use crate::noise::model::NoiseModel;
@@ -35,11 +35,11 @@ pub struct Problem {
     /// Level of the noise that the claim states, of each sample over that of the record.
     pub level: Option<Vec<f64>>,
     /// The lattice that the values lie on.
-    pub lattice: Option<Lattice>,
+    pub quantization_grid: Option<QuantizationGrid>,
     /// The filters, stated or found, for which the ends of the record were drawn.
     filters: Vec<SpectrumIn>,
     /// Both resolutions.
-    pub scenes: Scenes,
+    pub spectra: SpectralDataSet,
 }
 
 impl Problem {
@@ -50,7 +50,7 @@ impl Problem {
         let mut residual: Vec<f64> = regular.rate.iter().zip(&mean).map(|(y, m)| y - m).collect();
         for stated in &claim.effects {
             let course = match stated.effect.model() {
-                Model::Course(c) => c.course(&stated.values, &drivers),
+                Model::Mean(c) => c.course(&stated.values, &drivers),
                 _ => stated.effect.stated_course(&stated.values, &drivers),
             };
             if let Some(course) = course {
@@ -74,15 +74,15 @@ impl Problem {
         if let Some((_, rms)) = &level {
             claim.noise = scaled(claim.noise, *rms);
         }
-        let lattice = lattice::of(regular);
-        let lattice_arcsec = lattice.map(|l| l.increment_arcsec);
+        let quantization_grid = quantization_grid::of(regular);
+        let grid_step_arcsec = quantization_grid.map(|l| l.increment_arcsec);
         let noise = Noise::of(&claim);
         let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
         let even_ends = set_ends_aside(&mut usable, &filters, drivers.dt_s);
-        let empty = Scene::new(drivers.clone(), &residual, &[]).with_even_ends(even_ends);
+        let empty = SpectralData::new(drivers.clone(), &residual, &[]).with_even_ends(even_ends);
         let powers = empty.powers(&noise.densities(&empty));
         impute::fill(&mut residual, &usable, &powers, SEED);
-        let scenes = scenes(&drivers, &claim, &residual, &filters, lattice_arcsec, rows);
+        let spectra = spectra(&drivers, &claim, &residual, &filters, grid_step_arcsec, rows);
         let level = level.map(|(level, _)| level);
         Problem {
             grid: regular.grid.clone(),
@@ -91,9 +91,9 @@ impl Problem {
             residual,
             usable,
             level,
-            lattice,
+            quantization_grid,
             filters,
-            scenes,
+            spectra,
         }
     }
 
@@ -109,13 +109,13 @@ impl Problem {
     /// Takes a course out of the residual.
     pub fn take(&mut self, course: &[f64]) {
         self.residual.iter_mut().zip(course).for_each(|(r, c)| *r -= c);
-        self.look_again();
+        self.retransform();
     }
 
     /// Draws the ends of the record anew where the filters of a hypothesis make them unlike noise that is even about them;
     /// true where that was not done for such filters before. Their few samples are in every mode that a filter leaves next
     /// to nothing, which a likelihood of independent modes does not know. `mean` is fitted to the problem as it is.
-    pub fn see_behind(&mut self, mean: &Tried, tried: &Tried) -> bool {
+    pub fn impute_edges(&mut self, mean: &Tried, tried: &Tried) -> bool {
         let noise = &tried.hypothesis.noise;
         let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
         if alike(&filters, &self.filters) || !set_ends_aside(&mut self.usable, &filters, self.drivers.dt_s) {
@@ -123,12 +123,12 @@ impl Problem {
         }
         self.residual = self.drawn(mean, noise, &self.usable);
         self.filters = filters;
-        self.look_again();
+        self.retransform();
         true
     }
 
     /// What would be seen behind the filters of a noise, the ends drawn for them.
-    pub fn seen_behind(&self, mean: &Tried, noise: &Noise) -> Scene {
+    pub fn edges_imputed(&self, mean: &Tried, noise: &Noise) -> SpectralData {
         let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
         let mut usable = self.usable.clone();
         set_ends_aside(&mut usable, &filters, self.drivers.dt_s);
@@ -139,32 +139,34 @@ impl Problem {
     /// draw would not hold it.
     fn drawn(&self, mean: &Tried, noise: &Noise, usable: &[bool]) -> Vec<f64> {
         let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
-        let rest = inverse_dct2(&mean.residual(&self.scenes));
+        let rest = inverse_dct2(&mean.residual(&self.spectra));
         let even_ends = has_ends_aside(&filters, self.drivers.dt_s);
-        let scene = Scene::new(self.drivers.clone(), &rest, &[]).with_even_ends(even_ends);
+        let spectral = SpectralData::new(self.drivers.clone(), &rest, &[]).with_even_ends(even_ends);
         let mut filled = rest.clone();
-        impute::fill(&mut filled, usable, &scene.powers(&noise.densities(&scene)), SEED);
+        impute::fill(&mut filled, usable, &spectral.powers(&noise.densities(&spectral)), SEED);
         let change = filled.iter().zip(&rest).zip(usable).map(|((f, r), u)| if *u { 0.0 } else { f - r });
         self.residual.iter().zip(change).map(|(r, c)| r + c).collect()
     }
 
-    fn look_again(&mut self) {
-        let Scenes { lattice_arcsec, rows, .. } = self.scenes;
-        self.scenes = scenes(&self.drivers, &self.claim, &self.residual, &self.filters, lattice_arcsec, rows);
+    fn retransform(&mut self) {
+        let SpectralDataSet { grid_step_arcsec, rows, .. } = self.spectra;
+        self.spectra =
+            spectra(&self.drivers, &self.claim, &self.residual, &self.filters, grid_step_arcsec, rows);
     }
 
     /// The same with more samples set aside and the noise of a hypothesis for what is filled in.
     pub fn without(&mut self, aside: &[usize], tried: &Tried) {
         aside.iter().for_each(|i| self.usable[*i] = false);
         self.residual = self.drawn(tried, &tried.hypothesis.noise, &self.usable);
-        self.look_again();
+        self.retransform();
     }
 
     /// Sets the samples aside of which the columns do not tell the courses of a hypothesis; true where there are any.
     pub fn without_bends(&mut self, tried: &Tried) -> bool {
         let of = |course: &CourseIn| {
-            let Model::Course(model) = course.effect.model() else { return vec![] };
-            let parameters = model.parameters(&course.shape, &course.coefficients, &self.drivers);
+            let Model::Mean(model) = course.effect.model() else { return vec![] };
+            let parameters =
+                model.parameters(&course.nonlinear_parameters, &course.coefficients, &self.drivers);
             bends_within(course.effect, &parameters, &self.drivers)
         };
         let aside: Vec<usize> = tried.hypothesis.courses.iter().flat_map(of).collect();
@@ -190,7 +192,7 @@ impl Problem {
         let mut noise = Noise::of(&self.claim);
         noise.spectra.extend(stated);
         let mut hypothesis = Hypothesis { noise, courses: vec![] };
-        let fit = fit(&mut hypothesis, &self.scenes.full);
+        let fit = fit(&mut hypothesis, &self.spectra.full);
         Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
     }
 }
@@ -198,7 +200,7 @@ impl Problem {
 /// Samples of which averaged columns do not tell the course of an effect; none where that would be a good part of the record.
 fn bends_within(effect: &dyn Effect, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
     const MOST: f64 = 0.05;
-    let Model::Course(course) = effect.model() else { return vec![] };
+    let Model::Mean(course) = effect.model() else { return vec![] };
     let samples = course.bends_within(parameters, drivers);
     if samples.len() as f64 > MOST * drivers.samples as f64 { vec![] } else { samples }
 }
@@ -277,28 +279,28 @@ fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
 }
 
 /// The scene at the sample rate, the ends drawn for some filters.
-fn full(drivers: &Arc<Drivers>, claim: &Claim, residual: &[f64], filters: &[SpectrumIn]) -> Scene {
-    let whole = Scene::new(drivers.clone(), residual, &deviations(claim)).with_states(claim);
+fn full(drivers: &Arc<Drivers>, claim: &Claim, residual: &[f64], filters: &[SpectrumIn]) -> SpectralData {
+    let whole = SpectralData::new(drivers.clone(), residual, &deviations(claim)).with_states(claim);
     if has_ends_aside(filters, drivers.dt_s) { whole.behind(filters) } else { whole }
 }
 
-fn scenes(
+fn spectra(
     drivers: &Arc<Drivers>,
     claim: &Claim,
     residual: &[f64],
     filters: &[SpectrumIn],
-    lattice_arcsec: Option<f64>,
+    grid_step_arcsec: Option<f64>,
     rows: usize,
-) -> Scenes {
+) -> SpectralDataSet {
     let deviations = deviations(claim);
     let full = full(drivers, claim, residual, filters);
     let slow = (drivers.samples > WHOLE).then(|| {
         let (m, n) = slow_grid(drivers.samples);
         let mut slow = drivers.averages(m);
         slow.truncate(n);
-        Scene::new(slow, &crate::effect::averages(residual, m)[..n], &deviations).with_states(claim)
+        SpectralData::new(slow, &crate::effect::averages(residual, m)[..n], &deviations).with_states(claim)
     });
-    Scenes { full, slow, lattice_arcsec, rows }
+    SpectralDataSet { full, slow, grid_step_arcsec, rows }
 }
 
 pub(super) fn drivers(regular: &Regular, claim: &Claim) -> Drivers {

@@ -1,14 +1,20 @@
 //! What a random contribution was in this very record: its best estimate given the recording, and what that leaves open.
 
 use super::noise_fit::{Noise, base_index};
-use super::scene::Scene;
+use super::spectral_data::SpectralData;
 use crate::effect::{Model, SpectrumAct};
 
 /// Root mean square of what a spectral effect added to the record, deg/h, and the standard deviation of it that the
 /// recording leaves open. 0 for one that takes away, or filters.
 ///
 /// A mode x of variance P holds a part of variance S: x S/P on average, with a variance of S (1 − S/P) about it.
-pub fn added_rms(noise: &Noise, index: usize, fitted: &[f64], scene: &Scene, residual: &[f64]) -> (f64, f64) {
+pub fn added_rms(
+    noise: &Noise,
+    index: usize,
+    fitted: &[f64],
+    spectral: &SpectralData,
+    residual: &[f64],
+) -> (f64, f64) {
     let mut noise = noise.clone();
     let mut base = None;
     if let Some(part) = noise.spectra.get_mut(index) {
@@ -22,10 +28,10 @@ pub fn added_rms(noise: &Noise, index: usize, fitted: &[f64], scene: &Scene, res
     if let (Some(i), Some(value)) = (base, fitted.first()) {
         noise.base[i] = *value;
     }
-    let (own, whole) = (noise.added_densities(index, scene), noise.densities(scene));
-    let n = scene.drivers.samples.max(1) as f64;
+    let (own, whole) = (noise.added_densities(index, spectral), noise.densities(spectral));
+    let n = spectral.drivers.samples.max(1) as f64;
     let (mut square, mut variance) = (0.0, 0.0);
-    for ((bin, s), p) in scene.bins.iter().zip(&own).zip(&whole) {
+    for ((bin, s), p) in spectral.bins.iter().zip(&own).zip(&whole) {
         let share = (s / p).clamp(0.0, 1.0);
         let open = share * (1.0 - share) * p / bin.dt_s;
         for x in residual.get(bin.mode..bin.mode + bin.modes).unwrap_or_default() {
@@ -67,7 +73,7 @@ mod tests {
                 .collect();
             let series: Vec<f64> = walk.iter().map(|w| w + draw()).collect();
             let drivers = Drivers { dt_s: 1.0, samples: n, averaged: 1, ..Drivers::default() };
-            let scene = Scene::new(drivers, &series, &[]);
+            let spectral = SpectralData::new(drivers, &series, &[]);
             let effect = find("excess_rrw").expect("in the catalogue");
             let noise = Noise {
                 base: [1.0 / 60.0, 0.0, k],
@@ -78,7 +84,7 @@ mod tests {
                 quantization_arcsec: 0.0,
                 spectra: vec![SpectrumIn { effect, fitted: vec![k], stated: false }],
             };
-            let (rms, deviation) = added_rms(&noise, 0, &[k], &scene, &dct2(&series));
+            let (rms, deviation) = added_rms(&noise, 0, &[k], &spectral, &dct2(&series));
             let mean = walk.iter().sum::<f64>() / n as f64;
             let truth = (walk.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / n as f64).sqrt();
             held += i32::from((truth - rms).abs() < 1.96 * deviation);

@@ -4,9 +4,9 @@ use super::candidates::Tried;
 use super::estimates::Estimated;
 use super::finding::ParameterValue;
 use super::improvement::Improvement;
-use super::lattice::Lattice;
 use super::local::{Bursts, Law, Level, Telegraph};
 use super::problem::Problem;
+use super::quantization_grid::QuantizationGrid;
 use super::regular::Grid;
 use super::repeats::Repeats;
 use super::select::ENOUGH;
@@ -46,13 +46,13 @@ fn value(value: f64, unit: &str, ci95: [f64; 2]) -> ParameterValue {
 
 /// Rounding in steps that the values themselves show, as a finding.
 pub fn quantization(
-    lattice: Lattice,
+    quantization_grid: QuantizationGrid,
     gain: f64,
     delta_bic: f64,
     p_value: f64,
     problem: &Problem,
 ) -> Option<Named> {
-    let (lsb_arcsec, open) = (lattice.increment_arcsec, lattice.open_arcsec);
+    let (lsb_arcsec, open) = (quantization_grid.increment_arcsec, quantization_grid.open_arcsec);
     let ci95 = [lsb_arcsec - open, lsb_arcsec + open];
     let step = lsb_arcsec / problem.grid.dt_s;
     // Successive errors of the angle are subtracted: twice the variance of a rounding error.
@@ -231,6 +231,6 @@ pub fn telegraph(found: &Telegraph, delta_bic: f64, problem: &Problem) -> Option
 pub fn with_free_level(base: &Tried, problem: &Problem) -> Tried {
     let mut hypothesis = base.hypothesis.clone();
     hypothesis.noise.freed[0] = true;
-    let fit = super::hypothesis::fit(&mut hypothesis, &problem.scenes.full);
+    let fit = super::hypothesis::fit(&mut hypothesis, &problem.spectra.full);
     Tried { hypothesis, fit, parameters: base.parameters + 1, odds: base.odds }
 }

@@ -1,11 +1,11 @@
 //! The fewest effects that make the recording an ordinary draw: a beam of hypotheses grown by ΔBIC behind gates, then
 //! pruned, then asked what else would have served as well.
 
-use super::candidates::{Candidate, Scenes, Tried, all};
+use super::candidates::{Candidate, SpectralDataSet, Tried, all};
 use super::hypothesis::{CourseIn, Hypothesis, fit};
 use super::noise_fit::{Noise, SpectrumIn, base_index};
+use super::nonlinear_search::free_numbers;
 use super::options::Options;
-use super::shape::free_numbers;
 use crate::effect::{Effect, Model, SpectrumAct};
 
 /// ΔBIC that an effect must bring, and within which two are equivalent.
@@ -24,7 +24,7 @@ const WIDTH: usize = 3;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slot {
     /// Among the courses.
-    Course(usize),
+    Mean(usize),
     /// Among the spectral effects.
     Spectrum(usize),
 }
@@ -67,59 +67,60 @@ pub fn passes(candidate: &Candidate, family: f64, alpha: f64) -> bool {
 
 /// The slots that a hypothesis has beyond its claim.
 fn slots(hypothesis: &Hypothesis) -> Vec<(Slot, &'static dyn Effect)> {
-    let courses = hypothesis.courses.iter().enumerate().map(|(i, c)| (Slot::Course(i), c.effect));
+    let courses = hypothesis.courses.iter().enumerate().map(|(i, c)| (Slot::Mean(i), c.effect));
     let spectra = hypothesis.noise.spectra.iter().enumerate().filter(|(_, s)| !s.stated);
     courses.chain(spectra.map(|(i, s)| (Slot::Spectrum(i), s.effect))).collect()
 }
 
 /// The hypothesis without one effect, fitted.
-fn without(tried: &Tried, slot: Slot, scenes: &Scenes) -> Tried {
+fn without(tried: &Tried, slot: Slot, spectra: &SpectralDataSet) -> Tried {
     let mut hypothesis = tried.hypothesis.clone();
     let removed = match slot {
-        Slot::Course(i) => {
+        Slot::Mean(i) => {
             let course = hypothesis.courses.remove(i);
-            course_parameters(&course, scenes)
+            course_parameters(&course, spectra)
         }
         Slot::Spectrum(i) => {
             let part = hypothesis.noise.spectra.remove(i);
             restore(&mut hypothesis.noise, &part)
         }
     };
-    let fit = fit(&mut hypothesis, &scenes.full);
+    let fit = fit(&mut hypothesis, &spectra.full);
     Tried { hypothesis, fit, parameters: tried.parameters.saturating_sub(removed), odds: tried.odds }
 }
 
-fn course_parameters(course: &CourseIn, scenes: &Scenes) -> usize {
+fn course_parameters(course: &CourseIn, spectra: &SpectralDataSet) -> usize {
     let Some(c) = course.course() else { return 0 };
-    let scene = scenes.of(c.pace());
-    let parts = c.parts(&course.shape, &scene.drivers);
-    let shape = free_numbers(c, &c.bounds(&scene.drivers));
-    parts.free.len() + parts.beside.len() + shape
+    let spectral = spectra.of(c.resolution());
+    let parts = c.regressors(&course.nonlinear_parameters, &spectral.drivers);
+    let nonlinear_parameters = free_numbers(c, &c.bounds(&spectral.drivers));
+    parts.columns.len() + parts.nuisance.len() + nonlinear_parameters
 }
 
 /// BIC of an addition with what it lets free beside its own parameters, as the state of a delay before the record, charged
 /// no more than chance gains by it: it makes a worse guess, but one no less able to do what its rivals do.
-fn bic_of_rival(candidate: &Candidate, scenes: &Scenes) -> f64 {
-    let rows = scenes.rows;
+fn bic_of_rival(candidate: &Candidate, spectra: &SpectralDataSet) -> f64 {
+    let rows = spectra.rows;
     let beside =
         candidate.tried.hypothesis.courses.last().filter(|c| c.effect.kind() == candidate.effect.kind());
-    let beside =
-        beside.and_then(|c| Some(c.course()?.parts(&c.shape, &scenes.of(c.course()?.pace()).drivers)));
-    candidate.tried.bic(rows) - beside.map_or(0, |b| b.beside.len()) as f64 * ((rows as f64).ln() - 1.0)
+    let beside = beside.and_then(|c| {
+        Some(c.course()?.regressors(&c.nonlinear_parameters, &spectra.of(c.course()?.resolution()).drivers))
+    });
+    candidate.tried.bic(rows) - beside.map_or(0, |b| b.nuisance.len()) as f64 * ((rows as f64).ln() - 1.0)
 }
 
 /// How many modes tell of a process: the sum of squares of its share of the power. A parameter of it is worth the logarithm
 /// of that many, not of all samples.
-fn modes_of_process(slot: Slot, best: &Tried, scenes: &Scenes) -> Option<f64> {
+fn modes_of_process(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Option<f64> {
     let Slot::Spectrum(i) = slot else { return None };
-    let scene = &scenes.full;
-    let added = best.hypothesis.noise.added_densities(i, scene);
+    let spectral = &spectra.full;
+    let added = best.hypothesis.noise.added_densities(i, spectral);
     let shares = added.iter().zip(&best.fit.densities).map(|(a, s)| (a / s).powi(2));
-    Some(shares.zip(&scene.bins).map(|(share, bin)| share * scene.weight(bin)).sum::<f64>().max(2.0))
+    Some(shares.zip(&spectral.bins).map(|(share, bin)| share * spectral.weight(bin)).sum::<f64>().max(2.0))
 }
 
 /// What BIC charges a rival process for parameters beyond those of the process that was chosen, more than they are worth.
-fn overcharged(candidate: &Candidate, best: &Tried, modes: Option<f64>, rows: usize) -> f64 {
+fn bic_excess(candidate: &Candidate, best: &Tried, modes: Option<f64>, rows: usize) -> f64 {
     let process = matches!(candidate.effect.model(), Model::Spectrum(_));
     let more = candidate.tried.parameters.saturating_sub(best.parameters) as f64;
     modes.filter(|_| process).map_or(0.0, |m| more * (rows as f64 / m).ln().max(0.0))
@@ -146,10 +147,10 @@ fn set(tried: &Tried) -> Vec<&'static str> {
 }
 
 /// Grows a hypothesis on `base`, which is the claim with what was found in single samples before.
-pub fn select(base: &Tried, scenes: &Scenes, options: &Options) -> Selection {
+pub fn select(base: &Tried, spectra: &SpectralDataSet, options: &Options) -> Selection {
     let (alpha, most) = (options.alpha, options.max_effects);
-    let rows = scenes.rows;
-    let first = all(base, scenes, options);
+    let rows = spectra.rows;
+    let first = all(base, spectra, options);
     let family = family(&first);
     let mut best = base.clone();
     let mut beam: Vec<(Tried, Vec<Candidate>)> = vec![(base.clone(), first.clone())];
@@ -157,7 +158,7 @@ pub fn select(base: &Tried, scenes: &Scenes, options: &Options) -> Selection {
         let mut next: Vec<Tried> = vec![];
         for (_, candidates) in &beam {
             let passing: Vec<&Candidate> = candidates.iter().filter(|c| passes(c, family, alpha)).collect();
-            for candidate in worth_following(&passing) {
+            for candidate in beam_survivors(&passing) {
                 if !next.iter().any(|t| set(t) == set(&candidate.tried)) {
                     next.push(candidate.tried.clone());
                 }
@@ -180,29 +181,29 @@ pub fn select(base: &Tried, scenes: &Scenes, options: &Options) -> Selection {
         beam = next
             .into_iter()
             .map(|t| {
-                let candidates = all(&t, scenes, options);
+                let candidates = all(&t, spectra, options);
                 (t, candidates)
             })
             .collect();
     }
-    best = pruned(best, scenes, rows);
-    let mut chosen = self::chosen(&best, base, &first, scenes, options);
+    best = pruned(best, spectra, rows);
+    let mut chosen = self::chosen(&best, base, &first, spectra, options);
     for _ in 0..EXCHANGES {
         let better = chosen.iter().filter_map(|c| c.better.as_ref());
         let Some(better) = better.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))) else { break };
-        best = pruned(better.clone(), scenes, rows);
-        chosen = self::chosen(&best, base, &first, scenes, options);
+        best = pruned(better.clone(), spectra, rows);
+        chosen = self::chosen(&best, base, &first, spectra, options);
     }
     Selection { best, chosen, first }
 }
 
 /// The candidates that a second effect is looked for beside: the leader, and those near enough to it for a pair with
 /// them to come out ahead. The best course goes along with a leading process, which can swallow courses.
-fn worth_following<'a>(passing: &[&'a Candidate]) -> Vec<&'a Candidate> {
+fn beam_survivors<'a>(passing: &[&'a Candidate]) -> Vec<&'a Candidate> {
     let Some(leader) = passing.first() else { return vec![] };
     let mut out: Vec<&Candidate> =
         passing.iter().filter(|c| c.delta_bic > 0.6 * leader.delta_bic).take(WIDTH).copied().collect();
-    let is_course = |c: &Candidate| matches!(c.effect.model(), Model::Course(_));
+    let is_course = |c: &Candidate| matches!(c.effect.model(), Model::Mean(_));
     if !out.iter().any(|c| is_course(c))
         && let Some(course) = passing.iter().find(|c| is_course(c))
     {
@@ -222,11 +223,11 @@ fn family(first: &[Candidate]) -> f64 {
 }
 
 /// Drops effects that became needless.
-fn pruned(mut best: Tried, scenes: &Scenes, rows: usize) -> Tried {
+fn pruned(mut best: Tried, spectra: &SpectralDataSet, rows: usize) -> Tried {
     loop {
         let weakest = slots(&best.hypothesis)
             .into_iter()
-            .map(|(slot, _)| without(&best, slot, scenes))
+            .map(|(slot, _)| without(&best, slot, spectra))
             .min_by(|a, b| a.bic(rows).total_cmp(&b.bic(rows)));
         match weakest {
             Some(less) if less.bic(rows) < best.bic(rows) + ENOUGH => best = less,
@@ -239,23 +240,23 @@ fn chosen(
     best: &Tried,
     base: &Tried,
     first: &[Candidate],
-    scenes: &Scenes,
+    spectra: &SpectralDataSet,
     options: &Options,
 ) -> Vec<Chosen> {
     let family = family(first);
-    let rows = scenes.rows;
+    let rows = spectra.rows;
     let all_slots = slots(&best.hypothesis);
     let single = all_slots.len() == 1;
     let mut out: Vec<Chosen> = all_slots
         .into_iter()
         .map(|(slot, effect)| {
-            let without = if single { base.clone() } else { without(best, slot, scenes) };
-            let rivals = if single { first.to_vec() } else { all(&without, scenes, options) };
+            let without = if single { base.clone() } else { without(best, slot, spectra) };
+            let rivals = if single { first.to_vec() } else { all(&without, spectra, options) };
             let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
             let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
-            let modes = modes_of_process(slot, best, scenes);
+            let modes = modes_of_process(slot, best, spectra);
             let near = |c: &Candidate| {
-                bic_of_rival(c, scenes) - overcharged(c, best, modes, rows) < best.bic(rows) + ENOUGH
+                bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + ENOUGH
             };
             let equivalents = rivals
                 .iter()

@@ -86,7 +86,7 @@ fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
 }
 
 /// Positions of the only two jumps, by time, if the second takes back what the first brought.
-fn there_and_back(named: &[Named]) -> Option<[usize; 2]> {
+fn reversible_step_pair(named: &[Named]) -> Option<[usize; 2]> {
     let jumps: Vec<usize> = (0..named.len()).filter(|i| family(&named[*i]) == Some(Family::Jump)).collect();
     // A gyro that was turned and turned back changed its heading twice.
     let steps = jumps.iter().all(|i| named[*i].effect.kind() == "bias_step");
@@ -104,7 +104,7 @@ fn there_and_back(named: &[Named]) -> Option<[usize; 2]> {
 /// Two jumps, there and back, made the one thing that the format of explanations calls them: something that was not
 /// recorded came and went.
 pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem) {
-    let Some([first, second]) = there_and_back(named) else { return };
+    let Some([first, second]) = reversible_step_pair(named) else { return };
     let Some(effect) = find("unobserved_driver") else { return };
     let value = |i: usize, name: &str| named[i].estimated.reported.get(name).cloned();
     let (Some(up), Some(down)) = (value(first, STEP), value(second, STEP)) else { return };
@@ -158,7 +158,7 @@ pub(super) fn together(named: &[Named], allowed: usize) -> Vec<Together> {
         groups.extend(neighbours(named, &lines).into_iter().filter(|g| g.len() > 1));
     }
     groups.extend([Family::Spectrum, Family::Jump].map(of).into_iter().filter(|g| g.len() >= many));
-    groups.extend(there_and_back(named).map(|pair| pair.to_vec()));
+    groups.extend(reversible_step_pair(named).map(|pair| pair.to_vec()));
     groups
         .into_iter()
         .map(|members| {

@@ -70,7 +70,7 @@ pub fn explain_simulation(
             break;
         }
         let mut own: Option<Explanation> = None;
-        let mut look = |claim: &Claim| {
+        let mut context = |claim: &Claim| {
             if own.is_none() {
                 own = explain(simulation.clone(), claim, options, &mut |_| {}).ok().map(|o| o.explanation);
             }
@@ -79,7 +79,7 @@ pub fn explain_simulation(
         let added = outcome.augmented.effects.iter().skip(claim.effects.len()).cloned();
         let mut both = vec![];
         for stated in added {
-            let chance = witness.chance(&stated, &claim, &outcome.explanation, &mut || look(&claim));
+            let chance = witness.chance(&stated, &claim, &outcome.explanation, &mut || context(&claim));
             if chance * FAMILY < options.alpha {
                 left.push(stated);
             } else {

@@ -5,7 +5,7 @@
 //! on; windows of time are dyadic.
 
 use super::departures::{Departure, f_normal, windows};
-use super::scene::Scene;
+use super::spectral_data::SpectralData;
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_two_sided, ln_normal_two_sided};
 use crate::numeric::cosine::inverse_dct2;
@@ -44,17 +44,17 @@ impl Tile {
 struct Largest {
     absolute: Tile,
     relative: Tile,
-    looks: f64,
+    trials: f64,
 }
 
 impl Largest {
-    const NONE: Largest = Largest { absolute: Tile::NONE, relative: Tile::NONE, looks: 0.0 };
+    const NONE: Largest = Largest { absolute: Tile::NONE, relative: Tile::NONE, trials: 0.0 };
 
     fn with(self, other: Largest) -> Largest {
         Largest {
             absolute: self.absolute.larger(other.absolute),
             relative: self.relative.larger(other.relative),
-            looks: self.looks + other.looks,
+            trials: self.trials + other.trials,
         }
     }
 }
@@ -88,7 +88,7 @@ fn in_band(modes: &[f64], (first, m): (usize, usize)) -> Largest {
     let sum = sums[m];
     let mut out = Largest::NONE;
     windows(m, SHORTEST, |from, to| {
-        out.looks += 1.0;
+        out.trials += 1.0;
         let (dof, inside) = ((to - from) as f64, sums[to] - sums[from]);
         let tile = Tile { band: (first, m), window: (from, to), z: 0.0, power: inside };
         out.absolute = out.absolute.larger(Tile { z: chi_square_normal(inside, dof), ..tile });
@@ -104,20 +104,20 @@ fn in_band(modes: &[f64], (first, m): (usize, usize)) -> Largest {
 
 /// Power of windows of time in bands of frequency: against what the hypothesis expects, and against the same band at
 /// other times.
-pub fn all(scene: &Scene, modes: &[f64]) -> Vec<Departure> {
+pub fn all(spectral: &SpectralData, modes: &[f64]) -> Vec<Departure> {
     let found = bands(modes.len())
         .par_iter()
         .map(|band| in_band(modes, *band))
         .reduce(|| Largest::NONE, Largest::with);
-    if found.looks == 0.0 {
+    if found.trials == 0.0 {
         return vec![];
     }
     let places = |tile: &Tile| {
         let ((first, m), (from, to)) = (tile.band, tile.window);
-        let step = scene.drivers.length_s() / m as f64;
-        let start = scene.drivers.start_s;
+        let step = spectral.drivers.length_s() / m as f64;
+        let start = spectral.drivers.start_s;
         let at = |i: usize| start + i as f64 * step;
-        let frequency = |k: usize| scene.frequency_hz(k as f64);
+        let frequency = |k: usize| spectral.frequency_hz(k as f64);
         (
             Place { domain: Domain::Time, from: at(from), to: at(to) },
             Place { domain: Domain::Frequency, from: frequency(first), to: frequency(first + m) },
@@ -129,7 +129,7 @@ pub fn all(scene: &Scene, modes: &[f64]) -> Vec<Departure> {
         test: "local_power",
         place: time,
         beside: Some(frequency),
-        ln_p: (ln_normal_two_sided(relative.z) + found.looks.ln()).min(0.0),
+        ln_p: (ln_normal_two_sided(relative.z) + found.trials.ln()).min(0.0),
     };
     let (time, frequency) = places(&absolute);
     let dof = (absolute.window.1 - absolute.window.0) as f64;
@@ -137,7 +137,7 @@ pub fn all(scene: &Scene, modes: &[f64]) -> Vec<Departure> {
         test: "tile",
         place: frequency,
         beside: Some(time),
-        ln_p: (ln_chi_square_two_sided(absolute.power, dof) + found.looks.ln()).min(0.0),
+        ln_p: (ln_chi_square_two_sided(absolute.power, dof) + found.trials.ln()).min(0.0),
     };
     vec![local, tile]
 }
@@ -155,18 +155,18 @@ mod tests {
         (0..n).map(|_| StandardNormal.sample(&mut rng)).collect()
     }
 
-    fn scene(n: usize) -> Scene {
+    fn spectral(n: usize) -> SpectralData {
         let drivers = Drivers { dt_s: 0.5, start_s: 100.0, samples: n, averaged: 1, ..Drivers::default() };
-        Scene::new(drivers, &vec![0.0; n], &[])
+        SpectralData::new(drivers, &vec![0.0; n], &[])
     }
 
     #[test]
     fn white_noise_departs_as_seldom_as_stated() {
         let n = 4096;
-        let scene = scene(n);
+        let spectral = spectral(n);
         let mut small = [0; 2];
         for seed in 0..300 {
-            for (count, d) in small.iter_mut().zip(all(&scene, &dct2(&white(seed, n)))) {
+            for (count, d) in small.iter_mut().zip(all(&spectral, &dct2(&white(seed, n)))) {
                 *count += i32::from(d.p_value() < 0.05);
             }
         }
@@ -181,7 +181,7 @@ mod tests {
         for (i, v) in series.iter_mut().enumerate().take(3600).skip(3000) {
             *v += 0.9 * (std::f64::consts::TAU * 0.17 * i as f64).cos();
         }
-        for d in all(&scene(n), &dct2(&series)) {
+        for d in all(&spectral(n), &dct2(&series)) {
             assert!(d.p_value() < 1e-6, "{}: {}", d.test, d.p_value());
             let (time, frequency) = match d.place.domain {
                 Domain::Time => (d.place, d.beside.unwrap()),

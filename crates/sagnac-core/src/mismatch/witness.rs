@@ -13,7 +13,7 @@ use super::hypothesis::{Hypothesis, Normal, columns, fit};
 use super::noise_fit::{Noise, SpectrumIn, base_index};
 use super::options::Options;
 use super::problem::Problem;
-use super::scene::Scene;
+use super::spectral_data::SpectralData;
 use crate::claim::{Claim, Stated};
 use crate::effect::{Drivers, Model, Nuisance, Spectrum, SpectrumAct, Value, Values, list, number};
 use crate::estimate::chi_square_tail;
@@ -51,9 +51,9 @@ fn free(claim: &Claim) -> Claim {
     out
 }
 
-fn fitted(noise: Noise, scene: &Scene) -> Tried {
+fn fitted(noise: Noise, spectral: &SpectralData) -> Tried {
     let mut hypothesis = Hypothesis { noise, courses: vec![] };
-    let fit = fit(&mut hypothesis, scene);
+    let fit = fit(&mut hypothesis, spectral);
     Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
 }
 
@@ -81,7 +81,7 @@ impl Witness<'_> {
     ) -> f64 {
         let by_model = match stated.effect.model() {
             Model::Spectrum(spectrum) => self.by_spectrum(spectrum, stated, claim),
-            Model::Course(_) => self.by_course(stated, claim),
+            Model::Mean(_) => self.by_course(stated, claim),
             Model::Samples(_) => None,
         };
         let told_by_kind =
@@ -94,7 +94,8 @@ impl Witness<'_> {
     fn by_spectrum(&self, spectrum: &'static dyn Spectrum, stated: &Stated, claim: &Claim) -> Option<f64> {
         let mut with = free(claim);
         // A driver is stated as a course; in another record the same quantity takes another one of the same size and pace.
-        let driver = (stated.effect.kind() == "unobserved_driver").then(|| pace(&stated.values)).flatten();
+        let driver =
+            (stated.effect.kind() == "unobserved_driver").then(|| resolution(&stated.values)).flatten();
         let parameters = match &driver {
             Some(driver) => driver.len(),
             None => spectrum.stated(&stated.values)?.len(),
@@ -104,13 +105,14 @@ impl Witness<'_> {
         }
         let problem = self.problem(&with)?;
         if stated.effect.kind() == "quantization"
-            && let (Some(lattice), Some(lsb)) = (problem.lattice, number(&stated.values, "lsb_arcsec"))
-            && (lattice.increment_arcsec / lsb - 1.0).abs() < 0.01
+            && let (Some(quantization_grid), Some(lsb)) =
+                (problem.quantization_grid, number(&stated.values, "lsb_arcsec"))
+            && (quantization_grid.increment_arcsec / lsb - 1.0).abs() < 0.01
         {
             return Some(1.0);
         }
-        let scene = &problem.scenes.full;
-        let worth = |noise: Noise| fitted(noise, scene).fit.log_likelihood;
+        let spectral = &problem.spectra.full;
+        let worth = |noise: Noise| fitted(noise, spectral).fit.log_likelihood;
         let mut noise = free_noise(&problem.claim);
         noise.spectra.extend(driver.map(|fitted| SpectrumIn {
             effect: stated.effect,
@@ -136,7 +138,7 @@ impl Witness<'_> {
     /// property of the process, and its frequency is known to within the resolution.
     fn by_course(&self, stated: &Stated, claim: &Claim) -> Option<f64> {
         let mut loose = free(claim);
-        if let Model::Course(course) = stated.effect.model() {
+        if let Model::Mean(course) = stated.effect.model() {
             match course.replaces() {
                 Some(Nuisance::TemperatureCoefficient) => {
                     loose.uncertainty.temperature_coefficient_deg_h_per_degc = 0.0;
@@ -146,10 +148,10 @@ impl Witness<'_> {
             }
         }
         let problem = self.problem(&loose)?;
-        let scene = &problem.scenes.full;
-        let tried = fitted(free_noise(&problem.claim), scene);
-        let powers = scene.powers(&tried.fit.densities);
-        let nuisances: Vec<_> = scene.nuisances.iter().collect();
+        let spectral = &problem.spectra.full;
+        let tried = fitted(free_noise(&problem.claim), spectral);
+        let powers = spectral.powers(&tried.fit.densities);
+        let nuisances: Vec<_> = spectral.nuisances.iter().collect();
         let steps = if stated.values.contains_key(FREQUENCY) { 16 } else { 0 };
         let resolution = 1.0 / problem.drivers.length_s();
         let mut best: Option<(f64, f64)> = None;
@@ -159,10 +161,10 @@ impl Witness<'_> {
             if values.contains_key(PHASE) {
                 parts.extend(course(stated, &shifted(&values, PHASE, 90.0), &problem.drivers));
             }
-            let modes: Vec<Vec<f64>> = parts.iter().map(|p| scene.transform(p)).collect();
+            let modes: Vec<Vec<f64>> = parts.iter().map(|p| spectral.transform(p)).collect();
             let mut all = columns(&nuisances, []);
             all.extend(modes.iter().map(|m| (m.as_slice(), f64::INFINITY)));
-            let (solved, covariance, _) = Normal::new(&all, &scene.modes, &powers).solve();
+            let (solved, covariance, _) = Normal::new(&all, &spectral.modes, &powers).solve();
             let first = nuisances.len();
             let size = solved[first..].iter().map(|c| c * c).sum::<f64>().sqrt();
             let size = if modes.len() == 1 { solved[first] } else { size };
@@ -209,7 +211,7 @@ fn unlike(here: &Finding, there: &Finding, share: f64) -> f64 {
 
 fn course(stated: &Stated, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
     match stated.effect.model() {
-        Model::Course(c) => c.course(values, drivers),
+        Model::Mean(c) => c.course(values, drivers),
         _ => stated.effect.stated_course(values, drivers),
     }
 }
@@ -224,7 +226,7 @@ fn shifted(values: &Values, name: &str, by: f64) -> Values {
 
 /// Root mean square and time of the course through stated knots, as of a smooth process: its slope is the one over the
 /// other.
-fn pace(values: &Values) -> Option<Vec<f64>> {
+fn resolution(values: &Values) -> Option<Vec<f64>> {
     let (times, knots) = (list(values, "knots_time_s"), list(values, "knots_deg_h"));
     if knots.len() < 8 || times.len() != knots.len() {
         return None;

@@ -251,7 +251,7 @@ fn needs(order: &Order<'_>) -> Result<(), SimulateError> {
 /// The course that a stated effect adds; `None` for one that has none.
 fn course(stated: &Stated, drivers: &Drivers) -> Result<Option<Vec<f64>>, SimulateError> {
     let model = match stated.effect.model() {
-        Model::Course(model) => model,
+        Model::Mean(model) => model,
         Model::Spectrum(_) => return Ok(stated.effect.stated_course(&stated.values, drivers)),
         Model::Samples(_) => return Ok(None),
     };

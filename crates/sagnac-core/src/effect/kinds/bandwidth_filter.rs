@@ -2,7 +2,7 @@
 
 use super::search::log_grid;
 use crate::effect::{
-    Both, Doc, Domain, LowPass, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+    Both, Doc, Domain, LowPass, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode};
 use crate::noise::data::NoiseType;
@@ -207,21 +207,21 @@ impl Spectrum for BandwidthFilter {
         parameter == 0 && form(fitted) != Form::MovingAverage
     }
 
-    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
-        let Some(first) = look.bins.first() else { return vec![] };
-        let (low, high) = self.bounds(look)[0];
+    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        let Some(first) = context.bins.first() else { return vec![] };
+        let (low, high) = self.bounds(context)[0];
         let cost = |start: &[f64]| {
             // The level is left open: without the filter it was drawn down to what the filter leaves.
-            let factors = self.densities(start, look.bins);
+            let factors = self.densities(start, context.bins);
             let (mut logarithms, mut ratios, mut modes) = (0.0, 0.0, 0.0);
-            for (i, (bin, factor)) in look.bins.iter().zip(factors).enumerate() {
-                if look.observed[i] * (bin.samples as f64) < FAINT * look.expected[i] {
+            for (i, (bin, factor)) in context.bins.iter().zip(factors).enumerate() {
+                if context.observed[i] * (bin.samples as f64) < FAINT * context.expected[i] {
                     continue;
                 }
-                let s = (look.expected[i] * factor).max(1e-300);
+                let s = (context.expected[i] * factor).max(1e-300);
                 let weight = bin.modes as f64;
                 logarithms += weight * s.ln();
-                ratios += weight * look.observed[i] / s;
+                ratios += weight * context.observed[i] / s;
                 modes += weight;
             }
             logarithms + modes * (ratios / modes).ln()
@@ -248,13 +248,13 @@ impl Spectrum for BandwidthFilter {
         forms.map(|n| of(n as f64)).chain([best(averages)]).flatten().collect()
     }
 
-    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
-        let (dt, n) = look.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+        let (dt, n) = context.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
         vec![((10.0 / (n as f64 * dt)).min(0.1 / dt), 3.0 / dt), (1.0, FORMS.len() as f64)]
     }
 
-    fn looked(&self, look: &SpectralLook<'_>) -> f64 {
-        let (low, high) = self.bounds(look)[0];
+    fn trials(&self, context: &SpectralContext<'_>) -> f64 {
+        let (low, high) = self.bounds(context)[0];
         (high / low).ln().max(1.0)
     }
 
@@ -282,8 +282,8 @@ impl Spectrum for BandwidthFilter {
         of_samples(fitted, dt_s)
     }
 
-    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
-        let (Some(cutoff), Some(bin)) = (fitted.first(), look.bins.first()) else { return vec![] };
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
+        let (Some(cutoff), Some(bin)) = (fitted.first(), context.bins.first()) else { return vec![] };
         let nyquist = 0.5 / bin.dt_s;
         vec![Place { domain: Domain::Frequency, from: (0.5 * cutoff).min(0.5 * nyquist), to: nyquist }]
     }

@@ -1,7 +1,8 @@
 //! One jump of the bias.
 
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Effect, Look, Model, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, Effect, MeanModel, Model, Param, Place, Regressors, SearchContext, Starts,
+    Values, number,
 };
 
 pub struct BiasStep;
@@ -48,7 +49,7 @@ impl Effect for BiasStep {
         &["heading_change", "random_telegraph", "excess_rrw"]
     }
     fn model(&self) -> Model {
-        Model::Course(&BiasStep)
+        Model::Mean(&BiasStep)
     }
 }
 
@@ -59,10 +60,10 @@ pub(super) fn step(drivers: &Drivers, at_s: f64) -> Vec<f64> {
 }
 
 /// Instants at which a step gains most, s after the first sample; the best first.
-pub(super) fn instants(drivers: &Drivers, look: &Look<'_>) -> Starts {
+pub(super) fn instants(drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
     let n = drivers.samples;
     if n < 8 {
-        return Starts { shapes: vec![], looked: 1.0 };
+        return Starts { points: vec![], trials: 1.0 };
     }
     // The gain is (Σ_{i ≥ j} w_i)²/2 over z'C⁻¹z, and the latter varies slowly with the instant: it is computed at some
     // and interpolated.
@@ -70,51 +71,54 @@ pub(super) fn instants(drivers: &Drivers, look: &Look<'_>) -> Starts {
     let at = |p: usize| 1.0 + (n as f64 - 2.0) * p as f64 / points as f64;
     let weight = |j: f64| {
         let modes = crate::numeric::cosine::dct2(&step(drivers, (j - 0.5) * drivers.dt_s));
-        modes.iter().zip(look.powers).skip(1).map(|(z, p)| z * z / p).sum::<f64>()
+        modes.iter().zip(context.powers).skip(1).map(|(z, p)| z * z / p).sum::<f64>()
     };
     let weights: Vec<f64> = (0..=points).map(|p| weight(at(p))).collect();
     let mut sum: f64 = 0.0;
     let mut gains = vec![0.0; n];
     for j in (1..n).rev() {
-        sum += look.score[j];
+        sum += context.score[j];
         let x = (j as f64 - at(0)) / (at(1) - at(0));
         let p = (x.max(0.0) as usize).min(points - 1);
         let w = weights[p] + (weights[p + 1] - weights[p]) * (x - p as f64).clamp(0.0, 1.0);
         gains[j] = if w > 0.0 { 0.5 * sum * sum / w } else { 0.0 };
     }
-    let mut shapes = vec![];
+    let mut points = vec![];
     let apart = (n / 50).max(1);
     for _ in 0..3 {
         let best = (1..n).max_by(|a, b| gains[*a].total_cmp(&gains[*b])).unwrap_or(1);
         if gains[best] <= 0.0 {
             break;
         }
-        shapes.push(vec![(best as f64 - 0.5) * drivers.dt_s]);
+        points.push(vec![(best as f64 - 0.5) * drivers.dt_s]);
         gains[best.saturating_sub(apart)..(best + apart).min(n)].fill(0.0);
     }
     // Instants closer than the time in which the noise lets a step be placed are one; in white noise each counts.
-    Starts { shapes, looked: (n as f64).powf(0.75) }
+    Starts { points, trials: (n as f64).powf(0.75) }
 }
 
-impl Course for BiasStep {
+impl MeanModel for BiasStep {
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 8
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
-        instants(drivers, look)
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
+        instants(drivers, context)
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
         vec![(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { free: shape.iter().map(|at| step(drivers, *at)).collect(), ..Parts::default() }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors {
+            columns: nonlinear_parameters.iter().map(|at| step(drivers, *at)).collect(),
+            ..Regressors::default()
+        }
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        match (shape, coefficients) {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        match (nonlinear_parameters, coefficients) {
             ([at], [size]) => vec![*size, drivers.start_s + at],
             _ => vec![f64::NAN; 2],
         }
@@ -125,8 +129,8 @@ impl Course for BiasStep {
         Some(step(drivers, at).into_iter().map(|s| size * s).collect())
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(at) = shape.first().map(|at| drivers.start_s + at) else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(at) = nonlinear_parameters.first().map(|at| drivers.start_s + at) else { return vec![] };
         let half = (0.01 * drivers.length_s()).max(2.0 * drivers.dt_s);
         vec![Place { domain: Domain::Time, from: at - half, to: at + half }]
     }

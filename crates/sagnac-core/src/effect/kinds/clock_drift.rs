@@ -1,9 +1,10 @@
 //! A delay between the gyro and the columns beside it that grows.
 
-use super::delay::{follow, moves, parts, shifted};
+use super::delay::{follow, moves, regressors, shifted};
 use super::search::best_of;
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 use crate::numeric::cosine::inverse_dct2;
 
@@ -37,7 +38,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("drift_ppm", "ppm", -1e5, 1e5)];
 
 describe! {
-    ClockDrift, "clock_drift", Course in Lag, needs [],
+    ClockDrift, "clock_drift", Mean in Lag, needs [],
     confusers ["time_offset", "sf_error", "dropped_samples"]
 }
 
@@ -46,9 +47,9 @@ fn per_ppm(i: usize, drivers: &Drivers) -> f64 {
     1e-6 * (drivers.time_s(i) - super::reach::beginning_s(drivers)) / drivers.dt_s
 }
 
-impl Course for ClockDrift {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for ClockDrift {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
@@ -57,13 +58,13 @@ impl Course for ClockDrift {
 
     /// A drift is found by following it: from a stretch at the beginning, where the delay is still small, to the whole
     /// record.
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if !moves(drivers) || look.modes.len() != n || look.powers.len() != n {
-            return Starts { shapes: vec![], looked: 1.0 };
+        if !moves(drivers) || context.modes.len() != n || context.powers.len() != n {
+            return Starts { points: vec![], trials: 1.0 };
         }
         let mean = drivers.claimed_mean();
-        let residual = inverse_dct2(look.modes);
+        let residual = inverse_dct2(context.modes);
         let (low, high) = self.bounds(drivers)[0];
         let track = |from: usize| {
             let (mut drift, mut until) = (0.0f64, from);
@@ -81,22 +82,27 @@ impl Course for ClockDrift {
             }
         };
         let begun = [1usize, 4, 16, 64, 256].map(|part| (n / part).clamp(32, n));
-        let shapes = begun.into_iter().map(track).filter(|d| *d != 0.0).map(|d| vec![d]);
-        let looked = (1e-6 * (high - low) * n as f64).max(1.0);
-        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked }
+        let points = begun.into_iter().map(track).filter(|d| *d != 0.0).map(|d| vec![d]);
+        let trials = (1e-6 * (high - low) * n as f64).max(1.0);
+        Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
         vec![(-1e5, 1e5)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let Some(drift) = shape.first() else { return Parts::default() };
-        parts(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers))
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let Some(drift) = nonlinear_parameters.first() else { return Regressors::default() };
+        regressors(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers))
     }
 
-    fn parameters(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        vec![shape.first().copied().unwrap_or(f64::NAN)]
+    fn parameters(
+        &self,
+        nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
@@ -104,12 +110,14 @@ impl Course for ClockDrift {
         Some(shifted(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers)).0)
     }
 
-    fn beside(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
-        number(values, PARAMS[0].name).map_or_else(Vec::new, |d| self.parts(&[d], drivers).beside)
+    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        number(values, PARAMS[0].name).map_or_else(Vec::new, |d| self.regressors(&[d], drivers).nuisance)
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(last) = shape.first().map(|d| 1e-6 * d * drivers.length_s()) else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(last) = nonlinear_parameters.first().map(|d| 1e-6 * d * drivers.length_s()) else {
+            return vec![];
+        };
         let lag = Place { domain: Domain::Lag, from: last.min(0.0), to: last.max(0.0) };
         [vec![lag], super::reach::record(drivers)].concat()
     }

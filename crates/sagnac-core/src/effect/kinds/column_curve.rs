@@ -4,7 +4,8 @@ use super::polynomial::{powers, sum};
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
-    Both, Column, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, list, number,
+    Both, Column, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext,
+    Starts, Values, list, number,
 };
 use crate::numeric::range::ends;
 
@@ -48,7 +49,7 @@ static PARAMS: [Param; 3] = [
 const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
-    ColumnCurve, "column_curve", Course in Supply, needs [],
+    ColumnCurve, "column_curve", Mean in Supply, needs [],
     confusers ["supply_sensitivity", "cross_axis", "temp_rate", "sf_asymmetry"],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
@@ -74,8 +75,8 @@ fn values(domain: Domain, drivers: &Drivers) -> Option<Vec<f64>> {
 }
 
 /// Column and highest power that a shape stands for.
-fn meant(shape: &[f64]) -> Option<(Domain, usize)> {
-    let [column, order] = shape else { return None };
+fn meant(nonlinear_parameters: &[f64]) -> Option<(Domain, usize)> {
+    let [column, order] = nonlinear_parameters else { return None };
     Some((*DOMAINS.get(column.round() as usize)?, (order.round() as usize).clamp(2, HIGHEST)))
 }
 
@@ -84,16 +85,16 @@ fn scale(values: &[f64]) -> (f64, f64) {
     (0.5 * (low + high), (0.5 * (high - low)).max(1e-12))
 }
 
-impl Course for ColumnCurve {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for ColumnCurve {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         DOMAINS.iter().any(|d| values(*d, drivers).is_some())
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         // Each further order has to be worth its parameter.
         let price = 0.5 * (drivers.samples.max(2) as f64).ln();
         let mut rated: Vec<(f64, Vec<f64>)> = vec![];
@@ -102,31 +103,32 @@ impl Course for ColumnCurve {
                 continue;
             }
             for order in 2..=HIGHEST {
-                let shape = vec![i as f64, order as f64];
-                let gain = gain_of(self.parts(&shape, drivers), look);
-                rated.push((gain - price * order as f64, shape));
+                let nonlinear_parameters = vec![i as f64, order as f64];
+                let gain = gain_of(self.regressors(&nonlinear_parameters, drivers), context);
+                rated.push((gain - price * order as f64, nonlinear_parameters));
             }
         }
-        let looked = rated.len() as f64;
+        let trials = rated.len() as f64;
         let best = rated.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        Starts { shapes: best.map(|(_, s)| s).into_iter().collect(), looked }
+        Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials }
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
         vec![(0.0, (DOMAINS.len() - 1) as f64), (2.0, HIGHEST as f64)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let free = meant(shape)
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let free = meant(nonlinear_parameters)
             .and_then(|(domain, order)| Some((values(domain, drivers)?, order)))
             .map_or_else(Vec::new, |(v, order)| powers(&v, scale(&v), order));
-        Parts { free, ..Parts::default() }
+        Regressors { columns: free, ..Regressors::default() }
     }
 
-    fn parameters(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        let scale = meant(shape).and_then(|(domain, _)| Some(scale(&values(domain, drivers)?)));
+    fn parameters(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let scale =
+            meant(nonlinear_parameters).and_then(|(domain, _)| Some(scale(&values(domain, drivers)?)));
         let (center, half) = scale.unwrap_or((f64::NAN, f64::NAN));
-        vec![shape.first().copied().unwrap_or(f64::NAN), center, half]
+        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN), center, half]
     }
 
     fn lists(
@@ -147,10 +149,10 @@ impl Course for ColumnCurve {
         Some(sum(coefficients, &powers(&values(domain, drivers)?, (of(1)?, half), order)))
     }
 
-    fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some((domain, _)) = meant(shape) else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some((domain, _)) = meant(nonlinear_parameters) else { return vec![] };
         let Some(values) = values(domain, drivers) else { return vec![] };
-        reach(domain, &values, &sum(coefficients, &self.parts(shape, drivers).free))
+        reach(domain, &values, &sum(coefficients, &self.regressors(nonlinear_parameters, drivers).columns))
     }
 
     fn whole(&self) -> &'static [usize] {
@@ -167,11 +169,14 @@ mod tests {
         let supply: Vec<f64> = (0..=20).map(|i| 4.0 + 0.1 * f64::from(i)).collect();
         let drivers =
             Drivers { dt_s: 1.0, samples: 21, averaged: 1, supply: Some(supply), ..Drivers::default() };
-        let parts = ColumnCurve.parts(&[0.0, 3.0], &drivers);
-        assert_eq!(parts.free.len(), 3);
-        for (k, column) in parts.free.iter().enumerate() {
+        let parts = ColumnCurve.regressors(&[0.0, 3.0], &drivers);
+        assert_eq!(parts.columns.len(), 3);
+        for (k, column) in parts.columns.iter().enumerate() {
             assert!((column[0] - (-1f64).powi(k as i32 + 1)).abs() < 1e-12 && column[10].abs() < 1e-12);
         }
-        assert!(ColumnCurve.parts(&[1.0, 2.0], &drivers).free.is_empty(), "no rate of the other axis");
+        assert!(
+            ColumnCurve.regressors(&[1.0, 2.0], &drivers).columns.is_empty(),
+            "no rate of the other axis"
+        );
     }
 }

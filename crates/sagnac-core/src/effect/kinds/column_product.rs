@@ -5,7 +5,8 @@ use super::polynomial::sum;
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
-    Both, Column, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, list, number,
+    Both, Column, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext,
+    Starts, Values, list, number,
 };
 use crate::numeric::range::ends;
 
@@ -48,7 +49,7 @@ static PARAMS: [Param; 5] = [
 const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
-    ColumnProduct, "column_product", Course in Temperature, needs [],
+    ColumnProduct, "column_product", Mean in Temperature, needs [],
     confusers ["supply_sensitivity", "temp_polynomial", "sf_temperature", "unobserved_driver"],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
@@ -95,8 +96,8 @@ fn domain(factor: Factor) -> Domain {
     }
 }
 
-fn pair(shape: &[f64]) -> Option<(Factor, Factor)> {
-    PAIRS.get(shape.first()?.round() as usize).copied()
+fn pair(nonlinear_parameters: &[f64]) -> Option<(Factor, Factor)> {
+    PAIRS.get(nonlinear_parameters.first()?.round() as usize).copied()
 }
 
 /// Middle and half width of a factor; a rate is not centred, since nothing goes with it at rest.
@@ -125,40 +126,40 @@ fn own_scales((first, second): (Factor, Factor), drivers: &Drivers) -> Option<[(
     Some([scale(first, &values(first, drivers)?), scale(second, &values(second, drivers)?)])
 }
 
-impl Course for ColumnProduct {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for ColumnProduct {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         PAIRS.iter().any(|(a, b)| values(*a, drivers).is_some() && values(*b, drivers).is_some())
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
-        let shapes = (0..PAIRS.len()).map(|i| vec![i as f64]);
-        let gain = |s: &Vec<f64>| gain_of(self.parts(s, drivers), look);
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
+        let points = (0..PAIRS.len()).map(|i| vec![i as f64]);
+        let gain = |s: &Vec<f64>| gain_of(self.regressors(s, drivers), context);
         let rated: Vec<(f64, Vec<f64>)> =
-            shapes.map(|s| (gain(&s), s)).filter(|(gain, _)| *gain > 0.0).collect();
-        let looked = rated.len() as f64;
+            points.map(|s| (gain(&s), s)).filter(|(gain, _)| *gain > 0.0).collect();
+        let trials = rated.len() as f64;
         let best = rated.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        Starts { shapes: best.map(|(_, s)| s).into_iter().collect(), looked }
+        Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials }
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
         vec![(0.0, (PAIRS.len() - 1) as f64)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let free = pair(shape)
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let free = pair(nonlinear_parameters)
             .and_then(|p| columns(p, own_scales(p, drivers)?, drivers))
             .map_or_else(Vec::new, |c| c.to_vec());
-        Parts { free, ..Parts::default() }
+        Regressors { columns: free, ..Regressors::default() }
     }
 
-    fn parameters(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        let scales = pair(shape).and_then(|p| own_scales(p, drivers));
+    fn parameters(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let scales = pair(nonlinear_parameters).and_then(|p| own_scales(p, drivers));
         let [(a, b), (c, d)] = scales.unwrap_or([(f64::NAN, f64::NAN); 2]);
-        vec![shape.first().copied().unwrap_or(f64::NAN), a, b, c, d]
+        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN), a, b, c, d]
     }
 
     fn lists(
@@ -177,8 +178,8 @@ impl Course for ColumnProduct {
         Some(sum(list(values, COEFFICIENTS), &columns))
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some((first, second)) = pair(shape) else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some((first, second)) = pair(nonlinear_parameters) else { return vec![] };
         let Some([product, ..]) =
             own_scales((first, second), drivers).and_then(|scales| columns((first, second), scales, drivers))
         else {
@@ -215,11 +216,11 @@ mod tests {
             supply: nine([5.0, 4.0, 6.0]),
             ..Drivers::default()
         };
-        let parts = ColumnProduct.parts(&[0.0], &drivers);
-        let begin: Vec<&[f64]> = parts.free.iter().map(|c| &c[..3]).collect();
+        let parts = ColumnProduct.regressors(&[0.0], &drivers);
+        let begin: Vec<&[f64]> = parts.columns.iter().map(|c| &c[..3]).collect();
         assert_eq!(begin, [[0.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, -1.0, 1.0]]);
-        assert!(ColumnProduct.parts(&[1.0], &drivers).free.is_empty(), "no rate of the other axis");
-        let with_time = ColumnProduct.parts(&[2.0], &drivers);
-        assert_eq!(with_time.free[0][..3], [1.0, -0.0, -0.5]);
+        assert!(ColumnProduct.regressors(&[1.0], &drivers).columns.is_empty(), "no rate of the other axis");
+        let with_time = ColumnProduct.regressors(&[2.0], &drivers);
+        assert_eq!(with_time.columns[0][..3], [1.0, -0.0, -0.5]);
     }
 }

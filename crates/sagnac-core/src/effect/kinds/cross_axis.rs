@@ -32,7 +32,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("misalignment_mrad", "mrad", -200.0, 200.0)];
 
 describe! {
-    CrossAxis, "cross_axis", Course in OuterRate, needs [OuterRate],
+    CrossAxis, "cross_axis", Mean in OuterRate, needs [OuterRate],
     confusers ["sf_error", "earth_rate_projection"]
 }
 

@@ -3,7 +3,8 @@
 use super::search::{best_of, fast_level, log_grid, peaks};
 
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 
 /// Widths that are tried of a zone beyond which the response stays behind.
@@ -44,7 +45,7 @@ static PARAMS: [Param; 3] = [
 ];
 
 describe! {
-    DeadZone, "dead_zone", Course in InputRate, needs [TableRate],
+    DeadZone, "dead_zone", Mean in InputRate, needs [TableRate],
     confusers ["sf_nonlinearity", "sf_error", "quantization"]
 }
 
@@ -84,15 +85,15 @@ fn sizes(drivers: &Drivers) -> Option<(f64, f64, usize)> {
 
 /// Widths that gain most in white noise. Between neighbouring sizes of the rate every width is the same, so that one pass
 /// over the sizes in their order sees all of them.
-fn widths(drivers: &Drivers, look: &Look<'_>, keep: usize) -> Vec<f64> {
+fn widths(drivers: &Drivers, context: &SearchContext<'_>, keep: usize) -> Vec<f64> {
     let order = by_size(drivers);
-    let level = fast_level(look);
+    let level = fast_level(context);
     let (mut both, mut square, mut sum) = (0.0, 0.0, 0.0);
     let (mut gains, mut middles) = (vec![], vec![]);
     for pair in order.windows(2) {
         let (size, i) = pair[0];
         let z = drivers.table_rate.as_ref().and_then(|r| r.get(i)).map_or(0.0, |r| -3600.0 * r);
-        both += z * look.score.get(i).copied().unwrap_or(0.0);
+        both += z * context.score.get(i).copied().unwrap_or(0.0);
         square += z * z;
         sum += z;
         if pair[1].0 > size * (1.0 + 1e-9) {
@@ -105,25 +106,25 @@ fn widths(drivers: &Drivers, look: &Look<'_>, keep: usize) -> Vec<f64> {
     peaks(&gains, keep, apart).into_iter().map(|i| middles[i]).collect()
 }
 
-impl Course for DeadZone {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for DeadZone {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         sizes(drivers).is_some_and(|(_, _, between)| between > 0)
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
-        if look.score.len() != drivers.samples || look.modes.len() != drivers.samples {
-            return Starts { shapes: vec![], looked: 1.0 };
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
+        if context.score.len() != drivers.samples || context.modes.len() != drivers.samples {
+            return Starts { points: vec![], trials: 1.0 };
         }
-        let whole = widths(drivers, look, 5).into_iter().map(|w| vec![w, 0.0]);
+        let whole = widths(drivers, context, 5).into_iter().map(|w| vec![w, 0.0]);
         let grid = sizes(drivers).map_or(vec![], |(low, high, _)| log_grid(low, high, BEHIND));
-        let shapes = whole.chain(grid.into_iter().map(|w| vec![w, 1.0]));
+        let points = whole.chain(grid.into_iter().map(|w| vec![w, 1.0]));
         // Widths inside one another share their samples: about as many as ratios of e are apart.
-        let looked = sizes(drivers).map_or(1.0, |(_, _, between)| (between as f64).clamp(1.0, 64.0));
-        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked }
+        let trials = sizes(drivers).map_or(1.0, |(_, _, between)| (between as f64).clamp(1.0, 64.0));
+        Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -134,16 +135,17 @@ impl Course for DeadZone {
         })
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        match shape {
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        match nonlinear_parameters {
             // The width alone makes it: with a share of its own a narrow zone would only be known by their product.
             [width, form] if *form > 0.5 => {
-                Parts { fixed: column(*width, true, drivers), ..Parts::default() }
+                Regressors { offset: column(*width, true, drivers), ..Regressors::default() }
             }
-            [width, _] => {
-                Parts { free: column(*width, false, drivers).into_iter().collect(), ..Parts::default() }
-            }
-            _ => Parts::default(),
+            [width, _] => Regressors {
+                columns: column(*width, false, drivers).into_iter().collect(),
+                ..Regressors::default()
+            },
+            _ => Regressors::default(),
         }
     }
 
@@ -151,8 +153,8 @@ impl Course for DeadZone {
         &[1]
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        match (shape, coefficients) {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        match (nonlinear_parameters, coefficients) {
             ([width, _], []) => vec![*width, 1.0, 1.0],
             ([width, _], [share]) => vec![*width, *share, 0.0],
             _ => vec![f64::NAN; 3],
@@ -166,8 +168,8 @@ impl Course for DeadZone {
         Some(column.into_iter().map(|x| share * x).collect())
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<Place> {
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<Place> {
         let at = |w: &f64| Place { domain: Domain::InputRate, from: -w / 3600.0, to: w / 3600.0 };
-        shape.first().map(at).into_iter().collect()
+        nonlinear_parameters.first().map(at).into_iter().collect()
     }
 }

@@ -1,6 +1,6 @@
 //! The claimed mean at another time than the columns say.
 
-use crate::effect::{Drivers, Parts};
+use crate::effect::{Drivers, Regressors};
 
 /// The claimed mean moves with the table: only then a delay against its columns can be seen.
 pub(super) fn moves(drivers: &Drivers) -> bool {
@@ -166,9 +166,9 @@ fn ends_out(lost: &[bool]) -> Vec<Vec<f64>> {
 }
 
 /// Parts of a delayed claimed mean.
-pub(super) fn parts(mean: &[f64], lag: impl Fn(usize) -> f64) -> Parts {
+pub(super) fn regressors(mean: &[f64], lag: impl Fn(usize) -> f64) -> Regressors {
     let (fixed, lost) = shifted(mean, lag);
-    Parts { fixed: Some(fixed), free: vec![], beside: ends_out(&lost) }
+    Regressors { offset: Some(fixed), columns: vec![], nuisance: ends_out(&lost) }
 }
 
 /// Improves a number that delays the claimed mean, by Gauss-Newton on white noise over the samples before `until`. Bias
@@ -292,8 +292,8 @@ mod tests {
     #[test]
     fn samples_before_the_record_are_taken_out() {
         let wave: Vec<f64> = (0..100).map(|i| (0.1 * f64::from(i)).sin()).collect();
-        assert_eq!(parts(&wave, |_| 3.2).beside.len(), 4);
-        assert_eq!(parts(&wave, |_| -20.0).beside.len(), MOST);
-        assert!(parts(&wave, |_| 0.0).beside.is_empty());
+        assert_eq!(regressors(&wave, |_| 3.2).nuisance.len(), 4);
+        assert_eq!(regressors(&wave, |_| -20.0).nuisance.len(), MOST);
+        assert!(regressors(&wave, |_| 0.0).nuisance.is_empty());
     }
 }

@@ -2,7 +2,9 @@
 
 use super::search::{best_of, log_grid};
 use super::sinusoid::{polar, wave};
-use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+};
 
 pub struct Diurnal;
 
@@ -35,38 +37,39 @@ static PARAMS: [Param; 3] = [
 ];
 
 describe! {
-    Diurnal, "diurnal", Course in Frequency, needs [],
+    Diurnal, "diurnal", Mean in Frequency, needs [],
     confusers ["line", "temp_linear", "unobserved_driver", "rate_ramp"]
 }
 
 const DAY_S: f64 = 86_400.0;
 
-impl Course for Diurnal {
+impl MeanModel for Diurnal {
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 16 && drivers.length_s() > 0.5 * DAY_S
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let (low, high) = self.bounds(drivers)[0];
         if low == high {
-            return Starts { shapes: vec![vec![DAY_S]], looked: 1.0 };
+            return Starts { points: vec![vec![DAY_S]], trials: 1.0 };
         }
         let grid = log_grid(low, high, 5);
-        Starts { shapes: best_of(self, grid.into_iter().map(|p| vec![p]), 2, drivers, look), looked: 1.0 }
+        Starts { points: best_of(self, grid.into_iter().map(|p| vec![p]), 2, drivers, context), trials: 1.0 }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
         if drivers.length_s() > 2.0 * DAY_S { vec![(82_800.0, 90_000.0)] } else { vec![(DAY_S, DAY_S)] }
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let free = shape.first().map_or_else(Vec::new, |p| super::line::columns(1.0 / p, drivers));
-        Parts { free, ..Parts::default() }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let free =
+            nonlinear_parameters.first().map_or_else(Vec::new, |p| super::line::columns(1.0 / p, drivers));
+        Regressors { columns: free, ..Regressors::default() }
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
-        vec![amplitude, shape.first().copied().unwrap_or(f64::NAN), phase]
+        vec![amplitude, nonlinear_parameters.first().copied().unwrap_or(f64::NAN), phase]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
@@ -84,8 +87,8 @@ impl Course for Diurnal {
         3.0
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(f) = shape.first().map(|p| 1.0 / p) else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(f) = nonlinear_parameters.first().map(|p| 1.0 / p) else { return vec![] };
         let half = 0.5 / drivers.length_s();
         let frequency = Place { domain: Domain::Frequency, from: (f - half).max(0.0), to: f + half };
         [vec![frequency], super::reach::record(drivers)].concat()

@@ -2,7 +2,8 @@
 
 use super::sinusoid::{Sweep, polar, wave};
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 use realfft::RealFftPlanner;
 
@@ -42,7 +43,7 @@ static PARAMS: [Param; 5] = [
 ];
 
 describe! {
-    DriftingLine, "drifting_line", Course in Frequency, needs [],
+    DriftingLine, "drifting_line", Mean in Frequency, needs [],
     confusers ["line", "quasi_periodic", "excess_arw"]
 }
 
@@ -76,19 +77,19 @@ fn columns(frequency: f64, drift: f64, middle_s: f64, drivers: &Drivers) -> Vec<
     sweep(frequency, drift, middle_s, drivers).pair(drivers.samples)
 }
 
-impl Course for DriftingLine {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for DriftingLine {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= FEWEST
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if n < FEWEST || look.score.len() != n || look.powers.len() != n {
-            return Starts { shapes: vec![], looked: 1.0 };
+        if n < FEWEST || context.score.len() != n || context.powers.len() != n {
+            return Starts { points: vec![], trials: 1.0 };
         }
         let rates = rates(n);
         let padded = n.next_power_of_two();
@@ -107,7 +108,7 @@ impl Course for DriftingLine {
             odd[n..].fill(0.0);
             let swept = sweep(0.0, drift, middle, drivers);
             let blocks =
-                even[..n].chunks_mut(BLOCK).zip(odd[..n].chunks_mut(BLOCK)).zip(look.score.chunks(BLOCK));
+                even[..n].chunks_mut(BLOCK).zip(odd[..n].chunks_mut(BLOCK)).zip(context.score.chunks(BLOCK));
             for (b, ((even, odd), score)) in blocks.enumerate() {
                 swept.turns(b * BLOCK, &mut turns[..score.len()]);
                 for (i, (x, (c, s))) in score.iter().zip(&turns).enumerate() {
@@ -128,15 +129,15 @@ impl Course for DriftingLine {
                 let (power, sign) = if up > down { (up, 1.0) } else { (down, -1.0) };
                 if power > best.0 {
                     let mode = (2 * n * k / padded).clamp(1, n - 1);
-                    let gain = power * look.powers[mode] / n as f64;
+                    let gain = power * context.powers[mode] / n as f64;
                     if gain > best.0 {
                         best = (gain, vec![k as f64 * cell, sign * drift]);
                     }
                 }
             }
         }
-        let shapes = if best.1.is_empty() { vec![] } else { vec![best.1] };
-        Starts { shapes, looked: n as f64 * rates as f64 }
+        let points = if best.1.is_empty() { vec![] } else { vec![best.1] };
+        Starts { points, trials: n as f64 * rates as f64 }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -145,17 +146,17 @@ impl Course for DriftingLine {
         vec![(3.0 * resolution, (0.5 / drivers.dt_s).max(4.0 * resolution)), (-most, most)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let free = match shape {
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let free = match nonlinear_parameters {
             [frequency, drift] => columns(*frequency, *drift, middle_s(drivers), drivers),
             _ => vec![],
         };
-        Parts { free, ..Parts::default() }
+        Regressors { columns: free, ..Regressors::default() }
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
-        let [frequency, drift] = *shape else { return vec![f64::NAN; PARAMS.len()] };
+        let [frequency, drift] = *nonlinear_parameters else { return vec![f64::NAN; PARAMS.len()] };
         vec![frequency, drift, amplitude, phase, middle_s(drivers)]
     }
 
@@ -164,8 +165,8 @@ impl Course for DriftingLine {
         Some(wave(of(2)?, of(3).unwrap_or(0.0), &columns(of(0)?, of(1)?, of(4)?, drivers)))
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let [frequency, drift] = *shape else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let [frequency, drift] = *nonlinear_parameters else { return vec![] };
         let half = 0.5 * drift.abs() * drivers.length_s() + 0.5 / drivers.length_s();
         let band =
             Place { domain: Domain::Frequency, from: (frequency - half).max(0.0), to: frequency + half };
@@ -197,8 +198,8 @@ mod tests {
                 .collect();
             let score: Vec<f64> = residual.iter().map(|r| r / power).collect();
             let (modes, powers) = (crate::numeric::cosine::dct2(&residual), vec![power; n]);
-            let look = Look { score: &score, modes: &modes, powers: &powers };
-            let found = DriftingLine.starts(&drivers, &look).shapes.remove(0);
+            let context = SearchContext { score: &score, modes: &modes, powers: &powers };
+            let found = DriftingLine.starts(&drivers, &context).points.remove(0);
             assert!((found[0] - f).abs() < 2.0 / 2000.0, "{found:?}");
             assert!((found[1] - drift).abs() < 1.5 * step(&drivers), "{found:?}");
         }

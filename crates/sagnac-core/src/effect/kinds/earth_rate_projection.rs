@@ -3,7 +3,10 @@
 use super::reach::varies;
 use super::sinusoid::{polar, wave};
 use super::table_harmonic::{columns, visited};
-use crate::effect::{Both, Course, Doc, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Doc, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
+    number,
+};
 
 pub struct EarthRateProjection;
 
@@ -35,20 +38,20 @@ static PARAMS: [Param; 2] =
     [Param::reported("amplitude_deg_h", "deg/h", 0.0, 31.0), Param::inner("phase_deg", "deg", -360.0, 360.0)];
 
 describe! {
-    EarthRateProjection, "earth_rate_projection", Course in Angle, needs [TableAngle],
+    EarthRateProjection, "earth_rate_projection", Mean in Angle, needs [TableAngle],
     confusers ["table_harmonic", "heading_change", "line"]
 }
 
-impl Course for EarthRateProjection {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for EarthRateProjection {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.table_angle.as_deref())
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
         Starts::linear()
     }
 
@@ -56,8 +59,8 @@ impl Course for EarthRateProjection {
         vec![]
     }
 
-    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { free: columns(1.0, drivers), ..Parts::default() }
+    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors { columns: columns(1.0, drivers), ..Regressors::default() }
     }
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {

@@ -3,7 +3,8 @@
 use super::bias_step::{instants, step};
 use super::search::gain_of;
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 
 pub struct HeadingChange;
@@ -48,7 +49,7 @@ fn turning(drivers: &Drivers) -> Option<&[f64]> {
 }
 
 describe! {
-    HeadingChange, "heading_change", Course in Time, needs [],
+    HeadingChange, "heading_change", Mean in Time, needs [],
     confusers ["bias_step", "earth_rate_projection", "random_telegraph"]
 }
 
@@ -71,33 +72,33 @@ const INSTANTS: usize = 128;
 
 /// Instants from which on another projection gains most, s after the first sample; the best first. Looked at on a grid:
 /// the gain falls off slowly from the right one, and the fit of the shape goes on from there.
-fn turned_instants(drivers: &Drivers, look: &Look<'_>) -> Starts {
+fn turned_instants(drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
     let n = drivers.samples;
     let points = INSTANTS.min(n / 4);
     let mut rated: Vec<(f64, Vec<f64>)> = (1..points)
         .map(|p| {
-            let shape = vec![((n * p / points) as f64 - 0.5) * drivers.dt_s];
-            (gain_of(HeadingChange.parts(&shape, drivers), look), shape)
+            let nonlinear_parameters = vec![((n * p / points) as f64 - 0.5) * drivers.dt_s];
+            (gain_of(HeadingChange.regressors(&nonlinear_parameters, drivers), context), nonlinear_parameters)
         })
         .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
-    Starts { shapes: rated.into_iter().take(3).map(|r| r.1).collect(), looked: (n as f64).powf(0.75) }
+    Starts { points: rated.into_iter().take(3).map(|r| r.1).collect(), trials: (n as f64).powf(0.75) }
 }
 
-impl Course for HeadingChange {
+impl MeanModel for HeadingChange {
     /// Averages hold no angles.
-    fn pace(&self) -> Pace {
-        Pace::Fast
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 8
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         match turning(drivers) {
-            Some(_) => turned_instants(drivers, look),
-            None => instants(drivers, look),
+            Some(_) => turned_instants(drivers, context),
+            None => instants(drivers, context),
         }
     }
 
@@ -106,8 +107,8 @@ impl Course for HeadingChange {
     }
 
     /// A step; with a table that turns, the projection as a function of its angle from then on.
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let Some(at) = shape.first() else { return Parts::default() };
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let Some(at) = nonlinear_parameters.first() else { return Regressors::default() };
         let step = step(drivers, *at);
         let mut free = vec![];
         match turning(drivers) {
@@ -118,11 +119,11 @@ impl Course for HeadingChange {
             }
             None => free.push(step),
         }
-        Parts { free, ..Parts::default() }
+        Regressors { columns: free, ..Regressors::default() }
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        match (shape, coefficients) {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        match (nonlinear_parameters, coefficients) {
             ([at], [size]) => vec![*size, drivers.start_s + at, f64::NAN, f64::NAN],
             ([at], [cos, sin]) => vec![f64::NAN, drivers.start_s + at, *cos, *sin],
             _ => vec![f64::NAN; 4],
@@ -141,16 +142,16 @@ impl Course for HeadingChange {
         Some(step.into_iter().map(|s| size * s).collect())
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(at) = shape.first().map(|at| drivers.start_s + at) else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(at) = nonlinear_parameters.first().map(|at| drivers.start_s + at) else { return vec![] };
         let half = (0.01 * drivers.length_s()).max(2.0 * drivers.dt_s);
         vec![Place { domain: Domain::Time, from: at - half, to: at + half }]
     }
 
     /// For it where the table's angle changes then and seldom else, or where the claim speaks of the heading; against it
     /// where neither is so.
-    fn odds(&self, shape: &[f64], drivers: &Drivers) -> f64 {
-        let Some(at) = shape.first() else { return 0.0 };
+    fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
+        let Some(at) = nonlinear_parameters.first() else { return 0.0 };
         match turned(*at, drivers) {
             Some((here, usual)) if here > 0.01 && here > 5.0 * usual => 6.0,
             _ if drivers.claim.earth.is_some() => 1.0,

@@ -1,9 +1,10 @@
 //! A coherent sinusoid.
 
-use super::search::{peaks, summit};
+use super::search::{parabolic_peak, peaks};
 use super::sinusoid::{Sweep, averaged, polar, wave};
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 use crate::numeric::cosine::sinusoid_modes;
 use realfft::RealFftPlanner;
@@ -43,7 +44,7 @@ static PARAMS: [Param; 3] = [
 ];
 
 describe! {
-    Line, "line", Course in Frequency, needs [],
+    Line, "line", Mean in Frequency, needs [],
     confusers ["quasi_periodic", "diurnal", "table_harmonic", "reset_ripple"]
 }
 
@@ -55,10 +56,10 @@ pub(super) fn columns(frequency_hz: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
 
 /// Twice-padded power of the score at the frequencies j/(2n·dt) of a length that transforms fast, as gains of a line,
 /// and the step of the frequencies, Hz.
-fn periodogram(drivers: &Drivers, look: &Look<'_>) -> (Vec<f64>, f64) {
-    let n = look.score.len();
+fn periodogram(drivers: &Drivers, context: &SearchContext<'_>) -> (Vec<f64>, f64) {
+    let n = context.score.len();
     let padded = (2 * n).next_power_of_two();
-    let mut input = look.score.to_vec();
+    let mut input = context.score.to_vec();
     input.resize(padded, 0.0);
     let plan = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
     let mut spectrum = plan.make_output_vec();
@@ -69,27 +70,27 @@ fn periodogram(drivers: &Drivers, look: &Look<'_>) -> (Vec<f64>, f64) {
     // Mode k lies at k/(2n·dt). Weighted by the inverse covariance a sinusoid of amplitude 1 has n/2 over the power there.
     let power = |j: usize| {
         let mode = (2.0 * n as f64 * j as f64 / padded as f64).round() as usize;
-        look.powers.get(mode.clamp(1, n - 1)).copied().unwrap_or(0.0)
+        context.powers.get(mode.clamp(1, n - 1)).copied().unwrap_or(0.0)
     };
     let gains = spectrum.iter().enumerate().map(|(j, w)| w.norm_sqr() * power(j) / n as f64).collect();
     (gains, step)
 }
 
-impl Course for Line {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for Line {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 32
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if n < 32 || look.score.len() != n || look.powers.len() != n {
-            return Starts { shapes: vec![], looked: 1.0 };
+        if n < 32 || context.score.len() != n || context.powers.len() != n {
+            return Starts { points: vec![], trials: 1.0 };
         }
-        let (mut gains, step) = periodogram(drivers, look);
+        let (mut gains, step) = periodogram(drivers, context);
         let (low, high) = self.bounds(drivers)[0];
         for (j, gain) in gains.iter_mut().enumerate() {
             if !(low..=high).contains(&(j as f64 * step)) {
@@ -97,8 +98,8 @@ impl Course for Line {
             }
         }
         let apart = (3.0 / (drivers.length_s() * step)).ceil() as usize;
-        let at = |j: usize| vec![((j as f64 + summit(&gains, j)) * step).clamp(low, high)];
-        Starts { shapes: peaks(&gains, 3, apart).into_iter().map(at).collect(), looked: n as f64 }
+        let at = |j: usize| vec![((j as f64 + parabolic_peak(&gains, j)) * step).clamp(low, high)];
+        Starts { points: peaks(&gains, 3, apart).into_iter().map(at).collect(), trials: n as f64 }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -106,13 +107,13 @@ impl Course for Line {
         vec![(resolution, (0.5 / drivers.dt_s - 0.5 * resolution).max(resolution))]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let free = shape.first().map_or_else(Vec::new, |f| columns(*f, drivers));
-        Parts { free, ..Parts::default() }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let free = nonlinear_parameters.first().map_or_else(Vec::new, |f| columns(*f, drivers));
+        Regressors { columns: free, ..Regressors::default() }
     }
 
-    fn modes(&self, shape: &[f64], drivers: &Drivers) -> Option<Vec<Vec<f64>>> {
-        let frequency = *shape.first()?;
+    fn modes(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<Vec<f64>>> {
+        let frequency = *nonlinear_parameters.first()?;
         let cycles = frequency * drivers.dt_s;
         if !(cycles > 0.0 && cycles < 0.5) {
             return None;
@@ -124,9 +125,9 @@ impl Course for Line {
         Some(modes.into())
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
-        vec![shape.first().copied().unwrap_or(f64::NAN), amplitude, phase]
+        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN), amplitude, phase]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
@@ -135,10 +136,10 @@ impl Course for Line {
         Some(wave(number(values, PARAMS[1].name)?, phase, &columns(frequency, drivers)))
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let half = 0.5 / drivers.length_s();
         let at = |f: &f64| Place { domain: Domain::Frequency, from: (f - half).max(0.0), to: f + half };
-        shape.first().map(at).into_iter().collect()
+        nonlinear_parameters.first().map(at).into_iter().collect()
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {
@@ -166,14 +167,14 @@ mod tests {
         let power = 0.09 / 12.0;
         let score: Vec<f64> = residual.iter().map(|r| r / power).collect();
         let (modes, powers) = (dct2(&residual), vec![power; n]);
-        let look = Look { score: &score, modes: &modes, powers: &powers };
-        let starts = Line.starts(&drivers, &look);
-        assert!((starts.shapes[0][0] - f).abs() < 0.2 / 300.0, "{:?}", starts.shapes);
-        assert!((starts.shapes[1][0] - g).abs() < 0.2 / 300.0, "{:?}", starts.shapes);
+        let context = SearchContext { score: &score, modes: &modes, powers: &powers };
+        let starts = Line.starts(&drivers, &context);
+        assert!((starts.points[0][0] - f).abs() < 0.2 / 300.0, "{:?}", starts.points);
+        assert!((starts.points[1][0] - g).abs() < 0.2 / 300.0, "{:?}", starts.points);
         // Half the square of amplitude over deviation, n/2 samples' worth.
         let left = averaged(f * 0.1);
         let expected = 0.5 * (n as f64 / 2.0) * left * left / power;
-        let (gains, step) = periodogram(&drivers, &look);
+        let (gains, step) = periodogram(&drivers, &context);
         let top = gains[(f / step) as usize..][..2].iter().copied().fold(0.0, f64::max);
         assert!((top / expected - 1.0).abs() < 0.25, "{top} {expected}");
     }

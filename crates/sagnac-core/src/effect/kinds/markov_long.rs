@@ -1,7 +1,7 @@
 //! Exponentially correlated noise whose correlation time is many samples.
 
 use crate::effect::{
-    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values,
+    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values,
     number,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
@@ -77,20 +77,20 @@ pub(super) fn densities(process: &Damped, bins: &[ModeBin]) -> Vec<f64> {
 }
 
 /// Starts over correlation times from `low` to `high`, each with the level that the excess at its corner asks for.
-pub(super) fn starts_between(low: f64, high: f64, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
+pub(super) fn starts_between(low: f64, high: f64, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
     let mut out = vec![];
     let mut time = low;
     while time <= high {
         let corner = 1.0 / (2.0 * std::f64::consts::PI * time);
-        let below = look
+        let below = context
             .bins
             .iter()
             .enumerate()
             .filter(|(_, b)| b.frequency_hz > corner / 4.0 && b.frequency_hz < corner * 2.0);
         let (mut excess, mut count, mut level) = (0.0, 0.0, 0.0);
         for (i, b) in below {
-            excess += b.modes as f64 * (look.observed[i] - look.expected[i]);
-            level += b.modes as f64 * look.expected[i];
+            excess += b.modes as f64 * (context.observed[i] - context.expected[i]);
+            level += b.modes as f64 * context.expected[i];
             count += b.modes as f64;
         }
         if count > 0.0 {
@@ -120,18 +120,18 @@ impl Spectrum for MarkovLong {
         densities(&process(fitted), bins)
     }
 
-    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
-        let (low, high) = self.bounds(look)[0];
-        starts_between(low * 1.5, high / 1.5, look)
+    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        let (low, high) = self.bounds(context)[0];
+        starts_between(low * 1.5, high / 1.5, context)
     }
 
-    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
-        let (dt, n) = look.bins.first().map_or((1.0, 1), |b| (b.dt_s, b.samples));
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+        let (dt, n) = context.bins.first().map_or((1.0, 1), |b| (b.dt_s, b.samples));
         vec![(SHORT_SAMPLES * dt, 0.5 * n as f64 * dt), (1e-9, 1e9)]
     }
 
-    fn looked(&self, look: &SpectralLook<'_>) -> f64 {
-        let (low, high) = self.bounds(look)[0];
+    fn trials(&self, context: &SpectralContext<'_>) -> f64 {
+        let (low, high) = self.bounds(context)[0];
         (high / low).ln().max(1.0)
     }
 
@@ -147,9 +147,9 @@ impl Spectrum for MarkovLong {
         noise.markov.push(process(fitted));
     }
 
-    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
         let time = process(fitted).decay_time_s;
-        let (dt, n) = look.bins.first().map_or((1.0, 1), |b| (b.dt_s, b.samples));
+        let (dt, n) = context.bins.first().map_or((1.0, 1), |b| (b.dt_s, b.samples));
         let lowest = 0.5 / (n as f64 * dt);
         let highest = (3.0 / (2.0 * std::f64::consts::PI * time)).min(0.5 / dt);
         vec![

@@ -2,7 +2,7 @@
 
 use super::markov_long::{SHORT_SAMPLES, densities, process, starts_between};
 use crate::effect::{
-    Both, Doc, Domain, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+    Both, Doc, Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::Composite;
 
@@ -60,17 +60,17 @@ impl Spectrum for MarkovShort {
         densities(&process(fitted), bins)
     }
 
-    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
-        let (low, high) = self.bounds(look)[0];
-        starts_between(2.0 * low, high, look)
+    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        let (low, high) = self.bounds(context)[0];
+        starts_between(2.0 * low, high, context)
     }
 
-    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
-        let dt = look.bins.first().map_or(1.0, |b| b.dt_s);
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+        let dt = context.bins.first().map_or(1.0, |b| b.dt_s);
         vec![(0.25 * dt, SHORT_SAMPLES * dt), (1e-9, 1e9)]
     }
 
-    fn looked(&self, _look: &SpectralLook<'_>) -> f64 {
+    fn trials(&self, _look: &SpectralContext<'_>) -> f64 {
         2.0
     }
 
@@ -86,9 +86,9 @@ impl Spectrum for MarkovShort {
         noise.markov.push(process(fitted));
     }
 
-    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
         let time = process(fitted).decay_time_s;
-        let dt = look.bins.first().map_or(1.0, |b| b.dt_s);
+        let dt = context.bins.first().map_or(1.0, |b| b.dt_s);
         let corner = 1.0 / (2.0 * std::f64::consts::PI * time);
         let nyquist = 0.5 / dt;
         vec![

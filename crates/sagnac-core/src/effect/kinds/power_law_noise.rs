@@ -2,7 +2,7 @@
 //! kind of its own in the format of explanations.
 
 use crate::effect::{
-    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values,
+    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values,
     number,
 };
 use crate::noise::composite::{Composite, Damped};
@@ -107,25 +107,25 @@ impl Spectrum for PowerLawNoise {
         parameter < 2
     }
 
-    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
-        let (Some(first), Some(last)) = (look.bins.first(), look.bins.last()) else { return vec![] };
+    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        let (Some(first), Some(last)) = (context.bins.first(), context.bins.last()) else { return vec![] };
         let middle = (first.frequency_hz * last.frequency_hz).sqrt();
         let near = |b: &&ModeBin| b.frequency_hz > 0.5 * middle && b.frequency_hz < 2.0 * middle;
         let (mut excess, mut level, mut count) = (0.0, 0.0, 0.0);
-        for (i, b) in look.bins.iter().enumerate().filter(|(_, b)| near(b)) {
-            excess += b.modes as f64 * (look.observed[i] - look.expected[i]);
-            level += b.modes as f64 * look.expected[i];
+        for (i, b) in context.bins.iter().enumerate().filter(|(_, b)| near(b)) {
+            excess += b.modes as f64 * (context.observed[i] - context.expected[i]);
+            level += b.modes as f64 * context.expected[i];
             count += b.modes as f64;
         }
         let density = (excess / f64::max(count, 1.0)).max(0.05 * level / f64::max(count, 1.0)).max(1e-30);
         [0.4, 0.7, 1.4].map(|exponent| vec![density, exponent, middle]).to_vec()
     }
 
-    fn bounds(&self, _look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+    fn bounds(&self, _look: &SpectralContext<'_>) -> Vec<(f64, f64)> {
         vec![(1e-30, 1e30), (0.1, 1.9), (1e-12, 1e9)]
     }
 
-    fn looked(&self, _look: &SpectralLook<'_>) -> f64 {
+    fn trials(&self, _look: &SpectralContext<'_>) -> f64 {
         3.0
     }
 
@@ -151,8 +151,8 @@ impl Spectrum for PowerLawNoise {
         }
     }
 
-    fn places(&self, _fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
-        match (look.bins.first(), look.bins.last()) {
+    fn places(&self, _fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
+        match (context.bins.first(), context.bins.last()) {
             (Some(first), Some(last)) => {
                 vec![Place { domain: Domain::Frequency, from: first.frequency_hz, to: last.frequency_hz }]
             }

@@ -1,7 +1,7 @@
 //! The output is quantised in angle.
 
 use crate::effect::{
-    Both, Doc, Domain, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+    Both, Doc, Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
@@ -51,19 +51,19 @@ impl Spectrum for Quantization {
         lsb * lsb / 12.0 * unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s)
     }
 
-    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
-        if let Some(lattice) = look.lattice_arcsec.filter(|l| *l > 0.0) {
-            return vec![vec![lattice]];
+    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        if let Some(quantization_grid) = context.grid_step_arcsec.filter(|l| *l > 0.0) {
+            return vec![vec![quantization_grid]];
         }
         // Least squares of the excess on the shape, weighted by the expected scatter.
         let (mut both, mut square, mut level) = (0.0, 0.0, f64::INFINITY);
-        for (i, bin) in look.bins.iter().enumerate() {
+        for (i, bin) in context.bins.iter().enumerate() {
             let unit = unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s);
-            let weight = bin.modes as f64 / look.expected[i].powi(2);
-            both += weight * unit * (look.observed[i] - look.expected[i]);
+            let weight = bin.modes as f64 / context.expected[i].powi(2);
+            both += weight * unit * (context.observed[i] - context.expected[i]);
             square += weight * unit * unit;
             if bin.frequency_hz * bin.dt_s > 0.25 {
-                level = level.min(look.expected[i] / unit);
+                level = level.min(context.expected[i] / unit);
             }
         }
         if square <= 0.0 || !level.is_finite() {
@@ -72,11 +72,11 @@ impl Spectrum for Quantization {
         vec![vec![(12.0 * (both / square).max(0.01 * level)).sqrt()]]
     }
 
-    fn bounds(&self, _look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
+    fn bounds(&self, _look: &SpectralContext<'_>) -> Vec<(f64, f64)> {
         vec![(1e-9, 1e6)]
     }
 
-    fn looked(&self, _look: &SpectralLook<'_>) -> f64 {
+    fn trials(&self, _look: &SpectralContext<'_>) -> f64 {
         1.0
     }
 
@@ -93,8 +93,8 @@ impl Spectrum for Quantization {
         noise.terms.q = noise.terms.q.hypot(q);
     }
 
-    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
-        let (Some(lsb), Some(bin)) = (fitted.first(), look.bins.first()) else { return vec![] };
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
+        let (Some(lsb), Some(bin)) = (fitted.first(), context.bins.first()) else { return vec![] };
         vec![
             Place { domain: Domain::Amplitude, from: 0.0, to: lsb / bin.dt_s },
             Place { domain: Domain::Frequency, from: 0.25 / bin.dt_s, to: 0.5 / bin.dt_s },

@@ -2,7 +2,7 @@
 
 use super::search::peaks;
 use crate::effect::{
-    Both, Doc, Domain, ModeBin, Param, Place, SpectralLook, Spectrum, SpectrumAct, Values, number,
+    Both, Doc, Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 use std::f64::consts::PI;
@@ -107,19 +107,20 @@ impl Spectrum for QuasiPeriodic {
         matches!(fitted, [frequency, _, time] if frequency * time >= 1.0)
     }
 
-    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
-        let Some(first) = look.bins.first() else { return vec![] };
+    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        let Some(first) = context.bins.first() else { return vec![] };
         let length = first.samples as f64 * first.dt_s;
-        let bounds = self.bounds(look);
-        let weight = |b: &ModeBin, i: usize| b.modes as f64 * (look.observed[i] / look.expected[i] - 1.0);
-        let excess: Vec<f64> = look.bins.iter().enumerate().map(|(i, b)| weight(b, i)).collect();
+        let bounds = self.bounds(context);
+        let weight =
+            |b: &ModeBin, i: usize| b.modes as f64 * (context.observed[i] / context.expected[i] - 1.0);
+        let excess: Vec<f64> = context.bins.iter().enumerate().map(|(i, b)| weight(b, i)).collect();
         let mut found: Vec<(f64, Vec<f64>)> = vec![];
         for width in [1usize, 3, 7, 15] {
-            let window = |i: usize| i.saturating_sub(width / 2)..(i + width / 2 + 1).min(look.bins.len());
-            let sure: Vec<f64> = (0..look.bins.len())
+            let window = |i: usize| i.saturating_sub(width / 2)..(i + width / 2 + 1).min(context.bins.len());
+            let sure: Vec<f64> = (0..context.bins.len())
                 .map(|i| {
-                    let modes: usize = look.bins[window(i)].iter().map(|b| b.modes).sum();
-                    let inside = look.bins[i].frequency_hz >= bounds[0].0;
+                    let modes: usize = context.bins[window(i)].iter().map(|b| b.modes).sum();
+                    let inside = context.bins[i].frequency_hz >= bounds[0].0;
                     if inside {
                         excess[window(i)].iter().sum::<f64>() / (2.0 * modes as f64).sqrt()
                     } else {
@@ -132,10 +133,12 @@ impl Spectrum for QuasiPeriodic {
                 // Power of both sides in the window, two-sided density times twice its width.
                 let power: f64 = bins
                     .clone()
-                    .map(|j| (look.observed[j] - look.expected[j]) * look.bins[j].modes as f64 / length)
+                    .map(|j| {
+                        (context.observed[j] - context.expected[j]) * context.bins[j].modes as f64 / length
+                    })
                     .sum();
-                let (low, high) = (edges(&look.bins[bins.start]).0, edges(&look.bins[bins.end - 1]).1);
-                let center = look.bins[i].frequency_hz;
+                let (low, high) = (edges(&context.bins[bins.start]).0, edges(&context.bins[bins.end - 1]).1);
+                let center = context.bins[i].frequency_hz;
                 let time = (2.0 / (PI * (high - low))).clamp(bounds[2].0, bounds[2].1);
                 found.push((sure[i], vec![center, power.max(1e-18).sqrt(), time]));
             }
@@ -144,14 +147,14 @@ impl Spectrum for QuasiPeriodic {
         found.into_iter().take(4).map(|(_, start)| start).collect()
     }
 
-    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
-        let (dt, n) = look.bins.first().map_or((1.0, 16), |b| (b.dt_s, b.samples));
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+        let (dt, n) = context.bins.first().map_or((1.0, 16), |b| (b.dt_s, b.samples));
         let length = n as f64 * dt;
         vec![((3.0 / length).min(0.25 / dt), 0.5 / dt), (1e-9, 1e9), (3.0 * dt, 2.0 * length)]
     }
 
-    fn looked(&self, look: &SpectralLook<'_>) -> f64 {
-        look.bins.first().map_or(1.0, |b| b.samples as f64)
+    fn trials(&self, context: &SpectralContext<'_>) -> f64 {
+        context.bins.first().map_or(1.0, |b| b.samples as f64)
     }
 
     fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
@@ -166,9 +169,9 @@ impl Spectrum for QuasiPeriodic {
         noise.quasi_periodic.push(process(fitted));
     }
 
-    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
         let process = process(fitted);
-        let length = look.bins.first().map_or(1.0, |b| b.samples as f64 * b.dt_s);
+        let length = context.bins.first().map_or(1.0, |b| b.samples as f64 * b.dt_s);
         let half = (1.0 / (PI * process.decay_time_s)).max(0.5 / length);
         let f = process.frequency_hz;
         vec![Place { domain: Domain::Frequency, from: (f - half).max(0.0), to: f + half }]

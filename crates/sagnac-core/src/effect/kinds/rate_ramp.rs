@@ -1,6 +1,8 @@
 //! A linear drift.
 
-use crate::effect::{Both, Course, Doc, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Doc, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+};
 
 pub struct RateRamp;
 
@@ -29,7 +31,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("slope_deg_h_per_h", "deg/h/h", -1e6, 1e6)];
 
 describe! {
-    RateRamp, "rate_ramp", Course in Time, needs [],
+    RateRamp, "rate_ramp", Mean in Time, needs [],
     confusers ["excess_rrw", "warmup_exponential", "unobserved_driver"]
 }
 
@@ -39,12 +41,12 @@ fn hours(drivers: &Drivers) -> Vec<f64> {
     drivers.of_time(|t| (t - middle) / 3600.0)
 }
 
-impl Course for RateRamp {
+impl MeanModel for RateRamp {
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 8
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
         Starts::linear()
     }
 
@@ -52,8 +54,8 @@ impl Course for RateRamp {
         vec![]
     }
 
-    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { free: vec![hours(drivers)], ..Parts::default() }
+    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors { columns: vec![hours(drivers)], ..Regressors::default() }
     }
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {

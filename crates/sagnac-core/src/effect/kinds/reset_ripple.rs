@@ -1,9 +1,10 @@
 //! A contribution that is periodic in the sensed angle.
 
-use super::search::{best_of, fast_level, peaks, summit};
+use super::search::{best_of, fast_level, parabolic_peak, peaks};
 use super::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 use rayon::prelude::*;
 use realfft::num_complex::Complex;
@@ -43,7 +44,7 @@ static PARAMS: [Param; 4] = [
 ];
 
 describe! {
-    ResetRipple, "reset_ripple", Course in Angle, needs [TableRate],
+    ResetRipple, "reset_ripple", Mean in Angle, needs [TableRate],
     confusers ["line", "table_harmonic", "noise_variance_rate"]
 }
 
@@ -135,13 +136,13 @@ impl Octave {
         (middles, steps): &(Vec<f64>, Vec<f64>),
         dt_s: f64,
         margin: f64,
-        look: &Look<'_>,
+        context: &SearchContext<'_>,
     ) -> Option<Octave> {
         let used = (0..middles.len()).filter(|i| steps[*i].abs() < period);
         let sample = |number: usize| {
             let angle_arcsec = middles[number];
             let turned = Complex::cis(-2.0 * PI * (Octave::MIDDLE * angle_arcsec / period).fract());
-            Sample { number, angle_arcsec, score: turned * look.score[number] }
+            Sample { number, angle_arcsec, score: turned * context.score[number] }
         };
         let samples: Vec<Sample> = used.map(sample).collect();
         let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| {
@@ -195,9 +196,9 @@ impl Octave {
     }
 }
 
-impl Course for ResetRipple {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for ResetRipple {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
@@ -207,19 +208,19 @@ impl Course for ResetRipple {
     }
 
     /// An error of the bias turns the phase along the record: biases within a few turns of the fitted one are tried.
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        let none = Starts { shapes: vec![], looked: 1.0 };
-        if n < 64 || look.score.len() != n || look.powers.len() != n {
+        let none = Starts { points: vec![], trials: 1.0 };
+        if n < 64 || context.score.len() != n || context.powers.len() != n {
             return none;
         }
         let fitted = drivers.claim.bias_deg_h;
         // The mean of a random walk is off from where it began by π²/3 times the variance of its slowest wave.
-        let deviation = PI * (look.powers[1] / (3.0 * n as f64)).sqrt();
+        let deviation = PI * (context.powers[1] / (3.0 * n as f64)).sqrt();
         let Some(angles) = sensed(fitted, drivers) else { return none };
         let (low, high) = crate::numeric::range::ends(&angles.0);
-        let level = fast_level(look);
-        let (mut period, mut found, mut looked) = (SHORTEST, vec![], 1.0);
+        let level = fast_level(context);
+        let (mut period, mut found, mut trials) = (SHORTEST, vec![], 1.0);
         while period < (high - low) / 3.0 {
             // Half turns of the phase over the record that the uncertainty of the bias amounts to.
             let uncertain = SURE * deviation * drivers.length_s() / (0.5 * period);
@@ -227,28 +228,28 @@ impl Course for ResetRipple {
             let turns = uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32;
             let per_turn = 0.5 * period / drivers.length_s();
             let margin = f64::from(turns) * 0.5 * period;
-            let Some(octave) = Octave::new(period, &angles, drivers.dt_s, margin, look) else {
+            let Some(octave) = Octave::new(period, &angles, drivers.dt_s, margin, context) else {
                 period *= 2.0;
                 continue;
             };
             let of_bias = |room: &mut Room, k: i32| {
                 let other = f64::from(k) * per_turn;
                 let (first, step) = octave.gains(other, level, room);
-                let shape = |j: usize| {
-                    let f = first + (j as f64 + summit(&room.gains, j)) * step;
+                let nonlinear_parameters = |j: usize| {
+                    let f = first + (j as f64 + parabolic_peak(&room.gains, j)) * step;
                     (room.gains[j], vec![1.0 / f, fitted + other])
                 };
-                peaks(&room.gains, 2, 6).into_iter().map(shape).collect::<Vec<_>>()
+                peaks(&room.gains, 2, 6).into_iter().map(nonlinear_parameters).collect::<Vec<_>>()
             };
             let seen: Vec<Vec<_>> =
                 (-turns..=turns).into_par_iter().map_init(Room::default, of_bias).collect();
-            looked += seen.len() as f64 * (high - low) / period * 0.5;
+            trials += seen.len() as f64 * (high - low) / period * 0.5;
             found.extend(seen.into_iter().flatten());
             period *= 2.0;
         }
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let shapes = found.into_iter().take(6).map(|(_, s)| s);
-        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked }
+        let points = found.into_iter().take(6).map(|(_, s)| s);
+        Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -257,13 +258,13 @@ impl Course for ResetRipple {
         vec![(0.5 * SHORTEST, (0.5 * range).max(SHORTEST)), (bias - WIDE, bias + WIDE)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let [period, bias] = shape else { return Parts::default() };
-        Parts { free: columns(*period, *bias, drivers), ..Parts::default() }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let [period, bias] = nonlinear_parameters else { return Regressors::default() };
+        Regressors { columns: columns(*period, *bias, drivers), ..Regressors::default() }
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        let [period, bias] = shape else { return vec![f64::NAN; 4] };
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        let [period, bias] = nonlinear_parameters else { return vec![f64::NAN; 4] };
         let (amplitude, phase) = polar(coefficients);
         vec![*period, amplitude, phase, *bias]
     }
@@ -277,8 +278,8 @@ impl Course for ResetRipple {
     }
 
     /// The period of the sensed angle, and the rates at which a sample covers less than one.
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let [period, bias] = shape else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let [period, bias] = nonlinear_parameters else { return vec![] };
         let range = extent(*bias, drivers);
         let half = (0.5 * period * period / range).min(0.25 * period);
         let fastest = period / drivers.dt_s / 3600.0;

@@ -3,7 +3,8 @@
 use super::reach::varies;
 use super::search::{best_of, shortlist};
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 use crate::numeric::range::ends;
 
@@ -36,7 +37,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("limit_deg_s", "deg/s", 1e-9, 1e6)];
 
 describe! {
-    Saturation, "saturation", Course in InputRate, needs [TableRate],
+    Saturation, "saturation", Mean in InputRate, needs [TableRate],
     confusers ["sf_nonlinearity", "sf_error"]
 }
 
@@ -49,9 +50,9 @@ fn largest(drivers: &Drivers) -> f64 {
     drivers.table_rate.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max)
 }
 
-impl Course for Saturation {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for Saturation {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
@@ -59,13 +60,13 @@ impl Course for Saturation {
     }
 
     /// Limits that fall short of the largest rate by shares from a millionth to three quarters.
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let most = largest(drivers);
         let shares = super::search::log_grid(1e-6, 0.75, 40);
         let limits = shares.into_iter().map(|s| vec![most * (1.0 - s)]);
-        let limits = shortlist(self, limits, 6, drivers, look);
-        let shapes = best_of(self, limits, 3, drivers, look);
-        Starts { shapes, looked: 10.0 }
+        let limits = shortlist(self, limits, 6, drivers, context);
+        let points = best_of(self, limits, 3, drivers, context);
+        Starts { points, trials: 10.0 }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -73,12 +74,20 @@ impl Course for Saturation {
         vec![(0.2 * most, most)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { fixed: shape.first().and_then(|l| beyond(*l, drivers)), ..Parts::default() }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors {
+            offset: nonlinear_parameters.first().and_then(|l| beyond(*l, drivers)),
+            ..Regressors::default()
+        }
     }
 
-    fn parameters(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        vec![shape.first().copied().unwrap_or(f64::NAN)]
+    fn parameters(
+        &self,
+        nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
@@ -86,8 +95,10 @@ impl Course for Saturation {
     }
 
     /// The rates beyond the limit, those of the sign of which more is cut off.
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let (Some(limit), Some(rate)) = (shape.first(), &drivers.table_rate) else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let (Some(limit), Some(rate)) = (nonlinear_parameters.first(), &drivers.table_rate) else {
+            return vec![];
+        };
         let (low, high) = ends(rate);
         let cut = |sign: f64| rate.iter().map(|r| (sign * r - limit).max(0.0)).sum::<f64>();
         let (down, up) = (cut(-1.0), cut(1.0));

@@ -1,6 +1,6 @@
 //! Cheap global searches for the shape of a course.
 
-use crate::effect::{Course, Drivers, Look, Parts};
+use crate::effect::{Drivers, MeanModel, Regressors, SearchContext};
 use crate::numeric::cosine::dct2;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
@@ -15,23 +15,23 @@ pub(super) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
 }
 
 /// Log-likelihood gain of a course for one shape: everything of it fitted, less what the columns beside it gain alone.
-pub(super) fn gain_of(parts: Parts, look: &Look<'_>) -> f64 {
-    if parts.fixed.is_none() && parts.free.is_empty() {
+pub(super) fn gain_of(parts: Regressors, context: &SearchContext<'_>) -> f64 {
+    if parts.offset.is_none() && parts.columns.is_empty() {
         return 0.0;
     }
-    let mut residual = Cow::Borrowed(look.modes);
+    let mut residual = Cow::Borrowed(context.modes);
     let mut gain = 0.0;
-    if let Some(fixed) = parts.fixed {
-        for ((r, f), p) in residual.to_mut().iter_mut().zip(dct2(&fixed)).zip(look.powers).skip(1) {
+    if let Some(fixed) = parts.offset {
+        for ((r, f), p) in residual.to_mut().iter_mut().zip(dct2(&fixed)).zip(context.powers).skip(1) {
             gain += (*r * f - 0.5 * f * f) / p;
             *r -= f;
         }
     }
     let modes = |columns: Vec<Vec<f64>>| columns.into_iter().map(|c| dct2(&c)).collect::<Vec<_>>();
-    let (mut all, beside) = (modes(parts.free), modes(parts.beside));
-    let alone = explained(&beside, look.modes, look.powers);
+    let (mut all, beside) = (modes(parts.columns), modes(parts.nuisance));
+    let alone = explained(&beside, context.modes, context.powers);
     all.extend(beside);
-    gain + explained(&all, &residual, look.powers) - alone
+    gain + explained(&all, &residual, context.powers) - alone
 }
 
 /// ½ b'A⁻¹b of columns with free coefficients.
@@ -62,15 +62,15 @@ fn explained(columns: &[Vec<f64>], residual: &[f64], powers: &[f64]) -> f64 {
 
 /// The shapes that gain most, the best first, at most `keep`; those that gain nothing are left out.
 pub(super) fn best_of(
-    course: &dyn Course,
-    shapes: impl IntoIterator<Item = Vec<f64>>,
+    course: &dyn MeanModel,
+    points: impl IntoIterator<Item = Vec<f64>>,
     keep: usize,
     drivers: &Drivers,
-    look: &Look<'_>,
+    context: &SearchContext<'_>,
 ) -> Vec<Vec<f64>> {
-    let mut rated: Vec<(f64, Vec<f64>)> = shapes
+    let mut rated: Vec<(f64, Vec<f64>)> = points
         .into_iter()
-        .map(|s| (gain_of(course.parts(&s, drivers), look), s))
+        .map(|s| (gain_of(course.regressors(&s, drivers), context), s))
         .filter(|(g, _)| *g > 0.0)
         .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -78,8 +78,8 @@ pub(super) fn best_of(
 }
 
 /// Level of the fast half of the noise, (deg/h)²; 0 where there is none.
-pub(super) fn fast_level(look: &Look<'_>) -> f64 {
-    let mut upper: Vec<f64> = look.powers.iter().skip(look.powers.len() / 2).copied().collect();
+pub(super) fn fast_level(context: &SearchContext<'_>) -> f64 {
+    let mut upper: Vec<f64> = context.powers.iter().skip(context.powers.len() / 2).copied().collect();
     if upper.is_empty() {
         return 0.0;
     }
@@ -90,24 +90,24 @@ pub(super) fn fast_level(look: &Look<'_>) -> f64 {
 /// The shapes that would gain most if the noise were white at the level of its fast half: one pass over the samples each
 /// instead of a transform. For courses of one column or of a fixed part alone.
 pub(super) fn shortlist(
-    course: &dyn Course,
-    shapes: impl IntoIterator<Item = Vec<f64>>,
+    course: &dyn MeanModel,
+    points: impl IntoIterator<Item = Vec<f64>>,
     keep: usize,
     drivers: &Drivers,
-    look: &Look<'_>,
+    context: &SearchContext<'_>,
 ) -> Vec<Vec<f64>> {
-    let level = fast_level(look);
+    let level = fast_level(context);
     if level.is_nan() || level <= 0.0 {
         return vec![];
     }
     let rough = |column: &[f64]| {
         let mean = column.iter().sum::<f64>() / column.len().max(1) as f64;
-        let both = column.iter().zip(look.score).map(|(z, w)| (z - mean) * w).sum::<f64>();
+        let both = column.iter().zip(context.score).map(|(z, w)| (z - mean) * w).sum::<f64>();
         (both, column.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / level)
     };
-    let gain = |shape: &Vec<f64>| {
-        let parts = course.parts(shape, drivers);
-        match (&parts.fixed, parts.free.first()) {
+    let gain = |nonlinear_parameters: &Vec<f64>| {
+        let parts = course.regressors(nonlinear_parameters, drivers);
+        match (&parts.offset, parts.columns.first()) {
             (Some(fixed), _) => {
                 let (both, square) = rough(fixed);
                 both - 0.5 * square
@@ -119,7 +119,7 @@ pub(super) fn shortlist(
             (None, None) => 0.0,
         }
     };
-    let mut rated: Vec<(f64, Vec<f64>)> = shapes.into_iter().map(|s| (gain(&s), s)).collect();
+    let mut rated: Vec<(f64, Vec<f64>)> = points.into_iter().map(|s| (gain(&s), s)).collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
     rated.into_iter().take(keep).map(|(_, s)| s).collect()
 }
@@ -141,7 +141,7 @@ pub(super) fn peaks(gains: &[f64], keep: usize, apart: usize) -> Vec<usize> {
 }
 
 /// Where the top of the parabola through a point of a grid and its neighbours lies, in steps from the point.
-pub(super) fn summit(gains: &[f64], at: usize) -> f64 {
+pub(super) fn parabolic_peak(gains: &[f64], at: usize) -> f64 {
     let (Some(here), Some(after)) = (gains.get(at), gains.get(at + 1)) else { return 0.0 };
     let Some(before) = at.checked_sub(1).and_then(|i| gains.get(i)) else { return 0.0 };
     let curve = before + after - 2.0 * here;
@@ -158,12 +158,12 @@ mod tests {
         let column: Vec<f64> = (0..n).map(|i| (0.2 * i as f64).sin()).collect();
         let residual: Vec<f64> = (0..n).map(|i| 0.7 * column[i] + ((i * i * 31) % 17) as f64 * 0.1).collect();
         let (modes, powers) = (dct2(&residual), vec![0.25; n]);
-        let look = Look { score: &residual, modes: &modes, powers: &powers };
-        let free = Parts { free: vec![column.clone()], ..Parts::default() };
-        assert!((gain_of(free, &look) / look.gain(&column) - 1.0).abs() < 1e-8);
+        let context = SearchContext { score: &residual, modes: &modes, powers: &powers };
+        let free = Regressors { columns: vec![column.clone()], ..Regressors::default() };
+        assert!((gain_of(free, &context) / context.gain(&column) - 1.0).abs() < 1e-8);
         assert!(
-            (fast_level(&look) - 0.25).abs() < 1e-12
-                && fast_level(&Look { score: &[], modes: &[], powers: &[] }) == 0.0
+            (fast_level(&context) - 0.25).abs() < 1e-12
+                && fast_level(&SearchContext { score: &[], modes: &[], powers: &[] }) == 0.0
         );
         // The same column fixed at its best coefficient gains the same; a column beside it takes all of it.
         let (mut zr, mut zz) = (0.0, 0.0);
@@ -172,10 +172,11 @@ mod tests {
             zz += z * z;
         }
         let fixed = Some(column.iter().map(|x| x * zr / zz).collect());
-        let gain = gain_of(Parts { fixed, ..Parts::default() }, &look);
-        assert!((gain / look.gain(&column) - 1.0).abs() < 1e-9);
-        let both = Parts { free: vec![column.clone()], beside: vec![column], ..Parts::default() };
-        assert!(gain_of(both, &look).abs() < 1e-5);
+        let gain = gain_of(Regressors { offset: fixed, ..Regressors::default() }, &context);
+        assert!((gain / context.gain(&column) - 1.0).abs() < 1e-9);
+        let both =
+            Regressors { columns: vec![column.clone()], nuisance: vec![column], ..Regressors::default() };
+        assert!(gain_of(both, &context).abs() < 1e-5);
     }
 
     #[test]
@@ -184,6 +185,6 @@ mod tests {
         assert_eq!(peaks(&[0.0, 0.0], 2, 1), Vec::<usize>::new());
         // A parabola with its top at 2.3.
         let values: Vec<f64> = (0..5).map(|i| 10.0 - (f64::from(i) - 2.3).powi(2)).collect();
-        assert!((summit(&values, 2) - 0.3).abs() < 1e-12);
+        assert!((parabolic_peak(&values, 2) - 0.3).abs() < 1e-12);
     }
 }

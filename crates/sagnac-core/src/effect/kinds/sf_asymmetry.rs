@@ -33,7 +33,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("asymmetry_ppm", "ppm", -1e5, 1e5)];
 
 describe! {
-    SfAsymmetry, "sf_asymmetry", Course in InputRate, needs [TableRate],
+    SfAsymmetry, "sf_asymmetry", Mean in InputRate, needs [TableRate],
     confusers ["sf_error", "sf_nonlinearity", "temp_linear"]
 }
 

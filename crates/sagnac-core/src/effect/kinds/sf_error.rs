@@ -33,7 +33,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("error_ppm", "ppm", -1e5, 1e5)];
 
 describe! {
-    SfError, "sf_error", Course in InputRate, needs [TableRate],
+    SfError, "sf_error", Mean in InputRate, needs [TableRate],
     confusers ["sf_asymmetry", "sf_nonlinearity", "sf_temperature", "time_offset"]
 }
 

@@ -1,7 +1,10 @@
 //! A scale factor that depends on the size of the rate.
 
 use super::reach::varies;
-use crate::effect::{Both, Course, Doc, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Doc, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
+    number,
+};
 
 pub struct SfNonlinearity;
 
@@ -35,7 +38,7 @@ static PARAMS: [Param; 2] = [
 ];
 
 describe! {
-    SfNonlinearity, "sf_nonlinearity", Course in InputRate, needs [TableRate],
+    SfNonlinearity, "sf_nonlinearity", Mean in InputRate, needs [TableRate],
     confusers ["sf_error", "saturation", "sf_asymmetry"]
 }
 
@@ -48,9 +51,9 @@ fn column(largest: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     (largest > 0.0).then(|| rate.iter().map(|r| 3600e-6 * r * (r / largest).powi(2)).collect())
 }
 
-impl Course for SfNonlinearity {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for SfNonlinearity {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     /// With a single size of rate the cubic term is a scale factor.
@@ -60,7 +63,7 @@ impl Course for SfNonlinearity {
         varies(drivers.table_rate.as_deref()) && drivers.table_rate.iter().flatten().any(between)
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
         Starts::linear()
     }
 
@@ -68,8 +71,11 @@ impl Course for SfNonlinearity {
         vec![]
     }
 
-    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { free: column(largest(drivers), drivers).into_iter().collect(), ..Parts::default() }
+    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors {
+            columns: column(largest(drivers), drivers).into_iter().collect(),
+            ..Regressors::default()
+        }
     }
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {

@@ -33,7 +33,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("coefficient_ppm_per_degC", "ppm/°C", -1e4, 1e4)];
 
 describe! {
-    SfTemperature, "sf_temperature", Course in Temperature, needs [TableRate, Temperature],
+    SfTemperature, "sf_temperature", Mean in Temperature, needs [TableRate, Temperature],
     confusers ["sf_error", "temp_linear", "sf_nonlinearity"]
 }
 

@@ -104,8 +104,8 @@ fn spectral_searches_begin_near_the_truth() {
         };
         let expected = vec![white; bins.len()];
         let observed: Vec<f64> = bins.iter().map(|b| total(&fitted, b)).collect();
-        let look =
-            SpectralLook { bins: &bins, observed: &observed, expected: &expected, lattice_arcsec: None };
+        let context =
+            SpectralContext { bins: &bins, observed: &observed, expected: &expected, grid_step_arcsec: None };
         let likelihood = |density: &dyn Fn(&ModeBin) -> f64| {
             let terms = bins.iter().zip(&observed).map(|(b, i)| {
                 let s = density(b);
@@ -114,9 +114,9 @@ fn spectral_searches_begin_near_the_truth() {
             -0.5 * terms.sum::<f64>()
         };
         let (at_truth, before) = (likelihood(&|b| total(&fitted, b)), likelihood(&|_| white));
-        let starts = spectrum.starts(&look);
-        let bounds = spectrum.bounds(&look);
-        assert!((1..=12).contains(&starts.len()) && spectrum.looked(&look) >= 1.0, "{kind}");
+        let starts = spectrum.starts(&context);
+        let bounds = spectrum.bounds(&context);
+        assert!((1..=12).contains(&starts.len()) && spectrum.trials(&context) >= 1.0, "{kind}");
         let mut best = f64::NEG_INFINITY;
         for start in &starts {
             assert_eq!(start.len(), bounds.len(), "{kind}");
@@ -127,7 +127,7 @@ fn spectral_searches_begin_near_the_truth() {
         }
         let share = (best - before) / (at_truth - before);
         assert!(share > 0.3, "{kind}: {share} of {} from {starts:?}", at_truth - before);
-        let places = spectrum.places(&fitted, &look);
+        let places = spectrum.places(&fitted, &context);
         assert!((1..=3).contains(&places.len()) && places.iter().all(|p| p.from <= p.to), "{kind}");
         assert_eq!(places[0].domain, effect.domain(), "{kind}");
     }

@@ -2,7 +2,8 @@
 
 use super::reach::{reach, varies};
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 
 pub struct SupplySensitivity;
@@ -33,7 +34,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("coefficient_deg_h_per_V", "deg/h/V", -1e5, 1e5)];
 
 describe! {
-    SupplySensitivity, "supply_sensitivity", Course in Supply, needs [Supply],
+    SupplySensitivity, "supply_sensitivity", Mean in Supply, needs [Supply],
     confusers ["temp_linear", "bias_step", "unobserved_driver"]
 }
 
@@ -44,16 +45,16 @@ fn voltage(drivers: &Drivers) -> Option<Vec<f64>> {
     Some(supply.iter().map(|u| u - mean).collect())
 }
 
-impl Course for SupplySensitivity {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for SupplySensitivity {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.supply.as_deref())
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
         Starts::linear()
     }
 
@@ -61,8 +62,8 @@ impl Course for SupplySensitivity {
         vec![]
     }
 
-    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { free: voltage(drivers).into_iter().collect(), ..Parts::default() }
+    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors { columns: voltage(drivers).into_iter().collect(), ..Regressors::default() }
     }
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {

@@ -4,7 +4,8 @@ use super::reach::varies;
 use super::search::best_of;
 use super::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 use crate::numeric::range::ends;
 
@@ -42,7 +43,7 @@ static PARAMS: [Param; 3] = [
 ];
 
 describe! {
-    TableHarmonic, "table_harmonic", Course in Angle, needs [TableAngle],
+    TableHarmonic, "table_harmonic", Mean in Angle, needs [TableAngle],
     confusers ["earth_rate_projection", "line", "reset_ripple"]
 }
 
@@ -74,32 +75,32 @@ pub(super) fn visited(drivers: &Drivers) -> Vec<Place> {
     vec![Place { domain: Domain::Angle, from, to }]
 }
 
-impl Course for TableHarmonic {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for TableHarmonic {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.table_angle.as_deref())
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let orders = (1..=8).map(|k| vec![f64::from(k)]);
-        Starts { shapes: best_of(self, orders, 3, drivers, look), looked: 8.0 }
+        Starts { points: best_of(self, orders, 3, drivers, context), trials: 8.0 }
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
         vec![(1.0, 8.0)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let free = shape.first().map_or_else(Vec::new, |k| columns(k.round(), drivers));
-        Parts { free, ..Parts::default() }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let free = nonlinear_parameters.first().map_or_else(Vec::new, |k| columns(k.round(), drivers));
+        Regressors { columns: free, ..Regressors::default() }
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
-        vec![shape.first().map_or(f64::NAN, |k| k.round()), amplitude, phase]
+        vec![nonlinear_parameters.first().map_or(f64::NAN, |k| k.round()), amplitude, phase]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -3,7 +3,9 @@
 use super::reach::{reach, varies};
 use super::search::{best_of, log_grid};
 use super::thermal::smooth;
-use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+};
 use crate::numeric::range::ends;
 
 pub struct TempHysteresis;
@@ -42,7 +44,7 @@ static PARAMS: [Param; 4] = [
 ];
 
 describe! {
-    TempHysteresis, "temp_hysteresis", Course in Temperature, needs [Temperature],
+    TempHysteresis, "temp_hysteresis", Mean in Temperature, needs [Temperature],
     confusers ["temp_rate", "thermal_lag", "temp_polynomial"]
 }
 
@@ -60,7 +62,7 @@ fn column(play: f64, first: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     Some(t.iter().map(follow).collect())
 }
 
-impl Course for TempHysteresis {
+impl MeanModel for TempHysteresis {
     /// A temperature that never turns has no second branch.
     fn applies(&self, drivers: &Drivers) -> bool {
         let Some(t) = smooth(drivers) else { return false };
@@ -73,11 +75,11 @@ impl Course for TempHysteresis {
         branches.iter().any(|b| *b > 0.49) && branches.iter().any(|b| *b < -0.49)
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let (low, high) = self.bounds(drivers)[0];
         let grid = log_grid(low, high, 12);
-        let shapes = grid.into_iter().flat_map(|r| [-1.0, 0.0, 1.0].map(|first| vec![r, first]));
-        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked: (high / low).ln().max(1.0) }
+        let points = grid.into_iter().flat_map(|r| [-1.0, 0.0, 1.0].map(|first| vec![r, first]));
+        Starts { points: best_of(self, points, 3, drivers, context), trials: (high / low).ln().max(1.0) }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -86,13 +88,13 @@ impl Course for TempHysteresis {
         vec![(0.005 * range, 0.5 * range), (-1.0, 1.0)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let [play, first] = shape else { return Parts::default() };
-        Parts { free: column(*play, *first, drivers).into_iter().collect(), ..Parts::default() }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let [play, first] = nonlinear_parameters else { return Regressors::default() };
+        Regressors { columns: column(*play, *first, drivers).into_iter().collect(), ..Regressors::default() }
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        match (shape, coefficients) {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        match (nonlinear_parameters, coefficients) {
             ([play, first], [width]) => vec![width.abs(), *play, *first, width.signum()],
             _ => vec![f64::NAN; 4],
         }
@@ -107,8 +109,8 @@ impl Course for TempHysteresis {
         Some(column(play, first, drivers)?.into_iter().map(|x| sense * width * x).collect())
     }
 
-    fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let ([play, first], [_]) = (shape, coefficients) else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let ([play, first], [_]) = (nonlinear_parameters, coefficients) else { return vec![] };
         let course = column(*play, *first, drivers).unwrap_or_default();
         reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &course)
     }

@@ -1,8 +1,8 @@
 //! A linear temperature coefficient that differs from the claimed one.
 
 use crate::effect::{
-    Both, Column, Course, Doc, Domain, Drivers, Effect, Look, Model, Nuisance, Param, Parts, Place, Starts,
-    Values, number,
+    Both, Column, Doc, Domain, Drivers, Effect, MeanModel, Model, Nuisance, Param, Place, Regressors,
+    SearchContext, Starts, Values, number,
 };
 
 pub struct TempLinear;
@@ -53,7 +53,7 @@ impl Effect for TempLinear {
         &["temp_polynomial", "temp_rate", "thermal_lag"]
     }
     fn model(&self) -> Model {
-        Model::Course(&TempLinear)
+        Model::Mean(&TempLinear)
     }
 }
 
@@ -66,7 +66,7 @@ fn reference(drivers: &Drivers) -> f64 {
     drivers.claim.temperature.map_or(20.0, |t| t.reference_degc)
 }
 
-impl Course for TempLinear {
+impl MeanModel for TempLinear {
     fn replaces(&self) -> Option<Nuisance> {
         Some(Nuisance::TemperatureCoefficient)
     }
@@ -75,7 +75,7 @@ impl Course for TempLinear {
         super::reach::varies(drivers.temperature.as_deref())
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
         Starts::linear()
     }
 
@@ -83,10 +83,10 @@ impl Course for TempLinear {
         vec![]
     }
 
-    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
+    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
         let from = reference(drivers);
         let free = drivers.temperature.iter().map(|c| c.iter().map(|t| t - from).collect()).collect();
-        Parts { free, ..Parts::default() }
+        Regressors { columns: free, ..Regressors::default() }
     }
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {

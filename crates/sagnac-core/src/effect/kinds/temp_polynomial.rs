@@ -4,7 +4,8 @@ use super::polynomial::{powers, sum};
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Nuisance, Param, Parts, Place, Starts, Values, list, number,
+    Both, Doc, Domain, Drivers, MeanModel, Nuisance, Param, Place, Regressors, SearchContext, Starts, Values,
+    list, number,
 };
 use crate::numeric::range::ends;
 
@@ -44,7 +45,7 @@ static PARAMS: [Param; 2] =
 const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
-    TempPolynomial, "temp_polynomial", Course in Temperature, needs [Temperature],
+    TempPolynomial, "temp_polynomial", Mean in Temperature, needs [Temperature],
     confusers ["temp_linear", "temp_hysteresis", "temp_rate"],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
@@ -58,11 +59,11 @@ fn scale(drivers: &Drivers) -> Option<(f64, f64)> {
 }
 
 /// The order that a shape stands for.
-fn order(shape: &[f64]) -> usize {
-    shape.first().map_or(2, |o| o.round().clamp(2.0, 4.0) as usize)
+fn order(nonlinear_parameters: &[f64]) -> usize {
+    nonlinear_parameters.first().map_or(2, |o| o.round().clamp(2.0, 4.0) as usize)
 }
 
-impl Course for TempPolynomial {
+impl MeanModel for TempPolynomial {
     fn replaces(&self) -> Option<Nuisance> {
         Some(Nuisance::TemperatureCoefficient)
     }
@@ -71,28 +72,31 @@ impl Course for TempPolynomial {
         varies(drivers.temperature.as_deref())
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         // Each further order has to be worth its parameter.
         let price = 0.5 * (drivers.samples.max(2) as f64).ln();
         let worth = |o: i32| {
-            let shape = vec![f64::from(o)];
-            (gain_of(self.parts(&shape, drivers), look) - price * f64::from(o), shape)
+            let nonlinear_parameters = vec![f64::from(o)];
+            (
+                gain_of(self.regressors(&nonlinear_parameters, drivers), context) - price * f64::from(o),
+                nonlinear_parameters,
+            )
         };
         let best = (2..=4).map(worth).max_by(|a, b| a.0.total_cmp(&b.0));
-        Starts { shapes: best.map(|(_, s)| s).into_iter().collect(), looked: 3.0 }
+        Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials: 3.0 }
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
         vec![(2.0, 4.0)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let free = drivers
             .temperature
             .as_ref()
             .zip(scale(drivers))
-            .map_or_else(Vec::new, |(t, scale)| powers(t, scale, order(shape)));
-        Parts { free, ..Parts::default() }
+            .map_or_else(Vec::new, |(t, scale)| powers(t, scale, order(nonlinear_parameters)));
+        Regressors { columns: free, ..Regressors::default() }
     }
 
     fn parameters(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
@@ -119,8 +123,8 @@ impl Course for TempPolynomial {
         Some(sum(coefficients, &powers(drivers.temperature.as_ref()?, (center, half), order)))
     }
 
-    fn places(&self, shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let contribution = sum(coefficients, &self.parts(shape, drivers).free);
+    fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let contribution = sum(coefficients, &self.regressors(nonlinear_parameters, drivers).columns);
         reach(Domain::Temperature, drivers.temperature.as_deref().unwrap_or(&[]), &contribution)
     }
 

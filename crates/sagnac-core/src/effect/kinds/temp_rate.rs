@@ -2,7 +2,9 @@
 
 use super::reach::{reach, varies};
 use super::thermal::rate;
-use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+};
 
 pub struct TempRate;
 
@@ -35,16 +37,16 @@ static PARAMS: [Param; 1] =
     [Param::reported("coefficient_deg_h_per_degC_per_min", "deg/h/(°C/min)", -1e6, 1e6)];
 
 describe! {
-    TempRate, "temp_rate", Course in TemperatureRate, needs [Temperature],
+    TempRate, "temp_rate", Mean in TemperatureRate, needs [Temperature],
     confusers ["thermal_lag", "temp_hysteresis", "temp_linear"]
 }
 
-impl Course for TempRate {
+impl MeanModel for TempRate {
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.temperature.as_deref()) && varies(rate(drivers).as_deref())
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &Look<'_>) -> Starts {
+    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
         Starts::linear()
     }
 
@@ -52,8 +54,8 @@ impl Course for TempRate {
         vec![]
     }
 
-    fn parts(&self, _shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { free: rate(drivers).into_iter().collect(), ..Parts::default() }
+    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors { columns: rate(drivers).into_iter().collect(), ..Regressors::default() }
     }
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {

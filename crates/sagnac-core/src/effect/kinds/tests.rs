@@ -2,7 +2,7 @@
 //! parameters, and searches must find what is there.
 
 use super::*;
-use crate::effect::{ClaimedMean, Column, Drivers, Earth, Look, Model, Temperature, Value, Values};
+use crate::effect::{ClaimedMean, Column, Drivers, Earth, Model, SearchContext, Temperature, Value, Values};
 use crate::numeric::cosine::dct2;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -209,9 +209,9 @@ fn true_values(effect: &dyn Effect, numbers: &[f64]) -> Values {
 }
 
 /// Gain that the truth itself would have.
-fn own_gain(course: &[f64], look: &Look<'_>) -> f64 {
+fn own_gain(course: &[f64], context: &SearchContext<'_>) -> f64 {
     let modes = dct2(course);
-    let sum = modes.iter().zip(look.modes).zip(look.powers).skip(1);
+    let sum = modes.iter().zip(context.modes).zip(context.powers).skip(1);
     sum.map(|((f, r), p)| (r * f - 0.5 * f * f) / p).sum()
 }
 
@@ -219,7 +219,7 @@ fn own_gain(course: &[f64], look: &Look<'_>) -> f64 {
 fn courses_come_back_from_their_parameters_and_searches_find_them() {
     let sigma = 0.05;
     for effect in EFFECTS {
-        let Model::Course(course) = effect.model() else { continue };
+        let Model::Mean(course) = effect.model() else { continue };
         let kind = effect.kind();
         let (drivers, numbers) = truth(kind);
         assert!(course.applies(&drivers), "{kind}");
@@ -234,40 +234,40 @@ fn courses_come_back_from_their_parameters_and_searches_find_them() {
         let score: Vec<f64> = residual.iter().map(|r| (r - mean) / power).collect();
         let mut powers = vec![power; n];
         powers[0] = f64::INFINITY;
-        let look = Look { score: &score, modes: &modes, powers: &powers };
-        let best = own_gain(&truth, &look);
+        let context = SearchContext { score: &score, modes: &modes, powers: &powers };
+        let best = own_gain(&truth, &context);
         assert!(best > 10.0, "{kind}: the truth itself gains {best}");
 
-        let starts = course.starts(&drivers, &look);
-        assert!(starts.looked >= 1.0 && (1..=4).contains(&starts.shapes.len()), "{kind}: {starts:?}");
+        let starts = course.starts(&drivers, &context);
+        assert!(starts.trials >= 1.0 && (1..=4).contains(&starts.points.len()), "{kind}: {starts:?}");
         let bounds = course.bounds(&drivers);
         let mut found = f64::NEG_INFINITY;
-        for shape in &starts.shapes {
-            assert_eq!(shape.len(), bounds.len(), "{kind}");
-            for (x, (low, high)) in shape.iter().zip(&bounds) {
+        for nonlinear_parameters in &starts.points {
+            assert_eq!(nonlinear_parameters.len(), bounds.len(), "{kind}");
+            for (x, (low, high)) in nonlinear_parameters.iter().zip(&bounds) {
                 assert!(low <= x && x <= high, "{kind}: {x} outside {low} to {high}");
             }
-            let parts = course.parts(shape, &drivers);
-            found = found.max(search::gain_of(parts.clone(), &look));
-            let columns = parts.free.iter().chain(&parts.beside).chain(&parts.fixed);
+            let parts = course.regressors(nonlinear_parameters, &drivers);
+            found = found.max(search::gain_of(parts.clone(), &context));
+            let columns = parts.columns.iter().chain(&parts.nuisance).chain(&parts.offset);
             assert!(columns.flatten().all(|x| x.is_finite()), "{kind}");
 
             // The fitted course and that of its parameters are one.
-            let coefficients: Vec<f64> = (0..parts.free.len()).map(|k| 0.7 - 0.4 * k as f64).collect();
-            let mut fitted = parts.fixed.clone().unwrap_or_else(|| vec![0.0; n]);
-            for (column, c) in parts.free.iter().zip(&coefficients) {
+            let coefficients: Vec<f64> = (0..parts.columns.len()).map(|k| 0.7 - 0.4 * k as f64).collect();
+            let mut fitted = parts.offset.clone().unwrap_or_else(|| vec![0.0; n]);
+            for (column, c) in parts.columns.iter().zip(&coefficients) {
                 fitted.iter_mut().zip(column).for_each(|(f, x)| *f += c * x);
             }
-            let numbers = course.parameters(shape, &coefficients, &drivers);
+            let numbers = course.parameters(nonlinear_parameters, &coefficients, &drivers);
             assert_eq!(numbers.len(), effect.params().len(), "{kind}");
-            let lists = course.lists(shape, &coefficients, &drivers);
+            let lists = course.lists(nonlinear_parameters, &coefficients, &drivers);
             let again = course.course(&values(*effect, &numbers, lists), &drivers).unwrap();
             let size = fitted.iter().map(|x| x.abs()).fold(1e-12, f64::max);
             let apart = fitted.iter().zip(&again).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(apart < 1e-9 * size, "{kind}: {apart} of {size}");
             assert_eq!(again.len(), n, "{kind}");
 
-            let places = course.places(shape, &coefficients, &drivers);
+            let places = course.places(nonlinear_parameters, &coefficients, &drivers);
             assert!((1..=3).contains(&places.len()), "{kind}");
             assert_eq!(places[0].domain, effect.domain(), "{kind}");
             assert!(places.iter().all(|p| p.from <= p.to), "{kind}: {places:?}");
@@ -294,7 +294,7 @@ fn nothing_applies_without_its_columns_and_nothing_breaks() {
     let nothing = Drivers { dt_s: 1.0, ..Drivers::default() };
     let short = Drivers { dt_s: 1.0, samples: 3, averaged: 1, ..Drivers::default() };
     for effect in EFFECTS {
-        let Model::Course(course) = effect.model() else { continue };
+        let Model::Mean(course) = effect.model() else { continue };
         let moved_by_a_column =
             !effect.needs().is_empty() || ["time_offset", "clock_drift"].contains(&effect.kind());
         if moved_by_a_column {
@@ -303,12 +303,12 @@ fn nothing_applies_without_its_columns_and_nothing_breaks() {
         for drivers in [&resting, &nothing, &short] {
             let zeros = vec![0.0; drivers.samples];
             let ones = vec![1.0; drivers.samples];
-            let look = Look { score: &zeros, modes: &zeros, powers: &ones };
-            for shape in course.starts(drivers, &look).shapes {
-                course.parts(&shape, drivers);
+            let context = SearchContext { score: &zeros, modes: &zeros, powers: &ones };
+            for nonlinear_parameters in course.starts(drivers, &context).points {
+                course.regressors(&nonlinear_parameters, drivers);
             }
             course.bounds(drivers);
-            course.parts(&[], drivers);
+            course.regressors(&[], drivers);
             course.parameters(&[], &[], drivers);
             course.places(&[], &[], drivers);
             assert!(course.course(&Values::new(), drivers).is_none(), "{}", effect.kind());
@@ -320,14 +320,14 @@ fn nothing_applies_without_its_columns_and_nothing_breaks() {
 fn modes_in_closed_form_are_those_of_the_course() {
     let mut closed = vec![];
     for effect in EFFECTS {
-        let Model::Course(course) = effect.model() else { continue };
+        let Model::Mean(course) = effect.model() else { continue };
         let (drivers, _) = truth(effect.kind());
-        let shape: Vec<f64> =
+        let nonlinear_parameters: Vec<f64> =
             course.bounds(&drivers).iter().map(|(low, high)| 0.6 * low + 0.4 * high).collect();
-        let Some(modes) = course.modes(&shape, &drivers) else { continue };
-        let parts = course.parts(&shape, &drivers);
-        assert!(parts.fixed.is_none() && parts.beside.is_empty() && parts.free.len() == modes.len());
-        for (modes, column) in modes.iter().zip(&parts.free) {
+        let Some(modes) = course.modes(&nonlinear_parameters, &drivers) else { continue };
+        let parts = course.regressors(&nonlinear_parameters, &drivers);
+        assert!(parts.offset.is_none() && parts.nuisance.is_empty() && parts.columns.len() == modes.len());
+        for (modes, column) in modes.iter().zip(&parts.columns) {
             let wanted = crate::numeric::cosine::dct2(column);
             let off = modes.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(off < 1e-7, "{}: {off}", effect.kind());
@@ -341,9 +341,9 @@ fn modes_in_closed_form_are_those_of_the_course() {
 fn averages_see_the_course_that_the_samples_see() {
     // Slow courses are fitted to averages, where the means of the samples must be the same course.
     for effect in EFFECTS {
-        let Model::Course(course) = effect.model() else { continue };
+        let Model::Mean(course) = effect.model() else { continue };
         let (drivers, numbers) = truth(effect.kind());
-        if course.pace() != crate::effect::Pace::Slow {
+        if course.resolution() != crate::effect::Resolution::Averaged {
             continue;
         }
         let values = true_values(*effect, &numbers);

@@ -4,7 +4,9 @@ use super::reach::varies;
 use super::search::{best_of, log_grid};
 use super::thermal::{delayed, smooth};
 use super::warmup_exponential::decay;
-use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+};
 
 pub struct ThermalLag;
 
@@ -36,7 +38,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("time_constant_s", "s", 1e-6, 1e6)];
 
 describe! {
-    ThermalLag, "thermal_lag", Course in Lag, needs [Temperature],
+    ThermalLag, "thermal_lag", Mean in Lag, needs [Temperature],
     confusers ["temp_rate", "temp_hysteresis", "warmup_exponential", "time_offset"]
 }
 
@@ -51,17 +53,17 @@ fn difference(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     Some(late.iter().zip(t).map(|(d, t)| coefficient * (d - t)).collect())
 }
 
-impl Course for ThermalLag {
+impl MeanModel for ThermalLag {
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.claim.temperature.is_some_and(|t| t.coefficient_deg_h_per_degc != 0.0)
             && varies(drivers.temperature.as_deref())
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let (low, high) = self.bounds(drivers)[0];
         let grid = log_grid(low, high, 32);
-        let shapes = best_of(self, grid.into_iter().map(|t| vec![t]), 3, drivers, look);
-        Starts { shapes, looked: (high / low).ln().max(1.0) }
+        let points = best_of(self, grid.into_iter().map(|t| vec![t]), 3, drivers, context);
+        Starts { points, trials: (high / low).ln().max(1.0) }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -70,26 +72,37 @@ impl Course for ThermalLag {
     }
 
     /// The state at the beginning is not known: what is left of it decays beside the effect.
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let Some(time) = shape.first().filter(|t| **t > 0.0) else { return Parts::default() };
-        Parts { fixed: difference(*time, drivers), free: vec![], beside: vec![decay(*time, drivers)] }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let Some(time) = nonlinear_parameters.first().filter(|t| **t > 0.0) else {
+            return Regressors::default();
+        };
+        Regressors {
+            offset: difference(*time, drivers),
+            columns: vec![],
+            nuisance: vec![decay(*time, drivers)],
+        }
     }
 
-    fn parameters(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        vec![shape.first().copied().unwrap_or(f64::NAN)]
+    fn parameters(
+        &self,
+        nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         difference(number(values, PARAMS[0].name)?, drivers)
     }
 
-    fn beside(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
         let time = number(values, PARAMS[0].name).filter(|t| *t > 0.0);
         time.map(|t| decay(t, drivers)).into_iter().collect()
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(time) = shape.first() else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(time) = nonlinear_parameters.first() else { return vec![] };
         let (from, to) = (0.5 * time, (1.5 * time).min(drivers.length_s()));
         let rates = super::thermal::rate(drivers).unwrap_or_default();
         let mut places = vec![Place { domain: Domain::Lag, from: from.min(to), to }];

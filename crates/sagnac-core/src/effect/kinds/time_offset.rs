@@ -1,9 +1,10 @@
 //! A constant delay between the gyro and the columns beside it.
 
-use super::delay::{follow, moves, parts, shifted};
+use super::delay::{follow, moves, regressors, shifted};
 use super::search::{best_of, peaks};
 use crate::effect::{
-    Both, Course, Doc, Domain, Drivers, Look, Pace, Param, Parts, Place, Starts, Values, number,
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 use crate::numeric::cosine::inverse_dct2;
 use realfft::RealFftPlanner;
@@ -38,7 +39,7 @@ static DOC: Doc = Doc {
 static PARAMS: [Param; 1] = [Param::reported("lag_s", "s", -1e4, 1e4)];
 
 describe! {
-    TimeOffset, "time_offset", Course in Lag, needs [],
+    TimeOffset, "time_offset", Mean in Lag, needs [],
     confusers ["clock_drift", "sf_error", "bandwidth_filter", "thermal_lag"]
 }
 
@@ -69,17 +70,17 @@ fn correlation(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 /// Whole lags, in samples, that gain most.
-fn whole_lags(mean: &[f64], look: &Look<'_>, most: usize) -> Vec<f64> {
+fn whole_lags(mean: &[f64], context: &SearchContext<'_>, most: usize) -> Vec<f64> {
     let n = mean.len();
     let average = mean.iter().sum::<f64>() / n as f64;
     let mean: Vec<f64> = mean.iter().map(|m| m - average).collect();
     let mut weighted = crate::numeric::cosine::dct2(&mean);
-    weighted.iter_mut().zip(look.powers).for_each(|(m, p)| *m /= p);
+    weighted.iter_mut().zip(context.powers).for_each(|(m, p)| *m /= p);
     if let Some(first) = weighted.first_mut() {
         *first = 0.0;
     }
     let weighted = inverse_dct2(&weighted);
-    let with_score = correlation(look.score, &mean);
+    let with_score = correlation(context.score, &mean);
     let with_mean = correlation(&weighted, &mean);
     let size = with_score.len();
     // Sums of the products without a delay over the samples that a lag loses.
@@ -90,7 +91,7 @@ fn whole_lags(mean: &[f64], look: &Look<'_>, most: usize) -> Vec<f64> {
         }
         sum
     };
-    let (score_sums, mean_sums) = (sums(look.score), sums(&weighted));
+    let (score_sums, mean_sums) = (sums(context.score), sums(&weighted));
     let gain = |lag: isize| {
         let lost = lag.unsigned_abs();
         let at = if lag >= 0 { lost } else { size - lost };
@@ -105,31 +106,35 @@ fn whole_lags(mean: &[f64], look: &Look<'_>, most: usize) -> Vec<f64> {
     peaks(&gains, 3, 2).into_iter().map(|i| lags[i] as f64).collect()
 }
 
-impl Course for TimeOffset {
-    fn pace(&self) -> Pace {
-        Pace::Fast
+impl MeanModel for TimeOffset {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
         moves(drivers)
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if !moves(drivers) || look.score.len() != n || look.modes.len() != n || look.powers.len() != n {
-            return Starts { shapes: vec![], looked: 1.0 };
+        if !moves(drivers)
+            || context.score.len() != n
+            || context.modes.len() != n
+            || context.powers.len() != n
+        {
+            return Starts { points: vec![], trials: 1.0 };
         }
         let (low, high) = self.bounds(drivers)[0];
         let mean = drivers.claimed_mean();
-        let residual = inverse_dct2(look.modes);
+        let residual = inverse_dct2(context.modes);
         let dt = drivers.dt_s;
-        let mut lags = whole_lags(&mean, look, (high / dt) as usize);
+        let mut lags = whole_lags(&mean, context, (high / dt) as usize);
         lags.push(0.0);
         let fine: Vec<f64> = lags.iter().map(|l| follow(&residual, &mean, n, *l, |_| 1.0, 0.05)).collect();
         lags.extend(fine);
         let inside = lags.into_iter().filter(|l| l.is_finite() && *l != 0.0);
-        let shapes = inside.map(|l| vec![(l * dt).clamp(low, high)]);
-        Starts { shapes: best_of(self, shapes, 3, drivers, look), looked: (2.0 * high / dt).max(1.0) }
+        let points = inside.map(|l| vec![(l * dt).clamp(low, high)]);
+        Starts { points: best_of(self, points, 3, drivers, context), trials: (2.0 * high / dt).max(1.0) }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
@@ -137,14 +142,19 @@ impl Course for TimeOffset {
         vec![(-most, most)]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        let Some(lag) = shape.first() else { return Parts::default() };
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let Some(lag) = nonlinear_parameters.first() else { return Regressors::default() };
         let samples = lag / drivers.dt_s;
-        parts(&drivers.claimed_mean(), |_| samples)
+        regressors(&drivers.claimed_mean(), |_| samples)
     }
 
-    fn parameters(&self, shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        vec![shape.first().copied().unwrap_or(f64::NAN)]
+    fn parameters(
+        &self,
+        nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
@@ -152,14 +162,14 @@ impl Course for TimeOffset {
         Some(shifted(&drivers.claimed_mean(), |_| samples).0)
     }
 
-    fn beside(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
-        number(values, PARAMS[0].name).map_or_else(Vec::new, |lag| self.parts(&[lag], drivers).beside)
+    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        number(values, PARAMS[0].name).map_or_else(Vec::new, |lag| self.regressors(&[lag], drivers).nuisance)
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let half = 0.5 * drivers.dt_s;
         let at = |lag: &f64| Place { domain: Domain::Lag, from: lag - half, to: lag + half };
-        shape.first().map(at).into_iter().collect()
+        nonlinear_parameters.first().map(at).into_iter().collect()
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {

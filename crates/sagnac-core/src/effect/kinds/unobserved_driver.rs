@@ -2,7 +2,7 @@
 
 use super::markov_long::starts_between;
 use crate::effect::{
-    Both, Doc, Domain, Drivers, Effect, ModeBin, Model, Param, Place, SpectralLook, Spectrum, SpectrumAct,
+    Both, Doc, Domain, Drivers, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct,
     Values, list,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
@@ -119,20 +119,20 @@ impl Spectrum for UnobservedDriver {
         bins.iter().map(one).collect()
     }
 
-    fn starts(&self, look: &SpectralLook<'_>) -> Vec<Vec<f64>> {
-        let (low, high) = self.bounds(look)[1];
-        let markov = starts_between(1.5 * low, high / 1.5, look);
+    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        let (low, high) = self.bounds(context)[1];
+        let markov = starts_between(1.5 * low, high / 1.5, context);
         markov.into_iter().map(|s| s.into_iter().rev().collect()).collect()
     }
 
-    fn bounds(&self, look: &SpectralLook<'_>) -> Vec<(f64, f64)> {
-        let (dt, n) = look.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+        let (dt, n) = context.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
         let length = n as f64 * dt;
         vec![(1e-9, 1e9), ((20.0 * dt).max(0.002 * length), 2.0 * length)]
     }
 
-    fn looked(&self, look: &SpectralLook<'_>) -> f64 {
-        let (low, high) = self.bounds(look)[1];
+    fn trials(&self, context: &SpectralContext<'_>) -> f64 {
+        let (low, high) = self.bounds(context)[1];
         (high / low).ln().max(1.0)
     }
 
@@ -149,8 +149,8 @@ impl Spectrum for UnobservedDriver {
     fn compose(&self, _fitted: &[f64], _dt_s: f64, _noise: &mut Composite) {}
 
     /// Times count from the first sample.
-    fn places(&self, fitted: &[f64], look: &SpectralLook<'_>) -> Vec<Place> {
-        let Some(bin) = look.bins.first() else { return vec![] };
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
+        let Some(bin) = context.bins.first() else { return vec![] };
         let length = bin.samples as f64 * bin.dt_s;
         let (_, time) = split(fitted);
         let from = 0.5 / length;

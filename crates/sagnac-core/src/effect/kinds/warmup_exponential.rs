@@ -2,7 +2,9 @@
 
 use super::reach::beginning_s;
 use super::search::{best_of, log_grid};
-use crate::effect::{Both, Course, Doc, Domain, Drivers, Look, Param, Parts, Place, Starts, Values, number};
+use crate::effect::{
+    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+};
 
 pub struct WarmupExponential;
 
@@ -37,7 +39,7 @@ static PARAMS: [Param; 2] = [
 ];
 
 describe! {
-    WarmupExponential, "warmup_exponential", Course in Time, needs [],
+    WarmupExponential, "warmup_exponential", Mean in Time, needs [],
     confusers ["rate_ramp", "excess_rrw", "thermal_lag", "unobserved_driver"]
 }
 
@@ -49,28 +51,31 @@ pub(super) fn decay(time_constant_s: f64, drivers: &Drivers) -> Vec<f64> {
     drivers.of_time(|t| averaged * (-(t + before) / time_constant_s).exp())
 }
 
-impl Course for WarmupExponential {
+impl MeanModel for WarmupExponential {
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 16
     }
 
-    fn starts(&self, drivers: &Drivers, look: &Look<'_>) -> Starts {
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let (low, high) = self.bounds(drivers)[0];
         let grid = log_grid(1.2 * low, high / 1.2, 32);
-        let shapes = best_of(self, grid.into_iter().map(|t| vec![t]), 3, drivers, look);
-        Starts { shapes, looked: (high / low).ln().max(1.0) }
+        let points = best_of(self, grid.into_iter().map(|t| vec![t]), 3, drivers, context);
+        Starts { points, trials: (high / low).ln().max(1.0) }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
         vec![(2.0 * drivers.dt_s, drivers.length_s().max(4.0 * drivers.dt_s))]
     }
 
-    fn parts(&self, shape: &[f64], drivers: &Drivers) -> Parts {
-        Parts { free: shape.iter().map(|t| decay(*t, drivers)).collect(), ..Parts::default() }
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors {
+            columns: nonlinear_parameters.iter().map(|t| decay(*t, drivers)).collect(),
+            ..Regressors::default()
+        }
     }
 
-    fn parameters(&self, shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        match (shape, coefficients) {
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        match (nonlinear_parameters, coefficients) {
             ([time], [amplitude]) => vec![*amplitude, *time],
             _ => vec![f64::NAN; 2],
         }
@@ -84,8 +89,8 @@ impl Course for WarmupExponential {
         Some(decay(time, drivers).into_iter().map(|x| amplitude * x).collect())
     }
 
-    fn places(&self, shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(time) = shape.first() else { return vec![] };
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(time) = nonlinear_parameters.first() else { return vec![] };
         let from = beginning_s(drivers);
         vec![Place { domain: Domain::Time, from, to: from + (3.0 * time).min(drivers.length_s()) }]
     }

@@ -1,13 +1,13 @@
 //! A course as an addition: the best of its shapes with the noise held, then everything fitted together.
 
-use super::{Candidate, Scenes, Tried, own_odds, rated};
-use crate::effect::{Course, Effect, Look, Pace, plausible};
+use super::{Candidate, SpectralDataSet, Tried, own_odds, rated};
+use crate::effect::{Effect, MeanModel, Resolution, SearchContext, plausible};
 use crate::mismatch::hypothesis::{
     CourseIn, Hypothesis, Normal, PartModes, columns, fit, kept, less_fixed, subtract,
 };
 use crate::mismatch::noise_fit::Noise;
-use crate::mismatch::scene::Scene;
-use crate::mismatch::shape::{first_steps, free_numbers, refine};
+use crate::mismatch::nonlinear_search::{first_steps, free_numbers, refine};
+use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::cosine::inverse_dct2;
 use std::borrow::Cow;
 
@@ -21,16 +21,17 @@ pub(super) struct Grounds<'a> {
 }
 
 impl<'a> Grounds<'a> {
-    pub fn new(before: &'a Tried, scenes: &'a Scenes) -> Grounds<'a> {
+    pub fn new(before: &'a Tried, spectra: &'a SpectralDataSet) -> Grounds<'a> {
         let courses = &before.hypothesis.courses;
-        let ground = |scene, pace| Ground::new(before, scene, scenes.part_modes(pace, courses));
-        let slow = scenes.slow.as_ref().map(|slow| ground(slow, Pace::Slow));
-        Grounds { full: ground(&scenes.full, Pace::Fast), slow }
+        let ground =
+            |spectral, resolution| Ground::new(before, spectral, spectra.part_modes(resolution, courses));
+        let slow = spectra.slow.as_ref().map(|slow| ground(slow, Resolution::Averaged));
+        Grounds { full: ground(&spectra.full, Resolution::FullRate), slow }
     }
 
-    pub fn of(&self, pace: Pace) -> &Ground<'a> {
-        match (pace, &self.slow) {
-            (Pace::Slow, Some(slow)) => slow,
+    pub fn of(&self, resolution: Resolution) -> &Ground<'a> {
+        match (resolution, &self.slow) {
+            (Resolution::Averaged, Some(slow)) => slow,
             _ => &self.full,
         }
     }
@@ -38,7 +39,7 @@ impl<'a> Grounds<'a> {
 
 /// A hypothesis on a scene, ready for columns to be added to it.
 pub(super) struct Ground<'a> {
-    pub scene: &'a Scene,
+    pub spectral: &'a SpectralData,
     before: &'a Tried,
     parts: Vec<PartModes>,
     powers: Vec<f64>,
@@ -50,12 +51,12 @@ pub(super) struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    fn new(before: &'a Tried, scene: &'a Scene, parts: Vec<PartModes>) -> Ground<'a> {
-        let densities = before.hypothesis.noise.densities(scene);
-        let powers = scene.powers(&densities);
-        let data = less_fixed(scene, &parts);
+    fn new(before: &'a Tried, spectral: &'a SpectralData, parts: Vec<PartModes>) -> Ground<'a> {
+        let densities = before.hypothesis.noise.densities(spectral);
+        let powers = spectral.powers(&densities);
+        let data = less_fixed(spectral, &parts);
         let mut out =
-            Ground { scene, before, parts, powers, data, residual: vec![], score: vec![], left: 0.0 };
+            Ground { spectral, before, parts, powers, data, residual: vec![], score: vec![], left: 0.0 };
         let columns = out.columns(None);
         let normal = Normal::new(&columns, &out.data, &out.powers);
         let (coefficients, _, left) = normal.solve();
@@ -71,45 +72,45 @@ impl<'a> Ground<'a> {
     }
 
     /// The columns of the hypothesis with their priors, less the nuisance that a new course replaces.
-    fn columns(&self, course: Option<&dyn Course>) -> Vec<(&[f64], f64)> {
+    fn columns(&self, course: Option<&dyn MeanModel>) -> Vec<(&[f64], f64)> {
         let replaced = course.and_then(|c| c.replaces());
-        let mut nuisances = kept(self.scene, &self.before.hypothesis.courses);
+        let mut nuisances = kept(self.spectral, &self.before.hypothesis.courses);
         nuisances.retain(|n| Some(n.nuisance) != replaced);
         columns(&nuisances, &self.parts)
     }
 
-    fn look(&self) -> Look<'_> {
-        Look { score: &self.score, modes: &self.residual, powers: &self.powers }
+    fn context(&self) -> SearchContext<'_> {
+        SearchContext { score: &self.score, modes: &self.residual, powers: &self.powers }
     }
 }
 
 /// Gains of a course for its shapes, the noise held.
 struct ShapeSearch<'a> {
-    course: &'a dyn Course,
+    course: &'a dyn MeanModel,
     ground: &'a Ground<'a>,
     columns: Vec<(&'a [f64], f64)>,
     normal: Normal,
 }
 
 impl<'a> ShapeSearch<'a> {
-    fn new(course: &'a dyn Course, ground: &'a Ground<'a>) -> ShapeSearch<'a> {
+    fn new(course: &'a dyn MeanModel, ground: &'a Ground<'a>) -> ShapeSearch<'a> {
         let columns = ground.columns(Some(course));
         let normal = Normal::new(&columns, &ground.data, &ground.powers);
         ShapeSearch { course, ground, columns, normal }
     }
 
-    fn gain(&self, shape: &[f64]) -> f64 {
+    fn gain(&self, nonlinear_parameters: &[f64]) -> f64 {
         let ground = self.ground;
-        let parts = PartModes::of_shape(self.course, shape, ground.scene);
-        if parts.fixed.is_none() && parts.free.is_empty() {
+        let parts = PartModes::of_shape(self.course, nonlinear_parameters, ground.spectral);
+        if parts.offset.is_none() && parts.columns.is_empty() {
             return f64::NEG_INFINITY;
         }
         let mut data = Cow::Borrowed(&*ground.data);
-        if let Some(fixed) = &parts.fixed {
+        if let Some(fixed) = &parts.offset {
             subtract(data.to_mut(), fixed, 1.0);
         }
-        let new: Vec<&[f64]> = parts.free.iter().chain(&parts.beside).map(Vec::as_slice).collect();
-        let normal = self.normal.with(&self.columns, &new, &data, parts.fixed.is_some(), &ground.powers);
+        let new: Vec<&[f64]> = parts.columns.iter().chain(&parts.nuisance).map(Vec::as_slice).collect();
+        let normal = self.normal.with(&self.columns, &new, &data, parts.offset.is_some(), &ground.powers);
         0.5 * (ground.left - normal.solve().2)
     }
 }
@@ -117,59 +118,66 @@ impl<'a> ShapeSearch<'a> {
 /// The best addition of a course, over its shapes.
 pub(super) fn try_course(
     effect: &'static dyn Effect,
-    course: &'static dyn Course,
+    course: &'static dyn MeanModel,
     before: &Tried,
-    scenes: &Scenes,
+    spectra: &SpectralDataSet,
     grounds: &Grounds<'_>,
 ) -> Option<Candidate> {
     let repeated = before.hypothesis.courses.iter().filter(|c| c.effect.kind() == effect.kind()).count();
-    let ground = grounds.of(course.pace());
-    let scene = ground.scene;
-    if !course.applies(&scene.drivers) || effect.needs().iter().any(|c| scene.drivers.column(*c).is_none()) {
+    let ground = grounds.of(course.resolution());
+    let spectral = ground.spectral;
+    if !course.applies(&spectral.drivers)
+        || effect.needs().iter().any(|c| spectral.drivers.column(*c).is_none())
+    {
         return None;
     }
-    let starts = course.starts(&scene.drivers, &ground.look());
+    let starts = course.starts(&spectral.drivers, &ground.context());
     // A linear course twice is the same column twice.
-    if repeated > 0 && starts.shapes.iter().all(Vec::is_empty) {
+    if repeated > 0 && starts.points.iter().all(Vec::is_empty) {
         return None;
     }
-    let bounds = course.bounds(&scene.drivers);
-    let steps = first_steps(course, &scene.drivers);
+    let bounds = course.bounds(&spectral.drivers);
+    let steps = first_steps(course, &spectral.drivers);
     let search = ShapeSearch::new(course, ground);
-    let mut rough: Vec<(Vec<f64>, f64)> = starts.shapes.iter().map(|s| (s.clone(), search.gain(s))).collect();
+    let mut rough: Vec<(Vec<f64>, f64)> = starts.points.iter().map(|s| (s.clone(), search.gain(s))).collect();
     rough.sort_by(|a, b| b.1.total_cmp(&a.1));
     let leader = rough.first()?.1;
     let promising = rough.into_iter().filter(|(_, g)| *g > 0.7 * leader).take(2);
-    let (shape, gain) = promising
+    let (nonlinear_parameters, gain) = promising
         .map(|(s, g)| if s.is_empty() { (s, g) } else { refine(&s, &bounds, &steps, 60, |x| search.gain(x)) })
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
     if gain.is_nan() || gain < 0.5 {
         return None;
     }
-    let parts = course.parts(&shape, &scene.drivers);
+    let parts = course.regressors(&nonlinear_parameters, &spectral.drivers);
     let free_shape = free_numbers(course, &bounds);
-    let parameters = before.parameters + parts.free.len() + parts.beside.len() + free_shape;
-    let odds = course.odds(&shape, &scene.drivers) + own_odds(effect);
-    let with = |shape: &[f64], noise: &Noise| {
+    let parameters = before.parameters + parts.columns.len() + parts.nuisance.len() + free_shape;
+    let odds = course.odds(&nonlinear_parameters, &spectral.drivers) + own_odds(effect);
+    let with = |nonlinear_parameters: &[f64], noise: &Noise| {
         let mut hypothesis = Hypothesis { noise: noise.clone(), ..before.hypothesis.clone() };
-        hypothesis.courses.push(CourseIn { effect, shape: shape.to_vec(), coefficients: vec![] });
+        hypothesis.courses.push(CourseIn {
+            effect,
+            nonlinear_parameters: nonlinear_parameters.to_vec(),
+            coefficients: vec![],
+        });
         hypothesis
     };
-    let mut hypothesis = with(&shape, &before.hypothesis.noise);
+    let mut hypothesis = with(&nonlinear_parameters, &before.hypothesis.noise);
     // The noise, fitted anew, can give at most about as much again.
-    let worth = 4.0 * gain - (parameters - before.parameters) as f64 * (scenes.rows as f64).ln();
-    let fit_of = |hypothesis: &mut Hypothesis| fit(hypothesis, &scenes.full);
+    let worth = 4.0 * gain - (parameters - before.parameters) as f64 * (spectra.rows as f64).ln();
+    let fit_of = |hypothesis: &mut Hypothesis| fit(hypothesis, &spectra.full);
     let mut fit = if worth > 0.0 { fit_of(&mut hypothesis) } else { before.fit.raised(gain) };
     // Noise that had to stand for the course weighed the samples wrongly while its shape was sought.
-    if !shape.is_empty() && fit.log_likelihood - before.fit.log_likelihood > STOOD_FOR * gain {
+    if !nonlinear_parameters.is_empty() && fit.log_likelihood - before.fit.log_likelihood > STOOD_FOR * gain {
         let quieter = Tried {
             hypothesis: Hypothesis { noise: hypothesis.noise.clone(), ..before.hypothesis.clone() },
             ..before.clone()
         };
-        let ground = Ground::new(&quieter, scene, ground.parts.clone());
+        let ground = Ground::new(&quieter, spectral, ground.parts.clone());
         let search = ShapeSearch::new(course, &ground);
-        let (shape, _) = refine(&shape, &bounds, &steps, 60, |x| search.gain(x));
-        let mut again = with(&shape, &hypothesis.noise);
+        let (nonlinear_parameters, _) =
+            refine(&nonlinear_parameters, &bounds, &steps, 60, |x| search.gain(x));
+        let mut again = with(&nonlinear_parameters, &hypothesis.noise);
         let better = fit_of(&mut again);
         if better.log_likelihood > fit.log_likelihood {
             (hypothesis, fit) = (again, better);
@@ -177,12 +185,15 @@ pub(super) fn try_course(
     }
     // A fit with a value that the effect cannot have (a zone that answers more than the rest) is another effect.
     let allowed = hypothesis.courses.last().is_none_or(|inside| {
-        inside.coefficients.len() != parts.free.len()
-            || plausible(effect, &course.parameters(&inside.shape, &inside.coefficients, &scene.drivers))
+        inside.coefficients.len() != parts.columns.len()
+            || plausible(
+                effect,
+                &course.parameters(&inside.nonlinear_parameters, &inside.coefficients, &spectral.drivers),
+            )
     });
     if !allowed {
         return None;
     }
     let tried = Tried { hypothesis, fit, parameters, odds: before.odds + odds };
-    Some(rated(effect, tried, before, starts.looked, scenes.rows))
+    Some(rated(effect, tried, before, starts.trials, spectra.rows))
 }

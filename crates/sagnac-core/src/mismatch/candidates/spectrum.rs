@@ -1,69 +1,69 @@
 //! A change of the noise's spectrum as an addition.
 
-use super::{Candidate, Scenes, Tried, own_odds, rated};
-use crate::effect::{Effect, SpectralLook, Spectrum, SpectrumAct};
+use super::{Candidate, SpectralDataSet, Tried, own_odds, rated};
+use crate::effect::{Effect, SpectralContext, Spectrum, SpectrumAct};
 use crate::mismatch::hypothesis::fit;
 use crate::mismatch::noise_fit::{self, Noise, SpectrumIn, base_index};
-use crate::mismatch::scene::Scene;
+use crate::mismatch::spectral_data::SpectralData;
 
 /// The best addition of a process, a filter or a coefficient set free.
 pub(super) fn try_spectrum(
     effect: &'static dyn Effect,
     spectrum: &'static dyn Spectrum,
     before: &Tried,
-    scenes: &Scenes,
+    spectra: &SpectralDataSet,
 ) -> Option<Candidate> {
-    let scene = &scenes.full;
+    let spectral = &spectra.full;
     let act = spectrum.act();
     let observed = &before.fit.observed;
-    let look = SpectralLook {
-        bins: &scene.bins,
+    let context = SpectralContext {
+        bins: &spectral.bins,
         observed,
         expected: &before.fit.densities,
-        lattice_arcsec: scenes.lattice_arcsec,
+        grid_step_arcsec: spectra.grid_step_arcsec,
     };
     if let SpectrumAct::Frees(term) = act {
         let i = base_index(term)?;
         if before.hypothesis.noise.freed[i] {
             return None;
         }
-        return free_base(effect, i, before, scenes, observed);
+        return free_base(effect, i, before, spectra, observed);
     }
     let repeated =
         before.hypothesis.noise.spectra.iter().any(|s| !s.stated && s.effect.kind() == effect.kind());
     if repeated && effect.kind() != "quasi_periodic" {
         return None;
     }
-    let starts = spectrum.starts(&look);
-    let bounds = spectrum.bounds(&look);
+    let starts = spectrum.starts(&context);
+    let bounds = spectrum.bounds(&context);
     let begun = starts.iter().map(|start| {
         let mut noise = before.hypothesis.noise.clone();
         let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
         noise.spectra.push(SpectrumIn { effect, fitted, stated: false });
         noise
     });
-    let noise = best_of(begun.collect(), scene, observed)?;
+    let noise = best_of(begun.collect(), spectral, observed)?;
     if noise.spectra.last().is_some_and(|s| !spectrum.plausible(&s.fitted)) {
         return None;
     }
     let parameters = before.parameters + noise.spectra.last().map_or(0, |s| s.fitted.len());
-    finish_spectrum(effect, noise, parameters, spectrum.looked(&look), before, scenes)
+    finish_spectrum(effect, noise, parameters, spectrum.trials(&context), before, spectra)
 }
 
 /// The best fit of several beginnings: all for a few steps, then the leading two to the end.
-fn best_of(begun: Vec<Noise>, scene: &Scene, observed: &[f64]) -> Option<Noise> {
+fn best_of(begun: Vec<Noise>, spectral: &SpectralData, observed: &[f64]) -> Option<Noise> {
     const FEW: usize = 5;
     let mut fits: Vec<(Noise, f64)> = begun
         .into_iter()
         .map(|mut noise| {
-            let value = noise_fit::fit_in(&mut noise, scene, observed, FEW).log_likelihood;
+            let value = noise_fit::fit_in(&mut noise, spectral, observed, FEW).log_likelihood;
             (noise, value)
         })
         .collect();
     fits.sort_by(|a, b| b.1.total_cmp(&a.1));
     fits.truncate(2);
     for (noise, value) in &mut fits {
-        *value = noise_fit::fit(noise, scene, observed).log_likelihood;
+        *value = noise_fit::fit(noise, spectral, observed).log_likelihood;
     }
     fits.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(noise, _)| noise)
 }
@@ -73,13 +73,13 @@ fn free_base(
     effect: &'static dyn Effect,
     i: usize,
     before: &Tried,
-    scenes: &Scenes,
+    spectra: &SpectralDataSet,
     observed: &[f64],
 ) -> Option<Candidate> {
-    let scene = &scenes.full;
+    let spectral = &spectra.full;
     let noise = &before.hypothesis.noise;
     // A coefficient claimed to be zero begins where it would be a tenth of the spectrum somewhere.
-    let smallest = scene
+    let smallest = spectral
         .units
         .iter()
         .zip(&before.fit.densities)
@@ -93,22 +93,22 @@ fn free_base(
         noise.spectra.push(SpectrumIn { effect, fitted: vec![begin * factor], stated: false });
         noise
     });
-    let noise = best_of(fits.to_vec(), scene, observed)?;
-    finish_spectrum(effect, noise, before.parameters + 1, 1.0, before, scenes)
+    let noise = best_of(fits.to_vec(), spectral, observed)?;
+    finish_spectrum(effect, noise, before.parameters + 1, 1.0, before, spectra)
 }
 
 fn finish_spectrum(
     effect: &'static dyn Effect,
     noise: Noise,
     parameters: usize,
-    looked: f64,
+    trials: f64,
     before: &Tried,
-    scenes: &Scenes,
+    spectra: &SpectralDataSet,
 ) -> Option<Candidate> {
     let mut hypothesis = before.hypothesis.clone();
     hypothesis.noise = noise;
-    let fit = fit(&mut hypothesis, &scenes.full);
+    let fit = fit(&mut hypothesis, &spectra.full);
     let odds = before.odds + own_odds(effect);
-    let candidate = rated(effect, Tried { hypothesis, fit, parameters, odds }, before, looked, scenes.rows);
+    let candidate = rated(effect, Tried { hypothesis, fit, parameters, odds }, before, trials, spectra.rows);
     (candidate.gain > 0.5).then_some(candidate)
 }

@@ -2,8 +2,8 @@
 
 use super::placed::Placed;
 use super::{Estimated, INSTANT, TWO_SIDED_95, interval};
-use crate::effect::{Course, Effect, Value};
-use crate::mismatch::candidates::{Scenes, Tried};
+use crate::effect::{Effect, MeanModel, Value};
+use crate::mismatch::candidates::{SpectralDataSet, Tried};
 use crate::mismatch::contribution::summed;
 use crate::mismatch::finding::ParameterValue;
 use crate::mismatch::instant;
@@ -19,32 +19,32 @@ fn rms(sum: &[f64]) -> f64 {
 /// As the noise at hand and the columns beside the course tell them.
 pub(super) fn of_course(
     effect: &'static dyn Effect,
-    course: &'static dyn Course,
+    course: &'static dyn MeanModel,
     index: usize,
     best: &Tried,
-    scenes: &Scenes,
+    spectra: &SpectralDataSet,
 ) -> Estimated {
-    let placed = Placed::new(course, index, best, scenes);
-    let drivers = &placed.scene.drivers;
-    let shape = &placed.inside.shape;
-    let (_, coefficients) = placed.log_likelihood(shape);
+    let placed = Placed::new(course, index, best, spectra);
+    let drivers = &placed.spectral.drivers;
+    let nonlinear_parameters = &placed.inside.nonlinear_parameters;
+    let (_, coefficients) = placed.log_likelihood(nonlinear_parameters);
     let covariance = placed.covariance(&coefficients);
     let free = placed.free_number();
     let deviation_of_shape = free.map_or(f64::NAN, |i| covariance[(i, i)].sqrt());
     let profile = placed.profile(deviation_of_shape);
-    let at = |x: f64| free.map_or_else(|| shape.clone(), |i| placed.shape_at(i, x));
-    let values = course.parameters(shape, &coefficients, drivers);
-    let parts = course.parts(shape, drivers);
-    let series = summed(&parts.free, &coefficients, parts.fixed.as_ref(), drivers.samples);
+    let at = |x: f64| free.map_or_else(|| nonlinear_parameters.clone(), |i| placed.shape_at(i, x));
+    let values = course.parameters(nonlinear_parameters, &coefficients, drivers);
+    let parts = course.regressors(nonlinear_parameters, drivers);
+    let series = summed(&parts.columns, &coefficients, parts.offset.as_ref(), drivers.samples);
     let spread = rms(&series);
     // Everything that is a function of shape and coefficients, with the rms last.
-    let all = |shape: &[f64], coefficients: &[f64]| {
-        let mut out = course.parameters(shape, coefficients, drivers);
-        let parts = course.parts(shape, drivers);
-        out.push(rms(&summed(&parts.free, coefficients, parts.fixed.as_ref(), drivers.samples)));
+    let all = |nonlinear_parameters: &[f64], coefficients: &[f64]| {
+        let mut out = course.parameters(nonlinear_parameters, coefficients, drivers);
+        let parts = course.regressors(nonlinear_parameters, drivers);
+        out.push(rms(&summed(&parts.columns, coefficients, parts.offset.as_ref(), drivers.samples)));
         out
     };
-    let deviations = propagate(shape, &coefficients, &covariance, all);
+    let deviations = propagate(nonlinear_parameters, &coefficients, &covariance, all);
     let mut out = Estimated::default();
     for (i, (param, value)) in effect.params().iter().zip(&values).enumerate() {
         if !value.is_finite() {
@@ -58,20 +58,23 @@ pub(super) fn of_course(
         let by_shape = profile.and_then(|ends| {
             let moved = ends.map(|x| course.parameters(&at(x), &coefficients, drivers).get(i).copied());
             let (Some(a), Some(b)) = (moved[0], moved[1]) else { return None };
-            let still =
-                course.parameters(shape, &coefficients.iter().map(|c| 1.01 * c).collect::<Vec<_>>(), drivers);
+            let still = course.parameters(
+                nonlinear_parameters,
+                &coefficients.iter().map(|c| 1.01 * c).collect::<Vec<_>>(),
+                drivers,
+            );
             (still.get(i) == Some(value) && a != b).then_some([a.min(b), a.max(b)])
         });
         let Some(mut ci95) = by_shape.or_else(|| interval(param, *value, deviations[i])) else { continue };
         if param.name == INSTANT
-            && let Some([from, to]) = instant::interval(placed.inside, best, scenes)
+            && let Some([from, to]) = instant::interval(placed.inside, best, spectra)
         {
             ci95 = [from.min(*value), to.max(*value)];
         }
         let unit = param.unit.to_owned();
         out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
     }
-    for (name, list) in course.lists(shape, &coefficients, drivers) {
+    for (name, list) in course.lists(nonlinear_parameters, &coefficients, drivers) {
         out.stated.insert(name.to_owned(), Value::List(list));
     }
     let deviation = deviations.last().copied().unwrap_or(f64::NAN).hypot(placed.nuisance_deviation(&series));
@@ -94,19 +97,19 @@ pub(super) fn of_course(
 
 /// Standard deviations of functions of shape and coefficients by their numerical derivatives.
 fn propagate(
-    shape: &[f64],
+    nonlinear_parameters: &[f64],
     coefficients: &[f64],
     covariance: &DMatrix<f64>,
     functions: impl Fn(&[f64], &[f64]) -> Vec<f64>,
 ) -> Vec<f64> {
-    let (d, p) = (shape.len(), shape.len() + coefficients.len());
+    let (d, p) = (nonlinear_parameters.len(), nonlinear_parameters.len() + coefficients.len());
     let mut slopes: Vec<Vec<f64>> = vec![];
     for i in 0..p {
         let deviation = covariance[(i, i)].max(0.0).sqrt();
-        let value = if i < d { shape[i] } else { coefficients[i - d] };
+        let value = if i < d { nonlinear_parameters[i] } else { coefficients[i - d] };
         let step = if deviation > 0.0 { 0.05 * deviation } else { 1e-6 * value.abs().max(1e-9) };
         let moved = |sign: f64| {
-            let (mut s, mut c) = (shape.to_vec(), coefficients.to_vec());
+            let (mut s, mut c) = (nonlinear_parameters.to_vec(), coefficients.to_vec());
             if i < d {
                 s[i] += sign * step
             } else {
@@ -117,7 +120,7 @@ fn propagate(
         let (up, down) = (moved(1.0), moved(-1.0));
         slopes.push(up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * step)).collect());
     }
-    let count = slopes.first().map_or_else(|| functions(shape, coefficients).len(), Vec::len);
+    let count = slopes.first().map_or_else(|| functions(nonlinear_parameters, coefficients).len(), Vec::len);
     (0..count)
         .map(|k| {
             let mut sum = 0.0;

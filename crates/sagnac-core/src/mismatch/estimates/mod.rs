@@ -4,7 +4,7 @@ mod course;
 mod placed;
 mod spectrum;
 
-use super::candidates::{Scenes, Tried};
+use super::candidates::{SpectralDataSet, Tried};
 use super::finding::ParameterValue;
 use super::select::Slot;
 use crate::effect::{Effect, Model, Param, Values};
@@ -42,10 +42,10 @@ fn interval(param: &Param, value: f64, deviation: f64) -> Option<[f64; 2]> {
 }
 
 /// The parameters of one effect of a fitted hypothesis.
-pub fn of(effect: &'static dyn Effect, slot: Slot, best: &Tried, scenes: &Scenes) -> Estimated {
+pub fn of(effect: &'static dyn Effect, slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Estimated {
     match (slot, effect.model()) {
-        (Slot::Course(i), Model::Course(course)) => of_course(effect, course, i, best, scenes),
-        (Slot::Spectrum(i), Model::Spectrum(_)) => of_spectrum(effect, i, best, scenes),
+        (Slot::Mean(i), Model::Mean(course)) => of_course(effect, course, i, best, spectra),
+        (Slot::Spectrum(i), Model::Spectrum(_)) => of_spectrum(effect, i, best, spectra),
         _ => Estimated::default(),
     }
 }

@@ -1,16 +1,16 @@
 //! One course among the columns of its hypothesis: how well its numbers are told, the noise held.
 
 use super::DROP_95;
-use crate::effect::Course;
-use crate::mismatch::candidates::{Scenes, Tried};
+use crate::effect::MeanModel;
+use crate::mismatch::candidates::{SpectralDataSet, Tried};
 use crate::mismatch::hypothesis::{CourseIn, Normal, PartModes, kept};
-use crate::mismatch::scene::Scene;
+use crate::mismatch::spectral_data::SpectralData;
 use nalgebra::DMatrix;
 
 /// The course, what stands beside it, and the data less what is fixed.
 pub struct Placed<'a> {
-    pub scene: &'a Scene,
-    course: &'static dyn Course,
+    pub spectral: &'a SpectralData,
+    course: &'static dyn MeanModel,
     pub inside: &'a CourseIn,
     columns: Vec<(Vec<f64>, f64)>,
     data: Vec<f64>,
@@ -19,63 +19,69 @@ pub struct Placed<'a> {
 
 impl<'a> Placed<'a> {
     /// The course at some place of a fitted hypothesis.
-    pub fn new(course: &'static dyn Course, index: usize, best: &'a Tried, scenes: &'a Scenes) -> Placed<'a> {
-        let scene = scenes.of(course.pace());
-        let powers = scene.powers(&best.hypothesis.noise.densities(scene));
-        let parts = scenes.part_modes(course.pace(), &best.hypothesis.courses);
-        let mut data = scene.modes.clone();
+    pub fn new(
+        course: &'static dyn MeanModel,
+        index: usize,
+        best: &'a Tried,
+        spectra: &'a SpectralDataSet,
+    ) -> Placed<'a> {
+        let spectral = spectra.of(course.resolution());
+        let powers = spectral.powers(&best.hypothesis.noise.densities(spectral));
+        let parts = spectra.part_modes(course.resolution(), &best.hypothesis.courses);
+        let mut data = spectral.modes.clone();
         let mut columns: Vec<(Vec<f64>, f64)> =
-            kept(scene, &best.hypothesis.courses).iter().map(|n| (n.modes.clone(), n.deviation)).collect();
+            kept(spectral, &best.hypothesis.courses).iter().map(|n| (n.modes.clone(), n.deviation)).collect();
         for (j, part) in parts.into_iter().enumerate() {
             if j == index {
                 continue;
             }
-            if let Some(fixed) = &part.fixed {
+            if let Some(fixed) = &part.offset {
                 data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
             }
-            columns.extend(part.free.into_iter().chain(part.beside).map(|c| (c, f64::INFINITY)));
+            columns.extend(part.columns.into_iter().chain(part.nuisance).map(|c| (c, f64::INFINITY)));
         }
-        Placed { scene, course, inside: &best.hypothesis.courses[index], columns, data, powers }
+        Placed { spectral, course, inside: &best.hypothesis.courses[index], columns, data, powers }
     }
 
-    fn parts(&self, shape: &[f64]) -> PartModes {
-        PartModes::of_shape(self.course, shape, self.scene)
+    fn regressors(&self, nonlinear_parameters: &[f64]) -> PartModes {
+        PartModes::of_shape(self.course, nonlinear_parameters, self.spectral)
     }
 
     /// Penalised sum of squares over −2 for a shape: the log-likelihood with the noise held.
-    pub fn log_likelihood(&self, shape: &[f64]) -> (f64, Vec<f64>) {
-        let parts = self.parts(shape);
+    pub fn log_likelihood(&self, nonlinear_parameters: &[f64]) -> (f64, Vec<f64>) {
+        let parts = self.regressors(nonlinear_parameters);
         let mut data = self.data.clone();
-        if let Some(fixed) = &parts.fixed {
+        if let Some(fixed) = &parts.offset {
             data.iter_mut().zip(fixed).for_each(|(d, f)| *d -= f);
         }
         let mut columns: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, s)| (c.as_slice(), *s)).collect();
         let others = columns.len();
-        columns.extend(parts.free.iter().chain(&parts.beside).map(|c| (c.as_slice(), f64::INFINITY)));
+        columns.extend(parts.columns.iter().chain(&parts.nuisance).map(|c| (c.as_slice(), f64::INFINITY)));
         let (coefficients, _, left) = Normal::new(&columns, &data, &self.powers).solve();
-        (-0.5 * left, coefficients[others..others + parts.free.len()].to_vec())
+        (-0.5 * left, coefficients[others..others + parts.columns.len()].to_vec())
     }
 
     /// Covariance of shape and coefficients of the free columns, everything else free beside.
     pub fn covariance(&self, coefficients: &[f64]) -> DMatrix<f64> {
-        let shape = &self.inside.shape;
-        let parts = self.parts(shape);
-        let bounds = self.course.bounds(&self.scene.drivers);
-        let slopes: Vec<Vec<f64>> = (0..shape.len()).map(|i| self.slope(i, &bounds, coefficients)).collect();
+        let nonlinear_parameters = &self.inside.nonlinear_parameters;
+        let parts = self.regressors(nonlinear_parameters);
+        let bounds = self.course.bounds(&self.spectral.drivers);
+        let slopes: Vec<Vec<f64>> =
+            (0..nonlinear_parameters.len()).map(|i| self.slope(i, &bounds, coefficients)).collect();
         // A number that is whole, or held by its bounds, has no derivative and no part in the uncertainty.
         let moves = |i: &usize| !self.course.whole().contains(i) && slopes[*i].iter().any(|s| *s != 0.0);
-        let active: Vec<usize> = (0..shape.len()).filter(moves).collect();
+        let active: Vec<usize> = (0..nonlinear_parameters.len()).filter(moves).collect();
         let columns: Vec<(&[f64], f64)> = active
             .iter()
             .map(|i| &slopes[*i])
-            .chain(&parts.free)
-            .chain(&parts.beside)
+            .chain(&parts.columns)
+            .chain(&parts.nuisance)
             .map(|c| (c.as_slice(), f64::INFINITY))
             .chain(self.columns.iter().map(|(c, s)| (c.as_slice(), *s)))
             .collect();
         let (_, covariance, _) = Normal::new(&columns, &self.data, &self.powers).solve();
-        let wanted = shape.len() + parts.free.len();
-        let places: Vec<usize> = active.iter().copied().chain(shape.len()..wanted).collect();
+        let wanted = nonlinear_parameters.len() + parts.columns.len();
+        let places: Vec<usize> = active.iter().copied().chain(nonlinear_parameters.len()..wanted).collect();
         let mut out = DMatrix::zeros(wanted, wanted);
         for (a, i) in places.iter().enumerate() {
             for (b, j) in places.iter().enumerate() {
@@ -89,18 +95,20 @@ impl<'a> Placed<'a> {
     /// of the two is the claim's own is known no better than the claim states it.
     pub fn nuisance_deviation(&self, series: &[f64]) -> f64 {
         let Some(replaced) = self.course.replaces() else { return 0.0 };
-        let Some(nuisance) = self.scene.nuisances.iter().find(|n| n.nuisance == replaced) else { return 0.0 };
-        let modes = self.scene.transform(series);
+        let Some(nuisance) = self.spectral.nuisances.iter().find(|n| n.nuisance == replaced) else {
+            return 0.0;
+        };
+        let modes = self.spectral.transform(series);
         let square: f64 = modes.iter().map(|x| x * x).sum();
         let both: f64 = modes.iter().zip(&nuisance.modes).map(|(a, b)| a * b).sum();
-        let n = self.scene.drivers.samples.max(1) as f64;
+        let n = self.spectral.drivers.samples.max(1) as f64;
         if square > 0.0 { nuisance.deviation * both.abs() / (square * n).sqrt() } else { 0.0 }
     }
 
     /// Relative standard deviation of the size of a course, were a factor on it free.
     pub fn size_deviation(&self, series: &[f64]) -> f64 {
-        let beside = self.parts(&self.inside.shape).beside;
-        let size = self.scene.transform(series);
+        let beside = self.regressors(&self.inside.nonlinear_parameters).nuisance;
+        let size = self.spectral.transform(series);
         let columns: Vec<(&[f64], f64)> = [&size]
             .into_iter()
             .chain(&beside)
@@ -113,19 +121,19 @@ impl<'a> Placed<'a> {
     /// Derivative of the course by a number of its shape, in modes.
     fn slope(&self, i: usize, bounds: &[(f64, f64)], coefficients: &[f64]) -> Vec<f64> {
         let (low, high) = bounds.get(i).copied().unwrap_or((f64::MIN, f64::MAX));
-        let shape = &self.inside.shape;
-        let step = (1e-3 * shape[i].abs()).max(1e-6 * (high - low).min(1e12)).max(1e-12);
+        let nonlinear_parameters = &self.inside.nonlinear_parameters;
+        let step = (1e-3 * nonlinear_parameters[i].abs()).max(1e-6 * (high - low).min(1e12)).max(1e-12);
         let at = |x: f64| {
-            let mut moved = shape.clone();
+            let mut moved = nonlinear_parameters.clone();
             moved[i] = x.clamp(low, high);
-            let parts = self.parts(&moved);
-            let mut sum = parts.fixed.unwrap_or_else(|| vec![0.0; self.data.len()]);
-            for (column, c) in parts.free.iter().zip(coefficients) {
+            let parts = self.regressors(&moved);
+            let mut sum = parts.offset.unwrap_or_else(|| vec![0.0; self.data.len()]);
+            for (column, c) in parts.columns.iter().zip(coefficients) {
                 sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
             }
             (sum, moved[i])
         };
-        let ((up, a), (down, b)) = (at(shape[i] + step), at(shape[i] - step));
+        let ((up, a), (down, b)) = (at(nonlinear_parameters[i] + step), at(nonlinear_parameters[i] - step));
         if a <= b {
             return vec![0.0; up.len()];
         }
@@ -134,27 +142,28 @@ impl<'a> Placed<'a> {
 
     /// Position of the only number of a shape that is not whole.
     pub fn free_number(&self) -> Option<usize> {
-        let mut free = (0..self.inside.shape.len()).filter(|i| !self.course.whole().contains(i));
+        let mut free =
+            (0..self.inside.nonlinear_parameters.len()).filter(|i| !self.course.whole().contains(i));
         free.next().filter(|_| free.next().is_none())
     }
 
     /// The shape with that number in its place.
     pub fn shape_at(&self, i: usize, x: f64) -> Vec<f64> {
-        let mut shape = self.inside.shape.clone();
-        shape[i] = x;
-        shape
+        let mut nonlinear_parameters = self.inside.nonlinear_parameters.clone();
+        nonlinear_parameters[i] = x;
+        nonlinear_parameters
     }
 
     /// Ends of the interval of the only number of a shape that is not whole, at which the profile log-likelihood has
     /// dropped.
     pub fn profile(&self, deviation: f64) -> Option<[f64; 2]> {
         let i = self.free_number()?;
-        let at = self.inside.shape[i];
-        let (low, high) = *self.course.bounds(&self.scene.drivers).get(i)?;
+        let at = self.inside.nonlinear_parameters[i];
+        let (low, high) = *self.course.bounds(&self.spectral.drivers).get(i)?;
         if high <= low {
             return None;
         }
-        let top = self.log_likelihood(&self.inside.shape).0;
+        let top = self.log_likelihood(&self.inside.nonlinear_parameters).0;
         let drop = |x: f64| top - self.log_likelihood(&self.shape_at(i, x)).0;
         let first = if deviation.is_finite() && deviation > 0.0 { deviation } else { 0.01 * (high - low) };
         let side = |sign: f64| {

@@ -2,7 +2,7 @@
 
 use super::{Estimated, TWO_SIDED_95, interval};
 use crate::effect::{Effect, Model, SpectrumAct, Value};
-use crate::mismatch::candidates::{Scenes, Tried};
+use crate::mismatch::candidates::{SpectralDataSet, Tried};
 use crate::mismatch::finding::ParameterValue;
 use crate::mismatch::noise_fit::{Which, base_index};
 use crate::mismatch::process;
@@ -15,9 +15,9 @@ pub(super) fn of_spectrum(
     effect: &'static dyn Effect,
     index: usize,
     best: &Tried,
-    scenes: &Scenes,
+    spectra: &SpectralDataSet,
 ) -> Estimated {
-    let scene = &scenes.full;
+    let spectral = &spectra.full;
     let Model::Spectrum(spectrum) = effect.model() else { return Estimated::default() };
     let noise = &best.hypothesis.noise;
     let part = &noise.spectra[index];
@@ -34,10 +34,10 @@ pub(super) fn of_spectrum(
         (Some(a), Some(b)) => best.fit.noise.covariance[(a, b)],
         _ => 0.0,
     };
-    let residual = &best.residual(scenes);
+    let residual = &best.residual(spectra);
     let all = |fitted: &[f64]| {
         let mut out = spectrum.parameters(fitted);
-        out.push(process::added_rms(noise, index, fitted, scene, residual).0);
+        out.push(process::added_rms(noise, index, fitted, spectral, residual).0);
         out
     };
     let values = all(&part.fitted);
@@ -74,7 +74,7 @@ pub(super) fn of_spectrum(
             out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
         }
     }
-    let chance = process::added_rms(noise, index, &part.fitted, scene, residual).1;
+    let chance = process::added_rms(noise, index, &part.fitted, spectral, residual).1;
     let (spread, last) = (values[values.len() - 1], deviation(values.len() - 1).hypot(chance));
     if spread > 0.0 && spread.is_finite() {
         let factor = (TWO_SIDED_95 * last / spread).min(30.0).exp();

@@ -8,7 +8,7 @@ use crate::message::Note;
 
 /// What is drawn over time.
 #[derive(Debug, Clone, Copy)]
-pub struct Course<'a> {
+pub struct TimeSeries<'a> {
     /// `time_s`, s.
     pub time_s: &'a [f64],
     /// Recording less the mean of the claim, deg/h.
@@ -22,7 +22,7 @@ pub struct Course<'a> {
 }
 
 /// Draws the residual with the contribution, and under it what is left.
-pub fn time_course(course: &Course<'_>) -> Figure {
+pub fn time_course(course: &TimeSeries<'_>) -> Figure {
     let (before, group) = over_time(course.time_s, course.before);
     let span = |domains: &'static [Domain]| shaded(course.places, domains).collect::<Vec<Layer>>();
     let mut upper = span(&[Domain::Time, Domain::Timestamps]);
@@ -123,7 +123,7 @@ mod tests {
         let before: Vec<f64> = step.iter().map(|s| s + 1.0).collect();
         let after = vec![1.0; 5000];
         let place = Place { domain: Domain::Time, from: 245.0, to: 255.0 };
-        let figure = time_course(&Course {
+        let figure = time_course(&TimeSeries {
             time_s: &time,
             before: &before,
             after: Some(&after),

@@ -9,7 +9,7 @@ mod join;
 mod spectrum;
 
 pub use against::{Against, against};
-pub use course::{Course, local_level, time_course};
+pub use course::{TimeSeries, local_level, time_course};
 pub use spectrum::{Spectra, spectrum};
 
 use crate::effect::{Domain, Place};

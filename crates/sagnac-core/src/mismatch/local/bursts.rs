@@ -52,7 +52,7 @@ pub struct Bursts {
 struct Scan {
     sums: Vec<f64>,
     others: f64,
-    looks: f64,
+    trials: f64,
 }
 
 impl Scan {
@@ -89,11 +89,11 @@ pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Bursts> {
     }
     let (squares, others) = squares(problem, &flat);
     let lengths = lengths(longest);
-    let looks = lengths.iter().map(|m| ((n - m) / (m / 4).max(1) + 1) as f64).sum();
-    let scan = Scan { sums: cumulated(squares.iter().copied()), others, looks };
+    let trials = lengths.iter().map(|m| ((n - m) / (m / 4).max(1) + 1) as f64).sum();
+    let scan = Scan { sums: cumulated(squares.iter().copied()), others, trials };
     let mut windows: Vec<(f64, usize, usize)> = vec![];
     for &m in &lengths {
-        let bound = scan.bound(m, 0.5 / looks);
+        let bound = scan.bound(m, 0.5 / trials);
         let mut first = 0;
         while first + m <= n {
             if scan.ratio(first, m) > bound {
@@ -134,7 +134,7 @@ pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Bursts> {
 fn missed(scan: &Scan, groups: &[(usize, usize)]) -> usize {
     let found = groups.len() as f64;
     // What chance may hold of as many looks at the share of false groups that is admitted.
-    let smallest = (scan.looks / (FALSE_SHARE * found.max(1.0))).ln().max(1.0);
+    let smallest = (scan.trials / (FALSE_SHARE * found.max(1.0))).ln().max(1.0);
     // Gain goes with the square of the size.
     groups.iter().filter(|g| scan.gain(g.0, g.1) < 4.0 * smallest).count()
 }
@@ -333,7 +333,7 @@ fn unmoved(problem: &Problem, mut groups: Vec<(usize, usize)>) -> Vec<(usize, us
 
 /// The groups of which few are false, by time, and the probability of as many as good.
 fn admitted(scan: &Scan, groups: Vec<(usize, usize)>) -> (Vec<(usize, usize)>, f64) {
-    let p_of = |g: &(usize, usize)| (scan.p_value(g.1, scan.ratio(g.0, g.1)) * scan.looks, *g);
+    let p_of = |g: &(usize, usize)| (scan.p_value(g.1, scan.ratio(g.0, g.1)) * scan.trials, *g);
     let mut rated: Vec<(f64, (usize, usize))> = groups.iter().map(p_of).collect();
     rated.sort_by(|a, b| a.0.total_cmp(&b.0));
     let count = (1..=rated.len()).rev().find(|j| rated[j - 1].0 <= FALSE_SHARE * *j as f64).unwrap_or(0);

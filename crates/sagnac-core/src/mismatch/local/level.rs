@@ -63,7 +63,7 @@ pub(super) struct Found {
     pub law: Law,
     pub profile: Vec<f64>,
     pub gain: f64,
-    pub looked: f64,
+    pub trials: f64,
     /// Coefficients that a gain of nothing comes from.
     pub free: usize,
     pub parameters: usize,
@@ -116,7 +116,7 @@ fn rated(mut found: Found, flat: &Flat, indices: &[usize]) -> Option<Level> {
     // which differences do not have.
     let gain = found.gain.min(on_white).min(on_differences);
     let tail = chi_square_tail(2.0 * gain.max(0.0) / found.dispersion, found.free as f64);
-    let p_value = (LAWS * found.looked * tail).min(1.0);
+    let p_value = (LAWS * found.trials * tail).min(1.0);
     let keep = gain.is_finite() && gain > 0.5 * found.free as f64 && p_value < 0.05;
     keep.then_some(Level {
         kind: found.kind,
@@ -184,7 +184,7 @@ fn over_rate(rate: &[f64], flat: &Flat, indices: &[usize]) -> Option<Found> {
         law: Law::Rate { ratio, exponent },
         profile: rate.iter().map(|r| power(*r).sqrt()).collect(),
         gain,
-        looked: 2.0,
+        trials: 2.0,
         free: 1,
         parameters: 1,
         dispersion: overdispersion(&groups, &logs, 2),
@@ -226,7 +226,7 @@ fn over_column(column: Column, values: &[f64], flat: &Flat, indices: &[usize]) -
         profile: values.iter().map(|v| between(&knots, *v)).collect(),
         law: Law::Column(column, thinned(&knots)),
         gain: best.gain,
-        looked: 2.0,
+        trials: 2.0,
         free,
         parameters: free,
         dispersion: overdispersion(&groups, &best.log_squares, free + 1),

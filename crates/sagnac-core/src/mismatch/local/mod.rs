@@ -54,7 +54,7 @@ pub struct Flat {
 impl Flat {
     /// Of the fit of a hypothesis.
     pub fn of(tried: &Tried, problem: &Problem) -> Flat {
-        let white = White::of(tried, &problem.scenes);
+        let white = White::of(tried, &problem.spectra);
         let slow = running_median(&white.series, SLOW);
         let fast: Vec<f64> = white.series.iter().zip(&slow).map(|(e, s)| e - s).collect();
         // Few large values must not be what the spectrum is levelled by.
@@ -147,7 +147,7 @@ fn varies(values: &[f64]) -> bool {
 
 /// Step of the lattice of the values in the unit of the flat residual; 0 where there is none.
 fn lattice_step(problem: &Problem, flat: &Flat) -> f64 {
-    problem.scenes.lattice_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s * flat.per_deg_h)
+    problem.spectra.grid_step_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s * flat.per_deg_h)
 }
 
 #[cfg(test)]

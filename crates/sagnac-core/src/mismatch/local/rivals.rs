@@ -1,6 +1,6 @@
 //! What explains a record of two levels by its spectrum alone.
 
-use crate::effect::{EFFECTS, Model, SpectralLook, SpectrumAct};
+use crate::effect::{EFFECTS, Model, SpectralContext, SpectrumAct};
 use crate::mismatch::candidates::Tried;
 use crate::mismatch::departures::White;
 use crate::mismatch::noise_fit::{self, Noise, SpectrumIn};
@@ -8,14 +8,14 @@ use crate::mismatch::problem::Problem;
 
 /// Gain of the best spectral effect of some kinds, and the noise beside it.
 pub fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, Noise)> {
-    let scene = &problem.scenes.full;
+    let spectral = &problem.spectra.full;
     let observed = &tried.fit.observed;
     let before = tried.fit.noise.log_likelihood;
-    let look = SpectralLook {
-        bins: &scene.bins,
+    let context = SpectralContext {
+        bins: &spectral.bins,
         observed,
         expected: &tried.fit.densities,
-        lattice_arcsec: problem.scenes.lattice_arcsec,
+        grid_step_arcsec: problem.spectra.grid_step_arcsec,
     };
     let mut best: Option<(f64, Noise)> = None;
     for effect in EFFECTS.iter().filter(|e| kinds.contains(&e.kind())) {
@@ -23,12 +23,12 @@ pub fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, N
         if spectrum.act() != SpectrumAct::Adds {
             continue;
         }
-        let bounds = spectrum.bounds(&look);
-        for start in spectrum.starts(&look) {
+        let bounds = spectrum.bounds(&context);
+        for start in spectrum.starts(&context) {
             let mut noise = tried.hypothesis.noise.clone();
             let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
             noise.spectra.push(SpectrumIn { effect: *effect, fitted, stated: false });
-            let gain = noise_fit::fit(&mut noise, scene, observed).log_likelihood - before;
+            let gain = noise_fit::fit(&mut noise, spectral, observed).log_likelihood - before;
             if best.as_ref().is_none_or(|b| gain > b.0) {
                 noise.spectra.pop();
                 best = Some((gain, noise));
@@ -40,7 +40,7 @@ pub fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, N
 
 /// Gain of flicker or random walk set free.
 pub fn freed(problem: &Problem, tried: &Tried) -> f64 {
-    let scene = &problem.scenes.full;
+    let spectral = &problem.spectra.full;
     let observed = &tried.fit.observed;
     let mut best = 0.0f64;
     for i in 1..3 {
@@ -49,7 +49,7 @@ pub fn freed(problem: &Problem, tried: &Tried) -> f64 {
             let beside = (noise.base[0] * 0.01).max(1e-9);
             noise.base[i] = noise.base[i].max(beside) * level;
             noise.freed[i] = true;
-            let fitted = noise_fit::fit(&mut noise, scene, observed).log_likelihood;
+            let fitted = noise_fit::fit(&mut noise, spectral, observed).log_likelihood;
             best = best.max(fitted - tried.fit.noise.log_likelihood);
         }
     }
@@ -59,6 +59,6 @@ pub fn freed(problem: &Problem, tried: &Tried) -> f64 {
 /// Gain of the best line: half the power of the whitened residual in a pair of neighbouring modes, which hold nearly
 /// all of a line.
 pub fn line(problem: &Problem, tried: &Tried) -> f64 {
-    let white = White::of(tried, &problem.scenes);
+    let white = White::of(tried, &problem.spectra);
     white.modes.windows(4).map(|w| 0.5 * w.iter().map(|u| u * u).sum::<f64>()).fold(0.0, f64::max)
 }

@@ -92,19 +92,20 @@ struct Judged {
 
 impl<'a> Ground<'a> {
     fn new(problem: &'a Problem, tried: &'a Tried, noise: Noise) -> Ground<'a> {
-        let scene = &problem.scenes.full;
+        let spectral = &problem.spectra.full;
         let courses = &tried.hypothesis.courses;
         let mut columns: Vec<(Vec<f64>, f64)> =
-            kept(scene, courses).into_iter().map(|n| (n.modes.clone(), n.deviation)).collect();
-        for part in part_modes(scene, courses) {
-            columns.extend(part.free.into_iter().chain(part.beside).map(|c| (c, f64::INFINITY)));
+            kept(spectral, courses).into_iter().map(|n| (n.modes.clone(), n.deviation)).collect();
+        for part in part_modes(spectral, courses) {
+            columns.extend(part.columns.into_iter().chain(part.nuisance).map(|c| (c, f64::INFINITY)));
         }
-        let powers = scene.powers(&noise.densities(scene));
-        let modes = tried.residual(&problem.scenes);
+        let powers = spectral.powers(&noise.densities(spectral));
+        let modes = tried.residual(&problem.spectra);
         let mut high: Vec<f64> = powers[powers.len() / 2..].to_vec();
         let white = super::median(&mut high);
         let slow = |p: &f64| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 };
-        let without = noise_fit::whittle(scene, &tried.fit.observed, &noise.densities(scene)) + noise.prior();
+        let without =
+            noise_fit::whittle(spectral, &tried.fit.observed, &noise.densities(spectral)) + noise.prior();
         Ground {
             problem,
             residual: inverse_dct2(&modes),
@@ -148,7 +149,7 @@ impl<'a> Ground<'a> {
     /// Amplitude of a known path, and its deviation.
     fn amplitude(&self, path: &[bool]) -> (f64, f64) {
         let series: Vec<f64> = path.iter().map(|p| f64::from(u8::from(*p))).collect();
-        let modes = self.problem.scenes.full.transform(&series);
+        let modes = self.problem.spectra.full.transform(&series);
         let old: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, d)| (c.as_slice(), *d)).collect();
         let before = Normal::new(&old, &self.modes, &self.powers);
         let (c, covariance, _) = before.with(&old, &[&modes], &self.modes, false, &self.powers).solve();
@@ -286,9 +287,9 @@ pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
     let [chance, p_value] = [log_p, log_p.max(rival_gain - best.gain)].map(|p| p.min(0.0).exp().max(1e-300));
     let told = Telegraph { chance, p_value, ..ground.told(best, rival_gain) };
     // Two neighbouring steps of a coarse lattice are two levels as well.
-    let step = problem.scenes.lattice_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s);
-    let lattice = step > super::COARSE * ground.white.sqrt() && told.amplitude_deg_h < 1.5 * step;
-    (!lattice).then_some(told)
+    let step = problem.spectra.grid_step_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s);
+    let quantization_grid = step > super::COARSE * ground.white.sqrt() && told.amplitude_deg_h < 1.5 * step;
+    (!quantization_grid).then_some(told)
 }
 
 impl Ground<'_> {

@@ -77,7 +77,7 @@ pub(super) fn over_time(problem: &Problem, flat: &Flat, indices: &[usize]) -> Op
     let fits = forms.into_iter().filter_map(|form| Some((form, fit(&groups, &form.columns(j))?)));
     let score = |form: &Form, f: &GammaFit| 2.0 * f.gain - form.counts(j).1 as f64 * rows;
     let (form, best) = fits.max_by(|a, b| score(&a.0, &a.1).total_cmp(&score(&b.0, &b.1)))?;
-    let (free, parameters, looked) = form.counts(j);
+    let (free, parameters, trials) = form.counts(j);
     let middle =
         |g: usize| problem.drivers.time_s(0) + ((g as f64 + 0.5) * size as f64 - 0.5) * problem.drivers.dt_s;
     let edge = |g: usize| problem.drivers.time_s(0) + (g as f64 * size as f64 - 0.5) * problem.drivers.dt_s;
@@ -114,7 +114,7 @@ pub(super) fn over_time(problem: &Problem, flat: &Flat, indices: &[usize]) -> Op
             knots
         }),
         gain: best.gain,
-        looked,
+        trials,
         free,
         parameters,
         dispersion: overdispersion(&groups, &best.log_squares, free + 1),

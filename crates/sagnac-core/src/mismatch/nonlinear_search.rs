@@ -1,19 +1,19 @@
 //! The local search of the numbers that a course is not linear in.
 
-use crate::effect::{Course, Drivers};
+use crate::effect::{Drivers, MeanModel};
 
 /// Gain that steps to either side must lose for smaller ones to be worth taking: what is left lies within a hundredth of
 /// a standard deviation then.
 const FLAT: f64 = 1e-4;
 
 /// Numbers of a shape that are searched over. One that is whole has few values: it counts in the p-value alone.
-pub fn free_numbers(course: &dyn Course, bounds: &[(f64, f64)]) -> usize {
+pub fn free_numbers(course: &dyn MeanModel, bounds: &[(f64, f64)]) -> usize {
     let free = |(i, (low, high)): (usize, &(f64, f64))| high > low && !course.whole().contains(&i);
     bounds.iter().enumerate().filter(|b| free(*b)).count()
 }
 
 /// First steps of a local search: none where a number is whole.
-pub fn first_steps(course: &dyn Course, drivers: &Drivers) -> Vec<Option<f64>> {
+pub fn first_steps(course: &dyn MeanModel, drivers: &Drivers) -> Vec<Option<f64>> {
     let steps = course.steps(drivers);
     let numbers = course.bounds(drivers).len();
     (0..numbers)

@@ -9,7 +9,7 @@ const LOOKED: usize = 4096;
 
 /// A lattice that values lie on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lattice {
+pub struct QuantizationGrid {
     /// Its step as the angle increment of a sample, arcsec.
     pub increment_arcsec: f64,
     /// What the digits that the file writes leave open of it, either way, arcsec.
@@ -18,21 +18,21 @@ pub struct Lattice {
     pub digits_in_step: f64,
 }
 
-impl Lattice {
+impl QuantizationGrid {
     /// Least variance of the rounding over that of the noise of a sample from which the lattice is more than digits.
     const COARSE: f64 = 0.01;
 
     /// Log-likelihood of so many values on the lattice over values that could be any which the file can write; nothing for a
     /// lattice so fine beside white noise of some deviation that a simulation may leave it out.
     pub fn gain(&self, rows: usize, noise_arcsec: f64) -> f64 {
-        let fine = self.increment_arcsec.powi(2) / 12.0 < Lattice::COARSE * noise_arcsec.powi(2);
+        let fine = self.increment_arcsec.powi(2) / 12.0 < QuantizationGrid::COARSE * noise_arcsec.powi(2);
         if fine { 0.0 } else { rows as f64 * self.digits_in_step.max(1.0).ln() }
     }
 }
 
 /// The lattice that the values lie on. `None` where there is none, or where it is no more than the last digit that the
 /// file writes.
-pub fn of(regular: &Regular) -> Option<Lattice> {
+pub fn of(regular: &Regular) -> Option<QuantizationGrid> {
     let values: Vec<f64> = regular
         .rate
         .iter()
@@ -86,7 +86,11 @@ pub fn of(regular: &Regular) -> Option<Lattice> {
     let digit = last_digit(large.iter()).unwrap_or(1e-15 * largest);
     let (step, open) = by_levels(&values, step, digit);
     let dt_s = regular.grid.dt_s;
-    Some(Lattice { increment_arcsec: step * dt_s, open_arcsec: open * dt_s, digits_in_step: step / digit })
+    Some(QuantizationGrid {
+        increment_arcsec: step * dt_s,
+        open_arcsec: open * dt_s,
+        digits_in_step: step / digit,
+    })
 }
 
 /// The step as the slope of the levels that occur, each of which was rounded once to the last digit of the file, and what

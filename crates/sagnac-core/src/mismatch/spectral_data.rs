@@ -34,7 +34,7 @@ pub struct NuisanceColumn {
 
 /// A recording at one resolution.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub struct SpectralData {
     /// Columns and claim on this grid.
     pub drivers: Arc<Drivers>,
     /// Cosine modes of what was observed less the claimed mean, deg/h, block after block. Mode 0 of each, which the
@@ -97,13 +97,17 @@ fn unit_densities(bin: &ModeBin, averaged: usize) -> [f64; 3] {
     })
 }
 
-impl Scene {
+impl SpectralData {
     /// The scene of a whole residual, deg/h, on the grid of the drivers. `deviations` are those of the nuisances with a
     /// column.
-    pub fn new(drivers: impl Into<Arc<Drivers>>, residual: &[f64], deviations: &[(Nuisance, f64)]) -> Scene {
+    pub fn new(
+        drivers: impl Into<Arc<Drivers>>,
+        residual: &[f64],
+        deviations: &[(Nuisance, f64)],
+    ) -> SpectralData {
         let drivers = drivers.into();
         let length = drivers.samples;
-        Scene::of_blocks(drivers, residual, deviations, vec![0], length)
+        SpectralData::of_blocks(drivers, residual, deviations, vec![0], length)
     }
 
     /// The scene of blocks of `length` samples.
@@ -113,7 +117,7 @@ impl Scene {
         deviations: &[(Nuisance, f64)],
         blocks: Vec<usize>,
         length: usize,
-    ) -> Scene {
+    ) -> SpectralData {
         let modes = transform(residual, &blocks, length);
         let bins = bins(length, drivers.dt_s, &[]);
         let units = bins.iter().map(|bin| unit_densities(bin, drivers.averaged)).collect();
@@ -127,14 +131,14 @@ impl Scene {
                 Some(NuisanceColumn { nuisance: *nuisance, modes, block_means, deviation: *deviation })
             })
             .collect();
-        Scene { drivers, modes, blocks, length, bins, units, nuisances }
+        SpectralData { drivers, modes, blocks, length, bins, units, nuisances }
     }
 
     /// The same with the columns that effects of the claim leave free, as a state before the record.
-    pub fn with_states(mut self, claim: &Claim) -> Scene {
+    pub fn with_states(mut self, claim: &Claim) -> SpectralData {
         for stated in &claim.effects {
-            let Model::Course(course) = stated.effect.model() else { continue };
-            for column in course.beside(&stated.values, &self.drivers) {
+            let Model::Mean(course) = stated.effect.model() else { continue };
+            for column in course.nuisance_columns(&stated.values, &self.drivers) {
                 self.nuisances.push(NuisanceColumn {
                     nuisance: Nuisance::InitialState,
                     modes: self.transform(&column),
@@ -147,14 +151,14 @@ impl Scene {
     }
 
     /// The same after the ends of the record were drawn.
-    pub fn with_even_ends(mut self, even: bool) -> Scene {
+    pub fn with_even_ends(mut self, even: bool) -> SpectralData {
         self.bins.iter_mut().for_each(|b| b.even_ends = even);
         self
     }
 
     /// The same behind filters for which the ends of the record were drawn: without the modes that they leave next to
     /// nothing, and with narrow bins beside their zeros.
-    pub fn behind(mut self, filters: &[SpectrumIn]) -> Scene {
+    pub fn behind(mut self, filters: &[SpectrumIn]) -> SpectralData {
         let spectra = || {
             filters.iter().filter_map(|f| match f.effect.model() {
                 Model::Spectrum(s) => Some((s, &f.fitted)),
@@ -175,13 +179,21 @@ impl Scene {
     }
 
     /// The bins of a record so many times as long at the same rate, without a record and without columns.
-    pub fn longer(&self, times: f64) -> Scene {
+    pub fn longer(&self, times: f64) -> SpectralData {
         let samples = (self.length as f64 * times).round() as usize;
         let drivers = Drivers { samples, ..self.drivers.bare() };
         let bins = bins(samples, drivers.dt_s, &[]);
         let units = bins.iter().map(|bin| unit_densities(bin, drivers.averaged)).collect();
         let drivers = Arc::new(drivers);
-        Scene { drivers, modes: vec![], blocks: vec![0], length: samples, bins, units, nuisances: vec![] }
+        SpectralData {
+            drivers,
+            modes: vec![],
+            blocks: vec![0],
+            length: samples,
+            bins,
+            units,
+            nuisances: vec![],
+        }
     }
 
     /// True where one block holds all samples.
