@@ -6,11 +6,11 @@ use statrs::function::gamma::ln_gamma;
 /// Probabilities below this are computed by their logarithms.
 const SMALL: f64 = 1e-290;
 /// The least probability that is told.
-const LEAST: f64 = 1e-300;
+const MIN_PROBABILITY: f64 = 1e-300;
 
 /// Probability that χ² with `dof` degrees of freedom exceeds `value`; 1e-300 stands for less.
 pub fn chi_square_tail(value: f64, dof: f64) -> f64 {
-    ln_chi_square_tail(value, dof).exp().clamp(LEAST, 1.0)
+    ln_chi_square_tail(value, dof).exp().clamp(MIN_PROBABILITY, 1.0)
 }
 
 /// Its natural logarithm, without a floor.
@@ -62,7 +62,7 @@ fn ln_chi_square_below(value: f64, dof: f64) -> f64 {
 
 /// Probability that χ² with `dof` degrees of freedom lies as far from its middle as `value`, on either side.
 pub fn chi_square_two_sided(value: f64, dof: f64) -> f64 {
-    ln_chi_square_two_sided(value, dof).exp().clamp(LEAST, 1.0)
+    ln_chi_square_two_sided(value, dof).exp().clamp(MIN_PROBABILITY, 1.0)
 }
 
 /// Its natural logarithm, without a floor.
@@ -78,7 +78,7 @@ pub fn ln_chi_square_two_sided(value: f64, dof: f64) -> f64 {
 
 /// Probability that a standard normal number is as far from 0 as `z`.
 pub fn normal_two_sided(z: f64) -> f64 {
-    ln_normal_two_sided(z).exp().clamp(LEAST, 1.0)
+    ln_normal_two_sided(z).exp().clamp(MIN_PROBABILITY, 1.0)
 }
 
 /// Its natural logarithm, without a floor.

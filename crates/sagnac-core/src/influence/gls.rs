@@ -30,7 +30,8 @@ pub fn lean(
 
 /// The components that have a share in the noise of a fit.
 pub fn shown(fit: &Fit, components: &[DMatrix<f64>]) -> Vec<usize> {
-    let parts: Vec<f64> = components.iter().zip(&fit.strengths).map(|(v, s)| s * v.trace()).collect();
+    let parts: Vec<f64> =
+        components.iter().zip(&fit.variance_components).map(|(v, s)| s * v.trace()).collect();
     let total: f64 = parts.iter().sum();
     (0..components.len()).filter(|k| parts[*k] > SHARE * total).collect()
 }

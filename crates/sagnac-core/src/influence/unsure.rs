@@ -35,7 +35,7 @@ pub fn means(cut: &Cut, runs: &DMatrix<f64>, fixed: &DMatrix<f64>) -> Option<Vec
     let shown = gls::shown(&plain, &all);
     let others: Vec<DMatrix<f64>> = shown.iter().map(|k| all[*k].clone()).collect();
     let flicker = cut.rows.flicker();
-    let noise = all.iter().zip(&plain.strengths).fold(fixed.clone(), |sum, (v, s)| sum + v * *s);
+    let noise = all.iter().zip(&plain.variance_components).fold(fixed.clone(), |sum, (v, s)| sum + v * *s);
     let visible = visible(cut, &noise, &flicker).filter(|v| *v > 0.0 && v.is_finite())?;
     let width = LARGEST.ln_1p() / STRENGTHS as f64;
     let mut possible: Vec<PossibleMeans> = (0..STRENGTHS)

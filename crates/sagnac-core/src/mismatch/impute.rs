@@ -14,7 +14,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// Steps of the conjugate gradients.
 const STEPS: usize = 40;
 /// Missing values up to which the equations are solved at once.
-const FEW: usize = 600;
+const MAX_EXACT: usize = 600;
 
 /// Fills `values` where `present` is false by a draw that is fixed by `seed`. `powers` are the variances of the cosine
 /// modes; that of mode 0 may be infinite.
@@ -44,7 +44,7 @@ pub fn fill(values: &mut [f64], present: &[bool], powers: &[f64], seed: u64) {
 pub fn expect(values: &mut [f64], present: &[bool], powers: &[f64]) {
     let missing: Vec<usize> = (0..values.len()).filter(|i| !present[*i]).collect();
     let inverse: Vec<f64> = powers.iter().map(|p| 1.0 / p).collect();
-    if missing.len() <= FEW && solved(values, &missing, &inverse).is_some() {
+    if missing.len() <= MAX_EXACT && solved(values, &missing, &inverse).is_some() {
         return;
     }
     let apply = |full: &[f64]| -> Vec<f64> {

@@ -13,7 +13,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// Steps in a window.
 const STEPS: usize = 10;
 /// Longest record that is simulated, steps.
-const LONGEST: usize = 1100;
+const MAX_STEPS: usize = 1100;
 /// Records.
 const RECORDS: usize = 2000;
 const SEED: u64 = 952;
@@ -25,7 +25,7 @@ const SEED: u64 = 952;
 pub fn null_ratio(length_s: f64, window_s: f64, taus_s: &[f64]) -> Option<[f64; 3]> {
     let step_s = window_s / STEPS as f64;
     let count = (length_s / step_s).floor();
-    if !(2.0 * STEPS as f64..=LONGEST as f64).contains(&count) {
+    if !(2.0 * STEPS as f64..=MAX_STEPS as f64).contains(&count) {
         return None;
     }
     let count = count as usize;

@@ -16,7 +16,7 @@ const FEWEST_CYCLES: f64 = 3.0;
 /// Fewest block means.
 const FEWEST: usize = 64;
 /// Lines that are fitted at most, the strongest first.
-const MOST: usize = 24;
+const MAX_SINUSOIDS: usize = 24;
 /// Reach of the search about the frequency that the averaged periodogram shows, in its bins.
 const REACH: f64 = 0.6;
 /// Share of the power over the floor that a sinusoid must hold to stand for a line: less is no coherent line.
@@ -225,7 +225,7 @@ pub fn fit(blocks: &BlockSeries, tau0_s: f64, lines: &mut [SpectralLine]) {
     }
     order.sort_by(|a, b| lines[*b].amplitude_deg_h.total_cmp(&lines[*a].amplitude_deg_h));
     lines.iter().filter_map(|l| l.sinusoid.as_ref()).for_each(|s| means.subtract(s));
-    for i in order.into_iter().take(MOST) {
+    for i in order.into_iter().take(MAX_SINUSOIDS) {
         let line = &mut lines[i];
         if line.sinusoid.is_some() {
             continue;

@@ -1,6 +1,6 @@
-//! Linear models with correlated noise whose strengths are not known: y = Xβ + e, cov e = V₀ + Σ θₖ Vₖ with θₖ ≥ 0.
+//! Linear models with correlated noise whose variance components are not known: y = Xβ + e, cov e = V₀ + Σ θₖ Vₖ with θₖ ≥ 0.
 //!
-//! The strengths are those of the restricted likelihood (Patterson and Thompson 1971), climbed by average information
+//! The variance components are those of the restricted likelihood (Patterson and Thompson 1971), climbed by average information
 //! (Gilmour, Thompson and Cullis 1995); β follows by generalised least squares. A linear combination of β is Student's
 //! with the degrees of freedom of Satterthwaite (Giesbrecht and Burns 1985).
 
@@ -8,7 +8,7 @@ use super::inverse::inverse;
 use super::log_determinant::log_determinant;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Steps of the climb.
+/// Steps of the ascent.
 const STEPS: usize = 60;
 
 /// A fitted model.
@@ -19,16 +19,16 @@ pub struct Fit {
     /// Their covariance.
     pub covariance: DMatrix<f64>,
     /// Strengths of the components, one a matrix given.
-    pub strengths: Vec<f64>,
+    pub variance_components: Vec<f64>,
     /// Weight of every value of y in each coefficient.
     pub weights: DMatrix<f64>,
     /// What the model leaves of y.
     pub residuals: DVector<f64>,
     /// Twice the restricted log-likelihood, but for a constant.
     pub twice_log_likelihood: f64,
-    /// Derivatives of the covariance by the strengths.
+    /// Derivatives of the covariance by the variance components.
     slopes: Vec<DMatrix<f64>>,
-    /// Covariance of those strengths.
+    /// Covariance of those variance components.
     strength_covariance: DMatrix<f64>,
 }
 
@@ -61,10 +61,10 @@ impl Fit {
     /// unit strength gives the sum.
     pub fn noise_of(&self, variances: &[f64]) -> (f64, f64) {
         let each = DVector::from_iterator(
-            self.strengths.len(),
-            (0..self.strengths.len()).map(|k| variances.get(k).copied().unwrap_or(0.0)),
+            self.variance_components.len(),
+            (0..self.variance_components.len()).map(|k| variances.get(k).copied().unwrap_or(0.0)),
         );
-        let variance = each.iter().zip(&self.strengths).map(|(v, s)| v * s).sum::<f64>().max(0.0);
+        let variance = each.iter().zip(&self.variance_components).map(|(v, s)| v * s).sum::<f64>().max(0.0);
         let scatter = each.dot(&(&self.strength_covariance * &each));
         let dof = if scatter > 0.0 { (2.0 * variance * variance / scatter).clamp(1.0, 1e9) } else { 1e9 };
         (variance.sqrt(), dof)
@@ -92,7 +92,7 @@ impl Fit {
     }
 }
 
-/// What one set of strengths gives.
+/// What one set of variance components gives.
 struct State {
     twice_log_likelihood: f64,
     factor: Cholesky<f64, Dyn>,
@@ -106,7 +106,7 @@ struct State {
 
 /// Fits the model. `fixed` is the covariance that is known, `components` those of unknown strength; all n by n.
 ///
-/// `None` when X has dependent columns, when no degrees of freedom are left, or when no strengths make the covariance
+/// `None` when X has dependent columns, when no degrees of freedom are left, or when no variance components make the covariance
 /// positive.
 pub fn fit(
     y: &DVector<f64>,
@@ -133,8 +133,8 @@ pub fn fit(
     let known = (fixed.trace() / n as f64).max(0.0);
     let share =
         (1.0 - known / scatter.max(f64::MIN_POSITIVE)).clamp(0.05, 1.0) / components.len().max(1) as f64;
-    let mut strengths: Vec<f64> = units.iter().map(|u| u * share).collect();
-    let mut state = evaluate(y, x, fixed, components, &strengths)?;
+    let mut variance_components: Vec<f64> = units.iter().map(|u| u * share).collect();
+    let mut state = evaluate(y, x, fixed, components, &variance_components)?;
     let mut damping = 1e-3;
     for _ in 0..STEPS {
         if components.is_empty() {
@@ -142,7 +142,7 @@ pub fn fit(
         }
         let (score, information) = derivatives(&state, components);
         let free: Vec<usize> = (0..components.len())
-            .filter(|k| strengths[*k] > 0.0 || score[*k] > 0.0)
+            .filter(|k| variance_components[*k] > 0.0 || score[*k] > 0.0)
             .filter(|k| information[(*k, *k)] > 0.0)
             .collect();
         if free.is_empty() {
@@ -158,11 +158,15 @@ pub fn fit(
             let right = DVector::from_fn(m, |i, _| score[free[i]]);
             let step = Cholesky::new(matrix).map(|c| c.solve(&right));
             let trial = step.map(|step| {
-                let mut next = strengths.clone();
+                let mut next = variance_components.clone();
                 for (i, k) in free.iter().enumerate() {
                     // A strength is brought down by decades before it is given up.
-                    let least = if strengths[*k] > 1e-6 * units[*k] { 0.1 * strengths[*k] } else { 0.0 };
-                    next[*k] = (strengths[*k] + step[i]).max(least);
+                    let least = if variance_components[*k] > 1e-6 * units[*k] {
+                        0.1 * variance_components[*k]
+                    } else {
+                        0.0
+                    };
+                    next[*k] = (variance_components[*k] + step[i]).max(least);
                 }
                 next
             });
@@ -171,7 +175,7 @@ pub fn fit(
                 && after.twice_log_likelihood >= state.twice_log_likelihood - 1e-9
             {
                 let gain = after.twice_log_likelihood - state.twice_log_likelihood;
-                (strengths, state) = (next, after);
+                (variance_components, state) = (next, after);
                 damping = (damping * 0.2).max(1e-6);
                 gained = Some(gain);
                 break;
@@ -182,7 +186,7 @@ pub fn fit(
             break;
         }
     }
-    Some(finish(state, x, y, components, strengths))
+    Some(finish(state, x, y, components, variance_components))
 }
 
 fn evaluate(
@@ -190,10 +194,10 @@ fn evaluate(
     x: &DMatrix<f64>,
     fixed: &DMatrix<f64>,
     components: &[DMatrix<f64>],
-    strengths: &[f64],
+    variance_components: &[f64],
 ) -> Option<State> {
     let mut v = fixed.clone();
-    for (component, strength) in components.iter().zip(strengths) {
+    for (component, strength) in components.iter().zip(variance_components) {
         if *strength > 0.0 {
             v += component * *strength;
         }
@@ -241,7 +245,7 @@ fn projector(state: &State) -> DMatrix<f64> {
     inverse(&state.factor) - &state.weighted * &state.covariance * state.weighted.transpose()
 }
 
-/// Score and average information of the strengths.
+/// Score and average information of the variance components.
 fn derivatives(state: &State, components: &[DMatrix<f64>]) -> (DVector<f64>, DMatrix<f64>) {
     let p = projector(state);
     let moved: Vec<DVector<f64>> = components.iter().map(|v| v * &state.projected).collect();
@@ -259,7 +263,7 @@ fn finish(
     x: &DMatrix<f64>,
     y: &DVector<f64>,
     components: &[DMatrix<f64>],
-    strengths: Vec<f64>,
+    variance_components: Vec<f64>,
 ) -> Fit {
     let p = projector(&state);
     let products: Vec<DMatrix<f64>> = components.iter().map(|v| &p * v).collect();
@@ -273,13 +277,13 @@ fn finish(
             &state.covariance * inner * &state.covariance
         })
         .collect();
-    let active: Vec<usize> = (0..components.len()).filter(|k| strengths[*k] > 0.0).collect();
+    let active: Vec<usize> = (0..components.len()).filter(|k| variance_components[*k] > 0.0).collect();
     let residuals = y - x * &state.coefficients;
     Fit {
         covariance: &state.covariance + inflation(&state, components, &products, &information, &active),
         weights: &state.covariance * state.weighted.transpose(),
         coefficients: state.coefficients,
-        strengths,
+        variance_components,
         residuals,
         twice_log_likelihood: state.twice_log_likelihood,
         slopes,
@@ -297,9 +301,9 @@ fn inverse_of(information: DMatrix<f64>) -> DMatrix<f64> {
     information.clone().pseudo_inverse(least).unwrap_or(information)
 }
 
-/// What the covariance of the coefficients lacks because the strengths, and with them the weights, are estimated: weights
-/// that scatter about the best ones make coefficients less certain, and the covariance at the strengths found is too small
-/// by as much again (Kackar and Harville 1984; Kenward and Roger 1997). Of the strengths that are not at their end of zero,
+/// What the covariance of the coefficients lacks because the variance components, and with them the weights, are estimated: weights
+/// that scatter about the best ones make coefficients less certain, and the covariance at the variance components found is too small
+/// by as much again (Kackar and Harville 1984; Kenward and Roger 1997). Of the variance components that are not at their end of zero,
 /// since those that are do not scatter to both sides. `products` are those of the projector with the components.
 fn inflation(
     state: &State,
@@ -334,7 +338,7 @@ mod tests {
         // Slope −6/35·... from the normal equations: Sxy = −3, Sxx = 17.5.
         assert!((f.coefficients[1] + 3.0 / 17.5).abs() < 1e-12);
         let rss = 6.0 - 9.0 / 17.5;
-        assert!((f.strengths[0] - rss / 4.0).abs() < 1e-6);
+        assert!((f.variance_components[0] - rss / 4.0).abs() < 1e-6);
         let slope = f.coefficient(1);
         assert!((slope.standard - (rss / 4.0 / 17.5).sqrt()).abs() < 1e-6);
         assert!((slope.dof - 4.0).abs() < 1e-6);
@@ -344,8 +348,8 @@ mod tests {
     }
 
     #[test]
-    fn a_balanced_random_effect_has_the_strengths_of_the_analysis_of_variance() {
-        // Three groups of two: between and within mean squares give both strengths in closed form.
+    fn a_balanced_random_effect_has_the_variance_components_of_the_analysis_of_variance() {
+        // Three groups of two: between and within mean squares give both variance components in closed form.
         let y = DVector::from_vec(vec![1.0, 2.0, 5.0, 7.0, 9.0, 8.0]);
         let x = DMatrix::from_element(6, 1, 1.0);
         let group = DMatrix::from_fn(6, 6, |i, j| if i / 2 == j / 2 { 1.0 } else { 0.0 });
@@ -354,8 +358,12 @@ mod tests {
         let means = [1.5, 6.0, 8.5];
         let mean = 16.0 / 3.0;
         let between = means.iter().map(|m| 2.0 * (m - mean) * (m - mean)).sum::<f64>() / 2.0;
-        assert!((f.strengths[0] - within).abs() < 1e-4, "{:?}", f.strengths);
-        assert!((f.strengths[1] - (between - within) / 2.0).abs() < 1e-3, "{:?}", f.strengths);
+        assert!((f.variance_components[0] - within).abs() < 1e-4, "{:?}", f.variance_components);
+        assert!(
+            (f.variance_components[1] - (between - within) / 2.0).abs() < 1e-3,
+            "{:?}",
+            f.variance_components
+        );
         let mean_value = f.coefficient(0);
         assert!((mean_value.standard - (between / 6.0).sqrt()).abs() < 1e-3);
         assert!(f.weights.iter().all(|w| (w - 1.0 / 6.0).abs() < 1e-9), "{}", f.weights);
@@ -370,7 +378,7 @@ mod tests {
         let shape = DMatrix::from_fn(8, 8, |i, j| 0.6f64.powi((i as i32 - j as i32).abs()));
         let fitted = fit(&y, &x, &DMatrix::zeros(8, 8), std::slice::from_ref(&shape)).unwrap();
         let found = scaled(&y, &x, &shape).unwrap();
-        assert!((found.scale / fitted.strengths[0] - 1.0).abs() < 1e-4);
+        assert!((found.scale / fitted.variance_components[0] - 1.0).abs() < 1e-4);
         // The quadratic form at the best scale is the number of degrees of freedom.
         assert!((2.0 * found.log_likelihood - 6.0 - fitted.twice_log_likelihood).abs() < 1e-6);
         assert!(scaled(&y.rows(0, 2).into_owned(), &x.rows(0, 2).into_owned(), &shape).is_none());

@@ -87,7 +87,7 @@ pub fn fit(steps: &Steps, channel: usize, setup: &Setup, wanted: &[Extra]) -> Op
     let design = Design::new(steps, channel, setup, wanted)?;
     let columns: Vec<DVector<f64>> = design.of_levels.iter().chain(&design.of_extras).cloned().collect();
     let (fit, names) = design.fit(&columns, TAKEN_FROM)?;
-    let noise = names.into_iter().zip(fit.strengths.iter().copied()).collect();
+    let noise = names.into_iter().zip(fit.variance_components.iter().copied()).collect();
     Some(Response {
         rows: design.step.iter().copied().zip(fit.residuals.iter().copied()).collect(),
         noise,

@@ -5,7 +5,7 @@ use super::{ExtraThresholds, Free, Joint, JointPoint, Kind, Shape, Variable, par
 
 /// Place of quantisation among the variances.
 pub(super) const QUANTIZATION: usize = 3;
-/// Growth of the uncertainty of N by letting a part in from which the two count as confounded: a needless part then
+/// Growth of the uncertainty of N by letting a part in from which the two count as confounded: a superfluous part then
 /// displaces N by several of the deviations it would have without.
 const CONFOUNDED: f64 = 2.0;
 

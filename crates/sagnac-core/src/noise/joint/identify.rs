@@ -1,9 +1,9 @@
 //! Identification with every kind of term.
 
+use super::backward_elimination::{Part, backward_elimination, unresolved, without};
 use super::confounded::quantization_price;
 use super::ends::judged;
 use super::filter_alike::with_filter_instead;
-use super::needless::{Part, needless, unresolved, without};
 use super::plateau::Plateau;
 use super::search::all_free;
 use super::slow::{Slow, long_markov};
@@ -87,7 +87,7 @@ impl MaximumLikelihood {
                 }
             }
         }
-        // A part that became needless after a later one is taken out again.
+        // A part that became superfluous after a later one is taken out again.
         let (mut turns, mut exchanged) = (TURNS, false);
         loop {
             turns = turns.saturating_sub(1);
@@ -96,16 +96,16 @@ impl MaximumLikelihood {
             let Some(found) = Found::of(&joint, &extras.shape, self) else { return without_extras(plain) };
             let near = long_markov(&joint, &extras.shape, found.slow.choice, &self.base.slow);
             // Where no white noise is seen beneath a Markov process, the process may be white noise behind a filter.
-            let filtered = if found.needless.is_none() && !found.claimed[0] && !exchanged {
+            let filtered = if found.superfluous.is_none() && !found.claimed[0] && !exchanged {
                 with_filter_instead(&joint, &extras.shape, &found.slow, &self.base.slow, &self.extras)
             } else {
                 None
             };
             exchanged |= filtered.is_some();
             // A filter that took the place of a process is not given up for it again.
-            let needless = found.needless.filter(|part| !exchanged || *part != Part::Filter);
-            let needless = unresolved(&joint, &[&found.full, &found.supported]).or(needless);
-            match (needless, near) {
+            let superfluous = found.superfluous.filter(|part| !exchanged || *part != Part::Filter);
+            let superfluous = unresolved(&joint, &[&found.full, &found.supported]).or(superfluous);
+            match (superfluous, near) {
                 _ if turns > 0
                     && let Some(shape) = filtered =>
                 {
@@ -135,7 +135,7 @@ struct Found {
     claimed: [bool; 5],
     supported: JointPoint,
     free: Free,
-    needless: Option<Part>,
+    superfluous: Option<Part>,
 }
 
 impl Found {
@@ -170,7 +170,7 @@ impl Found {
                 && ratios[3] > quantization_price(joint, &full, ramp, &method.extras),
             ramp,
         ];
-        let needless = needless(joint, shape, &full, &slow, &method.base.slow, &method.extras);
+        let superfluous = backward_elimination(joint, shape, &full, &slow, &method.base.slow, &method.extras);
         let (point, free) = supported(joint, shape, &full, &claimed, ramp);
         let (variables, covariance) = parameter_covariance(joint, &point, &free);
         for (term, claimed) in claimed.iter_mut().enumerate().take(3).skip(1) {
@@ -180,7 +180,7 @@ impl Found {
             *claimed &= is_told(term, slow.preference[term], relative);
         }
         let (supported, free) = supported(joint, shape, &full, &claimed, ramp);
-        Some(Found { full, slow, ratios, claimed, supported, free, needless })
+        Some(Found { full, slow, ratios, claimed, supported, free, superfluous })
     }
 
     fn report(

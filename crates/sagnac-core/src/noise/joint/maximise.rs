@@ -12,7 +12,7 @@ const DONE: f64 = 1e-3;
 /// Steps of a fit at most.
 const STEPS: usize = 80;
 /// Periods that an oscillation lasts at least.
-const LEAST_PERIODS: f64 = 2.0;
+const MIN_PERIODS: f64 = 2.0;
 /// Relative step of numeric derivatives.
 const EPSILON: f64 = 1e-3;
 
@@ -192,8 +192,7 @@ impl<'a> Joint<'a> {
             Variable::DecayTime(i) => {
                 if let Some((_, d)) = out.damped.get_mut(i) {
                     // What decays in less than a few periods is a bump and no oscillation.
-                    let least =
-                        if d.frequency_hz > 0.0 { LEAST_PERIODS / d.frequency_hz } else { 0.05 * tau0 };
+                    let least = if d.frequency_hz > 0.0 { MIN_PERIODS / d.frequency_hz } else { 0.05 * tau0 };
                     d.decay_time_s = (d.decay_time_s * step.exp()).max(least).min(100.0 * span);
                 }
             }
@@ -202,7 +201,7 @@ impl<'a> Joint<'a> {
                     let width = 1.0 / (2.0 * std::f64::consts::PI * d.decay_time_s).max(0.3 / span);
                     let width = width.min(0.1 * d.frequency_hz).max(0.3 / span);
                     d.frequency_hz = (d.frequency_hz + step * width).clamp(1.0 / span, 0.5 / tau0);
-                    d.decay_time_s = d.decay_time_s.max(LEAST_PERIODS / d.frequency_hz);
+                    d.decay_time_s = d.decay_time_s.max(MIN_PERIODS / d.frequency_hz);
                 }
             }
             Variable::Variance(_) | Variable::Ramp => {}
@@ -266,15 +265,16 @@ impl<'a> Joint<'a> {
 
     /// The maximum from a start; variances that are not free keep their value.
     pub fn maximise(&self, start: &JointPoint, free: &Free) -> JointPoint {
-        self.climb(start, free, STEPS)
+        self.newton_ascent(start, free, STEPS)
     }
 
-    /// At most so many steps towards the maximum.
-    pub(super) fn climb(&self, start: &JointPoint, free: &Free, steps: usize) -> JointPoint {
+    /// At most `steps` steps of Fisher scoring (Newton's method with the expected information) from a start. Variances stay at or
+    /// above zero; a step that does not lower the deviance is shortened.
+    pub(super) fn newton_ascent(&self, start: &JointPoint, free: &Free, steps: usize) -> JointPoint {
         let mut point = start.clone();
         let restricted = free.ramp && free.held != Some(Variable::Ramp);
         let mut columns = self.columns(&point.shape);
-        self.lift(&mut point, &columns, free);
+        self.leave_boundary(&mut point, &columns, free);
         let mut s = self.density(&columns, &point.variance);
         if restricted {
             point.ramp = self.best_ramp(&s);
@@ -348,8 +348,8 @@ impl<'a> Joint<'a> {
         point
     }
 
-    /// A variance at exactly zero is lifted a little, so that the first step sees its term.
-    fn lift(&self, point: &mut JointPoint, columns: &Columns, free: &Free) {
+    /// Moves free variances that are exactly zero off the boundary, so that the first step sees a gradient of their terms.
+    fn leave_boundary(&self, point: &mut JointPoint, columns: &Columns, free: &Free) {
         let s = self.density(columns, &point.variance);
         point.variance.resize(BASE.len() + point.shape.damped.len(), 0.0);
         let any = s.iter().any(|s| *s > 0.0);

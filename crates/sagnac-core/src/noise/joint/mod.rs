@@ -4,6 +4,7 @@
 //! Variances enter the expected power linearly, correlation times, frequencies and filter times do not. Fisher scoring
 //! over both, variances bounded at zero.
 
+mod backward_elimination;
 mod columns;
 mod confounded;
 mod ends;
@@ -11,7 +12,7 @@ mod filter_alike;
 mod identify;
 mod interval;
 mod maximise;
-mod needless;
+
 mod peaks;
 mod plateau;
 mod search;

@@ -56,14 +56,14 @@ pub struct Extras {
 }
 
 /// Parts accepted at most.
-pub(super) const MOST: usize = 4;
+pub(super) const MAX_PROCESSES: usize = 4;
 /// Correlation times tried, per octave.
 const PER_OCTAVE: f64 = 1.5;
 /// Shortest correlation time that is told from white noise, sample intervals: the corner then lies at half the Nyquist
 /// frequency, so that an octave of the fall beyond it is seen. A process with a higher corner is white noise.
 pub(super) const RESOLVED: f64 = 0.637;
 /// Longest correlation time that is told from random walk: this share of the record.
-pub(super) const LONGEST: f64 = 0.125;
+pub(super) const MAX_TIME_SHARE: f64 = 0.125;
 /// Highest frequency in units of the sample rate below which a range was cut.
 const WHOLE_RANGE: f64 = 0.4;
 /// Corners of processes lie at least this factor below the edge of a range that was cut.
@@ -91,7 +91,7 @@ pub fn find_extras(
     thresholds: &ExtraThresholds,
 ) -> Extras {
     let mut found = Extras { shape: Shape::default(), zones: vec![] };
-    for _ in 0..MOST {
+    for _ in 0..MAX_PROCESSES {
         let resolved = judged(evidence, &found);
         let Some(joint) = Joint::new(&resolved, sampling) else { break };
         let current = best_of(&joint, &found.shape, ramp);
@@ -135,7 +135,7 @@ fn at_shape(joint: &Joint<'_>, shape: &Shape, near: &JointPoint, ramp: bool, ste
         }
     }
     start.ramp = near.ramp;
-    joint.climb(&start, &free, steps)
+    joint.newton_ascent(&start, &free, steps)
 }
 
 fn refined(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> JointPoint {
@@ -221,7 +221,7 @@ fn markovs(
 ) -> Option<Candidate> {
     let evidence = joint.evidence();
     let shortest_s = RESOLVED * evidence.tau0_s;
-    let octaves = (LONGEST * evidence.span_s / shortest_s).log2().max(0.0);
+    let octaves = (MAX_TIME_SHARE * evidence.span_s / shortest_s).log2().max(0.0);
     let count = (octaves * PER_OCTAVE) as usize;
     let best = (0..=count)
         .map(|i| {
@@ -234,7 +234,8 @@ fn markovs(
     }
     let point = refined(joint, &best, ramp);
     let time_s = point.shape.damped.last()?.1.decay_time_s;
-    if time_s < shortest_s || time_s > LONGEST * evidence.span_s || bends_at_the_edge(evidence, time_s) {
+    if time_s < shortest_s || time_s > MAX_TIME_SHARE * evidence.span_s || bends_at_the_edge(evidence, time_s)
+    {
         return None;
     }
     let reached = with_priced_quantization(joint, &point, ramp, thresholds.quantization);

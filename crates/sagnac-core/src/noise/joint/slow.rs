@@ -1,6 +1,6 @@
 //! Flicker, random walk, ramp and long Markov processes beside the other parts of a model.
 
-use super::search::{LONGEST, MOST, all_free, best_of};
+use super::search::{MAX_PROCESSES, MAX_TIME_SHARE, all_free, best_of};
 use super::{BASE, Free, Joint, JointPoint, Kind, Shape, Variable};
 use crate::message::Note;
 use crate::noise::identification::Identification;
@@ -114,11 +114,11 @@ pub(super) fn long_markov(
     choice: SlowChoice,
     prices: &SlowPrices,
 ) -> Option<LongMarkov> {
-    if choice.set & (B | K) == 0 || shape.damped.len() >= MOST {
+    if choice.set & (B | K) == 0 || shape.damped.len() >= MAX_PROCESSES {
         return None;
     }
     let evidence = joint.evidence();
-    let longest_s = LONGEST * evidence.span_s;
+    let longest_s = MAX_TIME_SHARE * evidence.span_s;
     let known_s = shape
         .damped
         .iter()

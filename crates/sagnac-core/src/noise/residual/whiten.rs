@@ -8,7 +8,7 @@ use crate::noise::composite::Composite;
 use crate::numeric::cosine::{dct2, inverse_dct2};
 
 /// Fewest block means that are whitened.
-const LEAST: usize = 256;
+const MIN_BLOCK_MEANS: usize = 256;
 /// Share of a block that its samples must fill.
 const FILLED: f64 = 0.5;
 
@@ -42,7 +42,7 @@ pub fn whitened(record: &SpectralRecord<'_>, model: &Composite) -> Option<Whiten
         .map(|(m, c)| m.is_finite() && f64::from(*c) >= FILLED * full)
         .collect();
     let range = longest(&present);
-    if range.len() < LEAST {
+    if range.len() < MIN_BLOCK_MEANS {
         return None;
     }
     let total = present.iter().filter(|p| **p).count();
@@ -71,7 +71,7 @@ pub fn whitened(record: &SpectralRecord<'_>, model: &Composite) -> Option<Whiten
         *c = if left_out { 0.0 } else { *c / expected.sqrt() };
         used += usize::from(!left_out);
     }
-    if used < LEAST / 2 {
+    if used < MIN_BLOCK_MEANS / 2 {
         return None;
     }
     let values = inverse_dct2(&modes);

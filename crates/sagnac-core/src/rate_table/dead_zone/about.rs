@@ -85,11 +85,11 @@ pub fn means(
     let of_levels = |m: &DMatrix<f64>| m.view((0, 0), (levels, levels)).into_owned();
     let white: Vec<DMatrix<f64>> = design.quick.iter().take(1).map(|k| k.1.clone()).collect();
     let mut fit = reml::fit(&design.left, &free, &design.fixed, &white)?;
-    let strength = *fit.strengths.first()?;
+    let strength = *fit.variance_components.first()?;
     // A zone that is sought with drift in the noise leaves of another what looks like drift: drift has to show about the
     // zone that is found without. Then its own is sought.
     loop {
-        let first = fit.strengths.len() == 1;
+        let first = fit.variance_components.len() == 1;
         let y = fit.coefficients.rows(0, levels).into_owned();
         let columns = with_zone(design, &points(&y, of_levels(&fit.covariance))?)?;
         let noises = noises(design, &DMatrix::from_columns(&columns), strength)?;

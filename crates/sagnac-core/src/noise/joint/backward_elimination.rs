@@ -1,4 +1,4 @@
-//! Parts of a model that a later part made needless.
+//! Backward elimination: removes parts of a model that a later part has made superfluous.
 
 use super::confounded::filter_price;
 use super::search::{RESOLVED, all_free, best_of};
@@ -40,8 +40,9 @@ pub(super) fn unresolved(joint: &Joint<'_>, points: &[&JointPoint]) -> Option<Pa
     points.iter().find_map(|p| p.shape.damped.iter().enumerate().find_map(white))
 }
 
-/// The part whose loss costs less than it was accepted for, by the most.
-pub(super) fn needless(
+/// The part to remove, if any: removing it raises the cost by less than the threshold at which it was accepted. Of several,
+/// the one furthest below its threshold.
+pub(super) fn backward_elimination(
     joint: &Joint<'_>,
     shape: &Shape,
     full: &JointPoint,
