@@ -4,7 +4,7 @@
 //! The library that gives the probabilities inverts them by an iteration that need not end, so the inverse is here.
 
 use super::{normal_probability, normal_quantile};
-use crate::numeric::bracket::halved;
+use crate::numeric::optimize::bisect;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Degrees of freedom from which the expansion about the normal distribution is used: its error is below 1e-9 there.
@@ -42,7 +42,7 @@ pub(super) fn quantile(probability: f64, dof: f64) -> f64 {
     while upper_tail(high, dof) > tail && high < 1e300 {
         (low, high) = (high, 2.0 * high);
     }
-    let (low, high) = halved(low, high, 80, |t| upper_tail(t, dof) > tail);
+    let (low, high) = bisect(low, high, 80, |t| upper_tail(t, dof) > tail);
     let t = 0.5 * (low + high);
     if p < 0.5 { -t } else { t }
 }

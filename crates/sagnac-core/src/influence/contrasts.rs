@@ -5,7 +5,7 @@
 //! as there are contrasts, whatever C is (Viechtbauer 2007, "Q profile"; Paule and Mandel 1982 for the value).
 
 use crate::estimate::{Spread, chi_square_quantile, chi_square_tail, normal_probability};
-use crate::numeric::bracket::halved;
+use crate::numeric::optimize::bisect;
 use crate::numeric::reml::Combination;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -73,7 +73,7 @@ impl Contrasts {
             return 0.0;
         }
         let most = total / target.max(f64::MIN_POSITIVE);
-        let (low, high) = halved(0.0, most, 200, |v| self.q(v) > target);
+        let (low, high) = bisect(0.0, most, 200, |v| self.q(v) > target);
         0.5 * (low + high)
     }
 

@@ -10,7 +10,7 @@ use super::cut::Cut;
 use super::gls;
 use super::range::PossibleMeans;
 use crate::estimate::{Spread, normal_probability};
-use crate::numeric::bracket::halved;
+use crate::numeric::optimize::bisect;
 use crate::numeric::reml;
 use nalgebra::{DMatrix, DVector};
 
@@ -95,7 +95,7 @@ fn mean(list: &[Possible]) -> (f64, Spread) {
         if below(0.0) >= share {
             return 0.0;
         }
-        let (low, high) = halved(0.0, most, 100, |x| below(x) < share);
+        let (low, high) = bisect(0.0, most, 100, |x| below(x) < share);
         0.5 * (low + high)
     };
     let points = (-35..=35).map(|i| f64::from(i) / 10.0).map(|z| (z, at(normal_probability(z)))).collect();

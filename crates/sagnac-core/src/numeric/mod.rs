@@ -1,11 +1,11 @@
 //! Numerical tools that know no gyro.
 
-pub mod bracket;
 pub mod compensated;
 pub mod cosine;
 pub mod decimal;
 pub(crate) mod inverse;
 pub(crate) mod log_determinant;
+pub mod optimize;
 pub mod range;
 pub mod reml;
 pub mod special;

@@ -6,7 +6,7 @@
 use super::design::{slope_of, stands_out};
 use super::noise::Rows;
 use super::steps::Steps;
-use crate::numeric::bracket::least;
+use crate::numeric::optimize::golden_section;
 use crate::numeric::reml::{self, Fit};
 use nalgebra::{DMatrix, DVector};
 
@@ -179,7 +179,7 @@ fn search(cost: impl Fn(f64) -> f64) -> f64 {
     let (from, to) = PHASES;
     let at = |i: usize| from * (to / from).powf(i as f64 / (GRID - 1) as f64);
     let best = (0..GRID).min_by(|a, b| cost(at(*a)).total_cmp(&cost(at(*b)))).unwrap_or(0);
-    least(at(best.saturating_sub(1)), at((best + 1).min(GRID - 1)), 60, cost)
+    golden_section(at(best.saturating_sub(1)), at((best + 1).min(GRID - 1)), 60, cost)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::sampler::{Draw, normal};
 use crate::estimate::{Spread, normal_probability};
-use crate::numeric::bracket::halved;
+use crate::numeric::optimize::bisect;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -73,7 +73,7 @@ pub fn linear(draws: &[Draw], weights: impl Fn(&Draw) -> DVector<f64>) -> Readin
 /// A reading from the probability of less than a value, which all but lies between two values.
 pub fn of_distribution(below: impl Fn(f64) -> f64, (low, high): (f64, f64)) -> Reading {
     let quantile = |p: f64| {
-        let (a, b) = halved(low, high, 44, |x| below(x) < p);
+        let (a, b) = bisect(low, high, 44, |x| below(x) < p);
         0.5 * (a + b)
     };
     let points: Vec<(f64, f64)> = scores().map(|z| (z, quantile(normal_probability(z)))).collect();

@@ -1,12 +1,13 @@
 //! A coherent sinusoid.
 
-use super::search::{parabolic_peak, peaks};
+use super::search::peaks;
 use super::sinusoid::{Sweep, averaged, polar, wave};
 use crate::effect::{
     Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
     Values, number,
 };
 use crate::numeric::cosine::sinusoid_modes;
+use crate::numeric::optimize::parabolic_peak;
 use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 

@@ -1,11 +1,12 @@
 //! A contribution that is periodic in the sensed angle.
 
-use super::search::{best_of, fast_level, parabolic_peak, peaks};
+use super::search::{best_of, fast_level, peaks};
 use super::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
     Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
     Values, number,
 };
+use crate::numeric::optimize::parabolic_peak;
 use rayon::prelude::*;
 use realfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};

@@ -140,14 +140,6 @@ pub(super) fn peaks(gains: &[f64], keep: usize, apart: usize) -> Vec<usize> {
     out
 }
 
-/// Where the top of the parabola through a point of a grid and its neighbours lies, in steps from the point.
-pub(super) fn parabolic_peak(gains: &[f64], at: usize) -> f64 {
-    let (Some(here), Some(after)) = (gains.get(at), gains.get(at + 1)) else { return 0.0 };
-    let Some(before) = at.checked_sub(1).and_then(|i| gains.get(i)) else { return 0.0 };
-    let curve = before + after - 2.0 * here;
-    if curve < 0.0 { (0.5 * (before - after) / curve).clamp(-0.5, 0.5) } else { 0.0 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -185,6 +177,6 @@ mod tests {
         assert_eq!(peaks(&[0.0, 0.0], 2, 1), Vec::<usize>::new());
         // A parabola with its top at 2.3.
         let values: Vec<f64> = (0..5).map(|i| 10.0 - (f64::from(i) - 2.3).powi(2)).collect();
-        assert!((parabolic_peak(&values, 2) - 0.3).abs() < 1e-12);
+        assert!((crate::numeric::optimize::parabolic_peak(&values, 2) - 0.3).abs() < 1e-12);
     }
 }

@@ -6,7 +6,7 @@
 use super::{Flat, cumulated, lattice_step, median, varies};
 use crate::mismatch::candidates::Tried;
 use crate::mismatch::problem::Problem;
-use crate::numeric::bracket::halved;
+use crate::numeric::optimize::bisect;
 use statrs::distribution::{Binomial, DiscreteCDF, Poisson};
 use statrs::function::beta::checked_beta_reg;
 
@@ -75,7 +75,7 @@ impl Scan {
 
     /// The ratio that a window of some length reaches with probability `p`.
     fn bound(&self, length: usize, p: f64) -> f64 {
-        halved(0.0, 12.0, 40, |x| self.p_value(length, x.exp()) > p).1.exp()
+        bisect(0.0, 12.0, 40, |x| self.p_value(length, x.exp()) > p).1.exp()
     }
 }
 

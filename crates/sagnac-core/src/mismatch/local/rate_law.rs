@@ -1,7 +1,7 @@
 //! Variance that grows with the size of the input rate: σ² = σ₀² (1 + (ratio² − 1)(|Ω|/max)^q).
 
 use super::gamma::{Group, mean_square};
-use crate::numeric::bracket::{halved, least};
+use crate::numeric::optimize::{bisect, golden_section};
 
 /// The law, fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ pub fn rate_law(groups: &[Group], sizes: &[f64], largest: f64) -> Option<RateLaw
         let value = |log_ratio: f64| likelihood(groups, &shares, log_ratio);
         let steps = (0..=40).map(|i| WIDEST * (f64::from(i) / 20.0 - 1.0));
         let start = steps.max_by(|a, b| value(*a).total_cmp(&value(*b)))?;
-        let at = least(start - 0.25, start + 0.25, 40, |x| -value(x));
+        let at = golden_section(start - 0.25, start + 0.25, 40, |x| -value(x));
         let top = value(at);
         // χ²₁ at 95 % is 3.841.
         let end = |side: f64| crossing(value, at, side * 2.0 * WIDEST, top - 0.5 * 3.841_459);
@@ -56,5 +56,5 @@ fn crossing(value: impl Fn(f64) -> f64, at: f64, reach: f64, down: f64) -> f64 {
     if value(outside) > down {
         return outside;
     }
-    halved(at, outside, 50, |x| value(x) > down).0
+    bisect(at, outside, 50, |x| value(x) > down).0
 }
