@@ -8,7 +8,7 @@ use crate::config::procedure::model::Procedure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{Source, open_recording};
 use crate::output::Kind;
-use crate::record::UnitUnderTest;
+use crate::record::{RunKind, UnitUnderTest};
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::Unit;
 use chrono::Utc;
@@ -58,7 +58,7 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let procedure: Procedure = analysis::procedure(channels, sample_rate, args.warm_up);
     let limits = EffectiveLimits::default();
     let request = Request {
-        kind: "analyze",
+        kind: RunKind::Analyze,
         procedure: &procedure,
         procedure_record: None,
         limits: &limits,

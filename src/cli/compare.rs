@@ -14,7 +14,7 @@ use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
-use crate::record::UnitUnderTest;
+use crate::record::{RunKind, UnitUnderTest};
 use crate::recording::Role;
 use crate::report::compare::{CompareView, table};
 use crate::report::{Renderer, svg};
@@ -206,7 +206,7 @@ fn analysed(
     }
     let procedure = analysis::procedure(channels, sample_rate, args.warm_up);
     let request = Request {
-        kind: "analyze",
+        kind: RunKind::Analyze,
         procedure: &procedure,
         procedure_record: None,
         limits,

@@ -14,7 +14,7 @@ use crate::i18n::{Lang, Localize, Note, lookup};
 use crate::ingest::{RecordingError, Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
 use crate::output::{Kind, StagedFolder};
-use crate::record::{Evidence, ExplainedRecord, RunRecord, UnitUnderTest};
+use crate::record::{Evidence, ExplainedRecord, RunKind, RunRecord, UnitUnderTest};
 use crate::report::explain::{Context, ExplainView, explained_says};
 use crate::report::{Renderer, render_html, render_markdown, svg};
 use chrono::{SecondsFormat, Utc};
@@ -83,7 +83,7 @@ fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let serial = serial(args.serial.as_deref(), manifest.as_ref(), lang)?;
     let family = limits.as_ref().and_then(|l| l.value.family.clone());
     let request = Request {
-        kind: "run",
+        kind: RunKind::Run,
         procedure: &procedure.value,
         procedure_record: Some(procedure.record(limits.as_ref())),
         limits: &effective,

@@ -13,7 +13,7 @@ use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{ReadOptions, Source, open_files};
 use crate::output::{Kind, StagedFolder};
-use crate::record::{RunRecord, UnitUnderTest};
+use crate::record::{RunKind, RunRecord, UnitUnderTest};
 use crate::report::view::PhasePart;
 use crate::report::{Renderer, render_phases, svg};
 use chrono::Utc;
@@ -88,7 +88,7 @@ pub fn attempt(args: &RunArgs, lang: Lang) -> Result<u8, String> {
             Err(e) => (Source::unopened(&name), Some(e)),
         };
         let request = Request {
-            kind: "run",
+            kind: RunKind::Run,
             procedure: &phase.procedure.value,
             procedure_record: Some(phase.procedure.record(phase.limits.as_ref())),
             limits: &limits,

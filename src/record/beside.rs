@@ -2,10 +2,10 @@
 
 use super::ConditionStatus;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// An instrument and its calibration.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InstrumentRecord {
     /// Name.
     pub name: String,
@@ -18,7 +18,7 @@ pub struct InstrumentRecord {
 }
 
 /// A waiver: who lets a row pass although it does not, why and when. Beside the verdict, never part of it.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WaiverRecord {
     /// Measurand or condition concerned.
     pub row: String,
@@ -31,7 +31,7 @@ pub struct WaiverRecord {
 }
 
 /// A clause of the standard.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClauseRecord {
     /// Clause, for example `12.11`.
     pub clause: String,
@@ -45,7 +45,7 @@ pub struct ClauseRecord {
 }
 
 /// An option that the analysis used.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OptionRecord {
     /// Name, dotted.
     pub name: String,

@@ -1,10 +1,10 @@
 //! Points of the Allan family.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A deviation at one averaging time. `sigma_tau.csv` holds every point; here are octaves.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DeviationRecord {
     /// Channel.
     pub channel: String,

@@ -3,10 +3,10 @@
 use super::Message;
 use super::explanation::Explanation;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A recording against the model of its family.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ExplainedRecord {
     /// The model.
     pub model: String,

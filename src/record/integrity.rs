@@ -4,12 +4,12 @@ use super::Message;
 use crate::i18n::{Lang, Localize};
 use sagnac_core::recording::integrity as found;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub use found::{OF_ROWS, OF_STAMPS, OF_VALUES};
 
 /// Faults of the recording, counted; the first of each kind listed with row and time.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Integrity {
     /// Places where samples are missing.
     pub gaps: u64,
@@ -64,7 +64,7 @@ impl Integrity {
 }
 
 /// One fault.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FaultRecord {
     /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`,
     /// `unparsable`, `outlier`, `saturated`, `stuck`, `repeated`, `interpolated`, `implausible`, `cut_off`.

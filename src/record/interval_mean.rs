@@ -2,10 +2,10 @@
 
 use super::Evidence;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One run or interval of one channel.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct IntervalMeanRecord {
     /// Channel.
     pub channel: String,

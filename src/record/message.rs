@@ -2,8 +2,11 @@
 
 use crate::i18n::{Arg, Lang, Localize, Note};
 use schemars::JsonSchema;
-use serde::ser::{SerializeMap, SerializeStruct};
-use serde::{Serialize, Serializer};
+use serde::de::Error as _;
+use serde::ser::{Error as _, SerializeMap, SerializeStruct};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// A sentence of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +45,7 @@ impl std::ops::Deref for Message {
 }
 
 /// How a [`Message`] appears in JSON.
-#[derive(JsonSchema)]
+#[derive(Deserialize, JsonSchema)]
 #[allow(dead_code)]
 #[schemars(rename = "NoteSchema")]
 struct MessageSchema {
@@ -51,7 +54,56 @@ struct MessageSchema {
     /// Its name in the locale tables.
     id: String,
     /// Its arguments.
-    args: std::collections::BTreeMap<String, serde_json::Value>,
+    args: BTreeMap<String, Value>,
+    /// How arguments are presented, by name, where their plain value does not tell it.
+    #[serde(default)]
+    #[schemars(with = "Option<BTreeMap<String, Value>>")]
+    show: BTreeMap<String, Presentation>,
+}
+
+/// How an argument is presented, where its plain JSON value does not tell it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Presentation {
+    /// Every digit of a number as it was stated.
+    Stated,
+    /// A key of the locale tables, not a text.
+    Key,
+    /// A fixed number of decimals.
+    Decimals {
+        /// Decimals.
+        digits: usize,
+        /// Whether trailing zeros are kept.
+        zeros: bool,
+    },
+    /// A fixed number of significant digits.
+    Figures {
+        /// Significant digits.
+        digits: usize,
+        /// Whether trailing zeros are kept.
+        zeros: bool,
+    },
+    /// A list; the plain value is the English text of it.
+    List {
+        /// The elements.
+        items: Vec<Item>,
+        /// The text between each two.
+        separator: String,
+    },
+    /// Positive infinity, which JSON has no number for.
+    Infinity,
+    /// Negative infinity.
+    NegativeInfinity,
+}
+
+/// One element of a list.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Item {
+    /// Plain value, as in `args`.
+    value: Value,
+    /// Presentation, as in `show`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    show: Option<Presentation>,
 }
 
 impl JsonSchema for Message {
@@ -70,12 +122,95 @@ impl Serialize for Message {
     }
 }
 
+impl<'de> Deserialize<'de> for Message {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Message, D::Error> {
+        let MessageSchema { text: _, id, args, mut show } = MessageSchema::deserialize(deserializer)?;
+        let mut note = Note::new(id);
+        for (name, value) in args {
+            let arg = argument(value, show.remove(&name)).map_err(D::Error::custom)?;
+            note = note.with(name, arg);
+        }
+        Ok(Message(note))
+    }
+}
+
 fn note<S: Serializer>(note: &Note, serializer: S) -> Result<S::Ok, S::Error> {
-    let mut s = serializer.serialize_struct("Note", 3)?;
+    let mut show = BTreeMap::new();
+    for (name, arg) in &note.args {
+        if let Some(presentation) = presentation(arg).map_err(S::Error::custom)? {
+            show.insert(name.as_ref(), presentation);
+        }
+    }
+    let mut s = serializer.serialize_struct("Note", if show.is_empty() { 3 } else { 4 })?;
     s.serialize_field("text", &note.say(Lang::En))?;
     s.serialize_field("id", &note.id)?;
     s.serialize_field("args", &Args(note))?;
+    if !show.is_empty() {
+        s.serialize_field("show", &show)?;
+    }
     s.end()
+}
+
+/// What the plain value of an argument loses.
+fn presentation(arg: &Arg) -> serde_json::Result<Option<Presentation>> {
+    let number = match arg {
+        Arg::Number(v) | Arg::Stated(v) => *v,
+        Arg::Decimals { value, .. } | Arg::Figures { value, .. } => *value,
+        _ => 0.0,
+    };
+    if number.is_infinite() {
+        return Ok(Some(if number > 0.0 { Presentation::Infinity } else { Presentation::NegativeInfinity }));
+    }
+    Ok(match arg {
+        Arg::Number(_) | Arg::Count(_) | Arg::Text(_) | Arg::Note(_) => None,
+        Arg::Stated(_) => Some(Presentation::Stated),
+        Arg::Key(_) => Some(Presentation::Key),
+        Arg::Decimals { digits, zeros, .. } => {
+            Some(Presentation::Decimals { digits: *digits, zeros: *zeros })
+        }
+        Arg::Figures { digits, zeros, .. } => Some(Presentation::Figures { digits: *digits, zeros: *zeros }),
+        Arg::Several(list, separator) => {
+            let item = |arg| Ok(Item { value: serde_json::to_value(Plain(arg))?, show: presentation(arg)? });
+            let items = list.iter().map(item).collect::<serde_json::Result<_>>()?;
+            Some(Presentation::List { items, separator: separator.to_string() })
+        }
+    })
+}
+
+/// The argument of a plain value and its presentation. Without one, as in files written before there was any, a number
+/// is shown with four significant digits and a string is a text.
+fn argument(value: Value, show: Option<Presentation>) -> Result<Arg, String> {
+    let wrong = |value: &Value| format!("{value} is not an argument of this presentation");
+    let number = |value: &Value| match value {
+        Value::Null => Ok(f64::NAN),
+        other => other.as_f64().ok_or_else(|| wrong(other)),
+    };
+    Ok(match (show, value) {
+        (None, Value::Object(map)) => {
+            let inner = Message::deserialize(Value::Object(map)).map_err(|e| e.to_string())?;
+            Arg::Note(Box::new(inner.0))
+        }
+        (None, Value::String(text)) => Arg::Text(text),
+        (None, value) => match value.as_u64() {
+            Some(count) => Arg::Count(count),
+            None => Arg::Number(number(&value)?),
+        },
+        (Some(Presentation::Key), Value::String(key)) => Arg::Key(key),
+        (Some(Presentation::Stated), value) => Arg::Stated(number(&value)?),
+        (Some(Presentation::Decimals { digits, zeros }), value) => {
+            Arg::Decimals { value: number(&value)?, digits, zeros }
+        }
+        (Some(Presentation::Figures { digits, zeros }), value) => {
+            Arg::Figures { value: number(&value)?, digits, zeros }
+        }
+        (Some(Presentation::List { items, separator }), _) => {
+            let list = items.into_iter().map(|i| argument(i.value, i.show)).collect::<Result<_, _>>()?;
+            Arg::Several(list, separator.into())
+        }
+        (Some(Presentation::Infinity), _) => Arg::Number(f64::INFINITY),
+        (Some(Presentation::NegativeInfinity), _) => Arg::Number(f64::NEG_INFINITY),
+        (Some(Presentation::Key), value) => return Err(wrong(&value)),
+    })
 }
 
 struct Args<'a>(&'a Note);
@@ -108,4 +243,57 @@ impl Serialize for Plain<'_> {
 /// Notes of a record that keeps them as notes.
 pub(crate) fn messages<S: Serializer>(notes: &[Note], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(notes.iter().cloned().map(Message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_back(message: &Message) -> Message {
+        serde_json::from_str(&serde_json::to_string(message).unwrap()).unwrap()
+    }
+
+    fn every_argument() -> Note {
+        Note::new("note.record_too_short")
+            .with("number", 0.1)
+            .with("whole", 3.0)
+            .with("count", 3_u64)
+            .with("stated", Arg::Stated(12.50))
+            .with("text", "measurand.static_bias")
+            .with("key", Arg::key("measurand", "static_bias"))
+            .with("fixed", Arg::fixed(1.0, 2))
+            .with("rounded", Arg::rounded(-1e-300, 3))
+            .with("infinite", f64::NEG_INFINITY)
+    }
+
+    #[test]
+    fn every_presentation_survives() {
+        let list = Arg::Several(vec![Arg::fixed(2.0, 1), every_argument().into(), "a".into()], "; ".into());
+        let message = Message(every_argument().with("inner", every_argument()).with("list", list));
+        let read = read_back(&message);
+        assert_eq!(read, message);
+        assert_eq!(read.say(Lang::Ru), message.say(Lang::Ru));
+    }
+
+    #[test]
+    fn a_message_without_presentations_is_read_as_plain_values() {
+        let json = r#"{"text": "", "id": "a", "args": {"n": 1, "x": 1.5, "t": "word", "nothing": null}}"#;
+        let read: Message = serde_json::from_str(json).unwrap();
+        assert_eq!(read.args["n"], Arg::Count(1));
+        assert_eq!(read.args["x"], Arg::Number(1.5));
+        assert_eq!(read.args["t"], Arg::Text("word".into()));
+        assert!(matches!(read.args["nothing"], Arg::Number(v) if v.is_nan()));
+    }
+
+    #[test]
+    fn arguments_of_the_wrong_type_are_refused() {
+        for json in [
+            r#"{"text": "", "id": "a", "args": {"n": [1]}}"#,
+            r#"{"text": "", "id": "a", "args": {"n": 1}, "show": {"n": "key"}}"#,
+            r#"{"text": "", "id": "a", "args": {"n": "x"}, "show": {"n": "stated"}}"#,
+            r#"{"text": "", "id": "a", "args": {"n": 1}, "show": {"n": "unknown"}}"#,
+        ] {
+            assert!(serde_json::from_str::<Message>(json).is_err(), "{json}");
+        }
+    }
 }

@@ -16,6 +16,7 @@ mod interval_mean;
 pub(crate) mod message;
 mod origin;
 mod phase;
+pub mod read;
 mod table_step;
 
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
@@ -39,20 +40,30 @@ use crate::estimate::{Interval, Judgement, LowerLimit, Rule, UpperLimit, Verdict
 pub use sagnac_core::mismatch::finding as explanation;
 pub use sagnac_core::recording::window::{ExcludedSpan, Window};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Version of the result format.
 pub const RESULT_FORMAT: &str = "result/1";
 
+/// What made a record: an acceptance test by a procedure, or an analysis without one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RunKind {
+    /// An acceptance test: conditions, checks and limits of a procedure apply.
+    Run,
+    /// An analysis: quantities are measured, and no verdict is formed.
+    Analyze,
+}
+
 /// A whole run.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RunRecord {
     /// Always `result/1`.
-    pub format: &'static str,
+    pub format: String,
     /// The program that wrote this.
     pub program: Program,
     /// `run` or `analyze`.
-    pub kind: &'static str,
+    pub kind: RunKind,
     /// The procedure, absent for `analyze`.
     pub procedure: Option<ProcedureRecord>,
     /// The unit that was tested.
@@ -112,7 +123,7 @@ pub struct RunRecord {
 }
 
 /// State of a condition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ConditionStatus {
     /// Shown to be met.
@@ -124,7 +135,7 @@ pub enum ConditionStatus {
 }
 
 /// One condition with its evidence.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ConditionRecord {
     /// Id, for example `temperature`.
     pub id: String,
@@ -148,7 +159,7 @@ pub struct ConditionRecord {
 }
 
 /// One measurand row.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeasurandRecord {
     /// Id, see the contract.
     pub id: String,
@@ -190,7 +201,7 @@ pub struct MeasurandRecord {
 }
 
 /// A limit as applied.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LimitRecord {
     /// Lower limit.
     pub min: Option<f64>,
@@ -211,7 +222,7 @@ pub struct LimitRecord {
 }
 
 /// A published value set beside the measured one.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReferenceRecord {
     /// Value in the unit of the row.
     pub value: f64,
@@ -220,7 +231,7 @@ pub struct ReferenceRecord {
 }
 
 /// A spectral line.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LineRecord {
     /// Channel.
     pub channel: String,
@@ -237,7 +248,7 @@ pub struct LineRecord {
 }
 
 /// A fitted noise model.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NoiseModelRecord {
     /// Channel.
     pub channel: String,
@@ -272,7 +283,7 @@ pub struct NoiseModelRecord {
 }
 
 /// Power of one limit.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PowerRecord {
     /// Measurand.
     pub id: String,
@@ -293,7 +304,7 @@ pub struct PowerRecord {
 }
 
 /// A figure of the report.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FigureRecord {
     /// Id, also the stem of the file in `figures/`.
     pub id: String,

@@ -1,19 +1,19 @@
 //! What a run rests on: program, procedure, unit, session and the files read.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The program that wrote a result.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Program {
     /// `sagnac`.
-    pub name: &'static str,
+    pub name: String,
     /// Version of the program.
     pub version: String,
 }
 
 /// Identity of the procedure.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ProcedureRecord {
     /// Id, for example `static-bias`.
     pub id: String,
@@ -36,7 +36,7 @@ pub struct ProcedureRecord {
 }
 
 /// Identity of a limits file.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LimitsFile {
     /// Id of the limits.
     pub id: String,
@@ -53,7 +53,7 @@ pub struct LimitsFile {
 }
 
 /// Identity of the unit that was tested.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct UnitUnderTest {
     /// Serial number.
     pub serial: Option<String>,
@@ -68,7 +68,7 @@ pub struct UnitUnderTest {
 }
 
 /// Who tested, where, when.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Session {
     /// Operator.
     pub operator: Option<String>,
@@ -79,7 +79,7 @@ pub struct Session {
 }
 
 /// One file of the recording.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecordingFile {
     /// Path as given.
     pub path: String,
@@ -107,7 +107,7 @@ pub struct RecordingFile {
 }
 
 /// One column and what it was taken for.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ColumnRecord {
     /// Name in the file.
     pub name: String,

@@ -4,10 +4,10 @@ use super::Message;
 use super::{ConditionRecord, FigureRecord, Integrity, MeasurandRecord, ProcedureRecord, RecordingFile};
 use crate::estimate::Verdict;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One phase: what its own `result.json` says, in short.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PhaseRecord {
     /// Id.
     pub id: String,

@@ -1,10 +1,10 @@
 //! Steps of a test on a rate table.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One step of one channel.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TableStepRecord {
     /// Channel.
     pub channel: String,

@@ -28,7 +28,7 @@ use crate::noise::residual::GoodnessOfFit;
 use crate::noise::spectral_record::SpectralRecord;
 use crate::noise::tau_grid::TauGrid;
 use crate::noise::whole::Whole;
-use crate::record::{ConditionStatus, Window};
+use crate::record::{ConditionStatus, RunKind, Window};
 use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
 use crate::temperature::findings::Schedule;
@@ -70,9 +70,10 @@ pub(super) fn execute(
         .filter(|_| found.at_rest())
         .filter_map(|g| warm_up::fact(g, static_bias::uncertainty(g, true).standard()))
         .collect();
-    let gyros = if request.kind == "run" { gyro_facts::gyros(&found) } else { vec![] };
+    let gyros = if request.kind == RunKind::Run { gyro_facts::gyros(&found) } else { vec![] };
     // Without a procedure the unit comes from the name of the column, or from a user who knows better.
-    let columns = if request.kind == "run" { gyro_facts::columns(request.source, &found) } else { vec![] };
+    let columns =
+        if request.kind == RunKind::Run { gyro_facts::columns(request.source, &found) } else { vec![] };
     let stated_serials = request.source.stated_serials();
     let mut conditions = judge_all(&Facts {
         procedure,
@@ -84,18 +85,18 @@ pub(super) fn execute(
         usable_s: found.window.usable_s,
         longest_gap_s: longest_gap_s(&found.window),
         held: &found.held,
-        warm_up: if request.kind == "run" { &warm_up } else { &[] },
+        warm_up: if request.kind == RunKind::Run { &warm_up } else { &[] },
         gyros: &gyros,
         limits: request.limits,
         columns: &columns,
         duration_s: found.report.duration_s,
-        stated_serials: if request.kind == "run" { &stated_serials } else { &[] },
+        stated_serials: if request.kind == RunKind::Run { &stated_serials } else { &[] },
         serial: request.unit.serial.as_deref(),
         schedule: found.schedule.as_ref(),
         today: request.now.date_naive(),
         checks: &found.checks,
     });
-    if request.kind == "analyze" {
+    if request.kind == RunKind::Analyze {
         // An analysis asks nothing of a recording and judges no unit.
         for c in conditions.iter_mut().filter(|c| c.status == ConditionStatus::Invalid) {
             c.status = ConditionStatus::Remark;

@@ -36,14 +36,14 @@ use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{IngestError, Source};
 use crate::noise::tau_grid::{TauGrid, TauGridError};
-use crate::record::{ProcedureRecord, RunRecord, Session, UnitUnderTest};
+use crate::record::{ProcedureRecord, RunKind, RunRecord, Session, UnitUnderTest};
 use chrono::{DateTime, Utc};
 use std::fmt;
 
 /// What is to be run.
 pub struct Request<'a> {
     /// `run` or `analyze`.
-    pub kind: &'static str,
+    pub kind: RunKind,
     /// The procedure.
     pub procedure: &'a Procedure,
     /// Its identity; `None` for an analysis without a procedure.
@@ -128,9 +128,11 @@ impl std::error::Error for RunError {}
 pub fn execute(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<Outcome, RunError> {
     let procedure = request.procedure;
     match (&procedure.rate_table, &procedure.repeatability_test, &procedure.comparison_test) {
-        (Some(setup), _, _) if request.kind == "run" => table::execute(request, setup, progress),
-        (_, Some(test), _) if request.kind == "run" => influence::repeatability(request, test, progress),
-        (_, _, Some(test)) if request.kind == "run" => influence::comparison(request, test, progress),
+        (Some(setup), _, _) if request.kind == RunKind::Run => table::execute(request, setup, progress),
+        (_, Some(test), _) if request.kind == RunKind::Run => {
+            influence::repeatability(request, test, progress)
+        }
+        (_, _, Some(test)) if request.kind == RunKind::Run => influence::comparison(request, test, progress),
         _ => evaluate::execute(request, progress),
     }
 }

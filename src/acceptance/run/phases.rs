@@ -7,8 +7,8 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::{Arg, Note};
 use crate::record::{
-    CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunRecord, Session,
-    UnitUnderTest, Window,
+    CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunKind, RunRecord,
+    Session, UnitUnderTest, Window,
 };
 
 /// A phase that was run, or why it was not.
@@ -61,9 +61,9 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         _ => phased.clauses.clone(),
     };
     RunRecord {
-        format: RESULT_FORMAT,
-        program: Program { name: "sagnac", version: env!("CARGO_PKG_VERSION").to_owned() },
-        kind: "run",
+        format: RESULT_FORMAT.to_owned(),
+        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        kind: RunKind::Run,
         procedure: Some(phased.identity.clone()),
         unit_under_test: unit,
         session,

@@ -10,7 +10,8 @@ use crate::i18n::Note;
 use crate::measurand::GyroEvidence;
 use crate::record::{
     ClauseRecord, ColumnRecord, ConditionRecord, FigureRecord, Integrity, LineRecord, MeasurandRecord,
-    NoiseModelRecord, OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
+    NoiseModelRecord, OptionRecord, PowerRecord, Program, RESULT_FORMAT, RecordingFile, RunKind, RunRecord,
+    Window,
 };
 use crate::recording::Role;
 use crate::temperature::start::Start;
@@ -42,7 +43,11 @@ pub(super) fn record(
         summary: summary.into_iter().map(Into::into).collect(),
         recording: recording(request, found),
         conditions,
-        checks: if request.kind == "run" { found.checks.settle(Kind::of(request.procedure)) } else { vec![] },
+        checks: if request.kind == RunKind::Run {
+            found.checks.settle(Kind::of(request.procedure))
+        } else {
+            vec![]
+        },
         integrity: found.report.integrity.clone().into(),
         window: found.window.clone(),
         measurands: rows,
@@ -70,7 +75,7 @@ pub(super) fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
         verdict: Verdict::Error,
         summary: errors.clone().into_iter().map(Into::into).collect(),
         recording: request.source.files().into_iter().map(unread).collect(),
-        checks: if request.kind == "run" { none_made(Kind::of(request.procedure)) } else { vec![] },
+        checks: if request.kind == RunKind::Run { none_made(Kind::of(request.procedure)) } else { vec![] },
         clauses: clauses(&request.procedure.clauses, "not_done"),
         errors: errors.into_iter().map(Into::into).collect(),
         ..blank(request)
@@ -88,7 +93,7 @@ pub(super) fn clauses(declared: &[ClauseRecord], here: &str) -> Vec<ClauseRecord
 
 fn errors(request: &Request<'_>) -> Vec<Note> {
     let serial = request.unit.serial.as_deref().map(str::trim).filter(|s| !s.is_empty());
-    if request.procedure.unit_under_test.serial_required && request.kind == "run" && serial.is_none() {
+    if request.procedure.unit_under_test.serial_required && request.kind == RunKind::Run && serial.is_none() {
         return vec![Note::new("error.serial_missing")];
     }
     vec![]
@@ -100,8 +105,8 @@ fn blank(request: &Request<'_>) -> RunRecord {
     let today = request.now.date_naive();
     let serial = request.unit.serial.as_deref();
     RunRecord {
-        format: RESULT_FORMAT,
-        program: Program { name: "sagnac", version: env!("CARGO_PKG_VERSION").to_owned() },
+        format: RESULT_FORMAT.to_owned(),
+        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
         kind: request.kind,
         procedure: request.procedure_record.clone(),
         unit_under_test: request.unit.clone(),

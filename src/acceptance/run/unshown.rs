@@ -8,7 +8,7 @@ use crate::config::procedure::recorded::scale_factor_unit;
 use crate::estimate::Estimate;
 use crate::i18n::Note;
 use crate::ids::{MeasurandId, Test};
-use crate::record::MeasurandRecord;
+use crate::record::{MeasurandRecord, RunKind};
 use crate::recording::Channel;
 
 /// Adds a row that says why to everything asked for that has none, in the order of the procedure.
@@ -18,7 +18,7 @@ pub(super) fn complete(
     mut rows: Vec<MeasurandRecord>,
 ) -> Vec<MeasurandRecord> {
     // An analysis shows what the recording has; nobody asked for one value by name.
-    if request.kind != "run" {
+    if request.kind != RunKind::Run {
         return rows;
     }
     let procedure = request.procedure;

@@ -38,7 +38,7 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n;
 use crate::i18n::{Arg, Lang, Localize, Note, fill, lookup};
-use crate::record::RunRecord;
+use crate::record::{RunKind, RunRecord};
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::{methods, unit};
 use serde::Serialize;
@@ -298,7 +298,7 @@ fn identity(record: &RunRecord, words: Words) -> Vec<Field> {
     };
     let unit = &record.unit_under_test;
     let missing = words.t("report.missing");
-    let expected = record.kind == "run";
+    let expected = record.kind == RunKind::Run;
     put("report.serial", unit.serial.as_deref().or(expected.then_some(missing.as_str())));
     put("report.family", unit.family.as_deref());
     put("report.part", unit.part.as_deref());

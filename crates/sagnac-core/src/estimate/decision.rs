@@ -1,10 +1,10 @@
 //! Limits, decision rules, verdicts.
 
 use super::{Estimate, Spread};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How a measured value with its uncertainty is compared with a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
@@ -40,7 +40,7 @@ impl Limit {
 }
 
 /// The verdict of a row or of a whole run. Worst wins, in this order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {

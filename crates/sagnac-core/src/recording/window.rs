@@ -1,13 +1,13 @@
 //! The evaluated part of a recording: warm-up and declared spans left out, gaps noted.
 
 use super::{Sink, Slab};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Gaps listed at most.
 const LISTED_GAPS: usize = 100;
 
 /// The evaluated part of a recording.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Window {
     /// First time evaluated, s from the start of the recording.
@@ -21,7 +21,7 @@ pub struct Window {
 }
 
 /// A span left out of the evaluation.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExcludedSpan {
     /// Start, s from the start of the recording.
