@@ -2,6 +2,7 @@
 
 mod support;
 
+use sagnac::record::{RunKind, read};
 use serde_json::Value;
 use std::path::Path;
 use support::schema::{closed, validate};
@@ -319,4 +320,34 @@ fn the_same_run_gives_the_same_bytes_on_any_number_of_threads() {
             assert!(one == two, "{} {} differs", one.0, one.1.display());
         }
     }
+}
+
+/// Every field of a result survives reading and writing, messages in both languages among them.
+#[test]
+fn results_are_read_back_to_the_last_field() {
+    let dir = tempdir().unwrap();
+    let mut folders = vec!["pass", "fail", "indeterminate", "faults"];
+    for name in &folders {
+        run(dir.path(), name);
+    }
+    assert_eq!(sagnac(dir.path(), &["analyze", &three_axes(dir.path()), "--out", "a"]).code, 0);
+    assert_eq!(sagnac(dir.path(), &["run", &procedure(), &sample("pass"), "--out", "e"]).code, 2);
+    folders.extend(["a", "e"]);
+    for name in folders {
+        let bytes = std::fs::read(dir.path().join(name).join("result.json")).unwrap();
+        let record = read::from_slice(&bytes).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let written: Value = serde_json::from_slice(&bytes).unwrap();
+        assert_eq!(serde_json::to_value(&record).unwrap(), written, "{name}");
+    }
+}
+
+/// A result from before messages kept how arguments are presented: the same values, numbers shown by the default.
+#[test]
+fn a_result_without_presentations_is_read() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/fixtures/results/static-bias-without-presentation.json");
+    let record = read::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!(record.format, "result/1");
+    assert_eq!(record.kind, RunKind::Run);
+    assert!(!record.measurands.is_empty() && !record.conditions.is_empty());
 }
