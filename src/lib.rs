@@ -1,10 +1,44 @@
-//! Sagnac: an automated acceptance-test harness for precision gyroscopes.
+//! Sagnac: an acceptance-test harness for precision gyroscopes.
 //!
-//! A declarative procedure (TOML) and a unit's recording go in; a report comes out in which every quantity carries
-//! its uncertainty and is set against its limit: pass, fail, or indeterminate.
+//! A test procedure (TOML) and a recording of a unit go in; a report comes out in which every quantity has its
+//! uncertainty and is judged against its limit: pass, fail, or indeterminate.
 //!
-//! The analysis is in [`sagnac_core`], file formats and the clock in [`sagnac_ingest`]; both are re-exported here. This
-//! crate is the harness around them: configuration, acceptance, records, reports, the command line.
+//! # As a library
+//!
+//! ```
+//! # fn main() -> Result<(), sagnac::Error> {
+//! use sagnac::{Format::{Html, Json}, Lang, Procedure, Recording, UnitUnderTest};
+//!
+//! let recording = Recording::open("samples/scale-factor-pass.csv")?;
+//! let result = Procedure::load("procedures/scale-factor.toml")?
+//!     .run(&recording, &UnitUnderTest::with_serial("SN-1"))?;
+//! assert_eq!(result.verdict(), sagnac::estimate::Verdict::Pass);
+//! # let folder = std::env::temp_dir().join("sagnac-doctest-run");
+//! result.write(&folder, &[Html, Json], Lang::Ru)?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! - [`Recording`]: a file of any format that is read, or columns in memory; [`Recording::rate`] gives the samples.
+//! - [`noise::identify`]: noise terms with their intervals, Allan deviation, spectral lines.
+//! - [`Procedure`]: a test procedure with its limits, run on a recording; [`RunResult`] is what comes of it.
+//! - [`explain()`]: why a recording departs from a [`Model`] of it.
+//! - [`Error`]: the one error of all of these.
+//!
+//! # Inside
+//!
+//! | crate or module | what it has |
+//! |---|---|
+//! | [`sagnac_core`] | the analysis: no file, no clock, no language |
+//! | [`sagnac_ingest`] | file formats, the time base, faults of a recording |
+//! | [`config`] | procedures, limits, manifests, layouts and models (TOML), with diagnostics |
+//! | [`ingest`] | from what a user names to an opened recording |
+//! | [`series`], [`simulate`] | recordings as a whole in memory; recordings made from a model |
+//! | [`acceptance`] | conditions, the run, its record, comparisons, inspection |
+//! | [`report`] | views of a record as HTML, Markdown and SVG |
+//! | [`i18n`] | sentences in English and Russian |
+//! | [`output`] | folders that appear complete or not at all |
+//! | [`cli`] | the program |
 #![forbid(unsafe_code)]
 
 pub mod acceptance;
@@ -12,6 +46,7 @@ pub mod cli;
 pub mod config;
 pub mod i18n;
 pub mod ingest;
+mod library;
 pub mod output;
 pub mod record;
 pub mod report;
@@ -19,10 +54,19 @@ pub mod selftest;
 pub mod series;
 pub mod simulate;
 
+pub use record::UnitUnderTest;
+pub use i18n::Lang;
+pub use library::{Error, Explanation, Format, Model, Noise, Procedure, Rate, Recording, RunResult, explain};
 pub use sagnac_core::{
-    effect, estimate, figure, ids, influence, measurand, mismatch, noise, numeric, rate_table, temperature,
+    claim, effect, estimate, figure, ids, influence, measurand, mismatch, numeric, rate_table, temperature,
     units,
 };
+
+/// Noise of a gyro at rest: [`identify`](fn@identify) for samples in memory, and the methods that it is made of.
+pub mod noise {
+    pub use crate::library::{Noise, identify};
+    pub use sagnac_core::noise::*;
+}
 
 /// Channels, what they deliver, and what is found about them.
 pub mod recording {

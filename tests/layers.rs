@@ -34,6 +34,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
             &["simulate"],
             &["acceptance", "selftest"],
             &["report"],
+            &["library"],
             &["cli"],
         ],
     ),
@@ -41,6 +42,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
 
 /// Re-exports of the lower packages.
 const FACADE: &[&str] = &[
+    "claim",
     "effect",
     "estimate",
     "figure",

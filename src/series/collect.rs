@@ -3,7 +3,7 @@
 use super::choose::{Chosen, choose};
 use super::{Faults, Series, SeriesError, SeriesOptions};
 use crate::effect::Column;
-use crate::ingest::{TimeBaseSpec, open_recording, prepare};
+use crate::ingest::{Source, TimeBaseSpec, open_recording, prepare};
 use crate::recording::{Sink, Slab};
 use std::path::PathBuf;
 
@@ -18,15 +18,25 @@ pub fn load_series(
     options: &SeriesOptions,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Series, SeriesError> {
-    let recording = open_recording(named, &options.read)?;
-    let source = recording.source;
-    let chosen = choose(&source, options)?;
+    load_series_of(&open_recording(named, &options.read)?.source, options, progress)
+}
+
+/// Reads an opened recording; [`SeriesOptions::read`] plays no part.
+///
+/// # Errors
+/// What keeps it from being read, and columns that cannot be told.
+pub fn load_series_of(
+    source: &Source,
+    options: &SeriesOptions,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Series, SeriesError> {
+    let chosen = choose(source, options)?;
     let spec = TimeBaseSpec {
         declared_sample_rate_hz: options.sample_rate_hz,
         use_stamps: chosen.time.is_some(),
         ..TimeBaseSpec::default()
     };
-    let plan = prepare(&source, &chosen.channels, spec)?;
+    let plan = prepare(source, &chosen.channels, spec)?;
     let nominal_s = plan.clock().interval_s;
     let mut rows = Rows::new(&chosen, nominal_s);
     let report = plan.stream(&mut [&mut rows], progress)?;

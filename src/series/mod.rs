@@ -5,7 +5,7 @@
 mod choose;
 mod collect;
 
-pub use collect::load_series;
+pub use collect::{load_series, load_series_of};
 pub use sagnac_core::series::{Faults, ReadFrom, Series, smooth};
 
 use crate::i18n::{Lang, Localize, Note};

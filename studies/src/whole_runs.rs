@@ -192,7 +192,7 @@ fn run(rate: Vec<f64>, tau0_s: f64, limits: &EffectiveLimits) -> RunRecord {
     let mut procedure = analysis::procedure(vec![channel], Some(1.0 / tau0_s), 0.0);
     procedure.report.figures = Some(vec![]);
     let request = Request {
-        kind: "analyze",
+        kind: sagnac::record::RunKind::Analyze,
         procedure: &procedure,
         procedure_record: None,
         limits,

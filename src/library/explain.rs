@@ -1,0 +1,181 @@
+//! Why a recording differs from its simulation.
+
+use super::format::{json, put, put_figures};
+use super::{Error, Format, Recording};
+use crate::record::explanation;
+use crate::claim::Claim;
+use crate::config::model::{self, ModelFile, Profile, SimulationPlan};
+use crate::i18n::{Lang, Note};
+use crate::mismatch::{self, Options, Outcome};
+use crate::report::Renderer;
+use crate::report::explain::{Context, ExplainView};
+use crate::simulate::{Order, Over, Rows, SimulateError, Simulation};
+use chrono::{SecondsFormat, Utc};
+use std::fmt::Write;
+use std::path::Path;
+
+/// A simulation as its author believes it: noise, mean, sensitivities and effects, each with its uncertainty.
+#[derive(Clone)]
+pub struct Model {
+    claim: Claim,
+    plan: SimulationPlan,
+    drivers: Vec<Profile>,
+    name: String,
+}
+
+impl Model {
+    /// Reads a model (TOML).
+    ///
+    /// # Errors
+    /// [`Error::is_configuration`] with every problem of the file.
+    pub fn load(path: impl AsRef<Path>) -> Result<Model, Error> {
+        let path = path.as_ref();
+        let ModelFile { claim, simulation, drivers } = model::load_model(path)?;
+        Ok(Model { claim, plan: simulation, drivers, name: path.display().to_string() })
+    }
+
+    /// Makes a recording from the model, over the length that its file states. Equal seeds give equal recordings.
+    ///
+    /// # Errors
+    /// [`Error::is_argument`] when the file states no length, or when an effect lacks a parameter or a column.
+    pub fn simulate(&self, seed: u64) -> Result<Recording, Error> {
+        let Some(duration_s) = self.plan.duration_s else {
+            return Err(Error::argument("simulate.no_duration"));
+        };
+        let over = Over::Duration { duration_s, start_s: self.plan.start_s, drivers: &self.drivers };
+        let failed = |e: SimulateError| Error::argument(e.note().clone());
+        let mut simulation = Simulation::begin(Order { claim: &self.claim, seed, over }).map_err(failed)?;
+        let mut all = Rows::default();
+        while let Some(rows) = simulation.next_rows().map_err(failed)? {
+            all.time_s.extend(rows.time_s);
+            all.rate_deg_h.extend(rows.rate_deg_h);
+            for (column, values) in rows.columns {
+                all.columns.entry(column).or_default().extend(values);
+            }
+        }
+        let columns = [("time_s", all.time_s), ("rate_deg_h", all.rate_deg_h)];
+        Recording::from_columns(
+            columns.into_iter().chain(all.columns.into_iter().map(|(c, v)| (c.name(), v))),
+        )
+    }
+
+    /// The model as the text of a TOML file.
+    pub fn to_toml(&self) -> String {
+        model::write(&self.claim)
+    }
+
+    /// Its values.
+    pub fn claim(&self) -> &Claim {
+        &self.claim
+    }
+}
+
+/// Finds where a recording departs from a model, and which effect of the catalogue accounts for it.
+///
+/// The rate is the only column that looks like a gyro output; a correct model is called a mismatch in one of 100
+/// recordings.
+///
+/// # Errors
+/// [`Error::is_recording`] when the recording cannot be read; [`Error::is_argument`] when its rate column cannot be told,
+/// or when recording and model cannot be compared.
+pub fn explain(recording: &Recording, model: &Model) -> Result<Explanation, Error> {
+    let series = recording.series(&recording.series_options())?;
+    let notes = series.remarks();
+    let outcome = mismatch::explain(series, &model.claim, &Options::default(), &mut |_| {});
+    let outcome = outcome.map_err(Error::argument)?;
+    Ok(Explanation { outcome, notes, recording: recording.shown(), model: model.clone() })
+}
+
+/// What an explanation found.
+pub struct Explanation {
+    outcome: Outcome,
+    notes: Vec<Note>,
+    recording: String,
+    model: Model,
+}
+
+impl Explanation {
+    /// `consistent`, `mismatch` (an effect accounts for it) or `unknown-mismatch` (none does).
+    pub fn verdict(&self) -> &str {
+        &self.outcome.explanation.verdict
+    }
+
+    /// The effects found, the principal one first.
+    pub fn effects(&self) -> &[explanation::Finding] {
+        &self.outcome.explanation.effects
+    }
+
+    /// Everything that `explain.json` holds.
+    pub fn record(&self) -> &explanation::Explanation {
+        &self.outcome.explanation
+    }
+
+    /// What the model left out, sample by sample: (time in s, deg/h). `None` where it cannot be predicted.
+    pub fn correction(&self) -> Option<&[(f64, f64)]> {
+        self.outcome.correction.as_deref()
+    }
+
+    /// The model with the effects found added to it.
+    pub fn augmented(&self) -> Model {
+        Model { claim: self.outcome.augmented.clone(), ..self.model.clone() }
+    }
+
+    /// The finding in a few lines.
+    pub fn summary(&self, lang: Lang) -> String {
+        self.view(lang).summary()
+    }
+
+    fn view(&self, lang: Lang) -> ExplainView {
+        let context = Context {
+            recording: self.recording.clone(),
+            claim: self.model.name.clone(),
+            identified: false,
+            description: self.model.claim.description.clone(),
+            explained_at: Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true),
+            correction: self.outcome.correction.is_some(),
+            notes: self.notes.clone(),
+        };
+        ExplainView::new(&self.outcome.explanation, &self.outcome.figures, &context, lang)
+    }
+
+    /// Writes the formats into a folder, which is created where it is missing. Files of the same names are replaced. CSV
+    /// is `correction.csv`, where there is a correction.
+    ///
+    /// # Errors
+    /// [`Error::is_output`] when a file cannot be written.
+    pub fn write(&self, folder: impl AsRef<Path>, formats: &[Format], lang: Lang) -> Result<(), Error> {
+        let (folder, renderer, view) = (folder.as_ref(), Renderer::new(), self.view(lang));
+        let figures = &self.outcome.figures;
+        for format in formats {
+            match format {
+                Format::Html => {
+                    let page = renderer.render_view("explain.html", &view, lang)?;
+                    put(folder, "report.html", page.as_bytes())?;
+                }
+                Format::Markdown => {
+                    let page = renderer.render_view("explain.md", &view, lang)?;
+                    put(folder, "report.md", page.as_bytes())?;
+                    put_figures(folder, figures, lang)?;
+                }
+                Format::Json => put(folder, "explain.json", &json(&self.outcome.explanation)?)?,
+                Format::Csv => {
+                    if let Some(correction) = self.correction() {
+                        put(folder, "correction.csv", correction_csv(correction).as_bytes())?;
+                    }
+                }
+                Format::Svg => put_figures(folder, figures, lang)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The shortest digits from which time and correction come back to the bit.
+fn correction_csv(correction: &[(f64, f64)]) -> String {
+    let mut out = String::from("time_s,correction_deg_h\n");
+    for (time, value) in correction {
+        // A string takes whatever is written to it.
+        let _ = writeln!(out, "{time},{value:e}");
+    }
+    out
+}

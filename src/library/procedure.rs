@@ -1,0 +1,212 @@
+//! A test procedure, run on a recording.
+
+use super::format::{json, put, put_figures};
+use super::{Error, Format, Recording};
+use crate::record::{ExplainedRecord, MeasurandRecord, RunKind, RunRecord, UnitUnderTest};
+use crate::acceptance::run::{Outcome, Request, execute};
+use crate::config::model;
+use crate::config::procedure::{self, EffectiveLimits, LimitsFile, Loaded, Problem, effective};
+use crate::estimate::Verdict;
+use crate::figure::Figure;
+use crate::i18n::Lang;
+use crate::mismatch;
+use crate::report::{Renderer, render_html, render_markdown};
+use crate::series::SeriesOptions;
+use chrono::{DateTime, Utc};
+use std::path::Path;
+
+/// A test procedure with its limits.
+///
+/// ```no_run
+/// # fn main() -> Result<(), sagnac::Error> {
+/// use sagnac::{Format::{Html, Json}, Lang, Procedure, Recording, UnitUnderTest};
+///
+/// let result = Procedure::load("procedures/static-bias.toml")?
+///     .with_limits("procedures/limits/sample-unit.toml")?
+///     .run(&Recording::open("run.csv")?, &UnitUnderTest::with_serial("SN-0042"))?;
+/// println!("{:?}", result.verdict());
+/// result.write("out", &[Html, Json], Lang::En)?;
+/// # Ok(())
+/// # }
+/// ```
+pub struct Procedure {
+    procedure: Loaded<procedure::Procedure>,
+    limits: Option<Loaded<LimitsFile>>,
+    operator: Option<String>,
+    station: Option<String>,
+    evaluated_at: Option<DateTime<Utc>>,
+}
+
+impl Procedure {
+    /// Reads a procedure (TOML). One of several phases is run by `sagnac run` only.
+    ///
+    /// # Errors
+    /// [`Error::is_configuration`] with every problem of the file.
+    pub fn load(path: impl AsRef<Path>) -> Result<Procedure, Error> {
+        let procedure = procedure::load(path.as_ref())?;
+        Ok(Procedure { procedure, limits: None, operator: None, station: None, evaluated_at: None })
+    }
+
+    /// Adds a limits file (TOML). Its limits replace those of the procedure for the same measurand and channel.
+    ///
+    /// # Errors
+    /// [`Error::is_configuration`] with every problem of the file.
+    pub fn with_limits(mut self, path: impl AsRef<Path>) -> Result<Procedure, Error> {
+        self.limits = Some(procedure::load_limits(path.as_ref())?);
+        Ok(self)
+    }
+
+    /// States who tests.
+    #[must_use]
+    pub fn operator(mut self, name: impl Into<String>) -> Procedure {
+        self.operator = Some(name.into());
+        self
+    }
+
+    /// States the station that the recording was made on.
+    #[must_use]
+    pub fn station(mut self, name: impl Into<String>) -> Procedure {
+        self.station = Some(name.into());
+        self
+    }
+
+    /// States the time of the evaluation, which decides whether calibrations are due; the present time where it is left
+    /// out.
+    #[must_use]
+    pub fn evaluated_at(mut self, time: DateTime<Utc>) -> Procedure {
+        self.evaluated_at = Some(time);
+        self
+    }
+
+    /// Warnings about the procedure and its limits, each with file, line and column.
+    pub fn warnings(&self) -> Vec<Problem> {
+        let mut warnings = self.procedure.warnings.clone();
+        warnings.extend(self.effective().warnings);
+        warnings
+    }
+
+    fn effective(&self) -> EffectiveLimits {
+        effective(&self.procedure, self.limits.as_ref())
+    }
+
+    /// Runs the procedure on a recording. An unmet condition or a missed limit is a verdict, not an error.
+    ///
+    /// # Errors
+    /// [`Error::is_recording`] when the recording cannot be read, [`Error::is_not_evaluable`] when too little of it is
+    /// left to evaluate, [`Error::is_argument`] when the serial number contradicts the manifest,
+    /// [`Error::is_configuration`] when the model that the procedure names is wrong.
+    pub fn run(&self, recording: &Recording, unit: &UnitUnderTest) -> Result<RunResult, Error> {
+        let procedure = &self.procedure.value;
+        let anew = recording.read_by(&procedure.recording.read)?;
+        let recording = anew.as_ref().unwrap_or(recording);
+        let mut unit = recording.complete(unit)?;
+        let family = self.limits.as_ref().and_then(|l| l.value.family.clone());
+        unit.family = unit.family.or_else(|| procedure.unit_under_test.family.clone()).or(family);
+        unit.part = unit.part.or_else(|| procedure.unit_under_test.part.clone());
+        unit.revision = unit.revision.or_else(|| procedure.unit_under_test.revision.clone());
+        let limits = self.effective();
+        let request = Request {
+            kind: RunKind::Run,
+            procedure,
+            procedure_record: Some(self.procedure.record(self.limits.as_ref())),
+            limits: &limits,
+            source: recording.source(),
+            use_stamps: true,
+            unit,
+            operator: self.operator.clone(),
+            station: self.station.clone(),
+            now: self.evaluated_at.unwrap_or_else(Utc::now),
+            taus: None,
+            exact: false,
+        };
+        let mut outcome = execute(&request, &mut |_, _| {})?;
+        outcome.record.explained = self.explained(recording)?;
+        Ok(RunResult { outcome })
+    }
+
+    /// The recording against the model that the procedure names, if any.
+    fn explained(&self, recording: &Recording) -> Result<Option<ExplainedRecord>, Error> {
+        let procedure = &self.procedure.value;
+        let Some(spec) = &procedure.explain else { return Ok(None) };
+        let claim = model::load(&spec.model)?;
+        let series = recording.series(&SeriesOptions {
+            channels: procedure.channels.iter().map(|c| c.channel.clone()).collect(),
+            sample_rate_hz: Some(claim.sample_rate_hz),
+            ..recording.series_options()
+        })?;
+        let options = mismatch::Options {
+            alpha: spec.alpha,
+            max_effects: spec.max_effects,
+            ..mismatch::Options::default()
+        };
+        let model = spec.model.display().to_string();
+        Ok(Some(match mismatch::explain(series, &claim, &options, &mut |_| {}) {
+            Ok(found) => ExplainedRecord { model, explanation: Some(found.explanation), error: None },
+            Err(note) => ExplainedRecord { model, explanation: None, error: Some(note.into()) },
+        }))
+    }
+}
+
+/// What a run gives: verdict, measured quantities, conditions, figures.
+pub struct RunResult {
+    outcome: Outcome,
+}
+
+impl RunResult {
+    /// The worst verdict of all limits and conditions.
+    pub fn verdict(&self) -> Verdict {
+        self.outcome.record.verdict
+    }
+
+    /// A measured quantity by its id, for example `static_bias`: the first, where several channels have it.
+    pub fn measurand(&self, id: &str) -> Option<&MeasurandRecord> {
+        self.outcome.record.measurands.iter().find(|m| m.id == id)
+    }
+
+    /// Everything that the report shows.
+    pub fn record(&self) -> &RunRecord {
+        &self.outcome.record
+    }
+
+    /// The figures, in the order of the report.
+    pub fn figures(&self) -> &[Figure] {
+        &self.outcome.figures
+    }
+
+    /// Writes the formats into a folder, which is created where it is missing. Files of the same names are replaced.
+    ///
+    /// # Errors
+    /// [`Error::is_output`] when a file cannot be written.
+    pub fn write(&self, folder: impl AsRef<Path>, formats: &[Format], lang: Lang) -> Result<(), Error> {
+        let (folder, renderer) = (folder.as_ref(), Renderer::new());
+        let Outcome { record, figures, tables } = &self.outcome;
+        for format in formats {
+            match format {
+                Format::Html => {
+                    let page = render_html(record, figures, lang, &renderer)?;
+                    put(folder, "report.html", page.as_bytes())?;
+                }
+                Format::Markdown => {
+                    let page = render_markdown(record, figures, lang, &renderer)?;
+                    put(folder, "report.md", page.as_bytes())?;
+                    put_figures(folder, figures, lang)?;
+                }
+                Format::Json => put(folder, "result.json", &json(record)?)?,
+                Format::Csv => {
+                    for (name, table) in tables {
+                        put(folder, name, table.as_bytes())?;
+                    }
+                }
+                Format::Svg => put_figures(folder, figures, lang)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl UnitUnderTest {
+    /// A unit of which only the serial number is stated.
+    pub fn with_serial(serial: impl Into<String>) -> UnitUnderTest {
+        UnitUnderTest { serial: Some(serial.into()), ..UnitUnderTest::default() }
+    }
+}

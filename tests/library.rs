@@ -1,0 +1,128 @@
+//! The library as a Rust program uses it. The examples are compiled and run here.
+
+use sagnac::Format::{Csv, Html, Json, Markdown, Svg};
+use sagnac::estimate::Verdict;
+use sagnac::{Lang, Model, Procedure, Rate, Recording, UnitUnderTest};
+use std::fs;
+use std::path::Path;
+
+#[path = "../examples/explain.rs"]
+mod explain_example;
+#[path = "../examples/noise.rs"]
+mod noise_example;
+#[path = "../examples/own_measurand.rs"]
+mod own_measurand_example;
+#[path = "../examples/run.rs"]
+mod run_example;
+#[path = "../examples/russian_report.rs"]
+mod russian_report_example;
+
+#[test]
+fn the_noise_example_runs() {
+    noise_example::main().unwrap();
+}
+
+#[test]
+fn the_run_example_runs_and_writes_its_record() {
+    run_example::main().unwrap();
+    let json = fs::read_to_string("target/example-run/result.json").unwrap();
+    let record: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&record["verdict"], &record["session"]["operator"]), (&"fail".into(), &"A. Ivanova".into()));
+    assert!(Path::new("target/example-run/sigma_tau.csv").exists());
+}
+
+#[test]
+fn the_russian_example_writes_a_russian_report_with_its_figures() {
+    russian_report_example::main().unwrap();
+    let page = fs::read_to_string("target/example-russian/report.md").unwrap();
+    assert!(page.contains("ВОГ-1") && page.contains("ГОДЕН"), "{page}");
+    assert!(fs::read_dir("target/example-russian/figures").unwrap().count() > 1);
+    assert!(fs::read_to_string("target/example-russian/report.html").unwrap().contains("<svg"));
+}
+
+#[test]
+fn the_explain_example_runs_and_names_the_step() {
+    explain_example::main().unwrap();
+    let recording = Model::load("samples/model-step.toml").unwrap().simulate(7).unwrap();
+    let why = sagnac::explain(&recording, &Model::load("samples/model-static.toml").unwrap()).unwrap();
+    assert_eq!(why.verdict(), "mismatch");
+    assert_eq!(why.effects()[0].kind, "bias_step");
+    assert!(why.augmented().to_toml().contains("bias_step"));
+    let folder = tempfile::tempdir().unwrap();
+    why.write(folder.path(), &[Html, Markdown, Json, Csv, Svg], Lang::Ru).unwrap();
+    for name in ["report.html", "report.md", "explain.json", "correction.csv", "figures"] {
+        assert!(folder.path().join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn the_example_of_an_own_measurand_runs() {
+    own_measurand_example::main().unwrap();
+}
+
+#[test]
+fn noise_of_a_rate_is_what_a_run_reports_of_it() {
+    let recording = Recording::open("samples/unit-indeterminate.csv").unwrap();
+    let noise = sagnac::noise::identify(&recording.rate("rate_deg_h").unwrap()).unwrap();
+    let unit = UnitUnderTest::with_serial("SN-0003");
+    let procedure = Procedure::load("procedures/static-bias.toml").unwrap();
+    let run = procedure.run(&recording, &unit).unwrap();
+    // The procedure leaves a warm-up out, the rate holds all of it: values agree within their intervals.
+    let row = run.measurand("angle_random_walk").unwrap();
+    let n = noise.term("angle_random_walk").unwrap().interval95().unwrap();
+    assert!(n.low < row.value.unwrap() && row.value.unwrap() < n.high, "{n:?} {row:?}");
+}
+
+#[test]
+fn columns_in_memory_give_what_their_file_gives() {
+    let file = Recording::open("samples/unit-indeterminate.csv").unwrap();
+    let text = fs::read_to_string("samples/unit-indeterminate.csv").unwrap();
+    let rows = || text.lines().filter(|l| !l.starts_with('#')).skip(1);
+    let column = |i: usize| rows().map(|l| l.split(',').nth(i).unwrap().parse().unwrap()).collect();
+    let memory =
+        Recording::from_columns([("time_s", column(0)), ("rate_deg_h", column(1)), ("temp_degC", column(2))])
+            .unwrap();
+    assert_eq!(file.rate("rate_deg_h").unwrap(), memory.rate("2").map(|r| r.named("rate_deg_h")).unwrap());
+    let run = |recording: &Recording| {
+        let procedure = Procedure::load("procedures/static-bias.toml").unwrap();
+        let run = procedure.run(recording, &UnitUnderTest::with_serial("SN-0003")).unwrap();
+        run.record().measurands.clone()
+    };
+    assert_eq!(run(&file), run(&memory));
+}
+
+#[test]
+fn errors_say_what_they_are_about() {
+    let none = Recording::open("no-such-file.csv").err().unwrap();
+    assert!(none.is_recording() && !none.is_argument(), "{none}");
+    assert!(none.to_string().contains("no-such-file.csv"), "{none}");
+    assert_ne!(none.localized(Lang::Ru), none.to_string());
+    let recording = Recording::from_columns([("x", vec![1.0; 100])]).unwrap();
+    assert!(recording.rate("x").unwrap_err().is_argument());
+    assert!(recording.rate("y").unwrap_err().is_recording());
+    let unit = recording.with_sample_rate(10.0).rate_in("x", "deg/parsec").unwrap_err();
+    assert!(unit.is_argument(), "{unit}");
+    assert!(Recording::from_columns([("x", vec![1.0]), ("y", vec![])]).err().unwrap().is_recording());
+    assert!(Rate::from_samples(vec![], 0.0).unwrap_err().is_argument());
+    assert!(
+        sagnac::noise::identify(&Rate::from_samples(vec![f64::NAN; 9], 1.0).unwrap())
+            .err()
+            .unwrap()
+            .is_argument()
+    );
+    let limits = Procedure::load("procedures/limits/sample-unit.toml").err().unwrap();
+    assert!(limits.is_configuration(), "{limits}");
+    let short =
+        Recording::from_columns([("time_s", vec![0.0, 1.0]), ("rate_deg_h", vec![1.0, 1.0])]).unwrap();
+    let run = Procedure::load("procedures/static-bias.toml").unwrap().run(&short, &UnitUnderTest::default());
+    assert!(run.err().unwrap().is_not_evaluable());
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("taken"), "").unwrap();
+    let result = Procedure::load("procedures/scale-factor.toml")
+        .unwrap()
+        .run(&Recording::open("samples/scale-factor-pass.csv").unwrap(), &UnitUnderTest::with_serial("SN-1"))
+        .unwrap();
+    assert_eq!(result.verdict(), Verdict::Pass);
+    let refused = result.write(folder.path().join("taken"), &[Json], Lang::En).unwrap_err();
+    assert!(refused.is_output() && std::error::Error::source(&refused).is_some(), "{refused}");
+}
