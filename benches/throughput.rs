@@ -33,7 +33,7 @@ fn analyse(source: &Source) -> usize {
     let channels = vec![channel("time_s", Role::Time, "s"), channel("rate_deg_h", Role::Rate, "deg/h")];
     let procedure = analysis::procedure(channels, None, 0.0);
     let request = Request {
-        kind: "analyze",
+        kind: sagnac::record::RunKind::Analyze,
         procedure: &procedure,
         procedure_record: None,
         limits: &EffectiveLimits::default(),

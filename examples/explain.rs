@@ -4,6 +4,7 @@
 
 use sagnac::{Lang, Model};
 
+/// Runs the example from the folder of the checkout.
 pub fn main() -> Result<(), sagnac::Error> {
     // A recording whose bias jumps after half an hour, against a model of the gyro without the jump.
     let recording = Model::load("samples/model-step.toml")?.simulate(7)?;

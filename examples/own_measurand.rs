@@ -22,6 +22,7 @@ impl Measurand for PeakToPeak {
     }
 }
 
+/// Runs the example from the folder of the checkout.
 pub fn main() -> Result<(), sagnac::Error> {
     let recording = Recording::open("samples/unit-pass.csv")?;
     let noise = sagnac::noise::identify(&recording.rate("rate_deg_h")?)?;

@@ -5,6 +5,7 @@
 use sagnac::estimate::Verdict;
 use sagnac::{Format, Lang, Procedure, Recording, UnitUnderTest};
 
+/// Runs the example from the folder of the checkout.
 pub fn main() -> Result<(), sagnac::Error> {
     let recording = Recording::open("samples/unit-fail.csv")?;
     let procedure = Procedure::load("procedures/static-bias.toml")?
@@ -13,7 +14,7 @@ pub fn main() -> Result<(), sagnac::Error> {
     for warning in procedure.warnings() {
         eprintln!("{warning}");
     }
-    let result = procedure.run(&recording, &UnitUnderTest::with_serial("SN-0002"))?;
+    let result = procedure.run(&recording, &UnitUnderTest::with_serial("SN-0001"))?;
     println!("{:?}", result.verdict());
     for row in &result.record().measurands {
         if row.verdict != Verdict::None {

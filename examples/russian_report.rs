@@ -5,6 +5,7 @@
 use sagnac::Format::{Html, Markdown};
 use sagnac::{Lang, Procedure, Recording, UnitUnderTest};
 
+/// Runs the example from the folder of the checkout.
 pub fn main() -> Result<(), sagnac::Error> {
     let recording = Recording::open("samples/scale-factor-pass.csv")?;
     let unit = UnitUnderTest { family: Some("ВОГ-1".to_owned()), ..UnitUnderTest::with_serial("SN-1") };

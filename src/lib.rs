@@ -34,7 +34,8 @@
 //! | [`config`] | procedures, limits, manifests, layouts and models (TOML), with diagnostics |
 //! | [`ingest`] | from what a user names to an opened recording |
 //! | [`series`], [`simulate`] | recordings as a whole in memory; recordings made from a model |
-//! | [`acceptance`] | conditions, the run, its record, comparisons, inspection |
+//! | [`record`] | what a run leaves behind, as `result.json` holds it |
+//! | [`acceptance`] | conditions, the run, comparisons, inspection |
 //! | [`report`] | views of a record as HTML, Markdown and SVG |
 //! | [`i18n`] | sentences in English and Russian |
 //! | [`output`] | folders that appear complete or not at all |
@@ -54,9 +55,9 @@ pub mod selftest;
 pub mod series;
 pub mod simulate;
 
-pub use record::UnitUnderTest;
 pub use i18n::Lang;
 pub use library::{Error, Explanation, Format, Model, Noise, Procedure, Rate, Recording, RunResult, explain};
+pub use record::UnitUnderTest;
 pub use sagnac_core::{
     claim, effect, estimate, figure, ids, influence, measurand, mismatch, numeric, rate_table, temperature,
     units,

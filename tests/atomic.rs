@@ -152,12 +152,12 @@ fn what_is_not_ours_is_refused_and_left_as_it_is() {
     for (out, fragment) in [
         ("file", "is a file"),
         ("file/below", "file"),
-        ("thesis", "no result folder of this program"),
-        ("other", "no result folder of this program"),
-        ("signed", "holds `scan.pdf`"),
+        ("thesis", "is not a result folder of this program"),
+        ("other", "is not a result folder of this program"),
+        ("signed", "contains `scan.pdf`"),
         ("link", "is a link"),
-        ("..", "not the name of a folder"),
-        (".", "not the name of a folder"),
+        ("..", "not a valid name for a new folder"),
+        (".", "not a valid name for a new folder"),
     ] {
         let arguments = arguments("fail", out);
         let said = sagnac(dir.path(), &arguments.iter().map(String::as_str).collect::<Vec<_>>());
@@ -313,7 +313,7 @@ fn nothing_that_the_result_does_not_list_is_removed_and_no_input() {
         let said = typed(dir.path(), &[&arguments[..], &["--force"]].concat());
         assert!(
             said.code == 2
-                && (said.err.contains("lies in the folder of the result")
+                && (said.err.contains("is inside the result folder")
                     || said.err.contains("folder of this program")),
             "{arguments:?} {said:?}"
         );

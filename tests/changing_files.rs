@@ -71,7 +71,7 @@ fn a_recording_that_changes_while_it_is_read_is_refused() {
             std::fs::write(&beside, bytes).unwrap();
             std::fs::rename(beside, p).unwrap();
         };
-        refused("is replaced by its like", &same_size, &["another file took the place"]);
+        refused("is replaced by its like", &same_size, &["the file was replaced by another"]);
         let rewritten = |p: &Path| {
             std::thread::sleep(std::time::Duration::from_millis(20));
             let mut file = std::fs::OpenOptions::new().write(true).open(p).unwrap();

@@ -123,14 +123,14 @@ fn a_limit_on_what_is_not_compared_is_told_to_be_left_out() {
     std::fs::write(dir.path().join("l.toml"), text).unwrap();
     compare(dir.path(), &[&sample("pass"), "--limits", "l.toml"]);
     let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
-    assert_eq!(page.matches("Limits on Static bias are not judged here").count(), 1, "{page}");
+    assert_eq!(page.matches("Limits on Static bias are not applied here").count(), 1, "{page}");
     // A result says so of the limits it was judged by.
     let run = ["run", &procedure(), &sample("pass"), "--limits", "l.toml", "--serial", "7", "--out", "r"];
     sagnac(dir.path(), &run);
     compare(dir.path(), &["r"]);
     let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
     assert!(page.contains("Static bias"), "{page}");
-    assert_eq!(page.matches("are not judged here").count(), 1, "{page}");
+    assert_eq!(page.matches("are not applied here").count(), 1, "{page}");
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn a_unit_against_the_name_of_the_column_is_told() {
     let dir = tempdir().unwrap();
     compare(dir.path(), &[&sample("pass"), "--unit", "deg/s"]);
     let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
-    assert!(page.contains("states deg/h and is read in deg/s"), "{page}");
+    assert!(page.contains("states deg/h but is read in deg/s"), "{page}");
     let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--unit", "deg/s", "--out", "a"]);
     assert!(said.err.contains("column `rate_deg_h` states deg/h"), "{}", said.err);
     let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--unit", "°/h", "--out", "b"]);
@@ -189,10 +189,10 @@ fn a_refusal_says_what_is_wrong_with_the_file() {
     std::fs::write(dir.path().join("wrong.json"), "{\"format\": result}").unwrap();
     std::fs::create_dir(dir.path().join("bare")).unwrap();
     for (args, en, ru) in [
-        (["cut.json", "--out", "c"], "was it cut short?", "не обрезан ли он?"),
+        (["cut.json", "--out", "c"], "was it truncated?", "не обрезан ли он?"),
         (["wrong.json", "--out", "c"], "no valid JSON at line 1", "неверный JSON в строке 1"),
         (["bare", "--out", "c"], "a folder without result.json", "папка без `result.json`"),
-        (["a", "--out", "a"], "is no comparison folder", "не является папкой сопоставления"),
+        (["a", "--out", "a"], "is not a comparison folder", "не является папкой сопоставления"),
     ] {
         for (lang, words) in [("en", en), ("ru", ru)] {
             let said = sagnac(dir.path(), &[&["compare"], &args[..], &["--lang", lang]].concat());
@@ -242,8 +242,8 @@ fn the_published_tables_are_checked_in_both_languages() {
     for (computed, expected) in computed.iter().zip([8.0, 12.8, 12.73, 5.0, 6.25]) {
         assert!((computed - expected).abs() < 0.005, "{computed}");
     }
-    assert!(said.contains("printed ratio 12 does not follow from the row: 5.00"), "{said}");
-    assert!(said.contains("printed ratio 8 does not follow from the row: 6.25"), "{said}");
+    assert!(said.contains("printed ratio 12 is inconsistent with the row: 5.00"), "{said}");
+    assert!(said.contains("printed ratio 8 is inconsistent with the row: 6.25"), "{said}");
     let (russian, _) = compare(dir.path(), &["--published", "--lang", "ru"]);
     assert!(russian.contains("не следует из строки: 5,00"), "{russian}");
     let html = std::fs::read_to_string(dir.path().join("c/comparison.html")).unwrap();
@@ -256,7 +256,7 @@ fn a_short_recording_has_no_drift_and_says_so() {
     let rows: String = (0..150).map(|i| format!("{i},{}\n", (i * 37 % 11) as f64 * 0.1)).collect();
     std::fs::write(dir.path().join("short.csv"), format!("time_s,rate_deg_h\n{rows}")).unwrap();
     let (said, all) = compare(dir.path(), &["short.csv"]);
-    assert!(said.contains("no two windows of 100 s"), "{said}");
+    assert!(said.contains("fewer than two windows of 100 s"), "{said}");
     assert_eq!(all["units"][0]["name"], "short");
 }
 
@@ -372,7 +372,7 @@ fn faults_of_a_recording_and_a_model_that_fails_are_told() {
     let dir = tempdir().unwrap();
     written(dir.path(), "spikes.csv", 1.0, 7200, |t| if t == 2000.0 || t == 5000.0 { 150.0 } else { 0.0 });
     let (said, all) = compare(dir.path(), &["spikes.csv"]);
-    assert!(said.contains("The check of the recording found: Outliers: 2."), "{said}");
+    assert!(said.contains("Faults of the recording: Outliers: 2."), "{said}");
     assert!(said.contains("consistent, indicative"), "{said}");
     assert_eq!(all["units"][0]["indicative"], true);
 }

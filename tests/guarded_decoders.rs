@@ -33,7 +33,7 @@ fn a_panic_of_a_decoder_is_a_damaged_file() {
             Ok(_) => read += 1,
             Err(e) => {
                 refused += 1;
-                if e.say(Lang::En).contains("the decoder gave up") {
+                if e.say(Lang::En).contains("the decoder failed") {
                     assert_eq!(e.kind(), IngestErrorKind::Damaged);
                     gave_up += 1;
                 }

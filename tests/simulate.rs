@@ -100,7 +100,7 @@ fn a_recording_lends_its_rows_and_columns() {
     let missing = given.faults.missing + given.faults.without_rate;
     assert_eq!((made.faults.missing, made.faults.without_rate, made.faults.without_time), (missing, 0, 0));
     assert!(given.faults.missing >= 90 && given.faults.without_rate + given.faults.without_time >= 3);
-    for line in ["samples are missing in the recording", "rows of the recording left out", "[[driver]]"] {
+    for line in ["samples are missing in the recording", "rows of the recording: ", "[[driver]]"] {
         assert!(said.out.contains(line), "no `{line}` in\n{}", said.out);
     }
 }
@@ -112,21 +112,21 @@ fn what_cannot_be_made_is_refused_and_leaves_nothing() {
     std::fs::write(dir.path().join("own.csv"), "time_s,rate_deg_h\n0,1\n1,2\n2,3\n").unwrap();
     std::fs::write(dir.path().join("bare.toml"), "[recording]\nsample_rate_hz = 10\n").unwrap();
     for (arguments, said) in [
-        (&["simulate", &*model, "--out", "a.txt"][..], "neither in .csv nor in .parquet"),
+        (&["simulate", &*model, "--out", "a.txt"][..], "must end in .csv or .parquet"),
         (&["simulate", &model, "--out", "a.csv", "--duration", "10"], "no unit"),
         (&["simulate", &model, "--out", "a.csv", "--duration=-5 s"], "above 0"),
         (
             &["simulate", &model, "--out", "a.csv", "--duration", "3 deg"],
             "help: write a number with its unit",
         ),
-        (&["simulate", &model, "--out", "a.csv", "--duration", "1e9 d"], "cannot be simulated"),
+        (&["simulate", &model, "--out", "a.csv", "--duration", "1e9 d"], "cannot simulate"),
         (&["simulate", "bare.toml", "--out", "a.csv"], "no length"),
         (&["simulate", "none.toml", "--out", "a.csv"], "cannot be read"),
         (&["simulate", &model, "--out", "own.csv", "--like", "own.csv"], "write to another file"),
         (&["simulate", &model, "--out", "a.csv", "--like", "own.csv"], "the recording has 1 Hz"),
         (
             &["simulate", &model, "--out", "a.csv", "--like", "own.csv", "--duration", "1h"],
-            "exclude each other",
+            "are mutually exclusive",
         ),
         (&["simulate", &model, "--out", "a.csv", "--seed=-1"], "--seed"),
     ] {

@@ -94,7 +94,7 @@ fn outcome(source: &Source) -> Option<Outcome> {
     let procedure = analysis::procedure(channels, Some(10.0), 0.0);
     let limits = EffectiveLimits::default();
     let request = Request {
-        kind: "analyze",
+        kind: sagnac::record::RunKind::Analyze,
         procedure: &procedure,
         procedure_record: None,
         limits: &limits,

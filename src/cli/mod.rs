@@ -53,16 +53,16 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Test a recording by a procedure and write the acceptance report
+    /// Run a test procedure on a recording and write the acceptance report
     #[command(
         after_help = "Example:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
         --serial SN-0042 --operator \"A. Ivanova\" --out reports/SN-0042"
     )]
     Run(RunArgs),
-    /// Validate procedures and limits without data, and say what they cannot show
+    /// Validate procedures and limits without data, and report what they cannot decide
     #[command(after_help = "Example:\n  sagnac check procedures/static-bias.toml procedures/limits/*.toml")]
     Check(CheckArgs),
-    /// Say what a recording holds and which tests it can support
+    /// Show what a recording contains and which tests it supports
     #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]
     Inspect(InspectArgs),
     /// Analyse the noise of a recording without a procedure
@@ -70,22 +70,22 @@ enum Verb {
         after_help = "Example:\n  sagnac analyze unit-0042.csv --rate gyro_x --unit deg/s --out analysis-0042"
     )]
     Analyze(AnalyzeArgs),
-    /// Set Russian against Allan figures of any units, with what explains the ratio
+    /// Compare Russian and Allan figures and explain their ratio
     #[command(
         after_help = "Examples:\n  sagnac compare unit-0042.csv unit-0043.csv reports/SN-0044 --out comparison\n  \
         sagnac compare --published"
     )]
     Compare(CompareArgs),
-    /// Make a recording from a model: noise, mean, effects and columns, reproducible to the bit
+    /// Simulate a recording from a model: noise, mean, effects and columns, reproducible to the bit
     #[command(
         after_help = "Examples:\n  sagnac simulate samples/model-static.toml --out static.csv --duration 10h --seed 7\n  \
         sagnac simulate model.toml --out simulated.parquet --like unit-0042.csv"
     )]
     Simulate(SimulateArgs),
-    /// List the effects that a model can state and an explanation can name, or explain one
+    /// List the effects known to models and explanations, or describe one
     #[command(after_help = "Examples:\n  sagnac effects\n  sagnac effects bias_step")]
     Effects(EffectsArgs),
-    /// Say where, and because of what, a recording differs from its simulation
+    /// Find where a recording differs from its simulation, and why
     #[command(
         after_help = "Exit codes: 0 consistent, 1 mismatch explained, 2 could not run, 3 unknown mismatch.\n\n\
         Examples:\n  sagnac explain recording.csv --model model.toml --out explained\n  \
@@ -95,7 +95,7 @@ enum Verb {
     /// Print the JSON Schema of a file format, for completion in editors
     #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]
     Schema(SchemaArgs),
-    /// Re-run the published oracles on this machine and print the differences, for the QA file
+    /// Recompute published reference values on this machine and print the differences, for the QA file
     #[command(after_help = "Example:\n  sagnac selftest > selftest-2026-11-21.txt")]
     Selftest,
 }
@@ -104,28 +104,28 @@ enum Verb {
 struct RunArgs {
     /// Procedure (TOML)
     procedure: PathBuf,
-    /// Recording: a file of any kind that is read; several files in sequence, a pattern in quotes, or a manifest
+    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
     #[arg(required = true)]
     recording: Vec<PathBuf>,
-    /// Limits file; replaces limits of the procedure for the same measurand
+    /// Limits file; overrides the procedure's limits for the same measurand
     #[arg(long, value_name = "FILE")]
     limits: Option<PathBuf>,
     /// Serial number of the unit under test
     #[arg(long, value_name = "SN")]
     serial: Option<String>,
-    /// Who tests
+    /// Name of the operator
     #[arg(long, value_name = "NAME")]
     operator: Option<String>,
-    /// Station the recording was made on
+    /// Test station where the recording was made
     #[arg(long, value_name = "NAME")]
     station: Option<String>,
-    /// Folder for the results [default: named after procedure, serial and UTC start]
+    /// Output folder [default: named after procedure, serial number and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace an earlier result of other inputs
+    /// Replace an existing result made from different inputs
     #[arg(long)]
     force: bool,
-    /// Folder with templates that replace the built-in ones of the same name
+    /// Folder of templates that override built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,
     #[command(flatten)]
@@ -138,7 +138,7 @@ struct GridArgs {
     /// Averaging times: octave, decade, all, or a list in seconds (1,10,100), each a multiple of the sample interval
     #[arg(long, value_name = "GRID")]
     taus: Option<String>,
-    /// Sum every overlapping term at any length (8 bytes of memory a sample)
+    /// Sum every overlapping term at any length (8 bytes of memory per sample)
     #[arg(long)]
     exact: bool,
 }
@@ -152,10 +152,10 @@ struct CheckArgs {
 
 #[derive(Debug, Args)]
 struct InspectArgs {
-    /// Recording: a file of any kind that is read; several files in sequence, a pattern in quotes, or a manifest
+    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
     #[arg(required = true)]
     recording: Vec<PathBuf>,
-    /// Sample rate, where the recording has no time column
+    /// Sample rate, if the recording has no time column
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
     #[command(flatten)]
@@ -164,37 +164,37 @@ struct InspectArgs {
 
 #[derive(Debug, Args)]
 struct AnalyzeArgs {
-    /// Recording: a file of any kind that is read; several files in sequence, a pattern in quotes, or a manifest
+    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
     #[arg(required = true)]
     recording: Vec<PathBuf>,
     /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]
     rate: Vec<String>,
-    /// Column of an accumulated angle, by name or position, whose differences are the rate; may be repeated
+    /// Accumulated-angle column by name or position, differenced to a rate; may be repeated
     #[arg(long, value_name = "COLUMN")]
     angle: Vec<String>,
     /// Unit of the rate columns [default: from their names]
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
-    /// Sample counter by name or position: lost and repeated samples are told by it
+    /// Sample counter by name or position; used to detect lost and repeated samples
     #[arg(long, value_name = "COLUMN")]
     counter: Option<String>,
-    /// Time column by name or position, or `none` to go by the sample rate alone [default: from the names]
+    /// Time column by name or position, or `none` to use only the sample rate [default: from the names]
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
-    /// Sample rate, needed where there is no time column
+    /// Sample rate, required without a time column
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
-    /// Time left out at the start, s
+    /// Time excluded at the start, s
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     warm_up: f64,
-    /// Folder for the results [default: named after the recording and UTC start]
+    /// Output folder [default: named after the recording and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace an earlier result of other inputs
+    /// Replace an existing result made from different inputs
     #[arg(long)]
     force: bool,
-    /// Folder with templates that replace the built-in ones of the same name
+    /// Folder of templates that override built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,
     #[command(flatten)]
@@ -205,7 +205,7 @@ struct AnalyzeArgs {
 
 #[derive(Debug, Args)]
 struct CompareArgs {
-    /// Units: recordings of any kind that is read, each a unit; a result.json, or the folder that holds it
+    /// Units: one recording each, in any supported format; or a result.json, or its folder
     #[arg(required_unless_present = "published")]
     recording: Vec<PathBuf>,
     /// Check the published tables of Russian and Allan figures
@@ -214,34 +214,34 @@ struct CompareArgs {
     /// Rate column by name or position; may be repeated [default: every column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]
     rate: Vec<String>,
-    /// Column of an accumulated angle, by name or position, whose differences are the rate; may be repeated
+    /// Accumulated-angle column by name or position, differenced to a rate; may be repeated
     #[arg(long, value_name = "COLUMN")]
     angle: Vec<String>,
     /// Unit of the rate columns [default: from their names]
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
-    /// Sample counter by name or position: lost and repeated samples are told by it
+    /// Sample counter by name or position; used to detect lost and repeated samples
     #[arg(long, value_name = "COLUMN")]
     counter: Option<String>,
-    /// Time column by name or position, or `none` to go by the sample rate alone [default: from the names]
+    /// Time column by name or position, or `none` to use only the sample rate [default: from the names]
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
-    /// Sample rate, needed where there is no time column
+    /// Sample rate, required without a time column
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
-    /// Time left out at the start, s
+    /// Time excluded at the start, s
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     warm_up: f64,
-    /// Limits file: each limit is judged against the figure that it names; a result keeps the limits it has
+    /// Limits file: each limit applies to the figure it names; a result keeps its own limits
     #[arg(long, value_name = "FILE")]
     limits: Option<PathBuf>,
-    /// Folder for the comparison [default: named after the first unit and UTC start]
+    /// Output folder [default: named after the first unit and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace an earlier result of other inputs
+    /// Replace an existing result made from different inputs
     #[arg(long)]
     force: bool,
-    /// Folder with templates that replace the built-in ones of the same name
+    /// Folder of templates that override built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,
     #[command(flatten)]
@@ -250,29 +250,29 @@ struct CompareArgs {
 
 #[derive(Debug, Args)]
 struct SimulateArgs {
-    /// Model (TOML): what the recording is believed to hold
+    /// Model (TOML): the expected content of the recording
     #[arg(value_name = "FILE")]
     model: PathBuf,
     /// File to write, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Replace a file that holds something else
+    /// Replace an existing file with different content
     #[arg(long)]
     force: bool,
-    /// Seed, a whole number: equal seeds give equal recordings [default: as in the model, else 1]
+    /// Seed, a whole number; equal seeds give equal recordings [default: as in the model, else 1]
     #[arg(long, value_name = "SEED")]
     seed: Option<u64>,
     /// Length with its unit, such as 10h, 600s or "2 d" [default: as in the model]
     #[arg(long, value_name = "LENGTH")]
     duration: Option<String>,
-    /// Recording whose rows and columns are taken: its time stamps, gaps, temperatures, table rates
+    /// Recording that provides rows and columns: timestamps, gaps, temperatures, table rates
     #[arg(long, value_name = "RECORDING")]
     like: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 struct EffectsArgs {
-    /// Effect to explain [default: list all]
+    /// Effect to describe [default: list all]
     #[arg(value_name = "NAME")]
     effect: Option<String>,
     /// Print JSON
@@ -282,25 +282,25 @@ struct EffectsArgs {
 
 #[derive(Debug, Args)]
 struct ExplainArgs {
-    /// Recording: a file of any kind that is read; several files in sequence, a pattern in quotes, or a manifest
+    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
     #[arg(required = true)]
     recording: Vec<PathBuf>,
     /// The claimed simulation (TOML)
     #[arg(long, value_name = "FILE", required_unless_present = "simulation", conflicts_with = "simulation")]
     model: Option<PathBuf>,
-    /// A simulated recording from which the claim is identified, in place of a model
+    /// Simulated recording from which the claim is identified, instead of a model
     #[arg(long, value_name = "FILE")]
     simulation: Option<PathBuf>,
-    /// Probability at which a correct claim may be called a mismatch [default: 0.01]
+    /// Probability of calling a correct claim a mismatch [default: 0.01]
     #[arg(long, value_name = "PROBABILITY")]
     alpha: Option<f64>,
-    /// Column that is treated as not recorded, by its name in the contract (temp_degC); may be repeated
+    /// Column to treat as not recorded, by its standard name (temp_degC); may be repeated
     #[arg(long, value_name = "COLUMN")]
     hide: Vec<String>,
-    /// Most effects that are added to the claim [default: 3]
+    /// Maximum number of effects to add to the claim [default: 3]
     #[arg(long, value_name = "COUNT")]
     max_effects: Option<usize>,
-    /// Effect that is not thought of, by its id (`sagnac effects`); may be repeated
+    /// Effect to exclude from the search, by id (`sagnac effects`); may be repeated
     #[arg(long, value_name = "EFFECT")]
     without: Vec<String>,
     /// Rate column by name or position [default: the only column that looks like a gyro output]
@@ -309,16 +309,16 @@ struct ExplainArgs {
     /// Unit of the rate column [default: from its name]
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
-    /// Sample rate, needed where there is no time column
+    /// Sample rate, required without a time column
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
-    /// Folder for the explanation [default: named after the recording and UTC start]
+    /// Output folder [default: named after the recording and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace an earlier result of other inputs
+    /// Replace an existing result made from different inputs
     #[arg(long)]
     force: bool,
-    /// Folder with templates that replace the built-in ones of the same name
+    /// Folder of templates that override built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,
     #[command(flatten)]
@@ -337,13 +337,13 @@ enum SchemaKind {
     Result,
     /// A manifest: several files as one recording
     Manifest,
-    /// A model: what a recording is believed to hold
+    /// A model: the expected content of a recording
     Model,
 }
 
 #[derive(Debug, Args)]
 struct SchemaArgs {
-    /// Which format
+    /// File format
     kind: SchemaKind,
 }
 

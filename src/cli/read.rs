@@ -11,28 +11,28 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "How the recording is read")]
 pub struct ReadArgs {
-    /// File format [default: found by the content]
+    /// File format [default: detected from the content]
     #[arg(long, value_name = "ID")]
     format: Option<String>,
-    /// Character encoding of a text file [default: found from its bytes]
+    /// Character encoding of a text file [default: detected]
     #[arg(long, value_parser = PossibleValuesParser::new(words(ENCODINGS)))]
     encoding: Option<String>,
-    /// Separator of the fields of a text file [default: found from its lines]
+    /// Field delimiter of a text file [default: detected]
     #[arg(long, value_parser = PossibleValuesParser::new(words(DELIMITERS)))]
     delimiter: Option<String>,
-    /// Decimal sign of a text file [default: found from its numbers]
+    /// Decimal mark of a text file [default: detected]
     #[arg(long, value_parser = PossibleValuesParser::new(words(DECIMALS)))]
     decimal: Option<String>,
-    /// Line that names the columns of a text file, counted from 1; 0: there is none
+    /// Line with the column names of a text file, counted from 1; 0: none
     #[arg(long, value_name = "LINE")]
     header_line: Option<u64>,
-    /// First line of data of a text file, counted from 1
+    /// First data line of a text file, counted from 1
     #[arg(long, value_name = "LINE")]
     first_line: Option<u64>,
     /// Part of a container that holds the recording: a dataset, a variable, a topic
     #[arg(long, value_name = "NAME")]
     part: Option<String>,
-    /// Layout of the records of a raw binary file (TOML)
+    /// Record layout of a raw binary file (TOML)
     #[arg(long, value_name = "FILE")]
     layout: Option<PathBuf>,
 }

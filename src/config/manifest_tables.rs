@@ -21,7 +21,8 @@ pub static MANIFEST_FILE: TableSpec = TableSpec {
             Kind::Flag,
             "false",
             "true",
-            "True when each file follows the one before without a gap, whatever its stamps are; needed for files without stamps, whose joints are gaps of unknown length otherwise.",
+            "True if each file continues the previous one without a gap, regardless of timestamps; needed \
+             for files without timestamps, which are otherwise separated by gaps of unknown length.",
         ),
         with_default(
             "several_phases",
@@ -30,12 +31,7 @@ pub static MANIFEST_FILE: TableSpec = TableSpec {
             "true",
             "True when files of several phases belong to one test: positions or turns, which a procedure names by their phases.",
         ),
-        optional(
-            "recording",
-            Kind::Table(&READING),
-            "",
-            "How the files are read, where it is not to be found out.",
-        ),
+        optional("recording", Kind::Table(&READING), "", "How the files are read, where not detected."),
         optional("file", Kind::Tables(&FILE), "", "The files, one table each, in their order."),
     ],
 };
@@ -54,7 +50,7 @@ static FILE: TableSpec = TableSpec {
             "sha256",
             Kind::Text,
             "\"e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855\"",
-            "SHA-256 of the file; checked before anything is read.",
+            "SHA-256 of the file, checked before anything is read.",
         ),
         optional("phase", Kind::Id, "\"soak\"", "Phase of the test that the file belongs to."),
     ],
@@ -62,7 +58,7 @@ static FILE: TableSpec = TableSpec {
 
 static READING: TableSpec = TableSpec {
     name: "recording",
-    doc: "How the files are read. What is left out is found from each file.",
+    doc: "How the files are read. Omitted keys are detected from each file.",
     keys: &[
         reading_tables::FORMAT,
         reading_tables::ENCODING,

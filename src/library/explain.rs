@@ -2,11 +2,11 @@
 
 use super::format::{json, put, put_figures};
 use super::{Error, Format, Recording};
-use crate::record::explanation;
 use crate::claim::Claim;
 use crate::config::model::{self, ModelFile, Profile, SimulationPlan};
 use crate::i18n::{Lang, Note};
 use crate::mismatch::{self, Options, Outcome};
+use crate::record::explanation;
 use crate::report::Renderer;
 use crate::report::explain::{Context, ExplainView};
 use crate::simulate::{Order, Over, Rows, SimulateError, Simulation};

@@ -2,7 +2,6 @@
 
 use super::format::{json, put, put_figures};
 use super::{Error, Format, Recording};
-use crate::record::{ExplainedRecord, MeasurandRecord, RunKind, RunRecord, UnitUnderTest};
 use crate::acceptance::run::{Outcome, Request, execute};
 use crate::config::model;
 use crate::config::procedure::{self, EffectiveLimits, LimitsFile, Loaded, Problem, effective};
@@ -10,6 +9,7 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::mismatch;
+use crate::record::{ExplainedRecord, MeasurandRecord, RunKind, RunRecord, UnitUnderTest};
 use crate::report::{Renderer, render_html, render_markdown};
 use crate::series::SeriesOptions;
 use chrono::{DateTime, Utc};

@@ -1,10 +1,10 @@
 //! A recording as a program holds it: files on disk, or columns in memory.
 
 use super::Error;
-use crate::record::UnitUnderTest;
 use crate::config::manifest::Manifest;
 use crate::i18n::Note;
 use crate::ingest::{ReadOptions, Source, open_recording};
+use crate::record::UnitUnderTest;
 use crate::series::{Series, SeriesOptions, load_series_of};
 use std::path::{Path, PathBuf};
 

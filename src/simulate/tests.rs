@@ -296,7 +296,7 @@ fn what_cannot_be_simulated_is_said() {
     let over = |duration_s: f64| Over::Duration { duration_s, start_s: 0.0, drivers: &[] };
     let quiet = claim("");
     for duration_s in [0.1, 1e15, f64::NAN] {
-        assert!(refused(&quiet, over(duration_s)).contains("cannot be simulated"), "{duration_s}");
+        assert!(refused(&quiet, over(duration_s)).contains("cannot simulate"), "{duration_s}");
     }
     let warm =
         claim("[[effect]]\nkind = \"temp_linear\"\n[effect.parameters]\ncoefficient_deg_h_per_degC = 1.0\n");

@@ -73,9 +73,9 @@ fn what_is_no_recording_is_refused_by_its_content() {
     let png = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x10\x00\x00\x00\x10\x08\x06\x00\x00\x00";
     let binary: Vec<u8> = (0..4096u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     refused("zip.csv", zip, &["a zip archive or a spreadsheet", "export the sheet as CSV"]);
-    refused("png.csv", png, &["neither text nor of a binary kind"]);
-    refused("binary.csv", &binary, &["neither text nor of a binary kind"]);
-    refused("nul.csv", rate(500, "12.5\u{0}").as_bytes(), &["neither text nor of a binary kind"]);
+    refused("png.csv", png, &["neither text nor a supported binary format"]);
+    refused("binary.csv", &binary, &["neither text nor a supported binary format"]);
+    refused("nul.csv", rate(500, "12.5\u{0}").as_bytes(), &["neither text nor a supported binary format"]);
     refused("empty.csv", b"", &["the file is empty"]);
     refused("blank.csv", b"\n\n  \n", &["no rows"]);
     refused("header.csv", format!("{HEADER}\n").as_bytes(), &["no rows"]);
@@ -121,13 +121,13 @@ fn a_recording_reads_the_same_in_every_encoding_and_dialect() {
 fn packed_files_that_end_early_or_unpack_without_end_are_refused() {
     let text = recording(5000).into_bytes();
     let (gz, zs) = (gzip(&text), zst(&text));
-    refused("half.csv.gz", &gz[..gz.len() / 2], &["end early", "cut off"]);
+    refused("half.csv.gz", &gz[..gz.len() / 2], &["end early", "truncated"]);
     refused("head.csv.gz", &gz[..5], &["head.csv.gz"]);
-    refused("half.csv.zst", &zs[..zs.len() / 2], &["end early", "cut off"]);
+    refused("half.csv.zst", &zs[..zs.len() / 2], &["end early", "truncated"]);
     let mut flipped = gz.clone();
     flipped[gz.len() / 2] ^= 0x10;
     refused("flipped.csv.gz", &flipped, &["damaged"]);
-    refused("nothing.csv.gz", &gzip(b""), &["holds nothing"]);
+    refused("nothing.csv.gz", &gzip(b""), &["the compressed file is empty"]);
     let mut bomb = format!("{HEADER}\n").into_bytes();
     bomb.resize(64 << 20, b'0');
     refused("bomb.csv.gz", &gzip(&bomb), &["bomb.csv.gz"]);
@@ -146,7 +146,11 @@ fn columns_that_are_missing_doubled_or_words_are_named() {
     assert!(run.err.contains("no column `rate_deg_h`; did you mean `rate_deg_s`?"), "{}", run.err);
     refused("norate.csv", sound.replace("rate_deg_h", "x").as_bytes(), &["column", "x"]);
     let doubled = sound.replace("temp_degC", "rate_deg_h");
-    refused("doubled.csv", doubled.as_bytes(), &["`rate_deg_h` stands over 2 columns (2, 3)", "position"]);
+    refused(
+        "doubled.csv",
+        doubled.as_bytes(),
+        &["the name `rate_deg_h` is used by 2 columns (2, 3)", "position"],
+    );
     let words = changed(|r, _| Some(format!("{},warm,20.0", r - 1)));
     refused("words.csv", words.as_bytes(), &[":2:3:", "`warm`", "rate_deg_h"]);
     let timeless = changed(|r, _| Some(format!("noon,{r},20.0")));

@@ -122,7 +122,7 @@ fn wrong_usages_of_analyze_are_refused_in_one_message() {
         (&["--unit", "furlong"], &["--unit", "`furlong` is not a unit"]),
         (&["--rate", "rate_deg_h", "--unit", "degC"], &["`degC` measures a temperature", "angular rate"]),
         (&["--rate", "temp_degC"], &["`temp_degC`", "--unit"]),
-        (&["--taus", "15"], &["15 s is no multiple of the sample interval 10 s", "10 s and 20 s"]),
+        (&["--taus", "15"], &["15 s is not a multiple of the sample interval 10 s", "10 s and 20 s"]),
         (&["--taus", "10,x"], &["--taus", "`x`"]),
         (&["--taus", "0"], &["0"]),
         (&["--time", "none", "--sample-rate", "0"], &["sample rate 0", "positive"]),
@@ -170,7 +170,7 @@ fn check_says_what_a_short_record_cannot_show() {
         let about = said.out.contains("1 h cannot decide bias_instability <= 0.005 deg/h");
         assert_eq!(about, warned, "{}", said.out);
         assert_eq!(said.out.contains("sample-unit.toml:29:1"), warned, "{}", said.out);
-        assert_eq!(said.out.contains("a unit 1.5 times over the limit"), warned, "{}", said.out);
+        assert_eq!(said.out.contains("a unit at 1.5 times the limit"), warned, "{}", said.out);
     }
 }
 

@@ -35,7 +35,7 @@ fn a_unit_that_differs_from_its_family_is_told_beside_its_verdict() {
     procedure(dir.path(), "[explain]\nmodel = \"family.toml\"\n");
     let said = sagnac(dir.path(), &["run", "p.toml", "step.csv", "--out", "r"]);
     assert_eq!(said.code, 0, "the verdict is that of the limits alone: {said:?}");
-    assert!(said.out.contains("bias") && said.out.contains("leaves out"), "{}", said.out);
+    assert!(said.out.contains("bias") && said.out.contains("omits"), "{}", said.out);
     let explained = &result(&dir.path().join("r"))["explained"];
     assert_eq!(explained["explanation"]["verdict"], "mismatch");
     assert_eq!(explained["explanation"]["effects"][0]["kind"], "bias_step");

@@ -255,7 +255,7 @@ fn what_cannot_be_run_says_why() {
         &["r.csv", "--model", "model.toml", "--hide", "temp", "--out", "e"],
         "temp_degC, table_rate_deg_s",
     );
-    refused(&["r.csv", "--model", "model.toml", "--out", "mine"], "no explanation folder");
+    refused(&["r.csv", "--model", "model.toml", "--out", "mine"], "not an explanation folder");
     let other = MODEL.replace("sample_rate_hz = 1", "sample_rate_hz = 10");
     std::fs::write(dir.path().join("other.toml"), other).unwrap();
     refused(&["r.csv", "--model", "other.toml", "--out", "e"], "10");
@@ -331,7 +331,7 @@ fn samples_that_repeat_the_one_before_them_are_unknown_by_name_and_the_loop_clos
     assert!(place["domain"] == "time" && from > 995.0 && to < 3001.0 && to - from > 1500.0, "{place}");
     assert!(all["family_p_value"].as_f64().unwrap() < 1e-6, "{all}");
     let report = std::fs::read_to_string(dir.path().join("e/report.md")).unwrap();
-    assert!(report.contains("Values equal to the one before"), "{report}");
+    assert!(report.contains("Values equal to the previous one"), "{report}");
     assert_eq!(explain("e/augmented.toml", "again").0, 0);
 }
 

@@ -115,7 +115,7 @@ fn a_record_that_moves_states_no_noise_at_rest() {
     }
     let told = sagnac(folder.path(), &["inspect", "r.csv", "--sample-rate", "100"]);
     let text = told.out.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(text.contains("Angle random walk is not read"), "{text}");
+    assert!(text.contains("Angle random walk is not determined"), "{text}");
 }
 
 #[test]

@@ -61,7 +61,7 @@ fn a_check_that_lacks_what_it_needs_is_listed_with_the_reason() {
         ("clock", "no time stamps"),
         ("noise_level", "no typical value"),
         ("column_units", "states no unit"),
-        ("serial_number", "states none"),
+        ("serial_number", "states no serial number"),
         ("temperature_unit", "no nominal temperature"),
     ] {
         let c = check(&r, id);

@@ -220,7 +220,7 @@ fn a_limits_file_goes_over_the_limits_of_the_procedure() {
     let unmeasured = file("[[limit]]\nmeasurand = \"static_bias\"\nmax_abs = \"1 deg/h\"\n");
     let all = effective(&procedure, Some(&unmeasured));
     assert_eq!(all.warnings.len(), 1);
-    assert!(all.warnings[0].message.say(Lang::En).contains("not judged"));
+    assert!(all.warnings[0].message.say(Lang::En).contains("not used"));
 }
 
 #[test]
@@ -289,12 +289,12 @@ fn every_example_is_accepted_by_its_own_key() {
             let whole = [
                 "is declared",
                 "has the role",
-                "no option",
+                "not an option",
                 "not measure",
                 "gives a",
                 "is not declared",
-                "of the warm-up needs",
-                "is no channel with",
+                "a warm-up test needs",
+                "is not a channel with",
                 "is determined at rest",
                 "are two tests",
             ];

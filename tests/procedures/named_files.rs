@@ -73,11 +73,11 @@ fn what_stands_outside_the_folder_is_refused_alike_and_never_shown() {
     let dir = place();
     let home = dir.path().join("home");
     let outside = dir.path().join("shadow");
-    refused(&home, outside.to_str().unwrap(), "no path relative to this file");
-    refused(&home, "../shadow", "leads out of the folder");
-    refused(&home, "limits/../../shadow", "leads out of the folder");
-    refused(&home, "c:/shadow", "no path relative to this file");
-    refused(&home, "..\\\\shadow", "leads out of the folder");
+    refused(&home, outside.to_str().unwrap(), "not a path relative to this file");
+    refused(&home, "../shadow", "leads outside the folder");
+    refused(&home, "limits/../../shadow", "leads outside the folder");
+    refused(&home, "c:/shadow", "not a path relative to this file");
+    refused(&home, "..\\\\shadow", "leads outside the folder");
     refused(&home, "none.toml", "there is no file");
     refused(&home, "limits", "is a folder");
 }
@@ -91,7 +91,7 @@ fn a_link_that_leads_out_is_refused_alike() {
     std::os::unix::fs::symlink(dir.path(), home.join("door")).unwrap();
     refused(&home, "link.toml", "link that leads out");
     refused(&home, "door/shadow", "link that leads out");
-    refused(&home, "/dev/zero", "no path relative to this file");
+    refused(&home, "/dev/zero", "not a path relative to this file");
 }
 
 #[test]

@@ -107,12 +107,15 @@ fn what_does_not_fit_is_said_before_anything_is_read() {
     let sample = root("samples/scale-factor-pass.csv").to_string_lossy().into_owned();
     refused(&["run", &acceptance(), &sample, "--lang", "en"], "needs a manifest");
     let odd = manifest(folder.path(), &[("scale-factor-pass.csv", Some("scalefactor"))]);
-    refused(&["run", &acceptance(), &odd, "--lang", "en"], "none of the procedure");
+    refused(&["run", &acceptance(), &odd, "--lang", "en"], "unknown phase");
     let none = manifest(folder.path(), &[("scale-factor-pass.csv", None)]);
     refused(&["run", &acceptance(), &none, "--lang", "en"], "names no phase");
     let limits = root("procedures/limits/sample-unit.toml").to_string_lossy().into_owned();
     let good = root("samples/acceptance-pass.toml").to_string_lossy().into_owned();
-    refused(&["run", &acceptance(), &good, "--limits", &limits, "--lang", "en"], "stated in its phases");
+    refused(
+        &["run", &acceptance(), &good, "--limits", &limits, "--lang", "en"],
+        "limits belong to the phases",
+    );
 }
 
 #[test]
@@ -194,7 +197,7 @@ fn problems_of_phases_have_their_place() {
     let done = check(&path);
     let shown = String::from_utf8_lossy(&done.stdout).into_owned();
     assert_eq!(done.status.code(), Some(2), "{shown}");
-    assert!(shown.contains("phased.toml:10:") && shown.contains("cannot be told apart"), "{shown}");
+    assert!(shown.contains("phased.toml:10:") && shown.contains("cannot be distinguished"), "{shown}");
     std::fs::write(&path, text.replacen("id = \"a\"", "id = \"b\"", 1)).unwrap();
     let missing = check(&path);
     assert!(String::from_utf8_lossy(&missing.stdout).contains("none.toml"), "{missing:?}");

@@ -53,7 +53,7 @@ fn arrays_of_every_shape_and_order_give_their_values() {
     }
     let flat = sound("flat.npy");
     assert_eq!(flat.columns, columns(&[time_s, rate]));
-    assert!(notes(&flat.source).contains("2 × 250 values: taken for 2 columns of 250 rows"));
+    assert!(notes(&flat.source).contains("2 × 250 values: read as 2 columns of 250 rows"));
     assert_eq!(sound("vector.npy").columns, columns(&[rate]));
     let cyrillic = sound("version3.npy");
     assert_eq!(
@@ -95,8 +95,8 @@ fn containers_say_what_they_hold_and_what_is_left_out() {
         read.source.metadata()
     );
     let said = notes(&read.source);
-    assert!(said.contains("`short` is left out: it has 5 rows, the recording 250"), "{said}");
-    assert!(said.contains("`obj.npy` is left out: the array holds Python objects"), "{said}");
+    assert!(said.contains("`short` is skipped: it has 5 rows, the recording 250"), "{said}");
+    assert!(said.contains("`obj.npy` is skipped: the array holds Python objects"), "{said}");
 
     let read = sound("v7.mat");
     assert_eq!(read.source.stated_sample_rate_hz(), Some(200.0));
@@ -106,7 +106,7 @@ fn containers_say_what_they_hold_and_what_is_left_out() {
         "`z` is left out: its numbers are complex",
         "`sp` is left out: it is a sparse",
         "`c` is left out: it is a cell",
-        "`short` is left out: it has 5",
+        "`short` is skipped: it has 5",
     ] {
         assert!(said.contains(left), "{said}");
     }
@@ -144,7 +144,7 @@ fn what_holds_no_numbers_is_refused_with_advice() {
     assert!(error.contains("`z` is left out: its numbers are complex; save plain arrays"), "{error}");
     let format = |id: &str| ReadOptions { format: Some(id.into()), ..ReadOptions::default() };
     let error = read_error(&fixture("v7.mat"), &format("nyp")).say(Lang::En);
-    assert!(error.contains("there is no format `nyp`; did you mean `npy`?"), "{error}");
+    assert!(error.contains("unknown format `nyp`; did you mean `npy`?"), "{error}");
     let error = read_error(&fixture("v7.mat"), &format("excel")).say(Lang::En);
     assert!(error.contains("formats: raw, parquet, npy, npz, hdf5, mat"), "{error}");
     let error = read_error(&fixture("v7.mat"), &format("npy")).say(Lang::En);

@@ -18,10 +18,10 @@ fn numbers_that_no_sensor_shows_are_faults_with_number_and_bound() {
         let seen = sagnac(dir.path(), &["inspect", "r.csv"]).out;
         let page = seen.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(
-            page.contains(expected) && page.contains("no sensor of the kind shows"),
+            page.contains(expected) && page.contains("no sensor of this kind can output"),
             "{expected}: {page}"
         );
-        assert!(!page.contains("If a known angle was turned"), "{page}");
+        assert!(!page.contains("If the unit was rotated by a known angle"), "{page}");
         let _ = std::fs::remove_dir_all(dir.path().join("a"));
         assert_eq!(sagnac(dir.path(), &["analyze", "r.csv", "--out", "a"]).code, 0);
         if broken.starts_with("25") {
@@ -46,7 +46,7 @@ fn numbers_that_sum_up_to_no_angle_are_not_offered_as_one_and_state_no_scale_fac
     let seen = sagnac(dir.path(), &["inspect", "r.csv"]).out;
     let page = seen.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(page.contains("from one sample to the next; no unit under test"), "{page}");
-    assert!(!page.contains("If a known angle was turned"), "{page}");
+    assert!(!page.contains("If the unit was rotated by a known angle"), "{page}");
     // Smooth numbers that sum up to 800 000 degrees where a quarter of a turn is stated.
     let smooth = |i: u64| white(5, i) + if (10_000..30_000).contains(&i) { 4000.0 } else { 0.0 };
     let rows: String = (0..40_000u64).map(|i| format!("{:.2},{:.6}\n", i as f64 * 0.01, smooth(i))).collect();

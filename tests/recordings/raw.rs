@@ -110,10 +110,10 @@ fn a_layout_that_does_not_fit_is_refused() {
     let path = dir.path().join("imu.bin");
     std::fs::write(&path, imu(250)).unwrap();
     for (change, to, says) in [
-        ("EB 90", "EB 91", "the layout does not fit: of the first 250 records 0 are sound"),
+        ("EB 90", "EB 91", "the layout does not match: 0 of the first 250 records are valid"),
         ("\"crc32\"", "\"crc16-ccitt\"", "0 are sound"),
         ("header_bytes = 16", "header_bytes = 9000", "less than the header and one record"),
-        ("\"i16\"", "\"int16\"", "layout.toml:27:9: `int16` is not a value of `type`"),
+        ("\"i16\"", "\"int16\"", "layout.toml:27:9: `int16` is not a valid value of `type`"),
     ] {
         let options = with_layout(dir.path(), &IMU.replace(change, to));
         let error = read_error(&path, &options).say(Lang::En);

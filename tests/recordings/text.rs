@@ -66,11 +66,16 @@ fn a_procedure_fixes_every_decision() {
 fn wrong_decisions_are_pointed_at() {
     for (from, to, token, message) in [
         ("\"windows-1251\"", "\"cp1251\"", "cp1251", "is not a value of `encoding`"),
-        ("delimiter = \";\"", "delimiter = \"colon\"", "colon", "is not a value of `delimiter`"),
-        ("delimiter = \";\"", "delimiter = \"comma\"", "\"comma\"", "a comma cannot separate"),
+        ("delimiter = \";\"", "delimiter = \"colon\"", "colon", "is not a valid value of `delimiter`"),
+        (
+            "delimiter = \";\"",
+            "delimiter = \"comma\"",
+            "\"comma\"",
+            "the comma cannot be both delimiter and decimal mark",
+        ),
         ("header_line = 2", "header_line = 2.5", "2.5", "must be a whole number"),
         ("first_line = 4", "first_line = 2", "2", "is not below `header_line` 2"),
-        ("comment = \"!\"", "format = \"docx\"", "docx", "is no file format"),
+        ("comment = \"!\"", "format = \"docx\"", "docx", "is not a file format"),
         ("stamp = \"day_first\"", "week_column = 3", "3", "a date or a GPS week, not both"),
         ("column = \"Выход\"", "column = \"Выход\"\nstamp = \"clock\"", "\"clock\"", "has the role `rate`"),
     ] {
@@ -131,11 +136,11 @@ fn options_of_the_command_line_decide_and_are_contradicted() {
     let (code, out, err) =
         inspect(&["--delimiter", "semicolon", "--decimal", "comma", "--encoding", "utf-8"]);
     assert_eq!(code, Some(0), "{err}");
-    assert!(out.contains("separator `;`, decimal sign `,`") && out.contains("it was stated"), "{out}");
+    assert!(out.contains("delimiter `;`, decimal mark `,`") && out.contains("it was stated"), "{out}");
     for (options, said) in [
         (&["--decimal", "point"][..], "the numbers have `,`"),
         (&["--delimiter", "tab"], "the lines are separated by `;`"),
-        (&["--format", "parquet"], "the file does not look like it"),
+        (&["--format", "parquet"], "the file does not match it"),
         (&["--format", "docx"], "known formats: "),
         (&["--header-line", "0"], ""),
         (&["--encoding", "utf-16le"], "it looks like UTF-8"),

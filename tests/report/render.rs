@@ -93,13 +93,13 @@ fn a_failed_row_and_its_waiver_stand_side_by_side() {
 fn limits_are_shown_with_every_digit_and_rules_when_they_differ() {
     let mut record = fixture::pass();
     let shared = html(&record);
-    assert!(shared.contains("Decision rule of all rows: guard band, risk 5\u{202f}%."));
+    assert!(shared.contains("Decision rule for all rows: guard band, risk 5\u{202f}%."));
     let limit = record.measurands[1].limit.as_mut().unwrap();
     limit.max = Some(0.002_999_987);
     limit.rule = Rule::Simple;
     let html = html(&record);
     assert!(html.contains("≤\u{202f}0.002999987<small>simple acceptance</small>"));
-    assert!(!html.contains("Decision rule of all rows"));
+    assert!(!html.contains("Decision rule for all rows"));
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn a_record_of_nothing_still_makes_a_report() {
     record.options = vec![];
     record.window = Default::default();
     let html = render_html(&record, &[], Lang::En, &Renderer::new()).unwrap();
-    assert!(html.contains("<strong>error</strong>") && !html.contains("Nothing was left out."));
+    assert!(html.contains("<strong>error</strong>") && !html.contains("Nothing was excluded."));
     assert!(!html.contains("NaN") && !html.contains("None"));
 }
 

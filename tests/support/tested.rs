@@ -11,7 +11,7 @@ pub fn tested(procedure: &Loaded<Procedure>, recording: &Path) -> Result<RunReco
     let effective = effective(procedure, Some(&limits));
     let source = sagnac::ingest::open(recording)?;
     let request = Request {
-        kind: "run",
+        kind: sagnac::record::RunKind::Run,
         procedure: &procedure.value,
         procedure_record: Some(procedure.record(Some(&limits))),
         limits: &effective,

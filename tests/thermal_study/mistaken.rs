@@ -44,7 +44,7 @@ fn a_reversed_sign_or_an_earth_rate_taken_out_is_named_over_temperature_and_in_t
         let (code, result) = altered(files, sample, |t, r| Some((t, -r)));
         assert!(code == 3 && unmet(&result).contains("the sign is reversed"), "{sample}: {}", unmet(&result));
         let (code, result) = altered(files, sample, |t, r| Some((t, r - 12.467)));
-        assert!(code == 3 && unmet(&result).contains("taken out before"), "{sample}: {}", unmet(&result));
+        assert!(code == 3 && unmet(&result).contains("already removed"), "{sample}: {}", unmet(&result));
     }
 }
 

@@ -166,7 +166,7 @@ fn likely_mistakes_are_named() {
     let flat = complaints(|f| Some(format!("{},{},21.3", f[0], f[1])));
     says(&flat, "was the chamber not started");
     let none = complaints(|f| Some(format!("{},{},", f[0], f[1])));
-    says(&none, "was the column left out");
+    says(&none, "is the column missing");
     let scaled = |f: &[&str], scale: &dyn Fn(f64) -> f64| {
         Some(format!("{},{},{:.4}", f[0], f[1], scale(f[2].parse().unwrap())))
     };
@@ -189,7 +189,7 @@ fn likely_mistakes_are_named() {
     let minutes = complaints_by(brief.to_str().unwrap(), |f| {
         Some(format!("{},{},{}", f[0].parse::<f64>().unwrap() / 60.0, f[1], f[2]))
     });
-    says(&minutes, "sixty times what is asked");
+    says(&minutes, "sixty times the required rate");
 }
 
 #[test]

@@ -1,20 +1,21 @@
-//! Analysis of precision gyroscopes, without files, clocks, languages or a program around it.
+//! Analysis of precision gyroscopes: noise, tests, measured quantities, effects, simulation.
 //!
-//! What this crate takes is numbers: samples of a rate, columns beside it, blocks of a recording that somebody else has
-//! read. What it gives are estimates with their whole distribution of confidence.
+//! Samples go in; estimates with their confidence distribution come out. The crate opens no file, reads no clock and
+//! writes no sentence: file formats are in `sagnac-ingest`, procedures, reports and languages in `sagnac`.
 //!
-//! From the ground up:
-//!
-//! - [`message`]: what there is to say, as a key with arguments; words are the business of the program.
-//! - [`numeric`], [`units`]: numbers and units, no gyro yet.
-//! - [`estimate`], [`figure`], [`ids`]: an estimate with its spread, limits and verdicts; plots as data; the measurands.
-//! - [`recording`]: channels and the samples that they deliver.
-//! - [`noise`]: statistics and identification of a gyro at rest.
-//! - [`rate_table`], [`temperature`], [`influence`]: tests other than the one at rest.
-//! - [`measurand`]: one quantity a file.
-//! - [`effect`]: the catalogue of physics that a simulation can leave out.
-//! - [`claim`], [`series`]: a simulation as its author believes it; a recording as a whole.
-//! - [`mismatch`], [`simulate`]: what a recording has that its claim has not; recordings made from a claim.
+//! | module | what it has |
+//! |---|---|
+//! | [`message`], [`render`] | messages as a key with arguments; a table that the caller brings turns them into text |
+//! | [`numeric`], [`units`] | numerical methods; units and their conversion |
+//! | [`estimate`] | an estimate with its confidence distribution, limits, decision rules, verdicts |
+//! | [`figure`], [`ids`] | plots as data; the ids and units of all measured quantities |
+//! | [`recording`] | channels, their roles and units, and the blocks of samples that they deliver |
+//! | [`noise`] | a gyro at rest: Allan family, spectra, identification of noise terms, their simulation |
+//! | [`rate_table`], [`temperature`], [`influence`] | tests on a rate table, over temperature, under an influence |
+//! | [`measurand`] | measured quantities, one file each |
+//! | [`effect`] | the catalogue of physical effects that a simulation can omit |
+//! | [`claim`], [`series`] | a simulation as its author states it; a recording held in memory |
+//! | [`mismatch`], [`simulate`] | why a recording departs from a claim; recordings made from a claim |
 
 pub mod claim;
 pub mod effect;

@@ -1,6 +1,6 @@
-//! What there is to say, as data: a key with arguments.
+//! Messages as data: a key with arguments.
 //!
-//! This crate knows no language. A [`Note`] becomes a sentence where it is shown, by a table that belongs to the program.
+//! This crate has no sentences. A [`Note`] becomes text where it is shown, by a locale table that the program owns.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -14,52 +14,51 @@ pub enum Arg {
     Stated(f64),
     /// A count; shown in full.
     Count(u64),
-    /// A text, shown as one line, without what steers a terminal.
+    /// A text, shown on one line without control characters.
     Text(String),
-    /// A key of the locale tables, shown as what stands there; as its last part where nothing does.
+    /// A key of the locale tables, shown as its text there, or as its last part if the tables lack it.
     Key(String),
-    /// A sentence within the sentence.
+    /// A message within the message.
     Note(Box<Note>),
-    /// Several arguments with a text between each two.
+    /// Several arguments, joined by a text.
     Several(Vec<Arg>, Cow<'static, str>),
-    /// A number with so many decimals, whatever its size, with or without idle zeros;.
+    /// A number with a fixed number of decimals.
     Decimals {
         /// The number.
         value: f64,
         /// Decimals.
         digits: usize,
-        /// Whether zeros that fill the decimals are shown.
+        /// Whether trailing zeros are kept.
         zeros: bool,
     },
-    /// A number with its own count of significant digits, with or without idle zeros behind the decimal mark;
-    ///.
+    /// A number with a given number of significant digits.
     Figures {
         /// The number.
         value: f64,
         /// Significant digits.
         digits: usize,
-        /// Whether zeros that fill the digits are shown.
+        /// Whether trailing zeros are kept.
         zeros: bool,
     },
 }
 
 impl Arg {
-    /// A number with significant digits, idle zeros among them.
+    /// A number with `digits` significant digits, trailing zeros kept.
     pub fn figures(value: f64, digits: usize) -> Arg {
         Arg::Figures { value, digits, zeros: true }
     }
 
-    /// A number with at most so many significant digits, without idle zeros.
+    /// A number with at most `digits` significant digits.
     pub fn rounded(value: f64, digits: usize) -> Arg {
         Arg::Figures { value, digits, zeros: false }
     }
 
-    /// A number with a fixed count of decimals.
+    /// A number with `digits` decimals, trailing zeros kept.
     pub fn fixed(value: f64, digits: usize) -> Arg {
         Arg::Decimals { value, digits, zeros: true }
     }
 
-    /// A number with at most so many decimals.
+    /// A number with at most `digits` decimals.
     pub fn decimals(value: f64, digits: usize) -> Arg {
         Arg::Decimals { value, digits, zeros: false }
     }
@@ -115,7 +114,7 @@ impl From<String> for Arg {
     }
 }
 
-/// A sentence by name, with its arguments.
+/// A message: its key in the locale tables, and its arguments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
     /// Key in the locale tables, for example `note.record_too_short`.
@@ -125,7 +124,7 @@ pub struct Note {
 }
 
 impl Note {
-    /// A note with no arguments yet.
+    /// A message without arguments.
     pub fn new(id: impl Into<Cow<'static, str>>) -> Note {
         Note { id: id.into(), args: BTreeMap::new() }
     }
@@ -139,7 +138,7 @@ impl Note {
 }
 
 impl Note {
-    /// The key and the arguments, for an error that is printed where no table of words is at hand.
+    /// The key and its arguments as text, for errors that are printed without a locale table.
     pub fn plain(&self) -> String {
         let args: Vec<String> =
             self.args.iter().map(|(name, arg)| format!("{name} = {}", arg.plain())).collect();
@@ -148,7 +147,7 @@ impl Note {
 }
 
 impl From<&'static str> for Note {
-    /// A sentence without arguments, by its key.
+    /// A message without arguments.
     fn from(id: &'static str) -> Note {
         Note::new(id)
     }

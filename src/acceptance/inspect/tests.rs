@@ -57,10 +57,10 @@ fn a_long_rest_supports_the_static_test() {
         &text,
         &[
             "static test Yes: at rest, 10.5 h",
-            "up to 3780 s (1.05 h) as a floor (T/10), up to 7560 s (2.1 h) in a fit",
+            "up to 3780 s (1.05 h) for a flicker floor (T/10), up to 7560 s (2.1 h) for a fit",
             "1 Hz, one sample every 1 s",
             "`rate_deg_h`: No 1/f noise was identified.",
-            "temperature test No: there is no temperature column.",
+            "temperature test No: no temperature column.",
             "scale factor No: there is no column with a table rate",
         ],
     );
@@ -73,7 +73,8 @@ fn a_long_rest_supports_the_static_test() {
 fn the_smallest_flicker_shrinks_with_the_record() {
     let bound = |n: usize| {
         let text = told(vec![("time_s", stamps(1.0, n)), ("rate_deg_h", noise(0.01, 2, 1.0, n))], None);
-        let after = text.split("bounds B at ").nth(1).unwrap().split(' ').next().unwrap().to_owned();
+        let after =
+            text.split("gives an upper limit on B of ").nth(1).unwrap().split(' ').next().unwrap().to_owned();
         after.parse::<f64>().unwrap()
     };
     let (short, long) = (bound(1200), bound(40_000));
@@ -84,7 +85,7 @@ fn the_smallest_flicker_shrinks_with_the_record() {
 fn a_short_rest_supports_it_in_part_only() {
     let text =
         told(vec![("time_s", stamps(0.01, 60_000)), ("rate_deg_h", noise(0.01, 3, 0.01, 60_000))], None);
-    says(&text, &["static test In part: at rest, but 10 min is less than the 10 h asked for"]);
+    says(&text, &["static test Partly: at rest, but 10 min is less than the required 10 h"]);
 }
 
 #[test]
@@ -98,9 +99,9 @@ fn a_turn_is_no_rest_for_any_axis() {
         &text,
         &[
             "static test No: `rate_x_deg_h` did not stand still",
-            "`rate_x_deg_h` swings through 90 deg",
-            "Not at rest: another axis of the unit was turned.",
-            "Angle random walk is not read from a record that moves.",
+            "`rate_x_deg_h` covers 90 deg",
+            "Not at rest: another axis of the unit was rotated.",
+            "Angle random walk is not determined from a moving record.",
         ],
     );
     keeps_quiet(&text, &["bias instability", "averaging times", "Earth rate"]);
@@ -120,7 +121,7 @@ fn a_slow_change_with_the_temperature_is_told_from_a_turn() {
     says(
         &text,
         &[
-            "Not shown to be at rest",
+            "Not proven to be at rest",
             "static test No: the output of `rate_deg_h` changes slowly",
             "temperature test Yes, for the bias: `temp_degC` spans 80 degC",
         ],
@@ -206,7 +207,7 @@ fn a_line_in_a_recording_gives_the_clock_away() {
     let hum = (0..n).map(|i| 50.0 * (TAU * 124.65 * i as f64 * 1e-3).sin());
     let rate: Vec<f64> = noise(0.01, 7, 1e-3, n).iter().zip(hum).map(|(r, h)| r + h).collect();
     let text = told(vec![("time_s", stamps(1e-3, n)), ("rate_deg_h", rate.clone())], None);
-    says(&text, &["the sample clock is off by 3.9 %: the true rate is 962.7 Hz and not 1000 Hz"]);
+    says(&text, &["the sample clock is off by 3.9 %: the true rate is 962.7 Hz, not 1000 Hz"]);
     // The same by the true clock: the line stands at 120 Hz, and nothing is said.
     let true_s = 124.65 / 120.0 * 1e-3;
     let text = told(vec![("time_s", stamps(true_s, n)), ("rate_deg_h", rate)], None);
@@ -229,7 +230,7 @@ fn three_axes_may_show_the_earth() {
         ],
         None,
     );
-    says(&text, &["Earth rate The mean vector of the three axes is 14.7"]);
+    says(&text, &["Earth rate The mean vector of the three axes has a length of 14.7"]);
 }
 
 #[test]
@@ -241,8 +242,8 @@ fn a_table_held_at_levels_supports_the_scale_factor() {
         &text,
         &[
             "rows are counted (220)",
-            "held at 11 levels from -100 to 100 deg/s, both signs",
-            "`gyro_raw_counts` goes with it: correlation -1.00000, straight line -26000 count for 1 deg/s",
+            "held at 11 rates from -100 to 100 deg/s, both signs",
+            "`gyro_raw_counts` follows it: correlation -1.00000, slope -26000 count per 1 deg/s",
             "`gyro_raw_counts` looks like a gyro output in counts",
             "static test No: the table moves",
         ],
@@ -281,15 +282,15 @@ fn what_cannot_be_used_is_said_and_does_no_harm() {
     says(
         &text,
         &[
-            "`temp_degC`: no row has a value.",
+            "`temp_degC`: no values.",
             "rows are counted (2 000). Give --sample-rate HZ",
-            "static test No: the sample interval is not known.",
+            "static test No: the sample interval is unknown.",
             "`reset` never changes.",
         ],
     );
     keeps_quiet(&text, &["N ="]);
     let text = told(vec![("rate_deg_h", noise(0.1, 11, 0.1, n))], Some(10.0));
-    says(&text, &["The sample rate that was given, 10 Hz", "200 s is less than the 10 h"]);
+    says(&text, &["The given sample rate, 10 Hz", "200 s is less than the required 10 h"]);
     let n = angle_random_walk(&text);
     assert!((n / 0.1 - 1.0).abs() < 0.1, "{n}");
     // Rows share their stamps without any regularity: no rate follows from them.
@@ -302,7 +303,7 @@ fn what_cannot_be_used_is_said_and_does_no_harm() {
     let text = told(vec![("time_s", coarse), ("rate_deg_h", noise(0.1, 11, 0.1, 2000))], None);
     says(
         &text,
-        &["The time column cannot serve: `time_s`: 90 % of the time stamps equal", "rows are counted"],
+        &["The time column cannot be used: `time_s`: 90 % of the timestamps equal", "rows are counted"],
     );
 }
 
@@ -322,7 +323,7 @@ fn gaps_are_counted_and_located() {
     let text = told(vec![("time_s", time), ("rate_deg_h", noise(0.1, 13, 0.1, 3000))], None);
     says(
         &text,
-        &["gaps: 1 (samples missing: 20)", "row 1501, 152 s:", "Breaks cut the samples into 2 stretches"],
+        &["gaps: 1 (samples missing: 20)", "row 1501, 152 s:", "Gaps split the samples into 2 stretches"],
     );
 }
 
@@ -331,7 +332,10 @@ fn a_mean_that_was_taken_out_is_noticed() {
     let mut rate = noise(0.1, 14, 1.0, 4000);
     let mean = rate.iter().sum::<f64>() / 4000.0;
     rate.iter_mut().for_each(|r| *r -= mean);
-    says(&told(vec![("time_s", stamps(1.0, 4000)), ("rate_deg_h", rate)], None), &["no bias can be read"]);
+    says(
+        &told(vec![("time_s", stamps(1.0, 4000)), ("rate_deg_h", rate)], None),
+        &["the bias cannot be determined"],
+    );
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::config::spec::{Kind, Range, TableSpec, Word, optional, required, with
 /// A claim as a whole.
 pub static MODEL_FILE: TableSpec = TableSpec {
     name: "",
-    doc: "A claim: what a recording is believed to hold. A table that is left out is believed to be zero or not to apply.",
+    doc: "A claim: the expected content of a recording. An omitted table is taken as zero or not applicable.",
     keys: &[
         required("recording", Kind::Table(&RECORDING), "", "The recording that the claim is of."),
         optional("noise", Kind::Table(&NOISE), "", "Coefficients of the noise."),
@@ -31,7 +31,7 @@ pub static MODEL_FILE: TableSpec = TableSpec {
             "",
             "What `simulate` makes when the command line does not say.",
         ),
-        optional("driver", Kind::Tables(&DRIVER), "", "Courses of columns for `simulate`, one table each."),
+        optional("driver", Kind::Tables(&DRIVER), "", "Column profiles for `simulate`, one table each."),
     ],
 };
 
@@ -165,7 +165,8 @@ static EARTH: TableSpec = TableSpec {
 
 static UNCERTAINTY: TableSpec = TableSpec {
     name: "uncertainty",
-    doc: "One standard deviation of what the author knows of each value; what is left out is exact. The bias is always free.",
+    doc: "One standard deviation of the author's knowledge of each value; omitted values are exact. The bias \
+          is always free.",
     keys: &[
         with_default("N_rel", Kind::Number(COEFFICIENT), "0.0", "0.015", "Of N, relative."),
         with_default("B_rel", Kind::Number(COEFFICIENT), "0.0", "0.12", "Of B, relative."),
@@ -235,7 +236,8 @@ static SIMULATION: TableSpec = TableSpec {
 
 static DRIVER: TableSpec = TableSpec {
     name: "driver",
-    doc: "The course of a column: straight lines between points, the first and the last value held outside, with a sine on them.",
+    doc: "The profile of a column: straight lines between points, the first and last value held outside, \
+          plus a sine.",
     keys: &[
         required("column", Kind::Choice(DRIVEN), "\"temp_degC\"", "The column."),
         with_default(
@@ -243,7 +245,7 @@ static DRIVER: TableSpec = TableSpec {
             Kind::Numbers(SIGNED),
             "[0.0]",
             "[0.0, 600.0, 7200.0]",
-            "Times of the points on `time_s`, rising; two equal ones make a step.",
+            "Times of the points on `time_s`, increasing; two equal ones make a step.",
         ),
         with_default(
             "value",
@@ -272,7 +274,8 @@ static DRIVER: TableSpec = TableSpec {
             Kind::Number(COEFFICIENT),
             "0.0",
             "0.003",
-            "Standard deviation of white noise of the sensor, in the unit of the column: in the column, not in what the gyro feels.",
+            "Standard deviation of the sensor's white noise, in the unit of the column: added to the column, \
+             not to what the gyro senses.",
         ),
     ],
 };

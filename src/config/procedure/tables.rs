@@ -66,7 +66,7 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
             "exclude",
             Kind::Tables(&EXCLUDE),
             "",
-            "Spans left out of the evaluation, declared beforehand.",
+            "Spans excluded from the evaluation, declared beforehand.",
         ),
         optional("site", Kind::Table(&SITE), "", "Where the unit stands and where its input axis points."),
         optional(
@@ -81,16 +81,11 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
             "explain",
             Kind::Table(&EXPLAIN),
             "",
-            "The recording against the model of the unit's family.",
+            "Comparison of the recording with the model of the unit's family.",
         ),
         optional("temperature_test", Kind::Table(&TEMPERATURE_TEST), "", "A test over temperature."),
         optional("warm_up_test", Kind::Table(&WARM_UP_TEST), "", "A test of the warm-up."),
-        optional(
-            "repeatability_test",
-            Kind::Table(&REPEATABILITY_TEST),
-            "",
-            "A series of switching off and on.",
-        ),
+        optional("repeatability_test", Kind::Table(&REPEATABILITY_TEST), "", "A series of turn-ons."),
         optional("magnetic_test", Kind::Table(&MAGNETIC_TEST), "", "A comparison in a magnetic field."),
         optional("supply_test", Kind::Table(&SUPPLY_TEST), "", "A comparison at several supply voltages."),
         optional("vibration_test", Kind::Table(&VIBRATION_TEST), "", "A comparison under vibration."),
@@ -98,7 +93,7 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
             "measurand",
             Kind::Tables(&MEASURAND),
             "",
-            "What is determined, one table each, in the order of the report.",
+            "Quantities to determine, one table each, in the order of the report.",
         ),
         optional("limit", Kind::Tables(&LIMIT), "", "Limits. A limits file may replace them."),
         optional(
@@ -113,27 +108,22 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
             "",
             "Typical noise of the family, by measurand id: what the power of the limits is computed from.",
         ),
-        optional(
-            "clause",
-            Kind::Tables(&CLAUSE),
-            "",
-            "Clauses of the standard and where each is dealt with.",
-        ),
+        optional("clause", Kind::Tables(&CLAUSE), "", "Clauses of the standard and where each is covered."),
         optional("report", Kind::Table(&REPORT), "", "What the report shows."),
         optional(
             "waiver",
             Kind::Tables(&WAIVER),
             "",
-            "Waivers: records beside the verdict, never part of it.",
+            "Waivers: recorded next to the verdict, never part of it.",
         ),
     ],
 };
 
 pub(super) static PROCEDURE: TableSpec = TableSpec {
     name: "procedure",
-    doc: "Identity of the procedure. It stands in the header of every report.",
+    doc: "Identity of the procedure, shown in the header of every report.",
     keys: &[
-        required("id", Kind::Id, "\"static-bias\"", "Id; names the output folder too."),
+        required("id", Kind::Id, "\"static-bias\"", "Id, also used in the name of the output folder."),
         required("title", Kind::Text, "\"Static bias and noise\"", "Title of the report."),
         required(
             "revision",
@@ -143,7 +133,7 @@ pub(super) static PROCEDURE: TableSpec = TableSpec {
         ),
         optional("standard", Kind::Text, "\"IEEE Std 952-2020\"", "Standard followed, with its edition."),
         optional("clause", Kind::Text, "\"12.11 drift-rate series\"", "Clause of the standard."),
-        optional("author", Kind::Text, "\"QA department\"", "Who wrote the procedure."),
+        optional("author", Kind::Text, "\"QA department\"", "Author of the procedure."),
     ],
 };
 
@@ -179,7 +169,7 @@ static RECORDING: TableSpec = TableSpec {
             quantity("1", Range::above_up_to(0.0, 0.5)),
             "\"1 %\"",
             "\"0.1 %\"",
-            "Largest relative difference between the declared and the measured sample rate.",
+            "Maximum relative difference between the declared and the measured sample rate.",
         ),
         reading_tables::FORMAT,
         reading_tables::ENCODING,
@@ -210,7 +200,7 @@ pub const STAMPS: &[Word] = &[
 
 static CHANNEL: TableSpec = TableSpec {
     name: "channel",
-    doc: "One channel: a column of the recording and what it is taken for.",
+    doc: "One channel: a column of the recording and its role.",
     keys: &[
         required("id", Kind::Id, "\"rate\"", "Id of the channel in this procedure and in results."),
         required(
@@ -237,13 +227,14 @@ static CHANNEL: TableSpec = TableSpec {
             Kind::Flag,
             "false",
             "true",
-            "True when the channel counts in the opposite direction; its values change sign.",
+            "True if the channel has the opposite sign; its values are negated.",
         ),
         optional(
             "stamp",
             Kind::Choice(STAMPS),
             "\"day_first\"",
-            "How the time stamps of a text file are written, for the role `time`; left out: found. Stamps become seconds, so that `unit` is \"s\".",
+            "Timestamp format of a text file, for the role `time`; detected if omitted. Timestamps are \
+             converted to seconds, so `unit` is \"s\".",
         ),
         optional(
             "date_column",
@@ -261,27 +252,23 @@ static CHANNEL: TableSpec = TableSpec {
             "rail_low",
             Kind::QuantityBy("role"),
             "\"-400 deg/s\"",
-            "Lowest output of the channel: samples at or below it count as saturated.",
+            "Lower rail of the channel: samples at or below it count as saturated.",
         ),
         optional(
             "rail_high",
             Kind::QuantityBy("role"),
             "\"400 deg/s\"",
-            "Highest output of the channel: samples at or above it count as saturated.",
+            "Upper rail of the channel: samples at or above it count as saturated.",
         ),
         optional(
             "rollover",
             Kind::Text,
             "\"86400 s\"",
-            "Period after which stamps or a counter start again, such as \"86400 s\" for clock time or \"256 count\" for a counter of 8 bits. Usual periods are found without it where no sample is missing there.",
+            "Period after which timestamps or a counter restart, such as \"86400 s\" for time of day or \
+             \"256 count\" for an 8-bit counter. Common periods are detected if no sample is missing at the \
+             restart.",
         ),
-        with_default(
-            "required",
-            Kind::Flag,
-            "true",
-            "false",
-            "False for a column that a recording may lack.",
-        ),
+        with_default("required", Kind::Flag, "true", "false", "False for an optional column."),
     ],
 };
 
@@ -308,15 +295,15 @@ static ANALYSIS: TableSpec = TableSpec {
             Kind::Number(Range::between(1e-9, 0.5)),
             "0.01",
             "0.01",
-            "Probability that noise alone shows a line anywhere in the spectrum.",
+            "Probability that noise alone gives a line anywhere in the spectrum.",
         ),
     ],
 };
 
 static EXPLAIN: TableSpec = TableSpec {
     name: "explain",
-    doc: "The recording is explained against a model: whether the unit behaves like its family, and if not, where it \
-          differs and because of what. The finding stands in the report beside the verdict and is no part of it.",
+    doc: "Compares the recording with a model: whether the unit behaves like its family, and if not, where \
+          it differs and why. The finding is reported next to the verdict and is not part of it.",
     keys: &[
         required(
             "model",
@@ -329,30 +316,30 @@ static EXPLAIN: TableSpec = TableSpec {
             Kind::Number(Range::between(1e-9, 0.5)),
             "0.01",
             "0.01",
-            "Probability at which a correct model is called a mismatch.",
+            "Probability of calling a correct model a mismatch.",
         ),
         with_default(
             "max_effects",
             Kind::Number(Range::between(1.0, 8.0)),
             "3",
             "2",
-            "Most effects that are added to the model.",
+            "Maximum number of effects added to the model.",
         ),
     ],
 };
 
 static MEASURAND: TableSpec = TableSpec {
     name: "measurand",
-    doc: "Something to be determined, for one channel or for every gyro channel.",
+    doc: "A quantity to determine, for one channel or for every gyro channel.",
     keys: &[
         required("id", Kind::Measurand, "\"angle_random_walk\"", "Id of the measurand."),
         optional(
             "channel",
             Kind::Id,
             "\"x\"",
-            "Channel; left out: every channel with the role `rate` or `angle_increment`.",
+            "Channel. Default: every channel with the role `rate` or `angle_increment`.",
         ),
-        optional("options", Kind::Table(&MEASURAND_OPTIONS), "", "Options, where the measurand has any."),
+        optional("options", Kind::Table(&MEASURAND_OPTIONS), "", "Options of the measurand, if it has any."),
     ],
 };
 
@@ -364,7 +351,7 @@ pub static MEASURAND_OPTIONS: TableSpec = TableSpec {
         "earth_rate",
         Kind::Choice(EARTH_RATE),
         "\"remove\"",
-        "What is done with the Earth rate along the input axis; left out: \"remove\".",
+        "Treatment of the Earth rate along the input axis. Default: \"remove\".",
     )],
 };
 
@@ -376,12 +363,12 @@ pub const EARTH_RATE: &[Word] = &[
 
 pub(super) static CLAUSE: TableSpec = TableSpec {
     name: "clause",
-    doc: "A clause of the standard and where it is dealt with.",
+    doc: "A clause of the standard and where it is covered.",
     keys: &[
         required("clause", Kind::Text, "\"12.11\"", "Number of the clause."),
         required("title", Kind::Text, "\"Drift-rate series\"", "Its title."),
-        required("status", Kind::Choice(CLAUSE_STATUS), "\"here\"", "Where it is dealt with."),
-        optional("note", Kind::Text, "\"bias and random drift\"", "What exactly, or why not."),
+        required("status", Kind::Choice(CLAUSE_STATUS), "\"here\"", "Where it is covered."),
+        optional("note", Kind::Text, "\"bias and random drift\"", "Details, or the reason why not."),
     ],
 };
 
@@ -395,31 +382,27 @@ static REPORT: TableSpec = TableSpec {
     name: "report",
     doc: "What the report shows.",
     keys: &[
-        optional(
-            "title",
-            Kind::Text,
-            "\"Acceptance report\"",
-            "Title; left out: the title of the procedure.",
-        ),
+        optional("title", Kind::Text, "\"Acceptance report\"", "Title. Default: the title of the procedure."),
         optional(
             "figures",
             Kind::Choices(FIGURES),
             "[\"rate\", \"sigma_tau\"]",
-            "Figures, in this order; left out: all.",
+            "Figures, in this order. Default: all.",
         ),
         with_default(
             "show_reference",
             Kind::Flag,
             "true",
             "true",
-            "Whether published values stand in a column beside the measured ones.",
+            "Whether published values are shown in a column next to the measured ones.",
         ),
     ],
 };
 
 static WAIVER: TableSpec = TableSpec {
     name: "waiver",
-    doc: "A decision to accept one unit in spite of a row. It is a record beside the verdict and never changes it.",
+    doc: "A decision to accept one unit in spite of a row. It is recorded next to the verdict and never \
+          changes it.",
     keys: &[
         required("serial", Kind::Text, "\"0042\"", "Serial number of the unit: a waiver is for one unit."),
         required("row", Kind::Text, "\"angle_random_walk\"", "Measurand or condition concerned."),
@@ -428,8 +411,8 @@ static WAIVER: TableSpec = TableSpec {
             "reason",
             Kind::Text,
             "\"used at constant temperature only\"",
-            "Why, as it shall stand in the report.",
+            "Reason, as shown in the report.",
         ),
-        required("date", Kind::Date, "2026-03-01", "Day of the decision."),
+        required("date", Kind::Date, "2026-03-01", "Date of the decision."),
     ],
 };

@@ -4,37 +4,37 @@ use super::spec::{Kind, Range, TableSpec, difference, optional, quantity, requir
 
 pub(super) static CONDITIONS: TableSpec = TableSpec {
     name: "conditions",
-    doc: "Conditions under which the test is valid. One that is not shown to be met makes the verdict indeterminate: a \
-          test that was not done right neither passes nor fails a unit.",
+    doc: "Conditions under which the test is valid. A condition that is not proven to be met makes the \
+          verdict indeterminate, because an invalid test neither passes nor fails a unit.",
     keys: &[
         optional(
             "minimum_duration",
             quantity("s", Range::POSITIVE),
             "\"10 h\"",
-            "Least usable time after warm-up, exclusions and gaps.",
+            "Minimum usable time after warm-up, exclusions and gaps.",
         ),
         with_default(
             "warm_up",
             quantity("s", Range::NOT_NEGATIVE),
             "\"0 s\"",
             "\"30 min\"",
-            "Time at the beginning that is left out, fixed before the data are looked at.",
+            "Time excluded at the start, fixed before the data are examined.",
         ),
         optional(
             "temperature",
             Kind::TableOrTables(&TEMPERATURE),
             "",
-            "Temperature to be held, one table for each sensor judged.",
+            "Temperature to be held, one table per sensor.",
         ),
         optional("supply", Kind::TableOrTables(&SUPPLY), "", "Supply voltage to be held."),
-        optional("faults", Kind::Table(&FAULTS), "", "How many faults of each kind a recording may have."),
+        optional("faults", Kind::Table(&FAULTS), "", "Maximum number of faults of each kind."),
     ],
 };
 
 static TEMPERATURE: TableSpec = TableSpec {
     name: "conditions.temperature",
-    doc: "A temperature that must hold over the whole evaluated window. It is shown to hold when every smoothed value \
-          lies inside the tolerance less `coverage_factor` times the sensor's uncertainty.",
+    doc: "A temperature that must hold over the whole evaluated window. It holds if every smoothed value \
+          lies inside the tolerance minus `coverage_factor` times the sensor's uncertainty.",
     keys: &[
         required("channel", Kind::Id, "\"temp\"", "Channel with the role `temperature`."),
         required(
@@ -47,7 +47,7 @@ static TEMPERATURE: TableSpec = TableSpec {
             "tolerance",
             difference("degC", Range::POSITIVE),
             "\"0.4 degC\"",
-            "Largest difference from it.",
+            "Maximum difference from it.",
         ),
         required(
             "sensor_uncertainty",
@@ -67,7 +67,8 @@ static TEMPERATURE: TableSpec = TableSpec {
             quantity("s", Range::NOT_NEGATIVE),
             "\"60 s\"",
             "\"60 s\"",
-            "Length of the moving mean over which the temperature is judged, so that the sensor's noise is not taken for the chamber.",
+            "Length of the moving average applied to the temperature, so that sensor noise is not mistaken \
+             for the chamber.",
         ),
     ],
 };
@@ -78,7 +79,7 @@ static SUPPLY: TableSpec = TableSpec {
     keys: &[
         required("channel", Kind::Id, "\"supply\"", "Channel with the role `supply`."),
         required("nominal", quantity("V", Range::ANY), "\"5 V\"", "Nominal voltage."),
-        required("tolerance", difference("V", Range::POSITIVE), "\"0.25 V\"", "Largest difference from it."),
+        required("tolerance", difference("V", Range::POSITIVE), "\"0.25 V\"", "Maximum difference from it."),
         with_default(
             "sensor_uncertainty",
             difference("V", Range::NOT_NEGATIVE),
@@ -98,42 +99,54 @@ static SUPPLY: TableSpec = TableSpec {
 
 static FAULTS: TableSpec = TableSpec {
     name: "conditions.faults",
-    doc: "How many faults of each kind a recording may have: a count, or a share of the samples. A kind that is left \
-          out is counted and reported, and not judged.",
+    doc: "Maximum number of faults of each kind: a count, or a share of the samples. An omitted kind is \
+          counted and reported, but not judged.",
     keys: &[
         optional("gaps", Kind::Allowance, "10", "Places where samples are missing."),
-        optional("missing_samples", Kind::Allowance, "\"0.1 %\"", "Samples missing in them."),
+        optional("missing_samples", Kind::Allowance, "\"0.1 %\"", "Missing samples."),
         optional("longest_gap", quantity("s", Range::NOT_NEGATIVE), "\"10 s\"", "Length of the longest gap."),
-        optional("duplicate_timestamps", Kind::Allowance, "0", "Rows whose stamp equals the one before."),
-        optional("backward_timestamps", Kind::Allowance, "0", "Rows whose stamp is earlier than one before."),
+        optional(
+            "duplicate_timestamps",
+            Kind::Allowance,
+            "0",
+            "Rows with the same timestamp as the previous \
+                                                                one.",
+        ),
+        optional(
+            "backward_timestamps",
+            Kind::Allowance,
+            "0",
+            "Rows with an earlier timestamp than a \
+                                                               previous one.",
+        ),
         optional("non_finite", Kind::Allowance, "\"0.01 %\"", "Fields that are empty, NaN or infinite."),
-        optional("unparsable", Kind::Allowance, "0", "Fields that are no number."),
-        optional("outliers", Kind::Allowance, "\"0.1 %\"", "Samples far outside the noise about them."),
+        optional("unparsable", Kind::Allowance, "0", "Fields that are not numbers."),
+        optional("outliers", Kind::Allowance, "\"0.1 %\"", "Samples far outside the surrounding noise."),
         optional("saturated", Kind::Allowance, "0", "Samples at a rail."),
         optional(
             "stuck",
             Kind::Allowance,
             "0",
-            "Samples that repeat the one before for longer than chance allows.",
+            "Samples that repeat the previous one for longer than chance allows.",
         ),
         optional(
             "repeated",
             Kind::Allowance,
             "0",
-            "Samples in stretches that occurred before, bit for bit, beyond chance.",
+            "Samples in stretches that repeat earlier ones bit for bit, beyond chance.",
         ),
         optional(
             "timestamp_jitter",
             quantity("s", Range::POSITIVE),
             "\"1 ms\"",
-            "Largest rms deviation of the stamps from a uniform clock.",
+            "Maximum rms deviation of the timestamps from a uniform clock.",
         ),
     ],
 };
 
 pub(super) static EXCLUDE: TableSpec = TableSpec {
     name: "exclude",
-    doc: "A span left out of the evaluation for a reason known before the data were looked at.",
+    doc: "A span excluded from the evaluation for a reason known before the data were examined.",
     keys: &[
         required(
             "from",
@@ -147,11 +160,6 @@ pub(super) static EXCLUDE: TableSpec = TableSpec {
             "\"2.5 h\"",
             "End, from the beginning of the recording.",
         ),
-        required(
-            "reason",
-            Kind::Text,
-            "\"door of the chamber opened\"",
-            "Why, as it shall stand in the report.",
-        ),
+        required("reason", Kind::Text, "\"door of the chamber opened\"", "Reason, as shown in the report."),
     ],
 };

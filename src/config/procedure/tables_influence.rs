@@ -13,7 +13,7 @@ use crate::influence::{ComparisonTest, Influence, RepeatabilityTest, Stated, Sta
 use crate::recording::Role;
 
 const PHASE: KeySpec =
-    optional("phase", Kind::Id, "\"on\"", "Phase of the manifest that it is; every file of it counts.");
+    optional("phase", Kind::Id, "\"on\"", "Its phase in the manifest; all files of the phase belong to it.");
 const FROM: KeySpec = optional(
     "from",
     quantity("s", Range::NOT_NEGATIVE),
@@ -23,49 +23,49 @@ const FROM: KeySpec = optional(
 const TO: KeySpec =
     optional("to", quantity("s", Range::POSITIVE), "\"20 min\"", "End, from the start of the recording.");
 const TEMPERATURE: KeySpec =
-    optional("temperature", Kind::Id, "\"temp\"", "Channel of the unit's temperature; left out: the first.");
-const AXIS: KeySpec =
-    optional("axis", Kind::Id, "\"x\"", "Axis that it acts along, where several are tested.");
+    optional("temperature", Kind::Id, "\"temp\"", "Channel of the unit's temperature. Default: the first.");
+const AXIS: KeySpec = optional("axis", Kind::Id, "\"x\"", "Axis along which it acts, if several are tested.");
 
 pub(super) static REPEATABILITY_TEST: TableSpec = TableSpec {
     name: "repeatability_test",
-    doc: "A series of switching off and on. Without [[repeatability_test.run]] every file of a manifest is one run, and \
-          within one file every stretch between times without output.",
+    doc: "A series of turn-ons. Without [[repeatability_test.run]], every file of a manifest is one run, and \
+          within one file every stretch between pauses in the output.",
     keys: &[
         with_default(
             "settling",
             quantity("s", Range::NOT_NEGATIVE),
             "\"0 s\"",
             "\"5 min\"",
-            "Time after switching on that is left out of every run.",
+            "Time after turn-on excluded from every run.",
         ),
         with_default(
             "minimum_run",
             quantity("s", Range::POSITIVE),
             "\"60 s\"",
             "\"10 min\"",
-            "Least length of a run without its settling; shorter ones are not evaluated.",
+            "Minimum length of a run without its settling; shorter runs are not evaluated.",
         ),
         with_default(
             "off",
             quantity("s", Range::POSITIVE),
             "\"60 s\"",
             "\"5 min\"",
-            "Least time without output that divides two runs of one file.",
+            "Minimum pause in the output that separates two runs of one file.",
         ),
         with_default(
             "runs",
             Kind::Number(Range::between(2.0, 1000.0)),
             "6",
             "6",
-            "Runs that there must be at least. From 6 runs the deviation is known from 0.62 to 2.45 times its value.",
+            "Minimum number of runs. With 6 runs the standard deviation is known to within 0.62 to 2.45 \
+             times its value.",
         ),
         TEMPERATURE,
         optional(
             "run",
             Kind::Tables(&RUN),
             "",
-            "The runs, where they are not files and not divided by pauses.",
+            "The runs, if they are neither files nor separated by pauses.",
         ),
     ],
 };
@@ -81,21 +81,22 @@ const SETTLING: KeySpec = with_default(
     quantity("s", Range::NOT_NEGATIVE),
     "\"5 s\"",
     "\"10 s\"",
-    "Time after a change of level that is left out.",
+    "Time excluded after a change of level.",
 );
 const MINIMUM: KeySpec = with_default(
     "minimum_interval",
     quantity("s", Range::POSITIVE),
     "\"30 s\"",
     "\"60 s\"",
-    "Least length of an interval without its settling; shorter ones are not evaluated.",
+    "Minimum length of an interval without its settling; shorter intervals are not evaluated.",
 );
 const ALTERNATIONS: KeySpec = with_default(
     "alternations",
     Kind::Number(Range::between(1.0, 1000.0)),
     "2",
     "3",
-    "Intervals with the influence, each between two without, that there must be at least. One takes out a steady drift; a second shows whether the change comes back.",
+    "Minimum number of intervals with the influence, each between two without. One removes a steady drift; a \
+     second shows whether the change is reproducible.",
 );
 const LEVEL_UNCERTAINTY: KeySpec = with_default(
     "level_uncertainty",
@@ -109,19 +110,23 @@ const TEMPERATURE_DIFFERENCE: KeySpec = with_default(
     difference("degC", Range::POSITIVE),
     "\"0.3 degC\"",
     "\"0.3 degC\"",
-    "How much the temperature may differ between any two levels, the one without among them: what more would do to the bias cannot be told from the influence.",
+    "Maximum temperature difference between any two levels, including the one without influence: the effect \
+     of a larger one on the bias could not be separated from the influence.",
 );
 const TEMPERATURE_COEFFICIENT: KeySpec = optional(
     "temperature_coefficient",
     quantity("deg/h/degC", Range::NOT_NEGATIVE),
     "\"0.003 deg/h/degC\"",
-    "Largest change of the bias with the temperature, from a test over temperature: what a temperature that goes with the levels may do within `temperature_difference` is then part of the uncertainty.",
+    "Maximum temperature sensitivity of the bias, from a temperature test: the possible effect of a \
+     temperature correlated with the levels, within `temperature_difference`, is then part of the \
+     uncertainty.",
 );
 const EVIDENCE: KeySpec = optional(
     "evidence",
     Kind::Choice(EVIDENCES),
     "\"declared\"",
-    "Where nothing in the recording shows that the influence acted, the test is not valid, unless this says that it was declared; report and verdict then say so.",
+    "If nothing in the recording shows that the influence was applied, the test is invalid unless this key \
+     declares it; report and verdict then say so.",
 );
 
 /// Evidence that a procedure may do with.
@@ -140,7 +145,7 @@ macro_rules! comparison_table {
                     quantity($unit, $range),
                     $reference,
                     $reference,
-                    "Level that counts as without the influence.",
+                    "Level that counts as zero influence.",
                 ),
                 SETTLING,
                 MINIMUM,
@@ -154,7 +159,7 @@ macro_rules! comparison_table {
                     "interval",
                     Kind::Tables(&$interval),
                     "",
-                    "The intervals with and without, in place of a channel that tells the level.",
+                    "The intervals with and without the influence, instead of a channel with the level.",
                 ),
             ],
         };
@@ -181,8 +186,8 @@ comparison_table!(
     "\"0 mT\"",
     "\"0.5 mT\"",
     Range::ANY,
-    "A comparison without and with a magnetic field. The level is read from the channels with the role `magnetic_field`, \
-     one an axis, or stated in [[magnetic_test.interval]]."
+    "A comparison without and with a magnetic field. The level is read from the channels with the role \
+     `magnetic_field`, one per axis, or stated in [[magnetic_test.interval]]."
 );
 comparison_table!(
     SUPPLY_TEST,
@@ -205,9 +210,9 @@ comparison_table!(
     "\"0 g\"",
     "\"2 g\"",
     Range::NOT_NEGATIVE,
-    "A comparison without and with vibration: the bias that is rectified, proportional to the square of the rms level, \
-     and the change of N. The level is read from the channels with the role `vibration`, one an axis, or stated in \
-     [[vibration_test.interval]]."
+    "A comparison without and with vibration: the rectified bias, proportional to the square of the rms \
+     level, and the change of N. The level is read from the channels with the role `vibration`, one per \
+     axis, or stated in [[vibration_test.interval]]."
 );
 
 fn stretch(s: &Section) -> Stated {

@@ -5,8 +5,8 @@ use super::spec::{Kind, Range, TableSpec, Word, optional, required, with_default
 /// The limits file as a whole.
 pub static LIMITS_FILE: TableSpec = TableSpec {
     name: "",
-    doc: "Limits and reference values of one family of devices. One procedure serves many devices: each has its limits \
-          in a file of its own.",
+    doc: "Limits and reference values of one family of devices. One procedure serves many devices; each \
+          family has its own limits file.",
     keys: &[
         required("format", Kind::Format("limits/1"), "\"limits/1\"", "Version of the format."),
         required("limits", Kind::Table(&LIMITS), "", "Identity of the limits."),
@@ -28,7 +28,7 @@ pub static LIMITS_FILE: TableSpec = TableSpec {
 
 static LIMITS: TableSpec = TableSpec {
     name: "limits",
-    doc: "Identity of the limits. It stands in the header of every report.",
+    doc: "Identity of the limits, shown in the header of every report.",
     keys: &[
         required("id", Kind::Id, "\"oius-501\"", "Id of the limits."),
         required("title", Kind::Text, "\"OIUS-501\"", "Title of the file."),
@@ -44,7 +44,9 @@ static LIMITS: TableSpec = TableSpec {
             "factor",
             Kind::Number(Range::POSITIVE),
             "1.5",
-            "Makes an upper limit of every reference value whose measurand and channel have no limit of their own: factor times the value. A unit exactly at its typical value fails a guarded limit with factor 1 half the time or more.",
+            "Derives an upper limit, factor times the value, from every reference value whose measurand and \
+             channel have no limit of their own. With factor 1, a unit exactly at its typical value fails a \
+             guard-banded limit at least half the time.",
         ),
     ],
 };
@@ -52,18 +54,18 @@ static LIMITS: TableSpec = TableSpec {
 /// A published value.
 pub static REFERENCE: TableSpec = TableSpec {
     name: "reference",
-    doc: "A published or data-sheet value. It is shown for comparison and is no limit. Where a measurand has several, \
-          the first is the one compared with.",
+    doc: "A published or data-sheet value, shown for comparison; it is not a limit. If a measurand has \
+          several, the first is used.",
     keys: &[
         required("measurand", Kind::Measurand, "\"angle_random_walk\"", "Id of the measurand."),
-        optional("channel", Kind::Id, "\"x\"", "Channel; left out: every channel."),
+        optional("channel", Kind::Id, "\"x\"", "Channel. Default: every channel."),
         required("value", Kind::QuantityBy("measurand"), "\"0.0023 deg/sqrt(h)\"", "Value with unit."),
         required("source", Kind::Text, "\"data sheet DS-501, rev. 3\"", "Where it was published."),
         optional(
             "note",
             Kind::Text,
             "\"read at the minimum of the curve\"",
-            "Conventions a reader must know.",
+            "Conventions that apply to the value.",
         ),
     ],
 };
@@ -74,7 +76,7 @@ pub static LIMIT: TableSpec = TableSpec {
     doc: "A limit with its decision rule: `min` or `max` or both, or `max_abs`, or `factor`.",
     keys: &[
         required("measurand", Kind::Measurand, "\"angle_random_walk\"", "Id of the measurand."),
-        optional("channel", Kind::Id, "\"x\"", "Channel; left out: every channel."),
+        optional("channel", Kind::Id, "\"x\"", "Channel. Default: every channel."),
         optional("min", Kind::QuantityBy("measurand"), "\"0.5 deg/h\"", "Lowest value allowed."),
         optional("max", Kind::QuantityBy("measurand"), "\"0.0030 deg/sqrt(h)\"", "Highest value allowed."),
         optional(

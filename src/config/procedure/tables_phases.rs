@@ -6,8 +6,8 @@ use super::tables::{CLAUSE, PROCEDURE, UNIT_UNDER_TEST};
 /// A procedure of several phases as a whole.
 pub static PHASES_FILE: TableSpec = TableSpec {
     name: "",
-    doc: "A procedure of several phases: each is a procedure of its own, on recordings of its own that a manifest names. \
-          One report covers them all.",
+    doc: "A procedure of several phases, each with its own procedure and its own recordings, named by a \
+          manifest. One report covers them all.",
     keys: &[
         required("format", Kind::Format("procedure/1"), "\"procedure/1\"", "Version of the format."),
         required("procedure", Kind::Table(&PROCEDURE), "", "Identity of the whole."),
@@ -18,12 +18,7 @@ pub static PHASES_FILE: TableSpec = TableSpec {
             "",
             "The phases, one table each, in the order of the report.",
         ),
-        optional(
-            "clause",
-            Kind::Tables(&CLAUSE),
-            "",
-            "Clauses of the standard and where each is dealt with.",
-        ),
+        optional("clause", Kind::Tables(&CLAUSE), "", "Clauses of the standard and where each is covered."),
     ],
 };
 
@@ -42,7 +37,7 @@ static PHASE: TableSpec = TableSpec {
             "title",
             Kind::Text,
             "\"Repeatability of the bias\"",
-            "Title; left out: that of its procedure.",
+            "Title. Default: that of its procedure.",
         ),
         required(
             "procedure",

@@ -21,34 +21,36 @@ pub(super) static RATE_TABLE: TableSpec = TableSpec {
             Kind::Flag,
             "false",
             "true",
-            "True when every row of the recording is the mean of a step already.",
+            "True if every row of the recording is already the mean of a step.",
         ),
         with_default(
             "settling",
             quantity("s", Range::NOT_NEGATIVE),
             "\"2 s\"",
             "\"5 s\"",
-            "Time after a change of rate that is left out.",
+            "Time excluded after a change of rate.",
         ),
         with_default(
             "minimum_step",
             quantity("s", Range::POSITIVE),
             "\"5 s\"",
             "\"20 s\"",
-            "Least time at one rate, without the settling; shorter stretches are not evaluated.",
+            "Minimum time at one rate, without the settling; shorter stretches are not evaluated.",
         ),
         with_default(
             "whole_turns",
             Kind::Flag,
             "true",
             "false",
-            "Whether steps of a turn and more are cut to whole turns, over which wobble and the Earth's rotation average out.",
+            "Whether steps of at least one turn are cut to whole turns, over which wobble and the Earth's \
+             rotation average out.",
         ),
         optional(
             "full_scale",
             quantity("deg/h", Range::POSITIVE),
             "\"100 deg/s\"",
-            "Full scale: ppm of full scale refer to it, and the table must reach it. Left out: the highest rate of the recording.",
+            "Full scale: the reference for ppm of full scale; the table must reach it. Default: the highest \
+             rate of the recording.",
         ),
         with_default(
             "rate_tolerance",
@@ -61,7 +63,7 @@ pub(super) static RATE_TABLE: TableSpec = TableSpec {
             "of_rate_from",
             quantity("deg/h", Range::POSITIVE),
             "\"1 deg/s\"",
-            "Lowest rate at which residuals are given in ppm of the rate. Left out: a tenth of full scale.",
+            "Lowest rate at which residuals are given in ppm of the rate. Default: a tenth of full scale.",
         ),
         with_default(
             "rate_uncertainty",
@@ -74,7 +76,9 @@ pub(super) static RATE_TABLE: TableSpec = TableSpec {
             "scale_factor_uncertainty",
             quantity("ppm", Range::POSITIVE),
             "\"500 ppm\"",
-            "How far the scale factor outside a dead zone may be from nominal, from a test of scale factor. Left out: the small rates alone tell it, and a zone as small as the noise of a step is bounded, not found.",
+            "Maximum deviation of the scale factor outside a dead zone from nominal, from a scale-factor \
+             test. If omitted, it is estimated from the small rates alone, and a dead zone as small as the \
+             noise of a step gets an upper limit only.",
         ),
         with_default(
             "angle_uncertainty",
@@ -94,7 +98,7 @@ pub(super) static RATE_TABLE: TableSpec = TableSpec {
             "temperature",
             Kind::Id,
             "\"temp\"",
-            "Channel of the unit's temperature; left out: the first.",
+            "Channel of the unit's temperature. Default: the first.",
         ),
         with_default(
             "temperature_uncertainty",
@@ -114,27 +118,18 @@ pub(super) static RATE_TABLE: TableSpec = TableSpec {
             "position",
             Kind::Tables(&POSITION),
             "",
-            "Positions against the Earth's rotation, in place of a table that turns; needs [site].",
+            "Positions relative to the Earth's rotation, instead of a rotating table; needs [site].",
         ),
-        optional(
-            "turn",
-            Kind::Tables(&TURN),
-            "",
-            "Turns by a known angle, in place of a table that is recorded.",
-        ),
-        optional("rest", Kind::Tables(&REST), "", "Rests, from which the bias for the turns is taken."),
+        optional("turn", Kind::Tables(&TURN), "", "Turns by a known angle, instead of a recorded table."),
+        optional("rest", Kind::Tables(&REST), "", "Rests, which give the bias for the turns."),
     ],
 };
 
 const RESPONSES: &[Word] =
     &[("line", "a straight line: a closed loop"), ("sine", "a sine: an interferometer without a loop")];
 
-const PHASE: super::spec::KeySpec = optional(
-    "phase",
-    Kind::Text,
-    "\"z_up\"",
-    "Phase of the manifest that it is; in place of `from` and `to`.",
-);
+const PHASE: super::spec::KeySpec =
+    optional("phase", Kind::Text, "\"z_up\"", "Its phase in the manifest; instead of `from` and `to`.");
 const FROM: super::spec::KeySpec = optional(
     "from",
     quantity("s", Range::NOT_NEGATIVE),
@@ -152,7 +147,7 @@ static POSITION: TableSpec = TableSpec {
         PHASE,
         FROM,
         TO,
-        optional("channel", Kind::Id, "\"z\"", "Channel whose axis is meant; left out: every gyro channel."),
+        optional("channel", Kind::Id, "\"z\"", "Channel of the axis. Default: every gyro channel."),
         with_default(
             "heading",
             quantity("deg", ANGLE),
@@ -204,7 +199,7 @@ static TURN: TableSpec = TableSpec {
 
 static REST: TableSpec = TableSpec {
     name: "rate_table.rest",
-    doc: "A rest, from which the bias for the turns is taken.",
+    doc: "A rest, which gives the bias for the turns.",
     keys: &[PHASE, FROM, TO],
 };
 

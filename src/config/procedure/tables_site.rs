@@ -85,8 +85,8 @@ static AXIS: TableSpec = TableSpec {
 
 pub(super) static INSTRUMENT: TableSpec = TableSpec {
     name: "instrument",
-    doc: "An instrument and the validity of its calibration. A calibration that has run out on the day of the test is \
-          an invalid condition.",
+    doc: "An instrument and the validity of its calibration. A calibration that has expired on the day of \
+          the test is a condition not met.",
     keys: &[
         required("name", Kind::Text, "\"chamber thermometer\"", "What it is."),
         optional("serial", Kind::Text, "\"T-0412\"", "Serial number."),
@@ -96,7 +96,7 @@ pub(super) static INSTRUMENT: TableSpec = TableSpec {
             Kind::Flag,
             "true",
             "true",
-            "Whether a calibration that has run out makes the test invalid; otherwise it is a remark.",
+            "Whether an expired calibration makes the test invalid; otherwise it is a remark.",
         ),
     ],
 };

@@ -14,20 +14,22 @@ pub const SEGMENTS: &[Word] = &[
 
 pub(super) static TEMPERATURE_TEST: TableSpec = TableSpec {
     name: "temperature_test",
-    doc: "A test over temperature: ramps and dwells, judged from the recording. Their table makes the measurands over \
-          temperature available.",
+    doc: "A temperature test: ramps and dwells, checked from the recording. This table makes the temperature \
+          measurands available.",
     keys: &[
         required(
             "channel",
             Kind::Id,
             "\"temp\"",
-            "Channel with the role `temperature` that the bias is set against: the sensor nearest to the coil.",
+            "Channel with the role `temperature` used as the reference for the bias: the sensor nearest to \
+             the coil.",
         ),
         optional(
             "command",
             Kind::Id,
             "\"chamber\"",
-            "Channel with the role `temperature` that holds what the chamber was told; segments are then found from it. Left out: from `channel`.",
+            "Channel with the role `temperature` that has the chamber set point; segments are then found \
+             from it. Default: `channel`.",
         ),
         required("low", quantity("degC", REACHABLE), "\"-40 degC\"", "Lowest temperature to be reached."),
         required("high", quantity("degC", REACHABLE), "\"60 degC\"", "Highest temperature to be reached."),
@@ -36,26 +38,26 @@ pub(super) static TEMPERATURE_TEST: TableSpec = TableSpec {
             difference("degC", Range::POSITIVE),
             "\"2 degC\"",
             "\"2 degC\"",
-            "How far an end may be missed.",
+            "Maximum shortfall from an end point.",
         ),
         optional(
             "overshoot",
             difference("degC", Range::POSITIVE),
             "\"3 degC\"",
-            "How far an end may be overshot; left out: not judged.",
+            "Maximum overshoot of an end point. If omitted, not judged.",
         ),
         optional(
             "ramp_rate",
             difference("degC/h", Range::POSITIVE),
             "\"20 degC/h\"",
-            "Nominal rate of the ramps; left out: any from `slowest` to `fastest`.",
+            "Nominal ramp rate. Default: any from `slowest` to `fastest`.",
         ),
         with_default(
             "ramp_rate_tolerance",
             quantity("1", Range::above_up_to(0.0, 0.5)),
             "\"10 %\"",
             "\"10 %\"",
-            "Largest relative difference from the nominal rate.",
+            "Maximum relative difference from the nominal rate.",
         ),
         with_default(
             "slowest",
@@ -75,21 +77,21 @@ pub(super) static TEMPERATURE_TEST: TableSpec = TableSpec {
             "dwell",
             quantity("s", Range::POSITIVE),
             "\"1 h\"",
-            "Least length of a dwell between ramps; left out: not judged.",
+            "Minimum length of a dwell between ramps. If omitted, not judged.",
         ),
         with_default(
             "dwell_drift",
             difference("degC/h", Range::POSITIVE),
             "\"1 degC/h\"",
             "\"1 degC/h\"",
-            "How much the temperature may drift in the second half of a dwell.",
+            "Maximum temperature drift in the second half of a dwell.",
         ),
         with_default(
             "ramps_each_way",
             Kind::Number(Range::between(0.0, 100.0)),
             "1",
             "3",
-            "Ramps of each direction that there must be at least.",
+            "Minimum number of ramps in each direction.",
         ),
         required(
             "sensor_uncertainty",
@@ -116,7 +118,7 @@ pub(super) static TEMPERATURE_TEST: TableSpec = TableSpec {
             quantity("s", Range::POSITIVE),
             "\"100 s\"",
             "\"100 s\"",
-            "Averaging time of what the model leaves.",
+            "Averaging time of the residual.",
         ),
         with_default(
             "highest_order",
@@ -129,7 +131,7 @@ pub(super) static TEMPERATURE_TEST: TableSpec = TableSpec {
             "segment",
             Kind::Tables(&SEGMENT),
             "",
-            "Segments of the schedule; left out: found from the recording.",
+            "Segments of the schedule; detected from the recording if omitted.",
         ),
     ],
 };
@@ -164,15 +166,15 @@ pub const STARTS: &[Word] = &[
 
 pub(super) static WARM_UP_TEST: TableSpec = TableSpec {
     name: "warm_up_test",
-    doc: "A test of the warm-up, from switching on. The recording must show when that was, or the procedure declare it: a \
-          recording whose start is cut off shows a shorter warm-up. Where neither is so, no time is judged to be short \
-          enough.",
+    doc: "A warm-up test, from turn-on. The recording must show the turn-on, or the procedure must declare \
+          it: a recording with its start missing shows a shorter warm-up. Otherwise no warm-up time can \
+          pass.",
     keys: &[
         required(
             "band",
             quantity("deg/h", Range::POSITIVE),
             "\"0.01 deg/h\"",
-            "How far the bias may be from its final value once the unit is warm.",
+            "Maximum deviation of the bias from its final value once the unit is warm.",
         ),
         with_default(
             "final_share",
@@ -185,7 +187,7 @@ pub(super) static WARM_UP_TEST: TableSpec = TableSpec {
             "start",
             Kind::Choice(STARTS),
             "\"declared\"",
-            "What says when the unit was switched on; left out: nothing, and no time is judged to be short enough.",
+            "What shows the turn-on time. If omitted, it is unknown and no warm-up time can pass.",
         ),
         optional(
             "start_channel",
@@ -198,7 +200,7 @@ pub(super) static WARM_UP_TEST: TableSpec = TableSpec {
             quantity("s", Range::NOT_NEGATIVE),
             "\"0 s\"",
             "\"0 s\"",
-            "With `start = \"stamp\"`: the stamp of switching on.",
+            "With `start = \"stamp\"`: the timestamp of turn-on.",
         ),
         optional(
             "cold",
@@ -211,7 +213,8 @@ pub(super) static WARM_UP_TEST: TableSpec = TableSpec {
             difference("degC", Range::POSITIVE),
             "\"0.5 degC\"",
             "\"0.5 degC\"",
-            "How far from `cold` the first temperature may be; the unit must warm up by three times as much.",
+            "Maximum difference of the first temperature from `cold`; the unit must warm up by three times \
+             as much.",
         ),
     ],
 };

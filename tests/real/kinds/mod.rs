@@ -35,7 +35,7 @@ pub fn analyse(
     channels.extend(rates.iter().map(|r| channel(r, Role::Rate, unit)));
     let procedure = analysis::procedure(channels, time.err(), 0.0);
     let request = Request {
-        kind: "analyze",
+        kind: sagnac::record::RunKind::Analyze,
         procedure: &procedure,
         procedure_record: None,
         limits: &EffectiveLimits::default(),

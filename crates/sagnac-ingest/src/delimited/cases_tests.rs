@@ -156,16 +156,16 @@ fn metadata_are_kept_as_written() {
 #[test]
 fn what_cannot_be_read_surely_is_refused_with_its_place() {
     for (content, fragments) in [
-        ("rate\n0,5\n1,5\n", &[":2:", "a comma seems to separate", "`0,5`"][..]),
-        ("t,r\n0,1,5\n1,2,5\n", &[":2:", "a comma seems to separate", "`0,1,5`"]),
+        ("rate\n0,5\n1,5\n", &[":2:", "the comma appears to be both", "`0,5`"][..]),
+        ("t,r\n0,1,5\n1,2,5\n", &[":2:", "the comma appears to be both", "`0,1,5`"]),
         ("t,r\n0,1,5.5\n1,2,5.5\n", &[":2:", "names 2 columns, but this row has 3 fields"]),
-        ("0,05\n1,25\n", &[":1:", "a comma seems to separate"]),
-        ("t;r\n0;1 234,5\n1;2 345,5\n", &[":2:", "signs between thousands", "`1 234,5`"]),
-        ("t;r\n0;1\u{a0}234,5\n1;2\u{a0}345,5\n", &[":2:", "signs between thousands"]),
-        ("t;r\n0;1'234.5\n1;2'345.5\n", &[":2:", "signs between thousands"]),
-        ("t;r\n0;1.234,5\n1;2.345,5\n", &[":2:", "signs between thousands"]),
-        ("t;r\n0;999\n1;1,234\n", &[":3:", "signs between thousands", "`1,234`"]),
-        ("\"t\",\"r\"\n\"0\",\"1,234\"\n\"1\",\"2,345\"\n", &[":2:", "signs between thousands"]),
+        ("0,05\n1,25\n", &[":1:", "the comma appears to be both"]),
+        ("t;r\n0;1 234,5\n1;2 345,5\n", &[":2:", "thousands separators", "`1 234,5`"]),
+        ("t;r\n0;1\u{a0}234,5\n1;2\u{a0}345,5\n", &[":2:", "thousands separators"]),
+        ("t;r\n0;1'234.5\n1;2'345.5\n", &[":2:", "thousands separators"]),
+        ("t;r\n0;1.234,5\n1;2.345,5\n", &[":2:", "thousands separators"]),
+        ("t;r\n0;999\n1;1,234\n", &[":3:", "thousands separators", "`1,234`"]),
+        ("\"t\",\"r\"\n\"0\",\"1,234\"\n\"1\",\"2,345\"\n", &[":2:", "thousands separators"]),
         ("t,r,u\n0,1.5\n1,2.5\n", &[":2:", "names 3 columns, but this row has 2 fields"]),
     ] {
         let Err(message) = read(content.as_bytes(), TextOptions::default()) else {
@@ -221,7 +221,7 @@ fn what_a_user_states_is_followed_or_contradicted() {
         (
             b"t,r\n0,1.5\n1,2.5\n",
             stated(|o| o.stamps = vec![stamps("t", StampWriting::Clock)]),
-            "as its stamps were stated",
+            "matches the given timestamp format",
         ),
     ] {
         let Err(message) = read(bytes, options) else { panic!("{bytes:?} is read") };

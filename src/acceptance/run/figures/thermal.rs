@@ -290,7 +290,7 @@ mod tests {
     #[test]
     fn noise_that_was_not_seen_has_no_value() {
         let none = noise_of_fit([0.002, 1.4e-8, 1.6e-8], 75_600.0).say(Lang::En);
-        assert!(none.ends_with("N 0.00200 °/√h, no flicker seen, no random walk seen."), "{none}");
+        assert!(none.ends_with("N 0.00200 °/√h, no flicker resolved, no random walk resolved."), "{none}");
         let both = noise_of_fit([0.002, 0.003, 0.004], 75_600.0).say(Lang::En);
         assert!(both.ends_with("N 0.00200 °/√h, B 0.00300 °/h, K 0.00400 °/h/√h."), "{both}");
     }
