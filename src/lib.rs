@@ -72,5 +72,5 @@ pub mod noise {
 /// Channels, what they deliver, and what is found about them.
 pub mod recording {
     pub use sagnac_core::recording::*;
-    pub use sagnac_ingest::{faults, guess, timebase, value_checks};
+    pub use sagnac_ingest::{clock, column_inference, faults, value_checks};
 }

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use sagnac::numeric::range::{settled, usable};
-use sagnac::recording::timebase::{Clock, Tracker};
+use sagnac::recording::clock::{Clock, Tracker};
 
 fuzz_target!(|stamps: Vec<f64>| {
     // As a reader hands them over: nothing beyond 1e60, nothing but zero below 1e-60.

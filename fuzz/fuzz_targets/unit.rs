@@ -10,6 +10,6 @@ fuzz_target!(|text: &str| {
         if let Ok((factor, offset)) = unit.affine_to(&rate) {
             assert!(factor.is_finite() && offset.is_finite(), "{text}");
         }
-        let _ = sagnac::recording::guess::guess(text, Some(text));
+        let _ = sagnac::recording::column_inference::infer(text, Some(text));
     });
 });

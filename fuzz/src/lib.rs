@@ -6,7 +6,7 @@ use sagnac::config::procedure::EffectiveLimits;
 use sagnac::figure::Figure;
 use sagnac::ingest::{ReadOptions, Source, open, open_with};
 use sagnac::record::{RunRecord, UnitUnderTest};
-use sagnac::recording::guess::guess;
+use sagnac::recording::column_inference::infer;
 use sagnac::recording::{Channel, ColumnRef, Role};
 use sagnac::units::Unit;
 use std::ops::ControlFlow;
@@ -75,7 +75,7 @@ fn outcome(source: &Source) -> Option<Outcome> {
     let unit = Unit::parse("deg/h").ok()?;
     let mut channels: Vec<Channel> = vec![];
     for (i, column) in source.columns().iter().enumerate().filter(|(_, c)| c.numeric).take(3) {
-        let guessed = guess(&column.name, column.unit.as_deref());
+        let guessed = infer(&column.name, column.unit.as_deref());
         let time = guessed.role == Role::Time && !channels.iter().any(|c| c.role == Role::Time);
         let (role, unit) = match guessed.role {
             Role::Time if time => (Role::Time, guessed.unit),

@@ -107,7 +107,7 @@ pub(super) fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channe
     }
     let taken: Vec<ColumnRef> = channels.iter().map(|c| c.column.clone()).collect();
     let mut wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() && args.angle.is_empty() {
-        let columns = source.columns().iter().filter(|c| c.numeric && c.guess().role.is_gyro());
+        let columns = source.columns().iter().filter(|c| c.numeric && c.inferred().role.is_gyro());
         columns.map(|c| (c.name.clone(), ColumnRef::Name(c.name.clone()))).collect()
     } else {
         args.rate.iter().map(|name| (name.clone(), reference(name))).collect()
@@ -117,7 +117,7 @@ pub(super) fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channe
     for (place, (name, column)) in wanted.into_iter().enumerate() {
         let index = source.resolve(&column).map_err(|e| e.note())?;
         let found = &source.columns()[index];
-        let guessed = found.guess();
+        let guessed = found.inferred();
         let unit = match &unit {
             Some(unit) => unit.clone(),
             None if guessed.role.is_gyro() && guessed.unit_is_named => guessed.unit,
@@ -144,7 +144,7 @@ pub(super) fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channe
         return Err(about(args, "cli.no_gyro").with("columns", names.join(", ")));
     }
     for column in source.columns().iter().filter(|c| c.numeric) {
-        let g = column.guess();
+        let g = column.inferred();
         let reference = ColumnRef::Name(column.name.clone());
         if g.role == Role::Temperature && g.unit_is_named && !taken.contains(&reference) {
             channels.push(Channel {
@@ -164,7 +164,7 @@ pub(super) fn named_otherwise(channels: &[Channel], source: &Source) -> Vec<Note
     let gyro = channels.iter().filter(|c| c.role.is_gyro());
     gyro.filter_map(|channel| {
         let column = source.columns().get(source.resolve(&channel.column).ok()?)?;
-        let stated = column.guess();
+        let stated = column.inferred();
         let factor = stated.unit.factor_to(&channel.unit).unwrap_or(f64::NAN);
         (stated.unit_is_named && factor != 1.0).then(|| {
             Note::new("cli.unit_otherwise")
@@ -180,7 +180,7 @@ fn time(source: &Source, name: &str) -> Result<Channel, Note> {
     let column = reference(name);
     let index = source.resolve(&column).map_err(|e| e.note())?;
     let found = &source.columns()[index];
-    let g = found.guess();
+    let g = found.inferred();
     let unit = if g.role == Role::Time { g.unit } else { Unit::parse("s").map_err(|e| e.note())? };
     Ok(Channel { id: "time".into(), column, role: Role::Time, unit, scale: 1.0 })
 }

@@ -47,7 +47,7 @@ pub(super) fn choose(source: &Source, options: &SeriesOptions) -> Result<Chosen,
     }
     let named = |name: &str| source.columns().iter().position(|c| c.numeric && c.name == name);
     if let Some(i) = named("time_s").or_else(|| source.time_column()) {
-        let guess = source.columns()[i].guess();
+        let guess = source.columns()[i].inferred();
         let unit = if guess.role == Role::Time { guess.unit } else { parse("s")? };
         chosen.time = Some(chosen.take("time_s", i, source, Role::Time, unit));
     }
@@ -55,14 +55,14 @@ pub(super) fn choose(source: &Source, options: &SeriesOptions) -> Result<Chosen,
     for column in Column::ALL {
         let fits = |i: &usize| {
             source.columns().get(*i).is_some_and(|c| {
-                let guess = c.guess();
+                let guess = c.inferred();
                 c.numeric && guess.role == role(column) && guess.unit_is_named
             })
         };
         let found = named(column.name())
             .or_else(|| (0..source.columns().len()).filter(fits).find(|i| !chosen.has(*i)));
         let Some(i) = found else { continue };
-        let own = source.columns()[i].guess().unit;
+        let own = source.columns()[i].inferred().unit;
         // What the unit says of the column is no such quantity: it is left alone.
         let Ok(map) = own.affine_to(&parse(unit(column))?) else { continue };
         let slot = chosen.take(column.name(), i, source, Role::Auxiliary, own);
@@ -123,7 +123,7 @@ fn rate(source: &Source, options: &SeriesOptions, chosen: &mut Chosen) -> Result
         }
         None => {
             let gyros: Vec<usize> = (0..columns.len())
-                .filter(|i| columns.get(*i).is_some_and(|c| c.numeric && c.guess().role.is_gyro()))
+                .filter(|i| columns.get(*i).is_some_and(|c| c.numeric && c.inferred().role.is_gyro()))
                 .collect();
             let plain = columns.iter().position(|c| c.numeric && c.name == "rate_deg_h");
             match (plain, gyros.as_slice()) {
@@ -140,7 +140,7 @@ fn rate(source: &Source, options: &SeriesOptions, chosen: &mut Chosen) -> Result
             }
         }
     };
-    let guess = columns[index].guess();
+    let guess = columns[index].inferred();
     let unit = match &options.unit {
         Some(unit) => parse(unit)?,
         None if guess.role.is_gyro() && guess.unit_is_named => guess.unit,

@@ -4,7 +4,7 @@
 use crate::support::{sagnac, shipped};
 use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::{IngestError, IngestErrorKind, ReadOptions, Source, open_with};
-use sagnac::recording::guess::guess;
+use sagnac::recording::column_inference::infer;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use tempfile::tempdir;
@@ -70,7 +70,7 @@ fn every_format_gives_the_numbers_that_were_written() {
     assert_eq!(column("wave.tdms", None, "temp"), rows(|k| 25.0 + k as f64 / 8.0));
     for name in ["zstd.mcap", "lz4.mcap", "lz4.bag"] {
         let source = open(name, None).unwrap();
-        let gyros = source.columns().iter().filter(|c| guess(&c.name, c.unit.as_deref()).role.is_gyro());
+        let gyros = source.columns().iter().filter(|c| infer(&c.name, c.unit.as_deref()).role.is_gyro());
         assert_eq!(gyros.count(), 3, "{name}: the three angular velocities and nothing else");
         assert_eq!(column(name, None, "angular_velocity.x"), rows(rate), "{name}");
         assert_eq!(column(name, None, "angular_velocity.z"), rows(|k| 2.0 * rate(k)), "{name}");

@@ -28,12 +28,15 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/reading_tables.rs", "keys of procedures and manifests: documentation, as of procedures"),
     ("src/config/layout/tables.rs", "the key tables of layouts: documentation, as of procedures"),
     ("src/config/model/tables.rs", "the key tables of claims: documentation, as of procedures"),
-    ("crates/sagnac-ingest/src/matlab/tape.rs", "faults of the decoder, quoted as it says them"),
-    ("crates/sagnac-ingest/src/matlab/v5.rs", "faults of the decoder, quoted as it says them"),
-    ("crates/sagnac-ingest/src/binary/lanes.rs", "faults of the decoder, quoted as it says them"),
-    ("crates/sagnac-ingest/src/tdms/mod.rs", "types of storage, quoted as the format names them"),
-    ("crates/sagnac-ingest/src/tdms/scale.rs", "faults of the decoder, quoted as it says them"),
-    ("crates/sagnac-ingest/src/hdf5/walk.rs", "types of storage, quoted as the format names them"),
+    (
+        "crates/sagnac-ingest/src/formats/matlab/element_reader.rs",
+        "faults of the decoder, quoted as it says them",
+    ),
+    ("crates/sagnac-ingest/src/formats/matlab/v5.rs", "faults of the decoder, quoted as it says them"),
+    ("crates/sagnac-ingest/src/binary/column_stream.rs", "faults of the decoder, quoted as it says them"),
+    ("crates/sagnac-ingest/src/formats/tdms/mod.rs", "types of storage, quoted as the format names them"),
+    ("crates/sagnac-ingest/src/formats/tdms/scale.rs", "faults of the decoder, quoted as it says them"),
+    ("crates/sagnac-ingest/src/formats/hdf5/walk.rs", "types of storage, quoted as the format names them"),
 ];
 
 /// Folders whose literals stand there in every language of the program: folder, why.
@@ -43,12 +46,16 @@ const IN_EVERY_LANGUAGE: &[(&str, &str)] =
 /// Single literals that are no sentence for users: file, part of the text, why.
 const LITERALS: &[(&str, &str, &str)] = &[
     (
-        "crates/sagnac-ingest/src/parquet.rs",
+        "crates/sagnac-ingest/src/formats/parquet.rs",
         "the column holds no numbers",
         "a fault of the decoder, quoted as it says it",
     ),
     ("src/report/svg/mod.rs", "system-ui", "names of fonts"),
-    ("crates/sagnac-ingest/src/guess.rs", "the inside units are units", "a message of a programming error"),
+    (
+        "crates/sagnac-ingest/src/column_inference.rs",
+        "the inside units are units",
+        "a message of a programming error",
+    ),
 ];
 
 fn sources(folder: &Path, out: &mut Vec<PathBuf>) {

@@ -1,7 +1,7 @@
 //! A column of a file, and which column is what.
 
 use super::{Source, choice};
-use crate::guess::{Guess, guess};
+use crate::column_inference::{InferredColumn, infer};
 use sagnac_core::message::Note;
 use sagnac_core::recording::Role;
 
@@ -25,15 +25,15 @@ pub struct Column {
 
 impl Column {
     /// What the column may be: from what the reader knows of it, else from its name.
-    pub fn guess(&self) -> Guess {
-        let mut guess = guess(&self.name, self.unit.as_deref());
+    pub fn inferred(&self) -> InferredColumn {
+        let mut inferred = infer(&self.name, self.unit.as_deref());
         let dates = self.storage == DATES;
-        if dates || ((self.epoch_s.is_some() || self.rollover_s.is_some()) && guess.role != Role::Time) {
-            guess.role = if dates { Role::Auxiliary } else { Role::Time };
-            guess.unit_is_named = true;
-            guess.reason = Note::new("guess.stamps").with("name", self.name.as_str());
+        if dates || ((self.epoch_s.is_some() || self.rollover_s.is_some()) && inferred.role != Role::Time) {
+            inferred.role = if dates { Role::Auxiliary } else { Role::Time };
+            inferred.unit_is_named = true;
+            inferred.reason = Note::new("guess.stamps").with("name", self.name.as_str());
         }
-        guess
+        inferred
     }
 }
 
@@ -51,7 +51,7 @@ impl Source {
     /// such as clock time.
     pub fn time_column(&self) -> Option<usize> {
         let first = |wanted: fn(&Column) -> bool| {
-            self.columns().iter().position(|c| c.numeric && wanted(c) && c.guess().role == Role::Time)
+            self.columns().iter().position(|c| c.numeric && wanted(c) && c.inferred().role == Role::Time)
         };
         first(|c| c.rollover_s.is_none()).or_else(|| first(|_| true))
     }

@@ -1,6 +1,6 @@
 //! Fields that are no numbers: counted, and the first of each kind located.
 
-use super::following::State;
+use super::row_clock::State;
 use super::{Block, FieldFaultKind};
 use sagnac_core::message::Note;
 

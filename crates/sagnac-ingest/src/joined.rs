@@ -3,7 +3,7 @@
 use super::compressed::digest;
 use super::error::{IngestError, IngestErrorKind};
 use super::{Block, Column, FileFacts, Opened, ReadOptions, Source, open_with};
-use crate::guess::{guess, stem};
+use crate::column_inference::{infer, stem};
 use sagnac_core::message::Note;
 use sagnac_core::units::Unit;
 use std::ops::ControlFlow;
@@ -124,7 +124,7 @@ fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usi
         }
         let (factor, offset) = conversion(column, other).ok_or_else(|| {
             let units =
-                |c: &Column| c.unit.clone().unwrap_or_else(|| guess(&c.name, None).unit.text().into());
+                |c: &Column| c.unit.clone().unwrap_or_else(|| infer(&c.name, None).unit.text().into());
             let note = Note::new("ingest.joined.units")
                 .with("column", other.name.as_str())
                 .with("unit", units(other))
@@ -143,7 +143,7 @@ fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usi
 /// Factor and offset from the numbers of one column to those of another; `None` where their units do not convert.
 fn conversion(to: &Column, from: &Column) -> Option<(f64, f64)> {
     let named = |c: &Column| {
-        let g = guess(&c.name, c.unit.as_deref());
+        let g = infer(&c.name, c.unit.as_deref());
         g.unit_is_named.then_some(g.unit)
     };
     let declared = |c: &Column| c.unit.as_deref().and_then(|u| Unit::parse(u).ok());

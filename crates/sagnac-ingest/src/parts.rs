@@ -3,7 +3,7 @@
 use super::compressed::Packing;
 use super::error::{IngestError, IngestErrorKind, shorten};
 use super::{Candidate, Column};
-use crate::guess::guess;
+use crate::column_inference::infer;
 use sagnac_core::message::{Arg, Note};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -37,7 +37,7 @@ impl Part {
         let rows = self.common_rows();
         self.columns
             .iter()
-            .any(|(c, r)| c.numeric && Some(*r) == rows && guess(&c.name, c.unit.as_deref()).role.is_gyro())
+            .any(|(c, r)| c.numeric && Some(*r) == rows && infer(&c.name, c.unit.as_deref()).role.is_gyro())
     }
 
     /// Name, columns and length in words.

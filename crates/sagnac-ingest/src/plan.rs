@@ -2,7 +2,7 @@
 
 use super::pauses::Pauses;
 use super::{IngestError, IngestErrorKind, Source};
-use crate::timebase::{Batches, Cadence, Clock, ClockError, Loss, Unwrapper, moduli};
+use crate::clock::{Batches, Cadence, Clock, ClockError, Loss, Unwrapper, moduli};
 use sagnac_core::message::{Arg, Note};
 use sagnac_core::recording::{Channel, Role};
 use sagnac_core::units::Unit;

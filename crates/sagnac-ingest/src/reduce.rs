@@ -41,7 +41,7 @@ impl FirstRows {
             let listed = block.faults.iter().filter(located).count() as u64;
             // Only the first faults of a block are located; when the list is full the rest is taken in proportion.
             let all = block.unparsable.get(slot).copied().unwrap_or(0);
-            *bad += if all <= super::LOCATED_PER_BLOCK {
+            *bad += if all <= crate::block::LOCATED_PER_BLOCK {
                 listed
             } else {
                 (all as f64 * left.min(rows) as f64 / rows.max(1) as f64) as u64

@@ -1,9 +1,9 @@
 //! A recording as a stream: columns become channels in inside units, stamps become a time base, slabs go to sinks.
 
-use super::following::State;
 use super::plan::{Plan, TimeBaseSpec, prepare};
+use super::row_clock::State;
 use super::{FileFacts, IngestError, IngestErrorKind, PartFacts, Source};
-use crate::timebase::{Cadence, Measured};
+use crate::clock::{Cadence, Measured};
 use crate::value_checks::{ValueChecks, ValueFacts, fewest_for};
 use sagnac_core::message::{Arg, Note};
 use sagnac_core::recording::integrity::{Fault, Integrity, OF_ROWS, OF_STAMPS, OF_VALUES};

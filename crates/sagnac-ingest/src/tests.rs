@@ -2,6 +2,7 @@ use super::*;
 use crate::english::english;
 use sagnac_core::recording::ColumnRef;
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::path::Path;
 use tempfile::{NamedTempFile, TempDir};
 

@@ -4,7 +4,7 @@ use super::{Condition, Facts, record};
 use crate::config::procedure::model::TemperatureCondition;
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
-use crate::recording::guess;
+use crate::recording::column_inference;
 use crate::units::Unit;
 
 pub(super) struct Units;
@@ -31,7 +31,7 @@ fn invalid(channel: &str, declared: &str, note: Note) -> ConditionRecord {
 fn named(spec: &crate::config::procedure::model::ChannelSpec, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let column = facts.columns.iter().find(|c| c.channel == spec.channel.id)?;
     let declared = Unit::parse(&spec.unit_in_file).ok()?;
-    let stated = guess::named_unit(&column.name, column.unit.as_deref());
+    let stated = column_inference::named_unit(&column.name, column.unit.as_deref());
     match &stated {
         Some(_) => facts.checks.made("column_units", Some(&spec.channel.id), "units"),
         None => facts.checks.not_made("column_units", Some(&spec.channel.id), "check_list.no_unit_in_column"),

@@ -1,7 +1,7 @@
 //! The columns of a file: which hold numbers, and what each is taken for.
 
 use crate::ingest::{FieldFaultKind, IngestError, IngestErrorKind, Source};
-use crate::recording::guess::Guess;
+use crate::recording::column_inference::InferredColumn;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::Unit;
 use std::ops::ControlFlow;
@@ -25,7 +25,7 @@ pub(super) enum Content {
 pub(super) struct Listed {
     pub name: String,
     pub content: Content,
-    pub guess: Guess,
+    pub guess: InferredColumn,
 }
 
 impl Listed {
@@ -59,7 +59,7 @@ pub(super) fn list(source: &Source) -> Result<Vec<Listed>, IngestError> {
         } else {
             Content::Text(column.storage.clone())
         };
-        let guess = column.guess();
+        let guess = column.inferred();
         listed.push(Listed { name: column.name.clone(), content, guess });
     }
     let time = source.time_column().filter(|&t| listed.get(t).is_some_and(|c| c.content == Content::Numbers));

@@ -8,7 +8,7 @@ use super::{show_gyro, support};
 use crate::i18n::{Arg, Lang, Localize, Note, decimal};
 use crate::ingest::{ChannelFacts, Packing, Source};
 use crate::recording::Role;
-use crate::recording::timebase::Measured;
+use crate::recording::clock::Measured;
 use crate::units::Unit;
 
 /// Faults listed one by one.

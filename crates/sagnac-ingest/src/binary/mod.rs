@@ -3,7 +3,7 @@
 
 pub(super) mod at;
 pub(super) mod choose;
-pub(super) mod lanes;
+pub(super) mod column_stream;
 pub(super) mod number_type;
 pub(super) mod rate;
 pub(super) mod records;

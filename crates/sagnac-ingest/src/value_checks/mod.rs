@@ -2,21 +2,21 @@
 //! removed or repaired.
 //!
 //! Gyro channels: outliers, values at a rail, stuck values, stretches that occur twice, interpolation,
-//! the lattice the values lie on. Other channels: only whether
+//! the quantization grid the values lie on. Other channels: only whether
 //! the value ever changes, since a slow sensor repeats its values for long with good reason.
 
 mod interpolated;
-mod lattice;
 mod outliers;
 pub mod plausible;
+mod quantization_grid;
 mod rails;
 mod repeats;
 mod stuck;
 
 use crate::faults::FaultLog;
 use interpolated::Lines;
-use lattice::Lattice;
 use outliers::Outliers;
+use quantization_grid::QuantizationGrid;
 use rails::Rails;
 use repeats::Repeats;
 use sagnac_core::message::{Arg, Note};
@@ -29,7 +29,7 @@ const CHUNK: usize = 1024;
 /// Samples after which a channel that never changed is remarked on.
 const CONSTANT_AFTER: u64 = 1000;
 
-/// Largest step of the lattice, in standard deviations, at which straight lines between samples can be told.
+/// Largest step of the quantization grid, in standard deviations, at which straight lines between samples can be told.
 const FINE: f64 = 1e-2;
 
 /// Fewest samples of a gyro channel from which a fault of its values can be seen.
@@ -56,7 +56,7 @@ pub struct ValueFacts {
     pub max: f64,
     /// Mean.
     pub mean: f64,
-    /// Step of the lattice that all values lie on; gyro channels only.
+    /// Step of the quantization grid that all values lie on; gyro channels only.
     pub quantization_step: Option<f64>,
 }
 
@@ -129,7 +129,7 @@ struct GyroChecks {
     outliers: Outliers,
     runs: Runs,
     rails: Rails,
-    lattice: Lattice,
+    grid: QuantizationGrid,
     repeats: Repeats,
     lines: Lines,
 }
@@ -193,7 +193,7 @@ impl ChannelChecks {
             g.outliers.take(values, place);
             g.runs.take(values, place, interval_s);
             g.rails.take(values, s.min, s.max, place, interval_s);
-            g.lattice.take(values);
+            g.grid.take(values);
             g.repeats.take(values, place);
             g.lines.take(values);
         }
@@ -212,7 +212,7 @@ impl ChannelChecks {
             min: if none { f64::NAN } else { self.min },
             max: if none { f64::NAN } else { self.max },
             mean: if none { f64::NAN } else { self.origin + self.sum / self.count as f64 },
-            quantization_step: self.gyro.as_ref().and_then(|g| g.lattice.step()),
+            quantization_step: self.gyro.as_ref().and_then(|g| g.grid.step()),
         }
     }
 
@@ -286,7 +286,7 @@ impl ValueChecks {
                     outliers: Outliers::new(interval_s),
                     runs: Runs::default(),
                     rails: Rails::default(),
-                    lattice: Lattice::default(),
+                    grid: QuantizationGrid::default(),
                     repeats: Repeats::new(interval_s),
                     lines: Lines::default(),
                 }),

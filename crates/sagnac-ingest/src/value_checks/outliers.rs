@@ -126,7 +126,7 @@ impl Outliers {
         let half = self.scratch.len() / 2;
         let (_, mad, _) = self.scratch.select_nth_unstable_by(half, f64::total_cmp);
         let mut robust = 1.4826 * *mad;
-        // More than half of the values are equal: a coarse lattice. One step is then never an outlier.
+        // More than half of the values are equal: a coarse quantization grid. One step is then never an outlier.
         let smallest = self.scratch.iter().copied().filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
         let floor = if robust == 0.0 { 0.5 * smallest } else { 0.0 };
         robust = robust.max(floor);

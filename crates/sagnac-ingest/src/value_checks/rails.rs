@@ -1,6 +1,6 @@
 //! Values at a rail: the extreme value occurs far more often than the next one inside it.
 //!
-//! Noise thins out towards its extremes, on a lattice too, so that the extreme value is rarer than the one next to it;
+//! Noise thins out towards its extremes, on a quantization grid too, so that the extreme value is rarer than the one next to it;
 //! clipping piles values up there. The test asks for eight samples at the extreme, four times as many and four more than
 //! at the next value, and for a next value within half a standard deviation: otherwise the extreme is a level of its
 //! own, not the edge of the noise.

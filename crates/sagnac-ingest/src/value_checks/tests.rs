@@ -46,7 +46,7 @@ fn gauss(n: usize, sigma: f64, rng: &mut impl Rng) -> Vec<f64> {
     (0..n).map(|_| 7.5 + sigma * Distribution::<f64>::sample(&StandardNormal, rng)).collect()
 }
 
-fn on_lattice(values: &[f64], step: f64) -> Vec<f64> {
+fn on_grid(values: &[f64], step: f64) -> Vec<f64> {
     values.iter().map(|v| (v / step).round() * step).collect()
 }
 
@@ -72,7 +72,7 @@ fn gaussian_records_show_no_fault() {
 fn coarse_records_show_no_fault_whatever_the_step() {
     let mut rng = rng(2);
     for step in [0.05, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0] {
-        let values = on_lattice(&gauss(200_000, 1.0, &mut rng), step);
+        let values = on_grid(&gauss(200_000, 1.0, &mut rng), step);
         let (facts, faults, list) = check(&values, Role::Rate);
         assert_eq!((faults.saturated, faults.stuck), (0, 0), "step {step}: {list:?}");
         if step < 2.0 {
@@ -119,7 +119,7 @@ fn clipping_is_found_at_both_rails() {
     let (_, faults, list) = check(&values, Role::Rate);
     assert_eq!(faults.saturated, expected);
     assert_eq!(list.iter().filter(|f| f.kind == "saturated").count(), 2);
-    let coarse = on_lattice(&values, 0.05);
+    let coarse = on_grid(&values, 0.05);
     let (_, faults, _) = check(&coarse, Role::Rate);
     assert!(faults.saturated >= expected, "{faults:?}");
 }
@@ -129,7 +129,7 @@ fn stuck_stretches_are_found_on_fine_and_coarse_values() {
     for (step, length) in [(0.0, 5), (0.05, 40), (1.0, 60)] {
         let mut values = gauss(100_000, 1.0, &mut rng(6));
         if step > 0.0 {
-            values = on_lattice(&values, step);
+            values = on_grid(&values, step);
         }
         let held = values[4999];
         values[5000..5000 + length].fill(held);
@@ -185,7 +185,7 @@ fn sums_hold_with_a_large_offset_and_holes() {
 }
 
 #[test]
-fn a_lattice_is_found_where_there_is_one_and_only_there() {
+fn a_quantization_grid_is_found_where_there_is_one_and_only_there() {
     let mut rng = rng(9);
     let fine: Vec<f64> = gauss(50_000, 3.0, &mut rng).iter().map(|v| (v * 1e6).round() / 1e6).collect();
     let step = check(&fine, Role::Rate).0.quantization_step.unwrap();
@@ -218,7 +218,7 @@ fn false_alarms_stay_at_the_stated_rate() {
         let (_, faults, _) = check(&values, Role::Rate);
         white += faults.outliers;
         other += faults.stuck + faults.saturated;
-        let (_, faults, _) = check(&on_lattice(&values, 0.125), Role::Rate);
+        let (_, faults, _) = check(&on_grid(&values, 0.125), Role::Rate);
         coarse += faults.outliers;
         other += faults.stuck + faults.saturated;
         let mut drift = 0.0;

@@ -1,0 +1,137 @@
+//! HDF5, NetCDF-4 and MATLAB v7.3: the datasets of one group as columns, read in slices of rows.
+
+mod attributes;
+mod number;
+mod table;
+mod walk;
+
+use crate::error::{IngestError, IngestErrorKind};
+use crate::parts::{self, Metadata};
+use crate::{Candidate, Format, Opened};
+use hdf5_reader::error::Error;
+use hdf5_reader::{FileStorage, Hdf5File, OpenOptions};
+use sagnac_core::message::Note;
+use std::path::Path;
+use std::sync::Arc;
+
+/// First bytes of the file, or of what follows a user block.
+const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+
+/// Largest chunk, and memory for chunks that are used again, bytes.
+const LARGEST_CHUNK: usize = 256 << 20;
+const CHUNK_CACHE: usize = 64 << 20;
+/// Bytes of a chunk that are always allowed, and how many more per byte of the file.
+const CHUNK_ALLOWED: usize = 16 << 20;
+const CHUNK_RATIO: u64 = 50;
+/// Largest slice, bytes as stored.
+const LARGEST_SLICE: usize = 64 << 20;
+/// Bytes of a dataset per byte of the file beyond which a file is refused, and where that starts to count.
+const BOMB_RATIO: u64 = 1000;
+const BOMB_FROM: u64 = 16 << 20;
+
+/// HDF5.
+pub(super) struct Hdf5;
+
+impl Format for Hdf5 {
+    fn id(&self) -> &'static str {
+        "hdf5"
+    }
+
+    fn recognises(&self, file: &Candidate) -> bool {
+        let at = |start: usize| file.head.get(start..).is_some_and(|rest| rest.starts_with(SIGNATURE));
+        // A user block is 512 bytes long, or twice that, or twice that ...
+        at(0) || std::iter::successors(Some(512usize), |n| n.checked_mul(2)).take(9).any(at)
+    }
+
+    fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
+        parts::unpacked(file, "ingest.hdf5.what")?;
+        let path = &file.path;
+        let container = container(path, file.bytes)?;
+        let found = walk::walk(&container).map_err(|e| damaged(path, &e))?;
+        let found = found.narrowed(file.options.part.as_deref());
+        let parts: Vec<parts::Part> = found.parts.iter().map(|p| p.part.clone()).collect();
+        let (chosen, mut notes) = parts::choose(path, &parts, file.options.part.as_deref())?;
+        let part = found.parts.into_iter().nth(chosen).ok_or_else(|| {
+            IngestError::new(IngestErrorKind::Empty, path, "ingest.parts.none")
+                .hint("ingest.parts.hint.check")
+        })?;
+        let rows = part.part.common_rows().unwrap_or(0);
+        notes.extend(parts::odd_lengths(&part.part, rows));
+        notes.extend(part.notes);
+        notes.extend(found.notes);
+        let mut columns = Vec::new();
+        let mut places = Vec::new();
+        for ((column, length), place) in part.part.columns.into_iter().zip(part.places) {
+            if length != rows && column.numeric {
+                continue;
+            }
+            if column.numeric && place.logical_bytes > BOMB_FROM.max(file.bytes.saturating_mul(BOMB_RATIO)) {
+                return Err(IngestError::new(
+                    IngestErrorKind::Bomb,
+                    path,
+                    Note::new("ingest.hdf5.bomb")
+                        .with("name", column.name)
+                        .with("bytes", place.logical_bytes)
+                        .with("file", file.bytes),
+                )
+                .hint("ingest.hint.bomb"));
+            }
+            columns.push(column);
+            places.push(place);
+        }
+        let mut metadata = Metadata::default();
+        for (key, value) in found.metadata.iter().chain(&part.metadata) {
+            metadata.add(key, value);
+        }
+        let rate = part.stated_rate_hz.or(found.stated_rate_hz);
+        if let Some(rate) = rate {
+            notes.push(Note::new("ingest.parts.stated_rate").with("rate", rate));
+        }
+        table::unfiltered(&container, path, &mut columns, &places, &mut notes)?;
+        table::dated(&container, path, &mut columns, &mut places, &mut notes)?;
+        Ok(Opened {
+            columns,
+            rows_estimate: Some(rows),
+            cut_off: Vec::new(),
+            notes,
+            metadata: metadata.entries(),
+            stated_sample_rate_hz: rate,
+            table: Box::new(table::Hdf5Table { path: path.clone(), bytes: file.bytes, rows, places }),
+        })
+    }
+}
+
+/// Opens the file for reading by ranges; nothing larger than the limits is held.
+fn container(path: &Path, bytes: u64) -> Result<Hdf5File, IngestError> {
+    let storage = FileStorage::open(path).map_err(|e| damaged(path, &e))?;
+    let per_file = usize::try_from(bytes.saturating_mul(CHUNK_RATIO)).unwrap_or(usize::MAX);
+    let options = OpenOptions::default()
+        .with_chunk_cache_bytes(CHUNK_CACHE)
+        .with_max_chunk_bytes(LARGEST_CHUNK.min(per_file.max(CHUNK_ALLOWED)))
+        .with_max_read_bytes(LARGEST_SLICE)
+        .with_max_object_header_bytes(usize::try_from(bytes).unwrap_or(usize::MAX).min(16 << 20));
+    Hdf5File::from_storage_with_options(Arc::new(storage), options).map_err(|e| damaged(path, &e))
+}
+
+/// The diagnostic of what the decoder says.
+fn damaged(path: &Path, error: &Error) -> IngestError {
+    let mut inner = error;
+    while let Error::Context { source, .. } = inner {
+        inner = source;
+    }
+    let hint = match inner {
+        Error::Io(e) => return crate::compressed::io_error(path, e),
+        Error::UnsupportedFilter(_) => "ingest.hdf5.hint.filter",
+        Error::ResourceLimit(_) => "ingest.hdf5.hint.limit",
+        Error::UnsupportedEncoding(_)
+        | Error::UnsupportedDatatypeClass(_)
+        | Error::UnsupportedLayoutClass(_) => "ingest.hdf5.hint.encoding",
+        _ => "ingest.hint.damaged",
+    };
+    IngestError::new(
+        IngestErrorKind::Damaged,
+        path,
+        Note::new("ingest.hdf5.damaged").with("reason", error.to_string()),
+    )
+    .hint(hint)
+}

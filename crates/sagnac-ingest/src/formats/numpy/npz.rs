@@ -1,0 +1,214 @@
+//! Archives of NumPy arrays (`.npz`): zip files in which each member is an array. The directory is read by the `zip`
+//! crate; the members are unpacked here, side by side, so that none is ever held as a whole.
+
+use super::array::{self, MAGIC};
+use crate::binary::at::{At, Part};
+use crate::binary::choose;
+use crate::binary::column_stream::{Coding, Group, Lane, Lanes, Stream, stream_error};
+use crate::binary::rate;
+use crate::error::{IngestError, IngestErrorKind};
+use crate::{Candidate, Column, Format, Opened};
+use sagnac_core::message::Note;
+use zip::{CompressionMethod, ZipArchive};
+
+/// Most members of an archive.
+const MOST_MEMBERS: usize = 4096;
+
+/// Bytes of a member that are looked at: its header and some data.
+const HEAD: usize = 1 << 16;
+
+/// An archive of NumPy arrays.
+pub(crate) struct Npz;
+
+/// An array of the archive that may become columns.
+struct Member {
+    stream: usize,
+    data_at: u64,
+    columns: array::Columns,
+}
+
+/// What was found in an archive.
+#[derive(Default)]
+struct Found {
+    streams: Vec<Stream>,
+    members: Vec<Member>,
+    arrays: Vec<choose::Array>,
+    left: Vec<Note>,
+    metadata: Vec<(String, String)>,
+    rate_hz: Option<f64>,
+}
+
+impl Format for Npz {
+    fn id(&self) -> &'static str {
+        "npz"
+    }
+
+    fn recognises(&self, file: &Candidate) -> bool {
+        // The first member of an archive of arrays has the name of a file `*.npy`.
+        let name = || {
+            let length = usize::from(u16::from_le_bytes([*file.head.get(26)?, *file.head.get(27)?]));
+            file.head.get(30..30usize.checked_add(length)?)
+        };
+        file.head.starts_with(b"PK\x03\x04") && name().is_some_and(|n| n.ends_with(b".npy"))
+    }
+
+    fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
+        let at = At::open(file)?;
+        let found = members(file, &at)?;
+        let path = &file.path;
+        let part = file.options.part.as_deref();
+        let rows = choose::rows(path, &found.arrays, part)?;
+        let Some(rows) = rows.filter(|rows| *rows > 0) else {
+            let error = IngestError::new(IngestErrorKind::Empty, path, "ingest.npz.nothing");
+            return Err(match found.left.into_iter().next() {
+                Some(reason) => error.hint(reason),
+                None => error.hint("ingest.hint.check_written"),
+            });
+        };
+        let mut left = found.left;
+        let (mut columns, mut groups, mut lanes) = (Vec::<Column>::new(), Vec::new(), Vec::new());
+        let mut notes = Vec::new();
+        for (member, array) in found.members.into_iter().zip(&found.arrays) {
+            if !choose::belongs(array, rows, part, &found.arrays) {
+                left.push(other_length(array, rows));
+                continue;
+            }
+            notes.extend(member.columns.note.clone());
+            let (stream, stride) = (member.stream, member.columns.stride);
+            if member.columns.by_rows {
+                groups.push(Group { stream, offset: member.data_at, stride });
+            }
+            for place in member.columns.list {
+                if !member.columns.by_rows {
+                    groups.push(Group { stream, offset: member.data_at + place.from, stride });
+                }
+                let group = groups.len().saturating_sub(1);
+                lanes.push(place.field.map(|field| Lane { group, field }));
+                columns.push(place.column);
+            }
+        }
+        notes.extend(choose::notes(left));
+        Ok(Opened {
+            columns,
+            rows_estimate: Some(rows),
+            cut_off: Vec::new(),
+            notes,
+            metadata: found.metadata,
+            stated_sample_rate_hz: found.rate_hz,
+            table: Box::new(Lanes::new(path.clone(), file.bytes, at, found.streams, groups, lanes, rows)),
+        })
+    }
+}
+
+/// What is said of an array that does not belong to the recording.
+fn other_length(array: &choose::Array, rows: u64) -> Note {
+    Note::new("ingest.binary.other_length")
+        .with("name", array.name.as_str())
+        .with("rows", array.rows)
+        .with("chosen", rows)
+}
+
+/// Looks at every member of the archive.
+fn members(file: &Candidate, at: &std::sync::Arc<At>) -> Result<Found, IngestError> {
+    let path = &file.path;
+    let damaged = |e: zip::result::ZipError| {
+        let note = Note::new("ingest.npz.damaged").with("reason", e.to_string());
+        IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.damaged")
+    };
+    let mut archive = ZipArchive::new(Part::new(at, 0, at.size)).map_err(damaged)?;
+    if archive.len() > MOST_MEMBERS {
+        let note = Note::new("ingest.binary.too_many_columns").with("most", MOST_MEMBERS);
+        return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.give_recording"));
+    }
+    let mut found = Found::default();
+    for index in 0..archive.len() {
+        let member = archive.by_index_raw(index).map_err(damaged)?;
+        let full = String::from_utf8_lossy(member.name_raw()).into_owned();
+        let leave = |reason: Note| {
+            Note::new("ingest.binary.left_out").with("name", shown(&full)).with("reason", reason)
+        };
+        let coding = match member.compression() {
+            _ if member.encrypted() => None,
+            CompressionMethod::STORE => Some(Coding::Checked(member.crc32())),
+            CompressionMethod::DEFLATE => Some(Coding::Deflate(member.crc32())),
+            _ => None,
+        };
+        let Some(name) = full.strip_suffix(".npy") else {
+            found.left.push(leave("ingest.npz.no_array".into()));
+            continue;
+        };
+        let (Some(coding), Some(from)) = (coding, member.data_start()) else {
+            found.left.push(leave("ingest.npz.packing".into()));
+            continue;
+        };
+        let stream = Stream { name: full.clone(), from, length: member.compressed_size(), coding };
+        let size = member.size();
+        drop(member);
+        let mut head = vec![0; HEAD.min(usize::try_from(size).unwrap_or(HEAD))];
+        let n = stream.open(at).fill(&mut head).map_err(|e| stream_error(path, &full, &e))?;
+        head.truncate(n);
+        if !head.starts_with(MAGIC) {
+            found.left.push(leave("ingest.npz.no_array".into()));
+            continue;
+        }
+        let array = match array::header(&head) {
+            Ok(array) => array,
+            Err((reason, _)) => {
+                found.left.push(leave(reason));
+                continue;
+            }
+        };
+        if size.checked_sub(array.data_at).is_none_or(|there| there < array.data_bytes) {
+            let note =
+                Note::new("ingest.npz.short").with("name", shown(&full)).with("declared", array.data_bytes);
+            return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.cut_off"));
+        }
+        let data = usize::try_from(array.data_at).ok().and_then(|at| head.get(at..)).unwrap_or_default();
+        let columns = match array.columns(name, data) {
+            Ok(columns) => columns,
+            Err((reason, _)) => {
+                found.left.push(leave(reason));
+                continue;
+            }
+        };
+        if array.is_scalar() {
+            scalar(&mut found, name, &columns, data);
+            continue;
+        }
+        found.arrays.push(choose::Array {
+            name: name.to_owned(),
+            rows: columns.rows,
+            columns: columns.list.len(),
+            in_structure: false,
+        });
+        found.members.push(Member { stream: found.streams.len(), data_at: array.data_at, columns });
+        found.streams.push(stream);
+    }
+    Ok(found)
+}
+
+/// Keeps a single value: as the sample rate where its name says so, and among what the file says of itself.
+fn scalar(found: &mut Found, name: &str, columns: &array::Columns, data: &[u8]) {
+    let Some(place) = columns.list.first() else { return };
+    let Some(field) = place.field else {
+        // Texts are characters of four bytes each, in the order of the machine that nearly every file comes from.
+        let characters = data.chunks_exact(4).take(200).filter_map(|c| {
+            let code = u32::from_le_bytes([*c.first()?, *c.get(1)?, *c.get(2)?, *c.get(3)?]);
+            char::from_u32(code).filter(|c| *c != '\0')
+        });
+        if place.column.storage.contains('U') {
+            rate::keep(&mut found.metadata, name, &characters.collect::<String>());
+        }
+        return;
+    };
+    let mut value = Vec::new();
+    field.decode(data.get(..columns.stride).unwrap_or_default(), columns.stride, &mut value);
+    if let Some(value) = value.first() {
+        found.rate_hz = found.rate_hz.or_else(|| rate::stated(name, *value));
+        rate::keep(&mut found.metadata, name, &value.to_string());
+    }
+}
+
+fn shown(name: &str) -> String {
+    crate::error::shorten(name)
+}

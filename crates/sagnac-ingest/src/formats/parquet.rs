@@ -1,0 +1,230 @@
+//! Apache Parquet: columns of numbers, read in batches of rows.
+
+use crate::compressed::{Packing, io_error};
+use crate::decode_pipeline::{Blocks, run_pipeline};
+use crate::error::{IngestError, IngestErrorKind};
+use crate::guarded::guarded;
+use crate::memory::non_finite;
+use crate::number::usable;
+use crate::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
+use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
+use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use ::parquet::data_type::DataType;
+use ::parquet::errors::ParquetError;
+use ::parquet::file::reader::{FileReader, SerializedFileReader};
+use ::parquet::schema::types::ColumnDescriptor;
+use sagnac_core::message::Note;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// Rows in a block.
+const ROWS: usize = 1 << 15;
+
+/// Apache Parquet.
+pub(super) struct Parquet;
+
+impl Format for Parquet {
+    fn id(&self) -> &'static str {
+        "parquet"
+    }
+
+    fn recognises(&self, file: &Candidate) -> bool {
+        file.head.starts_with(b"PAR1")
+    }
+
+    fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
+        if file.packing != Packing::Plain {
+            return Err(IngestError::new(
+                IngestErrorKind::UnknownFormat,
+                &file.path,
+                Note::new("ingest.packed_parquet").with("packing", file.packing.id()),
+            )
+            .hint("ingest.hint.unpack_parquet"));
+        }
+        let reader = reader(&file.path)?;
+        let metadata = reader.metadata().file_metadata();
+        let rows = u64::try_from(metadata.num_rows()).unwrap_or(0);
+        if rows == 0 {
+            return Err(IngestError::new(IngestErrorKind::Empty, &file.path, "ingest.no_rows")
+                .hint("ingest.hint.check_written"));
+        }
+        let columns = metadata.schema_descr().columns().iter().map(|c| describe(c)).collect();
+        Ok(Opened {
+            columns,
+            rows_estimate: Some(rows),
+            cut_off: Vec::new(),
+            notes: vec![Note::new("ingest.note.row_groups").with("count", reader.num_row_groups())],
+            metadata: Vec::new(),
+            stated_sample_rate_hz: None,
+            table: Box::new(ParquetFile { path: file.path.clone() }),
+        })
+    }
+}
+
+/// Name, type and unit of a column; numeric when it holds one plain number for each row.
+fn describe(column: &ColumnDescriptor) -> Column {
+    let logical = column.logical_type_ref();
+    let plain = matches!(
+        logical,
+        None | Some(LogicalType::Integer(_) | LogicalType::Timestamp(_) | LogicalType::Time(_))
+    );
+    let number = matches!(
+        column.physical_type(),
+        Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64 | Type::BOOLEAN
+    );
+    let decimal = matches!(column.converted_type(), ConvertedType::DECIMAL);
+    let single = column.max_rep_level() == 0 && column.path().parts().len() == 1;
+    let unit = |u: &TimeUnit| match u {
+        TimeUnit::MILLIS => "ms",
+        TimeUnit::MICROS => "us",
+        TimeUnit::NANOS => "ns",
+    };
+    Column {
+        name: column.path().string(),
+        numeric: plain && number && single && !decimal,
+        storage: match logical {
+            Some(l) => format!("{} ({l:?})", column.physical_type()),
+            None => column.physical_type().to_string(),
+        },
+        unit: match logical {
+            Some(LogicalType::Timestamp(t)) => Some(unit(&t.unit).to_owned()),
+            Some(LogicalType::Time(t)) => Some(unit(&t.unit).to_owned()),
+            _ => None,
+        },
+        epoch_s: None,
+        rollover_s: None,
+    }
+}
+
+fn reader(path: &Path) -> Result<SerializedFileReader<File>, IngestError> {
+    let file = File::open(path).map_err(|e| io_error(path, &e))?;
+    guarded(path, || SerializedFileReader::new(file).map_err(|e| damaged(path, &e)))
+}
+
+fn damaged(path: &Path, error: &ParquetError) -> IngestError {
+    let text = error.to_string();
+    let hint = if text.contains("feature") || text.contains("codec") {
+        "ingest.hint.codec"
+    } else {
+        "ingest.hint.damaged"
+    };
+    IngestError::new(IngestErrorKind::Damaged, path, Note::new("ingest.parquet_damaged").with("reason", text))
+        .hint(hint)
+}
+
+struct ParquetFile {
+    path: PathBuf,
+}
+
+impl Table for ParquetFile {
+    fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError> {
+        run_pipeline(&self.path, wanted.len(), on_block, |blocks| {
+            guarded(&self.path, || self.decode(wanted, blocks))
+        })
+    }
+}
+
+impl ParquetFile {
+    /// Decodes every row group.
+    fn decode(&self, wanted: &[usize], blocks: &mut Blocks) -> Result<(), IngestError> {
+        let fail = |e: ParquetError| damaged(&self.path, &e);
+        let reader = reader(&self.path)?;
+        let size = std::fs::metadata(&self.path).map_err(|e| io_error(&self.path, &e))?.len();
+        let total = u64::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0).max(1);
+        for group in 0..reader.num_row_groups() {
+            let group = reader.get_row_group(group).map_err(fail)?;
+            let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+            let mut columns = wanted
+                .iter()
+                .map(|&w| group.get_column_reader(w).map(Decoder::new).map_err(fail))
+                .collect::<Result<Vec<_>, _>>()?;
+            let mut left = rows;
+            while left > 0 {
+                let n = left.min(ROWS);
+                let mut block = blocks.empty();
+                for (slot, column) in columns.iter_mut().enumerate() {
+                    column.batch(n, slot, &mut block).map_err(fail)?;
+                }
+                left -= n;
+                let done = blocks.rows() + n as u64;
+                block.bytes_done = (size as f64 * (done as f64 / total as f64)) as u64;
+                if !blocks.pass_counted(block) {
+                    return Ok(());
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Decodes one column of a row group.
+struct Decoder {
+    reader: ColumnReader,
+    levels: Vec<i16>,
+}
+
+impl Decoder {
+    fn new(reader: ColumnReader) -> Decoder {
+        Decoder { reader, levels: Vec::new() }
+    }
+
+    fn batch(&mut self, rows: usize, slot: usize, block: &mut Block) -> Result<(), ParquetError> {
+        let levels = &mut self.levels;
+        match &mut self.reader {
+            ColumnReader::DoubleColumnReader(r) => values(r, rows, levels, slot, block, |v| v),
+            ColumnReader::FloatColumnReader(r) => values(r, rows, levels, slot, block, f64::from),
+            ColumnReader::Int32ColumnReader(r) => values(r, rows, levels, slot, block, f64::from),
+            ColumnReader::Int64ColumnReader(r) => values(r, rows, levels, slot, block, |v| v as f64),
+            ColumnReader::BoolColumnReader(r) => {
+                values(r, rows, levels, slot, block, |v| f64::from(u8::from(v)))
+            }
+            _ => Err(ParquetError::General("the column holds no numbers".to_owned())),
+        }
+    }
+}
+
+/// Reads `rows` values of a column into the block; a null is NaN and counted as non-finite.
+fn values<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    rows: usize,
+    levels: &mut Vec<i16>,
+    slot: usize,
+    block: &mut Block,
+    number: impl Fn(T::T) -> f64,
+) -> Result<(), ParquetError>
+where
+    T::T: Copy,
+{
+    let mut read: Vec<T::T> = Vec::with_capacity(rows);
+    levels.clear();
+    let (records, ..) = reader.read_records(rows, Some(levels), None, &mut read)?;
+    if records != rows {
+        return Err(ParquetError::General(format!("{rows} values expected, {records} found")));
+    }
+    let mut column = block.columns.get_mut(slot).map(std::mem::take).unwrap_or_default();
+    if read.len() == rows {
+        column.extend(read.iter().map(|&v| number(v)));
+    } else {
+        let top = levels.iter().copied().max().unwrap_or(0).max(1);
+        let mut next = read.iter();
+        column.extend(
+            levels
+                .iter()
+                .map(|&l| if l == top { next.next().map_or(f64::NAN, |&v| number(v)) } else { f64::NAN }),
+        );
+        column.resize(rows, f64::NAN);
+    }
+    if column.iter().any(|v| !usable(*v)) {
+        for (i, v) in column.iter_mut().enumerate().filter(|(_, v)| !usable(**v)) {
+            let (row, text) = (block.first_row + i as u64, *v);
+            let null = levels.get(i).is_some_and(|&l| l == 0) && read.len() < rows;
+            let describe = || non_finite(slot, row, if null { "null".to_owned() } else { text.to_string() });
+            block.fault(describe, slot, FieldFaultKind::NonFinite);
+            *v = f64::NAN;
+        }
+    }
+    if let Some(place) = block.columns.get_mut(slot) {
+        *place = column;
+    }
+    Ok(())
+}

@@ -1,0 +1,186 @@
+//! What MCAP files and ROS 1 bags share: messages by topic, of which those of one topic are the rows.
+//!
+//! Both readers are our own. The crates at hand map the whole file into memory or let a number in the file decide how
+//! much is unpacked, and one of them brings two C libraries along; what is needed of the formats is short.
+
+pub(super) mod message;
+pub(super) mod source;
+mod table;
+
+use crate::error::{IngestError, IngestErrorKind, shorten};
+use crate::parts::Metadata;
+use crate::{Candidate, Column, Opened};
+use sagnac_core::message::{Arg, Note};
+use source::{Catalog, Container, Event, Topic};
+use std::collections::BTreeSet;
+use std::ops::ControlFlow;
+use table::{Origin, TopicTable};
+
+/// Most topics that are listed.
+const LISTED: usize = 20;
+
+/// Topics as a list in one sentence.
+fn list<'a>(topics: impl Iterator<Item = &'a Topic>) -> Arg {
+    let mut names: Vec<String> = topics
+        .map(|t| format!("`{}` ({}, {})", shorten(&t.name), shorten(&t.type_name), t.messages))
+        .collect();
+    let more = names.len() > LISTED;
+    names.truncate(LISTED);
+    if more {
+        names.push("…".to_owned());
+    }
+    Arg::Text(if names.is_empty() { "–".to_owned() } else { names.join(", ") })
+}
+
+/// Chooses the topic that is the recording: the one wanted, or the only one with messages of an inertial unit.
+fn choose<'a>(
+    file: &Candidate,
+    catalog: &'a Catalog,
+    notes: &mut Vec<Note>,
+) -> Result<&'a Topic, IngestError> {
+    let error = |note: Note| IngestError::new(IngestErrorKind::UnknownFormat, &file.path, note);
+    let readable = || catalog.topics.iter().filter(|t| t.readable().is_some() && t.messages > 0);
+    if let Some(wanted) = file.options.part.as_deref() {
+        let plain = |name: &str| name.trim_matches('/').to_owned();
+        let named = |t: &&Topic| plain(&t.name) == plain(wanted);
+        if let Some(topic) = readable().find(named) {
+            notes.push(Note::new("ingest.ros.wanted").with("name", shorten(&topic.name)));
+            return Ok(topic);
+        }
+        let there = catalog.topics.iter().find(named);
+        let note = match there {
+            None => Note::new("ingest.ros.no_topic").with("name", shorten(wanted)),
+            Some(t) if t.readable().is_none() => Note::new("ingest.ros.type_unknown")
+                .with("name", shorten(&t.name))
+                .with("type", shorten(&t.type_name))
+                .with("encoding", shorten(&t.encoding_name)),
+            Some(t) => Note::new("ingest.ros.no_messages").with("name", shorten(&t.name)),
+        };
+        return Err(error(note).hint(Note::new("ingest.ros.hint.readable").with("topics", list(readable()))));
+    }
+    let imus: Vec<&Topic> = readable().filter(|t| t.readable().is_some_and(|(l, _)| l.is_imu())).collect();
+    match imus.as_slice() {
+        [one] => {
+            notes.push(
+                Note::new("ingest.ros.taken")
+                    .with("name", shorten(&one.name))
+                    .with("type", shorten(&one.type_name))
+                    .with("count", one.messages),
+            );
+            let mut others = catalog.topics.iter().filter(|t| t.name != one.name).peekable();
+            if others.peek().is_some() {
+                notes.push(Note::new("ingest.ros.others").with("topics", list(others)));
+            }
+            Ok(*one)
+        }
+        [] => Err(error(Note::new("ingest.ros.no_imu").with("topics", list(catalog.topics.iter())))
+            .hint(Note::new("ingest.ros.hint.readable").with("topics", list(readable())))),
+        several => Err(error(
+            Note::new("ingest.ros.several")
+                .with("count", several.len())
+                .with("topics", list(several.iter().copied())),
+        )
+        .hint("ingest.ros.hint.name_one")),
+    }
+}
+
+pub(super) fn open(file: &Candidate, container: &'static dyn Container) -> Result<Opened, IngestError> {
+    let path = &file.path;
+    let catalog = source::catalog(container, path, file.bytes)?;
+    if catalog.topics.iter().all(|t| t.messages == 0) {
+        if let Some(at) = catalog.broken_at {
+            let note = Note::new("ingest.ros.broken_before").with("at", at);
+            return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.cut_off"));
+        }
+        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.ros.nothing")
+            .hint("ingest.hint.check_written"));
+    }
+    let mut notes = Vec::new();
+    let topic = choose(file, &catalog, &mut notes)?;
+    let Some((layout, encoding)) = topic.readable() else {
+        return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.ros.nothing")
+            .hint("ingest.hint.check_written"));
+    };
+    if !catalog.indexed {
+        notes.push(Note::new("ingest.ros.no_index"));
+    }
+    let cut_off: Vec<Note> =
+        catalog.broken_at.map(|at| Note::new("ingest.ros.broken").with("at", at)).into_iter().collect();
+    notes.extend(cut_off.iter().cloned());
+    let skip: BTreeSet<u64> = catalog
+        .chunks
+        .iter()
+        .filter(|(_, ids)| !ids.is_empty() && ids.is_disjoint(&topic.ids))
+        .map(|(at, _)| *at)
+        .collect();
+    let mut first = None;
+    container.scan(path, file.bytes, &skip, &mut |event| match event {
+        Event::Message { id, log_ns, data, .. } if topic.ids.contains(&id) => {
+            let message = layout.read(data, encoding);
+            let seconds = i64::try_from(log_ns / 1_000_000_000).unwrap_or(0);
+            let found = first.get_or_insert((seconds, None));
+            found.1 = message;
+            // A message that ends early tells no stamp; the next one may.
+            if message.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
+        _ => ControlFlow::Continue(()),
+    })?;
+    let (logged_s, message) = first.unwrap_or((0, None));
+    let stamp_s = message.and_then(|m| m.stamp).map(|(s, _)| s);
+    let mut columns = Vec::new();
+    let mut origins = Vec::new();
+    let mut time = |name: &str, origin, epoch_s: i64| {
+        columns.push(Column {
+            name: name.to_owned(),
+            numeric: true,
+            storage: "time stamp".to_owned(),
+            unit: Some("s".to_owned()),
+            epoch_s: Some(epoch_s as f64),
+            rollover_s: None,
+        });
+        origins.push(origin);
+    };
+    let (stamp, logged) = (stamp_s.unwrap_or(0), logged_s);
+    // The sensor's own stamp comes first, unless the driver left it empty.
+    if layout.has_header() && stamp != 0 {
+        time("header.stamp", Origin::Stamp { epoch_s: stamp }, stamp);
+    }
+    time("log_time", Origin::Logged { epoch_s: logged }, logged);
+    if layout.has_header() && stamp == 0 {
+        time("header.stamp", Origin::Stamp { epoch_s: stamp }, stamp);
+        notes.push(Note::new("ingest.ros.no_stamp"));
+    }
+    for (i, (name, unit)) in layout.numbers().enumerate() {
+        columns.push(Column {
+            name: name.to_owned(),
+            numeric: true,
+            storage: "number".to_owned(),
+            unit: unit.map(str::to_owned),
+            epoch_s: None,
+            rollover_s: None,
+        });
+        origins.push(Origin::Number(i));
+    }
+    let mut metadata = Metadata::default();
+    for (key, value) in &catalog.metadata {
+        metadata.add(key, value);
+    }
+    Ok(Opened {
+        columns,
+        rows_estimate: Some(topic.messages),
+        cut_off,
+        notes,
+        metadata: metadata.entries(),
+        stated_sample_rate_hz: None,
+        table: Box::new(TopicTable {
+            path: path.clone(),
+            bytes: file.bytes,
+            container,
+            ids: topic.ids.clone(),
+            layout,
+            encoding,
+            origins,
+            skip,
+        }),
+    })
+}

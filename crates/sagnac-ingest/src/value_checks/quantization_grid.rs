@@ -1,0 +1,152 @@
+//! The quantization grid that values lie on: value = k·step + offset with whole k, within the error of a double.
+//!
+//! The step is the common divisor of the differences of the first values, found by Euclid's algorithm with a tolerance;
+//! every later value is checked against it and makes it smaller where needed.
+
+/// Values from which the step is first found.
+const FIRST: usize = 4096;
+/// Smallest step in units of the error of the values: below, a quantization grid cannot be told from rounding.
+const SMALLEST: f64 = 1e4;
+/// Largest deviation from the quantization grid, steps.
+const OFF: f64 = 0.02;
+
+#[derive(Debug, Clone, Default)]
+pub(super) struct QuantizationGrid {
+    first: Vec<f64>,
+    origin: f64,
+    step: f64,
+    /// Error of the step.
+    error: f64,
+    /// Largest distance from the origin so far.
+    reach: f64,
+    largest: f64,
+    state: State,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum State {
+    #[default]
+    Gathering,
+    Checking,
+    None,
+}
+
+impl QuantizationGrid {
+    pub(super) fn take(&mut self, mut values: &[f64]) {
+        if self.state == State::Gathering {
+            let (head, rest) = values.split_at(values.len().min(FIRST - self.first.len().min(FIRST)));
+            self.first.extend_from_slice(head);
+            values = rest;
+            if self.first.len() >= FIRST {
+                self.find();
+            }
+        }
+        if self.state == State::Checking && !values.is_empty() {
+            self.check(values);
+        }
+    }
+
+    /// The step, when all values lie on a quantization grid.
+    pub(super) fn step(&self) -> Option<f64> {
+        let mut done = self.clone();
+        if done.state == State::Gathering {
+            done.find();
+        }
+        (done.state == State::Checking && done.step > 0.0).then_some(done.step)
+    }
+
+    fn find(&mut self) {
+        let mut sorted = std::mem::take(&mut self.first);
+        sorted.sort_unstable_by(f64::total_cmp);
+        sorted.dedup();
+        self.state = State::None;
+        let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return };
+        if sorted.len() < 2 {
+            return;
+        }
+        self.origin = low;
+        self.largest = low.abs().max(high.abs());
+        let mut gaps: Vec<f64> = sorted.iter().zip(sorted.iter().skip(1)).map(|(a, b)| b - a).collect();
+        // From the smallest on, so that the step is known ever better before it is multiplied by large numbers.
+        gaps.sort_unstable_by(f64::total_cmp);
+        self.step = gaps.first().copied().unwrap_or(0.0);
+        self.error = self.rounding();
+        for gap in gaps {
+            if !self.fit(gap) {
+                return;
+            }
+        }
+        self.state = State::Checking;
+        self.fit(high - low);
+        self.reach = high - low;
+        self.check(&sorted);
+    }
+
+    /// Error of a difference of two values.
+    fn rounding(&self) -> f64 {
+        4.0 * f64::EPSILON * self.largest
+    }
+
+    /// Makes the step divide a length, and refines it by the length where it does; false when no step is left.
+    fn fit(&mut self, length: f64) -> bool {
+        if self.step < SMALLEST * f64::EPSILON * self.largest {
+            return false;
+        }
+        let k = (length / self.step).round();
+        let allowed = self.rounding() + 2.0 * k * self.error;
+        let off = (length - k * self.step).abs();
+        if off <= allowed.min(OFF * self.step) {
+            if self.rounding() < k * self.error {
+                self.step = length / k;
+                self.error = self.rounding() / k;
+            }
+            return true;
+        }
+        self.step = divisor(self.step, off, allowed);
+        self.error = allowed;
+        self.step >= SMALLEST * f64::EPSILON * self.largest
+    }
+
+    fn check(&mut self, values: &[f64]) {
+        let (origin, inverse) = (self.origin, 1.0 / self.step);
+        let (mut worst, mut reach) = (0.0f64, 0.0f64);
+        for &v in values {
+            let d = v - origin;
+            let k = d * inverse;
+            let off = (k - nearest(k)).abs();
+            worst = if off > worst { off } else { worst };
+            reach = if d.abs() > reach { d.abs() } else { reach };
+        }
+        if worst <= OFF && reach <= 2.0 * self.reach {
+            return;
+        }
+        for &v in values {
+            self.largest = self.largest.max(v.abs());
+            let distance = (v - self.origin).abs();
+            let off = (distance / self.step - (distance / self.step).round()).abs();
+            if (off > OFF || distance > 2.0 * self.reach) && !self.fit(distance) {
+                self.state = State::None;
+                return;
+            }
+            self.reach = self.reach.max(distance);
+        }
+    }
+}
+
+/// The nearest whole number, for numbers below 2^51: adding and taking away 1.5·2^52 rounds, without a call.
+#[inline(always)]
+fn nearest(k: f64) -> f64 {
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    (k + SHIFT) - SHIFT
+}
+
+/// Greatest common divisor of two lengths, each known within a tolerance; small when there is none.
+fn divisor(a: f64, b: f64, tolerance: f64) -> f64 {
+    let (mut a, mut b, mut tolerance) = (a.max(b), a.min(b), tolerance);
+    while b > tolerance {
+        let k = (a / b).round();
+        (a, b) = (b, (a - k * b).abs());
+        tolerance *= k.max(1.0);
+    }
+    a
+}
