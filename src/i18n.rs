@@ -3,9 +3,11 @@
 //! A [`Note`] is a sentence by name with its numbers; it becomes words only where it is shown, so that the same
 //! result can be read in any language. The tables are `templates/locale/*.toml`.
 
+mod effect_text;
 mod lang;
 mod system;
 
+pub use effect_text::{EffectText, effect_text};
 pub use lang::Lang;
 pub use sagnac_core::message::{Arg, Note};
 use sagnac_core::render;
@@ -89,21 +91,6 @@ impl Localize for sagnac_ingest::IngestError {
     /// The whole diagnostic: place, what is wrong, what was found, what to do.
     fn say(&self, lang: Lang) -> String {
         self.note().say(lang)
-    }
-}
-
-/// Texts of the catalogue of effects.
-pub trait Bilingual {
-    /// The text in a language.
-    fn of(&self, lang: Lang) -> &'static str;
-}
-
-impl Bilingual for sagnac_core::effect::Both {
-    fn of(&self, lang: Lang) -> &'static str {
-        match lang {
-            Lang::En => self.en,
-            Lang::Ru => self.ru,
-        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{EffectsArgs, exit, place};
 use crate::effect::{EFFECTS, Effect, Param, find};
-use crate::i18n::{Arg, Bilingual, Lang, Localize, Note, decimal};
+use crate::i18n::{Arg, EffectText, Lang, Localize, Note, decimal, effect_text};
 use crate::report::unit::pretty;
 use sagnac_core::spelling::nearest;
 use serde_json::{Value, json};
@@ -61,7 +61,7 @@ fn list(lang: Lang) -> String {
     for effect in EFFECTS {
         rows.push([
             effect.kind().to_owned(),
-            effect.doc().title.of(lang).to_owned(),
+            effect_text(effect.kind(), EffectText::Title, lang).to_owned(),
             view(*effect, lang),
             needs(*effect),
         ]);
@@ -85,32 +85,32 @@ fn list(lang: Lang) -> String {
 
 /// Everything that is known of an effect.
 fn page(effect: &dyn Effect, lang: Lang) -> String {
-    let doc = effect.doc();
-    let mut out = format!("{} ({})\n", doc.title.of(lang), effect.kind());
+    let text = |part| effect_text(effect.kind(), part, lang);
+    let mut out = format!("{} ({})\n", text(EffectText::Title), effect.kind());
     let mut part = |key: &'static str, text: &str| {
         if !text.is_empty() {
             out.push_str(&format!("\n{}\n{}", Note::new(key).say(lang), wrapped(text)));
         }
     };
-    part("effects.mechanism", doc.mechanism.of(lang));
-    part("effects.formula", doc.formula.of(lang));
+    part("effects.mechanism", text(EffectText::Mechanism));
+    part("effects.formula", text(EffectText::Formula));
     let numbers = effect.params().iter().map(|p| parameter(p, None, lang));
     let lists = effect.list_params().iter().map(|p| parameter(p, Some("effects.list"), lang));
     let parameters: Vec<String> = numbers.chain(lists).collect();
     part("effects.parameters", &parameters.join("\n"));
     part("effects.shows_in", &view(effect, lang));
     part("effects.needs", &needs(effect));
-    part("effects.signature", doc.signature.of(lang));
+    part("effects.signature", text(EffectText::Signature));
     part("effects.confusers", &confusers(effect, lang).join("\n"));
-    part("effects.told_by", doc.told_by.of(lang));
-    part("effects.confirm", doc.confirm.of(lang));
-    part("effects.source", doc.source);
+    part("effects.told_by", text(EffectText::Distinguishing));
+    part("effects.confirm", text(EffectText::Confirm));
+    part("effects.source", text(EffectText::Source));
     out
 }
 
 fn confusers(effect: &dyn Effect, lang: Lang) -> Vec<String> {
     let named = |kind: &&str| match find(kind) {
-        Some(other) => format!("{kind}: {}", other.doc().title.of(lang)),
+        Some(other) => format!("{kind}: {}", effect_text(other.kind(), EffectText::Title, lang)),
         None => (*kind).to_owned(),
     };
     effect.confusers().iter().map(named).collect()
@@ -164,7 +164,7 @@ fn wrapped(text: &str) -> String {
 
 /// An effect for programs; words in a language.
 fn value(effect: &dyn Effect, lang: Lang) -> Value {
-    let doc = effect.doc();
+    let text = |part| effect_text(effect.kind(), part, lang);
     let params = |list: &'static [Param]| -> Vec<Value> {
         list.iter()
             .map(|p| {
@@ -180,17 +180,17 @@ fn value(effect: &dyn Effect, lang: Lang) -> Value {
     };
     json!({
         "kind": effect.kind(),
-        "title": doc.title.of(lang),
+        "title": text(EffectText::Title),
         "domain": effect.domain().id(),
         "needs": effect.needs().iter().map(|c| c.name()).collect::<Vec<_>>(),
-        "mechanism": doc.mechanism.of(lang),
-        "formula": doc.formula.of(lang),
+        "mechanism": text(EffectText::Mechanism),
+        "formula": text(EffectText::Formula),
         "parameters": params(effect.params()),
         "lists": params(effect.list_params()),
-        "signature": doc.signature.of(lang),
+        "signature": text(EffectText::Signature),
         "confusers": effect.confusers(),
-        "told_by": doc.told_by.of(lang),
-        "confirm": doc.confirm.of(lang),
-        "source": doc.source,
+        "told_by": text(EffectText::Distinguishing),
+        "confirm": text(EffectText::Confirm),
+        "source": text(EffectText::Source),
     })
 }

@@ -5,7 +5,7 @@ use super::progress::Progress;
 use super::{ExplainArgs, exit, place, run};
 use crate::config::model::{self, Claim};
 use crate::effect::{Column, EFFECTS, find};
-use crate::i18n::{Bilingual, Lang, Localize, Note};
+use crate::i18n::{EffectText, Lang, Localize, Note, effect_text};
 use crate::ingest::{ReadOptions, files_read};
 use crate::mismatch::{self, Options, Outcome};
 use crate::output::{Kind, StagedFolder};
@@ -65,7 +65,8 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
                 notes.push("explain.note.same_samples".into());
             }
             if !taken.shared.is_empty() {
-                let titles: Vec<&str> = taken.shared.iter().map(|e| e.doc().title.of(lang)).collect();
+                let title = |kind| effect_text(kind, EffectText::Title, lang);
+                let titles: Vec<&str> = taken.shared.iter().map(|e| title(e.kind())).collect();
                 notes.push(Note::new("explain.note.shared").with("effects", titles.join(", ")));
             }
             (taken.claim, taken.outcome, shown(simulation), true)

@@ -1,7 +1,8 @@
 //! Every word of a report stands in the locale tables: none is missing, none idle.
 
 use crate::fixture;
-use sagnac::i18n::{Lang, table};
+use sagnac::effect::{self, Domain, EFFECTS, find};
+use sagnac::i18n::{EffectText, Lang, effect_text, table};
 use sagnac::measurand::ids::MEASURANDS;
 use sagnac::report::render::TEMPLATES;
 use sagnac::report::{Renderer, render_html, render_markdown};
@@ -66,7 +67,8 @@ const OPEN: &[&str] = &[
     "test",
     "table_doc",
     "option_value",
-    "effect_view",
+    "explain.test",
+    "stated",
 ];
 
 /// A table that the tests of the command line hold against the command itself.
@@ -152,7 +154,9 @@ fn no_key_is_idle() {
             let Some((prefix, id)) = key.split_once('.') else { return true };
             let listed = LISTED.iter().any(|(p, ids)| *p == prefix && ids.contains(&id));
             let measurand = prefix == "measurand" && MEASURANDS.iter().any(|m| m.id == id);
-            let open = OPEN.contains(&prefix) && words.contains(id);
+            let open = OPEN.iter().any(|p| {
+                key.strip_prefix(p).and_then(|k| k.strip_prefix('.')).is_some_and(|id| words.contains(id))
+            });
             // Built from the ids of the methods and of the figures.
             let built = (prefix == "methods"
                 && sagnac::report::methods::METHODS
@@ -164,10 +168,65 @@ fn no_key_is_idle() {
                 || key
                     .strip_prefix("figure.caption.")
                     .is_some_and(|f| words.contains(&format!("figure.title.{f}")));
-            !(prefix == HELP || keys.contains(*key) || listed || measurand || open || built)
+            let effects = of_effects(key);
+            !(prefix == HELP || keys.contains(*key) || listed || measurand || open || built || effects)
         })
         .collect();
     assert!(idle.is_empty(), "in the table, but nothing uses them: {idle:?}");
+}
+
+/// True for a key that the catalogue of effects asks for: the texts of an effect, the names of its parameters, the views.
+fn of_effects(key: &str) -> bool {
+    let Some((table, id)) = key.rsplit_once('.') else { return false };
+    if let Some(kind) = table.strip_prefix("effect.") {
+        return find(kind).is_some() && EffectText::ALL.iter().any(|t| t.id() == id);
+    }
+    match table {
+        "parameter" => id == "rms_deg_h" || effect::parameter(id).is_some(),
+        "effect_view" | "explain.view" | "explain.where" => Domain::of_id(id).is_some(),
+        _ => false,
+    }
+}
+
+#[test]
+fn every_effect_has_every_text_in_every_language() {
+    let cyrillic = |text: &str| text.chars().any(|c| ('а'..='я').contains(&c));
+    let signs = ["cos", "sin", "exp", "sgn", "max", "ref"];
+    let english = |text: &str| {
+        let mut runs = text.split(|c: char| !c.is_ascii_lowercase());
+        runs.any(|run| run.len() > 2 && !signs.contains(&run))
+    };
+    for kind in EFFECTS.iter().map(|e| e.kind()) {
+        for text in EffectText::ALL {
+            let key = format!("effect.{kind}.{}", text.id());
+            let [en, ru] = [Lang::En, Lang::Ru].map(|lang| table(lang).get(&key).map_or("", String::as_str));
+            assert!(!en.is_empty() && !ru.is_empty(), "{key} is missing in a language");
+            assert_eq!(effect_text(kind, *text, Lang::Ru), ru);
+            assert!(!cyrillic(en), "{key}: {en}");
+            match text {
+                EffectText::Formula => assert!(!english(ru), "{key}: {ru}"),
+                EffectText::Source => {}
+                _ => assert!(en.len() > 3 && cyrillic(ru), "{key}: {ru}"),
+            }
+        }
+        let english = |text| effect_text(kind, text, Lang::En);
+        assert!(!english(EffectText::Title).ends_with('.'), "{kind}");
+        assert!(english(EffectText::Mechanism).ends_with('.'), "{kind}");
+    }
+}
+
+#[test]
+fn every_parameter_that_reports_show_has_a_name_and_every_domain_a_phrase() {
+    for param in EFFECTS.iter().flat_map(|e| e.params()).filter(|p| p.reported) {
+        let key = format!("parameter.{}", param.name);
+        assert!(Lang::ALL.iter().all(|lang| table(*lang).contains_key(&key)), "{key}");
+    }
+    for domain in Domain::ALL {
+        for prefix in ["effect_view", "explain.view", "explain.where"] {
+            let key = format!("{prefix}.{}", domain.id());
+            assert!(Lang::ALL.iter().all(|lang| table(*lang).contains_key(&key)), "{key}");
+        }
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@ use crate::config::layout::tables::LAYOUT_FILE;
 use crate::config::manifest_tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
 use crate::effect::EFFECTS;
+use crate::i18n::{EffectText, Lang, effect_text};
 use crate::ids::MEASURANDS;
 use serde_json::{Map, Value, json};
 
@@ -41,9 +42,10 @@ pub fn manifest() -> Value {
 /// The schema of a claim.
 pub fn model() -> Value {
     let mut schema = document(&MODEL_FILE, "Sagnac model");
+    let title = |kind: &str| effect_text(kind, EffectText::Title, Lang::En);
     // Editors offer the kinds; the reader knows them from the catalogue.
     let kinds: Vec<Value> =
-        EFFECTS.iter().map(|e| json!({"const": e.kind(), "description": e.doc().title.en})).collect();
+        EFFECTS.iter().map(|e| json!({"const": e.kind(), "description": title(e.kind())})).collect();
     if let Some(kind) = schema.pointer_mut("/properties/effect/items/properties/kind")
         && let Some(object) = kind.as_object_mut()
     {

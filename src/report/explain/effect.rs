@@ -2,8 +2,8 @@
 
 use super::print::{chance, difference, parameter, place, stated, title, value};
 use super::sentence;
-use crate::effect::{Doc, find};
-use crate::i18n::Bilingual;
+use crate::effect::find;
+use crate::i18n::{EffectText, effect_text};
 use crate::mismatch::finding::{Explanation, Finding};
 use crate::report::number::{limit_digits, percent};
 use crate::report::view::Words;
@@ -87,10 +87,7 @@ pub struct EffectView {
 impl EffectView {
     /// Prints a cause.
     pub(super) fn new(number: usize, f: &Finding, all: &Explanation, words: Words) -> EffectView {
-        let doc = find(f.effect_id()).map(|e| e.doc());
-        let both = |of: fn(&Doc) -> crate::effect::Both| {
-            doc.map(|d| of(d).of(words.lang)).unwrap_or_default().to_owned()
-        };
+        let text = |part| effect_text(f.effect_id(), part, words.lang).to_owned();
         let parameters = parameters(f, all, words);
         EffectView {
             number,
@@ -98,12 +95,12 @@ impl EffectView {
             kind: f.kind.clone(),
             unknown: f.is_unnamed(),
             sentences: sentence::finding(f, all, words),
-            mechanism: both(|d| d.mechanism),
-            signature: both(|d| d.signature),
-            told_by: both(|d| d.told_by),
-            confirm: both(|d| d.confirm),
-            formula: words.formula(&both(|d| d.formula)),
-            source: doc.map_or("", |d| d.source).to_owned(),
+            mechanism: text(EffectText::Mechanism),
+            signature: text(EffectText::Signature),
+            told_by: text(EffectText::Distinguishing),
+            confirm: text(EffectText::Confirm),
+            formula: words.formula(&text(EffectText::Formula)),
+            source: text(EffectText::Source),
             has_claimed: parameters.iter().any(|p| !p.claimed.is_empty()),
             parameters,
             places: f.places.iter().map(|p| place(p, all.recording.length_s, words)).collect(),
@@ -153,10 +150,7 @@ fn parameters(f: &Finding, all: &Explanation, words: Words) -> Vec<ParameterRow>
 }
 
 fn equivalent(kind: &str, chosen: &str, all: &Explanation, words: Words) -> EquivalentView {
-    let doc = find(kind).map(|e| e.doc());
-    let both = |of: fn(&Doc) -> crate::effect::Both| {
-        doc.map(|d| of(d).of(words.lang)).unwrap_or_default().to_owned()
-    };
+    let text = |part| effect_text(kind, part, words.lang).to_owned();
     let experiment = all.experiments.iter().find(|e| e.kind == chosen && e.against == kind);
     let times = experiment.and_then(|e| e.times_longer).filter(|t| t.is_finite());
     let longer = match (times, experiment) {
@@ -171,9 +165,9 @@ fn equivalent(kind: &str, chosen: &str, all: &Explanation, words: Words) -> Equi
     };
     EquivalentView {
         title: capital(&title(kind, words)),
-        signature: both(|d| d.signature),
-        told_by: both(|d| d.told_by),
-        confirm: both(|d| d.confirm),
+        signature: text(EffectText::Signature),
+        told_by: text(EffectText::Distinguishing),
+        confirm: text(EffectText::Confirm),
         longer,
     }
 }

@@ -1,7 +1,6 @@
 //! The view of an explanation: words and printed numbers, ready for the templates and for the terminal.
 
 mod effect;
-mod kinds;
 mod method;
 mod print;
 mod sentence;

@@ -1,8 +1,7 @@
 //! Values, places and probabilities as an explanation prints them.
 
-use super::kinds::{DOMAINS, PARAMETERS, SIGNED, STATED, TESTS, VIEWS, key};
-use crate::effect::find;
-use crate::i18n::Bilingual;
+use crate::effect::{self, Domain, find};
+use crate::i18n::{EffectText, effect_text, lookup};
 use crate::mismatch::finding::{ParameterValue, PlaceRecord};
 use crate::report::number::{Rounding, digits, limit_digits, typographic};
 use crate::report::view::Words;
@@ -11,15 +10,13 @@ use crate::report::view::Words;
 const LOPSIDED: f64 = 1.5;
 /// Log-likelihoods beyond are printed with a power of ten.
 const LARGE: f64 = 1e9;
-/// Parameters that are whole numbers.
-const COUNTS: &[&str] = &["order", "missing_rows", "count"];
 /// Share of the recording that counts as the whole of it.
 const WHOLE: f64 = 0.97;
 
 /// Title of a kind.
 pub fn title(kind: &str, words: Words) -> String {
     match find(kind) {
-        Some(effect) => effect.doc().title.of(words.lang).to_owned(),
+        Some(effect) => effect_text(effect.kind(), EffectText::Title, words.lang).to_owned(),
         None if kind == "unknown" => words.t("explain.unknown_cause"),
         None => kind.replace('_', " "),
     }
@@ -27,23 +24,24 @@ pub fn title(kind: &str, words: Words) -> String {
 
 /// Name of a parameter; as the file has it where the tables lack it.
 pub fn parameter(name: &str, words: Words) -> String {
-    key(PARAMETERS, name).map_or_else(|| name.to_owned(), |k| words.t(k))
+    lookup(words.lang, &format!("parameter.{name}")).unwrap_or(name).to_owned()
 }
 
 /// Name of a value that the claim states.
 pub fn stated(name: &str, words: Words) -> String {
     let last = name.rsplit('.').next().unwrap_or(name);
-    key(STATED, last).map_or_else(|| name.to_owned(), |k| words.t(k))
+    let text = lookup(words.lang, &format!("stated.{last}"));
+    text.map_or_else(|| parameter(last, words), str::to_owned)
 }
 
 /// Name of a test.
 pub fn test(id: &str, words: Words) -> String {
-    key(TESTS, id).map_or_else(|| id.replace('_', " "), |k| words.t(k))
+    words.name("explain.test", id)
 }
 
 /// Name of a view.
 pub fn view(domain: &str, words: Words) -> String {
-    key(VIEWS, domain).map_or_else(|| domain.replace('_', " "), |k| words.t(k))
+    words.name("explain.view", domain)
 }
 
 /// A parameter, printed in parts.
@@ -62,13 +60,14 @@ pub fn value(name: &str, p: &ParameterValue, words: Words) -> Printed {
     let lang = words.lang;
     let [low, high] = p.ci95;
     let usable = low.is_finite() && high.is_finite() && high > low;
-    if COUNTS.contains(&name) {
+    let param = effect::parameter(name);
+    if param.is_some_and(|p| p.whole) {
         let shown = |v: f64| limit_digits(if v.is_finite() { v.round() } else { v }, 12, lang);
         let interval = if usable { between(&shown(low), &shown(high), words) } else { String::new() };
         return Printed { whole: shown(p.value), value: shown(p.value), interval };
     }
     let rounding = Rounding::of(p.value, usable.then_some((low, high)));
-    let plus = if SIGNED.contains(&name) && p.value > 0.0 { "+" } else { "" };
+    let plus = if param.is_some_and(|p| p.signed) && p.value > 0.0 { "+" } else { "" };
     let shown = format!("{plus}{}", rounding.show(p.value, lang));
     if !usable {
         return Printed { whole: words.quantity(&shown, &p.unit), value: shown, interval: String::new() };
@@ -92,7 +91,7 @@ fn between(low: &str, high: &str, words: Words) -> String {
 
 /// The ends of a place with their unit.
 pub fn ends(place: &PlaceRecord, words: Words) -> String {
-    let unit = DOMAINS.iter().find(|d| d.0 == place.domain).map_or("", |d| d.1);
+    let unit = Domain::of_id(&place.domain).map_or("", Domain::unit);
     let (from, to) = (place.from, place.to);
     let text = if from == to {
         limit_digits(from, 6, words.lang)
@@ -119,8 +118,10 @@ pub fn place(place: &PlaceRecord, length_s: f64, words: Words) -> String {
     if place.domain == "time" && place.to - place.from >= WHOLE * length_s && length_s > 0.0 {
         return words.t("explain.where.whole");
     }
-    match DOMAINS.iter().find(|d| d.0 == place.domain) {
-        Some((_, _, key)) => words.with(key, &[("place", &ends(place, words))]),
+    match Domain::of_id(&place.domain) {
+        Some(domain) => {
+            words.with(&format!("explain.where.{}", domain.id()), &[("place", &ends(place, words))])
+        }
         None => format!("{} {}", place.domain, ends(place, words)),
     }
 }

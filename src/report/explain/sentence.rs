@@ -1,19 +1,22 @@
 //! The verdict in sentences.
 
-use super::kinds::SAYINGS;
 use super::print::{chance, place, title, value};
+use crate::effect::find;
+use crate::i18n::{EffectText, effect_text, fill};
 use crate::mismatch::finding::{Explanation, Finding};
 use crate::report::number::{count, digits, duration, percent};
 use crate::report::view::Words;
 
 /// What one finding adds to the claim, or corrects in it, as a phrase.
 pub fn phrase(finding: &Finding, explanation: &Explanation, words: Words) -> String {
-    let Some(saying) = SAYINGS.iter().find(|s| s.kind == finding.effect_id()) else {
-        return title(finding.effect_id(), words);
-    };
+    let kind = finding.effect_id();
+    let pattern = effect_text(kind, EffectText::Phrase, words.lang);
+    if pattern.is_empty() {
+        return title(kind, words);
+    }
     let mut given: Vec<(&str, String)> =
         finding.parameters.iter().map(|(name, p)| (name.as_str(), value(name, p, words).whole)).collect();
-    if let Some(name) = saying.states {
+    if let Some(name) = corrected(kind) {
         // What a claim does not state, it states to be nil.
         let claimed = explanation
             .nuisances
@@ -22,14 +25,17 @@ pub fn phrase(finding: &Finding, explanation: &Explanation, words: Words) -> Str
             .map_or_else(|| "0".to_owned(), |n| words.quantity(&digits_of(n.claimed, words), &n.unit));
         given.push(("claimed", claimed));
     }
-    let pattern = words.t(saying.key);
-    let known = places(&pattern).all(|name| given.iter().any(|g| g.0 == name));
+    let known = places(pattern).all(|name| given.iter().any(|g| g.0 == name));
     if !known {
-        let title = title(finding.effect_id(), words);
+        let title = title(kind, words);
         return words.with("explain.sentence.bare", &[("title", &title)]);
     }
-    let given: Vec<(&str, &str)> = given.iter().map(|(a, b)| (*a, b.as_str())).collect();
-    words.with(saying.key, &given)
+    fill(pattern, |name| given.iter().find(|g| g.0 == name).map(|g| g.1.clone()))
+}
+
+/// The parameter by which an effect corrects a value that the claim states; `None` for one that adds to the claim.
+fn corrected(kind: &str) -> Option<&'static str> {
+    find(kind)?.params().iter().find(|p| p.corrects_claim).map(|p| p.name)
 }
 
 /// A claimed value as it was stated, but for the dust of arithmetic.
@@ -56,7 +62,7 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Words) -> Ve
         }
     } else {
         let what = phrase(finding, explanation, words);
-        let corrects = SAYINGS.iter().any(|s| s.kind == finding.effect_id() && s.states.is_some());
+        let corrects = corrected(finding.effect_id()).is_some();
         let key = if corrects { "explain.sentence.misstates" } else { "explain.sentence.leaves_out" };
         out.push(words.with(key, &[("what", &what)]));
     }

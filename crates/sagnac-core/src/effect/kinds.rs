@@ -14,9 +14,6 @@ macro_rules! describe {
             fn kind(&self) -> &'static str {
                 $kind
             }
-            fn doc(&self) -> &'static $crate::effect::Doc {
-                &DOC
-            }
             fn params(&self) -> &'static [$crate::effect::Param] {
                 &PARAMS
             }

@@ -1,16 +1,14 @@
 //! The catalogue of physics that a simulation can leave out: one file an effect.
 //!
-//! An effect says what it is (mechanism, signature, confusers, the experiment that would confirm it, source), what its
-//! parameters are, and how it acts. There is one forward model of each: simulation, fitting and the stated effects of a
-//! claim all go through it.
+//! An effect says what its parameters are and how it acts. There is one forward model of each: simulation, fitting and
+//! the stated effects of a claim all go through it. What a reader is told of it (mechanism, signature, the experiment
+//! that would confirm it, source) stands under `effect.<kind>` of the locale tables, not here.
 
-mod doc;
 mod drivers;
 mod kinds;
 mod low_pass;
 mod spectral;
 
-pub use doc::{Both, Doc};
 pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature, averages};
 pub use kinds::{EFFECTS, find};
 pub use low_pass::LowPass;
@@ -34,17 +32,38 @@ pub struct Param {
     pub upper: f64,
     /// True when a report of an explanation gives it; others serve the forward model alone.
     pub reported: bool,
+    /// True when it has a direction: a report prints its plus.
+    pub signed: bool,
+    /// True when it is a whole number: a report prints it without decimals.
+    pub whole: bool,
+    /// True when a claim states the same quantity, so that the effect corrects a stated value and adds nothing new.
+    pub corrects_claim: bool,
 }
 
 impl Param {
     /// A parameter that reports give.
     pub const fn reported(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Param {
-        Param { name, unit, lower, upper, reported: true }
+        Param { name, unit, lower, upper, reported: true, signed: false, whole: false, corrects_claim: false }
     }
 
     /// A parameter that the forward model needs beside them.
     pub const fn inner(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Param {
-        Param { name, unit, lower, upper, reported: false }
+        Param { reported: false, ..Param::reported(name, unit, lower, upper) }
+    }
+
+    /// The same, with a direction.
+    pub const fn signed(self) -> Param {
+        Param { signed: true, ..self }
+    }
+
+    /// The same, a whole number.
+    pub const fn whole(self) -> Param {
+        Param { whole: true, ..self }
+    }
+
+    /// The same, the correction of a value that a claim states under this name.
+    pub const fn corrects_claim(self) -> Param {
+        Param { corrects_claim: true, ..self }
     }
 }
 
@@ -76,6 +95,21 @@ pub enum Domain {
 }
 
 impl Domain {
+    /// Every domain.
+    pub const ALL: &'static [Domain] = &[
+        Domain::Time,
+        Domain::Frequency,
+        Domain::Lag,
+        Domain::Temperature,
+        Domain::TemperatureRate,
+        Domain::InputRate,
+        Domain::OuterRate,
+        Domain::Angle,
+        Domain::Amplitude,
+        Domain::Timestamps,
+        Domain::Supply,
+    ];
+
     /// Its id in files.
     pub fn id(self) -> &'static str {
         match self {
@@ -91,6 +125,25 @@ impl Domain {
             Domain::Timestamps => "timestamps",
             Domain::Supply => "supply",
         }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Domain::Time | Domain::Lag | Domain::Timestamps => "s",
+            Domain::Frequency => "Hz",
+            Domain::Temperature => "degC",
+            Domain::TemperatureRate => "degC/min",
+            Domain::InputRate | Domain::OuterRate => "deg/s",
+            Domain::Angle => "deg",
+            Domain::Amplitude => "deg/h",
+            Domain::Supply => "V",
+        }
+    }
+
+    /// The domain of an id.
+    pub fn of_id(id: &str) -> Option<Domain> {
+        Domain::ALL.iter().copied().find(|d| d.id() == id)
     }
 }
 
@@ -133,6 +186,11 @@ pub fn list<'a>(values: &'a Values, name: &str) -> &'a [f64] {
     }
 }
 
+/// The parameter of that name of whichever effect has one. Effects that share a name share unit, sign and kind of number.
+pub fn parameter(name: &str) -> Option<&'static Param> {
+    EFFECTS.iter().flat_map(|e| e.params()).find(|p| p.name == name)
+}
+
 /// Whether numbers in the order of an effect's parameters are within what it allows; one that is not known is.
 pub fn plausible(effect: &dyn Effect, parameters: &[f64]) -> bool {
     let within = |(p, v): (&Param, &f64)| v.is_nan() || (p.lower..=p.upper).contains(v);
@@ -162,8 +220,6 @@ pub trait Effect: Sync {
     fn reported_kind(&self) -> &'static str {
         if kinds::is_own(self.kind()) { UNKNOWN } else { self.kind() }
     }
-    /// What it is.
-    fn doc(&self) -> &'static Doc;
     /// Its parameters.
     fn params(&self) -> &'static [Param];
     /// Lists that its stated form may carry beside the numbers, by name; the bounds are those of every value.

@@ -2,7 +2,7 @@
 
 use super::search::log_grid;
 use crate::effect::{
-    Both, Doc, Domain, LowPass, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
+    Domain, LowPass, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode};
 use crate::noise::data::NoiseType;
@@ -10,31 +10,6 @@ use crate::numeric::optimize::bisect;
 use std::f64::consts::PI;
 
 pub struct BandwidthFilter;
-
-static DOC: Doc = Doc {
-    title: Both { en: "bandwidth of the output", ru: "полоса пропускания выхода" },
-    mechanism: Both {
-        en: "A loop or an output filter of the instrument passes slow rates and damps fast ones.",
-        ru: "Контур обратной связи или выходной фильтр прибора пропускает медленные изменения и подавляет быстрые.",
-    },
-    formula: Both {
-        en: "|H|² = 1/(1 + (f/f_c)²) before sampling",
-        ru: "|H|² = 1/(1 + (f/f_c)²) до дискретизации",
-    },
-    signature: Both {
-        en: "The spectrum falls towards the Nyquist frequency below the claimed level; neighbouring samples correlate positively.",
-        ru: "Спектр спадает к частоте Найквиста ниже заявленного уровня; соседние отсчёты коррелируют положительно.",
-    },
-    told_by: Both {
-        en: "A short Markov process adds power at low frequencies instead of taking it from high ones; less white noise lowers all frequencies alike.",
-        ru: "Короткий марковский процесс добавляет мощность внизу, а не отнимает её вверху; уменьшение белого шума опускает все частоты одинаково.",
-    },
-    confirm: Both {
-        en: "Response to a step of the table's rate, recorded at the full output rate.",
-        ru: "Реакция на скачок скорости стола, записанная с полной частотой выдачи.",
-    },
-    source: "First-order low-pass filter before averaging over the sample interval",
-};
 
 static PARAMS: [Param; 2] =
     [Param::reported("cutoff_hz", "Hz", 1e-9, 1e9), Param::inner("form", "", 1.0, 7.0)];

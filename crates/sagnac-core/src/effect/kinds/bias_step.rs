@@ -1,43 +1,20 @@
 //! One jump of the bias.
 
 use crate::effect::{
-    Both, Doc, Domain, Drivers, Effect, MeanModel, Model, Param, Place, Regressors, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, Effect, MeanModel, Model, Param, Place, Regressors, SearchContext, Starts, Values,
+    number,
 };
 
 pub struct BiasStep;
 
-static DOC: Doc = Doc {
-    title: Both { en: "bias step", ru: "скачок смещения нуля" },
-    mechanism: Both {
-        en: "A contact, a crack, a hop of the source's mode or a knock leaves the bias at another level.",
-        ru: "Контакт, трещина, перескок моды источника или удар оставляют смещение нуля на другом уровне.",
-    },
-    formula: Both::same("J·H(t − t₁)"),
-    signature: Both {
-        en: "Two levels in time; the Allan deviation grows as τ to the power 1/2 like a rate random walk.",
-        ru: "Два уровня во времени; девиация Аллана растёт как τ в степени 1/2, как при случайном блуждании скорости.",
-    },
-    told_by: Both {
-        en: "A random walk has no instant at which everything happens: with the step taken out nothing may be left of it. At one heading a change of the Earth rate's projection is the same.",
-        ru: "У случайного блуждания нет момента, в который происходит всё: после вычитания скачка от него ничего не должно остаться. При одном курсе изменение проекции скорости Земли неотличимо.",
-    },
-    confirm: Both {
-        en: "Look at the event log, tilt meter and supply at that instant; turn to another heading and see whether the step changes.",
-        ru: "Проверить журнал событий, наклономер и питание в этот момент; повернуть на другой курс и посмотреть, изменится ли скачок.",
-    },
-    source: "IEEE Std 952, Annex C; detection of change points by generalised least squares",
-};
-
-static PARAMS: [Param; 2] =
-    [Param::reported("step_deg_h", "deg/h", -1e6, 1e6), Param::reported("time_s", "s", f64::MIN, f64::MAX)];
+static PARAMS: [Param; 2] = [
+    Param::reported("step_deg_h", "deg/h", -1e6, 1e6).signed(),
+    Param::reported("time_s", "s", f64::MIN, f64::MAX),
+];
 
 impl Effect for BiasStep {
     fn kind(&self) -> &'static str {
         "bias_step"
-    }
-    fn doc(&self) -> &'static Doc {
-        &DOC
     }
     fn params(&self) -> &'static [Param] {
         &PARAMS

@@ -3,39 +3,13 @@
 use super::delay::{follow, moves, regressors, shifted};
 use super::search::best_of;
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::cosine::inverse_dct2;
 
 pub struct ClockDrift;
 
-static DOC: Doc = Doc {
-    title: Both { en: "clock drift", ru: "уход часов" },
-    mechanism: Both {
-        en: "Gyro and table count time by clocks of different rates.",
-        ru: "Время гироскопа и стола отсчитывают часы с разным ходом.",
-    },
-    formula: Both {
-        en: "m(t − d·(t − t₀)) − m(t), m the claimed mean, t₀ the beginning of the record",
-        ru: "m(t − d·(t − t₀)) − m(t), m — заявленное среднее, t₀ — начало записи",
-    },
-    signature: Both {
-        en: "Spikes of the residual wherever the table's rate changes, larger towards the end of the record.",
-        ru: "Импульсы остатка при каждом изменении скорости стола, растущие к концу записи.",
-    },
-    told_by: Both {
-        en: "A constant offset gives equal spikes from the beginning; an error of the scale factor stays while the rate is constant.",
-        ru: "Постоянный сдвиг даёт одинаковые импульсы с самого начала; ошибка масштабного коэффициента остаётся при постоянной скорости.",
-    },
-    confirm: Both {
-        en: "Trigger pulses at the beginning and the end, recorded by both systems.",
-        ru: "Общие импульсы синхронизации в начале и в конце, записанные обеими системами.",
-    },
-    source: "Cross-correlation of gyro and table along the record",
-};
-
-static PARAMS: [Param; 1] = [Param::reported("drift_ppm", "ppm", -1e5, 1e5)];
+static PARAMS: [Param; 1] = [Param::reported("drift_ppm", "ppm", -1e5, 1e5).signed()];
 
 describe! {
     ClockDrift, "clock_drift", Mean in Lag, needs [],

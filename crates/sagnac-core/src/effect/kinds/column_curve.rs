@@ -4,40 +4,12 @@ use super::polynomial::{powers, sum};
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
-    Both, Column, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext,
-    Starts, Values, list, number,
+    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
+    list, number,
 };
 use crate::numeric::range::ends;
 
 pub struct ColumnCurve;
-
-static DOC: Doc = Doc {
-    title: Both {
-        en: "bent dependence on a recorded quantity",
-        ru: "нелинейная зависимость от записанной величины",
-    },
-    mechanism: Both {
-        en: "The electronics, the light source or the coil answer to a quantity by more than its first power.",
-        ru: "Электроника, источник света или контур отвечают на величину не только первой степенью.",
-    },
-    formula: Both {
-        en: "Σ cₖ uᵏ, u a column scaled to ±1, k = 1 … 2, 3 or 4",
-        ru: "Σ cₖ uᵏ, u — величина, приведённая к ±1, k = 1 … 2, 3 или 4",
-    },
-    signature: Both {
-        en: "A curve in residual against one column, the same whenever the column comes back to a value.",
-        ru: "Кривая остатка от одной величины, одинаковая при каждом её возвращении к тому же значению.",
-    },
-    told_by: Both {
-        en: "A straight line needs no bend; the bends of the bias over temperature and of the scale factor over rate have names of their own.",
-        ru: "Прямой изгиб не нужен; изгибы смещения нуля по температуре и масштабного коэффициента по скорости имеют свои названия.",
-    },
-    confirm: Both {
-        en: "Hold the quantity at five settings or more and compare the settled outputs with the curve.",
-        ru: "Выдержать величину на пяти и более значениях и сравнить установившиеся выходные сигналы с кривой.",
-    },
-    source: "IEEE Std 952, model equation: environmentally sensitive terms",
-};
 
 static PARAMS: [Param; 3] = [
     Param::inner("column", "", 0.0, 3.0),

@@ -5,37 +5,12 @@ use super::polynomial::sum;
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
-    Both, Column, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext,
-    Starts, Values, list, number,
+    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
+    list, number,
 };
 use crate::numeric::range::ends;
 
 pub struct ColumnProduct;
-
-static DOC: Doc = Doc {
-    title: Both { en: "product of two quantities", ru: "произведение двух величин" },
-    mechanism: Both {
-        en: "One quantity changes how the gyro answers to another: a supply voltage the temperature dependence, ageing the scale factor.",
-        ru: "Одна величина меняет реакцию гироскопа на другую: напряжение питания — температурную зависимость, старение — масштабный коэффициент.",
-    },
-    formula: Both {
-        en: "c₁ u v + c₂ u + c₃ v, u and v two columns, or one and the time",
-        ru: "c₁ u v + c₂ u + c₃ v, u и v — две величины либо одна величина и время",
-    },
-    signature: Both {
-        en: "The slope of residual against one column changes with the other.",
-        ru: "Наклон остатка по одной величине меняется вместе с другой.",
-    },
-    told_by: Both {
-        en: "A dependence on one column alone has the same slope whatever the other does.",
-        ru: "Зависимость только от одной величины имеет один и тот же наклон при любом значении другой.",
-    },
-    confirm: Both {
-        en: "Vary one quantity at three settings of the other.",
-        ru: "Менять одну величину при трёх значениях другой.",
-    },
-    source: "IEEE Std 952, model equation: cross terms",
-};
 
 static PARAMS: [Param; 5] = [
     Param::inner("pair", "", 0.0, 8.0),

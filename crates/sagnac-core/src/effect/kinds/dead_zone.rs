@@ -3,39 +3,13 @@
 use super::search::{best_of, fast_level, log_grid, peaks};
 
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 
 /// Widths that are tried of a zone beyond which the response stays behind.
 const BEHIND: usize = 16;
 
 pub struct DeadZone;
-
-static DOC: Doc = Doc {
-    title: Both { en: "dead zone", ru: "зона нечувствительности" },
-    mechanism: Both {
-        en: "Cross-talk of the modulator's drive into the detector pulls the closed loop to a point where it cancels a small input.",
-        ru: "Наводка сигнала модулятора на приёмник удерживает замкнутый контур в точке, где он гасит малую входную скорость.",
-    },
-    formula: Both {
-        en: "−c·Ω for |Ω| < w; beyond, 0, or −w sgn Ω where the response stays behind",
-        ru: "−c·Ω при |Ω| < w; дальше 0 либо −w sgn Ω, если отклик остаётся смещённым",
-    },
-    signature: Both {
-        en: "Within ±w the residual is the input with its sign changed; outside there is nothing.",
-        ru: "В пределах ±w остаток равен входной скорости с обратным знаком; снаружи его нет.",
-    },
-    told_by: Both {
-        en: "Quantisation leaves a lattice at every rate; an error of the scale factor goes on outside.",
-        ru: "Квантование оставляет решётку на любой скорости; ошибка масштабного коэффициента продолжается и снаружи.",
-    },
-    confirm: Both {
-        en: "Sweep slowly through zero; switch phase jumps or dither of the loop on.",
-        ru: "Медленно пройти через ноль; включить скачки фазы или вибрационную подставку контура.",
-    },
-    source: "US patent 6,744,519; IEEE Std 952, 12.10: dead band",
-};
 
 static PARAMS: [Param; 3] = [
     Param::reported("half_width_deg_h", "deg/h", 0.0, 1e6),

@@ -3,32 +3,10 @@
 use super::search::{best_of, log_grid};
 use super::sinusoid::{polar, wave};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 
 pub struct Diurnal;
-
-static DOC: Doc = Doc {
-    title: Both { en: "daily variation", ru: "суточный ход" },
-    mechanism: Both {
-        en: "Tilt of the foundation, weather and the building's heating repeat with the day.",
-        ru: "Наклон фундамента, погода и отопление здания повторяются с периодом суток.",
-    },
-    formula: Both { en: "A·cos(2πt/24 h + φ)", ru: "A·cos(2πt/24 ч + φ)" },
-    signature: Both {
-        en: "A wave of 24 hours, in step with the solar time.",
-        ru: "Волна с периодом 24 часа, привязанная к солнечному времени.",
-    },
-    told_by: Both {
-        en: "A temperature effect follows the thermometer more closely than the clock; a drift does not return after a day. Below two days the period itself cannot be told.",
-        ru: "Температурный эффект следует за термометром точнее, чем за часами; дрейф через сутки не возвращается. По записи короче двух суток сам период не определить.",
-    },
-    confirm: Both {
-        en: "Record for three days or more with a tilt meter and the room temperature beside.",
-        ru: "Записать не менее трёх суток вместе с наклономером и температурой помещения.",
-    },
-    source: "Ω_E cos φ for each radian of tilt",
-};
 
 static PARAMS: [Param; 3] = [
     Param::reported("amplitude_deg_h", "deg/h", 0.0, 1e5),

@@ -2,37 +2,11 @@
 
 use super::sinusoid::{Sweep, polar, wave};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use realfft::RealFftPlanner;
 
 pub struct DriftingLine;
-
-static DOC: Doc = Doc {
-    title: Both { en: "line of drifting frequency", ru: "линия с плывущей частотой" },
-    mechanism: Both {
-        en: "A machine that runs up or down, or an oscillator that warms up, is felt at its own frequency.",
-        ru: "Разгон или выбег машины, прогрев генератора видны на собственной, меняющейся частоте.",
-    },
-    formula: Both {
-        en: "A cos(2π(f u + ½ f′ u²) + φ), u the time since the middle of the record",
-        ru: "A cos(2π(f u + ½ f′ u²) + φ), u — время от середины записи",
-    },
-    signature: Both {
-        en: "A ridge in time and frequency together; in the spectrum of the whole record a band with sharp ends.",
-        ru: "Гребень на плоскости «время — частота»; в спектре всей записи — полоса с резкими краями.",
-    },
-    told_by: Both {
-        en: "A line keeps its frequency; a quasi-periodic disturbance loses its phase at random.",
-        ru: "Линия сохраняет частоту; квазипериодическое возмущение теряет фазу случайно.",
-    },
-    confirm: Both {
-        en: "Record beside the unit what turns or swings, and compare the frequencies over time.",
-        ru: "Записать рядом с прибором всё, что вращается или колеблется, и сравнить частоты во времени.",
-    },
-    source: "Abatzoglou 1986, maximum likelihood of a linear frequency sweep",
-};
 
 static PARAMS: [Param; 5] = [
     Param::reported("frequency_hz", "Hz", 0.0, 1e6),

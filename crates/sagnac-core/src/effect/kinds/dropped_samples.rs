@@ -1,35 +1,13 @@
 //! Rows are missing.
 
-use crate::effect::{Both, Doc, Drivers, Param, Samples, Values, list, number};
+use crate::effect::{Drivers, Param, Samples, Values, list, number};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub struct DroppedSamples;
 
-static DOC: Doc = Doc {
-    title: Both { en: "dropped samples", ru: "пропуски отсчётов" },
-    mechanism: Both {
-        en: "A buffer overflows, a link breaks: rows never reach the file.",
-        ru: "Переполняется буфер, рвётся связь: строки не попадают в файл.",
-    },
-    formula: Both { en: "rows left out", ru: "строки пропущены" },
-    signature: Both {
-        en: "Gaps of the time stamps by whole sample intervals.",
-        ru: "Разрывы меток времени на целое число интервалов.",
-    },
-    told_by: Both {
-        en: "Jitter of stamps does not add up to missing rows; a clock drift spreads over the record.",
-        ru: "Дрожание меток не накапливается в пропущенные строки; уход часов распределён по всей записи.",
-    },
-    confirm: Both {
-        en: "A counter of samples in the instrument's own message.",
-        ru: "Счётчик отсчётов в посылке самого прибора.",
-    },
-    source: "Time stamps against the nominal rate",
-};
-
 static PARAMS: [Param; 2] =
-    [Param::reported("missing_rows", "", 1.0, 1e7), Param::inner("gaps", "", 1.0, 1e6)];
+    [Param::reported("missing_rows", "", 1.0, 1e7).whole(), Param::inner("gaps", "", 1.0, 1e6)];
 
 /// Last instant before each gap is later than this; rows that the gap swallows.
 const TIMES: &str = "gaps_time_s";

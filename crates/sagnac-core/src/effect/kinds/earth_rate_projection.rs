@@ -4,35 +4,10 @@ use super::reach::varies;
 use super::sinusoid::{polar, wave};
 use super::table_harmonic::{columns, visited};
 use crate::effect::{
-    Both, Doc, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
-    number,
+    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 
 pub struct EarthRateProjection;
-
-static DOC: Doc = Doc {
-    title: Both { en: "projection of the Earth rate", ru: "проекция скорости Земли" },
-    mechanism: Both {
-        en: "The simulation leaves the Earth rate out, or has another latitude, azimuth or sign of the table.",
-        ru: "В модели нет скорости Земли либо иные широта, азимут или знак угла стола.",
-    },
-    formula: Both {
-        en: "A·cos(ψ + φ), ψ the table angle", ru: "A·cos(ψ + φ), ψ — угол стола"
-    },
-    signature: Both {
-        en: "One wave for each turn of the table, at most 15 deg/h high, fixed to the north.",
-        ru: "Одна волна на оборот стола, не выше 15 град/ч, привязанная к северу.",
-    },
-    told_by: Both {
-        en: "Other orders of the table belong to its bearing; a tilted axis makes a wave too, but smaller than 0.01 deg/h; a magnetic field points to its own north.",
-        ru: "Другие гармоники стола идут от подшипника; наклон оси тоже даёт волну, но менее 0,01 град/ч; магнитное поле направлено на свой север.",
-    },
-    confirm: Both {
-        en: "Two headings half a turn apart: half the difference is the projection.",
-        ru: "Два курса через пол-оборота: полуразность равна проекции.",
-    },
-    source: "15.041067 deg/h · cos φ · cos(ψ + A)",
-};
 
 static PARAMS: [Param; 2] =
     [Param::reported("amplitude_deg_h", "deg/h", 0.0, 31.0), Param::inner("phase_deg", "deg", -360.0, 360.0)];

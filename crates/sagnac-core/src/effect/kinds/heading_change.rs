@@ -3,36 +3,13 @@
 use super::bias_step::{instants, step};
 use super::search::gain_of;
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 
 pub struct HeadingChange;
 
-static DOC: Doc = Doc {
-    title: Both { en: "change of heading", ru: "изменение курса" },
-    mechanism: Both {
-        en: "The table crept, a mount gave way or a cable pulled: the input axis sees another part of the Earth's rate.",
-        ru: "Стол сместился, крепление поддалось или потянул кабель: ось чувствительности видит иную часть скорости Земли.",
-    },
-    formula: Both::same("J·H(t − t₁), J = Ω_E cosφ·(cos A₂ − cos A₁)"),
-    signature: Both {
-        en: "Two levels in time, often with the disturbance of the move between them.",
-        ru: "Два уровня во времени, часто с возмущением от самого поворота между ними.",
-    },
-    told_by: Both {
-        en: "At one heading a jump of the bias is the same; a tilt meter, the table's angle or the other gyros of a triad tell them apart.",
-        ru: "При одном курсе скачок смещения нуля неотличим; различают наклономер, угол стола или другие гироскопы триады.",
-    },
-    confirm: Both {
-        en: "Turn to another heading: a jump of the bias stays, that of the projection changes.",
-        ru: "Повернуть на другой курс: скачок смещения нуля останется, а проекции — изменится.",
-    },
-    source: "Ω_E (cosφ cosE cosA + sinφ sinE)",
-};
-
 static PARAMS: [Param; 4] = [
-    Param::reported("step_deg_h", "deg/h", -1e3, 1e3),
+    Param::reported("step_deg_h", "deg/h", -1e3, 1e3).signed(),
     Param::reported("time_s", "s", f64::MIN, f64::MAX),
     Param::inner("cosine_deg_h", "deg/h", -1e3, 1e3),
     Param::inner("sine_deg_h", "deg/h", -1e3, 1e3),

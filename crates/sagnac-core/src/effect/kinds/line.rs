@@ -3,8 +3,7 @@
 use super::search::peaks;
 use super::sinusoid::{Sweep, averaged, polar, wave};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::cosine::sinusoid_modes;
 use crate::numeric::optimize::parabolic_peak;
@@ -12,31 +11,6 @@ use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 
 pub struct Line;
-
-static DOC: Doc = Doc {
-    title: Both { en: "spectral line", ru: "спектральная линия" },
-    mechanism: Both {
-        en: "Mains, a fan, a thermostat or a drive adds a sinusoid that keeps its phase over the record.",
-        ru: "Сеть, вентилятор, термостат или привод добавляет синусоиду, сохраняющую фазу в течение всей записи.",
-    },
-    formula: Both {
-        en: "A·cos(2πft + φ), averaged over each sample",
-        ru: "A·cos(2πft + φ), осреднённая по каждому отсчёту",
-    },
-    signature: Both {
-        en: "A peak of the spectrum no wider than 1/T; the Allan deviation has a bump at 0.371/f of 0.725 A.",
-        ru: "Пик спектра не шире 1/T; на девиации Аллана бугор 0,725 A при τ = 0,371/f.",
-    },
-    told_by: Both {
-        en: "A quasi-periodic disturbance is wider than 1/T; a table harmonic follows the table angle, a reset ripple the rate.",
-        ru: "Квазипериодическое возмущение шире 1/T; гармоника стола следует за углом стола, пульсация сброса — за скоростью.",
-    },
-    confirm: Both {
-        en: "Switch suspected sources off one by one; change the sample rate by one percent and see whether the line moves.",
-        ru: "Поочерёдно выключать возможные источники; изменить частоту опроса на один процент и посмотреть, сместится ли линия.",
-    },
-    source: "IEEE Std 952, Annex C: sinusoidal noise",
-};
 
 static PARAMS: [Param; 3] = [
     Param::reported("frequency_hz", "Hz", 0.0, 1e6),

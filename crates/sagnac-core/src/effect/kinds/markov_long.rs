@@ -1,34 +1,11 @@
 //! Exponentially correlated noise whose correlation time is many samples.
 
 use crate::effect::{
-    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values,
-    number,
+    Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 
 pub struct MarkovLong;
-
-static DOC: Doc = Doc {
-    title: Both { en: "long Markov process", ru: "длинный марковский процесс" },
-    mechanism: Both {
-        en: "Thermal regulators, wandering polarisation, a slow loop: something that forgets with one time constant.",
-        ru: "Терморегуляторы, блуждание поляризации, медленный контур: то, что забывает с одной постоянной времени.",
-    },
-    formula: Both::same("R(t) = σ² exp(−|t|/T_c)"),
-    signature: Both {
-        en: "A plateau of the spectrum below 1/(2πT_c) and a fall as f⁻² above; a hump of the Allan deviation at 1.89 T_c; an autocorrelation that decays exponentially.",
-        ru: "Плато спектра ниже 1/(2πT_c) и спад f⁻² выше; горб девиации Аллана при 1,89 T_c; экспоненциальный спад автокорреляции.",
-    },
-    told_by: Both {
-        en: "Flicker has no plateau; a random walk does not level off within the record; a telegraph signal has the same spectrum and two levels.",
-        ru: "У фликкер-шума нет плато; случайное блуждание не выходит на полку за время записи; у телеграфного сигнала тот же спектр и два уровня.",
-    },
-    confirm: Both {
-        en: "A record of more than ten correlation times; other settings of the temperature control.",
-        ru: "Запись длиннее десяти времён корреляции; другие настройки термостатирования.",
-    },
-    source: "IEEE Std 952, Annex C",
-};
 
 static PARAMS: [Param; 2] = [
     Param::reported("correlation_time_s", "s", 1e-6, 1e7),
@@ -38,9 +15,6 @@ static PARAMS: [Param; 2] = [
 impl Effect for MarkovLong {
     fn kind(&self) -> &'static str {
         "markov_long"
-    }
-    fn doc(&self) -> &'static Doc {
-        &DOC
     }
     fn params(&self) -> &'static [Param] {
         &PARAMS

@@ -1,37 +1,10 @@
 //! Exponentially correlated noise whose correlation time is a few samples.
 
 use super::markov_long::{SHORT_SAMPLES, densities, process, starts_between};
-use crate::effect::{
-    Both, Doc, Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
-};
+use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
 use crate::noise::composite::Composite;
 
 pub struct MarkovShort;
-
-static DOC: Doc = Doc {
-    title: Both { en: "short Markov process", ru: "короткий марковский процесс" },
-    mechanism: Both {
-        en: "Dynamics of the loop, smoothing inside the instrument, bandwidth of the detector: noise that remembers a few samples.",
-        ru: "Динамика контура обратной связи, внутреннее сглаживание, полоса приёмника: шум с памятью в несколько отсчётов.",
-    },
-    formula: Both {
-        en: "R(t) = σ² exp(−|t|/T_c), T_c below ten samples",
-        ru: "R(t) = σ² exp(−|t|/T_c), T_c меньше десяти отсчётов",
-    },
-    signature: Both {
-        en: "Positive autocorrelation over the first lags; an excess of the spectrum that falls towards the Nyquist frequency.",
-        ru: "Положительная автокорреляция на первых сдвигах; превышение спектра, спадающее к частоте Найквиста.",
-    },
-    told_by: Both {
-        en: "More white noise leaves no correlation; a filter takes power away and adds none; quantisation correlates neighbours negatively.",
-        ru: "Избыток белого шума не даёт корреляции; фильтр мощность только отнимает; квантование коррелирует соседей отрицательно.",
-    },
-    confirm: Both {
-        en: "Another output rate: the correlation time stays in seconds and changes in samples.",
-        ru: "Другая частота выдачи: время корреляции сохраняется в секундах и меняется в отсчётах.",
-    },
-    source: "IEEE Std 952, Annex C; N. F. Zhang, Metrologia 2008",
-};
 
 static PARAMS: [Param; 2] = [
     Param::reported("correlation_time_s", "s", 1e-6, 1e7),

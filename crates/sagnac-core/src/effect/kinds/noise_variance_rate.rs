@@ -1,32 +1,8 @@
 //! The level of the noise depends on the input rate.
 
-use crate::effect::{Both, Doc, Drivers, Param, Samples, Values, number};
+use crate::effect::{Drivers, Param, Samples, Values, number};
 
 pub struct NoiseVarianceRate;
-
-static DOC: Doc = Doc {
-    title: Both {
-        en: "noise level that depends on the rate", ru: "уровень шума, зависящий от скорости"
-    },
-    mechanism: Both {
-        en: "Jitter of the time stamps, unsteady drive of the table or the loop's own errors grow with the rate.",
-        ru: "Дрожание меток времени, неравномерность привода стола или погрешности контура растут со скоростью.",
-    },
-    formula: Both::same("σ² = σ₀² (1 + (r² − 1)(|Ω|/Ω_max)^p), p = 2"),
-    signature: Both {
-        en: "The scatter of the residual grows with the size of the rate, the same for both signs.",
-        ru: "Разброс остатка растёт с модулем скорости, одинаково для обоих знаков.",
-    },
-    told_by: Both {
-        en: "A level that changes with time does not come back when the rate does; an error of the scale factor moves the mean.",
-        ru: "Уровень, меняющийся во времени, не возвращается вместе со скоростью; ошибка масштабного коэффициента сдвигает среднее.",
-    },
-    confirm: Both {
-        en: "Another order of the same rates; the table's own encoder as reference.",
-        ru: "Те же скорости в другом порядке; датчик угла стола как опора.",
-    },
-    source: "Jitter of time stamps: white angle noise proportional to the rate",
-};
 
 static PARAMS: [Param; 2] = [Param::reported("ratio", "", 1e-3, 1e3), Param::inner("exponent", "", 1.0, 2.0)];
 

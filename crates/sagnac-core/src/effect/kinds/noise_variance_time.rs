@@ -1,36 +1,9 @@
 //! The level of the noise changes during the record.
 
 use super::knots::Knots;
-use crate::effect::{Both, Doc, Drivers, Param, Samples, Values, list, number};
+use crate::effect::{Drivers, Param, Samples, Values, list, number};
 
 pub struct NoiseVarianceTime;
-
-static DOC: Doc = Doc {
-    title: Both {
-        en: "noise level that changes with time", ru: "уровень шума, меняющийся во времени"
-    },
-    mechanism: Both {
-        en: "Power of the source, losses of the coil with temperature or traffic in the building change the noise and not the mean.",
-        ru: "Мощность источника, потери контура при изменении температуры или движение в здании меняют шум, но не среднее.",
-    },
-    formula: Both {
-        en: "y = m + s(t)·(y₀ − m), s by straight lines between knots",
-        ru: "y = m + s(t)·(y₀ − m), s — ломаная между узлами",
-    },
-    signature: Both {
-        en: "The scatter drifts while the mean stays; the spectrum is white on average; the amplitudes have heavy tails.",
-        ru: "Разброс меняется при неизменном среднем; спектр в среднем белый; у распределения тяжёлые хвосты.",
-    },
-    told_by: Both {
-        en: "Bursts are short and far out; a level that follows the input rate repeats with the rate.",
-        ru: "Всплески коротки и велики; уровень, зависящий от скорости, повторяется вместе со скоростью.",
-    },
-    confirm: Both {
-        en: "Log of the optical power beside the rate; a record at night.",
-        ru: "Записать рядом оптическую мощность; повторить ночью.",
-    },
-    source: "Scale of the noise as a function of time",
-};
 
 static PARAMS: [Param; 1] = [Param::reported("ratio", "", 1.0, 1e3)];
 

@@ -1,39 +1,14 @@
 //! Isolated groups of outlying samples.
 
-use crate::effect::{Both, Doc, Drivers, Param, Samples, Values, list, number};
+use crate::effect::{Drivers, Param, Samples, Values, list, number};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub struct OutlierBursts;
 
-static DOC: Doc = Doc {
-    title: Both { en: "bursts of outliers", ru: "всплески выбросов" },
-    mechanism: Both {
-        en: "Radio, switching, knocks: for a moment the output is disturbed by much more than its noise.",
-        ru: "Радиопомехи, коммутация, толчки: на мгновение выход возмущается намного сильнее своего шума.",
-    },
-    formula: Both {
-        en: "y + s·e in each burst, e normal with deviation 1",
-        ru: "y + s·e в каждом выбросе, e — нормальная величина с отклонением 1",
-    },
-    signature: Both {
-        en: "A few groups of samples beyond four deviations; white noise and its Allan deviation rise a little; heavy tails.",
-        ru: "Несколько групп отсчётов за четырьмя отклонениями; белый шум и его девиация Аллана немного растут; тяжёлые хвосты.",
-    },
-    told_by: Both {
-        en: "A changing level of the noise lasts and stays within a few times the claimed one; a step remains.",
-        ru: "Меняющийся уровень шума держится долго и остаётся в пределах нескольких уровней по модели; скачок не исчезает.",
-    },
-    confirm: Both {
-        en: "A log of switching and radio in the building; a shielded repeat.",
-        ru: "Журнал коммутаций и радиообстановки; повтор с экранированием.",
-    },
-    source: "Shot process of disturbances; N. Hampel's outlier rule for finding them",
-};
-
 static PARAMS: [Param; 3] = [
-    Param::reported("count", "", 1.0, 1e5),
+    Param::reported("count", "", 1.0, 1e5).whole(),
     Param::inner("size_deg_h", "deg/h", 0.0, 1e9),
     Param::inner("duration_s", "s", 0.0, 1e6),
 ];

@@ -2,36 +2,11 @@
 //! kind of its own in the format of explanations.
 
 use crate::effect::{
-    Both, Doc, Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values,
-    number,
+    Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Composite, Damped};
 
 pub struct PowerLawNoise;
-
-static DOC: Doc = Doc {
-    title: Both {
-        en: "noise of a power law of its own", ru: "шум с собственным степенным законом"
-    },
-    mechanism: Both {
-        en: "Many relaxations whose times are not spread evenly, as of traps, diffusion or a coupled structure.",
-        ru: "Множество релаксаций с неравномерно распределёнными временами: ловушки, диффузия, связанная конструкция.",
-    },
-    formula: Both::same("S(f) = S₀ (f/f₀)^−α"),
-    signature: Both {
-        en: "A straight line in the logarithmic spectrum with a slope that is none of 0, −1 or −2.",
-        ru: "Прямая в логарифмическом спектре с наклоном, отличным от 0, −1 и −2.",
-    },
-    told_by: Both {
-        en: "A Markov process bends within a decade of frequency; flicker has the slope −1.",
-        ru: "Марковский процесс изгибается в пределах декады; у фликкер-шума наклон −1.",
-    },
-    confirm: Both {
-        en: "A record ten times as long: the slope goes on, where a Markov process has its plateau.",
-        ru: "Запись в десять раз длиннее: наклон продолжается там, где у марковского процесса полка.",
-    },
-    source: "Kasdin 1995, discrete simulation of power-law noise",
-};
 
 static PARAMS: [Param; 3] = [
     Param::reported("density_deg_h_2_per_hz", "(deg/h)²/Hz", 1e-30, 1e30),
@@ -42,9 +17,6 @@ static PARAMS: [Param; 3] = [
 impl Effect for PowerLawNoise {
     fn kind(&self) -> &'static str {
         "power_law_noise"
-    }
-    fn doc(&self) -> &'static Doc {
-        &DOC
     }
     fn params(&self) -> &'static [Param] {
         &PARAMS

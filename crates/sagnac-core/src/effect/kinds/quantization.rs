@@ -1,34 +1,11 @@
 //! The output is quantised in angle.
 
-use crate::effect::{
-    Both, Doc, Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
-};
+use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_density;
 
 pub struct Quantization;
-
-static DOC: Doc = Doc {
-    title: Both { en: "quantisation", ru: "квантование" },
-    mechanism: Both {
-        en: "The output counts whole angle increments; what is left over stays for the next sample.",
-        ru: "Выход считает целые приращения угла; остаток переходит в следующий отсчёт.",
-    },
-    formula: Both::same("S(f) = (4Q²/τ₀)·sin²(πfτ₀), Q = Δθ/√12"),
-    signature: Both {
-        en: "Values lie on a lattice; the spectrum rises towards the Nyquist frequency; the Allan deviation starts with slope −1.",
-        ru: "Значения лежат на решётке; спектр растёт к частоте Найквиста; девиация Аллана начинается с наклона −1.",
-    },
-    told_by: Both {
-        en: "Neighbouring samples correlate negatively, which white noise and Markov noise do not; the lattice decides.",
-        ru: "Соседние отсчёты коррелируют отрицательно, чего нет у белого и марковского шума; решает наличие решётки.",
-    },
-    confirm: Both {
-        en: "A finer format of the output.", ru: "Более мелкий шаг выходного формата."
-    },
-    source: "IEEE Std 952, Annex C: quantization noise",
-};
 
 static PARAMS: [Param; 1] = [Param::reported("lsb_arcsec", "arcsec", 0.0, 1e6)];
 

@@ -1,40 +1,11 @@
 //! A narrow-band disturbance of finite coherence.
 
 use super::search::peaks;
-use crate::effect::{
-    Both, Doc, Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
-};
+use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
 use crate::noise::composite::{Composite, Damped, Sampling};
 use std::f64::consts::PI;
 
 pub struct QuasiPeriodic;
-
-static DOC: Doc = Doc {
-    title: Both {
-        en: "quasi-periodic disturbance", ru: "квазипериодическое возмущение"
-    },
-    mechanism: Both {
-        en: "A thermostat, a fan or a limit cycle of the loop oscillates and loses its phase after a while.",
-        ru: "Термостат, вентилятор или предельный цикл контура колеблется и со временем теряет фазу.",
-    },
-    formula: Both {
-        en: "R(t) = σ² exp(−|t|/T)·cos(2πf₀t), full width at half power 1/(πT)",
-        ru: "R(t) = σ² exp(−|t|/T)·cos(2πf₀t), полная ширина на половине мощности 1/(πT)",
-    },
-    signature: Both {
-        en: "A resonance of the spectrum wider than 1/T of the record; a damped cosine in the autocorrelation; a bump of the Allan deviation at 0.371/f₀.",
-        ru: "Резонанс спектра шире обратной длины записи; затухающий косинус в автокорреляции; бугор девиации Аллана при 0,371/f₀.",
-    },
-    told_by: Both {
-        en: "A line keeps its phase over the whole record and is no wider than the record allows; a Markov process has its largest density at zero frequency.",
-        ru: "Линия сохраняет фазу всю запись и не шире, чем позволяет длина записи; у марковского процесса наибольшая плотность на нулевой частоте.",
-    },
-    confirm: Both {
-        en: "Switch off fan and thermostat one by one.",
-        ru: "Поочерёдно выключить вентилятор и термостат.",
-    },
-    source: "Damped-cosine process; IEEE Std 952, Annex C for its coherent limit",
-};
 
 static PARAMS: [Param; 3] = [
     Param::reported("frequency_hz", "Hz", 0.0, 1e6),

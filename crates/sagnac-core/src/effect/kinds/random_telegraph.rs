@@ -1,37 +1,10 @@
 //! Jumps back and forth between two levels.
 
-use crate::effect::{Both, Doc, Domain, Drivers, Effect, Model, Param, Samples, Values, list, number};
+use crate::effect::{Domain, Drivers, Effect, Model, Param, Samples, Values, list, number};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub struct RandomTelegraph;
-
-static DOC: Doc = Doc {
-    title: Both {
-        en: "random telegraph signal", ru: "случайный телеграфный сигнал"
-    },
-    mechanism: Both {
-        en: "A mode of the source, a contact or a charge trap hops between two states.",
-        ru: "Мода источника, контакт или зарядовая ловушка переключается между двумя состояниями.",
-    },
-    formula: Both {
-        en: "±Δ/2, each level held for an exponential time of mean 1/λ",
-        ru: "±Δ/2, каждый уровень держится показательно распределённое время со средним 1/λ",
-    },
-    signature: Both {
-        en: "Two levels in time; the spectrum of a Markov process with T_c = 1/(2λ) and σ = Δ/2; two humps of the distribution after averaging.",
-        ru: "Два уровня во времени; спектр марковского процесса с T_c = 1/(2λ) и σ = Δ/2; после осреднения распределение двугорбое.",
-    },
-    told_by: Both {
-        en: "A Markov process has the same spectrum and any level; a single step does not come back.",
-        ru: "У марковского процесса тот же спектр, но любые уровни; одиночный скачок не возвращается.",
-    },
-    confirm: Both {
-        en: "Another current of the source; tapping on contacts; a longer record for more jumps.",
-        ru: "Другой ток источника; простукивание контактов; более длинная запись с большим числом переключений.",
-    },
-    source: "Telegraph process: R(t) = (Δ²/4)·exp(−2λ|t|)",
-};
 
 static LISTS: [Param; 1] = [Param::inner(SWITCHES, "s", f64::MIN, f64::MAX)];
 
@@ -47,9 +20,6 @@ const SWITCHES: &str = "switches_time_s";
 impl Effect for RandomTelegraph {
     fn kind(&self) -> &'static str {
         "random_telegraph"
-    }
-    fn doc(&self) -> &'static Doc {
-        &DOC
     }
     fn params(&self) -> &'static [Param] {
         &PARAMS

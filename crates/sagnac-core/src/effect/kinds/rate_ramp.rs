@@ -1,34 +1,10 @@
 //! A linear drift.
 
-use crate::effect::{
-    Both, Doc, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
-};
+use crate::effect::{Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number};
 
 pub struct RateRamp;
 
-static DOC: Doc = Doc {
-    title: Both { en: "rate ramp", ru: "линейный дрейф" },
-    mechanism: Both {
-        en: "Ageing of the source, relaxing stress in the coil, slow drift of the electronics.",
-        ru: "Старение источника, релаксация напряжений в контуре, медленный уход электроники.",
-    },
-    formula: Both::same("R·t"),
-    signature: Both {
-        en: "A straight line in time; the Allan deviation rises as τ, the Hadamard deviation does not see it.",
-        ru: "Прямая во времени; девиация Аллана растёт как τ, девиация Адамара её не видит.",
-    },
-    told_by: Both {
-        en: "A random walk changes its direction and keeps another sign in another record; a warm-up bends; a temperature effect turns when the temperature turns.",
-        ru: "Случайное блуждание меняет направление и в другой записи идёт в другую сторону; прогрев изгибается; температурный эффект поворачивает вместе с температурой.",
-    },
-    confirm: Both {
-        en: "Repeat on another day after a power cycle: a ramp keeps its sign and size.",
-        ru: "Повторить в другой день после выключения: знак и величина дрейфа сохраняются.",
-    },
-    source: "IEEE Std 952, Annex C: rate ramp",
-};
-
-static PARAMS: [Param; 1] = [Param::reported("slope_deg_h_per_h", "deg/h/h", -1e6, 1e6)];
+static PARAMS: [Param; 1] = [Param::reported("slope_deg_h_per_h", "deg/h/h", -1e6, 1e6).signed()];
 
 describe! {
     RateRamp, "rate_ramp", Mean in Time, needs [],

@@ -1,34 +1,10 @@
 //! Samples that repeat the one before them. They have no kind of their own in the format of explanations.
 
-use crate::effect::{Both, Doc, Drivers, Param, Samples, Values, list, number};
+use crate::effect::{Drivers, Param, Samples, Values, list, number};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub struct RepeatedSamples;
-
-static DOC: Doc = Doc {
-    title: Both { en: "repeated samples", ru: "повторённые отсчёты" },
-    mechanism: Both {
-        en: "A converter, a bus or a logger that has no new value writes the old one again; an output with a dead band keeps its value until the input has moved far enough.",
-        ru: "Преобразователь, шина или регистратор, не получив нового значения, записывают прежнее; выход с зоной нечувствительности держит значение, пока вход не сместится достаточно далеко.",
-    },
-    formula: Both {
-        en: "y[i] = y[i − 1] in some rows", ru: "y[i] = y[i − 1] в некоторых строках"
-    },
-    signature: Both {
-        en: "Successive values that agree to the last digit, far more often than values as close as that come by chance; the residual is correlated over a few samples.",
-        ru: "Соседние значения, совпадающие до последнего знака, намного чаще, чем столь близкие значения встречаются случайно; остаток коррелирован на нескольких отсчётах.",
-    },
-    told_by: Both {
-        en: "Correlated noise does not repeat digits; rounding repeats them only as often as its step is coarse; saturation repeats only the extreme value.",
-        ru: "Коррелированный шум не повторяет знаков; округление повторяет их лишь настолько часто, насколько груб его шаг; насыщение повторяет только крайнее значение.",
-    },
-    confirm: Both {
-        en: "A counter of samples in the instrument's own message; the same output read by another logger.",
-        ru: "Счётчик отсчётов в посылке самого прибора; тот же выход, записанный другим регистратором.",
-    },
-    source: "Conditional test of two Poisson counts: Przyborowski and Wilenski 1940",
-};
 
 static PARAMS: [Param; 2] =
     [Param::reported("repeated_share", "", 1e-9, 1.0), Param::inner("repeated_rows_each", "", 1.0, 1e7)];

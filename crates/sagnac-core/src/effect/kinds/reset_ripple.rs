@@ -3,8 +3,7 @@
 use super::search::{best_of, fast_level, peaks};
 use super::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::optimize::parabolic_peak;
 use rayon::prelude::*;
@@ -14,28 +13,6 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 pub struct ResetRipple;
-
-static DOC: Doc = Doc {
-    title: Both { en: "ripple of the 2π reset", ru: "пульсация сброса 2π" },
-    mechanism: Both {
-        en: "The digital phase ramp of the closed loop is reset by a step other than 2π: each reset disturbs the output.",
-        ru: "Цифровая фазовая пила замкнутого контура сбрасывается на величину, отличную от 2π: каждый сброс возмущает выход.",
-    },
-    formula: Both::same("A·cos(2πθ/P + φ), θ = ∫(Ω + b) dt, P = λn/D"),
-    signature: Both {
-        en: "A ripple whose frequency is proportional to the rate; it averages out once a sample covers a period.",
-        ru: "Пульсация, частота которой пропорциональна скорости; исчезает, когда за отсчёт проходит целый период.",
-    },
-    told_by: Both {
-        en: "A line keeps its frequency; a table harmonic repeats with the turn of the table, not with seconds of arc.",
-        ru: "Линия не меняет частоты; гармоника стола повторяется с оборотом стола, а не через угловые секунды.",
-    },
-    confirm: Both {
-        en: "Change the heading: the ripple moves with the sensed rate; adjust the 2π loop.",
-        ru: "Изменить курс: пульсация сместится вместе с измеряемой скоростью; подстроить контур 2π.",
-    },
-    source: "H. Lefèvre, The Fiber-Optic Gyroscope: reset frequency D·Ω/(λ·n)",
-};
 
 static PARAMS: [Param; 4] = [
     Param::reported("period_arcsec", "arcsec", 1e-3, 1e7),

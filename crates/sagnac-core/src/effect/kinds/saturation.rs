@@ -3,36 +3,11 @@
 use super::reach::varies;
 use super::search::{best_of, shortlist};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::range::ends;
 
 pub struct Saturation;
-
-static DOC: Doc = Doc {
-    title: Both { en: "saturation", ru: "насыщение" },
-    mechanism: Both {
-        en: "The loop, a converter or the format of the output reaches its limit.",
-        ru: "Контур, преобразователь или формат выхода достигает своего предела.",
-    },
-    formula: Both {
-        en: "−sgn(Ω)·(|Ω| − L) for |Ω| > L", ru: "−sgn(Ω)·(|Ω| − L) при |Ω| > L"
-    },
-    signature: Both {
-        en: "A flat top of the output; beyond the limit the residual falls as fast as the rate grows.",
-        ru: "Плоская вершина выходного сигнала; за пределом остаток падает так же быстро, как растёт скорость.",
-    },
-    told_by: Both {
-        en: "Nonlinearity bends everywhere; saturation does nothing below its limit.",
-        ru: "Нелинейность изгибает всюду; насыщение ниже предела не проявляется.",
-    },
-    confirm: Both {
-        en: "Reduce the rate or the gain; look for a largest value that repeats exactly.",
-        ru: "Уменьшить скорость или усиление; искать точно повторяющееся наибольшее значение.",
-    },
-    source: "IEEE Std 952, 12.10: maximum input rate",
-};
 
 static PARAMS: [Param; 1] = [Param::reported("limit_deg_s", "deg/s", 1e-9, 1e6)];
 

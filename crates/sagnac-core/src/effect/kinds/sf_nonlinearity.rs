@@ -2,38 +2,13 @@
 
 use super::reach::varies;
 use crate::effect::{
-    Both, Doc, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
-    number,
+    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 
 pub struct SfNonlinearity;
 
-static DOC: Doc = Doc {
-    title: Both {
-        en: "scale-factor nonlinearity", ru: "нелинейность масштабного коэффициента"
-    },
-    mechanism: Both {
-        en: "The sine response of the interferometer and a finite gain of the loop leave a cubic term.",
-        ru: "Синусный отклик интерферометра и конечное усиление контура оставляют кубический член.",
-    },
-    formula: Both::same("10⁻⁶·c·Ω·(Ω/Ω_max)²"),
-    signature: Both {
-        en: "An odd curve in residual against rate that steepens towards large rates.",
-        ru: "Нечётная кривая остатка по скорости, круче при больших скоростях.",
-    },
-    told_by: Both {
-        en: "An error of the scale factor is straight; saturation is straight up to its limit and then breaks.",
-        ru: "Ошибка масштабного коэффициента — прямая; насыщение — прямая до предела и затем излом.",
-    },
-    confirm: Both {
-        en: "More rates of both signs up to the largest, in another order.",
-        ru: "Больше скоростей обоих знаков до наибольшей, в другом порядке.",
-    },
-    source: "IEEE Std 952, 12.9: scale-factor nonlinearity",
-};
-
 static PARAMS: [Param; 2] = [
-    Param::reported("cubic_ppm_at_max", "ppm", -1e5, 1e5),
+    Param::reported("cubic_ppm_at_max", "ppm", -1e5, 1e5).signed(),
     Param::inner("largest_rate_deg_s", "deg/s", 1e-12, 1e6),
 ];
 

@@ -1,36 +1,11 @@
 //! A scale factor that depends on temperature.
 
 use super::reach::{reach, varies};
-use crate::effect::{Both, Doc, Domain, Drivers, Param, Place};
+use crate::effect::{Domain, Drivers, Param, Place};
 
 pub struct SfTemperature;
 
-static DOC: Doc = Doc {
-    title: Both {
-        en: "temperature-dependent scale factor",
-        ru: "зависимость масштабного коэффициента от температуры",
-    },
-    mechanism: Both {
-        en: "The wavelength of the source and the size of the coil change with temperature.",
-        ru: "Длина волны источника и размер контура меняются с температурой.",
-    },
-    formula: Both::same("10⁻⁶·ε_T·(T − T_ref)·Ω"),
-    signature: Both {
-        en: "The slope of residual against rate changes with temperature.",
-        ru: "Наклон остатка по скорости меняется с температурой.",
-    },
-    told_by: Both {
-        en: "A bias that follows the temperature keeps its sign when the rate changes its own; an error of the scale factor does not care for the temperature.",
-        ru: "Зависимость смещения нуля от температуры не меняет знака вместе со скоростью; постоянная ошибка масштабного коэффициента не зависит от температуры.",
-    },
-    confirm: Both {
-        en: "The same rates at two temperatures, soaked.",
-        ru: "Те же скорости при двух установившихся температурах.",
-    },
-    source: "IEEE Std 952, 12.9: scale-factor temperature sensitivity",
-};
-
-static PARAMS: [Param; 1] = [Param::reported("coefficient_ppm_per_degC", "ppm/°C", -1e4, 1e4)];
+static PARAMS: [Param; 1] = [Param::reported("coefficient_ppm_per_degC", "ppm/°C", -1e4, 1e4).signed()];
 
 describe! {
     SfTemperature, "sf_temperature", Mean in Temperature, needs [TableRate, Temperature],

@@ -2,36 +2,12 @@
 
 use super::reach::{reach, varies};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 
 pub struct SupplySensitivity;
 
-static DOC: Doc = Doc {
-    title: Both {
-        en: "supply sensitivity", ru: "чувствительность к напряжению питания"
-    },
-    mechanism: Both {
-        en: "References, drivers and amplifiers let part of the supply through to the output.",
-        ru: "Опорные источники, драйверы и усилители пропускают часть изменений питания на выход.",
-    },
-    formula: Both::same("k (U − U₀)"),
-    signature: Both {
-        en: "A straight line in residual against voltage; in time a copy of the supply, ripple and switching included.",
-        ru: "Прямая остатка по напряжению; во времени — копия питания вместе с пульсациями и переключениями.",
-    },
-    told_by: Both {
-        en: "A temperature that follows the load lags behind the voltage; a step without a step of the supply is none of it.",
-        ru: "Температура, зависящая от нагрузки, отстаёт от напряжения; скачок без скачка питания сюда не относится.",
-    },
-    confirm: Both {
-        en: "Step the supply by ±5 %.", ru: "Изменить питание на ±5 % скачком."
-    },
-    source: "IEEE Std 952, 12.11: supply sensitivity",
-};
-
-static PARAMS: [Param; 1] = [Param::reported("coefficient_deg_h_per_V", "deg/h/V", -1e5, 1e5)];
+static PARAMS: [Param; 1] = [Param::reported("coefficient_deg_h_per_V", "deg/h/V", -1e5, 1e5).signed()];
 
 describe! {
     SupplySensitivity, "supply_sensitivity", Mean in Supply, needs [Supply],

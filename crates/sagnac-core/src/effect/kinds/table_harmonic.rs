@@ -4,40 +4,14 @@ use super::reach::varies;
 use super::search::best_of;
 use super::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::range::ends;
 
 pub struct TableHarmonic;
 
-static DOC: Doc = Doc {
-    title: Both { en: "table harmonic", ru: "гармоника стола" },
-    mechanism: Both {
-        en: "Wobble of the axis, poles of the motor or the encoder modulate the rate in step with the table angle.",
-        ru: "Биение оси, полюса двигателя или датчик угла модулируют скорость синхронно с углом стола.",
-    },
-    formula: Both {
-        en: "A·cos(kψ + φ), ψ the table angle, k a whole number",
-        ru: "A·cos(kψ + φ), ψ — угол стола, k — целое число",
-    },
-    signature: Both {
-        en: "A line at k times the rotation rate that follows the rate of the table.",
-        ru: "Линия на частоте k оборотов, следующая за скоростью стола.",
-    },
-    told_by: Both {
-        en: "A line keeps its frequency when the table changes its rate; the reset ripple repeats after seconds of arc, not after parts of a turn.",
-        ru: "Линия не меняет частоты вместе со скоростью стола; пульсация сброса повторяется через угловые секунды, а не через доли оборота.",
-    },
-    confirm: Both {
-        en: "Clamp the table; repeat with another gyro on it.",
-        ru: "Затормозить стол; повторить с другим гироскопом.",
-    },
-    source: "Order tracking: phase locked to the table angle",
-};
-
 static PARAMS: [Param; 3] = [
-    Param::reported("order", "", 1.0, 8.0),
+    Param::reported("order", "", 1.0, 8.0).whole(),
     Param::reported("amplitude_deg_h", "deg/h", 0.0, 1e5),
     Param::inner("phase_deg", "deg", -360.0, 360.0),
 ];

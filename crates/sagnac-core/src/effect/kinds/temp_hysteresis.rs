@@ -4,36 +4,11 @@ use super::reach::{reach, varies};
 use super::search::{best_of, log_grid};
 use super::thermal::smooth;
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 use crate::numeric::range::ends;
 
 pub struct TempHysteresis;
-
-static DOC: Doc = Doc {
-    title: Both { en: "thermal hysteresis", ru: "температурный гистерезис" },
-    mechanism: Both {
-        en: "Potting and spool creep and stick: the strain of the fibre remembers where the temperature came from.",
-        ru: "Компаунд и каркас ползут и залипают: деформация волокна помнит, откуда пришла температура.",
-    },
-    formula: Both {
-        en: "(W/2)·(T − p)/r, p the play of half width r that follows T",
-        ru: "(W/2)·(T − p)/r, p — люфт полуширины r, следующий за T",
-    },
-    signature: Both {
-        en: "A loop of residual against temperature whose width does not depend on the rate of heating.",
-        ru: "Петля остатка по температуре, ширина которой не зависит от скорости нагрева.",
-    },
-    told_by: Both {
-        en: "The loops of a delay and of a sensitivity to dT/dt close when the heating is slow, and decay in a soak; this one stays.",
-        ru: "Петли запаздывания и чувствительности к dT/dt закрываются при медленном нагреве и исчезают при выдержке; эта остаётся.",
-    },
-    confirm: Both {
-        en: "The same cycle at a tenth of the rate, with soaks on both branches.",
-        ru: "Тот же цикл в десять раз медленнее с выдержками на обеих ветвях.",
-    },
-    source: "Preisach play operator; IEEE Std 528: hysteresis error",
-};
 
 static PARAMS: [Param; 4] = [
     Param::reported("loop_width_deg_h", "deg/h", -1e6, 1e6),

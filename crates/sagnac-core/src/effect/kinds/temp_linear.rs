@@ -1,44 +1,18 @@
 //! A linear temperature coefficient that differs from the claimed one.
 
 use crate::effect::{
-    Both, Column, Doc, Domain, Drivers, Effect, MeanModel, Model, Nuisance, Param, Place, Regressors,
-    SearchContext, Starts, Values, number,
+    Column, Domain, Drivers, Effect, MeanModel, Model, Nuisance, Param, Place, Regressors, SearchContext,
+    Starts, Values, number,
 };
 
 pub struct TempLinear;
 
-static DOC: Doc = Doc {
-    title: Both {
-        en: "linear temperature sensitivity", ru: "линейная температурная чувствительность"
-    },
-    mechanism: Both {
-        en: "Bias follows the temperature of the coil, the source or the electronics in proportion.",
-        ru: "Смещение нуля пропорционально температуре контура, источника излучения или электроники.",
-    },
-    formula: Both::same("a₁ (T − T_ref)"),
-    signature: Both {
-        en: "A straight line in residual against temperature, the same on heating and on cooling; in time a copy of the temperature.",
-        ru: "Прямая в зависимости остатка от температуры, одинаковая при нагреве и охлаждении; во времени — копия температуры.",
-    },
-    told_by: Both {
-        en: "A delayed temperature and a sensitivity to its rate open a loop between heating and cooling; a polynomial bends the line; a drift does not come back with the temperature.",
-        ru: "Запаздывание и чувствительность к скорости изменения температуры раскрывают петлю между нагревом и охлаждением; полином изгибает прямую; дрейф не возвращается вместе с температурой.",
-    },
-    confirm: Both {
-        en: "Soak at two temperatures, long enough for each bias to be known; go back to the first.",
-        ru: "Выдержать при двух температурах до установления смещения нуля и вернуться к первой.",
-    },
-    source: "IEEE Std 952, model equation: D_T",
-};
-
-static PARAMS: [Param; 1] = [Param::reported("coefficient_deg_h_per_degC", "deg/h/°C", -1e5, 1e5)];
+static PARAMS: [Param; 1] =
+    [Param::reported("coefficient_deg_h_per_degC", "deg/h/°C", -1e5, 1e5).corrects_claim()];
 
 impl Effect for TempLinear {
     fn kind(&self) -> &'static str {
         "temp_linear"
-    }
-    fn doc(&self) -> &'static Doc {
-        &DOC
     }
     fn params(&self) -> &'static [Param] {
         &PARAMS

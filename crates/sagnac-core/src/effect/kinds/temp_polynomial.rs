@@ -4,39 +4,12 @@ use super::polynomial::{powers, sum};
 use super::reach::{reach, varies};
 use super::search::gain_of;
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Nuisance, Param, Place, Regressors, SearchContext, Starts, Values,
-    list, number,
+    Domain, Drivers, MeanModel, Nuisance, Param, Place, Regressors, SearchContext, Starts, Values, list,
+    number,
 };
 use crate::numeric::range::ends;
 
 pub struct TempPolynomial;
-
-static DOC: Doc = Doc {
-    title: Both {
-        en: "nonlinear temperature dependence", ru: "нелинейная температурная зависимость"
-    },
-    mechanism: Both {
-        en: "Several parts with their own temperature laws add up to a bent curve of bias against temperature.",
-        ru: "Узлы с разными температурными законами дают в сумме изогнутую зависимость смещения нуля от температуры.",
-    },
-    formula: Both {
-        en: "Σ cₖ uᵏ, u = (T − T_c)/T_h, k = 1 … 2, 3 or 4",
-        ru: "Σ cₖ uᵏ, u = (T − T_c)/T_h, k = 1 … 2, 3 или 4",
-    },
-    signature: Both {
-        en: "A single-valued curve in residual against temperature, the same on heating and on cooling.",
-        ru: "Однозначная кривая остатка от температуры, одинаковая при нагреве и охлаждении.",
-    },
-    told_by: Both {
-        en: "A straight line needs no bend; hysteresis, a delay and a sensitivity to the rate of change open the curve into a loop.",
-        ru: "Прямой изгиб не нужен; гистерезис, запаздывание и чувствительность к скорости изменения раскрывают кривую в петлю.",
-    },
-    confirm: Both {
-        en: "Soak at five temperatures or more and compare the settled biases with the curve.",
-        ru: "Выдержать при пяти и более температурах и сравнить установившиеся смещения нуля с кривой.",
-    },
-    source: "IEEE Std 952, model equation: temperature terms",
-};
 
 static PARAMS: [Param; 2] =
     [Param::inner("center_degC", "°C", -200.0, 300.0), Param::inner("half_range_degC", "°C", 1e-9, 500.0)];

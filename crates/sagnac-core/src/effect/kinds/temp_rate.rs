@@ -3,38 +3,13 @@
 use super::reach::{reach, varies};
 use super::thermal::rate;
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 
 pub struct TempRate;
 
-static DOC: Doc = Doc {
-    title: Both {
-        en: "temperature-rate sensitivity (Shupe effect)",
-        ru: "чувствительность к скорости изменения температуры (эффект Шупе)",
-    },
-    mechanism: Both {
-        en: "Both waves pass a warming stretch of the fibre at different times; what is not wound symmetrically remains as a rate.",
-        ru: "Встречные волны проходят нагреваемый участок волокна в разное время; несимметричная часть намотки даёт ложную скорость.",
-    },
-    formula: Both::same("D·dT/dt"),
-    signature: Both {
-        en: "A pulse at each thermal ramp that changes its sign with the ramp; a straight line against dT/dt; a loop against temperature.",
-        ru: "Импульс на каждом изменении температуры, меняющий знак вместе с ним; прямая по dT/dt; петля по температуре.",
-    },
-    told_by: Both {
-        en: "A delay of the claimed dependence looks the same where that is a straight line and only one rate of heating occurs; hysteresis does not depend on the rate of heating.",
-        ru: "Запаздывание заявленной зависимости выглядит так же, если она линейна и скорость нагрева одна; гистерезис от скорости нагрева не зависит.",
-    },
-    confirm: Both {
-        en: "Two rates of heating and of cooling over the same temperatures.",
-        ru: "Две скорости нагрева и охлаждения в одном диапазоне температур.",
-    },
-    source: "D. Shupe, Appl. Opt. 19(5) 654 (1980)",
-};
-
 static PARAMS: [Param; 1] =
-    [Param::reported("coefficient_deg_h_per_degC_per_min", "deg/h/(°C/min)", -1e6, 1e6)];
+    [Param::reported("coefficient_deg_h_per_degC_per_min", "deg/h/(°C/min)", -1e6, 1e6).signed()];
 
 describe! {
     TempRate, "temp_rate", Mean in TemperatureRate, needs [Temperature],

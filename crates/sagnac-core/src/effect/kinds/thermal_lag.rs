@@ -5,35 +5,10 @@ use super::search::{best_of, log_grid};
 use super::thermal::{delayed, smooth};
 use super::warmup_exponential::decay;
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 
 pub struct ThermalLag;
-
-static DOC: Doc = Doc {
-    title: Both { en: "thermal lag", ru: "тепловое запаздывание" },
-    mechanism: Both {
-        en: "The sensor on the housing feels the temperature before the coil does: the bias follows a delayed temperature.",
-        ru: "Датчик на корпусе чувствует температуру раньше контура: смещение нуля следует за запаздывающей температурой.",
-    },
-    formula: Both {
-        en: "a₁ (T_d − T), τ dT_d/dt = T − T_d, a₁ as claimed",
-        ru: "a₁ (T_d − T), τ dT_d/dt = T − T_d, a₁ — как заявлено",
-    },
-    signature: Both {
-        en: "A loop of residual against temperature that opens with the rate of heating; an exponential settling after each turn of the temperature.",
-        ru: "Петля остатка по температуре, раскрывающаяся со скоростью нагрева; экспоненциальное установление после каждого изменения температуры.",
-    },
-    told_by: Both {
-        en: "A sensitivity to dT/dt answers at once where the temperature turns; the lag settles with its time constant, and its size follows from the claimed coefficient.",
-        ru: "Чувствительность к dT/dt проявляется сразу при изменении хода температуры; запаздывание устанавливается со своей постоянной времени, а его величина следует из заявленного коэффициента.",
-    },
-    confirm: Both {
-        en: "A second sensor on the coil; a soak after a ramp.",
-        ru: "Второй датчик на контуре; выдержка после изменения температуры.",
-    },
-    source: "First-order thermal delay in the temperature terms of the IEEE Std 952 model equation",
-};
 
 static PARAMS: [Param; 1] = [Param::reported("time_constant_s", "s", 1e-6, 1e6)];
 

@@ -3,40 +3,14 @@
 use super::delay::{follow, moves, regressors, shifted};
 use super::search::{best_of, peaks};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::cosine::inverse_dct2;
 use realfft::RealFftPlanner;
 
 pub struct TimeOffset;
 
-static DOC: Doc = Doc {
-    title: Both { en: "time offset", ru: "сдвиг времени" },
-    mechanism: Both {
-        en: "Gyro and table are stamped by different clocks, buffers or filters: one of them is late.",
-        ru: "Метки времени гироскопа и стола проходят через разные часы, буферы или фильтры: один из них запаздывает.",
-    },
-    formula: Both {
-        en: "m(t − L) − m(t), m the claimed mean",
-        ru: "m(t − L) − m(t), m — заявленное среднее",
-    },
-    signature: Both {
-        en: "Spikes of the residual wherever the table's rate changes, of the sign of its acceleration.",
-        ru: "Импульсы остатка при каждом изменении скорости стола, со знаком её ускорения.",
-    },
-    told_by: Both {
-        en: "A clock drift grows along the record; a filter delays and smooths; an error of the scale factor stays while the rate is constant.",
-        ru: "Уход часов растёт вдоль записи; фильтр не только задерживает, но и сглаживает; ошибка масштабного коэффициента остаётся при постоянной скорости.",
-    },
-    confirm: Both {
-        en: "One trigger pulse recorded by both systems.",
-        ru: "Общий импульс синхронизации, записанный обеими системами.",
-    },
-    source: "Cross-correlation of gyro and table",
-};
-
-static PARAMS: [Param; 1] = [Param::reported("lag_s", "s", -1e4, 1e4)];
+static PARAMS: [Param; 1] = [Param::reported("lag_s", "s", -1e4, 1e4).signed()];
 
 describe! {
     TimeOffset, "time_offset", Mean in Lag, needs [],

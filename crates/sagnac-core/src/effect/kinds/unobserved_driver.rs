@@ -2,38 +2,13 @@
 
 use super::markov_long::starts_between;
 use crate::effect::{
-    Both, Doc, Domain, Drivers, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct,
-    Values, list,
+    Domain, Drivers, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values,
+    list,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 use std::f64::consts::PI;
 
 pub struct UnobservedDriver;
-
-static DOC: Doc = Doc {
-    title: Both { en: "unrecorded driver", ru: "незаписанное воздействие" },
-    mechanism: Both {
-        en: "Temperature of another part, tilt, a magnetic field, vibration: something moved smoothly and nobody recorded it.",
-        ru: "Температура другого узла, наклон, магнитное поле, вибрация: нечто плавно менялось, и это не записали.",
-    },
-    formula: Both {
-        en: "R(t) = σ² (1 + |t|/T)·exp(−|t|/T); stated: straight lines between knots",
-        ru: "R(t) = σ² (1 + |t|/T)·exp(−|t|/T); передаётся ломаной между узлами",
-    },
-    signature: Both {
-        en: "A smooth course in time; the spectrum falls as f⁻⁴ above a corner.",
-        ru: "Плавный ход во времени; спектр спадает как f⁻⁴ выше излома.",
-    },
-    told_by: Both {
-        en: "A random walk and a Markov process are rough on every scale (f⁻²); a recorded column would explain it by one coefficient.",
-        ru: "Случайное блуждание и марковский процесс шероховаты на всех масштабах (f⁻²); записанный канал объяснил бы ход одним коэффициентом.",
-    },
-    confirm: Both {
-        en: "Record temperature, tilt, field and vibration beside the gyro and repeat.",
-        ru: "Повторить, записывая рядом температуру, наклон, магнитное поле и вибрацию.",
-    },
-    source: "Matérn process of order 3/2",
-};
 
 static LISTS: [Param; 2] =
     [Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX), Param::inner(KNOT_VALUES, "deg/h", -1e6, 1e6)];
@@ -47,9 +22,6 @@ const KNOT_VALUES: &str = "knots_deg_h";
 impl Effect for UnobservedDriver {
     fn kind(&self) -> &'static str {
         "unobserved_driver"
-    }
-    fn doc(&self) -> &'static Doc {
-        &DOC
     }
     fn params(&self) -> &'static [Param] {
         &PARAMS

@@ -3,35 +3,10 @@
 use super::reach::beginning_s;
 use super::search::{best_of, log_grid};
 use crate::effect::{
-    Both, Doc, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 
 pub struct WarmupExponential;
-
-static DOC: Doc = Doc {
-    title: Both { en: "warm-up transient", ru: "переходный процесс прогрева" },
-    mechanism: Both {
-        en: "After power-on source, electronics and coil warm up, and the bias settles with their time constants.",
-        ru: "После включения источник, электроника и контур прогреваются, и смещение нуля устанавливается с их постоянными времени.",
-    },
-    formula: Both {
-        en: "A·exp(−t/t₁), t from the beginning of the record",
-        ru: "A·exp(−t/t₁), t — от начала записи",
-    },
-    signature: Both {
-        en: "Largest at the start and gone after a few time constants; the Allan deviation rises at long τ.",
-        ru: "Наибольший в начале и исчезает через несколько постоянных времени; девиация Аллана растёт при больших τ.",
-    },
-    told_by: Both {
-        en: "A ramp does not level off; a random walk has no preferred beginning; a delayed temperature effect follows the temperature wherever it turns.",
-        ru: "Линейный дрейф не выходит на полку; у случайного блуждания нет выделенного начала; запаздывающий температурный эффект повторяет любые повороты температуры.",
-    },
-    confirm: Both {
-        en: "Repeat a cold start, and start a record long after power-on.",
-        ru: "Повторить холодный пуск и начать запись спустя долгое время после включения.",
-    },
-    source: "IEEE Std 952, 12.6: warm-up time",
-};
 
 static PARAMS: [Param; 2] = [
     Param::reported("amplitude_deg_h", "deg/h", -1e5, 1e5),
