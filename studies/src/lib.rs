@@ -3,6 +3,7 @@
 //! A study is one module with a [`study::Study`], and one line in [`STUDIES`]. `cargo xtask validate` runs them and writes
 //! `docs/validation/`. Short versions with fixed seeds run with `cargo test`; they use the same functions.
 
+pub mod comparison;
 pub mod goodness_of_fit;
 pub mod pages;
 pub mod results;
@@ -12,4 +13,10 @@ pub mod whole_runs;
 use study::Study;
 
 /// Every study, in the order of the summary.
-pub static STUDIES: &[&Study] = &[&whole_runs::INTERVALS, &whole_runs::LINES, &goodness_of_fit::STUDY];
+pub static STUDIES: &[&Study] = &[
+    &whole_runs::INTERVALS,
+    &whole_runs::LINES,
+    &goodness_of_fit::STUDY,
+    &comparison::STUDY,
+    &comparison::PUBLISHED,
+];
