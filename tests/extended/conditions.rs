@@ -5,7 +5,7 @@ use crate::exact::arithmetic::X;
 use crate::exact::reference as slow;
 use crate::exact::worst::Worst;
 use crate::support::synthetic::white;
-use sagnac::acceptance::condition::temperature_track::TemperatureTrack;
+use sagnac::acceptance::condition::stability_track::StabilityTrack;
 use sagnac::noise::allan::{AllanAccumulator, AllanPlan};
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
 use sagnac::noise::family::Estimator;
@@ -97,7 +97,7 @@ fn the_temperature_track_is_right_on_hard_records() {
     ];
     const SMOOTHED: usize = 60;
     for (name, y) in records {
-        let mut track = TemperatureTrack::new(SMOOTHED as f64, 1.0, None);
+        let mut track = StabilityTrack::new(SMOOTHED as f64, 1.0, None);
         for (k, part) in y.chunks(777).enumerate() {
             track.push(part, 777.0 * k as f64, k > 0);
         }

@@ -4,7 +4,7 @@
 use crate::support;
 use crate::support::tested::tested;
 use sagnac::acceptance::condition::checks::CheckLog;
-use sagnac::acceptance::condition::temperature_track::{Extreme, TemperatureFacts};
+use sagnac::acceptance::condition::stability_track::{Extreme, StabilityFacts, StabilityKey};
 use sagnac::acceptance::condition::{
     BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, TailShape, WarmUpFact, judge_all,
 };
@@ -116,19 +116,20 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         ..Integrity::default()
     };
     let far = Extreme { value: 99.0, time_s: 1.0 };
-    let track = TemperatureFacts {
+    let track = StabilityFacts {
         usable: 10,
         unusable: 1,
         mean: 50.0,
-        raw: (0.0, 99.0),
+        raw_min: 0.0,
+        raw_max: 99.0,
         smooth_min: Extreme { value: 0.0, time_s: 0.0 },
         smooth_max: far,
         share_outside: 0.5,
         steepest_deg_c_per_h: Some(1.0),
         smoothing_s: 60.0,
     };
-    let held: BTreeMap<(String, usize), TemperatureFacts> =
-        ["temperature", "supply"].map(|id| ((id.to_owned(), 0), track.clone())).into();
+    let keys = [StabilityKey::temperature(0), StabilityKey::supply(0)];
+    let stability: BTreeMap<StabilityKey, StabilityFacts> = keys.map(|key| (key, track.clone())).into();
     let warm_up = [WarmUpFact {
         channel: "rate".into(),
         residual_deg_h: 10.0,
@@ -194,7 +195,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         has_stamps: true,
         usable_s: 1.0,
         longest_gap_s: 100.0,
-        held: &held,
+        stability: &stability,
         warm_up: &warm_up,
         gyros: &[gyro],
         limits: &limits,

@@ -1,6 +1,6 @@
 //! Whether the stamps can be what they are taken for: the unit of the time, even steps, a rate that is no round number.
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
 use crate::i18n::Note;
 use crate::record::{ConditionRecord, ConditionStatus};
 

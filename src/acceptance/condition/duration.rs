@@ -1,6 +1,6 @@
 //! Usable time after warm-up, exclusions and gaps: not "last minus first stamp".
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
 

@@ -12,45 +12,27 @@
 //! for the bound, and a mean that a reversed sign or an Earth rate taken out before explains is taken for that. Where the bias
 //! moves too much for this, the record says that the mean was not judged.
 
-use super::{Condition, Facts, GyroFact, id_of, mistakes, noise_level, record};
-use crate::config::procedure::model::EarthRate as Removal;
+use super::facts::{Condition, Facts, GyroFact, id_of, record};
+use super::plausibility::{
+    MIN_EARTH_TO_BIAS, TYPICAL_BIAS_FACTOR, earth_rate_is_kept, largest_plausible_bias,
+    mean_shows_earth_rate, noise_is_implausible,
+};
+use super::stability_track::StabilityKey;
+use super::unit_slip::{self, UnitSlip};
 use crate::i18n::Note;
 use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct EarthRate;
 
-/// How many times the bound of the bias the Earth rate must be.
-const PLAIN: f64 = 5.0;
 /// Least Earth rate along the axis that a unit is told by where nothing is known of the bias, deg/h.
 const LEAST_DEG_H: f64 = 1.0;
 /// Share of the Earth rate within which an exchange of unit brings the mean then.
 const USUAL: f64 = 0.125;
-/// Times the typical bias that a unit is still thought to have.
-const TYPICAL: f64 = 3.0;
-
 impl Condition for EarthRate {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
         facts.gyros.iter().filter_map(|g| one(g, facts)).collect()
     }
-}
-
-/// Largest bias that a unit is thought to have, deg/h.
-pub(super) fn bias_bound(gyro: &GyroFact, facts: &Facts<'_>) -> Option<f64> {
-    if kept(facts) {
-        return None;
-    }
-    let bound = facts.limits.limit("static_bias", &gyro.channel).and_then(|l| l.limit.largest_magnitude());
-    let typical = || facts.limits.expected("static_bias").map(|e| TYPICAL * e.abs());
-    bound.or_else(typical).filter(|b| *b > 0.0)
-}
-
-/// Whether the mean shows the Earth rate; `None` where that cannot be judged.
-pub(super) fn agrees(gyro: &GyroFact, facts: &Facts<'_>) -> Option<bool> {
-    let (earth, u_earth) = gyro.earth_deg_h?;
-    let bound = bias_bound(gyro, facts).filter(|b| earth.abs() >= PLAIN * b)?;
-    let u = gyro.mean_uncertainty_deg_h.hypot(u_earth);
-    Some((gyro.mean_deg_h - earth).abs() <= 2.0 * bound + 3.0 * u)
 }
 
 fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
@@ -59,10 +41,10 @@ fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
         None => facts.checks.made("earth_rate", Some(&gyro.channel), "earth_rate"),
     }
     let (earth, _) = gyro.earth_deg_h?;
-    let Some(bound) = bias_bound(gyro, facts) else {
+    let Some(bound) = largest_plausible_bias(gyro, facts) else {
         return exchanged_unit(gyro, earth, facts).or_else(|| by_movement(gyro, earth, facts));
     };
-    let agrees = agrees(gyro, facts)?;
+    let agrees = mean_shows_earth_rate(gyro, facts)?;
     let mistakes = if agrees { vec![] } else { explain(gyro, earth, bound, facts) };
     let (status, key) = match (agrees, mistakes.is_empty()) {
         (true, _) => (ConditionStatus::Ok, "earth_rate.seen"),
@@ -78,10 +60,10 @@ fn why_not(gyro: &GyroFact, facts: &Facts<'_>) -> Option<&'static str> {
     if gyro.earth_deg_h.is_none() {
         return Some("check_list.no_site");
     }
-    if bias_bound(gyro, facts).is_none() {
+    if largest_plausible_bias(gyro, facts).is_none() {
         return Some("check_list.no_bias_bound");
     }
-    agrees(gyro, facts).is_none().then_some("check_list.small_earth_rate")
+    mean_shows_earth_rate(gyro, facts).is_none().then_some("check_list.small_earth_rate")
 }
 
 /// The record of a mean beside the Earth rate, with the mistakes that explain their difference.
@@ -98,7 +80,7 @@ fn told(
         .with("mean", gyro.mean_deg_h)
         .with("earth", earth)
         .with("difference", difference);
-    if let Some(why) = mistakes::either(mistakes) {
+    if let Some(why) = unit_slip::either(mistakes) {
         note = note.with("why", why);
     }
     let observed = [("mean_deg_h", gyro.mean_deg_h), ("difference_deg_h", difference)];
@@ -113,12 +95,12 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
         return None;
     }
     let declared = &facts.procedure.channel(&gyro.channel)?.unit_in_file;
-    let usual = mistakes::rate_factors(declared).into_iter().filter(|m| m.usual);
-    let fits = |m: &mistakes::Mistake| {
+    let usual = unit_slip::rate_factors(declared).into_iter().filter(|m| m.usual);
+    let fits = |m: &UnitSlip| {
         let slack = 3.0 * m.factor.abs() * gyro.mean_uncertainty_deg_h;
         slack <= USUAL * earth.abs()
             && shown(gyro.mean_deg_h * m.factor, USUAL)
-            && !noise_level::is_far(gyro, m.factor, facts)
+            && !noise_is_implausible(gyro, m.factor, facts)
     };
     let found: Vec<Note> = usual.filter(fits).map(|m| m.note).collect();
     if found.is_empty() {
@@ -134,13 +116,13 @@ fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Conditi
     let moves = gyro.moves_deg_h?;
     let ids = ["bias_over_temperature_peak_to_peak", "turn_on_transient"];
     let limits = ids.iter().filter_map(|id| facts.limits.limit(id, &gyro.channel)?.limit.largest_magnitude());
-    let bound = TYPICAL * limits.fold(moves, f64::max);
-    if kept(facts) || earth.abs() < LEAST_DEG_H {
+    let bound = TYPICAL_BIAS_FACTOR * limits.fold(moves, f64::max);
+    if earth_rate_is_kept(facts) || earth.abs() < LEAST_DEG_H {
         return None;
     }
     let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
     let u = 3.0 * gyro.mean_uncertainty_deg_h;
-    if earth.abs() < PLAIN * (bound + u) {
+    if earth.abs() < MIN_EARTH_TO_BIAS * (bound + u) {
         let status = (ConditionStatus::Remark, "earth_rate.not_judged", vec![]);
         return Some(told(gyro, earth, status, required, facts));
     }
@@ -154,12 +136,6 @@ fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Conditi
     };
     let status = (ConditionStatus::Invalid, "earth_rate.mistake", vec![found]);
     Some(told(gyro, earth, status, required, facts))
-}
-
-/// Whether the procedure states the bias with the Earth rate in it.
-fn kept(facts: &Facts<'_>) -> bool {
-    let mut measurands = facts.procedure.measurands.iter();
-    measurands.any(|m| m.id.id == "static_bias" && m.earth_rate == Removal::Keep)
 }
 
 /// The single mistakes that bring the mean into agreement.
@@ -178,11 +154,10 @@ fn explain(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec<No
         found.push(Note::new("earth_rate.sign"));
     }
     if let Some(spec) = facts.procedure.channel(&gyro.channel) {
-        let scaled = mistakes::rate_factors(&spec.unit_in_file);
+        let scaled = unit_slip::rate_factors(&spec.unit_in_file);
         // A factor puts right the noise as well; where it would spoil it, the mean is near by chance.
-        let fits = |m: &mistakes::Mistake| {
-            near(mean * m.factor, m.factor) && !noise_level::is_far(gyro, m.factor, facts)
-        };
+        let fits =
+            |m: &UnitSlip| near(mean * m.factor, m.factor) && !noise_is_implausible(gyro, m.factor, facts);
         found.extend(scaled.into_iter().filter(fits).map(|m| m.note));
     }
     found.extend(other_axis(gyro, earth, bound, facts));
@@ -196,7 +171,7 @@ fn explain(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec<No
 fn exchanged(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Option<Note> {
     let conditions = facts.procedure.conditions.temperatures.iter().enumerate();
     conditions
-        .filter_map(|(i, c)| Some((c, facts.held.get(&("temperature".to_owned(), i))?)))
+        .filter_map(|(i, c)| Some((c, facts.stability.get(&StabilityKey::temperature(i))?)))
         .find(|(c, track)| {
             (gyro.mean_deg_h - c.nominal_deg_c).abs() <= 5.0 * c.tolerance_deg_c
                 && (track.mean - earth).abs() <= bound

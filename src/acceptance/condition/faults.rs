@@ -1,6 +1,6 @@
 //! Faults of the recording against the budget of the procedure.
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
 use crate::config::procedure::model::Allowance;
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
@@ -17,8 +17,8 @@ impl Condition for Faults {
                 facts.checks.not_made(id, None, "check_list.not_read");
             }
         }
-        let budget = &facts.procedure.conditions.faults;
         let found = facts.integrity;
+        let budget = &facts.procedure.conditions.faults;
         let counted: [(&str, u64, Option<Allowance>); 10] = [
             ("gaps", found.gaps, budget.gaps),
             ("missing_samples", found.missing_samples, budget.missing_samples),
@@ -31,79 +31,92 @@ impl Condition for Faults {
             ("stuck", found.stuck, budget.stuck),
             ("repeated", found.repeated, budget.repeated),
         ];
-        let mut records = Vec::new();
         // What no sensor shows and what is missing at the end cannot be allowed.
-        for (id, count, what) in
-            [("implausible", found.implausible, "implausible"), ("cut_off", found.cut_off, "cut_off")]
-        {
-            let first = found.faults.iter().find(|f| f.kind == what).map(|f| f.message.clone());
-            if count > 0 {
-                let note = Note::new("plausible.condition").with("count", count);
-                let note = match first {
-                    Some(first) => note.with("first", first),
-                    None => note.with("first", ""),
-                };
-                let required = Note::new("note.required.at_most_count").with("count", 0u64);
-                let observed = [("count", count as f64)];
-                records.push(record(id, ConditionStatus::Invalid, &observed, Some(required), note));
-            }
-        }
-        for (id, count, allowance) in counted {
-            let share = count as f64 / facts.rows.max(1) as f64;
-            let Some(allowance) = allowance else {
-                if count > 0 {
-                    let note = note("note.condition.fault_unbudgeted", id, count, share);
-                    records.push(record(
-                        id,
-                        ConditionStatus::Remark,
-                        &[("count", count as f64), ("share", share)],
-                        None,
-                        note,
-                    ));
-                }
-                continue;
-            };
-            let (status, key) = if count == 0 && !found.has_examined(id) {
-                (ConditionStatus::Remark, "note.condition.fault_not_examined")
-            } else if !allowance.allows(count, facts.rows) {
-                (ConditionStatus::Invalid, "note.condition.fault_over")
-            } else if count > 0 {
-                (ConditionStatus::Remark, "note.condition.fault_within")
-            } else {
-                (ConditionStatus::Ok, "note.condition.fault_none")
-            };
-            let required = match allowance {
-                Allowance::Count(most) => Note::new("note.required.at_most_count").with("count", most),
-                Allowance::Share(most) => {
-                    Note::new("note.required.at_most_share").with("percent", Arg::Stated(most * 100.0))
-                }
-            };
-            let observed = [("count", count as f64), ("share", share)];
-            records.push(record(id, status, &observed, Some(required), note(key, id, count, share)));
-        }
-        if let Some(most_s) = budget.longest_gap_s {
-            let (status, key) = if facts.longest_gap_s <= most_s {
-                (ConditionStatus::Ok, "note.condition.longest_gap_within")
-            } else {
-                (ConditionStatus::Invalid, "note.condition.longest_gap_over")
-            };
-            let note = Note::new(key).with("seconds", facts.longest_gap_s);
-            let observed = [("seconds", facts.longest_gap_s)];
-            let required = Note::new("note.required.at_most_seconds").with("seconds", Arg::Stated(most_s));
-            records.push(record("longest_gap", status, &observed, Some(required), note));
-        }
-        if let (Some(most_s), Some(jitter_s)) = (budget.timestamp_jitter_s, found.timestamp_jitter_s) {
-            let (status, key) = if jitter_s <= most_s {
-                (ConditionStatus::Ok, "note.condition.jitter_within")
-            } else {
-                (ConditionStatus::Invalid, "note.condition.jitter_over")
-            };
-            let note = Note::new(key).with("seconds", jitter_s);
-            let required = Note::new("note.required.at_most_rms").with("seconds", Arg::Stated(most_s));
-            records.push(record("timestamp_jitter", status, &[("seconds", jitter_s)], Some(required), note));
-        }
+        let never = [("implausible", found.implausible), ("cut_off", found.cut_off)];
+        let mut records: Vec<ConditionRecord> =
+            never.into_iter().filter_map(|(id, count)| never_allowed(id, count, facts)).collect();
+        records.extend(counted.into_iter().filter_map(|(id, count, allowance)| match allowance {
+            Some(allowance) => Some(budgeted(id, count, allowance, facts)),
+            None => unbudgeted(id, count, facts),
+        }));
+        records.extend(longest_gap(facts));
+        records.extend(jitter(facts));
         records
     }
+}
+
+/// A fault of which not a single one is allowed; `None` where there is none.
+fn never_allowed(id: &str, count: u64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let first = facts.integrity.faults.iter().find(|f| f.kind == id);
+    let note = Note::new("plausible.condition").with("count", count);
+    let note = match first {
+        Some(first) => note.with("first", first.message.clone()),
+        None => note.with("first", ""),
+    };
+    let required = Note::new("note.required.at_most_count").with("count", 0u64);
+    let observed = [("count", count as f64)];
+    (count > 0).then(|| record(id, ConditionStatus::Invalid, &observed, Some(required), note))
+}
+
+/// A fault that the procedure allows a number of.
+fn budgeted(id: &str, count: u64, allowance: Allowance, facts: &Facts<'_>) -> ConditionRecord {
+    let (status, key) = if count == 0 && !facts.integrity.has_examined(id) {
+        (ConditionStatus::Remark, "note.condition.fault_not_examined")
+    } else if !allowance.allows(count, facts.rows) {
+        (ConditionStatus::Invalid, "note.condition.fault_over")
+    } else if count > 0 {
+        (ConditionStatus::Remark, "note.condition.fault_within")
+    } else {
+        (ConditionStatus::Ok, "note.condition.fault_none")
+    };
+    let required = match allowance {
+        Allowance::Count(most) => Note::new("note.required.at_most_count").with("count", most),
+        Allowance::Share(most) => {
+            Note::new("note.required.at_most_share").with("percent", Arg::Stated(most * 100.0))
+        }
+    };
+    let share = share(count, facts);
+    let observed = [("count", count as f64), ("share", share)];
+    record(id, status, &observed, Some(required), note(key, id, count, share))
+}
+
+/// A remark on a fault that the procedure says nothing of; `None` where there is none.
+fn unbudgeted(id: &str, count: u64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let share = share(count, facts);
+    let observed = [("count", count as f64), ("share", share)];
+    let note = note("note.condition.fault_unbudgeted", id, count, share);
+    (count > 0).then(|| record(id, ConditionStatus::Remark, &observed, None, note))
+}
+
+fn longest_gap(facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let most_s = facts.procedure.conditions.faults.longest_gap_s?;
+    let (status, key) = if facts.longest_gap_s <= most_s {
+        (ConditionStatus::Ok, "note.condition.longest_gap_within")
+    } else {
+        (ConditionStatus::Invalid, "note.condition.longest_gap_over")
+    };
+    let note = Note::new(key).with("seconds", facts.longest_gap_s);
+    let observed = [("seconds", facts.longest_gap_s)];
+    let required = Note::new("note.required.at_most_seconds").with("seconds", Arg::Stated(most_s));
+    Some(record("longest_gap", status, &observed, Some(required), note))
+}
+
+fn jitter(facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let most_s = facts.procedure.conditions.faults.timestamp_jitter_s?;
+    let jitter_s = facts.integrity.timestamp_jitter_s?;
+    let (status, key) = if jitter_s <= most_s {
+        (ConditionStatus::Ok, "note.condition.jitter_within")
+    } else {
+        (ConditionStatus::Invalid, "note.condition.jitter_over")
+    };
+    let note = Note::new(key).with("seconds", jitter_s);
+    let required = Note::new("note.required.at_most_rms").with("seconds", Arg::Stated(most_s));
+    Some(record("timestamp_jitter", status, &[("seconds", jitter_s)], Some(required), note))
+}
+
+/// Share of the rows.
+fn share(count: u64, facts: &Facts<'_>) -> f64 {
+    count as f64 / facts.rows.max(1) as f64
 }
 
 fn note(key: &'static str, id: &str, count: u64, share: f64) -> Note {

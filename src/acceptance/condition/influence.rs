@@ -1,6 +1,6 @@
 //! What a series of switching off and on, and a comparison without and with an influence, must have been.
 
-use super::record;
+use super::facts::record;
 use crate::i18n::{Arg, Note};
 use crate::influence::nuisance::Following;
 use crate::influence::repeatability::factors;

@@ -1,6 +1,6 @@
 //! Calibration of the instruments on the day of the test.
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
 use crate::i18n::Note;
 use crate::record::{ConditionRecord, ConditionStatus};
 

@@ -6,15 +6,15 @@
 //! twentieth of it. Twenty: above it lies the smallest mistake of the clock, √1000 = 32 for ms taken as s; below it lie
 //! units of one family, which differ by a factor of three at most.
 
-use super::{Condition, Facts, GyroFact, earth_rate, id_of, mistakes, record};
+use super::facts::{Condition, Facts, GyroFact, id_of, record};
+use super::plausibility::{NOISE_RATIO_LIMIT, mean_shows_earth_rate, white_noise_range};
+use super::unit_slip;
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::Role;
 
 pub(super) struct NoiseLevel;
 
-/// Ratio beyond which a unit is not merely bad.
-const FAR: f64 = 20.0;
 /// Factor within which a mistake explains the ratio.
 const EXPLAINED: f64 = 3.0;
 
@@ -28,43 +28,22 @@ impl Condition for NoiseLevel {
     }
 }
 
-/// Least and greatest σ(τ)·√τ/60 over octaves, deg/sqrt(h).
-pub(super) fn white_levels(gyro: &GyroFact) -> Option<(f64, f64)> {
-    let longest_s = (gyro.longest_stretch_s / 20.0).max(gyro.tau0_s);
-    let levels = gyro
-        .deviations
-        .iter()
-        .filter(|(tau_s, deviation)| *tau_s <= longest_s * 1.000_001 && deviation.is_finite())
-        .map(|(tau_s, deviation)| deviation * tau_s.sqrt() / 60.0);
-    let range = levels.fold((f64::INFINITY, 0.0f64), |(low, high), n| (low.min(n), high.max(n)));
-    range.0.is_finite().then_some(range)
-}
-
-/// Whether the noise would be far from that of the family if the values were multiplied by a factor.
-pub(super) fn is_far(gyro: &GyroFact, factor: f64, facts: &Facts<'_>) -> bool {
-    let typical = facts.limits.expected("angle_random_walk").filter(|n| *n > 0.0);
-    typical.zip(white_levels(gyro)).is_some_and(|(typical, (low, high))| {
-        let factor = factor.abs();
-        low * factor > FAR * typical || high * factor * FAR < typical
-    })
-}
-
 fn one(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
-    let levels = white_levels(gyro);
+    let levels = white_noise_range(gyro);
     match levels {
         Some(_) => facts.checks.made("noise_level", Some(&gyro.channel), "noise_level"),
         None => facts.checks.not_made("noise_level", Some(&gyro.channel), "check_list.short"),
     }
     let (low, high) = levels?;
-    let ratio = if low > FAR * typical {
+    let ratio = if low > NOISE_RATIO_LIMIT * typical {
         low / typical
-    } else if high * FAR < typical {
+    } else if high * NOISE_RATIO_LIMIT < typical {
         high / typical
     } else {
         1.0
     };
     let far = ratio != 1.0;
-    let why = if far { mistakes::either(explain(gyro, ratio, facts)) } else { None };
+    let why = if far { unit_slip::either(explain(gyro, ratio, facts)) } else { None };
     let (status, key) = match (far, why.is_some()) {
         (false, _) => (ConditionStatus::Ok, "noise_level.usual"),
         (true, true) => (ConditionStatus::Invalid, "noise_level.mistake"),
@@ -81,7 +60,7 @@ fn one(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<ConditionReco
     let observed = [("least_arw", low), ("greatest_arw", high)];
     let required = Note::new("noise_level.required")
         .with("typical", Arg::Stated(typical))
-        .with("factor", Arg::Stated(FAR));
+        .with("factor", Arg::Stated(NOISE_RATIO_LIMIT));
     Some(record(id_of("noise_level", &gyro.channel, facts), status, &observed, Some(required), note))
 }
 
@@ -90,17 +69,17 @@ fn one(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<ConditionReco
 fn explain(gyro: &GyroFact, ratio: f64, facts: &Facts<'_>) -> Vec<Note> {
     let spec = facts.procedure.channel(&gyro.channel);
     let increments = spec.is_some_and(|s| s.channel.role == Role::AngleIncrement);
-    let earth = earth_rate::agrees(gyro, facts);
+    let earth = mean_shows_earth_rate(gyro, facts);
     let off = |expected: f64| (ratio / expected).ln().abs();
     let mut found: Vec<(f64, Note)> = Vec::new();
     if earth != Some(true) {
-        let unit = spec.map(|s| mistakes::rate_factors(&s.unit_in_file)).unwrap_or_default();
+        let unit = spec.map(|s| unit_slip::rate_factors(&s.unit_in_file)).unwrap_or_default();
         found.extend(unit.into_iter().map(|m| (off(1.0 / m.factor), m.note)));
     }
     if earth != Some(false) && facts.has_stamps {
         // σ does not change with the scale of the time, and √τ does; an increment is divided by the interval.
         let power = if increments { 0.5 } else { -0.5 };
-        found.extend(mistakes::time_factors().into_iter().map(|m| (off(m.factor.powf(power)), m.note)));
+        found.extend(unit_slip::time_factors().into_iter().map(|m| (off(m.factor.powf(power)), m.note)));
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let nearest = found.first().map_or(f64::INFINITY, |f| f.0);

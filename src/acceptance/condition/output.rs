@@ -1,6 +1,6 @@
 //! What was done to the output before it was recorded: coarse steps, smoothing. Remarks only.
 
-use super::{Condition, Facts, GyroFact, record};
+use super::facts::{Condition, Facts, GyroFact, record};
 use crate::i18n::Note;
 use crate::record::{ConditionRecord, ConditionStatus};
 

@@ -1,7 +1,7 @@
 //! The schedule of a test over temperature: ramps, ends, overshoot, dwells. What is not as asked names the likely
 //! mistake.
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::temperature::findings::{LEAST_SPAN_DEG_C, Schedule as Run};

@@ -2,8 +2,8 @@
 //! follows the table. A mistake of sign, unit or axis is named.
 
 use super::checks::CheckLog;
-use super::table_motion::{self, Settling};
-use super::{mistakes, record};
+use super::facts::record;
+use super::unit_slip::{self, UnitSlip};
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::units::RateUnit;
@@ -42,6 +42,19 @@ pub struct TableFacts {
     pub channels: Vec<ChannelFact>,
 }
 
+/// Steps that are evaluated from a time on at which the table still changed its rate.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Settling {
+    /// How many.
+    pub steps: usize,
+    /// Settling that the procedure states, s.
+    pub stated_s: f64,
+    /// Longest that one needed, s.
+    pub needed_s: f64,
+    /// Largest relative deviation of the mean rate from that at the end of the step.
+    pub off: f64,
+}
+
 /// How a channel follows the table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelFact {
@@ -76,8 +89,13 @@ const TWICE: f64 = 0.05;
 /// Least Earth rate along the axis by which that is told, deg/h.
 const LEAST_EARTH: f64 = 3.0;
 
-/// Judges a test on a table, and tells which checks were made.
-pub fn judge_and_tell(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRecord> {
+/// Share of the tolerance of the rate by which steps may be off on average where the settling is a little short.
+const OFF: f64 = 0.1;
+/// Relative difference within which a time is that of another unit.
+const OF_UNIT: f64 = 0.05;
+
+/// Judges a test on a table, and notes which checks were made.
+pub fn judge_and_log(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRecord> {
     let all = judge(facts);
     let made = |id: &str| all.iter().any(|c| c.id.split('.').next() == Some(id));
     let tell = |id: &str, condition: &str, reason: &'static str| {
@@ -113,12 +131,12 @@ pub fn judge_and_tell(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRec
 pub fn judge(facts: &TableFacts) -> Vec<ConditionRecord> {
     let mut all = vec![steps(facts)];
     // With stamps in a wrong unit every rate is wrong, and nothing else is worth a word.
-    if let Some(wrong) = table_motion::stamps(facts) {
+    if let Some(wrong) = stamps(facts) {
         all.push(wrong);
         return all;
     }
     // A table that was not at its rate yet falls short of it, and its angle of its rate.
-    let settling = table_motion::settling(facts);
+    let settling = settling(facts);
     if settling.as_ref().is_none_or(|s| s.status != ConditionStatus::Invalid) {
         all.extend(reached(facts));
         all.extend(agreement(facts));
@@ -276,13 +294,13 @@ fn follows(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord>
 /// What is wrong with an output that does not follow the table.
 fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> Note {
     let shown = Arg::figures(factor, 4);
-    let mistakes = mistakes::rate_factors(&channel.unit);
+    let mistakes = unit_slip::rate_factors(&channel.unit);
     let mistaken = |why: Note| {
         Note::new("on_table.mistaken").with("factor", shown.clone()).with("mistake", Arg::from(why))
     };
     // An exchange of unit leaves next to nothing of the output, which is known well all the same.
     let resolved = factor.abs() > 10.0 * channel.standard;
-    let exchanged = |m: &&mistakes::Mistake| m.usual && FOLLOWS.contains(&(m.factor * factor));
+    let exchanged = |m: &&UnitSlip| m.usual && FOLLOWS.contains(&(m.factor * factor));
     if let Some(exchange) = mistakes.iter().find(exchanged).filter(|_| resolved) {
         return mistaken(exchange.note.clone());
     }
@@ -306,7 +324,7 @@ fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> No
     if FOLLOWS.contains(&-factor) {
         return Note::new("on_table.reversed").with("factor", shown);
     }
-    let off = |m: &mistakes::Mistake| (m.factor * factor.abs()).ln().abs();
+    let off = |m: &UnitSlip| (m.factor * factor.abs()).ln().abs();
     let nearest = mistakes.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|m| off(m) < 0.1);
     match nearest {
         Some(mistake) => mistaken(mistake.note),
@@ -314,38 +332,31 @@ fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> No
     }
 }
 
-/// What a channel makes of the Earth's rotation in several positions.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EarthFact {
-    /// Channel.
-    pub channel: String,
-    /// Whether there are others.
-    pub several: bool,
-    /// Unit declared for it.
-    pub unit: String,
-    /// Output per Earth rate expected.
-    pub factor: f64,
-    /// Standard uncertainty of it.
-    pub standard: f64,
-    /// Bias, deg/h.
-    pub bias: f64,
-    /// Latitude, where all axes are vertical: what the factor says of it.
-    pub latitude_deg: Option<f64>,
-    /// Pairs of positions that were turned in software only.
-    pub software: Vec<(String, String)>,
-    /// Channel that shows the Earth's rotation between these positions in place of this one, and its factor.
-    pub turned_instead: Option<(String, f64)>,
+/// Whether steps are evaluated before the table is at its rate; `None` where none is.
+fn settling(facts: &TableFacts) -> Option<ConditionRecord> {
+    let s = &facts.settling;
+    if s.steps == 0 {
+        return None;
+    }
+    let status =
+        if s.off > OFF * facts.tolerance { ConditionStatus::Invalid } else { ConditionStatus::Remark };
+    let note = Note::new("table_motion.settling_short")
+        .with("steps", s.steps)
+        .with("of", facts.steps)
+        .with("stated", Arg::Stated(s.stated_s))
+        .with("needed", Arg::figures(s.needed_s, 2));
+    let observed = [("needed_s", s.needed_s), ("stated_s", s.stated_s)];
+    Some(record("table_settling", status, &observed, Some(Note::new("table_motion.required.settled")), note))
 }
 
-/// Judges whether all stretches of a procedure were found.
-pub fn judge_stretches(stated: usize, missing: usize) -> ConditionRecord {
-    let (status, key) = if missing == 0 {
-        (ConditionStatus::Ok, "known.stretches")
-    } else {
-        (ConditionStatus::Invalid, "known.stretches_missing")
-    };
-    let note = Note::new(key).with("n", stated).with("missing", missing);
-    record("known_stretches", status, &[("stretches", (stated - missing) as f64)], None, note)
+/// Stamps of a unit that the angle and the rate of the table contradict; `None` where they do not.
+fn stamps(facts: &TableFacts) -> Option<ConditionRecord> {
+    let factor = facts.time_factor.filter(|f| *f > 0.0)?;
+    let mistake =
+        unit_slip::time_factors().into_iter().find(|m| (factor / m.factor - 1.0).abs() < OF_UNIT)?;
+    let note = Note::new("table_motion.stamps").with("mistake", Arg::from(mistake.note));
+    let required = Note::new("table_motion.required.stamps");
+    Some(record("table_stamps", ConditionStatus::Invalid, &[("factor", factor)], Some(required), note))
 }
 
 /// Largest scale factor, output per input in the declared units, of a unit that works: the worst MEMS gyro is off by
@@ -363,64 +374,4 @@ pub fn judge_scale(channel: &str, factor: f64) -> Option<ConditionRecord> {
     let required = Note::new("plausible.scale_required").with("high", high());
     let observed = [("factor", factor)];
     Some(record("table_scale", ConditionStatus::Invalid, &observed, Some(required), note))
-}
-
-/// Judges whether positions show the Earth's rotation as it is.
-pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
-    let id = if fact.several { format!("known_earth.{}", fact.channel) } else { "known_earth".to_owned() };
-    let required = Some(Note::new("known.required.earth"));
-    let observed = [("factor", fact.factor)];
-    let allowed = 4.0 * fact.standard;
-    let shown = Arg::figures(fact.factor, 4);
-    let invalid =
-        |note: Note| record(id.clone(), ConditionStatus::Invalid, &observed, required.clone(), note);
-    if let Some((first, second)) = fact.software.first() {
-        return invalid(
-            Note::new("known.software").with("first", first.as_str()).with("second", second.as_str()),
-        );
-    }
-    if let Some((other, their)) = &fact.turned_instead {
-        return invalid(
-            Note::new("known.software_axis")
-                .with("channel", fact.channel.as_str())
-                .with("other", other.as_str())
-                .with("theirs", Arg::figures(*their, 4))
-                .with("factor", shown),
-        );
-    }
-    if (fact.factor - 1.0).abs() <= allowed.max(0.02) {
-        let key = if fact.standard > 0.25 { "known.earth_weak" } else { "known.earth_seen" };
-        let note = Note::new(key).with("factor", shown).with("uncertainty", Arg::figures(fact.standard, 2));
-        return record(id, ConditionStatus::Ok, &observed, required, note);
-    }
-    if (fact.factor + 1.0).abs() <= allowed.max(0.02) {
-        return invalid(Note::new("known.reversed").with("factor", shown));
-    }
-    // A factor that is not known to a tenth says nothing of units, nor of a latitude.
-    let known = allowed <= 0.1 * fact.factor.abs();
-    let units = || mistakes::rate_factors(&fact.unit).into_iter().filter(|_| known);
-    let off = |m: &mistakes::Mistake| (m.factor * fact.factor - 1.0).abs();
-    let usual = units().any(|m| m.usual && off(&m) <= 0.02);
-    if fact.factor.abs() <= allowed.max(0.02) && !usual {
-        return invalid(Note::new("known.not_turned").with("factor", shown));
-    }
-    let mistake = units().filter(|m| off(m) <= (allowed / fact.factor.abs()).max(0.02)).min_by(|a, b| {
-        let off = |m: &mistakes::Mistake| (m.factor * fact.factor).ln().abs();
-        off(a).total_cmp(&off(b))
-    });
-    if let Some(mistake) = mistake {
-        let note =
-            Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note));
-        return invalid(note);
-    }
-    let sine = fact.latitude_deg.map(|l| l.to_radians().sin() * fact.factor);
-    match sine.filter(|s| s.abs() <= 1.0 && known) {
-        Some(sine) => invalid(
-            Note::new("known.latitude")
-                .with("factor", shown)
-                .with("stated", Arg::figures(fact.latitude_deg.unwrap_or(0.0), 4))
-                .with("fits", Arg::figures(sine.asin().to_degrees(), 3)),
-        ),
-        None => invalid(Note::new("known.off").with("factor", shown)),
-    }
 }

@@ -1,7 +1,7 @@
 //! Whether the values are spread as noise is. Noise of many causes is normal or has longer tails; values that were clipped,
 //! thinned out or replaced have shorter ones, and then every figure of their noise is too small.
 
-use super::{Condition, Facts, id_of, record};
+use super::facts::{Condition, Facts, GyroFact, id_of, record};
 use crate::i18n::Note;
 use crate::record::{ConditionRecord, ConditionStatus};
 
@@ -14,7 +14,7 @@ const CLEAR: f64 = 8.0;
 
 impl Condition for Tails {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
-        let one = |gyro: &super::GyroFact| {
+        let one = |gyro: &GyroFact| {
             let Some(shape) = gyro.tails.filter(|s| s.samples > 0) else {
                 facts.checks.not_made("distribution", Some(&gyro.channel), "check_list.no_plain_noise");
                 return None;

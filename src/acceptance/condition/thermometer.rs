@@ -1,6 +1,6 @@
 //! The scale of a thermometer by its readings alone, where no temperature is stated that would tell it.
 
-use super::record;
+use super::facts::record;
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::units::Unit;

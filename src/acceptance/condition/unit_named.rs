@@ -1,6 +1,6 @@
 //! The serial number that the recording states against the one under which it is tested.
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
 use crate::i18n::Note;
 use crate::record::{ConditionRecord, ConditionStatus};
 

@@ -1,6 +1,7 @@
 //! Units: that of a column's name against the declared one, and that of a temperature by its values.
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
+use super::stability_track::StabilityKey;
 use crate::config::procedure::model::TemperatureCondition;
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
@@ -55,7 +56,7 @@ fn named(spec: &crate::config::procedure::model::ChannelSpec, facts: &Facts<'_>)
 
 /// A temperature far from nominal that is near it in another unit.
 fn by_value(position: usize, c: &TemperatureCondition, facts: &Facts<'_>) -> Option<ConditionRecord> {
-    let track = facts.held.get(&("temperature".to_owned(), position));
+    let track = facts.stability.get(&StabilityKey::temperature(position));
     match track {
         Some(_) => facts.checks.made("temperature_unit", Some(&c.channel), "units"),
         None => facts.checks.not_made("temperature_unit", Some(&c.channel), "check_list.no_temperature"),

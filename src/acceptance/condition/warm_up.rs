@@ -1,6 +1,6 @@
 //! Whether the warm-up left out was long enough.
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
 

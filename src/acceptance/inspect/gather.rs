@@ -2,7 +2,7 @@
 
 use super::columns::{self, Content, Listed};
 use super::tracks::{Angle, Follow, LevelFacts, Levels, runs};
-use crate::acceptance::condition::temperature_track::{TemperatureFacts, TemperatureTrack};
+use crate::acceptance::condition::stability_track::{StabilityFacts, StabilityTrack};
 use crate::acceptance::run::evaluate::spectral;
 use crate::acceptance::run::reading::tidy;
 use crate::i18n::{Arg, Note};
@@ -183,7 +183,7 @@ struct Pass {
     tau0_s: f64,
     start_s: f64,
     gyros: Vec<GyroTrack>,
-    temperatures: Vec<(usize, TemperatureTrack, EnvelopeAccumulator)>,
+    temperatures: Vec<(usize, StabilityTrack, EnvelopeAccumulator)>,
     driven: Vec<(usize, Levels)>,
     table: Option<usize>,
     follow: Vec<(usize, Follow)>,
@@ -201,7 +201,7 @@ impl Pass {
             angle: Angle::default(),
         });
         let temperatures = slots(|r| r == Role::Temperature)
-            .map(|s| (s, TemperatureTrack::new(SMOOTHING_S, tau0_s, None), EnvelopeAccumulator::new()));
+            .map(|s| (s, StabilityTrack::new(SMOOTHING_S, tau0_s, None), EnvelopeAccumulator::new()));
         let driven = slots(|r| matches!(r, Role::TableRate | Role::TableAngle | Role::OuterRate))
             .map(|s| (s, Levels::default()));
         let table = channels.iter().position(|c| c.role == Role::TableRate);
@@ -244,10 +244,13 @@ impl Pass {
     /// Extremes are smoothed where the record is long enough for it.
     fn temperatures(&self, channels: &[Channel], smoothed: bool) -> Vec<Temperature> {
         let found = self.temperatures.iter().filter_map(|(slot, track, envelope)| {
-            let facts: TemperatureFacts = track.clone().finish()?;
+            let facts: StabilityFacts = track.clone().finish()?;
             let means: Vec<f64> = envelope.finish().bins.iter().map(|b| b.mean).collect();
-            let (min_deg_c, max_deg_c) =
-                if smoothed { (facts.smooth_min.value, facts.smooth_max.value) } else { facts.raw };
+            let (min_deg_c, max_deg_c) = if smoothed {
+                (facts.smooth_min.value, facts.smooth_max.value)
+            } else {
+                (facts.raw_min, facts.raw_max)
+            };
             Some(Temperature {
                 name: channels.get(*slot)?.id.clone(),
                 min_deg_c,

@@ -1,12 +1,12 @@
 //! From a recording to the outcome.
 
-use super::pass::{Collected, HeldKey, Inside, Overview};
+use super::pass::{Collected, Inside, Overview};
 use super::reading::{about, channels, plan, read_at_measured_interval, settle_integrity, tidy, window};
 use super::{
     Outcome, Request, RunError, drawn, gyro_facts, power, settle, sigma_tau, thermal, verdict, warm_up,
 };
 use crate::acceptance::condition::checks::CheckLog;
-use crate::acceptance::condition::temperature_track::TemperatureFacts;
+use crate::acceptance::condition::stability_track::{StabilityFacts, StabilityKey};
 use crate::acceptance::condition::{Facts, WarmUpFact, judge_all};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::{EarthRate, Taus};
@@ -41,7 +41,7 @@ pub(super) struct Found {
     pub tau0_s: f64,
     pub window: Window,
     pub gyros: Vec<GyroEvidence>,
-    pub held: BTreeMap<HeldKey, TemperatureFacts>,
+    pub stability: BTreeMap<StabilityKey, StabilityFacts>,
     pub envelopes: BTreeMap<usize, Envelope>,
     pub grid: TauGrid,
     pub exact: bool,
@@ -84,7 +84,7 @@ pub(super) fn execute(
         has_stamps: request.use_stamps && found.channels.iter().any(|c| c.role == Role::Time),
         usable_s: found.window.usable_s,
         longest_gap_s: longest_gap_s(&found.window),
-        held: &found.held,
+        stability: &found.stability,
         warm_up: if request.kind == RunKind::Run { &warm_up } else { &[] },
         gyros: &gyros,
         limits: request.limits,
@@ -144,7 +144,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
     };
     let ((overview, windowed), mut report) = read_at_measured_interval(&mut plan, &mut read)?;
     let (inside, window) = windowed.finish();
-    let Collected { gyros, held, means } = inside.finish();
+    let Collected { gyros, stability, means } = inside.finish();
     let tau0_s = tidy(report.tau0_measured_s);
     let several = gyros.len() > 1;
     let mut gyros: Vec<GyroEvidence> = gyros
@@ -185,7 +185,7 @@ fn collect(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<
         tau0_s,
         window,
         gyros,
-        held,
+        stability,
         envelopes,
         grid,
         exact,

@@ -1,6 +1,6 @@
 //! The sinks of a static test: everything is collected while the recording goes by once.
 
-use crate::acceptance::condition::temperature_track::{TemperatureFacts, TemperatureTrack};
+use crate::acceptance::condition::stability_track::{Band, StabilityFacts, StabilityKey, StabilityTrack};
 use crate::config::procedure::Procedure;
 use crate::i18n::Note;
 use crate::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
@@ -12,14 +12,11 @@ use crate::recording::{Channel, Role, Sink, Slab};
 use crate::temperature::track::{Means, Track};
 use std::collections::BTreeMap;
 
-/// Key of a quantity that must be held: kind of condition and its position.
-pub type HeldKey = (String, usize);
-
 /// What is collected inside the evaluated window.
 pub struct Inside {
     /// Position among the channels, and digest.
     gyros: Vec<(usize, RateAccumulator)>,
-    held: Vec<(HeldKey, usize, TemperatureTrack)>,
+    stability: Vec<(StabilityKey, usize, StabilityTrack)>,
     /// Block means of gyros and temperatures for tests over temperature and of the warm-up, with their positions among
     /// the channels.
     track: Option<(Vec<usize>, Track)>,
@@ -30,8 +27,8 @@ pub struct Inside {
 pub struct Collected {
     /// Per gyro channel: position among the channels, digest.
     pub gyros: Vec<(usize, RateDigest)>,
-    /// Quantities that must be held.
-    pub held: BTreeMap<HeldKey, TemperatureFacts>,
+    /// Channels that must stay within a band.
+    pub stability: BTreeMap<StabilityKey, StabilityFacts>,
     /// Block means, and the channels that they are of.
     pub means: Option<(Vec<usize>, Means)>,
 }
@@ -62,18 +59,19 @@ impl Inside {
             })
             .collect();
         let slot_of = |id: &str| channels.iter().position(|c| c.id == id);
-        let mut held = Vec::new();
+        let mut stability = Vec::new();
         for (i, c) in procedure.conditions.temperatures.iter().enumerate() {
             if let Some(slot) = slot_of(&c.channel) {
-                let band = (c.nominal_deg_c - c.tolerance_deg_c, c.nominal_deg_c + c.tolerance_deg_c);
-                let track = TemperatureTrack::new(c.smoothing_s, tau0_s, Some(band));
-                held.push((("temperature".to_owned(), i), slot, track));
+                let band = Band::about(c.nominal_deg_c, c.tolerance_deg_c);
+                let track = StabilityTrack::new(c.smoothing_s, tau0_s, Some(band));
+                stability.push((StabilityKey::temperature(i), slot, track));
             }
         }
         for (i, c) in procedure.conditions.supplies.iter().enumerate() {
             if let Some(slot) = slot_of(&c.channel) {
-                let band = (c.nominal_v - c.tolerance_v, c.nominal_v + c.tolerance_v);
-                held.push((("supply".to_owned(), i), slot, TemperatureTrack::new(0.0, tau0_s, Some(band))));
+                let band = Band::about(c.nominal_v, c.tolerance_v);
+                let track = StabilityTrack::new(0.0, tau0_s, Some(band));
+                stability.push((StabilityKey::supply(i), slot, track));
             }
         }
         let tracked = |c: &Channel| c.role.is_gyro() || matches!(c.role, Role::Temperature | Role::Supply);
@@ -84,11 +82,11 @@ impl Inside {
             let track = Track::new(slots.len(), tau0_s);
             (slots, track)
         });
-        Inside { gyros, held, track, start_s }
+        Inside { gyros, stability, track, start_s }
     }
 
-    /// The same without the gyro channels: only what must be held.
-    pub fn held_only(mut self) -> Inside {
+    /// The same without the gyro channels: only what must stay within a band.
+    pub fn stability_only(mut self) -> Inside {
         self.gyros.clear();
         self
     }
@@ -96,9 +94,10 @@ impl Inside {
     /// What was collected.
     pub fn finish(self) -> Collected {
         let gyros = self.gyros.into_iter().map(|(slot, digest)| (slot, digest.finish())).collect();
-        let held = self.held.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?))).collect();
+        let stability =
+            self.stability.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?))).collect();
         let means = self.track.and_then(|(slots, track)| Some((slots, track.finish()?)));
-        Collected { gyros, held, means }
+        Collected { gyros, stability, means }
     }
 }
 
@@ -109,7 +108,7 @@ impl Sink for Inside {
                 digest.push(values, slab.first_index, slab.continues);
             }
         }
-        for (_, slot, track) in &mut self.held {
+        for (_, slot, track) in &mut self.stability {
             if let Some(values) = slab.values.get(*slot) {
                 track.push(values, slab.time_s - self.start_s, slab.continues);
             }

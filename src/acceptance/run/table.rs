@@ -6,8 +6,7 @@ use super::reading::{self, tidy};
 use super::table_others::Others;
 use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
 use crate::acceptance::condition::checks::CheckLog;
-use crate::acceptance::condition::table::{ChannelFact, TableFacts, judge_and_tell, judge_scale};
-use crate::acceptance::condition::table_motion::Settling;
+use crate::acceptance::condition::table::{ChannelFact, Settling, TableFacts, judge_and_log, judge_scale};
 use crate::acceptance::condition::thermometer::{Thermometer, judge_scale_of_temperature};
 use crate::acceptance::condition::{Facts, judge_all};
 use crate::config::procedure::Procedure;
@@ -43,7 +42,7 @@ pub(super) fn execute(
             (gyro, scale_factor::evaluate(&run, gyro, setup, unit, &wanted))
         })
         .collect();
-    let mut conditions = judge_and_tell(&facts(request, &run, setup, &evaluated), &found.checks);
+    let mut conditions = judge_and_log(&facts(request, &run, setup, &evaluated), &found.checks);
     if setup.known.is_empty() && wants_alignment(procedure) {
         // The input axis is square to the axis that is turned about: its output follows by the tilt only.
         conditions.retain(|c| c.id != "table_reached");
@@ -161,7 +160,7 @@ pub(super) fn usual_conditions(request: &Request<'_>, found: &Found) -> Vec<Cond
         has_stamps: request.use_stamps && found.channels.iter().any(|c| c.role == Role::Time),
         usable_s: found.window.usable_s,
         longest_gap_s: evaluate::longest_gap_s(&found.window),
-        held: &found.held,
+        stability: &found.stability,
         warm_up: &[],
         gyros: &[],
         limits: request.limits,
@@ -202,7 +201,7 @@ pub(super) fn collect_blocks(
         let grid = TauGrid::Octave;
         let inside = Inside::new(procedure, &channels, &grid, &[], false, tidy(nominal_s), plan.start_s());
         let window = reading::window(procedure);
-        let mut held = Windowed::new(inside.held_only(), window.clone(), plan.start_s(), nominal_s);
+        let mut held = Windowed::new(inside.stability_only(), window.clone(), plan.start_s(), nominal_s);
         let mut blocks = Windowed::new(collector(&channels, nominal_s), window, plan.start_s(), nominal_s);
         let report = plan.stream(&mut [&mut overview, &mut held, &mut blocks], progress)?;
         Ok(((overview, held, blocks), report))
@@ -220,7 +219,7 @@ pub(super) fn collect_blocks(
         tau0_s,
         window,
         gyros: vec![],
-        held: held.finish().held,
+        stability: held.finish().stability,
         envelopes: overview.finish(),
         grid: TauGrid::Octave,
         exact: false,

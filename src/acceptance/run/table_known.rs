@@ -2,7 +2,8 @@
 
 use super::evaluate::Found;
 use super::{Outcome, Request, RunError, settle, table, verdict};
-use crate::acceptance::condition::table::{EarthFact, judge_earth, judge_scale};
+use crate::acceptance::condition::positions::{EarthFact, judge_earth};
+use crate::acceptance::condition::table::judge_scale;
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::rate_table::Setup;
 use crate::rate_table::blocks::Blocks;
@@ -77,7 +78,8 @@ pub(super) fn finish(
         seen.dedup();
         seen.len()
     };
-    conditions.insert(0, crate::acceptance::condition::table::judge_stretches(setup.known.len(), missing));
+    conditions
+        .insert(0, crate::acceptance::condition::positions::judge_stretches(setup.known.len(), missing));
     // Along the axis or across; a factor that noise alone may make says nothing.
     let of_turns = turns.iter().flat_map(|t| &t.table).map(|t| (&t.output, t.factor));
     let mut named: Vec<&str> = vec![];

@@ -1,11 +1,11 @@
-//! Mistakes of unit and of decimal mark, by the factor that they put on the values.
+//! UnitSlips of unit and of decimal mark, by the factor that they put on the values.
 
 use crate::i18n::Note;
 use crate::units::Unit;
 
-/// A mistake.
+/// A wrong unit or a misplaced decimal mark.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Mistake {
+pub(super) struct UnitSlip {
     /// Factor from the value as read to the value that was meant.
     pub factor: f64,
     /// Whether it is an exchange of the units that rates are mostly written in.
@@ -23,14 +23,14 @@ const UNITS: &[&str] = &[
 /// Units that rates are mostly written in.
 const USUAL: [&str; 3] = ["deg/s", "deg/h", "rad/s"];
 
-/// The mistakes that a channel declared in a unit can have.
-pub(super) fn rate_factors(declared: &str) -> Vec<Mistake> {
-    let mut list: Vec<Mistake> = Vec::new();
+/// The slips that a channel declared in a unit can have.
+pub(super) fn rate_factors(declared: &str) -> Vec<UnitSlip> {
+    let mut list: Vec<UnitSlip> = Vec::new();
     let Ok(own) = Unit::parse(declared) else { return list };
     let mut add = |factor: f64, usual: bool, note: Note| {
-        let known = |m: &Mistake| (m.factor / factor - 1.0).abs() < 1e-4;
+        let known = |m: &UnitSlip| (m.factor / factor - 1.0).abs() < 1e-4;
         if factor.is_finite() && (factor - 1.0).abs() > 1e-4 && !list.iter().any(known) {
-            list.push(Mistake { factor, usual, note });
+            list.push(UnitSlip { factor, usual, note });
         }
     };
     let factors: Vec<(&str, f64)> = UNITS
@@ -64,9 +64,9 @@ pub(super) fn rate_factors(declared: &str) -> Vec<Mistake> {
     list
 }
 
-/// The mistakes that stamps in seconds can have: factor from the time as read to the time that was meant.
-pub(super) fn time_factors() -> Vec<Mistake> {
-    let of = |factor: f64, note: Note| Mistake { factor, usual: false, note };
+/// The slips that stamps in seconds can have: factor from the time as read to the time that was meant.
+pub(super) fn time_factors() -> Vec<UnitSlip> {
+    let of = |factor: f64, note: Note| UnitSlip { factor, usual: false, note };
     let one = |factor: f64, unit: &str| of(factor, Note::new("mistake.time_unit").with("unit", unit));
     vec![
         one(1e-3, "ms"),
@@ -98,7 +98,7 @@ mod tests {
     fn factors_are_those_of_the_units_and_none_stands_twice() {
         let list = rate_factors("deg/h");
         let of = |unit: &str| {
-            let named = |m: &&Mistake| m.note.args.get("unit") == Some(&unit.into());
+            let named = |m: &&UnitSlip| m.note.args.get("unit") == Some(&unit.into());
             list.iter().find(named).map(|m| m.factor)
         };
         assert!((of("deg/s").unwrap() / 3600.0 - 1.0).abs() < 1e-12);

@@ -1,4 +1,5 @@
-//! One pass over a temperature channel: smoothed extremes and the steepest trend.
+//! One pass over a channel that must stay within a band, such as the temperature of the unit or its supply: smoothed
+//! extremes, the share outside the band, and the steepest trend.
 
 use crate::numeric::compensated::Compensated;
 use std::collections::VecDeque;
@@ -6,9 +7,9 @@ use std::collections::VecDeque;
 /// Length of the windows in which the trend of the temperature is measured, s.
 pub const TREND_WINDOW_S: f64 = 1800.0;
 
-/// Streaming statistics of a temperature channel, degC.
+/// Streaming statistics of a channel, in its own unit (degC, V).
 #[derive(Debug, Clone)]
-pub struct TemperatureTrack {
+pub struct StabilityTrack {
     smoothing_samples: usize,
     trend_samples: u64,
     tau0_s: f64,
@@ -24,11 +25,48 @@ pub struct TemperatureTrack {
     raw_max: f64,
     smooth_min: Extreme,
     smooth_max: Extreme,
-    outside: Option<(f64, f64)>,
+    band: Option<Band>,
     outside_count: u64,
     smooth_count: u64,
     trend: Trend,
     steepest_per_s: Option<f64>,
+}
+
+/// The condition that a channel is watched for: which one, and its position among those of its kind in the procedure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct StabilityKey {
+    /// Id of the condition: `temperature`, `supply`.
+    pub condition: &'static str,
+    /// Position in the procedure, from 0.
+    pub position: usize,
+}
+
+impl StabilityKey {
+    /// The temperature condition at a position.
+    pub fn temperature(position: usize) -> StabilityKey {
+        StabilityKey { condition: "temperature", position }
+    }
+
+    /// The supply condition at a position.
+    pub fn supply(position: usize) -> StabilityKey {
+        StabilityKey { condition: "supply", position }
+    }
+}
+
+/// A band of values, both ends included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Lowest value.
+    pub low: f64,
+    /// Highest value.
+    pub high: f64,
+}
+
+impl Band {
+    /// The band of a tolerance about a nominal value.
+    pub fn about(nominal: f64, tolerance: f64) -> Band {
+        Band { low: nominal - tolerance, high: nominal + tolerance }
+    }
 }
 
 /// An extreme and when it occurred.
@@ -42,15 +80,17 @@ pub struct Extreme {
 
 /// What the pass leaves behind.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TemperatureFacts {
+pub struct StabilityFacts {
     /// Usable samples.
     pub usable: u64,
     /// Samples that hold no number.
     pub unusable: u64,
     /// Mean, degC.
     pub mean: f64,
-    /// Extremes of single samples, degC.
-    pub raw: (f64, f64),
+    /// Smallest single sample.
+    pub raw_min: f64,
+    /// Largest single sample.
+    pub raw_max: f64,
     /// Smallest smoothed value.
     pub smooth_min: Extreme,
     /// Largest smoothed value.
@@ -91,11 +131,11 @@ impl Trend {
     }
 }
 
-impl TemperatureTrack {
+impl StabilityTrack {
     /// A track with the smoothing time, the sample interval and the band inside which smoothed values count as good.
-    pub fn new(smoothing_s: f64, tau0_s: f64, band: Option<(f64, f64)>) -> TemperatureTrack {
+    pub fn new(smoothing_s: f64, tau0_s: f64, band: Option<Band>) -> StabilityTrack {
         let start = |value| Extreme { value, time_s: 0.0 };
-        TemperatureTrack {
+        StabilityTrack {
             smoothing_samples: ((smoothing_s / tau0_s).round() as usize).clamp(1, 1 << 22),
             trend_samples: (TREND_WINDOW_S / tau0_s).round().max(2.0) as u64,
             tau0_s,
@@ -109,7 +149,7 @@ impl TemperatureTrack {
             raw_max: f64::NEG_INFINITY,
             smooth_min: start(f64::INFINITY),
             smooth_max: start(f64::NEG_INFINITY),
-            outside: band,
+            band,
             outside_count: 0,
             smooth_count: 0,
             trend: Trend::default(),
@@ -169,7 +209,7 @@ impl TemperatureTrack {
         if value > self.smooth_max.value {
             self.smooth_max = Extreme { value, time_s };
         }
-        if self.outside.is_some_and(|(low, high)| value < low || value > high) {
+        if self.band.is_some_and(|b| value < b.low || value > b.high) {
             self.outside_count += 1;
         }
     }
@@ -183,16 +223,17 @@ impl TemperatureTrack {
     }
 
     /// The facts; `None` when there was no usable sample.
-    pub fn finish(mut self) -> Option<TemperatureFacts> {
+    pub fn finish(mut self) -> Option<StabilityFacts> {
         self.flush_short_stretch(self.smooth_max.time_s);
         if self.usable == 0 {
             return None;
         }
-        Some(TemperatureFacts {
+        Some(StabilityFacts {
             usable: self.usable,
             unusable: self.unusable,
             mean: self.sum.value() / self.usable as f64,
-            raw: (self.raw_min, self.raw_max),
+            raw_min: self.raw_min,
+            raw_max: self.raw_max,
             smooth_min: self.smooth_min,
             smooth_max: self.smooth_max,
             share_outside: self.outside_count as f64 / self.smooth_count.max(1) as f64,
@@ -208,13 +249,13 @@ mod tests {
 
     #[test]
     fn smoothing_suppresses_a_spike_and_keeps_an_excursion() {
-        let mut track = TemperatureTrack::new(10.0, 1.0, Some((19.6, 20.4)));
+        let mut track = StabilityTrack::new(10.0, 1.0, Some(Band::about(20.0, 0.4)));
         let mut values = vec![20.0; 1000];
         values[100] = 22.0;
         values[500..600].fill(20.6);
         track.push(&values, 0.0, true);
         let f = track.finish().unwrap();
-        assert_eq!(f.raw.1, 22.0);
+        assert_eq!(f.raw_max, 22.0);
         assert!((f.smooth_max.value - 20.6).abs() < 1e-9);
         assert!((f.smooth_max.time_s - 509.0).abs() < 90.0);
         // 100 samples of excursion: all windows with at least 7 of 10 samples in it exceed the band.
@@ -223,7 +264,7 @@ mod tests {
 
     #[test]
     fn a_ramp_shows_its_trend() {
-        let mut track = TemperatureTrack::new(60.0, 10.0, None);
+        let mut track = StabilityTrack::new(60.0, 10.0, None);
         let values: Vec<f64> = (0..720).map(|i| 20.0 + 4.0 * f64::from(i) * 10.0 / 3600.0).collect();
         track.push(&values, 0.0, true);
         assert!((track.finish().unwrap().steepest_deg_c_per_h.unwrap() - 4.0).abs() < 1e-9);
@@ -231,7 +272,7 @@ mod tests {
 
     #[test]
     fn a_channel_without_numbers_says_nothing() {
-        let mut track = TemperatureTrack::new(60.0, 1.0, None);
+        let mut track = StabilityTrack::new(60.0, 1.0, None);
         track.push(&[f64::NAN; 5], 0.0, true);
         assert!(track.finish().is_none());
     }

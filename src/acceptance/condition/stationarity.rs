@@ -1,13 +1,13 @@
-//! Whether the record is of one piece: a step of the mean, a change of the noise. Remarks only: a unit may do so, and
-//! then its limits judge it; but so does a record that was put together from two.
+//! Whether the rate is stationary: a step of the mean, a change of the noise. Remarks only: a unit may do so, and then its
+//! limits judge it; but so does a record that was put together from two.
 
-use super::{Condition, Facts, record};
+use super::facts::{Condition, Facts, record};
 use crate::i18n::Note;
 use crate::record::{ConditionRecord, ConditionStatus};
 
-pub(super) struct Steadiness;
+pub(super) struct Stationarity;
 
-impl Condition for Steadiness {
+impl Condition for Stationarity {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
         let mut found = Vec::new();
         for gyro in facts.gyros {

@@ -1,0 +1,101 @@
+//! What a test in positions and by turns of known angles must have been: every stated stretch found, and the Earth's
+//! rotation seen as it is. A wrong sign, unit, axis or latitude is named.
+
+use super::facts::record;
+use super::unit_slip::{self, UnitSlip};
+use crate::i18n::{Arg, Note};
+use crate::record::{ConditionRecord, ConditionStatus};
+
+/// What a channel makes of the Earth's rotation in several positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EarthFact {
+    /// Channel.
+    pub channel: String,
+    /// Whether there are others.
+    pub several: bool,
+    /// Unit declared for it.
+    pub unit: String,
+    /// Output per Earth rate expected.
+    pub factor: f64,
+    /// Standard uncertainty of it.
+    pub standard: f64,
+    /// Bias, deg/h.
+    pub bias: f64,
+    /// Latitude, where all axes are vertical: what the factor says of it.
+    pub latitude_deg: Option<f64>,
+    /// Pairs of positions that were turned in software only.
+    pub software: Vec<(String, String)>,
+    /// Channel that shows the Earth's rotation between these positions in place of this one, and its factor.
+    pub turned_instead: Option<(String, f64)>,
+}
+
+/// Judges whether all stretches of a procedure were found.
+pub fn judge_stretches(stated: usize, missing: usize) -> ConditionRecord {
+    let (status, key) = if missing == 0 {
+        (ConditionStatus::Ok, "known.stretches")
+    } else {
+        (ConditionStatus::Invalid, "known.stretches_missing")
+    };
+    let note = Note::new(key).with("n", stated).with("missing", missing);
+    record("known_stretches", status, &[("stretches", (stated - missing) as f64)], None, note)
+}
+
+/// Judges whether positions show the Earth's rotation as it is.
+pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
+    let id = if fact.several { format!("known_earth.{}", fact.channel) } else { "known_earth".to_owned() };
+    let required = Some(Note::new("known.required.earth"));
+    let observed = [("factor", fact.factor)];
+    let allowed = 4.0 * fact.standard;
+    let shown = Arg::figures(fact.factor, 4);
+    let invalid =
+        |note: Note| record(id.clone(), ConditionStatus::Invalid, &observed, required.clone(), note);
+    if let Some((first, second)) = fact.software.first() {
+        return invalid(
+            Note::new("known.software").with("first", first.as_str()).with("second", second.as_str()),
+        );
+    }
+    if let Some((other, their)) = &fact.turned_instead {
+        return invalid(
+            Note::new("known.software_axis")
+                .with("channel", fact.channel.as_str())
+                .with("other", other.as_str())
+                .with("theirs", Arg::figures(*their, 4))
+                .with("factor", shown),
+        );
+    }
+    if (fact.factor - 1.0).abs() <= allowed.max(0.02) {
+        let key = if fact.standard > 0.25 { "known.earth_weak" } else { "known.earth_seen" };
+        let note = Note::new(key).with("factor", shown).with("uncertainty", Arg::figures(fact.standard, 2));
+        return record(id, ConditionStatus::Ok, &observed, required, note);
+    }
+    if (fact.factor + 1.0).abs() <= allowed.max(0.02) {
+        return invalid(Note::new("known.reversed").with("factor", shown));
+    }
+    // A factor that is not known to a tenth says nothing of units, nor of a latitude.
+    let known = allowed <= 0.1 * fact.factor.abs();
+    let units = || unit_slip::rate_factors(&fact.unit).into_iter().filter(|_| known);
+    let off = |m: &UnitSlip| (m.factor * fact.factor - 1.0).abs();
+    let usual = units().any(|m| m.usual && off(&m) <= 0.02);
+    if fact.factor.abs() <= allowed.max(0.02) && !usual {
+        return invalid(Note::new("known.not_turned").with("factor", shown));
+    }
+    let mistake = units().filter(|m| off(m) <= (allowed / fact.factor.abs()).max(0.02)).min_by(|a, b| {
+        let off = |m: &UnitSlip| (m.factor * fact.factor).ln().abs();
+        off(a).total_cmp(&off(b))
+    });
+    if let Some(mistake) = mistake {
+        let note =
+            Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note));
+        return invalid(note);
+    }
+    let sine = fact.latitude_deg.map(|l| l.to_radians().sin() * fact.factor);
+    match sine.filter(|s| s.abs() <= 1.0 && known) {
+        Some(sine) => invalid(
+            Note::new("known.latitude")
+                .with("factor", shown)
+                .with("stated", Arg::figures(fact.latitude_deg.unwrap_or(0.0), 4))
+                .with("fits", Arg::figures(sine.asin().to_degrees(), 3)),
+        ),
+        None => invalid(Note::new("known.off").with("factor", shown)),
+    }
+}
