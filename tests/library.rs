@@ -122,7 +122,9 @@ fn errors_say_what_they_are_about() {
     // Shorter than the warm-up that the procedure excludes.
     let time_s: Vec<f64> = (0..100).map(f64::from).collect();
     let rate: Vec<f64> = time_s.iter().map(|t| 12.5 + 0.01 * (t * t).sin()).collect();
-    let short = Recording::from_columns([("time_s", time_s), ("rate_deg_h", rate)]).unwrap();
+    let temp = vec![20.0; 100];
+    let short =
+        Recording::from_columns([("time_s", time_s), ("rate_deg_h", rate), ("temp_degC", temp)]).unwrap();
     let run = Procedure::load("procedures/static-bias.toml").unwrap().run(&short, &UnitUnderTest::default());
     let run = run.err().unwrap();
     assert!(run.is_not_evaluable(), "{run}");

@@ -135,7 +135,7 @@ fn what_comes_while_the_work_goes_on_is_safe() {
     assert_eq!(round(&target), 2);
     fs::write(target.join("scan.pdf"), "signed").unwrap();
     let refused = three.publish(record(3)).unwrap_err().to_string();
-    assert!(refused.contains("holds `scan.pdf`"), "{refused}");
+    assert!(refused.contains("contains `scan.pdf`"), "{refused}");
     assert_eq!(fs::read_to_string(target.join("scan.pdf")).unwrap(), "signed");
     assert_eq!(entries(dir.path()), ["result"]);
 }

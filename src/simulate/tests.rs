@@ -304,7 +304,7 @@ fn what_cannot_be_simulated_is_said() {
     let fast =
         Series { time_s: vec![0.0, 0.5], index: vec![0, 1], sample_interval_s: 0.5, ..Series::default() };
     assert!(refused(&quiet, Over::Like(&fast)).contains("2 Hz"));
-    assert!(refused(&quiet, Over::Like(&Series::default())).contains("no row"));
+    assert!(refused(&quiet, Over::Like(&Series::default())).contains("no usable rows"));
     let unfinished = claim("[[effect]]\nkind = \"bias_step\"\n[effect.parameters]\nstep_deg_h = 5.0\n");
     let run = Simulation::begin(order(&unfinished, 1, 10.0)).unwrap().all();
     assert!(run.unwrap_err().note().say(Lang::En).contains("lacks parameters"));

@@ -58,7 +58,7 @@ fn a_check_that_lacks_what_it_needs_is_listed_with_the_reason() {
     .unwrap();
     let r = run(dir.path(), "p.toml", "r.csv", &["--serial", "S"]);
     for (id, reason) in [
-        ("clock", "no time stamps"),
+        ("clock", "no timestamps"),
         ("noise_level", "no typical value"),
         ("column_units", "states no unit"),
         ("serial_number", "states no serial number"),

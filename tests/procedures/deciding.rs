@@ -104,7 +104,7 @@ fn slips_of_the_pen_are_named() {
         ),
         (
             "[[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.5 deg/s\"\n",
-            "1800 deg/h: no gyro in working order",
+            "1800 deg/h: no working gyro",
         ),
         (
             "[[limit]]\nmeasurand = \"static_bias\"\nmax_abs = \"2e-1 deg/s\"\n[[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.5 deg/h\"\n",

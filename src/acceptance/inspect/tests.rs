@@ -59,7 +59,7 @@ fn a_long_rest_supports_the_static_test() {
             "static test Yes: at rest, 10.5 h",
             "up to 3780 s (1.05 h) for a flicker floor (T/10), up to 7560 s (2.1 h) for a fit",
             "1 Hz, one sample every 1 s",
-            "`rate_deg_h`: No 1/f noise was identified.",
+            "`rate_deg_h`: No 1/f noise identified.",
             "temperature test No: no temperature column.",
             "scale factor No: there is no column with a table rate",
         ],
@@ -98,7 +98,7 @@ fn a_turn_is_no_rest_for_any_axis() {
     says(
         &text,
         &[
-            "static test No: `rate_x_deg_h` did not stand still",
+            "static test No: `rate_x_deg_h` moved",
             "`rate_x_deg_h` covers 90 deg",
             "Not at rest: another axis of the unit was rotated.",
             "Angle random walk is not determined from a moving record.",
@@ -134,7 +134,7 @@ fn a_slow_change_with_the_temperature_is_told_from_a_turn() {
     let up: Vec<f64> = (0..n).map(|i| 20.0 + 0.002 * f64::from(i)).collect();
     let one_way =
         told(vec![("time_s", stamps(1.0, 8000)), ("rate_deg_h", rate(0.0)), ("temp_degC", up)], None);
-    says(&one_way, &["temperature test In part", "in one direction only", "steepest trend 7.2 degC/h"]);
+    says(&one_way, &["temperature test Partly", "in one direction only", "steepest trend 7.2 degC/h"]);
 }
 
 #[test]
@@ -311,7 +311,7 @@ fn what_cannot_be_used_is_said_and_does_no_harm() {
 fn a_guessed_unit_and_a_missing_gyro_are_said() {
     let n = 1000;
     let text = told(vec![("time_s", stamps(1.0, n)), ("gyro_z", noise(0.1, 12, 1.0, n))], None);
-    says(&text, &["gyro_z rate deg/h?", "The unit of `gyro_z` is not named and was assumed."]);
+    says(&text, &["gyro_z rate deg/h?", "The unit of `gyro_z` is not stated and was assumed."]);
     let text = told(vec![("time_s", stamps(1.0, n)), ("phase_s", noise(0.1, 12, 1.0, n))], None);
     says(&text, &["No column was recognised as a gyro output", "tests None: no gyro output was recognised."]);
 }
