@@ -237,7 +237,9 @@ fn a_result_of_other_inputs_is_replaced_by_force_only() {
     ] {
         let said = typed(dir.path(), &other);
         assert_eq!(said.code, 2, "{differs}: {said:?}");
-        for part in ["result pass of unit SN-1", &format!("made from different inputs: {differs};"), "--force"] {
+        for part in
+            ["result pass of unit SN-1", &format!("made from different inputs: {differs};"), "--force"]
+        {
             assert!(said.err.contains(part), "{part}: {}", said.err);
         }
         assert!(files(&dir.path().join("out")) == before, "{differs}");

@@ -123,7 +123,7 @@ fn what_cannot_be_made_is_refused_and_leaves_nothing() {
         (&["simulate", "bare.toml", "--out", "a.csv"], "no length"),
         (&["simulate", "none.toml", "--out", "a.csv"], "cannot be read"),
         (&["simulate", &model, "--out", "own.csv", "--like", "own.csv"], "write to another file"),
-        (&["simulate", &model, "--out", "a.csv", "--like", "own.csv"], "the recording has 1 Hz"),
+        (&["simulate", &model, "--out", "a.csv", "--like", "own.csv"], "the recording is sampled at 1 Hz"),
         (
             &["simulate", &model, "--out", "a.csv", "--like", "own.csv", "--duration", "1h"],
             "are mutually exclusive",

@@ -254,7 +254,7 @@ mod tests {
     }
 
     fn every_argument() -> Note {
-        Note::new("note.record_too_short")
+        Note::new("note.russian_too_short")
             .with("number", 0.1)
             .with("whole", 3.0)
             .with("count", 3_u64)

@@ -102,10 +102,7 @@ fn slips_of_the_pen_are_named() {
             "[[limit]]\nmeasurand = \"static_bias\"\nmax_abs = \"0.5 deg/s\"\n",
             "1800 deg/h: channel `rate` is read in deg/h",
         ),
-        (
-            "[[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.5 deg/s\"\n",
-            "1800 deg/h: no working gyro",
-        ),
+        ("[[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.5 deg/s\"\n", "1800 deg/h: no working gyro"),
         (
             "[[limit]]\nmeasurand = \"static_bias\"\nmax_abs = \"2e-1 deg/s\"\n[[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.5 deg/h\"\n",
             "720 deg/h: the limit on `bias_instability`",

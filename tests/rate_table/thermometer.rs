@@ -26,7 +26,9 @@ fn kelvin_and_fahrenheit_under_the_name_of_celsius_are_named() {
         let (code, broken) = judged(scale);
         assert_ne!(code, 0, "{unit}");
         assert!(
-            broken.iter().any(|(id, note)| id == "units.temp" && note.contains(&format!("as {unit} it would be"))),
+            broken
+                .iter()
+                .any(|(id, note)| id == "units.temp" && note.contains(&format!("as {unit} it would be"))),
             "{unit}: {broken:?}"
         );
     }

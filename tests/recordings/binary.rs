@@ -103,9 +103,9 @@ fn containers_say_what_they_hold_and_what_is_left_out() {
     assert!(read.source.metadata().contains(&("serial".into(), "SN-7".into())));
     let said = notes(&read.source);
     for left in [
-        "`z` is left out: its numbers are complex",
-        "`sp` is left out: it is a sparse",
-        "`c` is left out: it is a cell",
+        "`z` is skipped: its numbers are complex",
+        "`sp` is skipped: it is a sparse",
+        "`c` is skipped: it is a cell",
         "`short` is skipped: it has 5",
     ] {
         assert!(said.contains(left), "{said}");
@@ -114,7 +114,7 @@ fn containers_say_what_they_hold_and_what_is_left_out() {
     assert_eq!(read.names, ["data.time_s", "data.rate_deg_h", "data.temp_degC"]);
     assert_eq!(read.columns, columns(&[time_s, rate, temperature]));
     assert_eq!(read.source.stated_sample_rate_hz(), Some(200.0));
-    assert!(notes(&read.source).contains("`data.deep` is left out: it is a structure within a structure"));
+    assert!(notes(&read.source).contains("`data.deep` is skipped: it is a structure within a structure"));
     let read = sound("matrix.mat");
     assert_eq!(read.names, ["m(:,1)", "m(:,2)", "flags", "n"]);
     assert_eq!(read.columns, columns(&[time_s, rate, |i| f64::from(u8::from(i % 2 == 0)), |i| i as f64]));
@@ -139,9 +139,9 @@ fn read_names(name: &str, options: &ReadOptions) -> Vec<String> {
 fn what_holds_no_numbers_is_refused_with_advice() {
     let plain = ReadOptions::default();
     let error = read_error(&fixture("objects.npy"), &plain).say(Lang::En);
-    assert!(error.contains("Python objects; objects are never unpacked"), "{error}");
+    assert!(error.contains("Python objects; objects are never loaded"), "{error}");
     let error = read_error(&fixture("nothing.mat"), &plain).say(Lang::En);
-    assert!(error.contains("`z` is left out: its numbers are complex; save plain arrays"), "{error}");
+    assert!(error.contains("`z` is skipped: its numbers are complex; save plain arrays"), "{error}");
     let format = |id: &str| ReadOptions { format: Some(id.into()), ..ReadOptions::default() };
     let error = read_error(&fixture("v7.mat"), &format("nyp")).say(Lang::En);
     assert!(error.contains("unknown format `nyp`; did you mean `npy`?"), "{error}");

@@ -81,11 +81,11 @@ fn a_run_on_a_recording_that_was_cut_is_not_valid() {
         std::fs::write(dir.path().join(name), &bytes[..bytes.len() * 6 / 10]).unwrap();
         let seen = sagnac(dir.path(), &["inspect", name]);
         if seen.code != 0 {
-            assert!(format!("{seen:?}").contains("cut off"), "{name}: {seen:?}");
+            assert!(format!("{seen:?}").contains("truncated"), "{name}: {seen:?}");
             continue;
         }
         let page = format!("{seen:?}");
-        assert!(page.contains("cut off") && !page.contains("no fault"), "{name}: {page}");
+        assert!(page.contains("truncated") && !page.contains("no fault"), "{name}: {page}");
         let said = sagnac(dir.path(), &["analyze", name, "--out", name.split('.').next().unwrap()]);
         if said.code != 2 {
             let r = result(&dir.path().join(name.split('.').next().unwrap()));

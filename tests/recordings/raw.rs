@@ -111,7 +111,7 @@ fn a_layout_that_does_not_fit_is_refused() {
     std::fs::write(&path, imu(250)).unwrap();
     for (change, to, says) in [
         ("EB 90", "EB 91", "the layout does not match: 0 of the first 250 records are valid"),
-        ("\"crc32\"", "\"crc16-ccitt\"", "0 are sound"),
+        ("\"crc32\"", "\"crc16-ccitt\"", "0 of the first 250 records are valid"),
         ("header_bytes = 16", "header_bytes = 9000", "less than the header and one record"),
         ("\"i16\"", "\"int16\"", "layout.toml:27:9: `int16` is not a valid value of `type`"),
     ] {

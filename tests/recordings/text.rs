@@ -65,7 +65,7 @@ fn a_procedure_fixes_every_decision() {
 #[test]
 fn wrong_decisions_are_pointed_at() {
     for (from, to, token, message) in [
-        ("\"windows-1251\"", "\"cp1251\"", "cp1251", "is not a value of `encoding`"),
+        ("\"windows-1251\"", "\"cp1251\"", "cp1251", "is not a valid value of `encoding`"),
         ("delimiter = \";\"", "delimiter = \"colon\"", "colon", "is not a valid value of `delimiter`"),
         (
             "delimiter = \";\"",
@@ -139,7 +139,7 @@ fn options_of_the_command_line_decide_and_are_contradicted() {
     assert!(out.contains("delimiter `;`, decimal mark `,`") && out.contains("it was stated"), "{out}");
     for (options, said) in [
         (&["--decimal", "point"][..], "the numbers have `,`"),
-        (&["--delimiter", "tab"], "the lines are separated by `;`"),
+        (&["--delimiter", "tab"], "the lines are delimited by `;`"),
         (&["--format", "parquet"], "the file does not match it"),
         (&["--format", "docx"], "known formats: "),
         (&["--header-line", "0"], ""),

@@ -137,7 +137,7 @@ fn a_folder_replaces_templates_by_name() {
     std::fs::write(folder.path().join("extra.html"), "<p>Extra</p>").unwrap();
     let renderer = Renderer::with_overrides(folder.path()).unwrap();
     let html = render_html(&fixture::pass(), &[], Lang::En, &renderer).unwrap();
-    assert!(html.contains("<p>Signed for F501-0417: 0.00231 °/h; The worst of all rows counts"), "{html}");
+    assert!(html.contains("<p>Signed for F501-0417: 0.00231 °/h; The worst row decides"), "{html}");
     assert!(html.contains("<p>Extra</p>") && !html.contains("Reviewed by"));
 }
 

@@ -48,6 +48,11 @@ const LITERALS: &[(&str, &str, &str)] = &[
     ),
     ("src/report/svg/mod.rs", "system-ui", "names of fonts"),
     (
+        "src/record/message.rs",
+        "is not an argument of this presentation",
+        "a fault of the reader of JSON, quoted as it says it",
+    ),
+    (
         "crates/sagnac-ingest/src/column_inference.rs",
         "the inside units are units",
         "a message of a programming error",

@@ -117,7 +117,7 @@ impl From<String> for Arg {
 /// A message: its key in the locale tables, and its arguments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
-    /// Key in the locale tables, for example `note.record_too_short`.
+    /// Key in the locale tables, for example `note.russian_too_short`.
     pub id: Cow<'static, str>,
     /// Arguments by name.
     pub args: BTreeMap<Cow<'static, str>, Arg>,

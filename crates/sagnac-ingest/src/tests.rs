@@ -87,7 +87,7 @@ fn names_are_found_and_wrong_ones_get_a_hint() {
     assert!(english(&name("voltage").unwrap_err().note()).contains("the file has: time_s, rate, rate"));
     let twice = name("rate").unwrap_err();
     assert_eq!(twice.kind(), IngestErrorKind::Column);
-    assert!(english(&twice.note()).contains("stands over 2 columns (2, 3)"), "{twice}");
+    assert!(english(&twice.note()).contains("is used by 2 columns (2, 3)"), "{twice}");
     assert_eq!(source.resolve(&ColumnRef::Position(3)).unwrap(), 2);
     for p in [0, 4] {
         assert!(

@@ -209,7 +209,7 @@ fn what_a_user_states_is_followed_or_contradicted() {
         week_column: None,
     };
     for (bytes, options, fragment) in [
-        (&b"t;r\n0;1,5\n1;2,5\n"[..], stated(|o| o.delimiter = Some(b'|')), "the lines are separated by `;`"),
+        (&b"t;r\n0;1,5\n1;2,5\n"[..], stated(|o| o.delimiter = Some(b'|')), "the lines are delimited by `;`"),
         (b"t;r\n0;1,5\n1;2,5\n", stated(|o| o.decimal = Some(b'.')), "the numbers have `,`"),
         (b"t,r\n0,1.5\n1,2.5\n", stated(|o| o.encoding = Some(Encoding::Utf16Le)), "it looks like UTF-8"),
         (
