@@ -61,7 +61,7 @@ fn a_long_rest_supports_the_static_test() {
             "1 Hz, one sample every 1 s",
             "`rate_deg_h`: No 1/f noise identified.",
             "temperature test No: no temperature column.",
-            "scale factor No: there is no column with a table rate",
+            "scale factor No: no column with a table rate",
         ],
     );
     keeps_quiet(&text, &["sample clock is off", "known angle", "Earth rate"]);

@@ -71,7 +71,10 @@ pub fn whole(
     let of = |v: Verdict| rows.iter().filter(move |r| r.verdict == v);
     let mut reasons: Vec<Note> = Vec::new();
     if !invalid.is_empty() {
-        reasons.push(Note::new("summary.conditions_invalid").with("n", invalid.len()));
+        reasons.push(match invalid.len() {
+            1 => Note::new("summary.one_condition_invalid"),
+            n => Note::new("summary.conditions_invalid").with("n", n),
+        });
     }
     reasons.extend(invalid.iter().map(|c| {
         let why = c.message.clone().map_or_else(|| Arg::Text(c.note.clone()), Arg::from);
@@ -100,6 +103,7 @@ pub fn whole(
     let worst = rows.iter().map(|r| r.verdict).max().unwrap_or(Verdict::None);
     let verdict = if invalid.is_empty() { worst } else { Verdict::Indeterminate };
     match verdict {
+        Verdict::Pass if judged == 1 => reasons.push(Note::new("summary.one_passed")),
         Verdict::Pass => reasons.push(Note::new("summary.all_passed").with("n", judged)),
         Verdict::None => reasons.push(Note::new("summary.no_limits")),
         _ => {}
