@@ -248,7 +248,7 @@ fn a_result_of_other_inputs_is_replaced_by_force_only() {
     forced.push("--force");
     let said = typed(dir.path(), &forced);
     assert!(
-        said.code == 1 && said.err.contains("held the result pass of unit SN-1, evaluated 20"),
+        said.code == 1 && said.err.contains("replaced the result pass of unit SN-1, evaluated 20"),
         "{said:?}"
     );
     assert_eq!(result(&dir.path().join("out"))["verdict"], "fail");

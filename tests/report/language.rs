@@ -11,6 +11,11 @@ use std::process::Command;
 /// and names of standards. What stands between backticks or double quotes, or in square brackets, is the user's or a
 /// file's and is not looked at.
 const LATIN: &[&str] = &[
+    // Symbols of formulas.
+    "c",
+    "w",
+    "dT",
+    "dt",
     // Formats, encodings, and programs.
     "CSV",
     "Parquet",
