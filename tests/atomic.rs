@@ -274,7 +274,7 @@ fn a_result_of_other_inputs_is_replaced_by_force_only() {
     assert_eq!(simulate("1")(&[]).code, 0);
     assert_eq!(simulate("1")(&[]).code, 0, "the same recording anew");
     let said = simulate("2")(&[]);
-    assert!(said.code == 2 && said.err.contains("holds something else"), "{said:?}");
+    assert!(said.code == 2 && said.err.contains("exists with different content"), "{said:?}");
     assert_eq!(simulate("2")(&["--force"]).code, 0);
     assert_eq!(names(dir.path()), ["a", "c", "limits.toml", "out", "procedure.toml", "s.csv"]);
 }

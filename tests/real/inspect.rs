@@ -25,7 +25,7 @@ fn a_turned_fibre_optic_unit_shows_its_clock_error() {
         &[
             "static test No: `delta_angle_x_deg` moved",
             "Not at rest: another axis of the unit was rotated.",
-            "If it comes from the mains (120 Hz), the sample clock is off by 3.9 %",
+            "If it is mains hum (120 Hz), the sample clock is off by 3.9 %",
             "they are nominal",
             "`delta_angle_x_deg` covers 179.2 deg",
         ],
