@@ -1,7 +1,7 @@
 //! Options that say how a recording is to be read.
 
 use crate::config::read_words::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding};
-use crate::ingest::raw::LayoutFile;
+use crate::ingest::layout::LayoutFile;
 use crate::ingest::{ReadOptions, TextOptions};
 use clap::Args;
 use clap::builder::PossibleValuesParser;

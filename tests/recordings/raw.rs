@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::ReadOptions;
-use sagnac::ingest::raw::LayoutFile;
+use sagnac::ingest::layout::LayoutFile;
 use std::path::Path;
 use tempfile::tempdir;
 

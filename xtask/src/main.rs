@@ -1,5 +1,6 @@
 //! Commands for people who work on Sagnac.
 
+mod features;
 mod same_results;
 
 use std::path::{Path, PathBuf};
@@ -11,6 +12,8 @@ validate [STUDY]... [--records N] [--seed N] [--list]
     Run Monte Carlo studies and write docs/validation/.
 same-results OLD NEW [--only TEXT]
     Run every shipped sample with two binaries and compare their result.json: numbers to the last digit.
+features [CARGO OPTION]...
+    Check sagnac-ingest with every cargo feature alone, with none and with all.
 ";
 
 fn main() -> ExitCode {
@@ -22,6 +25,7 @@ fn main() -> ExitCode {
             Some((old, new, only)) => same_results::compare(root, &old, &new, &only),
             None => usage(),
         },
+        Some((command, rest)) if command == "features" => features::check(root, rest),
         _ => usage(),
     }
 }

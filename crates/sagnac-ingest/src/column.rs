@@ -1,6 +1,5 @@
-//! A column of a file, and which column is what.
+//! A column of a file, and what its name and the format tell of it.
 
-use super::{Source, choice};
 use crate::column_inference::{InferredColumn, infer};
 use sagnac_core::message::Note;
 use sagnac_core::recording::Role;
@@ -39,20 +38,3 @@ impl Column {
 
 /// Storage of a text column of dates without a time, which tells no sample from the next.
 pub(crate) const DATES: &str = "dates";
-
-impl Source {
-    /// The serial numbers of units that the recording states under usual keys: more than one where files of several
-    /// units were put together.
-    pub fn stated_serials(&self) -> Vec<&str> {
-        choice::serials(self.metadata())
-    }
-
-    /// Position of the column that tells the time, from 0: the first that goes on, else the first that starts again,
-    /// such as clock time.
-    pub fn time_column(&self) -> Option<usize> {
-        let first = |wanted: fn(&Column) -> bool| {
-            self.columns().iter().position(|c| c.numeric && wanted(c) && c.inferred().role == Role::Time)
-        };
-        first(|c| c.rollover_s.is_none()).or_else(|| first(|_| true))
-    }
-}

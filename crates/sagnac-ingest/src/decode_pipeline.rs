@@ -2,9 +2,10 @@
 
 use super::compressed::{ByteStream, Digested, Packing};
 use super::error::{IngestError, IngestErrorKind};
+use super::guarded::guarded;
 use super::memory::non_finite;
-use super::number::usable;
 use super::{Block, FieldFaultKind, FileFacts, OnBlock};
+use sagnac_core::numeric::range::usable;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -88,7 +89,7 @@ pub(super) fn run_pipeline(
         let hash = scope.spawn(move || digest(path, stop));
         let decoder = scope.spawn(move || {
             let mut blocks = Blocks { slots, done: 0, out, free };
-            decode(&mut blocks).map(|()| blocks.rows())
+            guarded(path, || decode(&mut blocks).map(|()| blocks.rows()))
         });
         let mut stopped = false;
         for mut block in filled {

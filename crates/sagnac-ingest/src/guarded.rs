@@ -1,15 +1,22 @@
-//! Decoders of other hands that may panic on damaged input: the panic becomes an error of the file, without a word on
-//! the terminal.
+//! Decoders may panic on damaged input, above all those of other crates: the panic becomes an error of the file.
+//!
+//! Every format is opened, and every decoder on a thread of its own is run, by [`guarded`]. No panic hook is set here: a
+//! program that wants no message of such a panic on its terminal sets one that asks [`decoder_is_running`].
 
-use super::{IngestError, IngestErrorKind};
+use crate::error::{IngestError, IngestErrorKind};
 use sagnac_core::message::Note;
 use std::cell::Cell;
-use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::Once;
 
 thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// True while this thread runs a decoder whose panics are caught and reported as an error of the file. For the panic hook
+/// of a program.
+pub fn decoder_is_running() -> bool {
+    GUARDED.get()
 }
 
 /// Runs a decoder on this thread; what it holds must not be used again when it fails.
@@ -20,15 +27,6 @@ pub(super) fn guarded<T>(
     path: &Path,
     decoder: impl FnOnce() -> Result<T, IngestError>,
 ) -> Result<T, IngestError> {
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let before = take_hook();
-        set_hook(Box::new(move |panic| {
-            if !GUARDED.get() {
-                before(panic);
-            }
-        }));
-    });
     let outer = GUARDED.replace(true);
     let outcome = catch_unwind(AssertUnwindSafe(decoder));
     GUARDED.set(outer);
@@ -42,4 +40,25 @@ pub(super) fn guarded<T>(
         )
         .hint("ingest.hint.damaged"))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::english::english;
+
+    #[test]
+    fn a_panic_becomes_an_error_of_the_file() {
+        let path = Path::new("unit.rec");
+        let outcome: Result<(), _> = guarded(path, || {
+            assert!(decoder_is_running());
+            let inner = guarded(path, || Ok(1));
+            assert!(inner.is_ok() && decoder_is_running());
+            panic!("index out of range")
+        });
+        assert!(!decoder_is_running());
+        let error = outcome.unwrap_err();
+        assert_eq!(error.kind(), IngestErrorKind::Damaged);
+        assert!(english(&error.note()).contains("index out of range"));
+    }
 }

@@ -26,14 +26,31 @@
 //! # }
 //! ```
 
+// Formats share helpers; where only some formats are compiled in, some helpers have no user.
+#![cfg_attr(
+    not(all(
+        feature = "bag",
+        feature = "hdf5",
+        feature = "matlab",
+        feature = "mcap",
+        feature = "numpy",
+        feature = "parquet",
+        feature = "raw",
+        feature = "tdms",
+        feature = "text"
+    )),
+    allow(dead_code)
+)]
+
 mod accumulated;
+#[cfg(any(feature = "matlab", feature = "numpy", feature = "raw"))]
 mod binary;
 mod block;
-mod choice;
 pub mod clock;
 mod column;
 pub mod column_inference;
 pub mod compressed;
+#[cfg(any(feature = "bag", feature = "hdf5", feature = "mcap", feature = "parquet", feature = "tdms"))]
 mod decode_pipeline;
 #[cfg(test)]
 mod english;
@@ -41,14 +58,17 @@ mod error;
 pub mod faults;
 mod field_faults;
 mod format;
+mod format_detection;
 mod formats;
 mod guarded;
 mod identity;
 pub mod joined;
+pub mod layout;
 mod memory;
-mod number;
+mod metadata;
 mod options;
-mod parts;
+#[cfg(any(feature = "bag", feature = "hdf5", feature = "mcap", feature = "tdms"))]
+mod part_selection;
 pub mod pattern;
 mod pauses;
 mod plan;
@@ -61,11 +81,11 @@ pub mod value_checks;
 
 pub use block::{Block, FieldFault, FieldFaultKind, FileFacts};
 pub use column::Column;
-pub(crate) use column::DATES;
 pub use compressed::Packing;
 pub use error::{IngestError, IngestErrorKind};
 pub use format::{Candidate, Format, OnBlock, Opened, Table};
-pub use formats::{FORMATS, raw};
+pub use formats::FORMATS;
+pub use guarded::decoder_is_running;
 pub use joined::PartFacts;
 pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
 pub use pauses::Pauses;
@@ -77,5 +97,5 @@ pub use system::io_reason;
 /// Longest piece of the start of a file that is looked at, bytes.
 const HEAD: usize = 256 << 10;
 
-#[cfg(test)]
+#[cfg(all(test, feature = "text"))]
 mod tests;

@@ -1,8 +1,8 @@
 //! A recording in memory, delivered in blocks as a file would be.
 
 use super::error::{IngestError, IngestErrorKind};
-use super::number::usable;
 use super::{Block, Column, FieldFault, FieldFaultKind, FileFacts, OnBlock, Opened, Table};
+use sagnac_core::numeric::range::usable;
 use std::path::Path;
 
 struct Memory {

@@ -1,6 +1,6 @@
 //! How a file is to be read, where its user says so and nothing is left to be found out.
 
-use crate::formats::raw::LayoutFile;
+use crate::layout::LayoutFile;
 use sagnac_core::recording::ColumnRef;
 
 /// Decisions about a file that were made for it; what is `None` is found from the file, and the finding is told.

@@ -2,11 +2,14 @@
 
 use super::compressed::{self, ByteStream, Packing, io_error};
 use super::error::{IngestError, IngestErrorKind};
+use super::format_detection::format_of;
+use super::guarded::guarded;
 use super::identity::FileIdentity;
 use super::joined::{self, PartFacts};
-use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, choice, memory, reduce};
+use super::metadata::serial_numbers;
+use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, memory, reduce};
 use sagnac_core::message::Note;
-use sagnac_core::recording::ColumnRef;
+use sagnac_core::recording::{ColumnRef, Role};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -68,8 +71,8 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         head_is_all,
         options: options.clone(),
     };
-    let format = choice::format(&candidate)?;
-    let opened = format.open(&candidate)?;
+    let format = format_of(&candidate)?;
+    let opened = guarded(path, || format.open(&candidate))?;
     Ok(Source {
         path: path.to_owned(),
         format: format.id(),
@@ -189,6 +192,21 @@ impl Source {
     /// What the file says of itself, key and value as written.
     pub fn metadata(&self) -> &[(String, String)] {
         &self.opened.metadata
+    }
+
+    /// The serial numbers of units that the recording states under usual keys: more than one where files of several
+    /// units were put together.
+    pub fn stated_serials(&self) -> Vec<&str> {
+        serial_numbers(self.metadata())
+    }
+
+    /// Position of the column that tells the time, from 0: the first that goes on, else the first that starts again,
+    /// such as clock time.
+    pub fn time_column(&self) -> Option<usize> {
+        let first = |wanted: fn(&Column) -> bool| {
+            self.columns().iter().position(|c| c.numeric && wanted(c) && c.inferred().role == Role::Time)
+        };
+        first(|c| c.rollover_s.is_none()).or_else(|| first(|_| true))
     }
 
     /// Sample rate that the file states, Hz.

@@ -111,9 +111,11 @@ fn unreadable_files_are_refused_with_their_reason() {
         (b"t,r\n", Empty, "a header but no rows"),
         (b"# only\n# comments\n", Empty, "only comments"),
         (b"PK\x03\x04abc", UnknownFormat, "a zip archive"),
+        #[cfg(feature = "hdf5")]
         (b"\x89HDF\r\n\x1a\n", Damaged, "the HDF5 file cannot be decoded"),
         (b"\xff\xfet\0,\0r\0", Empty, "a header but no rows"),
         (b"abc\0def\0\x01", UnknownFormat, "neither text nor a supported binary format"),
+        #[cfg(feature = "parquet")]
         (b"PAR1 but no more", Damaged, "cannot be decoded"),
         (b"rate\n0,5\n1,5\n", UnknownFormat, "the comma appears to be both delimiter and decimal mark"),
         (&gzip(b""), Empty, "the compressed file is empty"),
@@ -245,52 +247,6 @@ fn a_file_that_changes_is_refused() {
     }
     let sizes = |open, read, now| compressed::unchanged(Path::new("x"), open, read, now).is_ok();
     assert!(sizes(5, 5, 5) && !sizes(5, 6, 6) && !sizes(5, 5, 6) && !sizes(5, 4, 5));
-}
-
-#[test]
-fn parquet_numbers_nulls_and_words() {
-    use ::parquet::data_type::{ByteArrayType, DoubleType, FloatType, Int32Type, Int64Type};
-    use ::parquet::file::writer::SerializedFileWriter;
-    let schema = "message m { required double t; optional float r; required int32 i; required int64 l;
-                  required binary word (UTF8); optional int64 stamp (TIMESTAMP(MILLIS,true)); }";
-    let schema = std::sync::Arc::new(::parquet::schema::parser::parse_message_type(schema).unwrap());
-    let f = NamedTempFile::new().unwrap();
-    let mut w = SerializedFileWriter::new(f.reopen().unwrap(), schema, Default::default()).unwrap();
-    for group in 0..2i32 {
-        let mut g = w.next_row_group().unwrap();
-        macro_rules! column {
-            ($t:ty, $values:expr, $levels:expr) => {
-                let mut c = g.next_column().unwrap().unwrap();
-                c.typed::<$t>().write_batch($values, $levels, None).unwrap();
-                c.close().unwrap();
-            };
-        }
-        let base = f64::from(group) * 3.0;
-        column!(DoubleType, &[base, base + 1.0, f64::INFINITY], None);
-        column!(FloatType, &[1.5, 2.5], Some(&[1, 0, 1]));
-        column!(Int32Type, &[1, 2, 3], None);
-        column!(Int64Type, &[-1, 1 << 40, 3], None);
-        column!(ByteArrayType, &["a".into(), "b".into(), "c".into()], None);
-        column!(Int64Type, &[1_700_000_000_000, 1_700_000_000_001, 1_700_000_000_002], Some(&[1, 1, 1]));
-        g.close().unwrap();
-    }
-    w.close().unwrap();
-    let source = open(f.path()).unwrap();
-    assert_eq!(source.rows_estimate(), Some(6));
-    let kinds: Vec<bool> = source.columns().iter().map(|c| c.numeric).collect();
-    assert_eq!(kinds, [true, true, true, true, false, true]);
-    assert_eq!(source.columns()[5].unit.as_deref(), Some("ms"));
-    let e = source.resolve(&ColumnRef::Name("word".to_owned())).unwrap_err();
-    assert!(english(&e.note()).contains("not numbers"), "{e}");
-    let (columns, faults, facts) = read(f.path(), &[0, 1, 2, 3, 5]).unwrap();
-    assert_eq!(facts.rows, 6);
-    assert_eq!((columns[0][3], columns[0][4]), (3.0, 4.0));
-    assert!(columns[0][2].is_nan() && columns[1][1].is_nan());
-    assert_eq!((columns[1][0], columns[1][2], columns[1][5]), (1.5, 2.5, 2.5));
-    assert_eq!((columns[2][5], columns[3][4], columns[4][0]), (3.0, (1u64 << 40) as f64, 1.7e12));
-    let found: Vec<(u64, usize, &str)> = faults.iter().map(|f| (f.row, f.slot, f.text.as_str())).collect();
-    assert_eq!(found, [(3, 0, "inf"), (2, 1, "null"), (6, 0, "inf"), (5, 1, "null")]);
-    assert_eq!(facts.sha256, compressed::digest(f.path()).unwrap().sha256);
 }
 
 proptest::proptest! {

@@ -7,7 +7,7 @@ pub use read::{load, parse};
 
 use crate::config::diagnostics::Problems;
 use crate::i18n::Note;
-pub use sagnac_ingest::raw::{Layout, LayoutFile};
+pub use sagnac_ingest::layout::{Layout, LayoutFile};
 use sagnac_ingest::{IngestError, IngestErrorKind};
 use std::path::Path;
 

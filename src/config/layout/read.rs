@@ -7,8 +7,8 @@ use crate::config::reader::{Reader, checked};
 use crate::config::section::{Entry, Section};
 use crate::i18n::Note;
 use crate::units::Unit;
-use sagnac_ingest::raw::{ByteOrder, Field, NumberType};
-use sagnac_ingest::raw::{Checksum, LONGEST_RECORD, Layout, LayoutColumn, MOST_COLUMNS, Sum};
+use sagnac_ingest::layout::{ByteOrder, Field, NumberType};
+use sagnac_ingest::layout::{Checksum, Layout, LayoutColumn, MAX_COLUMNS, MAX_RECORD_BYTES, Sum};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -67,8 +67,8 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
         }
     }
     names(root, &columns, reader);
-    if columns.len() > MOST_COLUMNS {
-        let message = Note::new("layout.columns").with("most", MOST_COLUMNS);
+    if columns.len() > MAX_COLUMNS {
+        let message = Note::new("layout.columns").with("most", MAX_COLUMNS);
         reader.error(&root.span_of("field"), message, None);
     }
     let mut end = taken.iter().map(|t| t.to).max().unwrap_or(0);
@@ -89,8 +89,8 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
         let help = Note::new("layout.write_bytes").with("end", end);
         reader.error(&root.span_of("record_bytes"), message, Some(help));
     }
-    if record_bytes > LONGEST_RECORD {
-        let message = Note::new("layout.too_long").with("most", LONGEST_RECORD).with("bytes", record_bytes);
+    if record_bytes > MAX_RECORD_BYTES {
+        let message = Note::new("layout.too_long").with("most", MAX_RECORD_BYTES).with("bytes", record_bytes);
         reader.error(&root.span, message, None);
         return None;
     }
@@ -163,9 +163,9 @@ fn field(
     let from = if section.entry("offset").is_some() { size(section, "offset", reader)? } else { next };
     let count = size(section, "count", reader)?;
     let to =
-        count.checked_mul(kind.bytes()).and_then(|n| n.checked_add(from)).filter(|n| *n <= LONGEST_RECORD);
+        count.checked_mul(kind.bytes()).and_then(|n| n.checked_add(from)).filter(|n| *n <= MAX_RECORD_BYTES);
     let Some(to) = to else {
-        let message = Note::new("layout.field_beyond").with("most", LONGEST_RECORD);
+        let message = Note::new("layout.field_beyond").with("most", MAX_RECORD_BYTES);
         reader.error(&section.span_of("offset"), message, None);
         return None;
     };
@@ -284,7 +284,7 @@ fn checksum(
     };
     let from = size(section, "from", reader)?;
     let to = if given("to") { size(section, "to", reader)? } else { at };
-    if at > LONGEST_RECORD {
+    if at > MAX_RECORD_BYTES {
         reader.error(&section.span_of("offset"), "layout.offset", None);
         return None;
     }

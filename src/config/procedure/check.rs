@@ -11,7 +11,7 @@ use crate::config::layout;
 use crate::config::manifest::{self, Manifest, is_manifest};
 use crate::config::model;
 use crate::i18n::{Lang, Localize, Note, visible};
-use sagnac_ingest::raw::Layout;
+use sagnac_ingest::layout::Layout;
 use std::path::Path;
 
 /// What a file turned out to be.

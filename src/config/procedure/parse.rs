@@ -16,7 +16,7 @@ use super::{channel, reading, validate};
 use crate::config::inside;
 use crate::record::{ClauseRecord, WaiverRecord};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
-use sagnac_ingest::raw::LayoutFile;
+use sagnac_ingest::layout::LayoutFile;
 use std::path::{Path, PathBuf};
 
 /// Reads a procedure from its text. The second value holds every problem, warnings among them. With its folder, the

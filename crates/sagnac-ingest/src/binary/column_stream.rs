@@ -1,10 +1,10 @@
 //! Columns that lie in different places of a file, each packed or not, read side by side in blocks of rows.
 
-use super::at::{At, Part, digest_unless};
-use super::number_type::Field;
+use super::positioned_file::{FileRange, PositionedFile, digest_unless};
 use super::records::{ROWS, fields, set_aside_unusable};
 use crate::compressed::io_error;
 use crate::error::{IngestError, IngestErrorKind};
+use crate::layout::Field;
 use crate::{Block, FileFacts, OnBlock, Table};
 use sagnac_core::message::Note;
 use std::collections::BTreeMap;
@@ -61,8 +61,8 @@ impl Stream {
     }
 
     /// The unpacked bytes from the start. The end of the packed data is checked where it is read to it.
-    pub fn open(&self, at: &Arc<At>) -> Unpacked {
-        let part = Part::new(at, self.from, self.length);
+    pub fn open(&self, at: &Arc<PositionedFile>) -> Unpacked {
+        let part = FileRange::new(at, self.from, self.length);
         let limit = BOMB_FROM.max(at.size.saturating_mul(BOMB_RATIO));
         let inner = match self.coding {
             Coding::Stored => Inner::Stored(part),
@@ -77,10 +77,10 @@ impl Stream {
 }
 
 enum Inner {
-    Stored(Part),
-    Checked(Part, flate2::Crc, u32),
-    Deflate(flate2::read::DeflateDecoder<Part>, flate2::Crc, u32),
-    Zlib(flate2::read::ZlibDecoder<Part>),
+    Stored(FileRange),
+    Checked(FileRange, flate2::Crc, u32),
+    Deflate(flate2::read::DeflateDecoder<FileRange>, flate2::Crc, u32),
+    Zlib(flate2::read::ZlibDecoder<FileRange>),
 }
 
 /// Unpacked bytes, in order.
@@ -186,7 +186,7 @@ pub(crate) fn stream_error(path: &std::path::Path, name: &str, error: &io::Error
 
 /// Records at a place of a stream, one for each row.
 #[derive(Debug, Clone)]
-pub(crate) struct Group {
+pub(crate) struct RecordGroup {
     /// Which stream.
     pub stream: usize,
     /// First byte of the first record in the unpacked stream.
@@ -197,7 +197,7 @@ pub(crate) struct Group {
 
 /// A column: a field of the records of a group.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Lane {
+pub(crate) struct ColumnPlace {
     /// Which group.
     pub group: usize,
     /// Where and how its values stand in the records of the group.
@@ -206,8 +206,8 @@ pub(crate) struct Lane {
 
 /// Unpacked streams that are read at several places.
 #[derive(Default)]
-struct Spool {
-    file: Option<Arc<At>>,
+struct UnpackedCopies {
+    file: Option<Arc<PositionedFile>>,
     writer: Option<File>,
     length: u64,
     /// Where a stream begins, and its length.
@@ -215,16 +215,16 @@ struct Spool {
 }
 
 /// Columns in a file.
-pub(crate) struct Lanes {
+pub(crate) struct ColumnStreamTable {
     path: PathBuf,
     /// Size of the file as it stands, bytes.
     bytes: u64,
-    at: Arc<At>,
+    at: Arc<PositionedFile>,
     streams: Vec<Stream>,
-    groups: Vec<Group>,
-    lanes: Vec<Option<Lane>>,
+    groups: Vec<RecordGroup>,
+    columns: Vec<Option<ColumnPlace>>,
     rows: u64,
-    spool: Mutex<Spool>,
+    spool: Mutex<UnpackedCopies>,
 }
 
 /// Where a group is read from.
@@ -236,24 +236,24 @@ struct Source {
     stride: usize,
 }
 
-impl Lanes {
+impl ColumnStreamTable {
     /// Puts columns together that were found in a file.
     pub fn new(
         path: PathBuf,
         bytes: u64,
-        at: Arc<At>,
+        at: Arc<PositionedFile>,
         streams: Vec<Stream>,
-        groups: Vec<Group>,
-        lanes: Vec<Option<Lane>>,
+        groups: Vec<RecordGroup>,
+        columns: Vec<Option<ColumnPlace>>,
         rows: u64,
-    ) -> Lanes {
-        Lanes { path, bytes, at, streams, groups, lanes, rows, spool: Mutex::default() }
+    ) -> ColumnStreamTable {
+        ColumnStreamTable { path, bytes, at, streams, groups, columns, rows, spool: Mutex::default() }
     }
 
     /// Opens what the wanted columns are read from, each group once.
     fn sources(&self, wanted: &[usize]) -> Result<Vec<Source>, IngestError> {
         let mut groups: Vec<usize> =
-            wanted.iter().filter_map(|w| self.lanes.get(*w)?.as_ref().map(|l| l.group)).collect();
+            wanted.iter().filter_map(|w| self.columns.get(*w)?.as_ref().map(|l| l.group)).collect();
         groups.sort_unstable();
         groups.dedup();
         let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
@@ -310,7 +310,7 @@ impl Lanes {
             }
             let handle = writer.try_clone().map_err(|e| io_error(&self.path, &e))?;
             spool.length = start + length;
-            spool.file = Some(At::of(handle, spool.length));
+            spool.file = Some(PositionedFile::of(handle, spool.length));
             spool.places.insert(index, (start, length));
         }
         let place = spool.places.get(&index).zip(spool.file.as_ref());
@@ -322,7 +322,7 @@ impl Lanes {
 
     /// Reads every row; false when the consumer stopped.
     fn deliver(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<bool, IngestError> {
-        let columns: Vec<Option<Field>> = self.lanes.iter().map(|l| l.map(|l| l.field)).collect();
+        let columns: Vec<Option<Field>> = self.columns.iter().map(|l| l.map(|l| l.field)).collect();
         let fields = fields(&self.path, &columns, wanted)?;
         let mut sources = self.sources(wanted)?;
         let most = (NUMBERS / wanted.len().max(1)).clamp(64, ROWS);
@@ -331,8 +331,8 @@ impl Lanes {
         let places: Vec<Option<(usize, Field)>> = wanted
             .iter()
             .map(|w| {
-                let lane = self.lanes.get(*w).copied().flatten()?;
-                Some((sources.iter().position(|s| s.group == lane.group)?, lane.field))
+                let place = self.columns.get(*w).copied().flatten()?;
+                Some((sources.iter().position(|s| s.group == place.group)?, place.field))
             })
             .collect();
         let mut block = Block::default();
@@ -370,7 +370,7 @@ impl Lanes {
     }
 }
 
-impl Table for Lanes {
+impl Table for ColumnStreamTable {
     fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError> {
         let stop = AtomicBool::new(false);
         std::thread::scope(|scope| {

@@ -1,9 +1,10 @@
-//! What the readers of binary files share: numbers of fixed width, records that follow each other, columns that lie
-//! somewhere in a file, and the names of scalars that tell a sample rate.
+//! What the readers of binary files share: records that follow each other, columns that lie somewhere in a file, and the
+//! choice among arrays of different length.
 
-pub(super) mod at;
-pub(super) mod choose;
-pub(super) mod column_stream;
-pub(super) mod number_type;
-pub(super) mod rate;
-pub(super) mod records;
+#[cfg(any(feature = "matlab", feature = "numpy"))]
+pub(crate) mod array_selection;
+#[cfg(any(feature = "matlab", feature = "numpy"))]
+pub(crate) mod column_stream;
+#[cfg(any(feature = "matlab", feature = "numpy"))]
+pub(crate) mod positioned_file;
+pub(crate) mod records;

@@ -1,12 +1,12 @@
 //! Records of fixed length that follow each other: read and hashed by one thread, decoded by another.
 
-use super::number_type::Field;
 use crate::compressed::{ByteStream, Packing};
 use crate::error::{IngestError, IngestErrorKind};
+use crate::layout::Field;
 use crate::memory::non_finite;
-use crate::number::usable;
 use crate::{Block, FieldFault, FieldFaultKind, FileFacts, OnBlock, Table};
 use sagnac_core::message::Note;
+use sagnac_core::numeric::range::usable;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
@@ -16,22 +16,16 @@ pub(crate) const ROWS: usize = 1 << 15;
 /// Bytes that are read at a time.
 const CHUNK: usize = 1 << 20;
 
-/// Longest record, bytes: several records must fit into what is read at a time.
-pub const LONGEST_RECORD: usize = 1 << 18;
-
-/// Most columns of a recording. Arrays that seem to have more are no recordings.
-pub const MOST_COLUMNS: usize = 4096;
-
 /// Whole records cut out of a stream of bytes, and those among them that cannot be used.
 #[derive(Debug, Default)]
-pub(crate) struct Cut {
+pub(crate) struct FramedRecords {
     /// Records one after another; a bad one is all zeros.
     pub records: Vec<u8>,
     /// Bad records: position among the records, and what was found there.
     pub bad: Vec<(usize, String)>,
 }
 
-impl Cut {
+impl FramedRecords {
     /// Takes records of which the last one is cut off: it becomes a bad one. `at`: place of the first in the file.
     fn keep_rest(&mut self, bytes: &[u8], stride: usize, at: u64) {
         let whole = bytes.len() / stride;
@@ -48,7 +42,7 @@ impl Cut {
 /// Finds the records in a stream in which they are not simply one after another.
 pub(crate) trait Framer {
     /// Takes the next bytes, the last ones when `end` is true, and gives the records that are complete.
-    fn take(&mut self, bytes: &[u8], end: bool, out: &mut Cut);
+    fn take(&mut self, bytes: &[u8], end: bool, out: &mut FramedRecords);
 }
 
 /// Makes a framer for a reading from the start.
@@ -62,7 +56,7 @@ pub(crate) struct Records {
     pub packing: Packing,
     /// Bytes before the first record.
     pub header_bytes: u64,
-    /// Length of a record, bytes; 1 to [`LONGEST_RECORD`].
+    /// Length of a record, bytes; 1 to [`MAX_RECORD_BYTES`](crate::layout::MAX_RECORD_BYTES).
     pub record_bytes: usize,
     /// Number of records, where the file declares it.
     pub declared_rows: Option<u64>,
@@ -172,7 +166,7 @@ impl Records {
     ) -> Option<u64> {
         let stride = self.record_bytes.max(1);
         let mut framer = self.framer.as_ref().map(|make| make());
-        let mut cut = Cut::default();
+        let mut cut = FramedRecords::default();
         let mut block = Block::default();
         let mut rows = 0u64;
         for chunk in chunks {

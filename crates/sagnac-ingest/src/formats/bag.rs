@@ -3,7 +3,7 @@
 use super::topics::message::Encoding;
 use super::topics::source::{Catalog, Container, Event, Fields, OnEvent, Stream, broken, unpack};
 use crate::error::IngestError;
-use crate::{Candidate, Format, Opened, parts};
+use crate::{Candidate, Format, Opened, part_selection};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -30,7 +30,7 @@ impl Format for RosBag {
     }
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
-        parts::unpacked(file, "ingest.ros.bag")?;
+        part_selection::unpacked(file, "ingest.ros.bag")?;
         super::topics::open(file, &BagFile)
     }
 }

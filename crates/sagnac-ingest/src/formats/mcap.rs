@@ -3,7 +3,7 @@
 use super::topics::message::Encoding;
 use super::topics::source::{Catalog, Container, Event, Fields, OnEvent, Stream, broken, unpack};
 use crate::error::IngestError;
-use crate::{Candidate, Format, Opened, parts};
+use crate::{Candidate, Format, Opened, part_selection};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -41,7 +41,7 @@ impl Format for Mcap {
     }
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
-        parts::unpacked(file, "ingest.ros.mcap")?;
+        part_selection::unpacked(file, "ingest.ros.mcap")?;
         super::topics::open(file, &McapFile)
     }
 }

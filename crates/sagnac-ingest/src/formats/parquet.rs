@@ -3,9 +3,7 @@
 use crate::compressed::{Packing, io_error};
 use crate::decode_pipeline::{Blocks, run_pipeline};
 use crate::error::{IngestError, IngestErrorKind};
-use crate::guarded::guarded;
 use crate::memory::non_finite;
-use crate::number::usable;
 use crate::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -14,6 +12,7 @@ use ::parquet::errors::ParquetError;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::schema::types::ColumnDescriptor;
 use sagnac_core::message::Note;
+use sagnac_core::numeric::range::usable;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -98,7 +97,7 @@ fn describe(column: &ColumnDescriptor) -> Column {
 
 fn reader(path: &Path) -> Result<SerializedFileReader<File>, IngestError> {
     let file = File::open(path).map_err(|e| io_error(path, &e))?;
-    guarded(path, || SerializedFileReader::new(file).map_err(|e| damaged(path, &e)))
+    SerializedFileReader::new(file).map_err(|e| damaged(path, &e))
 }
 
 fn damaged(path: &Path, error: &ParquetError) -> IngestError {
@@ -118,9 +117,7 @@ struct ParquetFile {
 
 impl Table for ParquetFile {
     fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError> {
-        run_pipeline(&self.path, wanted.len(), on_block, |blocks| {
-            guarded(&self.path, || self.decode(wanted, blocks))
-        })
+        run_pipeline(&self.path, wanted.len(), on_block, |blocks| self.decode(wanted, blocks))
     }
 }
 
@@ -227,4 +224,64 @@ where
         *place = column;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::english::english;
+    use ::parquet::data_type::{ByteArrayType, DoubleType, FloatType, Int32Type, Int64Type};
+    use ::parquet::file::writer::SerializedFileWriter;
+    use sagnac_core::recording::ColumnRef;
+    use std::ops::ControlFlow;
+
+    #[test]
+    fn parquet_numbers_nulls_and_words() {
+        let schema = "message m { required double t; optional float r; required int32 i; required int64 l;
+                      required binary word (UTF8); optional int64 stamp (TIMESTAMP(MILLIS,true)); }";
+        let schema = std::sync::Arc::new(::parquet::schema::parser::parse_message_type(schema).unwrap());
+        let f = tempfile::NamedTempFile::new().unwrap();
+        let mut w = SerializedFileWriter::new(f.reopen().unwrap(), schema, Default::default()).unwrap();
+        for group in 0..2i32 {
+            let mut g = w.next_row_group().unwrap();
+            macro_rules! column {
+                ($t:ty, $values:expr, $levels:expr) => {
+                    let mut c = g.next_column().unwrap().unwrap();
+                    c.typed::<$t>().write_batch($values, $levels, None).unwrap();
+                    c.close().unwrap();
+                };
+            }
+            let base = f64::from(group) * 3.0;
+            column!(DoubleType, &[base, base + 1.0, f64::INFINITY], None);
+            column!(FloatType, &[1.5, 2.5], Some(&[1, 0, 1]));
+            column!(Int32Type, &[1, 2, 3], None);
+            column!(Int64Type, &[-1, 1 << 40, 3], None);
+            column!(ByteArrayType, &["a".into(), "b".into(), "c".into()], None);
+            column!(Int64Type, &[1_700_000_000_000, 1_700_000_000_001, 1_700_000_000_002], Some(&[1, 1, 1]));
+            g.close().unwrap();
+        }
+        w.close().unwrap();
+        let source = crate::open(f.path()).unwrap();
+        assert_eq!(source.rows_estimate(), Some(6));
+        let kinds: Vec<bool> = source.columns().iter().map(|c| c.numeric).collect();
+        assert_eq!(kinds, [true, true, true, true, false, true]);
+        assert_eq!(source.columns()[5].unit.as_deref(), Some("ms"));
+        let e = source.resolve(&ColumnRef::Name("word".to_owned())).unwrap_err();
+        assert!(english(&e.note()).contains("not numbers"), "{e}");
+        let (mut columns, mut faults) = (vec![Vec::new(); 5], Vec::new());
+        let facts = source.read(&[0, 1, 2, 3, 5], &mut |block| {
+            columns.iter_mut().zip(&block.columns).for_each(|(all, part)| all.extend_from_slice(part));
+            faults.append(&mut block.faults);
+            ControlFlow::Continue(())
+        });
+        let facts = facts.unwrap().unwrap();
+        assert_eq!(facts.rows, 6);
+        assert_eq!((columns[0][3], columns[0][4]), (3.0, 4.0));
+        assert!(columns[0][2].is_nan() && columns[1][1].is_nan());
+        assert_eq!((columns[1][0], columns[1][2], columns[1][5]), (1.5, 2.5, 2.5));
+        assert_eq!((columns[2][5], columns[3][4], columns[4][0]), (3.0, (1u64 << 40) as f64, 1.7e12));
+        let found: Vec<(u64, usize, &str)> =
+            faults.iter().map(|f| (f.row, f.slot, f.text.as_str())).collect();
+        assert_eq!(found, [(3, 0, "inf"), (2, 1, "null"), (6, 0, "inf"), (5, 1, "null")]);
+        assert_eq!(facts.sha256, crate::compressed::digest(f.path()).unwrap().sha256);
+    }
 }

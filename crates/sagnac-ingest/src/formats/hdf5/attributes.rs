@@ -1,6 +1,6 @@
 //! What attributes say: units, dates, scales, the sample rate.
 
-use crate::parts::stated_rate_hz;
+use crate::metadata::stated_sample_rate_hz;
 use hdf5_reader::Attribute;
 
 /// What the attributes of a dataset say of its values.
@@ -66,7 +66,7 @@ pub(super) fn said(attributes: &[Attribute]) -> Said {
                 said.matlab = true;
                 said.matlab_text = text(a).is_some_and(|t| t == "char");
             }
-            _ => said.rate_hz = said.rate_hz.or_else(|| stated_rate_hz(&name, number()?)),
+            _ => said.rate_hz = said.rate_hz.or_else(|| stated_sample_rate_hz(&name, number()?)),
         }
     }
     said

@@ -6,7 +6,8 @@ mod table;
 mod walk;
 
 use crate::error::{IngestError, IngestErrorKind};
-use crate::parts::{self, Metadata};
+use crate::metadata::Metadata;
+use crate::part_selection;
 use crate::{Candidate, Format, Opened};
 use hdf5_reader::error::Error;
 use hdf5_reader::{FileStorage, Hdf5File, OpenOptions};
@@ -44,19 +45,19 @@ impl Format for Hdf5 {
     }
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
-        parts::unpacked(file, "ingest.hdf5.what")?;
+        part_selection::unpacked(file, "ingest.hdf5.what")?;
         let path = &file.path;
         let container = container(path, file.bytes)?;
         let found = walk::walk(&container).map_err(|e| damaged(path, &e))?;
         let found = found.narrowed(file.options.part.as_deref());
-        let parts: Vec<parts::Part> = found.parts.iter().map(|p| p.part.clone()).collect();
-        let (chosen, mut notes) = parts::choose(path, &parts, file.options.part.as_deref())?;
+        let parts: Vec<part_selection::Part> = found.parts.iter().map(|p| p.part.clone()).collect();
+        let (chosen, mut notes) = part_selection::choose(path, &parts, file.options.part.as_deref())?;
         let part = found.parts.into_iter().nth(chosen).ok_or_else(|| {
             IngestError::new(IngestErrorKind::Empty, path, "ingest.parts.none")
                 .hint("ingest.parts.hint.check")
         })?;
         let rows = part.part.common_rows().unwrap_or(0);
-        notes.extend(parts::odd_lengths(&part.part, rows));
+        notes.extend(part_selection::odd_lengths(&part.part, rows));
         notes.extend(part.notes);
         notes.extend(found.notes);
         let mut columns = Vec::new();

@@ -3,7 +3,8 @@
 use super::attributes;
 use super::number::Storage;
 use crate::Column;
-use crate::parts::{Part, stated_rate_hz};
+use crate::metadata::stated_sample_rate_hz;
+use crate::part_selection::Part;
 use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::{Dataset, Datatype, Hdf5File, SliceInfo};
@@ -170,7 +171,7 @@ fn told(attributes: &[hdf5_reader::Attribute]) -> (Vec<(String, String)>, Option
     let mut rate = None;
     for a in attributes.iter().take(OBJECTS) {
         let number = attributes::number(a);
-        rate = rate.or_else(|| stated_rate_hz(&a.name, number?));
+        rate = rate.or_else(|| stated_sample_rate_hz(&a.name, number?));
         let value = attributes::text(a).or_else(|| number.map(|v| v.to_string()));
         metadata.extend(value.map(|v| (a.name.clone(), v)));
     }
@@ -284,7 +285,7 @@ fn single(part: &mut GroupPart, dataset: &Dataset, name: &str) {
             let number = Storage::of(dataset.dtype())
                 .and_then(|_| dataset.read_slice::<super::number::Number>(&all).ok())
                 .and_then(|a| a.iter().next().map(|n| n.0));
-            if let Some(rate) = number.and_then(|v| stated_rate_hz(name, v)) {
+            if let Some(rate) = number.and_then(|v| stated_sample_rate_hz(name, v)) {
                 part.stated_rate_hz = part.stated_rate_hz.or(Some(rate));
             }
             number.map(|v| v.to_string())

@@ -1,7 +1,7 @@
 //! The elements of a MAT file, version 5: a tag with type and length before every piece of data, in order.
 
 use crate::binary::column_stream::Unpacked;
-use crate::binary::number_type::{ByteOrder, NumberType};
+use crate::layout::{ByteOrder, NumberType};
 use std::io::{self, ErrorKind};
 
 /// Type of an element that holds an array.
@@ -27,16 +27,16 @@ pub(super) struct Tag {
 }
 
 /// A stream of elements.
-pub(super) struct Tape {
+pub(super) struct ElementReader {
     bytes: Unpacked,
     /// Bytes read so far.
     pub at: u64,
     pub order: ByteOrder,
 }
 
-impl Tape {
-    pub fn new(bytes: Unpacked, order: ByteOrder) -> Tape {
-        Tape { bytes, at: 0, order }
+impl ElementReader {
+    pub fn new(bytes: Unpacked, order: ByteOrder) -> ElementReader {
+        ElementReader { bytes, at: 0, order }
     }
 
     fn exact<const N: usize>(&mut self) -> io::Result<[u8; N]> {

@@ -7,13 +7,13 @@ mod element_reader;
 mod v4;
 mod v5;
 
-use crate::binary::at::At;
-use crate::binary::choose;
-use crate::binary::column_stream::{Group, Lane, Lanes, Stream};
-use crate::binary::number_type::Field;
-use crate::binary::rate;
-use crate::binary::records::{LONGEST_RECORD, MOST_COLUMNS};
+use crate::binary::array_selection;
+use crate::binary::column_stream::{ColumnPlace, ColumnStreamTable, RecordGroup, Stream};
+use crate::binary::positioned_file::PositionedFile;
 use crate::error::{IngestError, IngestErrorKind};
+use crate::layout::Field;
+use crate::layout::{MAX_COLUMNS, MAX_RECORD_BYTES};
+use crate::metadata::{Metadata, stated_sample_rate_hz};
 use crate::{Candidate, Column, Format, Opened};
 use sagnac_core::message::Note;
 
@@ -47,7 +47,7 @@ struct Found {
     streams: Vec<Stream>,
     numbers: Vec<Numbers>,
     left: Vec<Note>,
-    metadata: Vec<(String, String)>,
+    metadata: Metadata,
     rate_hz: Option<f64>,
     has_objects: bool,
 }
@@ -61,12 +61,12 @@ impl Found {
     }
 
     fn keep(&mut self, name: &str, text: &str) {
-        rate::keep(&mut self.metadata, name, text);
+        self.metadata.add(name, text);
     }
 
     fn scalar(&mut self, name: &str, value: f64) {
         let own = name.rsplit('.').next().unwrap_or(name);
-        self.rate_hz = self.rate_hz.or_else(|| rate::stated(own, value));
+        self.rate_hz = self.rate_hz.or_else(|| stated_sample_rate_hz(own, value));
         self.keep(name, &value.to_string());
     }
 }
@@ -90,13 +90,13 @@ impl Numbers {
             }
             _ => return None,
         };
-        let columns = usize::try_from(columns).ok().filter(|n| *n <= MOST_COLUMNS)?;
-        let fits = columns.checked_mul(self.field.kind.bytes())? <= LONGEST_RECORD;
+        let columns = usize::try_from(columns).ok().filter(|n| *n <= MAX_COLUMNS)?;
+        let fits = columns.checked_mul(self.field.kind.bytes())? <= MAX_RECORD_BYTES;
         fits.then_some(Shape { rows, columns, flat })
     }
 
     /// The columns, with the groups they are read from; `groups` are those so far.
-    fn columns(&self, shape: &Shape, groups: &mut Vec<Group>) -> Vec<(Column, Lane)> {
+    fn columns(&self, shape: &Shape, groups: &mut Vec<RecordGroup>) -> Vec<(Column, ColumnPlace)> {
         let bytes = self.field.kind.bytes();
         let column = |name: String| Column {
             name,
@@ -107,7 +107,11 @@ impl Numbers {
             rollover_s: None,
         };
         if shape.flat {
-            groups.push(Group { stream: self.stream, offset: self.offset, stride: bytes * shape.columns });
+            groups.push(RecordGroup {
+                stream: self.stream,
+                offset: self.offset,
+                stride: bytes * shape.columns,
+            });
         }
         let one = |j: usize| {
             let name = match (shape.columns, shape.flat) {
@@ -118,11 +122,12 @@ impl Numbers {
             if !shape.flat {
                 let before = shape.rows.saturating_mul((j * bytes) as u64);
                 let offset = self.offset.saturating_add(before);
-                groups.push(Group { stream: self.stream, offset, stride: bytes });
+                groups.push(RecordGroup { stream: self.stream, offset, stride: bytes });
             }
             let offset = if shape.flat { j * bytes } else { 0 };
-            let lane = Lane { group: groups.len().saturating_sub(1), field: Field { offset, ..self.field } };
-            (column(name), lane)
+            let place =
+                ColumnPlace { group: groups.len().saturating_sub(1), field: Field { offset, ..self.field } };
+            (column(name), place)
         };
         (0..shape.columns).map(one).collect()
     }
@@ -139,7 +144,7 @@ impl Format for Mat {
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
         let path = &file.path;
-        let at = At::open(file)?;
+        let at = PositionedFile::open(file)?;
         let mut found = match v5::byte_order(&file.head) {
             Some(order) => v5::walk(file, &at, order)?,
             None => v4::walk(file, &at)?,
@@ -151,7 +156,7 @@ impl Format for Mat {
                 found.leave(&one.name, Note::new("ingest.mat.no_table").with("shape", text.join(" × ")));
                 continue;
             };
-            arrays.push(choose::Array {
+            arrays.push(array_selection::Array {
                 name: one.owner.clone().unwrap_or_else(|| one.name.clone()),
                 rows: shape.rows,
                 columns: shape.columns,
@@ -160,11 +165,13 @@ impl Format for Mat {
             numbers.push((one, shape));
         }
         let part = file.options.part.as_deref();
-        let Some(rows) = choose::rows(path, &arrays, part)? else { return Err(nothing(file, found)) };
+        let Some(rows) = array_selection::rows(path, &arrays, part)? else {
+            return Err(nothing(file, found));
+        };
         let mut notes = Vec::new();
-        let (mut columns, mut groups, mut lanes) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut columns, mut groups, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for ((one, shape), array) in numbers.iter().zip(&arrays) {
-            if !choose::belongs(array, rows, part, &arrays) {
+            if !array_selection::belongs(array, rows, part, &arrays) {
                 let note = Note::new("ingest.binary.other_length").with("name", one.name.as_str());
                 found.left.push(note.with("rows", shape.rows).with("chosen", rows));
                 continue;
@@ -173,20 +180,28 @@ impl Format for Mat {
                 let note = Note::new("ingest.mat.flat").with("name", one.name.as_str());
                 notes.push(note.with("rows", shape.columns).with("columns", shape.rows));
             }
-            for (column, lane) in one.columns(shape, &mut groups) {
+            for (column, place) in one.columns(shape, &mut groups) {
                 columns.push(column);
-                lanes.push(Some(lane));
+                places.push(Some(place));
             }
         }
-        notes.extend(choose::notes(found.left));
+        notes.extend(array_selection::notes(found.left));
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
             cut_off: Vec::new(),
             notes,
-            metadata: found.metadata,
+            metadata: found.metadata.entries(),
             stated_sample_rate_hz: found.rate_hz,
-            table: Box::new(Lanes::new(path.clone(), file.bytes, at, found.streams, groups, lanes, rows)),
+            table: Box::new(ColumnStreamTable::new(
+                path.clone(),
+                file.bytes,
+                at,
+                found.streams,
+                groups,
+                places,
+                rows,
+            )),
         })
     }
 }

@@ -2,11 +2,11 @@
 
 use super::{Found, Numbers};
 use crate::Candidate;
-use crate::binary::at::At;
 use crate::binary::column_stream::{Coding, Stream};
-use crate::binary::number_type::{ByteOrder, Field, NumberType};
+use crate::binary::positioned_file::PositionedFile;
 use crate::compressed::io_error;
 use crate::error::{IngestError, IngestErrorKind};
+use crate::layout::{ByteOrder, Field, NumberType};
 use sagnac_core::message::Note;
 use std::sync::Arc;
 
@@ -88,7 +88,7 @@ pub(super) fn recognises(head: &[u8]) -> bool {
 }
 
 /// Looks at every variable of a file.
-pub(super) fn walk(file: &Candidate, at: &Arc<At>) -> Result<Found, IngestError> {
+pub(super) fn walk(file: &Candidate, at: &Arc<PositionedFile>) -> Result<Found, IngestError> {
     let mut found = Found::default();
     let mut next = 0u64;
     let damaged = |key: &'static str, at: u64, hint: &'static str| {

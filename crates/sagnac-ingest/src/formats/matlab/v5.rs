@@ -1,12 +1,12 @@
 //! MAT files of version 5 and 7: the variables and where their numbers stand.
 
-use super::element_reader::{COMPRESSED, MATRIX, Tag, Tape, damaged, number_type, text, wholes};
+use super::element_reader::{COMPRESSED, ElementReader, MATRIX, Tag, damaged, number_type, text, wholes};
 use super::{Found, Numbers};
 use crate::Candidate;
-use crate::binary::at::At;
 use crate::binary::column_stream::{Coding, Stream, stream_error};
-use crate::binary::number_type::{ByteOrder, Field};
+use crate::binary::positioned_file::PositionedFile;
 use crate::error::{IngestError, IngestErrorKind};
+use crate::layout::{ByteOrder, Field};
 use sagnac_core::message::Note;
 use std::io;
 use std::sync::Arc;
@@ -30,7 +30,11 @@ pub(super) fn byte_order(head: &[u8]) -> Option<ByteOrder> {
 }
 
 /// Looks at every variable of a file.
-pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<Found, IngestError> {
+pub(super) fn walk(
+    file: &Candidate,
+    at: &Arc<PositionedFile>,
+    order: ByteOrder,
+) -> Result<Found, IngestError> {
     let mut found = Found::default();
     let mut next = HEADER;
     while next < at.size {
@@ -42,8 +46,8 @@ pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<F
         let fail = |e: io::Error| element_error(file, next, &e);
         let raw =
             Stream { name: format!("@{next}"), from: next, length: at.size - next, coding: Coding::Stored };
-        let mut tape = Tape::new(raw.open(at), order);
-        let tag = tape.tag().map_err(fail)?;
+        let mut elements = ElementReader::new(raw.open(at), order);
+        let tag = elements.tag().map_err(fail)?;
         if tag.bytes > at.size.saturating_sub(next.saturating_add(tag.at)) {
             let note = Note::new("ingest.mat.cut").with("at", next).with("declared", tag.bytes);
             return Err(
@@ -54,7 +58,7 @@ pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<F
         match tag.kind {
             COMPRESSED => {
                 let packed = Stream { from: next + tag.at, length: tag.bytes, coding: Coding::Zlib, ..raw };
-                let mut inner = Tape::new(packed.open(at), order);
+                let mut inner = ElementReader::new(packed.open(at), order);
                 let tag = inner.tag().map_err(fail)?;
                 if tag.kind == MATRIX {
                     matrix(&mut inner, &mut found, stream, None).map_err(fail)?;
@@ -62,7 +66,7 @@ pub(super) fn walk(file: &Candidate, at: &Arc<At>, order: ByteOrder) -> Result<F
                 found.streams.push(named(packed, &found, stream));
             }
             MATRIX => {
-                matrix(&mut tape, &mut found, stream, None).map_err(fail)?;
+                matrix(&mut elements, &mut found, stream, None).map_err(fail)?;
                 found.streams.push(named(raw, &found, stream));
             }
             _ => {}
@@ -97,19 +101,24 @@ fn named(stream: Stream, found: &Found, index: usize) -> Stream {
 
 /// Reads what stands between the tag of an array and its numbers. `owner`: the structure it is a field of, and the
 /// name of the field.
-fn matrix(tape: &mut Tape, found: &mut Found, stream: usize, owner: Option<(&str, &str)>) -> io::Result<()> {
-    let order = tape.order;
-    let flags = tape.tag()?;
+fn matrix(
+    elements: &mut ElementReader,
+    found: &mut Found,
+    stream: usize,
+    owner: Option<(&str, &str)>,
+) -> io::Result<()> {
+    let order = elements.order;
+    let flags = elements.tag()?;
     let flags =
-        *wholes(&tape.data(&flags)?, order).first().ok_or_else(|| damaged("an array has no flags"))?;
+        *wholes(&elements.data(&flags)?, order).first().ok_or_else(|| damaged("an array has no flags"))?;
     let class = flags & 0xff;
     if class == 17 {
-        return opaque(tape, found, owner);
+        return opaque(elements, found, owner);
     }
-    let tag = tape.tag()?;
-    let dimensions: Vec<u64> = wholes(&tape.data(&tag)?, order).into_iter().map(u64::from).collect();
-    let tag = tape.tag()?;
-    let own = String::from_utf8_lossy(&tape.data(&tag)?).into_owned();
+    let tag = elements.tag()?;
+    let dimensions: Vec<u64> = wholes(&elements.data(&tag)?, order).into_iter().map(u64::from).collect();
+    let tag = elements.tag()?;
+    let own = String::from_utf8_lossy(&elements.data(&tag)?).into_owned();
     let name = owner.map_or_else(|| own.clone(), |(structure, field)| format!("{structure}.{field}"));
     if name.is_empty() {
         // What MATLAB keeps for its objects stands behind the variables without a name.
@@ -122,19 +131,19 @@ fn matrix(tape: &mut Tape, found: &mut Found, stream: usize, owner: Option<(&str
         1 => leave("ingest.mat.cell"),
         2 if owner.is_some() => leave("ingest.mat.nested"),
         2 if count != 1 => leave("ingest.mat.structures"),
-        2 => return structure(tape, found, stream, &name),
+        2 => return structure(elements, found, stream, &name),
         3 => leave("ingest.mat.object"),
         4 => {
-            let tag = tape.tag()?;
+            let tag = elements.tag()?;
             if tag.bytes <= LONGEST_TEXT {
-                let data = tape.data(&tag)?;
+                let data = elements.data(&tag)?;
                 found.keep(&name, &text(tag.kind, &data, order));
             }
         }
         5 => leave("ingest.mat.sparse"),
         6..=15 if flags & 0x0800 != 0 => leave("ingest.mat.complex"),
         6..=15 if count == 0 => leave("ingest.mat.empty"),
-        6..=15 => return numbers(tape, found, stream, owner, name, (dimensions, count)),
+        6..=15 => return numbers(elements, found, stream, owner, name, (dimensions, count)),
         _ => leave("ingest.mat.object"),
     }
     Ok(())
@@ -142,21 +151,21 @@ fn matrix(tape: &mut Tape, found: &mut Found, stream: usize, owner: Option<(&str
 
 /// Notes where the numbers of an array stand.
 fn numbers(
-    tape: &mut Tape,
+    elements: &mut ElementReader,
     found: &mut Found,
     stream: usize,
     owner: Option<(&str, &str)>,
     name: String,
     (dimensions, count): (Vec<u64>, u64),
 ) -> io::Result<()> {
-    let tag: Tag = tape.tag()?;
+    let tag: Tag = elements.tag()?;
     let kind = number_type(tag.kind).ok_or_else(|| damaged("an array holds data of an unknown type"))?;
     if count.checked_mul(kind.bytes() as u64) != Some(tag.bytes) {
         return Err(damaged("the size of an array does not fit its data"));
     }
-    let field = Field::plain(0, kind, tape.order);
+    let field = Field::plain(0, kind, elements.order);
     if count == 1 {
-        let data = tape.data(&tag)?;
+        let data = elements.data(&tag)?;
         let mut value = Vec::new();
         field.decode(&data, kind.bytes(), &mut value);
         found.scalar(&name, value.first().copied().unwrap_or(f64::NAN));
@@ -168,35 +177,35 @@ fn numbers(
 }
 
 /// Looks at the fields of a structure.
-fn structure(tape: &mut Tape, found: &mut Found, stream: usize, name: &str) -> io::Result<()> {
-    let tag = tape.tag()?;
-    let length = wholes(&tape.data(&tag)?, tape.order).first().copied().unwrap_or(0) as usize;
-    let tag = tape.tag()?;
-    let names = tape.data(&tag)?;
+fn structure(elements: &mut ElementReader, found: &mut Found, stream: usize, name: &str) -> io::Result<()> {
+    let tag = elements.tag()?;
+    let length = wholes(&elements.data(&tag)?, elements.order).first().copied().unwrap_or(0) as usize;
+    let tag = elements.tag()?;
+    let names = elements.data(&tag)?;
     let fields: Vec<String> = names
         .chunks(length.clamp(1, 1 << 16))
         .map(|n| String::from_utf8_lossy(n.split(|b| *b == 0).next().unwrap_or_default()).into_owned())
         .collect();
     for field in fields.iter().take(MOST) {
-        let tag = tape.tag()?;
+        let tag = elements.tag()?;
         if tag.kind != MATRIX {
             return Err(damaged("a field of a structure is no array"));
         }
         // An empty field has no array at all.
         if tag.bytes > 0 {
-            matrix(tape, found, stream, Some((name, field)))?;
+            matrix(elements, found, stream, Some((name, field)))?;
         }
-        tape.pass(&tag)?;
+        elements.pass(&tag)?;
     }
     Ok(())
 }
 
 /// An object of a class of MATLAB, such as a timetable: its values are kept in a way that is not published.
-fn opaque(tape: &mut Tape, found: &mut Found, owner: Option<(&str, &str)>) -> io::Result<()> {
+fn opaque(elements: &mut ElementReader, found: &mut Found, owner: Option<(&str, &str)>) -> io::Result<()> {
     let mut words = Vec::new();
     for _ in 0..3 {
-        let tag = tape.tag()?;
-        words.push(String::from_utf8_lossy(&tape.data(&tag)?).into_owned());
+        let tag = elements.tag()?;
+        words.push(String::from_utf8_lossy(&elements.data(&tag)?).into_owned());
     }
     let [name, _, class] = words.as_slice() else { return Ok(()) };
     let name = owner.map_or_else(|| name.clone(), |(structure, field)| format!("{structure}.{field}"));

@@ -3,8 +3,8 @@
 use super::dtype::{self, Element, Leaf, TypeFault};
 use super::literal::{self, Literal};
 use crate::Column;
-use crate::binary::number_type::{Field, Ticks};
-use crate::binary::records::{LONGEST_RECORD, MOST_COLUMNS};
+use crate::layout::{Field, Ticks};
+use crate::layout::{MAX_COLUMNS, MAX_RECORD_BYTES};
 use sagnac_core::message::Note;
 
 /// First bytes of an array.
@@ -90,7 +90,7 @@ fn type_fault(fault: TypeFault) -> Fault {
 }
 
 fn too_many() -> Fault {
-    (Note::new("ingest.binary.too_many_columns").with("most", MOST_COLUMNS), "ingest.hint.give_recording")
+    (Note::new("ingest.binary.too_many_columns").with("most", MAX_COLUMNS), "ingest.hint.give_recording")
 }
 
 /// The columns of an array and where their values stand.
@@ -144,10 +144,10 @@ impl Array {
             }
         };
         let bytes = self.element.bytes;
-        let count = usize::try_from(count).ok().filter(|n| *n <= MOST_COLUMNS).ok_or_else(too_many)?;
+        let count = usize::try_from(count).ok().filter(|n| *n <= MAX_COLUMNS).ok_or_else(too_many)?;
         let by_rows = count == 1 || self.fortran_order == flat.is_some();
         let stride = if by_rows { bytes.checked_mul(count) } else { Some(bytes) };
-        let stride = stride.filter(|n| (1..=LONGEST_RECORD).contains(n)).ok_or_else(too_many)?;
+        let stride = stride.filter(|n| (1..=MAX_RECORD_BYTES).contains(n)).ok_or_else(too_many)?;
         let mut list = Vec::new();
         for j in 0..count {
             for leaf in &self.element.leaves {

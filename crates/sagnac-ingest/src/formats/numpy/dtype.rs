@@ -1,8 +1,8 @@
 //! NumPy's descriptions of element types as fields of a record.
 
 use super::literal::Literal;
-use crate::binary::number_type::{ByteOrder, Field, NumberType, Ticks};
-use crate::binary::records::MOST_COLUMNS;
+use crate::layout::MAX_COLUMNS;
+use crate::layout::{ByteOrder, Field, NumberType, Ticks};
 
 /// Deepest nesting of structures that is followed.
 const DEEPEST: usize = 8;
@@ -55,7 +55,7 @@ fn append(out: &mut Element, name: &str, descr: &Literal, depth: usize) -> Resul
         return Err(unknown());
     }
     out.seen += 1;
-    if out.seen > 4 * MOST_COLUMNS || out.leaves.len() > MOST_COLUMNS {
+    if out.seen > 4 * MAX_COLUMNS || out.leaves.len() > MAX_COLUMNS {
         return Err(TypeFault::TooMany);
     }
     match descr {
@@ -81,7 +81,7 @@ fn append(out: &mut Element, name: &str, descr: &Literal, depth: usize) -> Resul
                     None => append(out, &inner, kind, depth + 1)?,
                     Some(shape) => {
                         let count = count(shape).ok_or_else(unknown)?;
-                        if count > MOST_COLUMNS {
+                        if count > MAX_COLUMNS {
                             return Err(TypeFault::TooMany);
                         }
                         for i in 0..count {

@@ -1,8 +1,8 @@
 //! NumPy arrays (`.npy`): one array, read as it lies in the file.
 
 use super::array::{self, Array, Fault, MAGIC};
-use crate::binary::at::At;
-use crate::binary::column_stream::{Coding, Group, Lane, Lanes, Stream};
+use crate::binary::column_stream::{Coding, ColumnPlace, ColumnStreamTable, RecordGroup, Stream};
+use crate::binary::positioned_file::PositionedFile;
 use crate::binary::records::Records;
 use crate::compressed::Packing;
 use crate::error::{IngestError, IngestErrorKind};
@@ -50,15 +50,25 @@ impl Format for Npy {
                 framer: None,
             })
         } else {
-            let at = At::open(file)?;
+            let at = PositionedFile::open(file)?;
             let stream =
                 Stream { name: "array".to_owned(), from: 0, length: u64::MAX, coding: Coding::Stored };
-            let group = |from: u64| Group { stream: 0, offset: array.data_at + from, stride: columns.stride };
+            let group =
+                |from: u64| RecordGroup { stream: 0, offset: array.data_at + from, stride: columns.stride };
             let groups = places.iter().map(|(_, from)| group(*from)).collect();
-            let lane =
-                |(group, (field, _)): (usize, &(Option<_>, u64))| field.map(|field| Lane { group, field });
-            let lanes = places.iter().enumerate().map(lane).collect();
-            Box::new(Lanes::new(path.clone(), file.bytes, at, vec![stream], groups, lanes, rows))
+            let place = |(group, (field, _)): (usize, &(Option<_>, u64))| {
+                field.map(|field| ColumnPlace { group, field })
+            };
+            let columns = places.iter().enumerate().map(place).collect();
+            Box::new(ColumnStreamTable::new(
+                path.clone(),
+                file.bytes,
+                at,
+                vec![stream],
+                groups,
+                columns,
+                rows,
+            ))
         };
         Ok(Opened {
             columns: list,

@@ -2,11 +2,13 @@
 //! crate; the members are unpacked here, side by side, so that none is ever held as a whole.
 
 use super::array::{self, MAGIC};
-use crate::binary::at::{At, Part};
-use crate::binary::choose;
-use crate::binary::column_stream::{Coding, Group, Lane, Lanes, Stream, stream_error};
-use crate::binary::rate;
+use crate::binary::array_selection;
+use crate::binary::column_stream::{
+    Coding, ColumnPlace, ColumnStreamTable, RecordGroup, Stream, stream_error,
+};
+use crate::binary::positioned_file::{FileRange, PositionedFile};
 use crate::error::{IngestError, IngestErrorKind};
+use crate::metadata::{Metadata, stated_sample_rate_hz};
 use crate::{Candidate, Column, Format, Opened};
 use sagnac_core::message::Note;
 use zip::{CompressionMethod, ZipArchive};
@@ -32,9 +34,9 @@ struct Member {
 struct Found {
     streams: Vec<Stream>,
     members: Vec<Member>,
-    arrays: Vec<choose::Array>,
+    arrays: Vec<array_selection::Array>,
     left: Vec<Note>,
-    metadata: Vec<(String, String)>,
+    metadata: Metadata,
     rate_hz: Option<f64>,
 }
 
@@ -53,11 +55,11 @@ impl Format for Npz {
     }
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
-        let at = At::open(file)?;
+        let at = PositionedFile::open(file)?;
         let found = members(file, &at)?;
         let path = &file.path;
         let part = file.options.part.as_deref();
-        let rows = choose::rows(path, &found.arrays, part)?;
+        let rows = array_selection::rows(path, &found.arrays, part)?;
         let Some(rows) = rows.filter(|rows| *rows > 0) else {
             let error = IngestError::new(IngestErrorKind::Empty, path, "ingest.npz.nothing");
             return Err(match found.left.into_iter().next() {
@@ -66,42 +68,50 @@ impl Format for Npz {
             });
         };
         let mut left = found.left;
-        let (mut columns, mut groups, mut lanes) = (Vec::<Column>::new(), Vec::new(), Vec::new());
+        let (mut columns, mut groups, mut places) = (Vec::<Column>::new(), Vec::new(), Vec::new());
         let mut notes = Vec::new();
         for (member, array) in found.members.into_iter().zip(&found.arrays) {
-            if !choose::belongs(array, rows, part, &found.arrays) {
+            if !array_selection::belongs(array, rows, part, &found.arrays) {
                 left.push(other_length(array, rows));
                 continue;
             }
             notes.extend(member.columns.note.clone());
             let (stream, stride) = (member.stream, member.columns.stride);
             if member.columns.by_rows {
-                groups.push(Group { stream, offset: member.data_at, stride });
+                groups.push(RecordGroup { stream, offset: member.data_at, stride });
             }
             for place in member.columns.list {
                 if !member.columns.by_rows {
-                    groups.push(Group { stream, offset: member.data_at + place.from, stride });
+                    groups.push(RecordGroup { stream, offset: member.data_at + place.from, stride });
                 }
                 let group = groups.len().saturating_sub(1);
-                lanes.push(place.field.map(|field| Lane { group, field }));
+                places.push(place.field.map(|field| ColumnPlace { group, field }));
                 columns.push(place.column);
             }
         }
-        notes.extend(choose::notes(left));
+        notes.extend(array_selection::notes(left));
         Ok(Opened {
             columns,
             rows_estimate: Some(rows),
             cut_off: Vec::new(),
             notes,
-            metadata: found.metadata,
+            metadata: found.metadata.entries(),
             stated_sample_rate_hz: found.rate_hz,
-            table: Box::new(Lanes::new(path.clone(), file.bytes, at, found.streams, groups, lanes, rows)),
+            table: Box::new(ColumnStreamTable::new(
+                path.clone(),
+                file.bytes,
+                at,
+                found.streams,
+                groups,
+                places,
+                rows,
+            )),
         })
     }
 }
 
 /// What is said of an array that does not belong to the recording.
-fn other_length(array: &choose::Array, rows: u64) -> Note {
+fn other_length(array: &array_selection::Array, rows: u64) -> Note {
     Note::new("ingest.binary.other_length")
         .with("name", array.name.as_str())
         .with("rows", array.rows)
@@ -109,13 +119,13 @@ fn other_length(array: &choose::Array, rows: u64) -> Note {
 }
 
 /// Looks at every member of the archive.
-fn members(file: &Candidate, at: &std::sync::Arc<At>) -> Result<Found, IngestError> {
+fn members(file: &Candidate, at: &std::sync::Arc<PositionedFile>) -> Result<Found, IngestError> {
     let path = &file.path;
     let damaged = |e: zip::result::ZipError| {
         let note = Note::new("ingest.npz.damaged").with("reason", e.to_string());
         IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.damaged")
     };
-    let mut archive = ZipArchive::new(Part::new(at, 0, at.size)).map_err(damaged)?;
+    let mut archive = ZipArchive::new(FileRange::new(at, 0, at.size)).map_err(damaged)?;
     if archive.len() > MOST_MEMBERS {
         let note = Note::new("ingest.binary.too_many_columns").with("most", MOST_MEMBERS);
         return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.give_recording"));
@@ -175,7 +185,7 @@ fn members(file: &Candidate, at: &std::sync::Arc<At>) -> Result<Found, IngestErr
             scalar(&mut found, name, &columns, data);
             continue;
         }
-        found.arrays.push(choose::Array {
+        found.arrays.push(array_selection::Array {
             name: name.to_owned(),
             rows: columns.rows,
             columns: columns.list.len(),
@@ -197,15 +207,15 @@ fn scalar(found: &mut Found, name: &str, columns: &array::Columns, data: &[u8]) 
             char::from_u32(code).filter(|c| *c != '\0')
         });
         if place.column.storage.contains('U') {
-            rate::keep(&mut found.metadata, name, &characters.collect::<String>());
+            found.metadata.add(name, &characters.collect::<String>());
         }
         return;
     };
     let mut value = Vec::new();
     field.decode(data.get(..columns.stride).unwrap_or_default(), columns.stride, &mut value);
     if let Some(value) = value.first() {
-        found.rate_hz = found.rate_hz.or_else(|| rate::stated(name, *value));
-        rate::keep(&mut found.metadata, name, &value.to_string());
+        found.rate_hz = found.rate_hz.or_else(|| stated_sample_rate_hz(name, *value));
+        found.metadata.add(name, &value.to_string());
     }
 }
 

@@ -1,8 +1,7 @@
 //! Finds records in a stream by their sync word and checksum, and tells what was lost.
 
-use super::checksum::Checksum;
-use super::layout::Layout;
-use crate::binary::records::{Cut, Framer};
+use crate::binary::records::{FramedRecords, Framer};
+use crate::layout::{Checksum, Layout};
 use memchr::memmem;
 
 /// Rows of passed-over bytes that are told at once, so that a stretch without records needs no memory.
@@ -21,7 +20,7 @@ pub(super) struct Scanner {
 }
 
 /// What stands at the start of some bytes.
-enum Look {
+enum Match {
     /// A record.
     Record,
     /// A record whose checksum is wrong: made and found.
@@ -47,10 +46,10 @@ impl Scanner {
     /// A record counts when its checksum is right. Without a checksum, or with a wrong one, it counts as one when the
     /// next record begins right behind it: bytes that were dropped inside would shift that. Where sync was lost, the
     /// next record must be there in any case, so that the checksum is not made anew at every byte.
-    fn look(&self, rest: &[u8], end: bool) -> Look {
-        let Some(record) = rest.get(..self.record) else { return Look::More };
+    fn look(&self, rest: &[u8], end: bool) -> Match {
+        let Some(record) = rest.get(..self.record) else { return Match::More };
         if !record.starts_with(&self.sync) {
-            return Look::Nothing;
+            return Match::Nothing;
         }
         let behind = rest.get(self.record..).unwrap_or_default();
         let next = if behind.len() >= self.sync.len() {
@@ -58,20 +57,20 @@ impl Scanner {
         } else if end {
             self.sync.starts_with(behind)
         } else {
-            return Look::More;
+            return Match::More;
         };
         if !next && (self.lost.is_some() || self.checksum.is_none()) {
-            return Look::Nothing;
+            return Match::Nothing;
         }
         match self.checksum.as_ref().and_then(|c| c.differs(record)) {
-            None => Look::Record,
-            Some((made, found)) if next => Look::Wrong(made, found),
-            Some(_) => Look::Nothing,
+            None => Match::Record,
+            Some((made, found)) if next => Match::Wrong(made, found),
+            Some(_) => Match::Nothing,
         }
     }
 
     /// Turns the bytes since sync was lost into rows without values.
-    fn tell_lost(&mut self, now: u64, out: &mut Cut) {
+    fn tell_lost(&mut self, now: u64, out: &mut FramedRecords) {
         let Some((from, told)) = self.lost.take() else { return };
         let bytes = now.saturating_sub(from);
         let record = self.record as u64;
@@ -80,7 +79,7 @@ impl Scanner {
         self.bad_rows(rows, &format!("sync @{from} +{bytes} B"), out);
     }
 
-    fn bad_rows(&self, rows: u64, text: &str, out: &mut Cut) {
+    fn bad_rows(&self, rows: u64, text: &str, out: &mut FramedRecords) {
         for _ in 0..rows {
             out.bad.push((out.records.len() / self.record, text.to_owned()));
             out.records.resize(out.records.len() + self.record, 0);
@@ -89,7 +88,7 @@ impl Scanner {
 }
 
 impl Framer for Scanner {
-    fn take(&mut self, bytes: &[u8], end: bool, out: &mut Cut) {
+    fn take(&mut self, bytes: &[u8], end: bool, out: &mut FramedRecords) {
         let mut pending = std::mem::take(&mut self.pending);
         pending.extend_from_slice(bytes);
         let mut at = 0;
@@ -97,25 +96,25 @@ impl Framer for Scanner {
             let rest = pending.get(at..).unwrap_or_default();
             let here = self.at + at as u64;
             match self.look(rest, end) {
-                Look::Record => {
+                Match::Record => {
                     self.tell_lost(here, out);
                     out.records.extend_from_slice(rest.get(..self.record).unwrap_or_default());
                     at += self.record;
                 }
-                Look::Wrong(made, found) => {
+                Match::Wrong(made, found) => {
                     self.tell_lost(here, out);
                     let word = self.checksum.as_ref().map_or("", |c| c.word);
                     self.bad_rows(1, &format!("{word} {found:x} ≠ {made:x} @{here}"), out);
                     at += self.record;
                 }
-                Look::Nothing => {
+                Match::Nothing => {
                     self.lost.get_or_insert((here, false));
                     let ahead = rest.get(1..).unwrap_or_default();
                     // A word that is cut by the end of what was read so far may still be one.
                     let keep = ahead.len().saturating_sub(self.sync.len().saturating_sub(1));
                     at += 1 + memmem::find(ahead, &self.sync).unwrap_or(if end { ahead.len() } else { keep });
                 }
-                Look::More => {
+                Match::More => {
                     if end && !rest.is_empty() {
                         let from = self.lost.take().map_or(here, |(from, _)| from);
                         let bytes = here + rest.len() as u64 - from;

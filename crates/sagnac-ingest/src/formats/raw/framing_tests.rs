@@ -1,6 +1,5 @@
 use super::*;
-use crate::binary::number_type::ByteOrder;
-use crate::formats::raw::Sum;
+use crate::layout::{ByteOrder, Sum};
 
 /// 8 bytes: sync A5 5A, a counter of 4, CRC-16 big endian.
 fn layout() -> Layout {
@@ -41,7 +40,7 @@ fn scan(layout: &Layout, bytes: &[u8], piece: usize) -> (Vec<Option<u32>>, Vec<S
     let mut pieces: Vec<(&[u8], bool)> = bytes.chunks(piece).map(|p| (p, false)).collect();
     pieces.push((&[], true));
     for (piece, end) in pieces {
-        let mut cut = Cut::default();
+        let mut cut = FramedRecords::default();
         scanner.take(piece, end, &mut cut);
         let bad: Vec<usize> = cut.bad.iter().map(|(i, _)| *i).collect();
         for (i, r) in cut.records.chunks(8).enumerate() {
@@ -114,12 +113,12 @@ fn a_long_stretch_without_records_needs_no_memory() {
     let junk = vec![0xa5; 1 << 20];
     let mut told = 0;
     for _ in 0..8 {
-        let mut cut = Cut::default();
+        let mut cut = FramedRecords::default();
         scanner.take(&junk, false, &mut cut);
         told += cut.bad.len();
         assert!(scanner.pending.len() < 8);
     }
-    let mut cut = Cut::default();
+    let mut cut = FramedRecords::default();
     scanner.take(&record(7), true, &mut cut);
     assert_eq!(told + cut.bad.len(), 1 << 20, "one row for every eight bytes");
     assert_eq!(cut.records.len() / 8 - cut.bad.len(), 1);

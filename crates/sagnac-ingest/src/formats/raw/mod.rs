@@ -1,18 +1,12 @@
 //! Raw binary records, as loggers write them. Nothing in such a file says what it is: it is taken for one only where
 //! its user gives a layout.
 
-mod checksum;
 mod framing;
-mod layout;
 
-pub use crate::binary::number_type::{ByteOrder, Field, NumberType};
-pub use crate::binary::records::{LONGEST_RECORD, MOST_COLUMNS};
-pub use checksum::{Checksum, Sum};
-pub use layout::{Layout, LayoutColumn, LayoutFile};
-
-use crate::binary::records::{Cut, Framer, MakeFramer, Records};
+use crate::binary::records::{FramedRecords, Framer, MakeFramer, Records};
 use crate::compressed::Packing;
 use crate::error::{IngestError, IngestErrorKind};
+use crate::layout::Layout;
 use crate::{Candidate, Column, Format, Opened};
 use framing::Scanner;
 use sagnac_core::message::Note;
@@ -105,7 +99,7 @@ fn judge(file: &Candidate, layout: &Layout) -> Result<(), IngestError> {
     let Some(bytes) = file.head.get(start..).filter(|b| framed && b.len() >= layout.record_bytes) else {
         return Ok(());
     };
-    let mut cut = Cut::default();
+    let mut cut = FramedRecords::default();
     let length = layout.record_bytes.saturating_mul(JUDGED).min(bytes.len());
     let end = file.head_is_all && length == bytes.len();
     Scanner::new(layout).take(bytes.get(..length).unwrap_or_default(), end, &mut cut);

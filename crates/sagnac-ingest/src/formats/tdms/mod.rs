@@ -12,7 +12,8 @@ mod table;
 use crate::column_inference::infer;
 use crate::compressed::io_error;
 use crate::error::{IngestError, IngestErrorKind};
-use crate::parts::{self, Metadata, Part};
+use crate::metadata::Metadata;
+use crate::part_selection::{self, Part};
 use crate::{Candidate, Column, Format, Opened};
 use properties::{Properties, Value};
 use sagnac_core::message::Note;
@@ -34,7 +35,7 @@ impl Format for Tdms {
     }
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
-        parts::unpacked(file, "ingest.tdms.what")?;
+        part_selection::unpacked(file, "ingest.tdms.what")?;
         let path = &file.path;
         let handle = File::open(path).map_err(|e| io_error(path, &e))?;
         let contents = Scanner::scan(path, handle, file.bytes)?;
@@ -51,7 +52,7 @@ impl Format for Tdms {
                 list.push(i);
             }
         }
-        let (chosen, mut notes) = parts::choose(path, &parts, file.options.part.as_deref())?;
+        let (chosen, mut notes) = part_selection::choose(path, &parts, file.options.part.as_deref())?;
         let part = parts.get(chosen).cloned().unwrap_or_default();
         // A file that breaks off within a block has fewer values of the later channels: the rows that all have are read.
         let rows = match contents.broken_at {
@@ -70,7 +71,7 @@ impl Format for Tdms {
         let broken = |at| Note::new("ingest.tdms.broken").with("at", at);
         let cut_off: Vec<Note> = contents.broken_at.map(broken).into_iter().collect();
         notes.extend(cut_off.iter().cloned());
-        notes.extend(parts::odd_lengths(&part, rows).filter(|_| !cut));
+        notes.extend(part_selection::odd_lengths(&part, rows).filter(|_| !cut));
         let group = contents.groups.get(&part.name).cloned().unwrap_or_default();
         let mut columns = Vec::new();
         let mut origins = Vec::new();

@@ -4,10 +4,11 @@ use super::encoding::{self, Found};
 use super::fields::{Comments, Separator, words};
 use super::header::{self, Header};
 use super::kinds::{self, Kinds};
-use super::metadata::Metadata;
+use super::metadata::add_line;
 use super::rows::Lines;
 use super::separator::{self, Cut, Looks, looks};
 use crate::error::{IngestError, IngestErrorKind};
+use crate::metadata::Metadata;
 use crate::options::Encoding;
 use crate::{Candidate, Column};
 use sagnac_core::message::{Arg, Note};
@@ -327,12 +328,12 @@ impl Sniffed<'_> {
                     let text = line.text.trim_ascii_start().get(prefix.len()..).unwrap_or_default();
                     let sign = prefix.first().copied().unwrap_or(0);
                     let start = text.iter().position(|c| *c != sign).unwrap_or(text.len());
-                    metadata.take(text.get(start..).unwrap_or_default(), None);
+                    add_line(&mut metadata, text.get(start..).unwrap_or_default(), None);
                 }
-                None => metadata.take(line.text, Some(self.cut.separator)),
+                None => add_line(&mut metadata, line.text, Some(self.cut.separator)),
             }
         }
-        metadata.into_list()
+        metadata.entries()
     }
 
     fn notes(&self, found: &Found, header: &Header, above: &[Line<'_>], head: &[u8]) -> Vec<Note> {

@@ -1,12 +1,13 @@
 //! What the columns of a text hold, told from the fields of its first lines: numbers, stamps, halves of stamps.
 
 use super::fields::bare;
+use super::number::{self, Field};
 use super::rows::{FieldKind, Pair};
 use super::separator::{Looks, looks};
 use super::stamps::{self, DAY_S, Order, Shape, Stamp};
 use super::stated::{self, Contradiction};
-use crate::number::{self, Field};
-use crate::{Column, DATES, StampOptions};
+use crate::column::DATES;
+use crate::{Column, StampOptions};
 use sagnac_core::message::{Arg, Note};
 
 /// Seconds of a week.

@@ -1,53 +1,28 @@
 //! What a text file says of itself above the data: `serial: SN-0042`, `Serial;SN-0042`, titles.
 
 use super::fields::{Separator, words};
+use crate::metadata::Metadata;
 
-/// Most entries that are kept.
-const MOST: usize = 64;
-
-/// Longest key and value, characters.
-const LONGEST: usize = 200;
-
-/// Collects entries.
-#[derive(Debug, Default)]
-pub(super) struct Metadata {
-    list: Vec<(String, String)>,
-}
-
-impl Metadata {
-    /// Takes a line above the data; `separator` may stand between key and value.
-    pub(super) fn take(&mut self, line: &[u8], separator: Option<Separator>) {
-        let text = String::from_utf8_lossy(line);
-        let text = text.trim();
-        if text.is_empty() || !text.chars().any(char::is_alphanumeric) || self.list.len() >= MOST {
-            return;
-        }
-        let cells: Vec<String> =
-            separator.map(|s| s.usual_cells(line, 2)).unwrap_or_default().into_iter().map(words).collect();
-        let (key, value) = match (cells.as_slice(), text.split_once([':', '='])) {
-            ([key, value], _) if separator != Some(Separator::Blanks) => {
-                (key.trim_end_matches([':', '=']).trim().to_owned(), value.clone())
-            }
-            // A colon between digits is part of a time.
-            (_, Some((key, value))) if key.chars().any(char::is_alphabetic) => {
-                let value = value.trim_matches(|c: char| c.is_whitespace() || matches!(c, ';' | ',' | '"'));
-                (key.trim().trim_matches('"').to_owned(), value.to_owned())
-            }
-            _ => ("title".to_owned(), text.trim_matches(['"', ';', ',', '\t']).trim().to_owned()),
-        };
-        if !value.is_empty() && !key.is_empty() {
-            self.list.push((cut(&key), cut(&value)));
-        }
+/// Adds what a line above the data says; `separator` may stand between key and value.
+pub(super) fn add_line(metadata: &mut Metadata, line: &[u8], separator: Option<Separator>) {
+    let text = String::from_utf8_lossy(line);
+    let text = text.trim();
+    if !text.chars().any(char::is_alphanumeric) || metadata.is_full() {
+        return;
     }
-
-    /// The entries in order.
-    pub(super) fn into_list(self) -> Vec<(String, String)> {
-        self.list
+    let cells: Vec<String> =
+        separator.map(|s| s.usual_cells(line, 2)).unwrap_or_default().into_iter().map(words).collect();
+    match (cells.as_slice(), text.split_once([':', '='])) {
+        ([key, value], _) if separator != Some(Separator::Blanks) => {
+            metadata.add(key.trim_end_matches([':', '=']), value);
+        }
+        // A colon between digits is part of a time.
+        (_, Some((key, value))) if key.chars().any(char::is_alphabetic) => {
+            let value = value.trim_matches(|c: char| c.is_whitespace() || matches!(c, ';' | ',' | '"'));
+            metadata.add(key.trim().trim_matches('"'), value);
+        }
+        _ => metadata.add("title", text.trim_matches(['"', ';', ',', '\t'])),
     }
-}
-
-fn cut(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control()).take(LONGEST).collect()
 }
 
 #[cfg(test)]
@@ -61,9 +36,9 @@ mod tests {
         for line in
             ["Serial;SN-0042", "Прибор: ВОГ-1 № 12", "Test of a gyro", "rate = 10 Hz", "---", "12:30:00"]
         {
-            m.take(line.as_bytes(), semicolon);
+            add_line(&mut m, line.as_bytes(), semicolon);
         }
-        let list = m.into_list();
+        let list = m.entries();
         let expected = [
             ("Serial", "SN-0042"),
             ("Прибор", "ВОГ-1 № 12"),

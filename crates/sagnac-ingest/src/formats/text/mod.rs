@@ -9,6 +9,7 @@ mod header;
 mod kinds;
 mod metadata;
 mod names;
+mod number;
 mod reader;
 mod rows;
 mod separator;

@@ -1,8 +1,8 @@
 //! Lines of delimited text into columns of numbers.
 
 use super::fields::{Comments, Separator, bare};
+use super::number::{self, Field};
 use super::stamps::{self, Shape};
-use crate::number::{self, Field};
 use crate::{Block, FieldFault, FieldFaultKind};
 
 /// What a field of every line holds.

@@ -1,8 +1,8 @@
 //! What separates the fields and what marks the decimals: whatever gives the most numbers in fields of one count.
 
 use super::fields::{Separator, bare};
+use super::number::{self, Field};
 use super::stamps::{self, Shape};
-use crate::number::{self, Field};
 
 /// What a field looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

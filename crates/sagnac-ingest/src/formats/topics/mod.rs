@@ -8,7 +8,7 @@ pub(super) mod source;
 mod table;
 
 use crate::error::{IngestError, IngestErrorKind, shorten};
-use crate::parts::Metadata;
+use crate::metadata::Metadata;
 use crate::{Candidate, Column, Opened};
 use sagnac_core::message::{Arg, Note};
 use source::{Catalog, Container, Event, Topic};

@@ -14,19 +14,19 @@ const CHUNK: usize = 1 << 18;
 
 /// A file that is read by position, by several readers at once.
 #[derive(Debug)]
-pub(crate) struct At {
+pub(crate) struct PositionedFile {
     file: File,
     /// Size, bytes.
     pub size: u64,
 }
 
-impl At {
+impl PositionedFile {
     /// Opens the content of a file, unpacked.
-    pub fn open(candidate: &Candidate) -> Result<Arc<At>, IngestError> {
+    pub fn open(candidate: &Candidate) -> Result<Arc<PositionedFile>, IngestError> {
         let path = &candidate.path;
         if candidate.packing == Packing::Plain {
             let file = File::open(path).map_err(|e| io_error(path, &e))?;
-            return Ok(Arc::new(At { file, size: candidate.bytes }));
+            return Ok(Arc::new(PositionedFile { file, size: candidate.bytes }));
         }
         let mut stream = ByteStream::open(path, candidate.packing)?;
         let mut file = tempfile::tempfile().map_err(|e| io_error(path, &e))?;
@@ -35,7 +35,7 @@ impl At {
         loop {
             let n = stream.fill(&mut buffer)?;
             if n == 0 {
-                return Ok(Arc::new(At { file, size }));
+                return Ok(Arc::new(PositionedFile { file, size }));
             }
             file.write_all(buffer.get(..n).unwrap_or_default()).map_err(|e| io_error(path, &e))?;
             size += n as u64;
@@ -43,8 +43,8 @@ impl At {
     }
 
     /// Takes a file that is open already.
-    pub fn of(file: File, size: u64) -> Arc<At> {
-        Arc::new(At { file, size })
+    pub fn of(file: File, size: u64) -> Arc<PositionedFile> {
+        Arc::new(PositionedFile { file, size })
     }
 
     /// Reads some bytes; fewer than asked for at the end only.
@@ -74,16 +74,16 @@ impl At {
 
 /// A part of a file, read from its start.
 #[derive(Debug, Clone)]
-pub(crate) struct Part {
-    at: Arc<At>,
+pub(crate) struct FileRange {
+    at: Arc<PositionedFile>,
     next: u64,
     end: u64,
 }
 
-impl Part {
+impl FileRange {
     /// Bytes `from` up to `from + length`, or up to the end of the file.
-    pub fn new(at: &Arc<At>, from: u64, length: u64) -> Part {
-        Part { at: at.clone(), next: from, end: from.saturating_add(length).min(at.size) }
+    pub fn new(at: &Arc<PositionedFile>, from: u64, length: u64) -> FileRange {
+        FileRange { at: at.clone(), next: from, end: from.saturating_add(length).min(at.size) }
     }
 
     /// Passes over bytes.
@@ -92,7 +92,7 @@ impl Part {
     }
 }
 
-impl Read for Part {
+impl Read for FileRange {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let left = usize::try_from(self.end.saturating_sub(self.next)).unwrap_or(usize::MAX);
         let n = left.min(buffer.len());
@@ -102,7 +102,7 @@ impl Read for Part {
     }
 }
 
-impl io::Seek for Part {
+impl io::Seek for FileRange {
     fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
         let next = match to {
             io::SeekFrom::Start(n) => Some(n),

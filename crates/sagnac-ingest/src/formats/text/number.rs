@@ -6,7 +6,7 @@ const POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
-pub use sagnac_core::numeric::range::usable;
+use sagnac_core::numeric::range::usable;
 
 /// What a field holds.
 #[derive(Debug, Clone, Copy, PartialEq)]

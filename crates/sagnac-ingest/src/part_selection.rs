@@ -10,9 +10,6 @@ use std::path::Path;
 
 /// At most this many parts, and columns of a part, are listed in a diagnostic.
 const LISTED: usize = 12;
-/// At most this many entries of metadata are kept, each at most this long.
-const METADATA: usize = 64;
-const METADATA_CHARACTERS: usize = 200;
 
 /// One part of a container.
 #[derive(Debug, Clone, Default)]
@@ -146,45 +143,4 @@ pub(super) fn unpacked(file: &Candidate, what: &'static str) -> Result<(), Inges
             .with("packing", file.packing.id()),
     )
     .hint("ingest.hint.unpack"))
-}
-
-/// What a file says of itself, bounded in number and length.
-#[derive(Debug, Default)]
-pub(super) struct Metadata(Vec<(String, String)>);
-
-impl Metadata {
-    /// Keeps an entry while there is room.
-    pub fn add(&mut self, key: &str, value: &str) {
-        let cut = |text: &str| {
-            let clean = text.trim().chars().filter(|c| !c.is_control());
-            clean.take(METADATA_CHARACTERS).collect::<String>()
-        };
-        let (key, value) = (cut(key), cut(value));
-        if self.0.len() < METADATA && !key.is_empty() && !value.is_empty() {
-            self.0.push((key, value));
-        }
-    }
-
-    /// The entries.
-    pub fn entries(self) -> Vec<(String, String)> {
-        self.0
-    }
-}
-
-/// Sample rate by the name and value of an entry, Hz: `fs`, `sample_rate_hz`, `dt` ...
-pub(super) fn stated_rate_hz(name: &str, value: f64) -> Option<f64> {
-    let name: String = name.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
-    let rates = ["fs", "fshz", "samplerate", "sampleratehz", "samplingrate", "samplingratehz"];
-    let more = ["samplingfrequency", "samplingfrequencyhz", "samplefrequency", "sampratehz", "samprate"];
-    let steps = ["dt", "dts", "deltat", "sampleinterval", "sampleintervals", "samplinginterval"];
-    let more_steps = ["sampleperiod", "samplingperiod", "samplinginterval", "ts"];
-    let name = name.as_str();
-    let rate = if rates.contains(&name) || more.contains(&name) {
-        value
-    } else if steps.contains(&name) || more_steps.contains(&name) {
-        1.0 / value
-    } else {
-        return None;
-    };
-    (rate.is_finite() && rate > 0.0).then_some(rate)
 }

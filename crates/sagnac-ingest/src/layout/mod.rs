@@ -1,10 +1,22 @@
-//! The layout of the records of a raw binary file.
+//! The layout of the records of a raw binary file, as its user states it: what the format `raw` reads by.
+//!
+//! The types are there whether or not the format is compiled in, so that a layout can be read and checked without it.
 
-use super::checksum::Checksum;
-use crate::binary::number_type::Field;
+mod checksum;
+mod number_type;
+
+pub use checksum::{Checksum, Sum};
+pub use number_type::{ByteOrder, Field, NumberType, Ticks};
+
 use sagnac_core::units::Unit;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Longest record, bytes: several records must fit into what is read at a time.
+pub const MAX_RECORD_BYTES: usize = 1 << 18;
+
+/// Most columns of a recording. Arrays that seem to have more are no recordings.
+pub const MAX_COLUMNS: usize = 4096;
 
 /// A layout by its file, and what was read from it. Whoever opens a recording has read it before.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! Checksums of records.
 
-use crate::binary::number_type::ByteOrder;
+use super::number_type::ByteOrder;
 
 /// A kind of checksum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,132 @@
+//! Which format reads a file: the one that its user states, else the first that recognises the first bytes.
+
+use crate::error::{IngestError, IngestErrorKind, shorten};
+use crate::format::{Candidate, Format};
+use crate::formats::{FORMATS, FormatFeature, left_out};
+use sagnac_core::message::{Arg, Note};
+use sagnac_core::spelling::nearest;
+
+/// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
+const NOT_READ: &[(&[u8], &str, &str)] = &[
+    (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
+    (b"SQLite format 3\0", "ingest.ros.sqlite", "ingest.ros.hint.convert"),
+    (b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
+    (b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
+    (b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),
+    (b"\xfd7zXZ", "ingest.kind.xz", "ingest.hint.repack"),
+];
+
+/// The format that the user states, else the first that recognises the file.
+///
+/// # Errors
+/// A file that no format recognises, a format that is not known or not compiled in, or one that the content contradicts.
+pub(super) fn format_of(file: &Candidate) -> Result<&'static dyn Format, IngestError> {
+    let unknown = |message: Note| IngestError::new(IngestErrorKind::UnknownFormat, &file.path, message);
+    let Some(stated) = file.options.format.as_deref() else { return recognised(file) };
+    let ids = || FORMATS.iter().map(|f| f.id());
+    let Some(format) = FORMATS.iter().find(|f| f.id() == stated) else {
+        if let Some(missing) = left_out().find(|f| f.id == stated) {
+            return Err(not_compiled_in(file, missing));
+        }
+        let hint = match nearest(stated, ids()) {
+            Some(near) => Note::new("ingest.hint.did_you_mean").with("name", near),
+            None => Note::new("ingest.stated.formats").with("formats", ids().collect::<Vec<_>>().join(", ")),
+        };
+        let note = Note::new("ingest.stated.no_such_format").with("format", shorten(stated));
+        return Err(unknown(note).hint(hint));
+    };
+    if format.may_be(file) {
+        return Ok(*format);
+    }
+    Err(unknown(Note::new("ingest.stated.not_this_format").with("format", stated))
+        .hint("ingest.stated.hint_format"))
+}
+
+/// The format that recognises a file.
+fn recognised(file: &Candidate) -> Result<&'static dyn Format, IngestError> {
+    let unknown = |note: Note| IngestError::new(IngestErrorKind::UnknownFormat, &file.path, note);
+    let format = FORMATS.iter().find(|f| f.recognises(file)).copied();
+    // Text is whatever looks like lines, so that kinds known by their first bytes go before it.
+    if let Some(format) = format.filter(|f| f.id() != "csv") {
+        return Ok(format);
+    }
+    if let Some(missing) = left_out().find(|f| (f.recognises)(file)) {
+        return Err(not_compiled_in(file, missing));
+    }
+    if let Some((_, what, hint)) = NOT_READ.iter().find(|(magic, ..)| file.head.starts_with(magic)) {
+        let what = Arg::Key((*what).to_owned());
+        return Err(unknown(Note::new("ingest.not_read").with("what", what)).hint(*hint));
+    }
+    format.ok_or_else(|| {
+        let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();
+        let hint = Note::new("ingest.formats.give").with("ids", ids.join(", "));
+        unknown("ingest.formats.unknown".into()).hint(hint)
+    })
+}
+
+/// The diagnostic of a format whose cargo feature is off.
+fn not_compiled_in(file: &Candidate, format: &FormatFeature) -> IngestError {
+    let note = Note::new("ingest.formats.left_out").with("format", format.id);
+    IngestError::new(IngestErrorKind::UnknownFormat, &file.path, note)
+        .hint(Note::new("ingest.formats.hint_feature").with("feature", format.feature))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compressed::Packing;
+    use crate::english::english;
+    use crate::formats::FEATURES;
+    use crate::layout::LayoutFile;
+    use crate::options::ReadOptions;
+
+    fn candidate(head: &[u8]) -> Candidate {
+        let (path, options) = ("unit.rec".into(), ReadOptions::default());
+        let (bytes, head) = (head.len() as u64, head.to_vec());
+        Candidate { path, bytes, packing: Packing::Plain, head, head_is_all: true, options }
+    }
+
+    /// First bytes of every format.
+    fn samples() -> Vec<(&'static str, Candidate)> {
+        let mut mat = b"MATLAB 5.0 MAT-file".to_vec();
+        mat.resize(124, b' ');
+        mat.extend_from_slice(b"\x00\x01IM");
+        let mut npz = b"PK\x03\x04".to_vec();
+        npz.resize(26, 0);
+        npz.extend_from_slice(b"\x05\0\0\0t.npy");
+        let mut raw = candidate(&[0; 64]);
+        raw.options.layout = Some(LayoutFile::at("unit.toml".into()));
+        vec![
+            ("raw", raw),
+            ("parquet", candidate(b"PAR1....")),
+            ("npy", candidate(b"\x93NUMPY\x01\0")),
+            ("npz", candidate(&npz)),
+            ("hdf5", candidate(b"\x89HDF\r\n\x1a\n....")),
+            ("mat", candidate(&mat)),
+            ("tdms", candidate(b"TDSm....")),
+            ("mcap", candidate(b"\x89MCAP0\r\n....")),
+            ("rosbag", candidate(b"#ROSBAG V2.0\n....")),
+            ("csv", candidate(b"t,rate\n0,1\n1,2\n")),
+        ]
+    }
+
+    #[test]
+    fn every_format_is_read_or_refused_with_its_feature() {
+        let samples = samples();
+        assert_eq!(samples.iter().map(|s| s.0).collect::<Vec<_>>(), FEATURES.each_ref().map(|f| f.id));
+        for (id, mut file) in samples {
+            for stated in [None, Some(id.to_owned())] {
+                file.options.format = stated;
+                let feature = FEATURES.iter().find(|f| f.id == id).unwrap().feature;
+                match format_of(&file) {
+                    Ok(format) => assert_eq!(format.id(), id),
+                    Err(error) => {
+                        assert!(FORMATS.iter().all(|f| f.id() != id), "{id}");
+                        let text = english(&error.note());
+                        assert!(text.contains(&format!("`{feature}`")), "{text}");
+                    }
+                }
+            }
+        }
+    }
+}
