@@ -10,8 +10,8 @@ use crate::config::inside::{self, Inside};
 use crate::config::reader::{Reader, checked};
 use crate::config::section::Section;
 use crate::i18n::Note;
-use sagnac_ingest::joined::PartSpec;
 use sagnac_ingest::layout::LayoutFile;
+use sagnac_ingest::multi_file::PartSpec;
 use sagnac_ingest::pattern::natural;
 use sagnac_ingest::{ReadOptions, TextOptions, compressed, pattern};
 use std::collections::BTreeMap;
@@ -148,7 +148,7 @@ fn by_list(
 ) -> Vec<ManifestFile> {
     let mut found: Vec<ManifestFile> = Vec::new();
     let mut real: BTreeMap<PathBuf, usize> = BTreeMap::new();
-    let most = sagnac_ingest::joined::MOST_FILES;
+    let most = sagnac_ingest::multi_file::MAX_FILES;
     if let Some(beyond) = listed.get(most) {
         complain(reader, &beyond.span, Note::new("manifest.too_many").with("most", most), None);
         return found;
@@ -205,7 +205,7 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
     if !inside::stays(pattern, &at, reader) {
         return vec![];
     }
-    let most = sagnac_ingest::joined::MOST_FILES;
+    let most = sagnac_ingest::multi_file::MAX_FILES;
     let mut names = match pattern::files(&inside::joined(folder, ""), pattern, most) {
         Ok(names) => names,
         Err(e) => {

@@ -1,6 +1,6 @@
 //! From what a user names to one recording: a file, several files, a pattern, a manifest.
 
-use super::joined::{self, PartSpec};
+use super::multi_file::{self, PartSpec};
 use super::{IngestError, IngestErrorKind};
 use super::{ReadOptions, Source};
 use crate::config::diagnostics::Problems;
@@ -85,7 +85,7 @@ pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Record
     if named.len() == 1 && manifest::is_manifest(name) {
         let manifest = manifest::load(name).map_err(RecordingError::Manifest)?;
         let options = with_layout(&manifest.options_over(options))?;
-        let source = joined::open(name, &manifest.parts(), manifest.contiguous, &options)?;
+        let source = multi_file::open(name, &manifest.parts(), manifest.contiguous, &options)?;
         return Ok(Recording { source, manifest: Some(manifest) });
     }
     let options = &with_layout(options)?;
@@ -105,7 +105,7 @@ pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Record
     }
     let specs: Vec<PartSpec> =
         files.iter().map(|f| PartSpec { path: f.clone(), ..PartSpec::default() }).collect();
-    Ok(Recording { source: joined::open(name, &specs, false, options)?, manifest: None })
+    Ok(Recording { source: multi_file::open(name, &specs, false, options)?, manifest: None })
 }
 
 /// The options with their layout read, where there is one.
@@ -144,7 +144,7 @@ pub fn open_files(
     let options = &with_layout(options)?;
     match files {
         [one] if one.phase.is_none() => open_with(&one.path, options),
-        _ => joined::open(name, &files.iter().map(part).collect::<Vec<_>>(), contiguous, options),
+        _ => multi_file::open(name, &files.iter().map(part).collect::<Vec<_>>(), contiguous, options),
     }
 }
 
@@ -188,7 +188,7 @@ fn pattern_of(path: &Path) -> Option<String> {
 /// The files that a pattern names, part2 before part10.
 fn expand(path: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
     let error = |note: Note| IngestError::new(IngestErrorKind::Io, path, note);
-    let most = joined::MOST_FILES;
+    let most = multi_file::MAX_FILES;
     let mut files = pattern::files(Path::new(""), pattern, most)
         .map_err(|e| error(e.note("ingest.joined.bad_pattern", "ingest.joined.wide_pattern")))?;
     if files.len() > most {

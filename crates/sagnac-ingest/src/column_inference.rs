@@ -204,130 +204,137 @@ fn unit_at_end(words: &[String]) -> Option<(Unit, usize)> {
     if last.contains('/') { parse(last).map(|u| (u, 1)) } else { None }
 }
 
+/// Words of names of temperatures.
+const TEMPERATURE: &[&str] = &["temperature", "температура", "температуры", "темп"];
+/// Words of names of quantities of a rate table.
+const TABLE: &[&str] = &["table", "turntable", "стенд", "стенда", "стол", "стола", "платформа", "платформы"];
+/// Words that mean the outer axis of a table.
+const OUTER: &[&str] = &["outer", "внешняя", "внешней"];
+/// Words of names of rates.
+const GYRO: &[&str] = &[
+    "gyro",
+    "gyr",
+    "gyroscope",
+    "rate",
+    "omega",
+    "rot",
+    "rotation",
+    "angular",
+    "w",
+    "wx",
+    "wy",
+    "wz",
+    "gx",
+    "gy",
+    "gz",
+    "fog",
+    "rlg",
+    "ω",
+    "ωx",
+    "ωy",
+    "ωz",
+    "угловая",
+    "скорость",
+    "гироскоп",
+    "гироскопа",
+    "вог",
+    "лг",
+    "выходной",
+];
+/// Words of names of angles that accrue from sample to sample.
+const INCREMENT: &[&str] =
+    &["delta", "dtheta", "increment", "inc", "dangle", "dtheta_x", "приращение", "приращения"];
+/// Words of names of times.
+const TIME: &[&str] = &[
+    "time",
+    "t",
+    "timestamp",
+    "stamp",
+    "seconds",
+    "sec",
+    "epoch",
+    "utc",
+    "unix",
+    "gps",
+    "tow",
+    "sow",
+    "clock",
+    "datetime",
+    "время",
+    "т",
+    "секунды",
+];
+/// Words of names of sample counters.
+const COUNTER: &[&str] =
+    &["counter", "sample", "samples", "seq", "sequence", "счётчик", "счетчик", "отсчёт", "отсчет"];
+/// Words of names of other sensors, whose counts are no rates.
+const OTHER_SENSOR: &[&str] =
+    &["accel", "acc", "accelerometer", "mag", "magnetometer", "pressure", "humidity"];
+/// Words of names of supply voltages where the name has no unit.
+const SUPPLY: &[&str] = &["supply", "vcc", "vdd", "питание", "питания", "напряжение"];
+/// Further words of names of supply voltages in V.
+const SUPPLY_IN_VOLTS: [&str; 2] = ["psu", "voltage"];
+
+/// What the words of a name speak of.
+struct NameWords<'a>(&'a [String]);
+
+impl NameWords<'_> {
+    fn any(&self, list: &[&str]) -> bool {
+        self.0.iter().any(|w| list.contains(&w.as_str()))
+    }
+
+    /// True when a word is a stem with a number behind it, such as `temp2`.
+    fn numbered(&self, stem: &str) -> bool {
+        let number = |w: &String| w.strip_prefix(stem).is_some_and(|r| r.chars().all(|c| c.is_ascii_digit()));
+        self.0.iter().any(number)
+    }
+
+    fn temperature(&self) -> bool {
+        self.any(TEMPERATURE) || ["temp", "t", "т"].into_iter().any(|stem| self.numbered(stem))
+    }
+
+    fn counter(&self) -> bool {
+        let alone = ["n", "index", "idx", "i", "count", "номер"];
+        let by_itself = matches!(self.0, [only] if alone.contains(&only.as_str()));
+        self.any(COUNTER) || by_itself || self.0.is_empty()
+    }
+}
+
+/// The role of a column by the words of its name and its unit.
 fn role(words: &[String], unit: Option<&Unit>) -> Role {
-    let has = |list: &[&str]| words.iter().any(|w| list.contains(&w.as_str()));
-    let is = |unit_text: &str| unit.is_some_and(|u| parse(unit_text).is_some_and(|t| u.same_dimension(&t)));
-    let numbered = |stem: &str| {
-        words.iter().any(|w| w.strip_prefix(stem).is_some_and(|r| r.chars().all(|c| c.is_ascii_digit())))
-    };
-    let temperature = has(&["temperature", "температура", "температуры", "темп"])
-        || numbered("temp")
-        || numbered("t")
-        || numbered("т");
-    let table = has(&["table", "turntable", "стенд", "стенда", "стол", "стола", "платформа", "платформы"]);
-    let outer = has(&["outer", "внешняя", "внешней"]);
-    let gyro = has(&[
-        "gyro",
-        "gyr",
-        "gyroscope",
-        "rate",
-        "omega",
-        "rot",
-        "rotation",
-        "angular",
-        "w",
-        "wx",
-        "wy",
-        "wz",
-        "gx",
-        "gy",
-        "gz",
-        "fog",
-        "rlg",
-        "ω",
-        "ωx",
-        "ωy",
-        "ωz",
-        "угловая",
-        "скорость",
-        "гироскоп",
-        "гироскопа",
-        "вог",
-        "лг",
-        "выходной",
-    ]);
-    let increment =
-        has(&["delta", "dtheta", "increment", "inc", "dangle", "dtheta_x", "приращение", "приращения"]);
-    let time = has(&[
-        "time",
-        "t",
-        "timestamp",
-        "stamp",
-        "seconds",
-        "sec",
-        "epoch",
-        "utc",
-        "unix",
-        "gps",
-        "tow",
-        "sow",
-        "clock",
-        "datetime",
-        "время",
-        "т",
-        "секунды",
-    ]);
-    let counter = has(&[
-        "counter",
-        "sample",
-        "samples",
-        "seq",
-        "sequence",
-        "счётчик",
-        "счетчик",
-        "отсчёт",
-        "отсчет",
-    ]) || matches!(words, [only] if ["n", "index", "idx", "i", "count", "номер"].contains(&only.as_str()))
-        || words.is_empty();
-    if is(RATE) {
-        return match (table, outer) {
-            (_, true) => Role::OuterRate,
-            (true, false) => Role::TableRate,
-            _ if gyro || words.len() <= 2 => Role::Rate,
-            _ => Role::Auxiliary,
-        };
-    }
-    if is("deg") {
-        return match (table, increment) {
-            (true, _) => Role::TableAngle,
-            (false, true) => Role::AngleIncrement,
-            _ => Role::Auxiliary,
-        };
-    }
-    if is("degC") {
-        return Role::Temperature;
-    }
-    if is("s") {
-        return if time { Role::Time } else { Role::Auxiliary };
-    }
-    if is("V") {
-        return if has(&["supply", "vcc", "vdd", "psu", "voltage", "питание", "питания", "напряжение"])
-        {
-            Role::Supply
-        } else {
-            Role::Auxiliary
-        };
-    }
-    if unit.is_some() && !is("count") {
-        return Role::Auxiliary;
-    }
-    let counts = unit.is_some();
-    let accel = has(&["accel", "acc", "accelerometer", "mag", "magnetometer", "pressure", "humidity"]);
+    let is = |text: &str| unit.is_some_and(|u| parse(text).is_some_and(|t| u.same_dimension(&t)));
+    let name = NameWords(words);
+    let (table, gyro, increment) = (name.any(TABLE), name.any(GYRO), name.any(INCREMENT));
     match () {
-        _ if accel => Role::Auxiliary,
-        _ if counter && !gyro && !increment => Role::Counter,
+        _ if is(RATE) && name.any(OUTER) => Role::OuterRate,
+        _ if is(RATE) && table => Role::TableRate,
+        _ if is(RATE) && (gyro || words.len() <= 2) => Role::Rate,
+        _ if is("deg") && table => Role::TableAngle,
+        _ if is("deg") && increment => Role::AngleIncrement,
+        _ if is("degC") => Role::Temperature,
+        _ if is("s") && name.any(TIME) => Role::Time,
+        _ if is("V") && (name.any(SUPPLY) || name.any(&SUPPLY_IN_VOLTS)) => Role::Supply,
+        _ if unit.is_some() && !is("count") => Role::Auxiliary,
+        _ => role_without_dimension(&name, unit.is_some()),
+    }
+}
+
+/// The role of a column of counts, or of one whose unit is not known.
+fn role_without_dimension(name: &NameWords<'_>, counts: bool) -> Role {
+    let (table, gyro, increment) = (name.any(TABLE), name.any(GYRO), name.any(INCREMENT));
+    match () {
+        _ if name.any(OTHER_SENSOR) => Role::Auxiliary,
+        _ if name.counter() && !gyro && !increment => Role::Counter,
         _ if counts => Role::Auxiliary,
-        _ if table && has(&["rate", "speed", "скорость"]) => Role::TableRate,
-        _ if table && has(&["angle", "position", "угол", "положение"]) => Role::TableAngle,
+        _ if table && name.any(&["rate", "speed", "скорость"]) => Role::TableRate,
+        _ if table && name.any(&["angle", "position", "угол", "положение"]) => Role::TableAngle,
         _ if increment => Role::AngleIncrement,
         _ if gyro => Role::Rate,
-        _ if has(&["time", "timestamp", "время"]) || words == ["t"] => Role::Time,
+        _ if name.any(&["time", "timestamp", "время"]) || name.0 == ["t"] => Role::Time,
         // `seconds_of_day`: nothing but time is counted in them. Seconds of a week are told by the reader.
-        _ if has(&["seconds", "sod", "секунды"]) => Role::Time,
-        _ if temperature => Role::Temperature,
-        _ if has(&["supply", "vcc", "vdd", "питание", "питания", "напряжение"]) => {
-            Role::Supply
-        }
+        _ if name.any(&["seconds", "sod", "секунды"]) => Role::Time,
+        _ if name.temperature() => Role::Temperature,
+        _ if name.any(SUPPLY) => Role::Supply,
         _ => Role::Auxiliary,
     }
 }

@@ -1,10 +1,10 @@
 //! Fields that are no numbers: counted, and the first of each kind located.
 
-use super::row_clock::State;
+use super::row_clock::RowClock;
 use super::{Block, FieldFaultKind};
 use sagnac_core::message::Note;
 
-impl State<'_> {
+impl RowClock<'_> {
     /// Counts and lists the fields of a block that are no numbers.
     pub(super) fn field_faults(&mut self, block: &Block) {
         self.integrity.non_finite += block.non_finite.iter().sum::<u64>();

@@ -43,6 +43,7 @@
 )]
 
 mod accumulated;
+mod affine;
 #[cfg(any(feature = "matlab", feature = "numpy", feature = "raw"))]
 mod binary;
 mod block;
@@ -62,10 +63,10 @@ mod format_detection;
 mod formats;
 mod guarded;
 mod identity;
-pub mod joined;
 pub mod layout;
 mod memory;
 mod metadata;
+pub mod multi_file;
 mod options;
 #[cfg(any(feature = "bag", feature = "hdf5", feature = "mcap", feature = "tdms"))]
 mod part_selection;
@@ -86,11 +87,10 @@ pub use error::{IngestError, IngestErrorKind};
 pub use format::{Candidate, Format, OnBlock, Opened, Table};
 pub use formats::FORMATS;
 pub use guarded::decoder_is_running;
-pub use joined::PartFacts;
 pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
 pub use pauses::Pauses;
 pub use plan::{Plan, TimeBaseSpec, prepare};
-pub use source::{Source, open, open_with};
+pub use source::{PartFacts, Source, open, open_with};
 pub use stream::{ChannelFacts, FileReport, StreamReport, locate, stream, stream_path};
 pub use system::io_reason;
 

@@ -1,5 +1,6 @@
 //! What must be known before a recording is read: its columns, the units of its channels, its clock.
 
+use super::affine::Affine;
 use super::pauses::Pauses;
 use super::{IngestError, IngestErrorKind, Source};
 use crate::clock::{Batches, Cadence, Clock, ClockError, Loss, Unwrapper, moduli};
@@ -41,8 +42,8 @@ pub struct Plan<'a> {
     pub(super) source: &'a Source,
     pub(super) channels: &'a [Channel],
     pub(super) wanted: Vec<usize>,
-    /// Factor and offset from the number in the file to the unit inside.
-    pub(super) maps: Vec<(f64, f64)>,
+    /// From the number in the file to the unit of the analysis, by channel.
+    pub(super) conversions: Vec<Affine>,
     /// Which channel gives the stamps.
     pub(super) time: Option<usize>,
     /// Which channel counts the samples.
@@ -70,40 +71,23 @@ pub fn prepare<'a>(
     spec: TimeBaseSpec,
 ) -> Result<Plan<'a>, IngestError> {
     let wanted = channels.iter().map(|c| source.resolve(&c.column)).collect::<Result<Vec<_>, _>>()?;
-    let maps = channels.iter().map(|c| map(source.path(), c)).collect::<Result<Vec<_>, _>>()?;
+    let conversions = channels.iter().map(|c| conversion(source.path(), c)).collect::<Result<Vec<_>, _>>()?;
     let no_clock = |e: ClockError, hint: &'static str| {
         IngestError::new(IngestErrorKind::TimeBase, source.path(), clock_note(&e)).hint(hint)
     };
     let time = channels.iter().position(|c| c.role == Role::Time).filter(|_| spec.use_stamps);
     let counter = channels.iter().position(|c| c.role == Role::Counter);
-    let stamped = time.and_then(|i| Some((*wanted.get(i)?, *maps.get(i)?)));
+    let column_of = |i: usize| Some((*wanted.get(i)?, *conversions.get(i)?));
+    let stamped = time.and_then(column_of);
     let rollover_s = spec.rollover_s.or_else(|| source.columns().get(stamped?.0)?.rollover_s);
     let unwrapper = |limit_s: f64| {
-        let usual = stamped.map(|(_, map)| moduli(map.0.abs())).unwrap_or_default();
+        let usual = stamped.map(|(_, conversion)| moduli(conversion.factor.abs())).unwrap_or_default();
         Unwrapper::new(rollover_s, usual, limit_s)
     };
     let (clock, start_s) = match stamped {
-        Some((column, map)) => {
-            let (mut stamps, mut counts) = (Vec::new(), Vec::new());
-            let counted = counter.and_then(|i| Some((*wanted.get(i)?, *maps.get(i)?)));
-            let columns: Vec<usize> = std::iter::once(column).chain(counted.map(|c| c.0)).collect();
-            source.read(&columns, &mut |block| {
-                let room = PROBED.saturating_sub(stamps.len());
-                let take = |slot: usize, map: (f64, f64), into: &mut Vec<f64>| {
-                    let values = block.columns.get(slot).into_iter().flatten();
-                    into.extend(values.take(room).map(|v| v * map.0 + map.1));
-                };
-                take(0, map, &mut stamps);
-                if let Some((_, map)) = counted {
-                    take(1, map, &mut counts);
-                }
-                // The clock is found from the first file alone: where the next one begins is not known.
-                if stamps.len() < PROBED && block.part == 0 {
-                    ControlFlow::Continue(())
-                } else {
-                    ControlFlow::Break(())
-                }
-            })?;
+        Some(column) => {
+            let counted = counter.and_then(column_of);
+            let FirstRows { mut stamps, mut counts } = first_rows(source, column, counted)?;
             let start_s = stamps.iter().copied().find(|t| t.is_finite()).unwrap_or(0.0);
             unwrapper(step_limit(&stamps)).apply(&mut stamps);
             let counted = counted.and_then(|_| by_counter(&stamps, &mut counts, spec.counter_modulus));
@@ -122,8 +106,8 @@ pub fn prepare<'a>(
         }
     };
     let (clock, losses) = match (clock.cadence, stamped) {
-        (Cadence::Buffered { .. }, Some((column, map))) if counter.is_none() => {
-            batches(source, column, map, clock).map_err(|e| match e {
+        (Cadence::Buffered { .. }, Some((column, conversion))) if counter.is_none() => {
+            batches(source, column, conversion, clock).map_err(|e| match e {
                 Unread::File(e) => e,
                 Unread::Clock(e) => no_clock(e, "ingest.hint.declare_batches"),
             })?
@@ -137,7 +121,7 @@ pub fn prepare<'a>(
         source,
         channels,
         wanted,
-        maps,
+        conversions,
         time,
         counter,
         clock,
@@ -153,6 +137,40 @@ pub fn prepare<'a>(
     Ok(plan)
 }
 
+/// Stamps and counts of the first rows of a recording.
+struct FirstRows {
+    stamps: Vec<f64>,
+    counts: Vec<f64>,
+}
+
+/// Reads the first stamps, s, and counts. The clock is found from the first file alone: where the next one begins is not
+/// known.
+fn first_rows(
+    source: &Source,
+    stamped: (usize, Affine),
+    counted: Option<(usize, Affine)>,
+) -> Result<FirstRows, IngestError> {
+    let mut first = FirstRows { stamps: Vec::new(), counts: Vec::new() };
+    let columns: Vec<usize> = std::iter::once(stamped.0).chain(counted.map(|c| c.0)).collect();
+    source.read(&columns, &mut |block| {
+        let room = PROBED.saturating_sub(first.stamps.len());
+        let take = |slot: usize, conversion: Affine, into: &mut Vec<f64>| {
+            let values = block.columns.get(slot).into_iter().flatten();
+            into.extend(values.take(room).map(|v| conversion.apply(*v)));
+        };
+        take(0, stamped.1, &mut first.stamps);
+        if let Some((_, conversion)) = counted {
+            take(1, conversion, &mut first.counts);
+        }
+        if first.stamps.len() < PROBED && block.part == 0 {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    })?;
+    Ok(first)
+}
+
 /// Why batches tell no clock.
 enum Unread {
     File(IngestError),
@@ -164,7 +182,7 @@ enum Unread {
 fn batches(
     source: &Source,
     column: usize,
-    map: (f64, f64),
+    conversion: Affine,
     found: Clock,
 ) -> Result<(Clock, Vec<Loss>), Unread> {
     let (mut parts, mut rows) = (Vec::new(), 0u64);
@@ -176,7 +194,7 @@ fn batches(
             let values = block.columns.first().map(Vec::as_slice).unwrap_or_default();
             rows += values.len() as u64;
             if let Some((_, batches)) = parts.last_mut() {
-                values.iter().for_each(|v| batches.push(v * map.0 + map.1));
+                values.iter().for_each(|v| batches.push(conversion.apply(*v)));
             }
             ControlFlow::Continue(())
         })
@@ -256,8 +274,8 @@ fn clock_note(error: &ClockError) -> Note {
     }
 }
 
-/// Factor and offset from the number in the file to the unit inside.
-fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
+/// From the number in the file to the unit of the analysis.
+fn conversion(path: &Path, channel: &Channel) -> Result<Affine, IngestError> {
     let error = |message: Note| IngestError::new(IngestErrorKind::Unit, path, message);
     if !channel.scale.is_finite() || channel.scale == 0.0 {
         return Err(error(
@@ -267,9 +285,11 @@ fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
         )
         .hint("ingest.hint.scale"));
     }
-    let Some(inside) = channel.role.internal_unit() else { return Ok((channel.scale, 0.0)) };
+    let Some(inside) = channel.role.internal_unit() else {
+        return Ok(Affine { factor: channel.scale, offset: 0.0 });
+    };
     let affine = Unit::parse(inside).and_then(|inside| channel.unit.affine_to(&inside));
-    affine.map(|(factor, offset)| (factor * channel.scale, offset)).map_err(|e| {
+    affine.map(|(factor, offset)| Affine { factor: factor * channel.scale, offset }).map_err(|e| {
         error(
             Note::new("ingest.unit")
                 .with("channel", channel.id.as_str())
@@ -283,9 +303,10 @@ fn map(path: &Path, channel: &Channel) -> Result<(f64, f64), IngestError> {
 impl Plan<'_> {
     /// Turns angle increments into rates by another interval, s: 1 arcsec in 1 s is 1 deg/h.
     fn rates_from_angles(&mut self, before_s: f64, interval_s: f64) {
-        for (channel, map) in self.channels.iter().zip(&mut self.maps) {
+        for (channel, conversion) in self.channels.iter().zip(&mut self.conversions) {
             if channel.role == Role::AngleIncrement {
-                *map = (map.0 * before_s / interval_s, map.1 * before_s / interval_s);
+                conversion.factor = conversion.factor * before_s / interval_s;
+                conversion.offset = conversion.offset * before_s / interval_s;
             }
         }
         self.increment_s = interval_s;

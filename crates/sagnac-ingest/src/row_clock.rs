@@ -4,12 +4,11 @@ use super::Block;
 use super::accumulated::{Angles, Wrapped};
 use super::pauses::Paused;
 use super::plan::Plan;
-use super::stream::nano;
 use crate::clock::{Cadence, CounterStep, CounterTracker, Measured, Rollover, Step, Tracker, Unwrapper};
 use crate::faults::FaultLog;
 use crate::value_checks::ValueChecks;
 use crate::value_checks::plausible::Plausible;
-use sagnac_core::message::Note;
+use sagnac_core::message::{Arg, Note};
 use sagnac_core::numeric::range::settled;
 use sagnac_core::recording::integrity::Integrity;
 use sagnac_core::recording::{Sink, Slab};
@@ -24,7 +23,7 @@ pub(super) struct FileSpan {
 }
 
 /// What goes along while a recording is read.
-pub(super) struct State<'a> {
+pub(super) struct RowClock<'a> {
     pub plan: &'a Plan<'a>,
     pub tracker: Tracker,
     counter: CounterTracker,
@@ -54,9 +53,9 @@ pub(super) struct State<'a> {
     lost: usize,
 }
 
-impl<'a> State<'a> {
-    pub fn new(plan: &'a Plan<'a>) -> State<'a> {
-        State {
+impl<'a> RowClock<'a> {
+    pub fn new(plan: &'a Plan<'a>) -> RowClock<'a> {
+        RowClock {
             plan,
             tracker: Tracker::new(plan.clock),
             counter: CounterTracker::new(plan.clock.interval_s),
@@ -82,12 +81,9 @@ impl<'a> State<'a> {
     }
 
     pub fn block(&mut self, block: &mut Block, sinks: &mut [&mut dyn Sink]) {
-        for (column, &(factor, offset)) in block.columns.iter_mut().zip(&self.plan.maps) {
-            if (factor, offset) == (1.0, 0.0) {
-                column.iter_mut().for_each(|v| *v = settled(*v));
-            } else {
-                column.iter_mut().for_each(|v| *v = settled(*v * factor + offset));
-            }
+        for (column, conversion) in block.columns.iter_mut().zip(&self.plan.conversions) {
+            conversion.apply_all(column);
+            column.iter_mut().for_each(|v| *v = settled(*v));
         }
         self.unwrap(block);
         if block.part != self.part {
@@ -454,4 +450,10 @@ impl<'a> State<'a> {
         let first = self.counter.first_s().unwrap_or(0.0);
         (first, first + samples * measured)
     }
+}
+
+/// Rounds a time that is shown to nanoseconds.
+fn nano(time_s: f64) -> Arg {
+    let rounded = (time_s * 1e9).round() / 1e9;
+    Arg::Stated(if rounded.is_finite() { rounded } else { time_s })
 }

@@ -5,7 +5,6 @@ use super::error::{IngestError, IngestErrorKind};
 use super::format_detection::format_of;
 use super::guarded::guarded;
 use super::identity::FileIdentity;
-use super::joined::{self, PartFacts};
 use super::metadata::serial_numbers;
 use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, memory, reduce};
 use sagnac_core::message::Note;
@@ -22,9 +21,41 @@ pub struct Source {
     /// Of a file; columns in memory have none.
     identity: Option<FileIdentity>,
     opened: Opened,
-    /// The files of a recording of several; empty for one.
-    parts: Vec<joined::Part>,
-    contiguous: bool,
+    /// Of a recording of several files.
+    several: Option<SeveralFiles>,
+}
+
+/// A recording of several files, for what only such a one has.
+pub(crate) struct SeveralFiles {
+    /// The files in order, each with the phase of the test that it belongs to.
+    pub files: Vec<(PathBuf, Option<String>)>,
+    /// Each file follows the one before without a gap.
+    pub contiguous: bool,
+    /// Reads them one after the other.
+    pub reader: Box<dyn ReadSeveral>,
+}
+
+/// Reads the files of a recording one after the other.
+pub(crate) trait ReadSeveral: Send + Sync {
+    /// As [`Source::read_parts`].
+    ///
+    /// # Errors
+    /// As [`Source::read_parts`].
+    fn read(
+        &self,
+        wanted: &[usize],
+        on_block: &mut OnBlock<'_>,
+        on_part: &mut dyn FnMut(usize, PartFacts),
+    ) -> Result<Option<FileFacts>, IngestError>;
+}
+
+/// What was read of one file of a recording of several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PartFacts {
+    /// Hash, size and rows.
+    pub facts: FileFacts,
+    /// Rows of the recording before this file.
+    pub rows_before: u64,
 }
 
 /// Opens a recording; the format is found by its content.
@@ -80,8 +111,7 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         bytes: metadata.len(),
         identity: Some(FileIdentity::of(&metadata)),
         opened,
-        parts: Vec::new(),
-        contiguous: false,
+        several: None,
     })
 }
 
@@ -106,47 +136,45 @@ impl Source {
     }
 
     fn alone(path: PathBuf, format: &'static str, opened: Opened) -> Source {
-        let (parts, contiguous) = (Vec::new(), false);
-        Source { path, format, packing: Packing::Plain, bytes: 0, identity: None, opened, parts, contiguous }
+        Source { path, format, packing: Packing::Plain, bytes: 0, identity: None, opened, several: None }
     }
 
-    /// A recording of several files; what describes it comes from the first.
-    pub(super) fn of_parts(
-        path: &Path,
-        parts: Vec<joined::Part>,
-        contiguous: bool,
+    /// A recording of several files under a name. Format and packing are those of its first file.
+    pub(super) fn of_several(
+        name: &Path,
+        format: &'static str,
+        packing: Packing,
+        bytes: u64,
+        several: SeveralFiles,
         described: Opened,
     ) -> Source {
-        let first = parts.first().map(|p| &p.source);
         Source {
-            path: path.to_owned(),
-            format: first.map_or("unknown", |s| s.format),
-            packing: first.map_or(Packing::Plain, |s| s.packing),
-            bytes: parts.iter().map(|p| p.source.bytes).sum(),
+            path: name.to_owned(),
+            format,
+            packing,
+            bytes,
             identity: None,
             opened: described,
-            parts,
-            contiguous,
+            several: Some(several),
         }
     }
 
     /// The files of the recording, in order: one, unless several were joined.
     pub fn files(&self) -> Vec<&Path> {
-        if self.parts.is_empty() {
-            vec![&self.path]
-        } else {
-            self.parts.iter().map(|p| p.source.path()).collect()
+        match &self.several {
+            None => vec![&self.path],
+            Some(several) => several.files.iter().map(|(path, _)| path.as_path()).collect(),
         }
     }
 
     /// The phase of the test that a file belongs to, where a manifest says it.
     pub fn phase(&self, file: usize) -> Option<&str> {
-        self.parts.get(file)?.phase.as_deref()
+        self.several.as_ref()?.files.get(file)?.1.as_deref()
     }
 
     /// True when each file follows the one before without a gap, as a manifest says.
     pub fn is_contiguous(&self) -> bool {
-        self.contiguous
+        self.several.as_ref().is_some_and(|s| s.contiguous)
     }
 
     /// The file.
@@ -224,58 +252,55 @@ impl Source {
     /// # Errors
     /// [`IngestErrorKind::Column`] when it is not there, stands twice, or holds no numbers.
     pub fn resolve(&self, column: &ColumnRef) -> Result<usize, IngestError> {
-        let error = |message: Note| IngestError::new(IngestErrorKind::Column, &self.path, message);
         let columns = self.columns();
         let index = match column {
             ColumnRef::Position(p) => p.checked_sub(1).filter(|&i| i < columns.len()).ok_or_else(|| {
-                error(Note::new("ingest.no_column_at").with("position", *p))
+                self.column_error(Note::new("ingest.no_column_at").with("position", *p))
                     .hint(Note::new("ingest.hint.columns_to").with("count", columns.len()))
             })?,
-            ColumnRef::Name(name) => {
-                let found: Vec<usize> =
-                    (0..columns.len()).filter(|&i| columns.get(i).is_some_and(|c| c.name == *name)).collect();
-                match found.as_slice() {
-                    [one] => *one,
-                    [] => {
-                        let near = columns
-                            .iter()
-                            .map(|c| (strsim::damerau_levenshtein(&c.name, name), &c.name))
-                            .min()
-                            .filter(|(distance, c)| *distance <= 1 + c.chars().count() / 3);
-                        let hint = match near {
-                            Some((_, near)) => {
-                                Note::new("ingest.hint.did_you_mean").with("name", near.as_str())
-                            }
-                            None => {
-                                let names: Vec<&str> =
-                                    columns.iter().take(30).map(|c| c.name.as_str()).collect();
-                                Note::new("ingest.hint.the_file_has").with("names", names.join(", "))
-                            }
-                        };
-                        return Err(
-                            error(Note::new("ingest.no_column_named").with("name", name.as_str())).hint(hint)
-                        );
-                    }
-                    several => {
-                        let places: Vec<String> = several.iter().map(|i| (i + 1).to_string()).collect();
-                        return Err(error(
-                            Note::new("ingest.name_twice")
-                                .with("name", name.as_str())
-                                .with("count", several.len())
-                                .with("places", places.join(", ")),
-                        )
-                        .hint("ingest.hint.give_position"));
-                    }
-                }
-            }
+            ColumnRef::Name(name) => self.column_named(name)?,
         };
         match columns.get(index) {
-            Some(c) if !c.numeric => Err(error(
+            Some(c) if !c.numeric => Err(self.column_error(
                 Note::new("ingest.column_no_numbers")
                     .with("name", c.name.as_str())
                     .with("storage", c.storage.as_str()),
             )),
             _ => Ok(index),
+        }
+    }
+
+    fn column_error(&self, message: Note) -> IngestError {
+        IngestError::new(IngestErrorKind::Column, &self.path, message)
+    }
+
+    /// The only column of a name.
+    fn column_named(&self, name: &str) -> Result<usize, IngestError> {
+        let columns = self.columns();
+        let found: Vec<usize> =
+            columns.iter().enumerate().filter(|(_, c)| c.name == name).map(|(i, _)| i).collect();
+        match found.as_slice() {
+            [one] => Ok(*one),
+            [] => {
+                let distances = columns.iter().map(|c| (strsim::damerau_levenshtein(&c.name, name), &c.name));
+                let near = distances.min().filter(|(distance, c)| *distance <= 1 + c.chars().count() / 3);
+                let hint = match near {
+                    Some((_, near)) => Note::new("ingest.hint.did_you_mean").with("name", near.as_str()),
+                    None => {
+                        let names: Vec<&str> = columns.iter().take(30).map(|c| c.name.as_str()).collect();
+                        Note::new("ingest.hint.the_file_has").with("names", names.join(", "))
+                    }
+                };
+                Err(self.column_error(Note::new("ingest.no_column_named").with("name", name)).hint(hint))
+            }
+            several => {
+                let places: Vec<String> = several.iter().map(|i| (i + 1).to_string()).collect();
+                let note = Note::new("ingest.name_twice")
+                    .with("name", name)
+                    .with("count", several.len())
+                    .with("places", places.join(", "));
+                Err(self.column_error(note).hint("ingest.hint.give_position"))
+            }
         }
     }
 
@@ -303,8 +328,8 @@ impl Source {
         on_block: &mut OnBlock<'_>,
         on_part: &mut dyn FnMut(usize, PartFacts),
     ) -> Result<Option<FileFacts>, IngestError> {
-        if !self.parts.is_empty() {
-            return joined::read(&self.parts, wanted, on_block, on_part);
+        if let Some(several) = &self.several {
+            return several.reader.read(wanted, on_block, on_part);
         }
         let mut unique: Vec<usize> = Vec::new();
         for &w in wanted {

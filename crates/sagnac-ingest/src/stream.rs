@@ -1,11 +1,11 @@
 //! A recording as a stream: columns become channels in inside units, stamps become a time base, slabs go to sinks.
 
 use super::plan::{Plan, TimeBaseSpec, prepare};
-use super::row_clock::State;
+use super::row_clock::RowClock;
 use super::{FileFacts, IngestError, IngestErrorKind, PartFacts, Source};
 use crate::clock::{Cadence, Measured};
 use crate::value_checks::{ValueChecks, ValueFacts, fewest_for};
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::Note;
 use sagnac_core::recording::integrity::{Fault, Integrity, OF_ROWS, OF_STAMPS, OF_VALUES};
 use sagnac_core::recording::{Channel, Role, Sink};
 use std::ops::ControlFlow;
@@ -94,7 +94,7 @@ impl Plan<'_> {
         sinks: &mut [&mut dyn Sink],
         progress: &mut dyn FnMut(u64, u64),
     ) -> Result<StreamReport, IngestError> {
-        let mut state = State::new(self);
+        let mut state = RowClock::new(self);
         let mut parts: Vec<PartFacts> = Vec::new();
         let total = self.source.bytes();
         let facts = self.source.read_parts(
@@ -133,7 +133,7 @@ fn examined(plan: &Plan<'_>, values: &[ValueFacts], rows: u64) -> Vec<String> {
     out.into_iter().map(str::to_owned).collect()
 }
 
-impl State<'_> {
+impl RowClock<'_> {
     fn report(mut self, facts: FileFacts, parts: Vec<PartFacts>) -> StreamReport {
         let plan = self.plan;
         let clock = self.measured();
@@ -280,12 +280,6 @@ pub fn locate(files: &[FileReport], fault: &mut Fault) {
         fault.file = Some(file.path.display().to_string());
         fault.row -= file.rows_before;
     }
-}
-
-/// Rounds a time that is shown to nanoseconds.
-pub(super) fn nano(time_s: f64) -> Arg {
-    let rounded = (time_s * 1e9).round() / 1e9;
-    Arg::Stated(if rounded.is_finite() { rounded } else { time_s })
 }
 
 /// [`prepare`] and [`Plan::stream`] in one.

@@ -6,6 +6,8 @@
 //! is (coarse stamps): these rows, the *anchors*, lie on the line of the uniform clock but for a delay that is bounded
 //! and does not grow. Lost samples lift that line for good, a late delivery only until the next batch.
 
+use super::steps::steps;
+
 /// Steps that end a batch, in mean intervals.
 pub(super) const PAUSE: f64 = 1.2;
 
@@ -345,7 +347,7 @@ pub(super) fn course(t: &[f64]) -> Option<Course> {
     let length = (t.len() / 64).clamp(64.min(t.len()), 4096).max(2);
     let means = t.chunks_exact(length).filter_map(|w| Some((w.last()? - w.first()?) / (w.len() - 1) as f64));
     let mean_s = median(means.filter(|m| *m > 0.0).collect())?;
-    let middle = median(super::probe::steps(t).collect())? / mean_s;
+    let middle = median(steps(t).collect())? / mean_s;
     let range = |lag: usize| {
         let mut d: Vec<f64> = t.iter().zip(t.get(lag..)?).map(|(a, b)| b - a).collect();
         d.sort_by(f64::total_cmp);
@@ -368,7 +370,7 @@ pub(super) fn now_and_then(t: &[f64], course: &Course) -> bool {
     let (mut together, mut apart, mut made_up) = (0usize, 0usize, 0usize);
     // The wait before the rows that are delivered now, and how many they are, in mean intervals.
     let (mut wait, mut rows) = (1.0, 1.0);
-    for step in super::probe::steps(t).map(|d| d / course.mean_s) {
+    for step in steps(t).map(|d| d / course.mean_s) {
         if (0.0..TOGETHER).contains(&step) {
             (together, rows) = (together + 1, rows + 1.0);
             made_up += usize::from(wait >= rows - 0.6);

@@ -1,7 +1,11 @@
 //! Stamps coarser than the sample interval, and samples that arrive in packets: rows come in bunches.
 
-use super::probe::{COARSE_SHARE, departure, refined, steps};
-use super::{Cadence, Clock};
+use super::nominal::{Cadence, Clock};
+use super::refine::refined;
+use super::steps::{departure, steps};
+
+/// Share of equal consecutive stamps beyond which the stamps are coarser than the sample interval.
+pub(super) const COARSE_SHARE: f64 = 0.05;
 
 /// Bunches over which their beginnings must follow a straight line.
 const WINDOW: usize = 16;

@@ -1,7 +1,8 @@
 //! A sample counter as the time base: what it says of lost and repeated samples is exact.
 
 use super::fit::{Fit, Measured};
-use super::{LARGEST_GAP, SET_BACK_AFTER};
+use super::nominal::LARGEST_GAP;
+use super::tracker::SET_BACK_AFTER;
 
 /// Times that stamps and counter may differ about one step before it is told, in intervals.
 const DISAGREEMENT: f64 = 1.5;

@@ -1,12 +1,11 @@
 //! The clock from the first stamps of a recording.
 
 use super::buffered::{self, Batches};
-use super::bunched;
-use super::{Cadence, Clock, ClockError, FALLING_SHARE, Step, Tracker, tidy};
+use super::bunched::{self, COARSE_SHARE};
+use super::nominal::{Cadence, Clock, ClockError, tidy};
+use super::refine::{mean, refined, whole_steps};
+use super::steps::{departure, steps};
 use sagnac_core::numeric::decimal::multiples;
-
-/// Share of equal consecutive stamps beyond which the stamps are coarser than the sample interval.
-pub(super) const COARSE_SHARE: f64 = 0.05;
 
 /// Stamps that are compared at a distance to find the interval when they are rounded.
 const LAG: usize = 16;
@@ -32,12 +31,40 @@ const DOUBTFUL: f64 = 0.1;
 /// Departure from whole multiples of an interval, in intervals, that shows that interval.
 const FINELY: f64 = 0.08;
 
+/// Share of stamps earlier than the one before beyond which the column is no clock.
+const FALLING_SHARE: f64 = 0.1;
+
+impl Clock {
+    /// Finds the clock from the first stamps, with nothing declared.
+    ///
+    /// # Errors
+    /// [`ClockError`] when the stamps cannot serve.
+    pub fn probe(stamps: &[f64]) -> Result<Clock, ClockError> {
+        Clock::probe_with(stamps, None)
+    }
+
+    /// Finds the clock from the first stamps. A declared rate decides only between readings that the stamps allow alike.
+    ///
+    /// # Errors
+    /// [`ClockError`] when the stamps cannot serve.
+    pub fn probe_with(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, ClockError> {
+        let clock = probe(stamps, declared_hz)?;
+        // Stamps can grow at nine rows in ten and yet fall or stay on the whole: no clock does.
+        let runs = |v: f64| v.is_normal() && v > 0.0;
+        if runs(clock.interval_s) && runs(clock.gap_limit_s) {
+            Ok(clock)
+        } else {
+            Err(ClockError::NotGrowing)
+        }
+    }
+}
+
 /// Finds the clock.
 ///
 /// Where the stamps are even but for a few, it is the median interval over 16 rows, which rounding and a few gaps do not
 /// disturb, refined by the mean of the single intervals within half of it. Where many samples are lost or the stamps are
 /// uneven, it is the longest interval of which all others are whole multiples, refined by following the stamps.
-pub(super) fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, ClockError> {
+fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, ClockError> {
     let t: Vec<f64> = stamps.iter().copied().filter(|t| t.is_finite()).collect();
     if t.len() < 2 {
         return Err(ClockError::TooFew);
@@ -141,10 +168,6 @@ fn in_step(t: &[f64], median: f64, resolution_s: f64) -> Option<f64> {
     (near >= 0.9 * all && resolution_s <= 0.2 * tau).then_some(tau)
 }
 
-pub(super) fn steps(t: &[f64]) -> impl Iterator<Item = f64> {
-    t.iter().zip(t.get(1..).unwrap_or_default()).map(|(a, b)| b - a)
-}
-
 /// The median interval over 16 rows, and all of them.
 fn middle(t: &[f64]) -> (f64, Vec<f64>) {
     let lag = LAG.min((t.len() / 4).max(1));
@@ -239,54 +262,6 @@ fn scored(t: &[f64], median: f64, resolution_s: f64) -> Option<Clock> {
     Some(refined(clock, t))
 }
 
-/// Follows the probed stamps with a clock and measures its interval; twice, for a better start.
-pub(super) fn refined(mut clock: Clock, t: &[f64]) -> Clock {
-    for _ in 0..2 {
-        let mut tracker = Tracker::new(clock);
-        let mut head: Vec<f64> = Vec::new();
-        let mut samples = 0.0;
-        for (i, &stamp) in t.iter().enumerate() {
-            match tracker.step(stamp, t.get(i + 1).copied()) {
-                Step::Next => {}
-                Step::Gap { missing, .. } => samples += missing as f64,
-                _ => continue,
-            }
-            if head.len() < 256 && (i == 0 || tracker.compared()) {
-                head.push(stamp - samples * clock.interval_s);
-            }
-            samples += 1.0;
-        }
-        let interval_s = tracker.mean_interval_s();
-        if !(interval_s.is_normal() && (interval_s / clock.interval_s - 1.0).abs() < 0.2) {
-            break;
-        }
-        // The mean course through the first stamps, as far as the interval is known.
-        let first = head.first().copied().unwrap_or(0.0);
-        let residual_s = mean(head.iter().map(|h| first - h)).unwrap_or(0.0);
-        // Whole intervals are samples miscounted on the way to the course, no departure of the first stamp.
-        clock.first_residual_s = residual_s - (residual_s / interval_s).round() * interval_s;
-        clock.gap_limit_s *= interval_s / clock.interval_s;
-        clock.interval_s = tidy(whole_steps(interval_s, clock.resolution_s));
-    }
-    clock
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (sum, count) = values.fold((0.0, 0u64), |(s, n), v| (s + v, n + 1));
-    (count > 0).then(|| sum / count as f64)
-}
-
-/// A whole number of the steps that the stamps are rounded to, where the interval is one within 1e-4: a row too many or
-/// too few among coarse stamps shifts their mean by less.
-fn whole_steps(interval_s: f64, resolution_s: f64) -> f64 {
-    let steps = interval_s / resolution_s;
-    if resolution_s > 0.0 && (steps / steps.round() - 1.0).abs() < 1e-4 {
-        steps.round() * resolution_s
-    } else {
-        interval_s
-    }
-}
-
 /// The largest power of ten of which all stamps are multiples, 0 when there is none near the interval.
 fn resolution(t: &[f64], interval_s: f64) -> f64 {
     let largest = t.iter().fold(0.0f64, |m, v| m.max(v.abs()));
@@ -304,22 +279,6 @@ fn straight(t: &[f64], resolution_s: f64) -> f64 {
     let windows = t.chunks_exact(window);
     let count = windows.len().max(1);
     windows.filter(|w| departure(w) <= 1.2 * resolution_s).count() as f64 / count as f64
-}
-
-/// Range of the departures of values from the straight line through them.
-pub(super) fn departure(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let (mx, my) = ((n - 1.0) / 2.0, values.iter().sum::<f64>() / n);
-    let (mut xx, mut xy) = (0.0, 0.0);
-    for (i, v) in values.iter().enumerate() {
-        let x = i as f64 - mx;
-        xx += x * x;
-        xy += x * (v - my);
-    }
-    let slope = if xx > 0.0 { xy / xx } else { 0.0 };
-    let off = values.iter().enumerate().map(|(i, v)| v - my - slope * (i as f64 - mx));
-    let (low, high) = off.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
-    high - low
 }
 
 /// The distance of the double steps, when every interval is one step of the rounding or two, and those of two stand at one distance throughout. A

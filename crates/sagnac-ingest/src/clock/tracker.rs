@@ -1,7 +1,8 @@
 //! Follows the stamps of a recording row by row.
 
+use super::buffered::AnchorRow;
 use super::fit::{Fit, Measured};
-use super::{AnchorRow, Cadence, Clock, LARGEST_GAP};
+use super::nominal::{Cadence, Clock, LARGEST_GAP};
 
 /// Rows that were set aside in a row, because their stamps are earlier than one seen before, after which the clock is
 /// taken to have been set back.

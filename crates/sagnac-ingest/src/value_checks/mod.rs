@@ -7,6 +7,7 @@
 
 mod interpolated;
 mod outliers;
+mod place;
 pub mod plausible;
 mod quantization_grid;
 mod rails;
@@ -16,6 +17,7 @@ mod stuck;
 use crate::faults::FaultLog;
 use interpolated::Lines;
 use outliers::Outliers;
+use place::Place;
 use quantization_grid::QuantizationGrid;
 use rails::Rails;
 use repeats::Repeats;
@@ -73,55 +75,6 @@ pub struct ValueFaults {
     pub repeated: u64,
     /// Threshold of the outlier test in robust standard deviations; `None` without a gyro channel.
     pub outlier_threshold: Option<f64>,
-}
-
-/// Where a sample stands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Place {
-    row: u64,
-    time_s: f64,
-}
-
-impl Place {
-    /// The place some samples further on in the same stretch.
-    fn after(self, samples: u64, interval_s: f64) -> Place {
-        Place { row: self.row + samples, time_s: self.time_s + samples as f64 * interval_s }
-    }
-}
-
-/// Samples with a finite value, in order, and where they stand: rows and times are kept for stretches.
-#[derive(Debug, Clone, Default)]
-struct Places {
-    stretches: std::collections::VecDeque<(u64, Place)>,
-    interval_s: f64,
-}
-
-impl Places {
-    fn new(interval_s: f64) -> Places {
-        Places { stretches: Default::default(), interval_s }
-    }
-
-    fn start(&mut self, position: u64, place: Place) {
-        self.stretches.push_back((position, place));
-    }
-
-    /// Forgets stretches that end before a position.
-    fn forget(&mut self, position: u64) {
-        while self.stretches.get(1).is_some_and(|(start, _)| *start <= position) {
-            self.stretches.pop_front();
-        }
-    }
-
-    fn of(&self, position: u64) -> Place {
-        let after = self.stretches.partition_point(|(start, _)| *start <= position);
-        match self.stretches.get(after.saturating_sub(1)) {
-            Some((start, place)) => {
-                let ahead = position.saturating_sub(*start);
-                place.after(ahead, self.interval_s)
-            }
-            None => Place { row: 0, time_s: f64::NAN },
-        }
-    }
 }
 
 #[derive(Debug, Clone)]

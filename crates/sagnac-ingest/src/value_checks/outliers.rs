@@ -8,7 +8,7 @@
 //! at the end from the number of samples n: 5, or more where n·2·(1−Φ(k)) would exceed 0.02, so that a Gaussian record
 //! of any length shows a false outlier in about one case in fifty. Method: Hampel (1974), F. R. Hampel, JASA 69.
 
-use super::{Place, Places};
+use super::place::{Place, Places};
 use sagnac_core::estimate::normal_quantile;
 
 /// Samples judged together.

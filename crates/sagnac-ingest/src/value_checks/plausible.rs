@@ -1,6 +1,6 @@
 //! What no sensor of a role can show: values and steps beyond physical bounds are faults of the recording.
 
-use super::FaultLog;
+use crate::faults::FaultLog;
 use sagnac_core::message::{Arg, Note};
 use sagnac_core::recording::{Channel, Role, Slab};
 

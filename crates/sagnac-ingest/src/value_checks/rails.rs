@@ -5,7 +5,7 @@
 //! at the next value, and for a next value within half a standard deviation: otherwise the extreme is a level of its
 //! own, not the edge of the noise.
 
-use super::Place;
+use super::place::Place;
 
 /// Fewest samples at one value that can be a rail.
 pub(super) const FEWEST: u64 = 8;

@@ -11,7 +11,7 @@
 //! samples goes on: so a coarse, slow or regular output, of which every part looks like another, asks for long runs. A
 //! run counts when n²/2·p^e < 0.001.
 
-use super::{Place, Places};
+use super::place::{Place, Places};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 

@@ -6,7 +6,7 @@
 //! however long it is, so it does not hide itself. Where the values repeat more readily in some places than in others,
 //! the largest share over the first run lengths is taken.
 
-use super::Place;
+use super::place::Place;
 
 /// Fewest equal values that can be called stuck.
 pub(super) const FEWEST: u64 = 5;

@@ -5,7 +5,7 @@ use hdf5_reader::Attribute;
 
 /// What the attributes of a dataset say of its values.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Said {
+pub(super) struct DatasetAttributes {
     /// Unit.
     pub unit: Option<String>,
     /// Seconds from 1970 to the zero of the values, where the unit is `seconds since ...`.
@@ -26,9 +26,9 @@ pub(super) struct Said {
     pub matlab_text: bool,
 }
 
-impl Default for Said {
-    fn default() -> Said {
-        Said {
+impl Default for DatasetAttributes {
+    fn default() -> DatasetAttributes {
+        DatasetAttributes {
             unit: None,
             epoch_s: None,
             to_s: 1.0,
@@ -43,8 +43,8 @@ impl Default for Said {
 }
 
 /// Reads the attributes of a dataset.
-pub(super) fn said(attributes: &[Attribute]) -> Said {
-    let mut said = Said::default();
+pub(super) fn read(attributes: &[Attribute]) -> DatasetAttributes {
+    let mut told = DatasetAttributes::default();
     for a in attributes {
         let name = a.name.to_lowercase();
         let number = || number(a).filter(|v| v.is_finite());
@@ -52,24 +52,24 @@ pub(super) fn said(attributes: &[Attribute]) -> Said {
             "unit" | "units" | "unit_string" => {
                 let text = text(a).filter(|t| !t.is_empty());
                 if let Some((to_s, epoch_s)) = text.as_deref().and_then(since) {
-                    said.unit = Some("s".to_owned());
-                    said.to_s = to_s;
-                    said.epoch_s = Some(epoch_s);
+                    told.unit = Some("s".to_owned());
+                    told.to_s = to_s;
+                    told.epoch_s = Some(epoch_s);
                 } else {
-                    said.unit = text;
+                    told.unit = text;
                 }
             }
-            "scale_factor" => said.factor = number(),
-            "add_offset" => said.offset = number(),
-            "_fillvalue" | "missing_value" => said.missing = number(),
+            "scale_factor" => told.factor = number(),
+            "add_offset" => told.offset = number(),
+            "_fillvalue" | "missing_value" => told.missing = number(),
             "matlab_class" => {
-                said.matlab = true;
-                said.matlab_text = text(a).is_some_and(|t| t == "char");
+                told.matlab = true;
+                told.matlab_text = text(a).is_some_and(|t| t == "char");
             }
-            _ => said.rate_hz = said.rate_hz.or_else(|| stated_sample_rate_hz(&name, number()?)),
+            _ => told.rate_hz = told.rate_hz.or_else(|| stated_sample_rate_hz(&name, number()?)),
         }
     }
-    said
+    told
 }
 
 /// The text of an attribute.

@@ -1,8 +1,9 @@
 //! Rows of datasets as blocks.
 
+use super::container::{container, damaged};
 use super::number::{Bytes, Number, Whole};
 use super::walk::{Pick, Place};
-use super::{container, damaged};
+use crate::affine::Affine;
 use crate::column_inference::infer;
 use crate::decode_pipeline::{Blocks, run_pipeline};
 use crate::error::{IngestError, IngestErrorKind};
@@ -93,8 +94,9 @@ pub(super) fn dated(
     notes: &mut Vec<Note>,
 ) -> Result<(), IngestError> {
     for (column, place) in columns.iter_mut().zip(places) {
-        let wide =
-            column.numeric && place.storage.is_some_and(|s| s.is_wide_integer()) && place.map == (1.0, 0.0);
+        let wide = column.numeric
+            && place.storage.is_some_and(|s| s.is_wide_integer())
+            && place.conversion == Affine::IDENTITY;
         if !wide
             || place.pick != Pick::All
             || infer(&column.name, Some("s").filter(|_| column.unit.is_some())).role != Role::Time
@@ -113,7 +115,7 @@ pub(super) fn dated(
         let per_s = (1.0 / step_s).round() as i128;
         let epoch = first.div_euclid(per_s);
         place.base = Some(epoch * per_s);
-        place.map = (step_s, 0.0);
+        place.conversion = Affine { factor: step_s, offset: 0.0 };
         column.unit = Some("s".to_owned());
         column.epoch_s = Some(epoch as f64);
         notes.push(Note::new("ingest.hdf5.stamps").with("name", column.name.as_str()).with("unit", word));
@@ -218,7 +220,7 @@ impl Wanted<'_> {
         if let Some(base) = first.base {
             let values = slice::<Whole>(&self.dataset, first.pick, start, end, (low, high))?;
             // Division rounds once; 1e-9 is no f64 and would round twice.
-            let per_s = (1.0 / first.map.0).round();
+            let per_s = (1.0 / first.conversion.factor).round();
             for (slot, _) in &self.columns {
                 fill(block, *slot, values.iter().map(|w| (w.0 - base) as f64 / per_s));
             }
@@ -241,13 +243,13 @@ impl Wanted<'_> {
                 Pick::Column { index, .. } => ((index - low) as usize, width),
                 _ => (0, 1),
             };
-            let (factor, offset) = place.map;
+            let conversion = place.conversion;
             let missing = place.missing;
             let one = values.get(from..).unwrap_or_default().iter().step_by(step).take(rows);
-            if (factor, offset) == (1.0, 0.0) && missing.is_none() {
+            if conversion == Affine::IDENTITY && missing.is_none() {
                 fill(block, *slot, one.map(|n| n.0));
             } else {
-                let value = |n: &Number| if missing == Some(n.0) { f64::NAN } else { n.0 * factor + offset };
+                let value = |n: &Number| if missing == Some(n.0) { f64::NAN } else { conversion.apply(n.0) };
                 fill(block, *slot, one.map(value));
             }
         }

@@ -3,11 +3,12 @@
 use super::attributes;
 use super::number::Storage;
 use crate::Column;
+use crate::affine::Affine;
 use crate::metadata::stated_sample_rate_hz;
 use crate::part_selection::Part;
 use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
-use hdf5_reader::{Dataset, Datatype, Hdf5File, SliceInfo};
+use hdf5_reader::{CompoundField, Dataset, Datatype, Hdf5File, SliceInfo};
 use sagnac_core::message::Note;
 use std::collections::BTreeSet;
 
@@ -28,8 +29,8 @@ pub(super) struct Place {
     pub pick: Pick,
     /// How a number is stored; `None` where there is none.
     pub storage: Option<Storage>,
-    /// Factor and offset from the number stored to the value.
-    pub map: (f64, f64),
+    /// From the number stored to the value.
+    pub conversion: Affine,
     /// Number that stands for a missing value.
     pub missing: Option<f64>,
     /// For stamps that f64 cannot hold: the whole number that is taken off first.
@@ -61,7 +62,7 @@ pub(super) struct GroupPart {
 
 /// What a file holds.
 #[derive(Debug, Default)]
-pub(super) struct Found {
+pub(super) struct FileTree {
     pub parts: Vec<GroupPart>,
     pub notes: Vec<Note>,
     /// Attributes of the root group.
@@ -69,9 +70,9 @@ pub(super) struct Found {
     pub stated_rate_hz: Option<f64>,
 }
 
-impl Found {
+impl FileTree {
     /// The same with one dataset alone, where its path was asked for instead of that of a group.
-    pub fn narrowed(mut self, wanted: Option<&str>) -> Found {
+    pub fn narrowed(mut self, wanted: Option<&str>) -> FileTree {
         let Some(wanted) = wanted.map(|w| w.trim_matches('/')).filter(|w| !w.is_empty()) else { return self };
         if self.parts.iter().any(|p| p.part.name.trim_matches('/') == wanted) {
             return self;
@@ -91,10 +92,10 @@ impl Found {
 }
 
 /// Looks at every group.
-pub(super) fn walk(file: &Hdf5File) -> Result<Found, Error> {
-    let mut found = Found::default();
+pub(super) fn walk(file: &Hdf5File) -> Result<FileTree, Error> {
+    let mut found = FileTree::default();
     let root = file.root_group()?;
-    let (metadata, rate) = told(&root.attributes().unwrap_or_default());
+    let (metadata, rate) = describe_attributes(&root.attributes().unwrap_or_default());
     (found.metadata, found.stated_rate_hz) = (metadata, rate);
     let mut seen = BTreeSet::new();
     let mut left = OBJECTS;
@@ -112,7 +113,8 @@ pub(super) fn walk(file: &Hdf5File) -> Result<Found, Error> {
             GroupPart { part: Part { name: path.clone(), columns: Vec::new() }, ..GroupPart::default() };
         part.notes.append(&mut notes);
         if depth > 0 {
-            (part.metadata, part.stated_rate_hz) = told(&group.attributes().unwrap_or_default());
+            (part.metadata, part.stated_rate_hz) =
+                describe_attributes(&group.attributes().unwrap_or_default());
         }
         for dataset in &datasets {
             add(&mut part, dataset, &path);
@@ -166,7 +168,7 @@ fn members(group: &Group, path: &str) -> Result<Members, Error> {
 }
 
 /// Attributes as metadata, and the sample rate among them.
-fn told(attributes: &[hdf5_reader::Attribute]) -> (Vec<(String, String)>, Option<f64>) {
+fn describe_attributes(attributes: &[hdf5_reader::Attribute]) -> (Vec<(String, String)>, Option<f64>) {
     let mut metadata = Vec::new();
     let mut rate = None;
     for a in attributes.iter().take(OBJECTS) {
@@ -180,43 +182,75 @@ fn told(attributes: &[hdf5_reader::Attribute]) -> (Vec<(String, String)>, Option
 
 /// Adds the columns of a dataset to its group.
 fn add(part: &mut GroupPart, dataset: &Dataset, group: &str) {
-    let said = attributes::said(&dataset.attributes());
-    part.stated_rate_hz = part.stated_rate_hz.or(said.rate_hz);
+    let told = attributes::read(&dataset.attributes());
+    part.stated_rate_hz = part.stated_rate_hz.or(told.rate_hz);
     let name = dataset.name().rsplit('/').next().unwrap_or_default().to_owned();
-    let path = join(group, &name);
-    let shape = dataset.shape().to_vec();
-    let elements = shape.iter().try_fold(1u64, |n, d| n.checked_mul(*d)).unwrap_or(u64::MAX);
+    let elements = dataset.shape().iter().try_fold(1u64, |n, d| n.checked_mul(*d)).unwrap_or(u64::MAX);
     let element_bytes = dataset.raw_element_size().unwrap_or(usize::MAX) as u64;
-    let logical_bytes = elements.saturating_mul(element_bytes);
     if elements == 1 {
         single(part, dataset, &name);
         return;
     }
-    let place = |pick, storage, map, missing| Place {
-        dataset: path.clone(),
-        pick,
-        storage,
-        map,
-        missing,
-        base: None,
-        logical_bytes,
-    };
-    let map = (said.factor.unwrap_or(1.0), said.offset.unwrap_or(0.0));
-    let map = (map.0 * said.to_s, map.1 * said.to_s);
-    let column = |name: String, storage: Option<Storage>, words: String| Column {
+    let factor = told.factor.unwrap_or(1.0) * told.to_s;
+    let offset = told.offset.unwrap_or(0.0) * told.to_s;
+    let mut described = DescribedDataset {
+        path: join(group, &name),
         name,
-        numeric: storage.is_some(),
-        storage: storage.map_or(words, Storage::words),
-        unit: said.unit.clone(),
-        epoch_s: said.epoch_s,
-        rollover_s: None,
+        told,
+        conversion: Affine { factor, offset },
+        elements,
+        logical_bytes: elements.saturating_mul(element_bytes),
+        part,
     };
-    let mut push = |c: Column, rows: u64, p: Place| {
-        part.part.columns.push((c, rows));
-        part.places.push(p);
-    };
-    if let Datatype::Compound { fields, .. } = dataset.dtype() {
-        let rows = if matches!(shape.as_slice(), [_]) { elements } else { 0 };
+    match dataset.dtype() {
+        Datatype::Compound { fields, .. } => described.add_records(fields, dataset.shape()),
+        datatype => described.add_numbers(datatype, dataset.shape()),
+    }
+}
+
+/// A dataset whose columns are added to its group.
+struct DescribedDataset<'a> {
+    part: &'a mut GroupPart,
+    path: String,
+    name: String,
+    told: attributes::DatasetAttributes,
+    conversion: Affine,
+    elements: u64,
+    logical_bytes: u64,
+}
+
+impl DescribedDataset<'_> {
+    fn push(&mut self, column: Column, rows: u64, place: Place) {
+        self.part.part.columns.push((column, rows));
+        self.part.places.push(place);
+    }
+
+    fn place(&self, pick: Pick, storage: Option<Storage>) -> Place {
+        Place {
+            dataset: self.path.clone(),
+            pick,
+            storage,
+            conversion: self.conversion,
+            missing: self.told.missing,
+            base: None,
+            logical_bytes: self.logical_bytes,
+        }
+    }
+
+    fn column(&self, name: String, storage: Option<Storage>, words: String) -> Column {
+        Column {
+            name,
+            numeric: storage.is_some(),
+            storage: storage.map_or(words, Storage::words),
+            unit: self.told.unit.clone(),
+            epoch_s: self.told.epoch_s,
+            rollover_s: None,
+        }
+    }
+
+    /// Adds the fields of records as columns; what attributes say of the dataset says nothing of one field.
+    fn add_records(&mut self, fields: &[CompoundField], shape: &[u64]) {
+        let rows = if matches!(shape, [_]) { self.elements } else { 0 };
         for field in fields.iter().take(WIDEST as usize) {
             let offset = field.byte_offset as usize;
             let (base, count) = match &field.datatype {
@@ -231,46 +265,54 @@ fn add(part: &mut GroupPart, dataset: &Dataset, group: &str) {
                 let name = if count == 1 { field.name.clone() } else { format!("{}_{}", field.name, k + 1) };
                 let step = (k as usize).saturating_mul(storage.map_or(0, Storage::bytes));
                 let pick = Pick::Field { offset: offset.saturating_add(step) };
-                let bare = Column { unit: None, epoch_s: None, ..column(name, storage, kind(base)) };
-                push(bare, rows, place(pick, storage, (1.0, 0.0), None));
+                let bare = Column { unit: None, epoch_s: None, ..self.column(name, storage, kind(base)) };
+                let place =
+                    Place { conversion: Affine::IDENTITY, missing: None, ..self.place(pick, storage) };
+                self.push(bare, rows, place);
             }
         }
-        return;
     }
-    let storage = Storage::of(dataset.dtype()).filter(|_| !said.matlab_text);
-    let words = || if said.matlab_text { "text".to_owned() } else { kind(dataset.dtype()) };
-    match shape.as_slice() {
-        [rows] => push(column(name, storage, words()), *rows, place(Pick::All, storage, map, said.missing)),
-        [a, b] if (*a).min(*b) == 1 => {
-            let rows_last = *a == 1;
-            let pick = Pick::Column { index: 0, width: 1, rows_last };
-            push(column(name, storage, words()), (*a).max(*b), place(pick, storage, map, said.missing));
-        }
-        [a, b] if (*a).min(*b) <= WIDEST && elements > 0 && storage.is_some() => {
-            // A recording has more rows than columns; MATLAB stores matrices with the dimensions exchanged.
-            let rows_last = if a == b { said.matlab } else { a < b };
-            let (rows, width) = if rows_last { (*b, *a) } else { (*a, *b) };
-            for index in 0..width {
-                let pick = Pick::Column { index, width, rows_last };
-                let name = format!("{name}_{}", index + 1);
-                push(column(name, storage, words()), rows, place(pick, storage, map, said.missing));
+
+    /// Adds a vector as a column, a matrix as several.
+    fn add_numbers(&mut self, datatype: &Datatype, shape: &[u64]) {
+        let storage = Storage::of(datatype).filter(|_| !self.told.matlab_text);
+        let words = if self.told.matlab_text { "text".to_owned() } else { kind(datatype) };
+        let name = self.name.clone();
+        match shape {
+            [rows] => {
+                self.push(self.column(name, storage, words), *rows, self.place(Pick::All, storage));
             }
-            let key = if rows_last { "ingest.hdf5.rows_last" } else { "ingest.hdf5.rows_first" };
-            part.notes.push(Note::new(key).with("name", name).with("rows", rows).with("width", width));
+            [a, b] if (*a).min(*b) == 1 => {
+                let pick = Pick::Column { index: 0, width: 1, rows_last: *a == 1 };
+                self.push(self.column(name, storage, words), (*a).max(*b), self.place(pick, storage));
+            }
+            [a, b] if (*a).min(*b) <= WIDEST && self.elements > 0 && storage.is_some() => {
+                // A recording has more rows than columns; MATLAB stores matrices with the dimensions exchanged.
+                let rows_last = if a == b { self.told.matlab } else { a < b };
+                let (rows, width) = if rows_last { (*b, *a) } else { (*a, *b) };
+                for index in 0..width {
+                    let pick = Pick::Column { index, width, rows_last };
+                    let column = self.column(format!("{name}_{}", index + 1), storage, words.clone());
+                    self.push(column, rows, self.place(pick, storage));
+                }
+                let key = if rows_last { "ingest.hdf5.rows_last" } else { "ingest.hdf5.rows_first" };
+                let note = Note::new(key).with("name", name).with("rows", rows).with("width", width);
+                self.part.notes.push(note);
+            }
+            _ => {
+                let column = self.column(name, None, format!("{} {shape:?}", kind(datatype)));
+                let place = Place { missing: None, ..self.place(Pick::All, None) };
+                self.push(column, 0, place);
+            }
         }
-        _ => push(
-            column(name, None, format!("{} {shape:?}", kind(dataset.dtype()))),
-            0,
-            place(Pick::All, None, map, None),
-        ),
-    }
-    if (said.factor.is_some() || said.offset.is_some()) && storage.is_some() {
-        part.notes.push(
-            Note::new("ingest.hdf5.scaled")
-                .with("name", path)
-                .with("factor", said.factor.unwrap_or(1.0))
-                .with("offset", said.offset.unwrap_or(0.0)),
-        );
+        if (self.told.factor.is_some() || self.told.offset.is_some()) && storage.is_some() {
+            self.part.notes.push(
+                Note::new("ingest.hdf5.scaled")
+                    .with("name", self.path.as_str())
+                    .with("factor", self.told.factor.unwrap_or(1.0))
+                    .with("offset", self.told.offset.unwrap_or(0.0)),
+            );
+        }
     }
 }
 

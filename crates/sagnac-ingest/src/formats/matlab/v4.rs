@@ -1,6 +1,6 @@
 //! MAT files of version 4: for every variable five whole numbers, its name, its numbers column by column.
 
-use super::{Found, Numbers};
+use super::variables::{NumericArray, Variables};
 use crate::Candidate;
 use crate::binary::column_stream::{Coding, Stream};
 use crate::binary::positioned_file::PositionedFile;
@@ -88,8 +88,8 @@ pub(super) fn recognises(head: &[u8]) -> bool {
 }
 
 /// Looks at every variable of a file.
-pub(super) fn walk(file: &Candidate, at: &Arc<PositionedFile>) -> Result<Found, IngestError> {
-    let mut found = Found::default();
+pub(super) fn walk(file: &Candidate, at: &Arc<PositionedFile>) -> Result<Variables, IngestError> {
+    let mut found = Variables::default();
     let mut next = 0u64;
     let damaged = |key: &'static str, at: u64, hint: &'static str| {
         IngestError::new(IngestErrorKind::Damaged, &file.path, Note::new(key).with("at", at)).hint(hint)
@@ -140,7 +140,7 @@ pub(super) fn walk(file: &Candidate, at: &Arc<PositionedFile>) -> Result<Found, 
                     length: bytes,
                     coding: Coding::Stored,
                 });
-                found.numbers.push(Numbers { name, owner: None, dimensions, field, stream, offset: 0 });
+                found.numbers.push(NumericArray { name, owner: None, dimensions, field, stream, offset: 0 });
             }
         }
         next = data_at + bytes;

@@ -1,7 +1,7 @@
 //! MAT files of version 5 and 7: the variables and where their numbers stand.
 
 use super::element_reader::{COMPRESSED, ElementReader, MATRIX, Tag, damaged, number_type, text, wholes};
-use super::{Found, Numbers};
+use super::variables::{NumericArray, Variables};
 use crate::Candidate;
 use crate::binary::column_stream::{Coding, Stream, stream_error};
 use crate::binary::positioned_file::PositionedFile;
@@ -34,8 +34,8 @@ pub(super) fn walk(
     file: &Candidate,
     at: &Arc<PositionedFile>,
     order: ByteOrder,
-) -> Result<Found, IngestError> {
-    let mut found = Found::default();
+) -> Result<Variables, IngestError> {
+    let mut found = Variables::default();
     let mut next = HEADER;
     while next < at.size {
         if found.streams.len() >= MOST {
@@ -90,7 +90,7 @@ fn element_error(file: &Candidate, at: u64, error: &io::Error) -> IngestError {
 }
 
 /// The stream under the name of the variable that is in it.
-fn named(stream: Stream, found: &Found, index: usize) -> Stream {
+fn named(stream: Stream, found: &Variables, index: usize) -> Stream {
     match found.numbers.iter().find(|n| n.stream == index) {
         Some(numbers) => {
             Stream { name: numbers.owner.clone().unwrap_or_else(|| numbers.name.clone()), ..stream }
@@ -103,7 +103,7 @@ fn named(stream: Stream, found: &Found, index: usize) -> Stream {
 /// name of the field.
 fn matrix(
     elements: &mut ElementReader,
-    found: &mut Found,
+    found: &mut Variables,
     stream: usize,
     owner: Option<(&str, &str)>,
 ) -> io::Result<()> {
@@ -152,7 +152,7 @@ fn matrix(
 /// Notes where the numbers of an array stand.
 fn numbers(
     elements: &mut ElementReader,
-    found: &mut Found,
+    found: &mut Variables,
     stream: usize,
     owner: Option<(&str, &str)>,
     name: String,
@@ -172,12 +172,17 @@ fn numbers(
         return Ok(());
     }
     let owner = owner.map(|(structure, _)| structure.to_owned());
-    found.numbers.push(Numbers { name, owner, dimensions, field, stream, offset: tag.at });
+    found.numbers.push(NumericArray { name, owner, dimensions, field, stream, offset: tag.at });
     Ok(())
 }
 
 /// Looks at the fields of a structure.
-fn structure(elements: &mut ElementReader, found: &mut Found, stream: usize, name: &str) -> io::Result<()> {
+fn structure(
+    elements: &mut ElementReader,
+    found: &mut Variables,
+    stream: usize,
+    name: &str,
+) -> io::Result<()> {
     let tag = elements.tag()?;
     let length = wholes(&elements.data(&tag)?, elements.order).first().copied().unwrap_or(0) as usize;
     let tag = elements.tag()?;
@@ -201,7 +206,11 @@ fn structure(elements: &mut ElementReader, found: &mut Found, stream: usize, nam
 }
 
 /// An object of a class of MATLAB, such as a timetable: its values are kept in a way that is not published.
-fn opaque(elements: &mut ElementReader, found: &mut Found, owner: Option<(&str, &str)>) -> io::Result<()> {
+fn opaque(
+    elements: &mut ElementReader,
+    found: &mut Variables,
+    owner: Option<(&str, &str)>,
+) -> io::Result<()> {
     let mut words = Vec::new();
     for _ in 0..3 {
         let tag = elements.tag()?;

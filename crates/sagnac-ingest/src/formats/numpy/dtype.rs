@@ -69,31 +69,35 @@ fn append(out: &mut Element, name: &str, descr: &Literal, depth: usize) -> Resul
         }
         Literal::List(fields) => {
             for field in fields {
-                let parts = field.list().ok_or_else(unknown)?;
-                let [label, kind, rest @ ..] = parts else { return Err(unknown()) };
-                let label = match label {
-                    Literal::List(pair) => pair.last().and_then(Literal::text),
-                    label => label.text(),
-                };
-                let label = label.ok_or_else(unknown)?;
-                let inner = if name.is_empty() { label.to_owned() } else { format!("{name}.{label}") };
-                match rest.first() {
-                    None => append(out, &inner, kind, depth + 1)?,
-                    Some(shape) => {
-                        let count = count(shape).ok_or_else(unknown)?;
-                        if count > MAX_COLUMNS {
-                            return Err(TypeFault::TooMany);
-                        }
-                        for i in 0..count {
-                            append(out, &format!("{inner}[{i}]"), kind, depth + 1)?;
-                        }
-                    }
-                }
+                append_field(out, name, field.list().ok_or_else(unknown)?, depth, unknown)?;
             }
         }
         _ => return Err(unknown()),
     }
     Ok(())
+}
+
+/// Appends a field of a record, described by its label, its type and perhaps a shape.
+fn append_field(
+    out: &mut Element,
+    name: &str,
+    parts: &[Literal],
+    depth: usize,
+    unknown: impl Fn() -> TypeFault,
+) -> Result<(), TypeFault> {
+    let [label, kind, rest @ ..] = parts else { return Err(unknown()) };
+    let label = match label {
+        Literal::List(pair) => pair.last().and_then(Literal::text),
+        label => label.text(),
+    };
+    let label = label.ok_or_else(&unknown)?;
+    let inner = if name.is_empty() { label.to_owned() } else { format!("{name}.{label}") };
+    let Some(shape) = rest.first() else { return append(out, &inner, kind, depth + 1) };
+    let count = count(shape).ok_or_else(unknown)?;
+    if count > MAX_COLUMNS {
+        return Err(TypeFault::TooMany);
+    }
+    (0..count).try_for_each(|i| append(out, &format!("{inner}[{i}]"), kind, depth + 1))
 }
 
 /// Number of elements of a shape.

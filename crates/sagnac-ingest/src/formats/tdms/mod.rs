@@ -39,19 +39,7 @@ impl Format for Tdms {
         let path = &file.path;
         let handle = File::open(path).map_err(|e| io_error(path, &e))?;
         let contents = Scanner::scan(path, handle, file.bytes)?;
-        let mut parts: Vec<Part> = Vec::new();
-        let mut members: Vec<Vec<usize>> = Vec::new();
-        for (i, channel) in contents.channels.iter().enumerate().filter(|(_, c)| c.values > 0) {
-            let place = parts.iter().position(|p| p.name == channel.group).unwrap_or_else(|| {
-                parts.push(Part { name: channel.group.clone(), columns: Vec::new() });
-                members.push(Vec::new());
-                parts.len() - 1
-            });
-            if let (Some(part), Some(list)) = (parts.get_mut(place), members.get_mut(place)) {
-                part.columns.push((describe(&contents, channel), channel.values));
-                list.push(i);
-            }
-        }
+        let (parts, members) = groups(&contents);
         let (chosen, mut notes) = part_selection::choose(path, &parts, file.options.part.as_deref())?;
         let part = parts.get(chosen).cloned().unwrap_or_default();
         // A file that breaks off within a block has fewer values of the later channels: the rows that all have are read.
@@ -73,34 +61,7 @@ impl Format for Tdms {
         notes.extend(cut_off.iter().cloned());
         notes.extend(part_selection::odd_lengths(&part, rows).filter(|_| !cut));
         let group = contents.groups.get(&part.name).cloned().unwrap_or_default();
-        let mut columns = Vec::new();
-        let mut origins = Vec::new();
-        for channel in &channels {
-            let mut column = describe(&contents, channel);
-            let steps = match scale::steps([&channel.properties, &group, &contents.file]) {
-                Ok(steps) => steps,
-                Err(kind) => {
-                    notes.push(
-                        Note::new("ingest.tdms.scale_unknown")
-                            .with("name", channel.name.as_str())
-                            .with("kind", crate::error::shorten(&kind)),
-                    );
-                    Vec::new()
-                }
-            };
-            if !steps.is_empty() {
-                let key = "ingest.tdms.scaled";
-                notes.push(Note::new(key).with("name", channel.name.as_str()).with("count", steps.len()));
-            }
-            let mut base_s = 0;
-            if channel.kind == Kind::Stamp && rows > 0 {
-                base_s = table::first_stamp_s(path, channel)?;
-                column.unit = Some("s".to_owned());
-                column.epoch_s = Some(base_s as f64);
-            }
-            columns.push(column);
-            origins.push(Origin::channel(channel, steps, base_s));
-        }
+        let (mut columns, mut origins) = columns(path, &contents, &group, &channels, rows, &mut notes)?;
         let waveform = Waveform::of(&channels);
         let mut rate = None;
         if let Some(w) = &waveform {
@@ -125,6 +86,57 @@ impl Format for Tdms {
             table: Box::new(TdmsTable { path: path.clone(), bytes: file.bytes, rows, origins }),
         })
     }
+}
+
+/// The groups with values as parts of the file, and the channels of each by their place in the contents.
+fn groups(contents: &Contents) -> (Vec<Part>, Vec<Vec<usize>>) {
+    let mut parts: Vec<Part> = Vec::new();
+    let mut members: Vec<Vec<usize>> = Vec::new();
+    for (i, channel) in contents.channels.iter().enumerate().filter(|(_, c)| c.values > 0) {
+        let place = parts.iter().position(|p| p.name == channel.group).unwrap_or_else(|| {
+            parts.push(Part { name: channel.group.clone(), columns: Vec::new() });
+            members.push(Vec::new());
+            parts.len() - 1
+        });
+        if let (Some(part), Some(list)) = (parts.get_mut(place), members.get_mut(place)) {
+            part.columns.push((describe(contents, channel), channel.values));
+            list.push(i);
+        }
+    }
+    (parts, members)
+}
+
+/// The columns of channels with where their values come from.
+fn columns(
+    path: &std::path::Path,
+    contents: &Contents,
+    group: &Properties,
+    channels: &[&Channel],
+    rows: u64,
+    notes: &mut Vec<Note>,
+) -> Result<(Vec<Column>, Vec<Origin>), IngestError> {
+    let (mut columns, mut origins) = (Vec::new(), Vec::new());
+    for channel in channels {
+        let mut column = describe(contents, channel);
+        let name = channel.name.as_str();
+        let steps = scale::steps([&channel.properties, group, &contents.file]).unwrap_or_else(|kind| {
+            let kind = crate::error::shorten(&kind);
+            notes.push(Note::new("ingest.tdms.scale_unknown").with("name", name).with("kind", kind));
+            Vec::new()
+        });
+        if !steps.is_empty() {
+            notes.push(Note::new("ingest.tdms.scaled").with("name", name).with("count", steps.len()));
+        }
+        let mut base_s = 0;
+        if channel.kind == Kind::Stamp && rows > 0 {
+            base_s = table::first_stamp_s(path, channel)?;
+            column.unit = Some("s".to_owned());
+            column.epoch_s = Some(base_s as f64);
+        }
+        columns.push(column);
+        origins.push(Origin::channel(channel, steps, base_s));
+    }
+    Ok((columns, origins))
 }
 
 /// Rows that every channel of numbers of a group still has where the file breaks off.

@@ -1,7 +1,6 @@
 //! Properties of TDMS objects, and the paths that name the objects.
 
-use super::bytes::Reader;
-use super::segments::Trouble;
+use super::bytes::{MetadataFault, Reader};
 use std::collections::BTreeMap;
 
 /// Seconds from 1904 to 1970.
@@ -20,7 +19,7 @@ pub(super) enum Value {
 
 impl Value {
     /// Reads type and value.
-    pub fn read(reader: &mut Reader<'_>) -> Result<Value, Trouble> {
+    pub fn read(reader: &mut Reader<'_>) -> Result<Value, MetadataFault> {
         let code = reader.u32()?;
         Ok(match code {
             1..=4 => {
@@ -40,7 +39,7 @@ impl Value {
             0 => Value::Other,
             0x0008_000c => reader.take(8).map(|_| Value::Other)?,
             11 | 0x1b | 0x0010_000d => reader.take(16).map(|_| Value::Other)?,
-            _ => return Err(Trouble::Short),
+            _ => return Err(MetadataFault::Short),
         })
     }
 

@@ -3,7 +3,7 @@
 //! A segment begins with a lead-in of 28 bytes, may hold metadata that add to what earlier segments said, and holds
 //! values in chunks that repeat until the segment ends.
 
-use super::bytes::Reader;
+use super::bytes::{MetadataFault, Reader};
 use super::properties::{Properties, Value};
 use crate::error::{IngestError, IngestErrorKind};
 use sagnac_core::message::Note;
@@ -245,8 +245,8 @@ impl Scanner<'_> {
         let place = at + reader.position() as u64;
         match outcome {
             Ok(()) => Ok(()),
-            Err(Trouble::Short) => Err(self.error(place, Note::new("ingest.tdms.bad_metadata"))),
-            Err(Trouble::Daqmx(path)) => Err(IngestError::new(
+            Err(MetadataFault::Short) => Err(self.error(place, Note::new("ingest.tdms.bad_metadata"))),
+            Err(MetadataFault::Daqmx(path)) => Err(IngestError::new(
                 IngestErrorKind::UnknownFormat,
                 self.path,
                 Note::new("ingest.tdms.daqmx_channel")
@@ -254,11 +254,11 @@ impl Scanner<'_> {
                     .with("at", place),
             )
             .hint("ingest.tdms.hint.daqmx")),
-            Err(Trouble::Note(note)) => Err(self.error(place, *note)),
+            Err(MetadataFault::Note(note)) => Err(self.error(place, *note)),
         }
     }
 
-    fn objects(&mut self, reader: &mut Reader<'_>) -> Result<(), Trouble> {
+    fn objects(&mut self, reader: &mut Reader<'_>) -> Result<(), MetadataFault> {
         let count = reader.u32()?;
         for _ in 0..count {
             let path = reader.text()?;
@@ -267,41 +267,7 @@ impl Scanner<'_> {
                 [group, name] => Some(self.channel(&path, group, name)?),
                 _ => None,
             };
-            match reader.u32()? {
-                u32::MAX => {}
-                0 => {
-                    if let Some(c) = channel {
-                        self.activate(c);
-                    }
-                }
-                0x1269 | 0x1369 => return Err(Trouble::Daqmx(path)),
-                _ => {
-                    let kind = Kind::of(reader.u32()?);
-                    let dimension = reader.u32()?;
-                    let count = reader.u64()?;
-                    if dimension != 1 {
-                        return Err(Trouble::note("ingest.tdms.dimension", &path));
-                    }
-                    let bytes = match kind {
-                        Kind::Other(0x20, _) => Some(reader.u64()?),
-                        _ => kind.bytes().and_then(|b| b.checked_mul(count)),
-                    };
-                    let Some(bytes) = bytes else { return Err(Trouble::note("ingest.tdms.kind", &path)) };
-                    if let Some(c) = channel {
-                        let entry = self.contents.channels.get_mut(c);
-                        if let Some(channel) = entry {
-                            if channel.values > 0 && channel.kind != kind {
-                                return Err(Trouble::note("ingest.tdms.kind_changes", &path));
-                            }
-                            channel.kind = kind;
-                        }
-                        if let Some(last) = self.last.get_mut(c) {
-                            *last = Some(Index { kind, count, bytes });
-                        }
-                        self.activate(c);
-                    }
-                }
-            }
+            self.index(reader, &path, channel)?;
             let properties = reader.u32()?;
             for _ in 0..properties {
                 let name = reader.text()?;
@@ -319,13 +285,54 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    fn channel(&mut self, path: &str, group: &str, name: &str) -> Result<usize, Trouble> {
+    /// Reads what the metadata say of the values of an object: none, as before, or type and number.
+    fn index(
+        &mut self,
+        reader: &mut Reader<'_>,
+        path: &str,
+        channel: Option<usize>,
+    ) -> Result<(), MetadataFault> {
+        match reader.u32()? {
+            u32::MAX => return Ok(()),
+            0 => {
+                channel.into_iter().for_each(|c| self.activate(c));
+                return Ok(());
+            }
+            0x1269 | 0x1369 => return Err(MetadataFault::Daqmx(path.to_owned())),
+            _ => {}
+        }
+        let kind = Kind::of(reader.u32()?);
+        let dimension = reader.u32()?;
+        let count = reader.u64()?;
+        if dimension != 1 {
+            return Err(MetadataFault::note("ingest.tdms.dimension", path));
+        }
+        let bytes = match kind {
+            Kind::Other(0x20, _) => Some(reader.u64()?),
+            _ => kind.bytes().and_then(|b| b.checked_mul(count)),
+        };
+        let Some(bytes) = bytes else { return Err(MetadataFault::note("ingest.tdms.kind", path)) };
+        let Some(c) = channel else { return Ok(()) };
+        if let Some(channel) = self.contents.channels.get_mut(c) {
+            if channel.values > 0 && channel.kind != kind {
+                return Err(MetadataFault::note("ingest.tdms.kind_changes", path));
+            }
+            channel.kind = kind;
+        }
+        if let Some(last) = self.last.get_mut(c) {
+            *last = Some(Index { kind, count, bytes });
+        }
+        self.activate(c);
+        Ok(())
+    }
+
+    fn channel(&mut self, path: &str, group: &str, name: &str) -> Result<usize, MetadataFault> {
         if let Some(&known) = self.known.get(path) {
             return Ok(known);
         }
         let index = self.contents.channels.len();
         if index >= OBJECTS {
-            return Err(Trouble::note("ingest.tdms.objects", path));
+            return Err(MetadataFault::note("ingest.tdms.objects", path));
         }
         self.contents.channels.push(Channel {
             group: group.to_owned(),
@@ -398,22 +405,5 @@ impl Scanner<'_> {
             before += next;
         }
         Ok(())
-    }
-}
-
-/// Why metadata cannot be read.
-#[derive(Debug)]
-pub(super) enum Trouble {
-    /// They end early, or hold what is none of the format.
-    Short,
-    /// Values that only the driver of the device can scale.
-    Daqmx(String),
-    /// Anything else.
-    Note(Box<Note>),
-}
-
-impl Trouble {
-    fn note(key: &'static str, path: &str) -> Trouble {
-        Trouble::Note(Box::new(Note::new(key).with("name", crate::error::shorten(path))))
     }
 }

@@ -2,7 +2,7 @@
 
 /// How messages are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::formats) enum Encoding {
+pub(crate) enum Encoding {
     /// Common Data Representation of ROS 2, with its byte order told in each message.
     Cdr,
     /// ROS 1: little endian, nothing aligned.
@@ -24,7 +24,7 @@ enum Item {
 
 /// A type of message.
 #[derive(Debug)]
-pub(in crate::formats) struct Layout {
+pub(crate) struct Layout {
     /// Package and name, without the `msg/` between them.
     name: &'static str,
     items: &'static [Item],
@@ -79,11 +79,11 @@ static LAYOUTS: &[Layout] = &[
 ];
 
 /// Most numbers of a message.
-pub(in crate::formats) const MOST_NUMBERS: usize = 16;
+pub(crate) const MOST_NUMBERS: usize = 16;
 
 /// A message that was read.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::formats) struct Message {
+pub(crate) struct Message {
     /// Stamp of the header: seconds and nanoseconds from 1970.
     pub stamp: Option<(i64, u32)>,
     /// Numbers in the order of the layout.

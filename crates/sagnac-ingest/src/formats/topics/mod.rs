@@ -10,6 +10,7 @@ mod table;
 use crate::error::{IngestError, IngestErrorKind, shorten};
 use crate::metadata::Metadata;
 use crate::{Candidate, Column, Opened};
+use message::{Encoding, Layout};
 use sagnac_core::message::{Arg, Note};
 use source::{Catalog, Container, Event, Topic};
 use std::collections::BTreeSet;
@@ -113,54 +114,8 @@ pub(super) fn open(file: &Candidate, container: &'static dyn Container) -> Resul
         .filter(|(_, ids)| !ids.is_empty() && ids.is_disjoint(&topic.ids))
         .map(|(at, _)| *at)
         .collect();
-    let mut first = None;
-    container.scan(path, file.bytes, &skip, &mut |event| match event {
-        Event::Message { id, log_ns, data, .. } if topic.ids.contains(&id) => {
-            let message = layout.read(data, encoding);
-            let seconds = i64::try_from(log_ns / 1_000_000_000).unwrap_or(0);
-            let found = first.get_or_insert((seconds, None));
-            found.1 = message;
-            // A message that ends early tells no stamp; the next one may.
-            if message.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        }
-        _ => ControlFlow::Continue(()),
-    })?;
-    let (logged_s, message) = first.unwrap_or((0, None));
-    let stamp_s = message.and_then(|m| m.stamp).map(|(s, _)| s);
-    let mut columns = Vec::new();
-    let mut origins = Vec::new();
-    let mut time = |name: &str, origin, epoch_s: i64| {
-        columns.push(Column {
-            name: name.to_owned(),
-            numeric: true,
-            storage: "time stamp".to_owned(),
-            unit: Some("s".to_owned()),
-            epoch_s: Some(epoch_s as f64),
-            rollover_s: None,
-        });
-        origins.push(origin);
-    };
-    let (stamp, logged) = (stamp_s.unwrap_or(0), logged_s);
-    // The sensor's own stamp comes first, unless the driver left it empty.
-    if layout.has_header() && stamp != 0 {
-        time("header.stamp", Origin::Stamp { epoch_s: stamp }, stamp);
-    }
-    time("log_time", Origin::Logged { epoch_s: logged }, logged);
-    if layout.has_header() && stamp == 0 {
-        time("header.stamp", Origin::Stamp { epoch_s: stamp }, stamp);
-        notes.push(Note::new("ingest.ros.no_stamp"));
-    }
-    for (i, (name, unit)) in layout.numbers().enumerate() {
-        columns.push(Column {
-            name: name.to_owned(),
-            numeric: true,
-            storage: "number".to_owned(),
-            unit: unit.map(str::to_owned),
-            epoch_s: None,
-            rollover_s: None,
-        });
-        origins.push(Origin::Number(i));
-    }
+    let first = first_message(file, container, topic, &skip, layout, encoding)?;
+    let (columns, origins) = columns(layout, &first, &mut notes);
     let mut metadata = Metadata::default();
     for (key, value) in &catalog.metadata {
         metadata.add(key, value);
@@ -183,4 +138,60 @@ pub(super) fn open(file: &Candidate, container: &'static dyn Container) -> Resul
             skip,
         }),
     })
+}
+
+/// Times of the first message of a topic, s from 1970: when it was logged, and the stamp of its header.
+struct FirstMessage {
+    logged_s: i64,
+    stamp_s: i64,
+}
+
+/// Looks for the first message of a topic that can be read.
+fn first_message(
+    file: &Candidate,
+    container: &dyn Container,
+    topic: &Topic,
+    skip: &BTreeSet<u64>,
+    layout: &Layout,
+    encoding: Encoding,
+) -> Result<FirstMessage, IngestError> {
+    let mut first: Option<FirstMessage> = None;
+    container.scan(&file.path, file.bytes, skip, &mut |event| match event {
+        Event::Message { id, log_ns, data, .. } if topic.ids.contains(&id) => {
+            let message = layout.read(data, encoding);
+            let logged_s = i64::try_from(log_ns / 1_000_000_000).unwrap_or(0);
+            let found = first.get_or_insert(FirstMessage { logged_s, stamp_s: 0 });
+            found.stamp_s = message.and_then(|m| m.stamp).map_or(0, |(s, _)| s);
+            // A message that ends early tells no stamp; the next one may.
+            if message.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
+        _ => ControlFlow::Continue(()),
+    })?;
+    Ok(first.unwrap_or(FirstMessage { logged_s: 0, stamp_s: 0 }))
+}
+
+/// The columns of the messages of a topic, stamps first, with what each is read from.
+fn columns(layout: &Layout, first: &FirstMessage, notes: &mut Vec<Note>) -> (Vec<Column>, Vec<Origin>) {
+    let column = |name: &str, storage: &str, unit: Option<&str>, epoch_s: Option<i64>| Column {
+        name: name.to_owned(),
+        numeric: true,
+        storage: storage.to_owned(),
+        unit: unit.map(str::to_owned),
+        epoch_s: epoch_s.map(|s| s as f64),
+        rollover_s: None,
+    };
+    let time = |name, epoch_s| column(name, "time stamp", Some("s"), Some(epoch_s));
+    let (stamp, logged) = (first.stamp_s, first.logged_s);
+    let mut all = vec![(time("log_time", logged), Origin::Logged { epoch_s: logged })];
+    if layout.has_header() {
+        // The sensor's own stamp comes first, unless the driver left it empty.
+        let place = usize::from(stamp == 0);
+        all.insert(place, (time("header.stamp", stamp), Origin::Stamp { epoch_s: stamp }));
+        if stamp == 0 {
+            notes.push(Note::new("ingest.ros.no_stamp"));
+        }
+    }
+    let numbers = layout.numbers().enumerate();
+    all.extend(numbers.map(|(i, (name, unit))| (column(name, "number", unit, None), Origin::Number(i))));
+    all.into_iter().unzip()
 }

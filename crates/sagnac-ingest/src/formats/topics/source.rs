@@ -15,7 +15,7 @@ const CHUNK_RATIO: u64 = 500;
 
 /// A topic of a file.
 #[derive(Debug, Clone)]
-pub(in crate::formats) struct Topic {
+pub(crate) struct Topic {
     pub name: String,
     pub type_name: String,
     /// Encoding, where it is known here.
@@ -36,7 +36,7 @@ impl Topic {
 
 /// What a file holds.
 #[derive(Debug, Default)]
-pub(in crate::formats) struct Catalog {
+pub(crate) struct Catalog {
     pub topics: Vec<Topic>,
     pub metadata: Vec<(String, String)>,
     /// Places of chunks, with the channels in them, where the file has an index of them.
@@ -74,7 +74,7 @@ impl Catalog {
 }
 
 /// What a reader meets in a file.
-pub(in crate::formats) enum Event<'a> {
+pub(crate) enum Event<'a> {
     /// A channel with its topic and type.
     Channel { id: u32, topic: &'a str, type_name: &'a str, encoding: (Option<Encoding>, &'a str) },
     /// A message.
@@ -84,10 +84,10 @@ pub(in crate::formats) enum Event<'a> {
 }
 
 /// Takes events; may stop the reading.
-pub(in crate::formats) type OnEvent<'a> = dyn FnMut(Event<'_>) -> ControlFlow<()> + 'a;
+pub(crate) type OnEvent<'a> = dyn FnMut(Event<'_>) -> ControlFlow<()> + 'a;
 
 /// A kind of file with messages.
-pub(in crate::formats) trait Container: Sync + Send {
+pub(crate) trait Container: Sync + Send {
     /// Reads the index.
     fn index(&self, path: &Path, bytes: u64) -> Result<Option<Catalog>, IngestError>;
 
@@ -103,11 +103,7 @@ pub(in crate::formats) trait Container: Sync + Send {
 }
 
 /// The index of a file, or what reading it through finds.
-pub(in crate::formats) fn catalog(
-    container: &dyn Container,
-    path: &Path,
-    bytes: u64,
-) -> Result<Catalog, IngestError> {
+pub(crate) fn catalog(container: &dyn Container, path: &Path, bytes: u64) -> Result<Catalog, IngestError> {
     if let Some(found) = container.index(path, bytes)? {
         return Ok(Catalog { indexed: true, ..found });
     }
@@ -131,7 +127,7 @@ pub(in crate::formats) fn catalog(
 }
 
 /// A file that is read from start to end, with its place.
-pub(in crate::formats) struct Stream {
+pub(crate) struct Stream {
     path: PathBuf,
     file: BufReader<File>,
     pub at: u64,
@@ -173,7 +169,7 @@ impl Stream {
 }
 
 /// Little-endian fields of a record.
-pub(in crate::formats) struct Fields<'a>(pub &'a [u8]);
+pub(crate) struct Fields<'a>(pub &'a [u8]);
 
 impl<'a> Fields<'a> {
     pub fn bytes(&mut self, len: usize) -> Option<&'a [u8]> {
@@ -207,7 +203,7 @@ impl<'a> Fields<'a> {
 }
 
 /// The diagnostic of a place in a file that cannot be read.
-pub(in crate::formats) fn broken(path: &Path, note: &'static str, at: u64) -> IngestError {
+pub(crate) fn broken(path: &Path, note: &'static str, at: u64) -> IngestError {
     IngestError::new(IngestErrorKind::Damaged, path, Note::new(note).with("at", at))
         .hint("ingest.hint.damaged")
 }
@@ -216,7 +212,7 @@ pub(in crate::formats) fn broken(path: &Path, note: &'static str, at: u64) -> In
 ///
 /// # Errors
 /// An unknown packing, damaged bytes, another size than told.
-pub(in crate::formats) fn unpack(
+pub(crate) fn unpack(
     path: &Path,
     at: u64,
     packing: &str,

@@ -1,30 +1,29 @@
 //! Several files as one recording: the same columns, read one after the other, never more than one file open.
 
+use super::affine::Affine;
 use super::compressed::digest;
 use super::error::{IngestError, IngestErrorKind};
-use super::{Block, Column, FileFacts, Opened, ReadOptions, Source, open_with};
+use super::source::{PartFacts, ReadSeveral, SeveralFiles, Source, open_with};
+use super::{Column, FileFacts, OnBlock, Opened, ReadOptions};
 use crate::column_inference::{infer, stem};
 use sagnac_core::message::Note;
 use sagnac_core::units::Unit;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Most statements of the files about themselves that are kept.
-const MOST_METADATA: usize = 256;
+const MAX_METADATA: usize = 256;
 
 /// Most files of a recording.
-pub const MOST_FILES: usize = 10_000;
+pub const MAX_FILES: usize = 10_000;
 
 /// One file of a recording of several.
-pub struct Part {
+struct Part {
     /// The file.
-    pub(super) source: Source,
-    /// For each column of the recording: its place in this file, factor and offset to the unit of the first file.
-    columns: Vec<(usize, f64, f64)>,
+    source: Source,
+    /// For each column of the recording: its place in this file, and the conversion to the unit of the first file.
+    columns: Vec<(usize, Affine)>,
     /// Hash that its manifest states.
     stated_sha256: Option<String>,
-    /// Phase of the test that it belongs to.
-    pub(super) phase: Option<String>,
 }
 
 /// A file to be joined.
@@ -38,15 +37,6 @@ pub struct PartSpec {
     pub phase: Option<String>,
 }
 
-/// What was read of one file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PartFacts {
-    /// Hash, size and rows.
-    pub facts: FileFacts,
-    /// Rows of the recording before this file.
-    pub rows_before: u64,
-}
-
 /// Opens files that follow each other as one recording.
 ///
 /// # Errors
@@ -58,8 +48,8 @@ pub fn open(
     options: &ReadOptions,
 ) -> Result<Source, IngestError> {
     let error = |path: &Path, note: Note| IngestError::new(IngestErrorKind::Parts, path, note);
-    if specs.len() > MOST_FILES {
-        let note = Note::new("ingest.joined.too_many").with("count", specs.len()).with("most", MOST_FILES);
+    if specs.len() > MAX_FILES {
+        let note = Note::new("ingest.joined.too_many").with("count", specs.len()).with("most", MAX_FILES);
         return Err(error(name, note));
     }
     let mut parts: Vec<Part> = Vec::new();
@@ -67,13 +57,14 @@ pub fn open(
     for spec in specs {
         let source = open_with(&spec.path, options)?;
         let columns = match &first {
-            None => (0..source.columns().len()).map(|i| (i, 1.0, 0.0)).collect(),
+            None => (0..source.columns().len()).map(|i| (i, Affine::IDENTITY)).collect(),
             Some(columns) => matched(columns, &source, specs.first().map_or(name, |s| s.path.as_path()))?,
         };
         first.get_or_insert_with(|| source.columns().to_vec());
-        parts.push(Part { source, columns, stated_sha256: spec.sha256.clone(), phase: spec.phase.clone() });
+        parts.push(Part { source, columns, stated_sha256: spec.sha256.clone() });
     }
-    let Some(columns) = first else { return Err(error(name, Note::new("ingest.joined.none"))) };
+    let none = || error(name, Note::new("ingest.joined.none"));
+    let Some(columns) = first else { return Err(none()) };
     twice(&parts)?;
     let rows = parts.iter().map(|p| p.source.rows_estimate()).sum::<Option<u64>>();
     let mut notes = vec![Note::new("ingest.joined.note").with("count", parts.len())];
@@ -84,7 +75,7 @@ pub fn open(
     }
     let mut metadata: Vec<(String, String)> = Vec::new();
     for pair in parts.iter().flat_map(|p| p.source.metadata()) {
-        if metadata.len() < MOST_METADATA && !metadata.contains(pair) {
+        if metadata.len() < MAX_METADATA && !metadata.contains(pair) {
             metadata.push(pair.clone());
         }
     }
@@ -98,11 +89,17 @@ pub fn open(
         stated_sample_rate_hz: stated,
         table: super::memory::nothing().table,
     };
-    Ok(Source::of_parts(name, parts, contiguous, described))
+    let files = specs.iter().map(|s| (s.path.clone(), s.phase.clone())).collect();
+    let bytes = parts.iter().map(|p| p.source.bytes()).sum();
+    let Some((format, packing)) = parts.first().map(|p| (p.source.format(), p.source.packing())) else {
+        return Err(none());
+    };
+    let several = SeveralFiles { files, contiguous, reader: Box::new(Parts(parts)) };
+    Ok(Source::of_several(name, format, packing, bytes, several, described))
 }
 
 /// Finds the columns of the first file in another one: by name, or by the name without its unit.
-fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usize, f64, f64)>, IngestError> {
+fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usize, Affine)>, IngestError> {
     let error = |key, column: &str| {
         let note = Note::new(key).with("column", column).with("first", first.display().to_string());
         IngestError::new(IngestErrorKind::Parts, source.path(), note).hint("ingest.joined.hint.same_columns")
@@ -122,7 +119,7 @@ fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usi
         if let Some(t) = taken.get_mut(index) {
             *t = true;
         }
-        let (factor, offset) = conversion(column, other).ok_or_else(|| {
+        let conversion = conversion(column, other).ok_or_else(|| {
             let units =
                 |c: &Column| c.unit.clone().unwrap_or_else(|| infer(&c.name, None).unit.text().into());
             let note = Note::new("ingest.joined.units")
@@ -132,7 +129,7 @@ fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usi
                 .with("first", first.display().to_string());
             IngestError::new(IngestErrorKind::Parts, source.path(), note)
         })?;
-        out.push((index, factor, offset));
+        out.push((index, conversion));
     }
     match taken.iter().position(|t| !t).and_then(|i| own.get(i)) {
         Some(extra) => Err(error("ingest.joined.column_extra", &extra.name)),
@@ -140,8 +137,8 @@ fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usi
     }
 }
 
-/// Factor and offset from the numbers of one column to those of another; `None` where their units do not convert.
-fn conversion(to: &Column, from: &Column) -> Option<(f64, f64)> {
+/// The conversion from the numbers of one column to those of another; `None` where their units do not convert.
+fn conversion(to: &Column, from: &Column) -> Option<Affine> {
     let named = |c: &Column| {
         let g = infer(&c.name, c.unit.as_deref());
         g.unit_is_named.then_some(g.unit)
@@ -158,7 +155,7 @@ fn conversion(to: &Column, from: &Column) -> Option<(f64, f64)> {
         (None, None) => 0.0,
         _ => return None,
     };
-    Some((factor, offset + days))
+    Some(Affine { factor, offset: offset + days })
 }
 
 /// Refuses a file that is there twice, under one name or two.
@@ -186,41 +183,45 @@ fn twice(parts: &[Part]) -> Result<(), IngestError> {
     Ok(())
 }
 
-/// Reads wanted columns of every file in order. Rows count on from file to file; lines are those of their file.
-pub(super) fn read(
-    parts: &[Part],
-    wanted: &[usize],
-    on_block: &mut dyn FnMut(&mut Block) -> ControlFlow<()>,
-    on_part: &mut dyn FnMut(usize, PartFacts),
-) -> Result<Option<FileFacts>, IngestError> {
-    let (mut rows_before, mut bytes_before) = (0u64, 0u64);
-    for (index, part) in parts.iter().enumerate() {
-        let places: Vec<(usize, f64, f64)> =
-            wanted.iter().filter_map(|w| part.columns.get(*w).copied()).collect();
-        let own: Vec<usize> = places.iter().map(|(place, _, _)| *place).collect();
-        let facts = part.source.read(&own, &mut |block| {
-            block.part = index;
-            block.first_row += rows_before;
-            block.faults.iter_mut().for_each(|f| f.row += rows_before);
-            for (column, &(_, factor, offset)) in block.columns.iter_mut().zip(&places) {
-                if (factor, offset) != (1.0, 0.0) {
-                    column.iter_mut().for_each(|v| *v = *v * factor + offset);
+/// The files of a recording, read one after the other. Rows count on from file to file; lines are those of their file.
+struct Parts(Vec<Part>);
+
+impl ReadSeveral for Parts {
+    fn read(
+        &self,
+        wanted: &[usize],
+        on_block: &mut OnBlock<'_>,
+        on_part: &mut dyn FnMut(usize, PartFacts),
+    ) -> Result<Option<FileFacts>, IngestError> {
+        let (mut rows_before, mut bytes_before) = (0u64, 0u64);
+        for (index, part) in self.0.iter().enumerate() {
+            let places: Vec<(usize, Affine)> =
+                wanted.iter().filter_map(|w| part.columns.get(*w).copied()).collect();
+            let own: Vec<usize> = places.iter().map(|(place, _)| *place).collect();
+            let facts = part.source.read(&own, &mut |block| {
+                block.part = index;
+                block.first_row += rows_before;
+                block.faults.iter_mut().for_each(|f| f.row += rows_before);
+                for (column, (_, conversion)) in block.columns.iter_mut().zip(&places) {
+                    conversion.apply_all(column);
                 }
+                block.bytes_done += bytes_before;
+                on_block(block)
+            })?;
+            let Some(facts) = facts else { return Ok(None) };
+            if let Some(stated) =
+                part.stated_sha256.as_ref().filter(|s| !s.eq_ignore_ascii_case(&facts.sha256))
+            {
+                let note = Note::new("ingest.joined.hash")
+                    .with("found", facts.sha256.as_str())
+                    .with("stated", stated.as_str());
+                return Err(IngestError::new(IngestErrorKind::Changed, part.source.path(), note));
             }
-            block.bytes_done += bytes_before;
-            on_block(block)
-        })?;
-        let Some(facts) = facts else { return Ok(None) };
-        if let Some(stated) = part.stated_sha256.as_ref().filter(|s| !s.eq_ignore_ascii_case(&facts.sha256)) {
-            let note = Note::new("ingest.joined.hash")
-                .with("found", facts.sha256.as_str())
-                .with("stated", stated.as_str());
-            return Err(IngestError::new(IngestErrorKind::Changed, part.source.path(), note));
+            let rows = facts.rows;
+            bytes_before += facts.bytes;
+            on_part(index, PartFacts { facts, rows_before });
+            rows_before += rows;
         }
-        let rows = facts.rows;
-        bytes_before += facts.bytes;
-        on_part(index, PartFacts { facts, rows_before });
-        rows_before += rows;
+        Ok(Some(FileFacts { sha256: String::new(), bytes: bytes_before, rows: rows_before }))
     }
-    Ok(Some(FileFacts { sha256: String::new(), bytes: bytes_before, rows: rows_before }))
 }
