@@ -13,6 +13,7 @@ mod quantization_grid;
 mod rails;
 mod repeats;
 mod stuck;
+mod summary;
 
 use crate::faults::FaultLog;
 use interpolated::Lines;
@@ -24,9 +25,7 @@ use repeats::Repeats;
 use sagnac_core::message::{Arg, Note};
 use sagnac_core::recording::{Channel, Sink, Slab};
 use stuck::Runs;
-
-/// Samples looked at at once.
-const CHUNK: usize = 1024;
+use summary::{CHUNK, Summary, summary};
 
 /// Samples after which a channel that never changed is remarked on.
 const CONSTANT_AFTER: u64 = 1000;
@@ -172,45 +171,6 @@ impl ChannelChecks {
     fn standard_deviation(&self) -> f64 {
         let n = self.count.max(1) as f64;
         (self.squares / n - (self.sum / n).powi(2)).max(0.0).sqrt()
-    }
-}
-
-/// Sums about an origin and extremes of some values; a NaN among them makes the sum NaN.
-struct Summary {
-    sum: f64,
-    squares: f64,
-    min: f64,
-    max: f64,
-}
-
-fn summary(values: &[f64], origin: f64) -> Summary {
-    // Eight sums at once let the compiler use vector instructions, which one running sum forbids.
-    const LANES: usize = 8;
-    let (mut sum, mut squares) = ([0.0; LANES], [0.0; LANES]);
-    let (mut min, mut max) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-    let parts = values.chunks_exact(LANES);
-    let rest = parts.remainder();
-    for part in parts {
-        for (lane, &v) in part.iter().enumerate() {
-            let d = v - origin;
-            sum[lane] += d;
-            squares[lane] += d * d;
-            min[lane] = if v < min[lane] { v } else { min[lane] };
-            max[lane] = if v > max[lane] { v } else { max[lane] };
-        }
-    }
-    for (lane, &v) in rest.iter().enumerate() {
-        let d = v - origin;
-        sum[lane] += d;
-        squares[lane] += d * d;
-        min[lane] = v.min(min[lane]);
-        max[lane] = v.max(max[lane]);
-    }
-    Summary {
-        sum: sum.iter().sum(),
-        squares: squares.iter().sum(),
-        min: min.iter().copied().fold(f64::INFINITY, f64::min),
-        max: max.iter().copied().fold(f64::NEG_INFINITY, f64::max),
     }
 }
 

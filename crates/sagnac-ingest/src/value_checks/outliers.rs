@@ -9,6 +9,7 @@
 //! of any length shows a false outlier in about one case in fifty. Method: Hampel (1974), F. R. Hampel, JASA 69.
 
 use super::place::{Place, Places};
+use super::summary::summary;
 use sagnac_core::estimate::normal_quantile;
 
 /// Samples judged together.
@@ -184,7 +185,7 @@ fn threshold(samples: u64) -> f64 {
 /// Standard deviation about the mean, and the largest distance from it.
 fn spread(block: &[f64]) -> (f64, f64) {
     let n = block.len().max(1) as f64;
-    let s = super::summary(block, block.first().copied().unwrap_or(0.0));
+    let s = summary(block, block.first().copied().unwrap_or(0.0));
     let mean = block.first().copied().unwrap_or(0.0) + s.sum / n;
     let variance = s.squares / n - (s.sum / n).powi(2);
     // The difference above loses its digits when the block is one long slope; then the scale is measured anyway.

@@ -12,6 +12,7 @@
 //! run counts when n²/2·p^e < 0.001.
 
 use super::place::{Place, Places};
+use super::summary::CHUNK;
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
@@ -161,7 +162,7 @@ impl Repeats {
         } else {
             1
         };
-        for part in first.chunks(super::CHUNK) {
+        for part in first.chunks(CHUNK) {
             self.scan(part);
         }
     }
