@@ -351,7 +351,8 @@ pub(super) fn course(t: &[f64]) -> Option<Course> {
     let range = |lag: usize| {
         let mut d: Vec<f64> = t.iter().zip(t.get(lag..)?).map(|(a, b)| b - a).collect();
         d.sort_by(f64::total_cmp);
-        let at = |p: f64| d.get(((d.len() - 1) as f64 * p) as usize).copied();
+        let last = d.len().checked_sub(1)? as f64;
+        let at = |p: f64| d.get((last * p) as usize).copied();
         Some(at(0.9)? - at(0.1)?)
     };
     let near = (t.len() / 64).clamp(1, 64);

@@ -14,6 +14,14 @@ fn gaps(stamps: &[f64]) -> usize {
 }
 
 #[test]
+fn as_many_stamps_as_the_longest_lag_are_enough() {
+    for n in 2..40 {
+        let stamps: Vec<f64> = (0..n).map(f64::from).collect();
+        assert_eq!(Clock::probe(&stamps).unwrap().interval_s, 1.0, "{n}");
+    }
+}
+
+#[test]
 fn rounded_stamps_give_the_interval_and_no_gap() {
     for (interval, step) in [
         (0.001, 1e-3),
