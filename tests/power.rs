@@ -4,7 +4,7 @@ use sagnac::estimate::{Limit, Rule, Verdict, judge};
 use sagnac::noise::data::{BlockSeries, NoiseType};
 use sagnac::noise::evidence::Evidence;
 use sagnac::noise::expected::{decision_power, expected_upper_limit};
-use sagnac::noise::identify::{Identify, Whittle};
+use sagnac::noise::identification::{Options, identify};
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::simulate::{Setup, Simulator};
 
@@ -26,7 +26,7 @@ fn simulated(
             Simulator::new(model, &Setup::for_record(run + 40_000, tau0_s, samples as u64)).take(samples);
         let blocks =
             BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean, rounding: vec![] };
-        let found = Whittle::default().identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]));
+        let found = identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]), &Options::standard_terms());
         let estimate = match term {
             NoiseType::Flicker => &found.bias_instability,
             _ => &found.rate_random_walk,
@@ -63,7 +63,8 @@ fn expected_limit_is_the_median_of_simulated_limits() {
                 Simulator::new(&background, &Setup::for_record(run, tau0_s, samples as u64)).take(samples);
             let blocks =
                 BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean, rounding: vec![] };
-            let found = Whittle::default().identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]));
+            let found =
+                identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]), &Options::standard_terms());
             found.bias_instability.upper_limit.map(|l| l.value)
         })
         .collect();

@@ -10,7 +10,7 @@ use sagnac::noise::data::NoiseType;
 use sagnac::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
 use sagnac::noise::evidence::Evidence;
 use sagnac::noise::family::Estimator;
-use sagnac::noise::fit::{Likelihood, SPECTRAL};
+use sagnac::noise::identification::linear_fit::{Likelihood, SPECTRAL};
 use sagnac::noise::model::TERMS;
 
 const WINDOWS: [u64; 2] = [8, 100];

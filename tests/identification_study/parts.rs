@@ -8,9 +8,9 @@ use crate::study::run::simulated;
 use sagnac::noise::composite::{Composite, Sampling};
 use sagnac::noise::data::NoiseType;
 use sagnac::noise::evidence::Evidence;
-use sagnac::noise::identification::Identification;
-use sagnac::noise::identify::Identify;
-use sagnac::noise::joint::MaximumLikelihood;
+use sagnac::noise::identification::{
+    Identification, Options, complete, describe, identify as identify_terms,
+};
 use sagnac::noise::model::NoiseModel;
 
 const SAMPLES: usize = 36_000;
@@ -64,13 +64,13 @@ fn quantisation_that_shows_beside_a_short_process_is_claimed() {
 
 #[test]
 fn intervals_after_a_description_are_those_of_a_whole_identification() {
-    let method = MaximumLikelihood { sampling: Sampling::Averaging, ..Default::default() };
+    let options = Options { sampling: Sampling::Averaging, ..Options::default() };
     for name in ["N+B", "N+K", "N+short Markov", "N+quasi-periodic", "N moving average"] {
         let record = digest(&simulated(&mix(name), SAMPLES, 77), TAU0_S);
         let evidence = Evidence::new(&record.blocks, Some(&record.welch.spectrum), TAU0_S, &[]);
-        let described = method.describe("rate", &evidence);
-        let completed = method.complete("rate", &evidence, &described);
-        assert_eq!(completed, method.identify("rate", &evidence), "{name}");
+        let described = describe("rate", &evidence, &options);
+        let completed = complete("rate", &evidence, &options, &described);
+        assert_eq!(completed, identify_terms("rate", &evidence, &options), "{name}");
         assert_eq!(
             (completed.model, &completed.described),
             (described.model, &described.described),

@@ -4,7 +4,7 @@ use realfft::RealFftPlanner;
 use sagnac::noise::data::{BlockSeries, WelchSpectrum};
 use sagnac::noise::evidence::{Evidence, Mask};
 use sagnac::noise::identification::Identification;
-use sagnac::noise::identify::{Identify, Whittle};
+use sagnac::noise::identification::{self, Options};
 use sagnac::noise::model::{NoiseModel, TERMS};
 use sagnac::noise::simulate::{Setup, Simulator};
 
@@ -47,7 +47,7 @@ fn welch(samples: &[f64], segment_len: usize) -> WelchSpectrum {
 }
 
 fn identify(evidence: &Evidence) -> Identification {
-    Whittle::default().identify("rate", evidence)
+    identification::identify("rate", evidence, &Options::standard_terms())
 }
 
 #[test]

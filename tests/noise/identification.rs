@@ -3,8 +3,8 @@
 
 use sagnac::noise::data::BlockSeries;
 use sagnac::noise::evidence::Evidence;
-use sagnac::noise::fit::{Likelihood, Structure};
-use sagnac::noise::identify::{Identify, Whittle};
+use sagnac::noise::identification::linear_fit::{Likelihood, Structure};
+use sagnac::noise::identification::{Options, identify};
 use sagnac::noise::model::{NoiseModel, TERMS};
 use sagnac::noise::simulate::{Setup, Simulator};
 
@@ -35,7 +35,7 @@ fn study(model: &NoiseModel, hours: f64, tau0_s: f64, records: u64, seed: u64) -
         let mean = Simulator::new(model, &setup).take(samples);
         let blocks =
             BlockSeries { block_len: 1, first_index: 0, count: vec![1; samples], mean, rounding: vec![] };
-        let found = Whittle::default().identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]));
+        let found = identify("rate", &Evidence::new(&blocks, None, tau0_s, &[]), &Options::standard_terms());
         let [n, b, k, r, q] = found.estimates();
         let mut wrong = false;
         for (i, estimate) in [n, b, k, q, r].into_iter().enumerate() {

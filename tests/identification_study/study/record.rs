@@ -2,7 +2,7 @@
 
 use sagnac::noise::composite::Sampling;
 use sagnac::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
-use sagnac::noise::fit_range::RangedIdentification;
+use sagnac::noise::identification::RangedIdentification;
 use sagnac::noise::lines::{FALSE_ALARM_RATE, find_lines};
 use sagnac::noise::spectral_record::SpectralRecord;
 

@@ -6,11 +6,11 @@
 
 use super::data::NoiseType;
 use super::evidence::Evidence;
-use super::fit::{Likelihood, RAMP, Structure, position, toggled};
-use super::identifiable::IDENTIFIABLE;
-use super::identify::{LIMIT_RISE, RIVALRY, Whittle, rival_of};
+use super::identification::StandardThresholds;
+use super::identification::claims::{IDENTIFIABLE, LIMIT_RISE, RIVALRY, rival_of};
+use super::identification::linear_fit::{Likelihood, RAMP, Structure, position, toggled};
+use super::identification::profile::Profile;
 use super::model::{NoiseModel, TERMS};
-use super::profile::Profile;
 use crate::estimate::{chi_square_quantile, normal_probability, normal_quantile};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -269,7 +269,7 @@ impl Pair {
         let term = *TERMS.get(self.here.term)?;
         let relative = self.here.relative_sigma(&self.here.structure);
         let scatter = self.scatter(Case::claim_score)?;
-        let needs = |relative: f64| scatter.needs(Whittle::default().threshold(term, relative).sqrt());
+        let needs = |relative: f64| scatter.needs(StandardThresholds::default().of(term, relative).sqrt());
         let (known, hardly) = (needs(0.0), needs(f64::INFINITY));
         let turning = ((relative / IDENTIFIABLE).powi(2) - 1.0) / relative;
         Some(turning.min(hardly.max(known)).max(known.min(hardly)))

@@ -3,12 +3,11 @@
 use super::composite::{Composite, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
-use super::fit::{Likelihood, Structure, position};
+use super::identification::claims::IDENTIFIABLE;
+use super::identification::linear_fit::{Likelihood, Structure, position};
 use super::model::{NoiseModel, TERMS};
 use nalgebra::{DMatrix, DVector};
 
-/// Relative standard deviation at the Cramér-Rao bound up to which a term counts as identifiable.
-pub const IDENTIFIABLE: f64 = 0.20;
 /// Longest record considered, h.
 pub const LONGEST_H: f64 = 20_000.0;
 /// Means that stand for a record: slow terms need no more.

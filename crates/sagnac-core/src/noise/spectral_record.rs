@@ -7,8 +7,7 @@ use super::coherence::is_coherent;
 use super::composite::{Damped, Described, Line, Parameter, Sampling};
 use super::data::{BlockSeries, WelchSpectrum};
 use super::evidence::{Evidence, Mask};
-use super::fit_range::{RangedIdentification, describe_in_range, identify_over};
-use super::joint::MaximumLikelihood;
+use super::identification::{Options, RangedIdentification, describe_in_range, identify_over};
 use super::lines::{SpectralLine, retain};
 use super::sinusoids;
 use std::borrow::Cow;
@@ -70,7 +69,7 @@ impl SpectralRecord<'_> {
     /// Identifies the noise of an output that is rounded so coarsely that only frequencies up to `rounded_above_hz` tell
     /// of it.
     pub fn identify_up_to(&self, channel: &str, rounded_above_hz: Option<f64>) -> RecordNoise {
-        let method = MaximumLikelihood { sampling: self.sampling, ..Default::default() };
+        let options = Options { sampling: self.sampling, ..Options::default() };
         let whole = self.evidence(&[]);
         let nyquist_hz = rounded_above_hz.unwrap_or(0.5 / self.tau0_s);
         let seen = retain(self.lines, |l| l.frequency_hz <= nyquist_hz);
@@ -80,7 +79,7 @@ impl SpectralRecord<'_> {
         };
         let mut lines = retain(&seen, |l| is_coherent(&whole, l));
         sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
-        let mut ranged = describe_in_range(&method, channel, &evidence(&lines), nyquist_hz);
+        let mut ranged = describe_in_range(channel, &evidence(&lines), nyquist_hz, &options);
         for _ in 0..ROUNDS {
             let found = &ranged.identification.described.model.quasi_periodic;
             // A peak that is neither coherent nor explained is a line after all; so is a disturbance that hardly decays.
@@ -100,11 +99,11 @@ impl SpectralRecord<'_> {
             lines.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
             lines = retain(&lines, |_| true);
             sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
-            ranged = describe_in_range(&method, channel, &evidence(&lines), nyquist_hz);
+            ranged = describe_in_range(channel, &evidence(&lines), nyquist_hz, &options);
         }
         ranged.rounded_above_hz = rounded_above_hz;
         ranged.highest_hz = ranged.highest_hz.or(rounded_above_hz);
-        let ranged = identify_over(&method, channel, &self.evidence(&lines), &ranged);
+        let ranged = identify_over(channel, &self.evidence(&lines), &options, &ranged);
         let mut noise = RecordNoise { ranged, lines };
         describe_lines(&mut noise.ranged.identification.described, &noise.lines);
         noise

@@ -34,7 +34,7 @@ pub struct BiasUncertainty {
 impl BiasUncertainty {
     /// The uncertainty of the mean over `length_s`.
     ///
-    /// `noise` should hold every term the record allows, claimed or not ([`super::identify::Identification::allowed`]),
+    /// `noise` should hold every term the record allows, claimed or not ([`super::identification::Identification::allowed`]),
     /// so that flicker too weak to be claimed is not ignored. `lowest_hz` defaults to 1/(2πT). `others` are standard
     /// uncertainties in deg/h.
     pub fn of_mean(

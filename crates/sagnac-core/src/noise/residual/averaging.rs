@@ -5,11 +5,11 @@
 
 use super::super::composite::{Composite, Described};
 use super::super::data::DeviationPoint;
-use super::super::misfit::normal_score;
 use super::grid::Grid;
 use super::null::probability_of_largest;
 use super::spectrum::log_gradients;
 use super::{Departure, Judged, View};
+use crate::noise::identification::misfit::normal_score;
 use nalgebra::DMatrix;
 
 /// Degrees of freedom below which an octave is not judged.

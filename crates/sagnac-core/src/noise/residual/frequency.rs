@@ -2,10 +2,10 @@
 
 use super::super::composite::{Composite, Described};
 use super::super::evidence::Evidence;
-use super::super::misfit::normal_score;
 use super::null::{Fitted, at_most_bonferroni};
 use super::spectrum::{ModelSpectrum, log_gradients};
 use super::{Departure, Judged, View};
+use crate::noise::identification::misfit::normal_score;
 use nalgebra::DMatrix;
 
 /// Degrees of freedom that a band of the test holds at least.

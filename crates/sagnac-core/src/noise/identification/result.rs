@@ -1,12 +1,12 @@
 //! What was found about the noise of one channel.
 
-use super::composite::{Composite, Described};
-use super::data::NoiseType;
-use super::identify::METHOD;
+use super::claims::METHOD;
 use super::joint::{Extras, Plateau};
 use super::misfit::Misfit;
-use super::model::{NoiseModel, TERMS, unit_allan_variance};
 use crate::estimate::{Estimate, normal_quantile};
+use crate::noise::composite::{Composite, Described};
+use crate::noise::data::NoiseType;
+use crate::noise::model::{NoiseModel, TERMS, unit_allan_variance};
 
 /// What was found about the noise of one channel.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ pub struct Identification {
     /// N of the white noise alone with its interval, or its upper limit.
     pub angle_random_walk: Estimate,
     /// The level that is read as angle random walk where a process is white there beside the white noise
-    /// ([`super::joint::Plateau`]); `None`: it is that of the white noise.
+    /// ([`super::Plateau`]); `None`: it is that of the white noise.
     pub white_plateau: Option<Estimate>,
     /// Where it is read.
     pub plateau: Option<Plateau>,
@@ -63,7 +63,7 @@ pub struct Identification {
     /// Highest frequency that the model rests on, Hz; `None`: all.
     pub highest_hz: Option<f64>,
     /// Where the search for further parts ended; `None` where a second search might end elsewhere.
-    pub(super) searched: Option<Extras>,
+    pub(in crate::noise) searched: Option<Extras>,
 }
 
 /// A first-order Markov process that was found.
@@ -87,7 +87,7 @@ pub struct QuasiPeriodicFound {
 }
 
 /// Id, unit in the order of [`TERMS`].
-pub(super) const IDS: [(&str, &str); 5] = [
+pub(in crate::noise) const IDS: [(&str, &str); 5] = [
     ("angle_random_walk", "deg/sqrt(h)"),
     ("bias_instability", "deg/h"),
     ("rate_random_walk", "deg/h/sqrt(h)"),
@@ -145,7 +145,7 @@ impl Identification {
     }
 
     /// Every estimate there is, those of Markov processes, quasi-periodic disturbances and the bandwidth too.
-    pub(super) fn every_estimate_mut(&mut self) -> Vec<&mut Estimate> {
+    pub(in crate::noise) fn every_estimate_mut(&mut self) -> Vec<&mut Estimate> {
         let mut out = vec![
             &mut self.angle_random_walk,
             &mut self.bias_instability,
@@ -163,7 +163,7 @@ impl Identification {
     }
 
     /// The estimates in the order of [`TERMS`]: N, B, K, Q, R.
-    pub(super) fn estimates_mut_by_term(&mut self) -> [&mut Estimate; 5] {
+    pub(in crate::noise) fn estimates_mut_by_term(&mut self) -> [&mut Estimate; 5] {
         [
             &mut self.angle_random_walk,
             &mut self.bias_instability,
@@ -178,7 +178,7 @@ impl Identification {
         self.claimed.contains(&term)
     }
 
-    pub(super) fn empty(channel: &str) -> Identification {
+    pub(in crate::noise) fn empty(channel: &str) -> Identification {
         let none = |i: usize| Estimate::not_identifiable(IDS[i].0, channel, None, IDS[i].1, METHOD);
         Identification {
             channel: channel.to_owned(),

@@ -3,11 +3,66 @@
 //! The signed root z of twice the drop in log-likelihood is read as a normal score, other coefficients refitted at
 //! every value (Wilks; for an amplitude on its boundary at 0, Self and Liang, JASA 82, 1987).
 
-use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure};
+use super::linear_fit::{Likelihood, Point, RAMP, SPECTRAL, Structure};
 use crate::estimate::{Spread, normal_probability};
 
 /// Outermost normal score of a curve.
 const REACH: f64 = 4.0;
+
+/// How a confidence curve is traced.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Trace {
+    /// First step to each side, in the unit of the caller's steps.
+    pub first_step: f64,
+    /// Normal score between neighbouring points, about.
+    pub spacing: f64,
+    /// Points to each side at most.
+    pub max_points: usize,
+}
+
+/// The confidence curve of a quantity from its profile likelihood: pairs (normal score, value), ascending, from −4 or the
+/// boundary to 4.
+///
+/// `next` gives the value one signed step on, the same value at a boundary. `rise` gives the rise of the deviance there
+/// over its minimum, infinite or NaN where there is none; it may keep a starting point for the next fit in a state, which
+/// begins as `state` on each side.
+pub(super) fn trace_curve<S: Clone>(
+    value: f64,
+    trace: Trace,
+    state: S,
+    next: impl Fn(f64, f64) -> f64,
+    rise: impl Fn(f64, &mut S) -> f64,
+) -> Spread {
+    let mut points = vec![(0.0, value)];
+    for direction in [-1.0, 1.0] {
+        let (mut at, mut z, mut step, mut state) = (value, 0.0, trace.first_step, state.clone());
+        for _ in 0..trace.max_points {
+            let further = next(at, direction * step);
+            if further == at {
+                break;
+            }
+            let rise = rise(further, &mut state);
+            if !rise.is_finite() {
+                break;
+            }
+            let score: f64 = direction * rise.max(0.0).sqrt();
+            let gained = (score - z).abs();
+            (at, z) = (further, score);
+            points.push((z, at));
+            if z.abs() >= REACH {
+                break;
+            }
+            step *= (trace.spacing / gained.max(1e-3)).clamp(0.4, 2.5);
+        }
+    }
+    points.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut highest = f64::NEG_INFINITY;
+    for p in &mut points {
+        highest = highest.max(p.0);
+        p.0 = highest;
+    }
+    Spread::Curve(points)
+}
 
 /// The profile of one coefficient within a structure.
 pub struct Profile<'a> {
@@ -73,34 +128,15 @@ impl<'a> Profile<'a> {
         if !(self.sigma > 0.0 && self.sigma.is_finite()) {
             return Spread::Unknown;
         }
-        let mut points = vec![(0.0, self.value())];
-        for direction in [-1.0, 1.0] {
-            let (mut at, mut z, mut step) = (self.value(), 0.0, 0.4 * self.sigma);
-            for _ in 0..60 {
-                let next = (at + direction * step).max(self.lowest());
-                if next == at {
-                    break;
-                }
-                let score = direction * self.rise(next).sqrt();
-                if !score.is_finite() {
-                    break;
-                }
-                let gained = (score - z).abs();
-                (at, z) = (next, score);
-                points.push((z, at));
-                if z.abs() >= REACH {
-                    break;
-                }
-                step *= (0.4 / gained.max(1e-3)).clamp(0.4, 2.5);
-            }
-        }
-        points.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let mut highest = f64::NEG_INFINITY;
-        for p in &mut points {
-            highest = highest.max(p.0);
-            p.0 = highest;
-        }
-        Spread::Curve(points)
+        let next = |at: f64, step: f64| (at + step).max(self.lowest());
+        let rise = |coefficient: f64, _: &mut ()| self.rise(coefficient);
+        trace_curve(
+            self.value(),
+            Trace { first_step: 0.4 * self.sigma, spacing: 0.4, max_points: 60 },
+            (),
+            next,
+            rise,
+        )
     }
 
     /// The largest size of the coefficient whose deviance is not more than `rise` above the minimum.

@@ -3,7 +3,9 @@
 //! A process is white over averaging times far beyond its correlation time, and adds 2σ²T to the density of the white noise.
 //! Where no line of slope −1/2 is seen before its corner, a reader of the curve reads both as one.
 
-use super::{Free, Joint, JointPoint, parameter_covariance};
+use super::fit::Joint;
+use super::interval::parameter_covariance;
+use super::model::{Free, JointPoint};
 use crate::estimate::Spread;
 use crate::message::Note;
 use crate::noise::composite::{Composite, Described};

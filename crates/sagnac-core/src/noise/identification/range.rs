@@ -6,15 +6,17 @@
 //! said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
 //! root of the misfit (Birge ratio), and that is said too.
 
-use super::composite::Part;
-use super::data::NoiseType;
-use super::evidence::Evidence;
-use super::identification::Identification;
-use super::identify::{Identify, LIMIT_COVERAGE, METHOD};
+use super::claims::{LIMIT_COVERAGE, METHOD};
+use super::entrance::{complete, describe};
 use super::joint::expected_power;
 use super::misfit::Misfit;
+use super::options::Options;
+use super::result::Identification;
 use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::message::Note;
+use crate::noise::composite::Part;
+use crate::noise::data::NoiseType;
+use crate::noise::evidence::Evidence;
 
 /// Probability of a larger misfit below which a range does not pass.
 const LEAST_PROBABILITY: f64 = 0.02;
@@ -42,20 +44,20 @@ pub struct RangedIdentification {
 
 /// Identifies over the widest range of frequencies in which the model holds.
 pub fn identify_in_range(
-    method: &dyn Identify,
     channel: &str,
     evidence: &Evidence,
     nyquist_hz: f64,
+    options: &Options,
 ) -> RangedIdentification {
-    identify_over(method, channel, evidence, &describe_in_range(method, channel, evidence, nyquist_hz))
+    identify_over(channel, evidence, options, &describe_in_range(channel, evidence, nyquist_hz, options))
 }
 
 /// The range and the model in it, without intervals.
 pub fn describe_in_range(
-    method: &dyn Identify,
     channel: &str,
     evidence: &Evidence,
     nyquist_hz: f64,
+    options: &Options,
 ) -> RangedIdentification {
     let mut best: Option<RangedIdentification> = None;
     let mut whole: Option<Identification> = None;
@@ -70,7 +72,7 @@ pub fn describe_in_range(
         if !justified {
             continue;
         }
-        let identification = method.describe(channel, used);
+        let identification = describe(channel, used, options);
         whole.get_or_insert_with(|| identification.clone());
         let fits = identification.misfit.probability >= LEAST_PROBABILITY
             || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS;
@@ -86,7 +88,7 @@ pub fn describe_in_range(
         }
     }
     let mut best = best.unwrap_or_else(|| RangedIdentification {
-        identification: method.describe(channel, evidence),
+        identification: describe(channel, evidence, options),
         highest_hz: None,
         rounded_above_hz: None,
         widened: 1.0,
@@ -97,14 +99,14 @@ pub fn describe_in_range(
 
 /// Identifies over a range that was found, with intervals.
 pub fn identify_over(
-    method: &dyn Identify,
     channel: &str,
     evidence: &Evidence,
+    options: &Options,
     range: &RangedIdentification,
 ) -> RangedIdentification {
     let mut identification = match range.highest_hz {
-        Some(highest_hz) => method.complete(channel, &evidence.up_to(highest_hz), &range.identification),
-        None => method.complete(channel, evidence, &range.identification),
+        Some(highest_hz) => complete(channel, &evidence.up_to(highest_hz), options, &range.identification),
+        None => complete(channel, evidence, options, &range.identification),
     };
     identification.highest_hz = range.highest_hz;
     annotated(stated(RangedIdentification { identification, ..*range }, evidence.tau0_s))
@@ -203,9 +205,9 @@ fn widen(estimate: &mut Estimate, factor: f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::data::BlockSeries;
-    use super::super::identify::Whittle;
+    use super::super::entrance::identify;
     use super::*;
+    use crate::noise::data::BlockSeries;
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 
@@ -224,10 +226,10 @@ mod tests {
     #[test]
     fn a_filtered_output_still_gives_its_angle_random_walk() {
         let evidence = smoothed(0.002, 36_000);
-        let all = Whittle::default().identify("rate", &evidence);
+        let all = identify("rate", &evidence, &Options::standard_terms());
         let naive = all.angle_random_walk.value.unwrap_or(0.0);
         assert!((naive / 0.002 - 1.0).abs() > 0.1, "fitted over all frequencies N is wrong: {naive}");
-        let ranged = identify_in_range(&Whittle::default(), "rate", &evidence, 0.5);
+        let ranged = identify_in_range("rate", &evidence, 0.5, &Options::standard_terms());
         let estimate = &ranged.identification.angle_random_walk;
         let n = estimate.value.unwrap();
         assert!((n / 0.002 - 1.0).abs() < 0.05, "{n} up to {:?}", ranged.highest_hz);
@@ -244,7 +246,7 @@ mod tests {
         let blocks =
             BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: vec![] };
         let evidence = Evidence::new(&blocks, None, 1.0, &[]);
-        let ranged = identify_in_range(&Whittle::default(), "rate", &evidence, 0.5);
+        let ranged = identify_in_range("rate", &evidence, 0.5, &Options::standard_terms());
         assert_eq!((ranged.highest_hz, ranged.widened), (None, 1.0));
     }
 }

@@ -1,11 +1,11 @@
 //! Confidence curves and covariance of the variables of a joint fit.
 
-use super::{BASE, Free, Joint, JointPoint, Variable};
+use super::super::profile::{Trace, trace_curve};
+use super::fit::Joint;
+use super::model::{BASE, Free, JointPoint, Variable};
 use crate::estimate::Spread;
 use nalgebra::DMatrix;
 
-/// Outermost normal score of a curve.
-const REACH: f64 = 4.0;
 /// Normal score between its points.
 const SPACING: f64 = 0.6;
 
@@ -129,37 +129,17 @@ impl<'a> JointProfile<'a> {
             return Spread::Unknown;
         }
         let value = self.best.reported(self.variable);
-        let mut points = vec![(0.0, value)];
         let limit_s = 20.0 * self.joint.evidence().span_s;
-        for direction in [-1.0, 1.0] {
-            let (mut at, mut z, mut step, mut point) = (value, 0.0, SPACING, self.best.clone());
-            for _ in 0..24 {
-                let next = self.next(at, direction * step);
-                if next == at || (self.is_time() && next > limit_s) {
-                    break;
-                }
-                point = self.fit(next, &point);
-                let rise = point.deviance - self.top;
-                if !rise.is_finite() {
-                    break;
-                }
-                let score = direction * rise.max(0.0).sqrt();
-                let gained = (score - z).abs();
-                (at, z) = (next, score);
-                points.push((z, at));
-                if z.abs() >= REACH {
-                    break;
-                }
-                step *= (SPACING / gained.max(1e-3)).clamp(0.4, 2.5);
-            }
-        }
-        points.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let mut highest = f64::NEG_INFINITY;
-        for p in &mut points {
-            highest = highest.max(p.0);
-            p.0 = highest;
-        }
-        Spread::Curve(points)
+        let next = |at: f64, step: f64| {
+            let next = self.next(at, step);
+            if self.is_time() && next > limit_s { at } else { next }
+        };
+        let rise = |value: f64, point: &mut JointPoint| {
+            *point = self.fit(value, point);
+            point.deviance - self.top
+        };
+        let trace = Trace { first_step: SPACING, spacing: SPACING, max_points: 24 };
+        trace_curve(value, trace, self.best.clone(), next, rise)
     }
 
     /// The largest size of the variable whose deviance is not more than `rise` above the minimum.

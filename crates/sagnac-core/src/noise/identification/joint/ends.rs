@@ -1,6 +1,6 @@
 //! The evidence that a filter leaves to be judged.
 
-use super::Extras;
+use super::model::Extras;
 use crate::noise::composite::{Bandwidth, averaged_white_mode};
 use crate::noise::evidence::{Evidence, Zone};
 use std::f64::consts::PI;
@@ -42,11 +42,11 @@ pub(super) fn judged(evidence: &Evidence, extras: &Extras) -> Evidence {
 
 #[cfg(test)]
 mod tests {
-    use super::super::expected_power;
+    use super::super::columns::expected_power;
+    use super::super::model::Shape;
     use super::*;
     use crate::noise::composite::{Composite, Sampling};
     use crate::noise::data::BlockSeries;
-    use crate::noise::joint::Shape;
     use crate::noise::model::NoiseModel;
     use rand::SeedableRng as _;
     use rand_distr::{Distribution as _, StandardNormal};

@@ -1,10 +1,13 @@
-//! Fisher scoring of the joint likelihood.
+//! Maximum likelihood of a shape, by Fisher scoring.
 
+use super::super::likelihood::{
+    BandPower, best_ramp, deviance, ramp_information, starting_variance, usable_bands,
+};
 use super::columns::{Columns, base, process};
-use super::solve::bounded_step;
-use super::{BASE, JointPoint, Shape, Variable};
+use super::model::{BASE, Free, JointPoint, Shape, Variable};
 use crate::noise::composite::{Bandwidth, Sampling};
 use crate::noise::evidence::Evidence;
+use crate::numeric::optimize::bounded_quadratic;
 use nalgebra::{DMatrix, DVector};
 
 /// Fall of the deviance below which a fit is done.
@@ -16,37 +19,11 @@ const MIN_PERIODS: f64 = 2.0;
 /// Relative step of numeric derivatives.
 const EPSILON: f64 = 1e-3;
 
-struct Row {
-    dof: f64,
-    power: f64,
-    cross: f64,
-    ramp: f64,
-}
-
-impl Row {
-    fn power_without(&self, r: f64) -> f64 {
-        (self.power - 2.0 * r * self.cross + r * r * self.ramp).max(0.0)
-    }
-}
-
-/// Which variables a fit may change.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Free {
-    /// Free variances, in the order of [`JointPoint::variance`].
-    pub variance: Vec<bool>,
-    /// Whether times and frequencies are free.
-    pub nonlinear: bool,
-    /// Whether the ramp is free (restricted likelihood) or held.
-    pub ramp: bool,
-    /// One variable that is held whatever the others say.
-    pub held: Option<Variable>,
-}
-
 /// The joint likelihood of an evidence.
 pub struct Joint<'a> {
     evidence: &'a Evidence,
     sampling: Sampling,
-    rows: Vec<Row>,
+    bands: Vec<BandPower>,
     used: Vec<usize>,
     plain: Vec<Vec<f64>>,
 }
@@ -54,23 +31,8 @@ pub struct Joint<'a> {
 impl<'a> Joint<'a> {
     /// Prepares the likelihood; `None` when there is no power in any band or too few bands to say anything.
     pub fn new(evidence: &'a Evidence, sampling: Sampling) -> Option<Joint<'a>> {
-        let used: Vec<usize> = evidence
-            .bands
-            .iter()
-            .enumerate()
-            .filter(|(_, b)| b.power.is_finite() && b.power >= 0.0 && b.dof > 0.0)
-            .map(|(i, _)| i)
-            .collect();
-        let rows: Vec<Row> = used
-            .iter()
-            .filter_map(|i| evidence.bands.get(*i))
-            .map(|b| Row { dof: b.dof, power: b.power, cross: b.cross, ramp: b.ramp })
-            .collect();
-        let total: f64 = rows.iter().map(|r| r.dof * r.power).sum();
-        if rows.len() < 8 || total <= 0.0 || !total.is_finite() {
-            return None;
-        }
-        let mut joint = Joint { evidence, sampling, rows, used, plain: vec![] };
+        let (used, bands) = usable_bands(evidence)?;
+        let mut joint = Joint { evidence, sampling, bands, used, plain: vec![] };
         joint.plain = joint.restrict(base(evidence, None, sampling));
         Some(joint)
     }
@@ -103,7 +65,7 @@ impl<'a> Joint<'a> {
     }
 
     fn density(&self, columns: &Columns, variance: &[f64]) -> Vec<f64> {
-        let mut s = vec![0.0; self.rows.len()];
+        let mut s = vec![0.0; self.bands.len()];
         for (column, v) in columns.all().zip(variance) {
             if *v > 0.0 {
                 for (s, c) in s.iter_mut().zip(column) {
@@ -114,41 +76,16 @@ impl<'a> Joint<'a> {
         s
     }
 
-    fn deviance(&self, s: &[f64], ramp: f64, restricted: bool) -> f64 {
-        let mut sum = if restricted { self.ramp_information(s).max(f64::MIN_POSITIVE).ln() } else { 0.0 };
-        for (row, s) in self.rows.iter().zip(s) {
-            if *s <= 0.0 || !s.is_finite() {
-                return f64::INFINITY;
-            }
-            sum += row.dof * (s.ln() + row.power_without(ramp) / s);
-        }
-        sum
-    }
-
-    fn ramp_information(&self, s: &[f64]) -> f64 {
-        self.rows.iter().zip(s).map(|(row, s)| row.dof * row.ramp / s).sum()
-    }
-
-    fn best_ramp(&self, s: &[f64]) -> f64 {
-        let (mut cross, mut square) = (0.0, 0.0);
-        for (row, s) in self.rows.iter().zip(s) {
-            cross += row.dof * row.cross / s;
-            square += row.dof * row.ramp / s;
-        }
-        if square > 0.0 { cross / square } else { 0.0 }
+    /// Every band with its expected power.
+    fn expected<'b>(&'b self, s: &'b [f64]) -> impl Iterator<Item = (&'b BandPower, f64)> + Clone + 'b {
+        self.bands.iter().zip(s.iter().copied())
     }
 
     /// A start: every free variance at the size at which it alone would make the smallest bands.
     pub fn start(&self, shape: &Shape, free: &[bool]) -> JointPoint {
         let columns = self.columns(shape);
-        let dof: f64 = self.rows.iter().map(|r| r.dof).sum();
-        let mean = self.rows.iter().map(|r| r.dof * r.power).sum::<f64>() / dof;
         let active = free.iter().filter(|f| **f).count().max(1) as f64;
-        let scale = |column: &Vec<f64>| {
-            let sum: f64 =
-                self.rows.iter().zip(column).map(|(r, c)| r.dof * c / (r.power + 1e-9 * mean)).sum();
-            if sum > 0.0 { dof / sum / active } else { 0.0 }
-        };
+        let scale = |column: &Vec<f64>| starting_variance(self.bands.iter(), column.iter().copied()) / active;
         let variance = columns.all().zip(free).map(|(c, f)| if *f { scale(c) } else { 0.0 }).collect();
         JointPoint { variance, shape: shape.clone(), ramp: 0.0, deviance: f64::INFINITY }
     }
@@ -221,7 +158,7 @@ impl<'a> Joint<'a> {
                 Variable::Variance(i) => columns.all().nth(i).cloned().unwrap_or_default(),
                 Variable::FilterTime => {
                     let moved = self.columns(&self.moved(&point.shape, *variable, EPSILON));
-                    let mut out = vec![0.0; self.rows.len()];
+                    let mut out = vec![0.0; self.bands.len()];
                     for ((now, then), v) in columns.base.iter().zip(&moved.base).zip(&point.variance) {
                         for ((o, a), b) in out.iter_mut().zip(now).zip(then) {
                             *o += v * (b - a) / EPSILON;
@@ -232,15 +169,15 @@ impl<'a> Joint<'a> {
                 Variable::DecayTime(i) | Variable::Frequency(i) => {
                     let up = self.moved(&point.shape, *variable, EPSILON);
                     let Some(((_, d), v)) = up.damped.get(i).zip(point.variance.get(BASE.len() + i)) else {
-                        return vec![0.0; self.rows.len()];
+                        return vec![0.0; self.bands.len()];
                     };
                     let then = self.restrict(vec![process(self.evidence, d, self.sampling)]);
                     let (Some(then), Some(now)) = (then.first(), columns.damped.get(i)) else {
-                        return vec![0.0; self.rows.len()];
+                        return vec![0.0; self.bands.len()];
                     };
                     now.iter().zip(then).map(|(a, b)| v * (b - a) / EPSILON).collect()
                 }
-                Variable::Ramp => vec![0.0; self.rows.len()],
+                Variable::Ramp => vec![0.0; self.bands.len()],
             }
         };
         variables.iter().map(column).collect()
@@ -253,7 +190,7 @@ impl<'a> Joint<'a> {
         for (a, ga) in gradient.iter().enumerate() {
             for (b, gb) in gradient.iter().enumerate().take(a + 1) {
                 let mut sum = 0.0;
-                for (((row, s), x), y) in self.rows.iter().zip(s).zip(ga).zip(gb) {
+                for (((row, s), x), y) in self.bands.iter().zip(s).zip(ga).zip(gb) {
                     sum += 0.5 * row.dof * x * y / (s * s);
                 }
                 h[(a, b)] = sum;
@@ -268,6 +205,12 @@ impl<'a> Joint<'a> {
         self.newton_ascent(start, free, STEPS)
     }
 
+    /// The maximum with N, B, K, Q and the parts of a shape.
+    pub(super) fn best(&self, shape: &Shape, ramp: bool) -> JointPoint {
+        let free = Free::all(shape, ramp, !shape.is_plain());
+        self.maximise(&self.start(shape, &free.variance), &free)
+    }
+
     /// At most `steps` steps of Fisher scoring (Newton's method with the expected information) from a start. Variances stay at or
     /// above zero; a step that does not lower the deviance is shortened.
     pub(super) fn newton_ascent(&self, start: &JointPoint, free: &Free, steps: usize) -> JointPoint {
@@ -277,9 +220,9 @@ impl<'a> Joint<'a> {
         self.leave_boundary(&mut point, &columns, free);
         let mut s = self.density(&columns, &point.variance);
         if restricted {
-            point.ramp = self.best_ramp(&s);
+            point.ramp = best_ramp(self.expected(&s));
         }
-        point.deviance = self.deviance(&s, point.ramp, restricted);
+        point.deviance = deviance(self.expected(&s), point.ramp, restricted);
         if !point.deviance.is_finite() {
             return point;
         }
@@ -291,12 +234,15 @@ impl<'a> Joint<'a> {
             }
             let gradient = self.gradient(&point, &columns, &variables);
             let mut h = self.information(&s, &gradient);
-            let ramp_variance =
-                if restricted { 1.0 / self.ramp_information(&s).max(f64::MIN_POSITIVE) } else { 0.0 };
+            let ramp_variance = if restricted {
+                1.0 / ramp_information(self.expected(&s)).max(f64::MIN_POSITIVE)
+            } else {
+                0.0
+            };
             let g = DVector::from_fn(variables.len(), |a, _| {
                 let mut sum = 0.0;
-                for ((row, s), x) in self.rows.iter().zip(&s).zip(&gradient[a]) {
-                    let power = row.power_without(point.ramp) + ramp_variance * row.ramp;
+                for ((row, s), x) in self.bands.iter().zip(&s).zip(&gradient[a]) {
+                    let power = row.without_ramp(point.ramp) + ramp_variance * row.ramp;
                     sum += 0.5 * row.dof * x * (power - s) / (s * s);
                 }
                 sum
@@ -309,7 +255,7 @@ impl<'a> Joint<'a> {
                     _ => h[(a, a)] += 0.05 + damping * h[(a, a)],
                 }
             }
-            let step = bounded_step(&h, &g, &lower);
+            let step = bounded_quadratic(&h, &g, &lower);
             let before = point.deviance;
             let mut scale = 1.0;
             let mut improved = false;
@@ -330,9 +276,9 @@ impl<'a> Joint<'a> {
                 let trial_columns = if bent { self.columns(&trial.shape) } else { columns.clone() };
                 let trial_s = self.density(&trial_columns, &trial.variance);
                 if restricted && trial_s.iter().all(|s| *s > 0.0) {
-                    trial.ramp = self.best_ramp(&trial_s);
+                    trial.ramp = best_ramp(self.expected(&trial_s));
                 }
-                trial.deviance = self.deviance(&trial_s, trial.ramp, restricted);
+                trial.deviance = deviance(self.expected(&trial_s), trial.ramp, restricted);
                 if trial.deviance < point.deviance {
                     (point, columns, s) = (trial, trial_columns, trial_s);
                     improved = true;
@@ -359,7 +305,7 @@ impl<'a> Joint<'a> {
                 continue;
             }
             let smallest = self
-                .rows
+                .bands
                 .iter()
                 .zip(&s)
                 .zip(column)
@@ -375,7 +321,7 @@ impl<'a> Joint<'a> {
     /// Power over density and degrees of freedom of each band at a point.
     pub fn whitened(&self, point: &JointPoint) -> Vec<(f64, f64)> {
         let s = self.density(&self.columns(&point.shape), &point.variance);
-        self.rows.iter().zip(s).map(|(row, s)| (row.power_without(point.ramp) / s, row.dof)).collect()
+        self.bands.iter().zip(s).map(|(row, s)| (row.without_ramp(point.ramp) / s, row.dof)).collect()
     }
 
     pub(super) fn density_at(&self, point: &JointPoint) -> Vec<f64> {
@@ -383,7 +329,7 @@ impl<'a> Joint<'a> {
     }
 
     pub(super) fn ramp_sigma(&self, s: &[f64]) -> f64 {
-        let information = self.ramp_information(s);
+        let information = ramp_information(self.expected(s));
         if information > 0.0 { information.sqrt().recip() } else { 0.0 }
     }
 

@@ -1,42 +1,27 @@
-//! Joint maximum likelihood of every kind of term: N, B, K, Q, R, Markov processes, quasi-periodic disturbances and the
-//! bandwidth of the measurement, over the same spectral evidence as [`super::fit`].
-//!
-//! Variances enter the expected power linearly, correlation times, frequencies and filter times do not. Fisher scoring
-//! over both, variances bounded at zero.
+//! What a joint fit changes: variances, times and frequencies of every kind of part, and the ramp.
 
-mod backward_elimination;
-mod columns;
-mod confounded;
-mod ends;
-mod filter_alike;
-mod identify;
-mod interval;
-mod maximise;
-
-mod peaks;
-mod plateau;
-mod search;
-mod slow;
-mod solve;
-
-pub use columns::expected_power;
-pub use identify::MaximumLikelihood;
-pub use interval::{JointProfile, parameter_covariance};
-pub use maximise::{Free, Joint};
-pub use plateau::Plateau;
-pub use search::{ExtraThresholds, Extras, find_extras};
-
-use super::composite::{Bandwidth, Composite, Damped, Parameter, Sampling};
-use super::data::NoiseType;
-use super::model::NoiseModel;
+use crate::noise::composite::{Bandwidth, Composite, Damped, Parameter, Sampling};
+use crate::noise::data::NoiseType;
+use crate::noise::evidence::Zone;
+use crate::noise::model::NoiseModel;
 
 /// Terms with a spectrum that every model may have, in the order of their variances.
 pub const BASE: [NoiseType; 4] =
     [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk, NoiseType::Quantization];
 
+/// Position of quantisation among the variances.
+pub const QUANTIZATION: usize = 3;
+/// Parts accepted at most.
+pub const MAX_PROCESSES: usize = 4;
+/// Shortest correlation time that is told from white noise, sample intervals: the corner then lies at half the Nyquist
+/// frequency, so that an octave of the fall beyond it is seen. A process with a higher corner is white noise.
+pub const RESOLVED: f64 = 0.637;
+/// Longest correlation time that is told from random walk: this share of the record.
+pub const MAX_TIME_SHARE: f64 = 0.125;
+
 /// What a damped process stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ProcessKind {
     /// First-order Markov noise.
     Markov,
     /// Quasi-periodic disturbance.
@@ -49,7 +34,7 @@ pub struct Shape {
     /// Bandwidth of the measurement.
     pub filter: Option<Bandwidth>,
     /// Damped processes; their rms is left to the fit and 1 here.
-    pub damped: Vec<(Kind, Damped)>,
+    pub damped: Vec<(ProcessKind, Damped)>,
 }
 
 impl Shape {
@@ -60,7 +45,7 @@ impl Shape {
 
     /// With one more process.
     #[must_use]
-    pub fn with(&self, kind: Kind, frequency_hz: f64, decay_time_s: f64) -> Shape {
+    pub fn with(&self, kind: ProcessKind, frequency_hz: f64, decay_time_s: f64) -> Shape {
         let mut out = self.clone();
         out.damped.push((kind, Damped { rms_deg_h: 1.0, frequency_hz, decay_time_s }));
         out
@@ -95,8 +80,8 @@ impl JointPoint {
         {
             let process = Damped { rms_deg_h: variance.max(0.0).sqrt(), ..*process };
             match kind {
-                Kind::Markov => out.markov.push(process),
-                Kind::QuasiPeriodic => out.quasi_periodic.push(process),
+                ProcessKind::Markov => out.markov.push(process),
+                ProcessKind::QuasiPeriodic => out.quasi_periodic.push(process),
             }
         }
         out
@@ -173,14 +158,43 @@ impl JointPoint {
             Variable::FilterTime => Parameter::FilterTime,
             Variable::Variance(i) if i < BASE.len() => Parameter::Coefficient(*BASE.get(i)?),
             Variable::Variance(i) => match place(i - BASE.len())? {
-                (Kind::Markov, j) => Parameter::MarkovSigma(j),
-                (Kind::QuasiPeriodic, j) => Parameter::QuasiPeriodicRms(j),
+                (ProcessKind::Markov, j) => Parameter::MarkovSigma(j),
+                (ProcessKind::QuasiPeriodic, j) => Parameter::QuasiPeriodicRms(j),
             },
             Variable::DecayTime(i) => match place(i)? {
-                (Kind::Markov, j) => Parameter::MarkovTime(j),
-                (Kind::QuasiPeriodic, j) => Parameter::QuasiPeriodicTime(j),
+                (ProcessKind::Markov, j) => Parameter::MarkovTime(j),
+                (ProcessKind::QuasiPeriodic, j) => Parameter::QuasiPeriodicTime(j),
             },
             Variable::Frequency(i) => Parameter::QuasiPeriodicFrequency(place(i)?.1),
         })
     }
+}
+
+/// Which variables a fit may change.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Free {
+    /// Free variances, in the order of [`JointPoint::variance`].
+    pub variance: Vec<bool>,
+    /// Whether times and frequencies are free.
+    pub nonlinear: bool,
+    /// Whether the ramp is free (restricted likelihood) or held.
+    pub ramp: bool,
+    /// One variable that is held whatever the others say.
+    pub held: Option<Variable>,
+}
+
+impl Free {
+    /// Every variance of a shape; the ramp and the times and frequencies as asked.
+    pub fn all(shape: &Shape, ramp: bool, nonlinear: bool) -> Free {
+        Free { variance: vec![true; BASE.len() + shape.damped.len()], nonlinear, ramp, held: None }
+    }
+}
+
+/// Parts found beside N, B, K, Q and R.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extras {
+    /// The shape of the model.
+    pub shape: Shape,
+    /// Resonances that the bands must resolve.
+    pub zones: Vec<Zone>,
 }

@@ -1,32 +1,28 @@
 //! Every structure of N, B, K, Q and R fitted, and the one that a record is given.
 
-use super::fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
-use super::identify::PRICE;
-use super::slow_terms::{B, K, R, SETS, SlowChoice, SlowPrices};
+use super::claims::{B, FLICKER, K, PRICE, QUANTIZATION, R, SETS, SlowChoice, SlowPrices, WALK};
+use super::linear_fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
 
 /// All structures fitted.
-pub(super) struct Search {
+pub(super) struct Structures {
     /// Maximum of each set of spectral terms, by bit mask; second index: ramp fitted.
     points: Vec<[Option<Point>; 2]>,
     /// The maximum with every spectral term allowed, and the ramp where it is claimed.
     pub full: Point,
-    /// 2 Δ ln L of each of [`TERMS`](super::model::TERMS) against the best model without it.
+    /// 2 Δ ln L of each of [`TERMS`](crate::noise::model::TERMS) against the best model without it.
     pub ratios: [f64; 5],
     /// The slow terms chosen.
     pub slow: SlowChoice,
-    /// By how much the best set without each of [`TERMS`](super::model::TERMS) costs more.
+    /// By how much the best set without each of [`TERMS`](crate::noise::model::TERMS) costs more.
     pub preference: [f64; 5],
 }
 
 const ALL: usize = (1 << SPECTRAL) - 1;
-const FLICKER: usize = 1;
-const WALK: usize = 2;
-const QUANTIZATION: usize = 3;
 const NOT_SLOW: usize = 1 | (1 << QUANTIZATION);
 
-impl Search {
+impl Structures {
     /// Fits every structure and chooses among the slow terms.
-    pub fn run(likelihood: &Likelihood, prices: &SlowPrices) -> Option<Search> {
+    pub fn fit(likelihood: &Likelihood, prices: &SlowPrices) -> Option<Structures> {
         let mut points: Vec<[Option<Point>; 2]> = vec![[None, None]; ALL + 1];
         for set in 1..=ALL {
             for (ramp, with_ramp) in [false, true].into_iter().enumerate() {
@@ -80,7 +76,7 @@ impl Search {
         let walk = ratio(2, 1).min(ratio(2, with_ramp));
         // A ramp that is left out bends the whole model, and other terms would seem to mend it.
         let ratios = [ratio(0, with_ramp), ratio(1, with_ramp), walk, ratio(3, with_ramp), ramp_ratio];
-        Some(Search {
+        Some(Structures {
             points,
             full: if with_ramp == 1 { restricted } else { full },
             ratios,

@@ -1,134 +1,119 @@
 //! Identification with every kind of term.
 
-use super::backward_elimination::{Part, backward_elimination, unresolved, without};
-use super::confounded::quantization_price;
-use super::ends::judged;
-use super::filter_alike::with_filter_instead;
-use super::plateau::Plateau;
-use super::search::all_free;
-use super::slow::{Slow, long_markov};
-use super::{
-    BASE, ExtraThresholds, Extras, Free, Joint, JointPoint, JointProfile, Kind, Shape, Variable, find_extras,
-    parameter_covariance,
+use super::super::claims::{
+    B, K, LIMIT_COVERAGE, LIMIT_RISE, METHOD, PRICE, R, RIVALRY, SUSPICION, holds, is_claimable,
+    low_frequency_note, rival_of, suspects, with_rivals,
 };
+use super::super::linear_fit::RAMP;
+use super::super::misfit::Misfit;
+use super::super::options::Options;
+use super::super::profile::wider;
+use super::super::result::{IDS, Identification, MarkovFound, QuasiPeriodicFound};
+use super::super::standard::{identify_standard, slow_choice};
+use super::ends::judged;
+use super::fit::Joint;
+use super::interval::{JointProfile, parameter_covariance};
+use super::model::{BASE, Extras, Free, JointPoint, ProcessKind, Shape, Variable};
+use super::plateau::Plateau;
+use super::revise::{
+    Part, backward_elimination, quantization_price, unresolved, with_filter_instead, without,
+};
+use super::search::find_extras;
+use super::slow::{Slow, long_markov};
 use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::noise::composite::{Bandwidth, Described, Sampling};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
-use crate::noise::fit::RAMP;
-use crate::noise::identification::{IDS, Identification, MarkovFound, QuasiPeriodicFound};
-use crate::noise::identify::{
-    Identify, LIMIT_COVERAGE, LIMIT_RISE, METHOD, PRICE, RIVALRY, SUSPICION, Whittle, is_told,
-    low_frequency_note, rival_of, suspects, with_rivals,
-};
-use crate::noise::misfit::Misfit;
 use crate::noise::model::TERMS;
-use crate::noise::profile::wider;
-use crate::noise::slow_terms::{B, K, R, holds};
 use std::f64::consts::PI;
-
-/// Maximum Whittle likelihood over N, B, K, Q and R, and over Markov processes, quasi-periodic disturbances and a
-/// filter where the record calls for them.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct MaximumLikelihood {
-    /// How N, B, K, Q and R are claimed.
-    pub base: Whittle,
-    /// How everything else is accepted.
-    pub extras: ExtraThresholds,
-    /// How samples were taken.
-    pub sampling: Sampling,
-}
 
 /// Times that the parts of a model are looked over at most.
 const TURNS: usize = 12;
 
-impl Identify for MaximumLikelihood {
-    fn identify(&self, channel: &str, evidence: &Evidence) -> Identification {
-        self.run(channel, evidence, None, true)
+/// Identifies N, B, K, Q and R, and Markov processes, quasi-periodic disturbances and a filter where the record calls for
+/// them. `known`: where a search of the same evidence ended.
+pub(in super::super) fn identify_joint(
+    channel: &str,
+    evidence: &Evidence,
+    options: &Options,
+    known: Option<&Extras>,
+    intervals: bool,
+) -> Identification {
+    let plain = identify_standard(channel, evidence, &options.standard, false);
+    let without_extras = |plain: Identification| {
+        if intervals { identify_standard(channel, evidence, &options.standard, true) } else { plain }
+    };
+    let ramp = plain.claims(NoiseType::RateRamp);
+    let search = || find_extras(evidence, options.sampling, ramp, &options.process_thresholds);
+    let mut extras = known.cloned().unwrap_or_else(search);
+    if extras.shape.is_plain() && options.sampling == Sampling::Averaging {
+        // A long Markov process may stand where flicker or random walk is claimed.
+        let choice = slow_choice(evidence, &options.standard).filter(|c| c.set & (B | K) != 0);
+        let with = choice.and_then(|choice| {
+            long_markov(
+                &Joint::new(evidence, options.sampling)?,
+                &extras.shape,
+                choice,
+                &options.standard.slow,
+            )
+        });
+        match with {
+            Some(with) if with.excess < 0.0 => extras.shape = with.shape,
+            near => {
+                let mut found = without_extras(plain);
+                near.iter().for_each(|n| n.annotate(&mut found));
+                found.searched = Some(extras);
+                return found;
+            }
+        }
     }
-
-    fn describe(&self, channel: &str, evidence: &Evidence) -> Identification {
-        self.run(channel, evidence, None, false)
-    }
-
-    fn complete(&self, channel: &str, evidence: &Evidence, described: &Identification) -> Identification {
-        self.run(channel, evidence, described.searched.as_ref(), true)
-    }
-}
-
-impl MaximumLikelihood {
-    fn run(
-        &self,
-        channel: &str,
-        evidence: &Evidence,
-        known: Option<&Extras>,
-        intervals: bool,
-    ) -> Identification {
-        let plain = self.base.describe(channel, evidence);
-        let without_extras = |plain: Identification| {
-            if intervals { self.base.identify(channel, evidence) } else { plain }
+    // A part that became superfluous after a later one is taken out again.
+    let (mut turns, mut exchanged) = (TURNS, false);
+    loop {
+        turns = turns.saturating_sub(1);
+        let resolved = judged(evidence, &extras);
+        let Some(joint) = Joint::new(&resolved, options.sampling) else { return without_extras(plain) };
+        let Some(found) = ShapeFits::of(&joint, &extras.shape, options) else { return without_extras(plain) };
+        let near = long_markov(&joint, &extras.shape, found.slow.choice, &options.standard.slow);
+        // Where no white noise is seen beneath a Markov process, the process may be white noise behind a filter.
+        let filtered = if found.superfluous.is_none() && !found.claimed[0] && !exchanged {
+            with_filter_instead(
+                &joint,
+                &extras.shape,
+                &found.slow,
+                &options.standard.slow,
+                &options.process_thresholds,
+            )
+        } else {
+            None
         };
-        let ramp = plain.claims(NoiseType::RateRamp);
-        let search = || find_extras(evidence, self.sampling, ramp, &self.extras);
-        let mut extras = known.cloned().unwrap_or_else(search);
-        if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
-            // A long Markov process may stand where flicker or random walk is claimed.
-            let choice = self.base.slow_choice(evidence).filter(|c| c.set & (B | K) != 0);
-            let with = choice.and_then(|choice| {
-                long_markov(&Joint::new(evidence, self.sampling)?, &extras.shape, choice, &self.base.slow)
-            });
-            match with {
-                Some(with) if with.excess < 0.0 => extras.shape = with.shape,
-                near => {
-                    let mut found = without_extras(plain);
-                    near.iter().for_each(|n| n.annotate(&mut found));
-                    found.searched = Some(extras);
-                    return found;
-                }
+        exchanged |= filtered.is_some();
+        // A filter that took the place of a process is not given up for it again.
+        let superfluous = found.superfluous.filter(|part| !exchanged || *part != Part::Filter);
+        let superfluous = unresolved(&joint, &[&found.full, &found.supported]).or(superfluous);
+        match (superfluous, near) {
+            _ if turns > 0
+                && let Some(shape) = filtered =>
+            {
+                extras.shape = shape
+            }
+            (Some(part), _) if turns > 0 => extras = without(&extras, part),
+            (None, Some(with)) if turns > 0 && with.excess < 0.0 => extras.shape = with.shape,
+            (_, near) => {
+                let mut out = found.report(channel, &joint, plain, intervals);
+                near.iter().for_each(|n| n.annotate(&mut out));
+                out.searched = (turns > 0).then_some(extras);
+                return out;
             }
         }
-        // A part that became superfluous after a later one is taken out again.
-        let (mut turns, mut exchanged) = (TURNS, false);
-        loop {
-            turns = turns.saturating_sub(1);
-            let resolved = judged(evidence, &extras);
-            let Some(joint) = Joint::new(&resolved, self.sampling) else { return without_extras(plain) };
-            let Some(found) = Found::of(&joint, &extras.shape, self) else { return without_extras(plain) };
-            let near = long_markov(&joint, &extras.shape, found.slow.choice, &self.base.slow);
-            // Where no white noise is seen beneath a Markov process, the process may be white noise behind a filter.
-            let filtered = if found.superfluous.is_none() && !found.claimed[0] && !exchanged {
-                with_filter_instead(&joint, &extras.shape, &found.slow, &self.base.slow, &self.extras)
-            } else {
-                None
-            };
-            exchanged |= filtered.is_some();
-            // A filter that took the place of a process is not given up for it again.
-            let superfluous = found.superfluous.filter(|part| !exchanged || *part != Part::Filter);
-            let superfluous = unresolved(&joint, &[&found.full, &found.supported]).or(superfluous);
-            match (superfluous, near) {
-                _ if turns > 0
-                    && let Some(shape) = filtered =>
-                {
-                    extras.shape = shape
-                }
-                (Some(part), _) if turns > 0 => extras = without(&extras, part),
-                (None, Some(with)) if turns > 0 && with.excess < 0.0 => extras.shape = with.shape,
-                (_, near) => {
-                    let mut out = found.report(channel, &joint, plain, intervals);
-                    near.iter().for_each(|n| n.annotate(&mut out));
-                    out.searched = (turns > 0).then_some(extras);
-                    return out;
-                }
-            }
-            if extras.shape.is_plain() && self.sampling == Sampling::Averaging {
-                return without_extras(plain);
-            }
+        if extras.shape.is_plain() && options.sampling == Sampling::Averaging {
+            return without_extras(plain);
         }
     }
 }
 
-/// Everything that fits of one shape say.
-struct Found {
+/// Every fit of one shape, and what they claim.
+struct ShapeFits {
     full: JointPoint,
     slow: Slow,
     ratios: [f64; 5],
@@ -138,16 +123,16 @@ struct Found {
     superfluous: Option<Part>,
 }
 
-impl Found {
-    fn of(joint: &Joint<'_>, shape: &Shape, method: &MaximumLikelihood) -> Option<Found> {
-        let slow = Slow::of(joint, shape, &method.base.slow)?;
+impl ShapeFits {
+    fn of(joint: &Joint<'_>, shape: &Shape, options: &Options) -> Option<ShapeFits> {
+        let slow = Slow::of(joint, shape, &options.standard.slow)?;
         let ramp = holds(slow.choice.set, RAMP);
         let full = if ramp { slow.sloped.clone() } else { slow.level.clone() };
         if !full.deviance.is_finite() {
             return None;
         }
         let drop_base = |i: usize| {
-            let mut free = all_free(shape, ramp, true);
+            let mut free = Free::all(shape, ramp, true);
             free.variance[i] = false;
             let mut start = full.clone();
             start.variance[i] = 0.0;
@@ -162,25 +147,32 @@ impl Found {
             (all - slow.deviance[B | K | R]).max(0.0),
         ];
         let mut claimed = [
-            ratios[0] > method.base.white,
+            ratios[0] > options.standard.white,
             holds(slow.choice.set, 1),
             holds(slow.choice.set, 2),
             // The price is looked up only where it decides.
-            ratios[3] > method.base.quantization
-                && ratios[3] > quantization_price(joint, &full, ramp, &method.extras),
+            ratios[3] > options.standard.quantization
+                && ratios[3] > quantization_price(joint, &full, ramp, &options.process_thresholds),
             ramp,
         ];
-        let superfluous = backward_elimination(joint, shape, &full, &slow, &method.base.slow, &method.extras);
+        let superfluous = backward_elimination(
+            joint,
+            shape,
+            &full,
+            &slow,
+            &options.standard.slow,
+            &options.process_thresholds,
+        );
         let (point, free) = supported(joint, shape, &full, &claimed, ramp);
         let (variables, covariance) = parameter_covariance(joint, &point, &free);
         for (term, claimed) in claimed.iter_mut().enumerate().take(3).skip(1) {
             let at = variables.iter().position(|v| *v == Variable::Variance(term));
             let sigma = at.map_or(f64::INFINITY, |i| covariance[i][i].max(0.0).sqrt());
             let relative = sigma / point.reported(Variable::Variance(term));
-            *claimed &= is_told(term, slow.preference[term], relative);
+            *claimed &= is_claimable(term, slow.preference[term], relative);
         }
         let (supported, free) = supported(joint, shape, &full, &claimed, ramp);
-        Some(Found { full, slow, ratios, claimed, supported, free, superfluous })
+        Some(ShapeFits { full, slow, ratios, claimed, supported, free, superfluous })
     }
 
     fn report(
@@ -279,7 +271,7 @@ impl Found {
             return with_rivals(estimate, term, self.slow.preference[term]);
         }
         // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
-        let mut open = all_free(&self.supported.shape, self.claimed[RAMP], true);
+        let mut open = Free::all(&self.supported.shape, self.claimed[RAMP], true);
         if term == RAMP {
             open.ramp = true;
         }
@@ -323,11 +315,11 @@ impl Found {
         for (i, (kind, _)) in self.supported.shape.damped.iter().enumerate() {
             let sigma = Variable::Variance(BASE.len() + i);
             match kind {
-                Kind::Markov => out.markov.push(MarkovFound {
+                ProcessKind::Markov => out.markov.push(MarkovFound {
                     sigma: measured("markov_sigma", "deg/h", sigma),
                     correlation_time: measured("markov_correlation_time", "s", Variable::DecayTime(i)),
                 }),
-                Kind::QuasiPeriodic => out.quasi_periodic.push(QuasiPeriodicFound {
+                ProcessKind::QuasiPeriodic => out.quasi_periodic.push(QuasiPeriodicFound {
                     amplitude: measured("quasi_periodic_amplitude", "deg/h", sigma),
                     frequency: measured("quasi_periodic_frequency", "Hz", Variable::Frequency(i)),
                     coherence_time: measured("quasi_periodic_coherence_time", "s", Variable::DecayTime(i)),
@@ -370,7 +362,7 @@ fn supported(
     let open: Vec<usize> = (0..BASE.len()).filter(|i| !claimed[*i] && *i != 3).collect();
     let mut best: Option<(f64, JointPoint, Free)> = None;
     for set in 0..1usize << open.len() {
-        let mut free = all_free(shape, ramp, true);
+        let mut free = Free::all(shape, ramp, true);
         let mut start = full.clone();
         for (i, claimed) in claimed.iter().enumerate().take(BASE.len()) {
             let in_set = open.iter().position(|o| *o == i).is_some_and(|p| set >> p & 1 == 1);
@@ -385,7 +377,7 @@ fn supported(
             best = Some((cost, point, free));
         }
     }
-    best.map_or_else(|| (full.clone(), all_free(shape, ramp, true)), |(_, point, free)| (point, free))
+    best.map_or_else(|| (full.clone(), Free::all(shape, ramp, true)), |(_, point, free)| (point, free))
 }
 
 fn base_covariance(variables: &[Variable], covariance: &[Vec<f64>]) -> [[f64; 5]; 5] {

@@ -1,10 +1,10 @@
 //! Flicker, random walk, ramp and long Markov processes beside the other parts of a model.
 
-use super::search::{MAX_PROCESSES, MAX_TIME_SHARE, all_free, best_of};
-use super::{BASE, Free, Joint, JointPoint, Kind, Shape, Variable};
+use super::super::claims::{B, K, R, SETS, SlowChoice, SlowPrices, SlowSet};
+use super::super::result::Identification;
+use super::fit::Joint;
+use super::model::{BASE, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, ProcessKind, Shape, Variable};
 use crate::message::Note;
-use crate::noise::identification::Identification;
-use crate::noise::slow_terms::{B, K, R, SETS, SlowChoice, SlowPrices, SlowSet};
 
 /// Fall of the deviance that fitting the correlation time brings over the grid of octaves at most.
 const REFINING: f64 = 5.0;
@@ -28,7 +28,7 @@ pub(super) struct Slow {
 
 /// What a fit of one set may change.
 fn free_of(shape: &Shape, set: SlowSet) -> Free {
-    let mut free = all_free(shape, set & R != 0, true);
+    let mut free = Free::all(shape, set & R != 0, true);
     free.variance[1] = set & B != 0;
     free.variance[2] = set & K != 0;
     free
@@ -54,8 +54,8 @@ fn fitted(joint: &Joint<'_>, start: &JointPoint, set: SlowSet) -> JointPoint {
 impl Slow {
     /// Fits every set.
     pub fn of(joint: &Joint<'_>, shape: &Shape, prices: &SlowPrices) -> Option<Slow> {
-        let level = best_of(joint, shape, false);
-        let sloped = best_of(joint, shape, true);
+        let level = joint.best(shape, false);
+        let sloped = joint.best(shape, true);
         let mut deviance = [f64::INFINITY; SETS];
         for (set, value) in deviance.iter_mut().enumerate() {
             let near = if set & R == 0 { &level } else { &sloped };
@@ -122,13 +122,13 @@ pub(super) fn long_markov(
     let known_s = shape
         .damped
         .iter()
-        .filter(|(kind, _)| *kind == Kind::Markov)
+        .filter(|(kind, _)| *kind == ProcessKind::Markov)
         .map(|(_, d)| d.decay_time_s)
         .fold(0.0, f64::max);
     let mut time_s = SHORTEST * evidence.tau0_s.max(known_s);
     let mut tried = vec![];
     while time_s <= longest_s {
-        let with = shape.with(Kind::Markov, 0.0, time_s);
+        let with = shape.with(ProcessKind::Markov, 0.0, time_s);
         let free = Free { nonlinear: false, ..free_of(&with, 0) };
         tried.push(joint.maximise(&joint.start(&with, &free.variance), &free));
         time_s *= 2.0;

@@ -1,12 +1,14 @@
-//! Maximum Whittle likelihood over spectral evidence.
+//! Maximum likelihood of N, B, K, Q and R.
 //!
-//! −2 ln L = Σ dof·[ln s + P/s], where s is linear in the variances N², B², K², Q² and P is the band power with the
-//! ramp taken out. Fisher scoring: each step is a nonnegative weighted least-squares problem of at most four
-//! unknowns, solved exactly by enumerating its active sets; a step that does not raise the likelihood is halved.
+//! The expected power of a band is linear in the variances N², B², K² and Q². Fisher scoring: each step is a nonnegative
+//! weighted least-squares problem of at most four unknowns, solved exactly by enumerating its active sets; a step that
+//! does not raise the likelihood is halved. Public for tests that check the maximum by other arithmetic.
 
-use super::data::NoiseType;
-use super::evidence::Evidence;
-use super::model::{NoiseModel, TERMS};
+use super::likelihood::{BandPower, best_ramp, deviance, ramp_information, starting_variance, usable_bands};
+use crate::noise::data::NoiseType;
+use crate::noise::evidence::Evidence;
+use crate::noise::model::{NoiseModel, TERMS};
+use crate::numeric::optimize::{halved_steps, nonnegative_quadratic};
 
 /// Number of terms with a spectrum: the first four of [`TERMS`].
 pub const SPECTRAL: usize = 4;
@@ -40,78 +42,43 @@ impl Point {
     }
 }
 
-struct Row {
-    dof: f64,
-    power: f64,
-    cross: f64,
-    ramp: f64,
-    basis: [f64; SPECTRAL],
-}
-
-impl Row {
-    fn power_without(&self, r: f64) -> f64 {
-        (self.power - 2.0 * r * self.cross + r * r * self.ramp).max(0.0)
-    }
-
-    fn density(&self, v: &[f64; SPECTRAL]) -> f64 {
-        self.basis.iter().zip(v).map(|(g, v)| g * v).sum()
-    }
-}
-
-/// The likelihood of an evidence.
+/// The likelihood of N, B, K, Q and R given an evidence.
 pub struct Likelihood {
-    rows: Vec<Row>,
+    bands: Vec<BandPower>,
+    /// Expected power of each band for a coefficient of 1 of the four spectral terms.
+    basis: Vec<[f64; SPECTRAL]>,
     scale: [f64; SPECTRAL],
 }
 
 impl Likelihood {
     /// Prepares the likelihood; `None` when there is no power in any band or too few bands to say anything.
     pub fn new(evidence: &Evidence) -> Option<Likelihood> {
-        let columns: Vec<Vec<f64>> =
-            TERMS.iter().take(SPECTRAL).map(|term| evidence.expectation(term)).collect();
-        let usable = |p: f64| p.is_finite() && p >= 0.0;
-        let rows: Vec<Row> = evidence
-            .bands
-            .iter()
-            .enumerate()
-            .filter(|(_, band)| usable(band.power) && band.dof > 0.0)
-            .map(|(i, band)| {
-                let mut basis = [0.0; SPECTRAL];
-                for (b, column) in basis.iter_mut().zip(&columns) {
-                    *b = column.get(i).copied().unwrap_or(0.0);
-                }
-                Row { dof: band.dof, power: band.power, cross: band.cross, ramp: band.ramp, basis }
-            })
-            .collect();
-        let total: f64 = rows.iter().map(|r| r.dof * r.power).sum();
-        if rows.len() < 8 || total <= 0.0 || !total.is_finite() {
-            return None;
-        }
-        // A starting size for each term: what it would be if it alone made all the power, on a harmonic average
-        // that the smallest bands rule.
-        let mut scale = [0.0; SPECTRAL];
-        let mean_power = total / rows.iter().map(|r| r.dof).sum::<f64>();
-        for (i, s) in scale.iter_mut().enumerate() {
-            let (mut sum, mut dof) = (0.0, 0.0);
-            for row in &rows {
-                sum += row.dof * row.basis[i] / (row.power + 1e-9 * mean_power);
-                dof += row.dof;
+        let (used, bands) = usable_bands(evidence)?;
+        let columns: Vec<Vec<f64>> = TERMS.iter().take(SPECTRAL).map(|t| evidence.expectation(t)).collect();
+        let expected = |i: usize| {
+            let mut basis = [0.0; SPECTRAL];
+            for (b, column) in basis.iter_mut().zip(&columns) {
+                *b = column.get(i).copied().unwrap_or(0.0);
             }
-            *s = if sum > 0.0 { dof / sum } else { 0.0 };
-        }
-        Some(Likelihood { rows, scale })
+            basis
+        };
+        let basis: Vec<[f64; SPECTRAL]> = used.into_iter().map(expected).collect();
+        let scale =
+            std::array::from_fn(|term| starting_variance(bands.iter(), basis.iter().map(|b| b[term])));
+        Some(Likelihood { bands, basis, scale })
+    }
+
+    /// Every band with its expected power.
+    fn expected<'a>(
+        &'a self,
+        v: &'a [f64; SPECTRAL],
+    ) -> impl Iterator<Item = (&'a BandPower, f64)> + Clone + 'a {
+        let density = move |basis: &[f64; SPECTRAL]| basis.iter().zip(v).map(|(g, v)| g * v).sum();
+        self.bands.iter().zip(self.basis.iter().map(density))
     }
 
     fn deviance(&self, v: &[f64; SPECTRAL], r: f64, restricted: bool) -> f64 {
-        let mut sum = if restricted { self.ramp_information(v).max(f64::MIN_POSITIVE).ln() } else { 0.0 };
-        for row in &self.rows {
-            let s = row.density(v);
-            if s <= 0.0 || !s.is_finite() {
-                return f64::INFINITY;
-            }
-            sum += row.dof * (s.ln() + row.power_without(r) / s);
-        }
-        sum
+        deviance(self.expected(v), r, restricted)
     }
 
     /// The maximum with the given structure; `fixed` holds one coefficient of [`TERMS`] at a value; `start` is a
@@ -125,7 +92,6 @@ impl Likelihood {
         let mut free = [false; SPECTRAL];
         free.copy_from_slice(&structure[..SPECTRAL]);
         let mut ramp_free = structure[RAMP];
-        // A ramp that is fitted takes a degree of freedom from the noise: restricted likelihood gives it back.
         let restricted = structure[RAMP] && !matches!(fixed, Some((RAMP, _)));
         let mut v = [0.0; SPECTRAL];
         let active = free.iter().filter(|f| **f).count().max(1) as f64;
@@ -157,44 +123,24 @@ impl Likelihood {
         }
         for _ in 0..200 {
             if ramp_free {
-                r = self.best_ramp(&v);
+                r = best_ramp(self.expected(&v));
             }
             let before = deviance;
             deviance = self.deviance(&v, r, restricted);
             let target = self.scoring_step(&v, r, &free, restricted);
-            let mut step = 1.0;
-            for _ in 0..40 {
-                let mut trial = v;
-                for i in 0..SPECTRAL {
-                    trial[i] = (v[i] + step * (target[i] - v[i])).max(0.0);
-                }
+            let shorter = halved_steps(40, |step| {
+                let trial = std::array::from_fn(|i| (v[i] + step * (target[i] - v[i])).max(0.0));
                 let value = self.deviance(&trial, r, restricted);
-                if value < deviance {
-                    (v, deviance) = (trial, value);
-                    break;
-                }
-                step *= 0.5;
+                (value < deviance).then_some((trial, value))
+            });
+            if let Some(better) = shorter {
+                (v, deviance) = better;
             }
             if before - deviance < 1e-7 {
                 break;
             }
         }
         Some(Point { variance: v, ramp: r, deviance })
-    }
-
-    /// Fisher information of the ramp.
-    fn ramp_information(&self, v: &[f64; SPECTRAL]) -> f64 {
-        self.rows.iter().map(|row| row.dof * row.ramp / row.density(v)).sum()
-    }
-
-    fn best_ramp(&self, v: &[f64; SPECTRAL]) -> f64 {
-        let (mut cross, mut square) = (0.0, 0.0);
-        for row in &self.rows {
-            let weight = row.dof / row.density(v);
-            cross += weight * row.cross;
-            square += weight * row.ramp;
-        }
-        if square > 0.0 { cross / square } else { 0.0 }
     }
 
     /// The weighted least-squares problem of one step, scaled to unit columns.
@@ -207,20 +153,19 @@ impl Likelihood {
     ) -> [f64; SPECTRAL] {
         let (mut h, mut b) = ([[0.0; SPECTRAL]; SPECTRAL], [0.0; SPECTRAL]);
         let ramp_variance =
-            if restricted { 1.0 / self.ramp_information(v).max(f64::MIN_POSITIVE) } else { 0.0 };
-        for row in &self.rows {
-            let s = row.density(v);
-            let weight = row.dof / (s * s);
-            let held: f64 = (0..SPECTRAL).filter(|i| !free[*i]).map(|i| row.basis[i] * v[i]).sum();
-            let rest = row.power_without(r) + ramp_variance * row.ramp - held;
-            for ((h, b), gi) in h.iter_mut().zip(&mut b).zip(row.basis) {
+            if restricted { 1.0 / ramp_information(self.expected(v)).max(f64::MIN_POSITIVE) } else { 0.0 };
+        for ((band, s), basis) in self.expected(v).zip(&self.basis) {
+            let weight = band.dof / (s * s);
+            let held: f64 = (0..SPECTRAL).filter(|i| !free[*i]).map(|i| basis[i] * v[i]).sum();
+            let rest = band.without_ramp(r) + ramp_variance * band.ramp - held;
+            for ((h, b), gi) in h.iter_mut().zip(&mut b).zip(basis) {
                 *b += weight * gi * rest;
-                for (h, gj) in h.iter_mut().zip(row.basis) {
+                for (h, gj) in h.iter_mut().zip(basis) {
                     *h += weight * gi * gj;
                 }
             }
         }
-        let best = nonnegative(&h, &b, free);
+        let best = nonnegative_quadratic(&h, &b, free);
         let mut out = *v;
         for i in 0..SPECTRAL {
             if free[i] {
@@ -233,17 +178,16 @@ impl Likelihood {
     /// Fisher information of the variances N², B², K², Q² and of the ramp.
     fn information(&self, variance: &[f64; SPECTRAL]) -> [[f64; 5]; 5] {
         let mut out = [[0.0; 5]; 5];
-        for row in &self.rows {
-            let s = row.density(variance);
+        for ((band, s), basis) in self.expected(variance).zip(&self.basis) {
             if s <= 0.0 {
                 continue;
             }
-            for (out, gi) in out.iter_mut().zip(row.basis) {
-                for (out, gj) in out.iter_mut().zip(row.basis) {
-                    *out += 0.5 * row.dof * gi * gj / (s * s);
+            for (out, gi) in out.iter_mut().zip(basis) {
+                for (out, gj) in out.iter_mut().zip(basis) {
+                    *out += 0.5 * band.dof * gi * gj / (s * s);
                 }
             }
-            out[RAMP][RAMP] += row.dof * row.ramp / s;
+            out[RAMP][RAMP] += band.dof * band.ramp / s;
         }
         out
     }
@@ -296,11 +240,11 @@ impl Likelihood {
     /// Standard deviation of the square of a spectral coefficient, the others held: its scale near zero.
     pub fn variance_sigma(&self, point: &Point, term: usize) -> f64 {
         let information: f64 = self
-            .rows
-            .iter()
-            .map(|row| {
-                let share = row.basis.get(term).copied().unwrap_or(0.0) / row.density(&point.variance);
-                0.5 * row.dof * share * share
+            .expected(&point.variance)
+            .zip(&self.basis)
+            .map(|((band, s), basis)| {
+                let share = basis.get(term).copied().unwrap_or(0.0) / s;
+                0.5 * band.dof * share * share
             })
             .sum();
         if information > 0.0 { information.sqrt().recip() } else { 0.0 }
@@ -308,44 +252,10 @@ impl Likelihood {
 
     /// Power over density and degrees of freedom of each band at a point.
     pub fn whitened(&self, point: &Point) -> Vec<(f64, f64)> {
-        self.rows
-            .iter()
-            .map(|row| (row.power_without(point.ramp) / row.density(&point.variance), row.dof))
+        self.expected(&point.variance)
+            .map(|(band, s)| (band.without_ramp(point.ramp) / s, band.dof))
             .collect()
     }
-}
-
-/// min ½xᵀHx − bᵀx over x ≥ 0 with x = 0 where not free: every active set tried, the best feasible one kept.
-fn nonnegative(
-    h: &[[f64; SPECTRAL]; SPECTRAL],
-    b: &[f64; SPECTRAL],
-    free: &[bool; SPECTRAL],
-) -> [f64; SPECTRAL] {
-    let mut best = ([0.0; SPECTRAL], 0.0);
-    for set in 1u32..(1 << SPECTRAL) {
-        let indices: Vec<usize> = (0..SPECTRAL).filter(|i| set >> i & 1 == 1).collect();
-        if indices.iter().any(|&i| !free[i] || h[i][i] <= 0.0) {
-            continue;
-        }
-        let scale: Vec<f64> = indices.iter().map(|&i| h[i][i].sqrt()).collect();
-        let n = indices.len();
-        let matrix =
-            nalgebra::DMatrix::from_fn(n, n, |i, j| h[indices[i]][indices[j]] / (scale[i] * scale[j]));
-        let right = nalgebra::DVector::from_fn(n, |i, _| b[indices[i]] / scale[i]);
-        let Some(solution) = matrix.cholesky().map(|c| c.solve(&right)) else { continue };
-        if solution.iter().any(|x| *x < 0.0 || !x.is_finite()) {
-            continue;
-        }
-        let value = -0.5 * solution.dot(&right);
-        if value < best.1 {
-            let mut x = [0.0; SPECTRAL];
-            for (i, &index) in indices.iter().enumerate() {
-                x[index] = solution[i] / scale[i];
-            }
-            best = (x, value);
-        }
-    }
-    best.0
 }
 
 /// The structure with one term more or less.

@@ -1,6 +1,6 @@
 //! Expected band powers of each part for a coefficient of 1.
 
-use super::{BASE, Shape};
+use super::model::{BASE, Shape};
 use crate::noise::composite::{
     Bandwidth, Composite, Damped, Modes, Sampling, Windowed, averaged_white_mode, sampled_density,
 };

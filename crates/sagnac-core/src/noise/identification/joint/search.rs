@@ -1,69 +1,19 @@
 //! What there is beside N, B, K, Q and R: one more part at a time, while one is worth its parameters.
 
-use super::confounded::QUANTIZATION;
+use super::super::options::ProcessThresholds;
 use super::ends::judged;
+use super::fit::Joint;
+use super::model::{
+    Extras, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, ProcessKind, QUANTIZATION, RESOLVED, Shape,
+};
 use super::peaks::strongest;
-use super::{BASE, Free, Joint, JointPoint, Kind, Shape};
 use crate::noise::composite::{Bandwidth, Part, Sampling};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::{Evidence, Zone};
 use std::f64::consts::PI;
 
-/// Gains in 2 ln L from which a part is accepted, what was searched over counted. Calibrated by simulation of units
-/// with N, B, K, Q and R alone (validated in the identification study).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ExtraThresholds {
-    /// A filter of the output.
-    pub filter: f64,
-    /// A filter beside a Markov process that together make N uncertain.
-    pub filter_confounded: f64,
-    /// A Markov process. More than for a filter: white noise behind a filter is a Markov process as well, and is to be
-    /// called by its simpler name.
-    pub markov: f64,
-    /// What quantisation costs beside a filter. Both together imitate a short Markov process with a white part, one rising
-    /// where the other falls, and N would then be the level of both: few outputs are so, and the two must show clearly.
-    pub quantization_beside_filter: f64,
-    /// What quantisation costs beside a Markov process.
-    pub quantization: f64,
-    /// What the claim of quantisation needs where it makes N uncertain. More than the choice of structure: a process
-    /// without quantisation is to be told from a filter with it all the same.
-    pub quantization_confounded: f64,
-    /// A quasi-periodic disturbance, beside twice the logarithm of the resolved places searched.
-    pub quasi_periodic: f64,
-}
-
-impl Default for ExtraThresholds {
-    fn default() -> Self {
-        ExtraThresholds {
-            filter: 14.0,
-            filter_confounded: 20.0,
-            markov: 17.0,
-            quantization_beside_filter: 20.0,
-            quantization: 11.0,
-            quantization_confounded: 25.0,
-            quasi_periodic: 14.0,
-        }
-    }
-}
-
-/// Parts found beside N, B, K, Q and R.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Extras {
-    /// The shape of the model.
-    pub shape: Shape,
-    /// Resonances that the bands must resolve.
-    pub zones: Vec<Zone>,
-}
-
-/// Parts accepted at most.
-pub(super) const MAX_PROCESSES: usize = 4;
 /// Correlation times tried, per octave.
 const PER_OCTAVE: f64 = 1.5;
-/// Shortest correlation time that is told from white noise, sample intervals: the corner then lies at half the Nyquist
-/// frequency, so that an octave of the fall beyond it is seen. A process with a higher corner is white noise.
-pub(super) const RESOLVED: f64 = 0.637;
-/// Longest correlation time that is told from random walk: this share of the record.
-pub(super) const MAX_TIME_SHARE: f64 = 0.125;
 /// Highest frequency in units of the sample rate below which a range was cut.
 const WHOLE_RANGE: f64 = 0.4;
 /// Corners of processes lie at least this factor below the edge of a range that was cut.
@@ -88,13 +38,13 @@ pub fn find_extras(
     evidence: &Evidence,
     sampling: Sampling,
     ramp: bool,
-    thresholds: &ExtraThresholds,
+    thresholds: &ProcessThresholds,
 ) -> Extras {
     let mut found = Extras { shape: Shape::default(), zones: vec![] };
     for _ in 0..MAX_PROCESSES {
         let resolved = judged(evidence, &found);
         let Some(joint) = Joint::new(&resolved, sampling) else { break };
-        let current = best_of(&joint, &found.shape, ramp);
+        let current = joint.best(&found.shape, ramp);
         if !current.deviance.is_finite() {
             break;
         }
@@ -113,20 +63,9 @@ pub fn find_extras(
     found
 }
 
-/// Everything free.
-pub(super) fn all_free(shape: &Shape, ramp: bool, nonlinear: bool) -> Free {
-    Free { variance: vec![true; BASE.len() + shape.damped.len()], nonlinear, ramp, held: None }
-}
-
-/// The maximum with N, B, K, Q and the parts of a shape.
-pub(super) fn best_of(joint: &Joint<'_>, shape: &Shape, ramp: bool) -> JointPoint {
-    let free = all_free(shape, ramp, !shape.is_plain());
-    joint.maximise(&joint.start(shape, &free.variance), &free)
-}
-
 /// The maximum at a given shape, from the maximum without its last part.
 fn at_shape(joint: &Joint<'_>, shape: &Shape, near: &JointPoint, ramp: bool, steps: usize) -> JointPoint {
-    let free = all_free(shape, ramp, false);
+    let free = Free::all(shape, ramp, false);
     let mut start = joint.start(shape, &free.variance);
     // Half of what was found before leaves room for the new part.
     for (i, v) in near.variance.iter().enumerate() {
@@ -139,12 +78,12 @@ fn at_shape(joint: &Joint<'_>, shape: &Shape, near: &JointPoint, ramp: bool, ste
 }
 
 fn refined(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> JointPoint {
-    joint.maximise(point, &all_free(&point.shape, ramp, true))
+    joint.maximise(point, &Free::all(&point.shape, ramp, true))
 }
 
 /// The deviance at a maximum, quantisation counted with its price or left out.
 fn with_priced_quantization(joint: &Joint<'_>, point: &JointPoint, ramp: bool, price: f64) -> f64 {
-    let mut free = all_free(&point.shape, ramp, true);
+    let mut free = Free::all(&point.shape, ramp, true);
     let mut start = point.clone();
     (free.variance[QUANTIZATION], start.variance[QUANTIZATION]) = (false, 0.0);
     joint.maximise(&start, &free).deviance.min(point.deviance + price)
@@ -155,7 +94,7 @@ fn filters(
     found: &Extras,
     current: &JointPoint,
     ramp: bool,
-    thresholds: &ExtraThresholds,
+    thresholds: &ProcessThresholds,
 ) -> Option<Candidate> {
     if found.shape.filter.is_some() {
         return None;
@@ -217,7 +156,7 @@ fn markovs(
     found: &Extras,
     current: &JointPoint,
     ramp: bool,
-    thresholds: &ExtraThresholds,
+    thresholds: &ProcessThresholds,
 ) -> Option<Candidate> {
     let evidence = joint.evidence();
     let shortest_s = RESOLVED * evidence.tau0_s;
@@ -226,7 +165,7 @@ fn markovs(
     let best = (0..=count)
         .map(|i| {
             let time_s = shortest_s * 2f64.powf(i as f64 / PER_OCTAVE);
-            at_shape(joint, &found.shape.with(Kind::Markov, 0.0, time_s), current, ramp, SCREEN)
+            at_shape(joint, &found.shape.with(ProcessKind::Markov, 0.0, time_s), current, ramp, SCREEN)
         })
         .min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
     if current.deviance - best.deviance < 0.3 * thresholds.markov {
@@ -256,7 +195,7 @@ fn periodics(
     found: &Extras,
     current: &JointPoint,
     ramp: bool,
-    thresholds: &ExtraThresholds,
+    thresholds: &ProcessThresholds,
 ) -> Option<Candidate> {
     let density = joint.density_at(current);
     let mut best: Option<Candidate> = None;
@@ -271,7 +210,7 @@ fn periodics(
         let Some(fine) = Joint::new(&resolved, joint.sampling()) else { continue };
         let before = at_shape(&fine, &found.shape, current, ramp, FULL);
         let time_s = 1.0 / (2.0 * PI * peak.zone.half_width_hz);
-        let shape = found.shape.with(Kind::QuasiPeriodic, peak.zone.centre_hz, time_s);
+        let shape = found.shape.with(ProcessKind::QuasiPeriodic, peak.zone.centre_hz, time_s);
         let point = refined(&fine, &at_shape(&fine, &shape, &before, ramp, FULL), ramp);
         let excess = before.deviance - point.deviance - need;
         if best.as_ref().is_none_or(|b| excess > b.excess) {

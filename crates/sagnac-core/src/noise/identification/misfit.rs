@@ -1,7 +1,7 @@
 //! How well a model fits: whitened band powers against their χ² law.
 
-use super::evidence::Evidence;
 use crate::estimate::normal_probability;
+use crate::noise::evidence::Evidence;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Degrees of freedom that a test band holds at least.
@@ -83,7 +83,7 @@ impl Misfit {
 }
 
 /// Normal score of a χ² sum by the cube root (Wilson and Hilferty 1931).
-pub(super) fn normal_score(sum: f64, dof: f64) -> f64 {
+pub(crate) fn normal_score(sum: f64, dof: f64) -> f64 {
     let spread = 2.0 / (9.0 * dof);
     ((sum / dof).cbrt() - (1.0 - spread)) / spread.sqrt()
 }

@@ -1,12 +1,19 @@
-//! Which of flicker, random walk and ramp a record is given.
+//! The rules of a claim: which of flicker, random walk and ramp a record is given, what a limit needs, which terms can stand
+//! for one another.
 //!
-//! The three share the lowest few dozen modes of a record, and each can stand for another. Sets of them are compared
+//! Flicker, random walk and ramp share the lowest few dozen modes of a record, and each can stand for another. Sets of them are compared
 //! with one another, so that the better of two rivals is claimed where either alone explains the record; asked to beat
 //! the other one by a threshold each, neither would be. Every set has a price in 2 ln L, set by simulation such that at
 //! most about one record in twenty claims an absent term and an identifiable one is missed no more often.
 
-use super::data::NoiseType;
-use super::identifiable::IDENTIFIABLE;
+use super::linear_fit::RAMP;
+use crate::estimate::Estimate;
+use crate::message::Note;
+use crate::noise::data::NoiseType;
+use crate::noise::model::TERMS;
+
+/// Relative standard deviation up to which a coefficient counts as identifiable.
+pub const IDENTIFIABLE: f64 = 0.20;
 
 /// A set of slow terms as bits.
 pub type SlowSet = usize;
@@ -98,7 +105,7 @@ impl SlowPrices {
         if set & (B | K) == K { self.markov_for_walk } else { 0.0 }
     }
 
-    /// By how much the best set without a term of [`super::model::TERMS`] costs more than the one chosen.
+    /// By how much the best set without a term of [`crate::noise::model::TERMS`] costs more than the one chosen.
     pub fn preference(&self, deviance: &[f64; SETS], choice: SlowChoice, term: usize) -> f64 {
         self.choose_among(deviance, |set| !holds(set, term)).map_or(f64::INFINITY, |c| c.cost - choice.cost)
     }
@@ -117,13 +124,71 @@ impl SlowPrices {
     }
 }
 
-/// True when a set holds a term of [`super::model::TERMS`] by position.
+/// True when a set holds a term of [`crate::noise::model::TERMS`] by position.
 pub fn holds(set: SlowSet, term: usize) -> bool {
     match term {
         1 => set & B != 0,
         2 => set & K != 0,
         4 => set & R != 0,
         _ => false,
+    }
+}
+
+/// Positions in [`TERMS`].
+pub(crate) const WHITE: usize = 0;
+pub(crate) const FLICKER: usize = 1;
+pub(crate) const WALK: usize = 2;
+pub(crate) const QUANTIZATION: usize = 3;
+/// 2 Δ ln L from which a term that is not claimed widens the interval of N.
+pub(crate) const SUSPICION: f64 = 1.0;
+/// 2 Δ ln L from which a rival that is not claimed widens the interval of a slow term.
+pub(crate) const RIVALRY: f64 = 0.5;
+pub(crate) const METHOD: &str = "whittle";
+/// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
+pub(crate) const PRICE: f64 = 2.71;
+/// Coverage of upper limits.
+pub(crate) const LIMIT_COVERAGE: f64 = 0.95;
+/// Rise of the deviance that makes an upper limit. A limit is only given when the term was not claimed, that is when
+/// chance made it look small; 5 in place of 2.71 keeps the coverage in spite of that.
+pub(crate) const LIMIT_RISE: f64 = 5.0;
+
+/// True when a slow term that was chosen may be claimed. A rival nearly as good matters little while the term is known
+/// well; one that is hardly identifiable is claimed only where it is clearly preferred. Flicker needs some preference all the
+/// same: chance makes a random walk look like it in one record of twelve.
+pub(crate) fn is_claimable(term: usize, preference: f64, relative_sigma: f64) -> bool {
+    preference >= needed_preference(TERMS[term], relative_sigma)
+}
+
+/// Says so where another slow term in place of this one describes the record nearly as well.
+pub(crate) fn with_rivals(estimate: Estimate, term: usize, preference: f64) -> Estimate {
+    let slow = matches!(term, FLICKER | WALK | RAMP);
+    if slow && preference < NEARLY {
+        estimate.note(Note::new("slow_alike.term").with("fall", preference))
+    } else {
+        estimate
+    }
+}
+
+/// Low-frequency noise is there, and which of the terms it is stays open.
+pub(crate) fn low_frequency_note() -> Note {
+    Note::new("note.low_frequency_ambiguous")
+}
+
+/// Terms that may hold a part of this one while too weak to be claimed.
+pub(crate) fn suspects(term: usize) -> &'static [usize] {
+    match term {
+        WHITE => &[FLICKER, WALK, QUANTIZATION],
+        QUANTIZATION => &[FLICKER, WALK],
+        _ => &[],
+    }
+}
+
+/// The term that can stand for this one at the lowest frequencies.
+pub(crate) fn rival_of(term: usize) -> Option<usize> {
+    match term {
+        FLICKER => Some(WALK),
+        WALK => Some(FLICKER),
+        _ => None,
     }
 }
 
