@@ -9,9 +9,10 @@
 use super::data::DeviationPoint;
 use super::difference_sums::{all_modified, all_overlapping, with_reflection};
 use super::family::Estimator;
-use super::phase::{BLOCK, Compensated, PhaseBuilder};
+use super::part::{Head, MergeError, PartStart};
+use super::phase::{BLOCK, Compensated, PhaseBuilder, PhaseEnd};
 use super::stretches::StretchLengths;
-use super::strided::StridedSums;
+use super::strided::{PhaseShift, StridedSums};
 use super::tau_grid::TauGrid;
 
 /// Samples up to which every phase is kept without being asked for.
@@ -76,8 +77,12 @@ pub struct AllanAccumulator {
     builder: PhaseBuilder,
     store: Store,
     stretches: StretchLengths,
+    /// Samples of this part in the current stretch.
     current: u64,
     next_index: u64,
+    head: Head,
+    /// Where the phase of the stretch that the part continues ended, and after how many samples.
+    first_end: Option<(PhaseEnd, u64)>,
 }
 
 impl AllanAccumulator {
@@ -90,7 +95,114 @@ impl AllanAccumulator {
             stretches: StretchLengths::default(),
             current: 0,
             next_index: 0,
+            head: Head::default(),
+            first_end: None,
         }
+    }
+
+    /// The accumulator of a part of a recording. `dense_below`: sums go on in bounded memory from the first sample on, every
+    /// term up to this factor; else phases are kept as long as those of a whole recording, and the factor is chosen from
+    /// them. Parts are merged only with one factor ([`AllanAccumulator::dense_below`]).
+    pub fn of_part(plan: AllanPlan, start: PartStart, dense_below: Option<u64>) -> Self {
+        let mut part = Self::new(plan);
+        part.head = Head::new(start.samples_before, 0);
+        part.next_index = start.first_index;
+        if start.samples_before > 0 {
+            part.builder = PhaseBuilder::continued();
+        }
+        if let Some(dense) = dense_below.filter(|_| !part.plan.exact) {
+            part.store = Store::Strided(Box::new(part.sums(dense)));
+        }
+        part
+    }
+
+    /// Up to which factor strided sums take every term; `None` while every phase is kept.
+    pub fn dense_below(&self) -> Option<u64> {
+        match &self.store {
+            Store::Kept { .. } => None,
+            Store::Strided(sums) => Some(sums.dense_below()),
+        }
+    }
+
+    /// Adds the next part of the recording. Terms are those of one pass, their sums agree to rounding.
+    ///
+    /// # Errors
+    /// Where the part begins elsewhere than this one ends, or the two sum other terms.
+    pub fn merge(&mut self, mut later: AllanAccumulator) -> Result<(), MergeError> {
+        if later.head.is_empty() {
+            return Ok(());
+        }
+        self.head.accepts(&later.head)?;
+        let alike = match (&self.store, &later.store) {
+            (Store::Strided(sums), Store::Strided(later)) => sums.matches(later),
+            _ => true,
+        };
+        if self.plan != later.plan || !alike {
+            return Err(MergeError::Settings);
+        }
+        if self.head.is_empty() && later.head.begun().is_some() {
+            *self = later;
+            return Ok(());
+        }
+        let joint = later.head.begun().and_then(|origin| self.joint(&mut later, origin));
+        if joint.is_none() {
+            self.end_stretch();
+        }
+        if let (Store::Kept { .. }, Some(dense)) = (&self.store, later.dense_below()) {
+            self.stop_keeping(Some(dense));
+        }
+        match (&mut self.store, later.store) {
+            (Store::Strided(sums), Store::Strided(later)) => sums.merge(*later, joint.map(|j| j.shift)),
+            (store, Store::Kept { mut phases, starts }) => {
+                if let Some(Joint { shift, .. }) = joint {
+                    let first = starts.get(1).copied().unwrap_or(phases.len());
+                    for (number, x) in (shift.origin + 1..).zip(phases.iter_mut().take(first)) {
+                        *x += shift.at(number);
+                    }
+                }
+                store.append(&phases, &starts, joint.is_some());
+            }
+            // Phases that were kept before strided sums have been given over above.
+            (Store::Kept { .. }, Store::Strided(_)) => {}
+        }
+        match joint {
+            Some(Joint { end, ended: Some(samples), .. }) => {
+                self.close((end, self.current + samples));
+                (self.builder, self.current) = (later.builder, later.current);
+            }
+            Some(Joint { end, ended: None, .. }) => {
+                self.builder.go_on(end);
+                self.current += later.current;
+            }
+            None => (self.builder, self.current) = (later.builder, later.current),
+        }
+        self.stretches.merge(&later.stretches);
+        self.next_index = later.next_index;
+        self.head.follow(&later.head);
+        self.bound_memory();
+        Ok(())
+    }
+
+    /// How the phases of a later part join those of this one, of whose stretch `origin` samples precede it.
+    fn joint(&mut self, later: &mut AllanAccumulator, origin: u64) -> Option<Joint> {
+        let store = &mut self.store;
+        let here = self.builder.flushed(&mut |x| store.extend(x))?;
+        let ended = later.first_end;
+        let store = &mut later.store;
+        let current = later.builder.flushed(&mut |x| store.extend(x));
+        let (there, samples) = match ended {
+            Some(first) => first,
+            None => (current?, later.current),
+        };
+        let slope = there.reference - here.reference;
+        let mut phase = here.phase;
+        phase.add_sum(there.phase);
+        phase.add(slope * samples as f64);
+        Some(Joint {
+            shift: PhaseShift { origin, offset: here.phase.value(), slope },
+            end: PhaseEnd { phase, reference: here.reference },
+            ended: ended.map(|e| e.1),
+        })
     }
 
     /// Takes finite contiguous samples, deg/h. `continues` says that they follow the last ones without a gap; a
@@ -99,9 +211,11 @@ impl AllanAccumulator {
         if samples.is_empty() {
             return;
         }
-        if !continues || first_index != self.next_index {
+        let continues = continues && first_index == self.next_index;
+        if !continues {
             self.end_stretch();
         }
+        self.head.take(samples, continues);
         let store = &mut self.store;
         let starts = self.current == 0;
         if let (true, Store::Kept { phases, starts }) = (starts, &mut *store) {
@@ -110,17 +224,20 @@ impl AllanAccumulator {
         self.builder.push(samples, &mut |x| store.extend(x));
         self.current += samples.len() as u64;
         self.next_index = first_index.saturating_add(samples.len() as u64);
-        if !self.plan.exact
-            && self.stretches.samples() + self.current > KEPT_SAMPLES
-            && matches!(self.store, Store::Kept { .. })
-        {
-            self.stop_keeping();
+        self.bound_memory();
+    }
+
+    fn bound_memory(&mut self) {
+        let first = self.first_end.map_or(0, |e| e.1);
+        if !self.plan.exact && self.stretches.samples() + first + self.current > KEPT_SAMPLES {
+            self.stop_keeping(None);
         }
     }
 
     /// The curves of everything pushed so far.
     pub fn finish(mut self) -> DeviationSet {
         self.end_stretch();
+        self.stretches.add(self.first_end.map_or(0, |e| e.1));
         let longest = self.stretches.longest();
         let mut curves = vec![];
         for &estimator in &self.plan.estimators {
@@ -145,33 +262,63 @@ impl AllanAccumulator {
     }
 
     fn end_stretch(&mut self) {
-        if self.current == 0 {
-            return;
+        if self.current > 0 {
+            let store = &mut self.store;
+            let end = self.builder.flushed(&mut |x| store.extend(x));
+            if let Store::Strided(sums) = store {
+                sums.end_stretch();
+            }
+            if let Some(end) = end {
+                self.close((end, self.current));
+            }
+            self.current = 0;
+        } else if self.head.is_leading()
+            && let Store::Strided(sums) = &mut self.store
+        {
+            // A gap comes before the first sample of the part.
+            sums.begin();
         }
-        let store = &mut self.store;
-        self.builder.end_stretch(&mut |x| store.extend(x));
-        if let Store::Strided(sums) = store {
-            sums.end_stretch();
+        self.head.end_stretch();
+        self.builder.end_stretch(&mut |_| {});
+    }
+
+    /// Closes a stretch: that which the part continues waits for the part before.
+    fn close(&mut self, stretch: (PhaseEnd, u64)) {
+        if self.head.is_leading() {
+            self.first_end = Some(stretch);
+        } else {
+            self.stretches.add(stretch.1);
         }
-        self.stretches.add(self.current);
-        self.current = 0;
+    }
+
+    /// Strided sums for the stretch that the part begins with.
+    fn sums(&self, dense_below: u64) -> StridedSums {
+        let factors = self.plan.grid.factors(self.plan.tau0_s, None, u64::MAX);
+        let mut sums = StridedSums::new(&self.plan.estimators, &factors, dense_below);
+        if let Some(before) = self.head.begun() {
+            sums.continue_from(before + 1);
+        }
+        sums
     }
 
     /// Goes over from kept phases to strided sums, which get everything kept so far.
-    fn stop_keeping(&mut self) {
+    fn stop_keeping(&mut self, dense_below: Option<u64>) {
         let Store::Kept { phases, starts } = &mut self.store else { return };
         let (phases, starts) = (std::mem::take(phases), std::mem::take(starts));
-        let factors = self.plan.grid.factors(self.plan.tau0_s, None, u64::MAX);
-        let dense = white_angle_reach(&phases, &starts);
-        let mut sums = StridedSums::new(&self.plan.estimators, &factors, dense);
-        for (k, stretch) in stretches_of(&phases, &starts).enumerate() {
-            if k > 0 {
-                sums.end_stretch();
-            }
-            stretch.chunks(BLOCK).for_each(|block| sums.push(block));
-        }
-        self.store = Store::Strided(Box::new(sums));
+        let dense = dense_below.unwrap_or_else(|| white_angle_reach(&phases, &starts));
+        self.store = Store::Strided(Box::new(self.sums(dense)));
+        self.store.append(&phases, &starts, true);
     }
+}
+
+/// How two parts of one stretch join.
+#[derive(Debug, Clone, Copy)]
+struct Joint {
+    shift: PhaseShift,
+    /// Where the phase stands at the end of the stretch in the later part.
+    end: PhaseEnd,
+    /// Samples of the stretch in the later part, where it has ended there.
+    ended: Option<u64>,
 }
 
 impl Store {
@@ -179,6 +326,25 @@ impl Store {
         match self {
             Store::Kept { phases, .. } => phases.extend_from_slice(block),
             Store::Strided(sums) => sums.push(block),
+        }
+    }
+
+    /// Appends the phases of whole stretches; `continues`: the first goes on with the current one.
+    fn append(&mut self, phases: &[f64], starts: &[usize], continues: bool) {
+        match self {
+            Store::Kept { phases: kept, starts: kept_starts } => {
+                let from = kept.len();
+                kept_starts.extend(starts.iter().skip(usize::from(continues)).map(|at| from + at));
+                kept.extend_from_slice(phases);
+            }
+            Store::Strided(sums) => {
+                for (k, stretch) in stretches_of(phases, starts).enumerate() {
+                    if k > 0 || !continues {
+                        sums.end_stretch();
+                    }
+                    stretch.chunks(BLOCK).for_each(|block| sums.push(block));
+                }
+            }
         }
     }
 }

@@ -46,7 +46,7 @@ impl BlockSeriesAccumulator {
         let first_index = first_index.max(self.first_block << self.shift);
         let last = first_index.saturating_add(samples.len() as u64 - 1);
         while (last >> self.shift) - self.first_block >= self.most as u64 {
-            self.merge();
+            self.halve();
         }
         let needed = ((last >> self.shift) - self.first_block) as usize + 1;
         if self.blocks.len() < needed {
@@ -67,6 +67,46 @@ impl BlockSeriesAccumulator {
         }
     }
 
+    /// Adds what another part of the recording left, on the same grid. Counts are those of one pass, means agree to rounding.
+    pub fn merge(&mut self, other: &BlockSeriesAccumulator) {
+        if other.blocks.is_empty() {
+            return;
+        }
+        if self.blocks.is_empty() {
+            let most = self.most;
+            *self = other.clone();
+            self.most = most;
+            while self.blocks.len() > most {
+                self.halve();
+            }
+            return;
+        }
+        let mut other = other.clone();
+        if self.first_block << self.shift > other.first_block << other.shift {
+            std::mem::swap(self, &mut other);
+            self.most = other.most;
+        }
+        while self.shift < other.shift {
+            self.halve();
+        }
+        while other.shift < self.shift {
+            other.halve();
+        }
+        let end = |blocks: &Self| blocks.first_block + blocks.blocks.len() as u64;
+        while end(self).max(end(&other)) - self.first_block > self.most as u64 {
+            self.halve();
+            other.halve();
+        }
+        let needed = (end(self).max(end(&other)) - self.first_block) as usize;
+        self.blocks.resize(needed, (0.0, 0));
+        let from = (other.first_block - self.first_block) as usize;
+        let apart = other.reference - self.reference;
+        for (slot, (sum, n)) in self.blocks.iter_mut().skip(from).zip(other.blocks) {
+            slot.0 += sum + n as f64 * apart;
+            slot.1 += n;
+        }
+    }
+
     /// The block means so far.
     pub fn finish(&self) -> BlockSeries {
         let (mean, rounding) = self
@@ -83,7 +123,8 @@ impl BlockSeriesAccumulator {
         }
     }
 
-    fn merge(&mut self) {
+    /// Joins neighbouring blocks.
+    fn halve(&mut self) {
         let odd = self.first_block & 1;
         let merged = (self.blocks.len() + odd as usize).div_ceil(2);
         let mut out = vec![(0.0, 0); merged];

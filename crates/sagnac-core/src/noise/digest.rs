@@ -7,6 +7,7 @@ use super::envelope::{Envelope, EnvelopeAccumulator};
 use super::family::Estimator;
 use super::histogram::{Histogram, HistogramAccumulator};
 use super::motion::Quietest;
+use super::part::{MergeError, PartStart};
 use super::phase::Compensated;
 use super::tau_grid::TauGrid;
 use super::welch::{WelchAccumulator, WelchResult};
@@ -45,6 +46,17 @@ impl DigestPlan {
             window_lengths_s: vec![100.0, 10.0],
         }
     }
+}
+
+/// What a digest chooses from the first samples that it sees: the parts of one recording must be given the same.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PartSettings {
+    /// Samples in a segment of the averaged periodogram.
+    pub segment_len: Option<usize>,
+    /// Scale of the histogram, deg/h.
+    pub histogram_scale_deg_h: Option<f64>,
+    /// Factor up to which every term of the Allan family is summed; `None`: every phase is kept.
+    pub dense_below: Option<u64>,
 }
 
 fn usable(rate_deg_h: f64) -> bool {
@@ -109,38 +121,88 @@ pub struct RateAccumulator {
 impl RateAccumulator {
     /// An empty digest.
     pub fn new(plan: DigestPlan) -> Self {
-        let windows = plan.window_lengths_s.iter().map(|w| WindowMeans::new(*w, plan.tau0_s)).collect();
-        let octaves = (plan.taus != TauGrid::Octave).then(|| {
-            AllanAccumulator::new(AllanPlan {
-                tau0_s: plan.tau0_s,
-                grid: TauGrid::Octave,
-                exact: false,
-                estimators: vec![Estimator::Allan],
-            })
-        });
+        Self::of_part(plan, PartStart::default(), PartSettings::default())
+    }
+
+    /// An empty digest of a part of a recording, to be merged with those of its neighbours.
+    pub fn of_part(plan: DigestPlan, start: PartStart, settings: PartSettings) -> Self {
+        let DigestPlan { tau0_s, taus, exact, estimators, window_lengths_s } = plan;
+        let before = start.samples_before;
+        let allan = |grid, exact, estimators| {
+            let plan = AllanPlan { tau0_s, grid, exact, estimators };
+            AllanAccumulator::of_part(plan, start, settings.dense_below)
+        };
+        let octaves =
+            (taus != TauGrid::Octave).then(|| allan(TauGrid::Octave, false, vec![Estimator::Allan]));
         RateAccumulator {
-            tau0_s: plan.tau0_s,
+            tau0_s,
             octaves,
-            allan: AllanAccumulator::new(AllanPlan {
-                tau0_s: plan.tau0_s,
-                grid: plan.taus,
-                exact: plan.exact,
-                estimators: plan.estimators,
-            }),
-            welch: WelchAccumulator::new(),
+            allan: allan(taus, exact, estimators),
+            welch: WelchAccumulator::of_part(before, settings.segment_len),
             blocks: BlockSeriesAccumulator::default(),
-            windows,
-            histogram: HistogramAccumulator::new(),
+            windows: window_lengths_s.iter().map(|w| WindowMeans::of_part(*w, tau0_s, before)).collect(),
+            histogram: HistogramAccumulator::of_part(before, settings.histogram_scale_deg_h),
             envelope: EnvelopeAccumulator::new(),
-            quietest: Quietest::new(plan.tau0_s),
+            quietest: Quietest::of_part(tau0_s, before),
             samples: 0,
             unusable: 0,
             reference: 0.0,
             sum: Compensated::default(),
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
-            next_index: None,
+            next_index: (before > 0).then_some(start.first_index),
         }
+    }
+
+    /// What this digest has chosen so far, for the parts that follow.
+    pub fn settings(&self) -> PartSettings {
+        PartSettings {
+            segment_len: self.welch.segment_len(),
+            histogram_scale_deg_h: self.histogram.scale(),
+            dense_below: self.allan.dense_below(),
+        }
+    }
+
+    /// This digest with that of the next part of the recording. Counts, extremes, terms and windows are those of one pass
+    /// over both; sums agree to rounding.
+    ///
+    /// # Errors
+    /// Where the part begins elsewhere than this one ends, or was accumulated with other settings.
+    pub fn merged(mut self, later: RateAccumulator) -> Result<RateAccumulator, MergeError> {
+        if later.samples == 0 {
+            self.unusable += later.unusable;
+            self.next_index = if later.unusable > 0 { None } else { self.next_index };
+            return Ok(self);
+        }
+        let alike = self.tau0_s == later.tau0_s
+            && self.windows.len() == later.windows.len()
+            && self.octaves.is_some() == later.octaves.is_some();
+        if !alike {
+            return Err(MergeError::Settings);
+        }
+        self.allan.merge(later.allan)?;
+        if let (Some(octaves), Some(later)) = (&mut self.octaves, later.octaves) {
+            octaves.merge(later)?;
+        }
+        self.welch.merge(later.welch)?;
+        self.blocks.merge(&later.blocks);
+        for (windows, later) in self.windows.iter_mut().zip(later.windows) {
+            windows.merge(later)?;
+        }
+        self.histogram.merge(later.histogram)?;
+        self.envelope.merge(&later.envelope);
+        self.quietest.merge(later.quietest)?;
+        if self.samples == 0 {
+            self.reference = later.reference;
+        }
+        self.sum.add_sum(later.sum);
+        self.sum.add(later.samples as f64 * (later.reference - self.reference));
+        self.samples += later.samples;
+        self.unusable += later.unusable;
+        self.min = self.min.min(later.min);
+        self.max = self.max.max(later.max);
+        self.next_index = later.next_index;
+        Ok(self)
     }
 
     /// Takes contiguous samples, deg/h, the first at grid index `first_index`. Samples that are not finite, or

@@ -98,7 +98,7 @@ impl EnvelopeAccumulator {
         let first_index = first_index.max(self.first_bin << self.shift);
         let last = first_index.saturating_add(samples.len() as u64 - 1);
         while (last >> self.shift) - self.first_bin >= MOST_SPANS as u64 {
-            self.merge();
+            self.halve();
         }
         let needed = ((last >> self.shift) - self.first_bin) as usize + 1;
         if self.bins.len() < needed {
@@ -114,6 +114,39 @@ impl EnvelopeAccumulator {
             }
             at += now.len() as u64;
             rest = later;
+        }
+    }
+
+    /// Adds what another part of the recording left, on the same grid. Extremes and counts are those of one pass, means agree
+    /// to rounding.
+    pub fn merge(&mut self, other: &EnvelopeAccumulator) {
+        if other.bins.is_empty() {
+            return;
+        }
+        if self.bins.is_empty() {
+            *self = other.clone();
+            return;
+        }
+        let mut other = other.clone();
+        if self.first_bin << self.shift > other.first_bin << other.shift {
+            std::mem::swap(self, &mut other);
+        }
+        while self.shift < other.shift {
+            self.halve();
+        }
+        while other.shift < self.shift {
+            other.halve();
+        }
+        let end = |spans: &Self| spans.first_bin + spans.bins.len() as u64;
+        while end(self).max(end(&other)) - self.first_bin > MOST_SPANS as u64 {
+            self.halve();
+            other.halve();
+        }
+        let needed = (end(self).max(end(&other)) - self.first_bin) as usize;
+        self.bins.resize(needed, EMPTY);
+        let from = (other.first_bin - self.first_bin) as usize;
+        for (slot, span) in self.bins.iter_mut().skip(from).zip(other.bins) {
+            *slot = slot.join(span);
         }
     }
 
@@ -133,7 +166,8 @@ impl EnvelopeAccumulator {
         }
     }
 
-    fn merge(&mut self) {
+    /// Joins neighbouring spans.
+    fn halve(&mut self) {
         let odd = (self.first_bin & 1) as usize;
         let mut out = vec![EMPTY; (self.bins.len() + odd).div_ceil(2)];
         for (k, span) in self.bins.iter().enumerate() {

@@ -1,5 +1,7 @@
 //! Amplitude distribution of the fast noise: deviations from the mean of each block, so that drift does not widen it.
 
+use super::part::{Head, MergeError};
+
 /// Samples in a block whose mean is taken off.
 const BLOCK: usize = 1024;
 /// A shorter rest of a stretch than this is left out.
@@ -40,6 +42,7 @@ pub struct Histogram {
 /// Streaming histogram.
 #[derive(Debug, Clone, Default)]
 pub struct HistogramAccumulator {
+    head: Head,
     pending: Vec<f64>,
     scale: Option<f64>,
     counts: Vec<u64>,
@@ -60,12 +63,71 @@ impl HistogramAccumulator {
         HistogramAccumulator { counts: vec![0; BINS], ..Self::default() }
     }
 
+    /// The accumulator of a part with `samples_before` samples of its stretch before it. `scale`, deg/h, as
+    /// [`HistogramAccumulator::scale`] of another part gives it, makes the bins: parts are merged only with the same bins.
+    pub fn of_part(samples_before: u64, scale: Option<f64>) -> Self {
+        let beyond = (samples_before % BLOCK as u64) as usize;
+        let head = Head::new(samples_before, (BLOCK - beyond) % BLOCK);
+        HistogramAccumulator { head, scale: scale.filter(|s| *s > 0.0 && s.is_finite()), ..Self::new() }
+    }
+
+    /// The scale of the bins, deg/h; `None` until a block of samples scatters.
+    pub fn scale(&self) -> Option<f64> {
+        self.scale
+    }
+
+    /// Adds the next part of the recording. Counts are those of one pass, moments agree to rounding.
+    ///
+    /// # Errors
+    /// Where the part begins elsewhere than this one ends, or has other bins.
+    pub fn merge(&mut self, later: HistogramAccumulator) -> Result<(), MergeError> {
+        if later.head.is_empty() {
+            return Ok(());
+        }
+        self.head.accepts(&later.head)?;
+        let mut joined = self.clone();
+        match later.head.begun() {
+            Some(_) => joined.push(later.head.held(), true),
+            None => joined.end_stretch(),
+        }
+        if later.head.ended_inside() {
+            joined.end_stretch();
+        }
+        joined.scale = match (joined.scale, later.scale) {
+            (Some(a), Some(b)) if a != b => return Err(MergeError::Settings),
+            (a, b) => a.or(b),
+        };
+        for (count, more) in joined.counts.iter_mut().zip(&later.counts) {
+            *count += more;
+        }
+        joined.below += later.below;
+        joined.above += later.above;
+        joined.samples += later.samples;
+        joined.unused += later.unused;
+        joined.blocks += later.blocks;
+        // Powers are summed in units of the larger magnitude.
+        let unit = |magnitude: f64| if magnitude > 0.0 { magnitude } else { 1.0 };
+        let magnitude = joined.magnitude.max(later.magnitude);
+        for (k, order) in (2..).enumerate().take(joined.powers.len()) {
+            let scaled = |power: f64, of: f64| power * (unit(of) / unit(magnitude)).powi(order);
+            joined.powers[k] =
+                scaled(joined.powers[k], joined.magnitude) + scaled(later.powers[k], later.magnitude);
+        }
+        joined.magnitude = magnitude;
+        if later.head.is_passed() {
+            joined.pending = later.pending;
+        }
+        joined.head.follow(&later.head);
+        *self = joined;
+        Ok(())
+    }
+
     /// Takes finite contiguous samples; `continues = false` starts a new stretch.
     pub fn push(&mut self, samples: &[f64], continues: bool) {
         if !continues {
             self.end_stretch();
         }
-        let mut rest = samples;
+        let mut rest = self.head.take(samples, continues);
         while !rest.is_empty() {
             let (now, later) = rest.split_at((BLOCK - self.pending.len()).min(rest.len()));
             self.pending.extend_from_slice(now);
@@ -94,7 +156,7 @@ impl HistogramAccumulator {
             below: self.below,
             above: self.above,
             samples: self.samples,
-            unused_samples: self.unused,
+            unused_samples: self.unused + self.head.held().len() as u64,
             standard_deviation: scale * self.magnitude.max(1.0) * variance.sqrt(),
             skewness: ratio(third, 1.5),
             excess_kurtosis: if variance > 0.0 { ratio(fourth, 2.0) - 3.0 } else { 0.0 },
@@ -102,6 +164,7 @@ impl HistogramAccumulator {
     }
 
     fn end_stretch(&mut self) {
+        self.head.end_stretch();
         if self.pending.len() >= SHORTEST {
             self.flush();
         }

@@ -23,6 +23,7 @@ pub mod lines;
 pub mod model;
 pub mod motion;
 pub mod null_ratio;
+pub mod part;
 mod phase;
 pub mod prediction;
 pub mod residual;

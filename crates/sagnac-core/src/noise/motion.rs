@@ -1,6 +1,7 @@
 //! Whether a channel stood still: noise at rest has no meaning for a record that moves.
 
 use super::data::BlockSeries;
+use super::part::{Head, MergeError};
 use std::f64::consts::SQRT_2;
 
 /// Scatter of means over 1 s beyond which a unit may have moved: 0.1 deg/s. Slower than any table test, faster than
@@ -126,6 +127,7 @@ pub fn scatter(values: &[f64]) -> Option<(f64, f64)> {
 /// Scatter within the quietest window of about 1 s: what the noise is where a record that moves stands still.
 #[derive(Debug, Clone)]
 pub struct Quietest {
+    head: Head,
     length: usize,
     window: Vec<f64>,
     least: Option<f64>,
@@ -135,15 +137,55 @@ impl Quietest {
     /// An empty track of samples over `tau0_s` s.
     pub fn new(tau0_s: f64) -> Quietest {
         let length = ((1.0 / tau0_s).ceil() as usize).clamp(32, 1 << 20);
-        Quietest { length, window: Vec::new(), least: None }
+        Quietest { head: Head::default(), length, window: Vec::new(), least: None }
+    }
+
+    /// The track of a part with `samples_before` samples of its stretch before it, all of them finite.
+    pub fn of_part(tau0_s: f64, samples_before: u64) -> Quietest {
+        let mut part = Quietest::new(tau0_s);
+        let beyond = (samples_before % part.length as u64) as usize;
+        part.head = Head::new(samples_before, (part.length - beyond) % part.length);
+        part
+    }
+
+    /// Adds the next part of the recording; equal to one pass over both.
+    ///
+    /// # Errors
+    /// Where the part begins elsewhere than this one ends, or has other windows.
+    pub fn merge(&mut self, later: Quietest) -> Result<(), MergeError> {
+        if later.head.is_empty() {
+            return Ok(());
+        }
+        self.head.accepts(&later.head)?;
+        if self.length != later.length {
+            return Err(MergeError::Settings);
+        }
+        match later.head.begun() {
+            Some(_) => self.push(later.head.held(), true),
+            None => self.end_stretch(),
+        }
+        if later.head.ended_inside() {
+            self.end_stretch();
+        }
+        if later.head.is_passed() {
+            self.window = later.window;
+        }
+        self.least = [self.least, later.least].into_iter().flatten().min_by(f64::total_cmp);
+        self.head.follow(&later.head);
+        Ok(())
+    }
+
+    fn end_stretch(&mut self) {
+        self.head.end_stretch();
+        self.window.clear();
     }
 
     /// Takes contiguous samples.
     pub fn push(&mut self, values: &[f64], continues: bool) {
         if !continues {
-            self.window.clear();
+            self.end_stretch();
         }
-        for &v in values {
+        for &v in self.head.take(values, continues) {
             if v.is_finite() {
                 self.window.push(v);
             } else {

@@ -16,9 +16,36 @@ pub(crate) struct PhaseBuilder {
     base: Compensated,
     reference: Option<f64>,
     block: Vec<f64>,
+    /// Whether the stretch began before the first sample: its first phase is the last one of the part before.
+    continued: bool,
+}
+
+/// The phase at one sample, and the rate whose phase was taken off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PhaseEnd {
+    pub phase: Compensated,
+    pub reference: f64,
 }
 
 impl PhaseBuilder {
+    /// A builder whose first sample continues a stretch. Phases count from the one before that sample, which is not given.
+    pub(crate) fn continued() -> PhaseBuilder {
+        PhaseBuilder { continued: true, ..PhaseBuilder::default() }
+    }
+
+    /// Gives the phases of all samples so far, and where the phase stands; `None` before the first sample of a stretch.
+    pub(crate) fn flushed(&mut self, emit: &mut impl FnMut(&[f64])) -> Option<PhaseEnd> {
+        if !self.pending.is_empty() {
+            self.flush(emit);
+        }
+        Some(PhaseEnd { phase: self.base, reference: self.reference? })
+    }
+
+    /// Goes on from another phase.
+    pub(crate) fn go_on(&mut self, end: PhaseEnd) {
+        (self.base, self.reference) = (end.phase, Some(end.reference));
+    }
+
     /// Takes samples; `emit` gets phases in order, the first of a stretch being 0.
     pub(crate) fn push(&mut self, mut samples: &[f64], emit: &mut impl FnMut(&[f64])) {
         while !samples.is_empty() {
@@ -39,13 +66,16 @@ impl PhaseBuilder {
         }
         self.base = Compensated::default();
         self.reference = None;
+        self.continued = false;
     }
 
     fn flush(&mut self, emit: &mut impl FnMut(&[f64])) {
         self.block.clear();
         let pending = &self.pending;
         let reference = *self.reference.get_or_insert_with(|| {
-            self.block.push(0.0);
+            if !self.continued {
+                self.block.push(0.0);
+            }
             let first = pending.first().copied().unwrap_or(0.0);
             first + pending.iter().map(|y| y - first).sum::<f64>() / pending.len().max(1) as f64
         });

@@ -32,13 +32,29 @@ impl StretchLengths {
         let length = if self.rounded { rounded(samples) } else { samples };
         *self.lengths.entry(length).or_default() += 1;
         if self.lengths.len() > KINDS && !self.rounded {
-            self.rounded = true;
-            let mut coarse = BTreeMap::new();
-            for (length, count) in std::mem::take(&mut self.lengths) {
-                *coarse.entry(rounded(length)).or_default() += count;
-            }
-            self.lengths = coarse;
+            self.round();
         }
+    }
+
+    /// Adds the stretches of another part, none of which goes on in this one.
+    pub fn merge(&mut self, other: &StretchLengths) {
+        self.samples += other.samples;
+        self.longest = self.longest.max(other.longest);
+        for (length, count) in &other.lengths {
+            *self.lengths.entry(*length).or_default() += count;
+        }
+        if other.rounded || self.rounded || self.lengths.len() > KINDS {
+            self.round();
+        }
+    }
+
+    fn round(&mut self) {
+        self.rounded = true;
+        let mut coarse = BTreeMap::new();
+        for (length, count) in std::mem::take(&mut self.lengths) {
+            *coarse.entry(rounded(length)).or_default() += count;
+        }
+        self.lengths = coarse;
     }
 
     /// Samples in all stretches.

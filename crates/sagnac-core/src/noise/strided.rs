@@ -23,10 +23,71 @@ struct Lane {
     sums: Queue,
     /// Sum over the step that is not complete.
     open_sum: f64,
-    /// Phases of the stretch seen so far.
+    /// Phases of the stretch seen so far, those before the part included.
     seen: u64,
+    /// Of a part that continues a stretch.
+    head: Option<LaneHead>,
     /// Sum of squared terms and number of terms.
     totals: BTreeMap<(Estimator, u64), (Compensated, u64)>,
+}
+
+/// How the phases of a later part are moved to those of the part before it: by `offset`, and by `slope` a sample from
+/// phase number `origin` on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PhaseShift {
+    pub origin: u64,
+    pub offset: f64,
+    pub slope: f64,
+}
+
+impl PhaseShift {
+    /// What a phase is moved by.
+    pub(crate) fn at(self, number: u64) -> f64 {
+        self.offset + self.slope * (number - self.origin) as f64
+    }
+
+    /// What the sum of `count` phases from number `from` on is moved by.
+    fn of_sum(self, from: u64, count: u64) -> f64 {
+        let n = count as f64;
+        n * self.at(from) + self.slope * 0.5 * n * (n - 1.0)
+    }
+}
+
+/// What a lane of a part holds back of the stretch that it continues.
+#[derive(Debug, Clone, Default)]
+struct LaneHead {
+    /// Number of the first phase of the part.
+    from: u64,
+    /// Phases and sums on the grid of the lane, until they are as many as the longest term spans.
+    phases: Vec<f64>,
+    sums: Vec<f64>,
+    /// Sum over the step that was open before the part, once it is complete.
+    lead: Option<f64>,
+    /// Whether terms lie beyond.
+    full: bool,
+    /// Number of the phase after the last one, and the sum over the open step, once the stretch has ended.
+    end: Option<(u64, f64)>,
+}
+
+impl LaneHead {
+    /// Number of the first phase on the grid of a lane.
+    fn first(&self, stride: usize) -> u64 {
+        self.from.next_multiple_of(stride as u64)
+    }
+
+    /// Copies up to `most` values of the queues, whose terms before are left to the merge. The sum over the step that was
+    /// open before the part leaves its queue.
+    fn fill(&mut self, phases: &mut Queue, sums: &mut Queue, stride: usize, most: usize) {
+        if self.from < self.first(stride) && !sums.values.is_empty() {
+            self.lead = Some(sums.values.remove(0));
+        }
+        let copied = |queue: &mut Queue| {
+            queue.fresh = queue.values.len().min(most);
+            queue.values.iter().take(most).copied().collect()
+        };
+        self.phases = copied(phases);
+        self.sums = copied(sums);
+    }
 }
 
 /// The newest values, with what is old dropped now and then rather than each time.
@@ -56,6 +117,7 @@ impl Queue {
 pub(crate) struct StridedSums {
     estimators: Vec<Estimator>,
     lanes: Vec<Lane>,
+    dense_below: u64,
     prefix: Vec<f64>,
     running: RunningSum,
 }
@@ -104,11 +166,52 @@ impl StridedSums {
                 sums: Queue::default(),
                 open_sum: 0.0,
                 seen: 0,
+                head: None,
                 totals: BTreeMap::new(),
             })
             .collect();
         let estimators = estimators.iter().copied().filter(|e| *e != Estimator::Total).collect();
-        StridedSums { estimators, lanes, prefix: vec![], running: RunningSum::default() }
+        StridedSums { estimators, lanes, dense_below, prefix: vec![], running: RunningSum::default() }
+    }
+
+    /// Up to which factor every term is summed.
+    pub(crate) fn dense_below(&self) -> u64 {
+        self.dense_below
+    }
+
+    /// Makes these the sums of a part whose first phase has the number `from` in its stretch.
+    pub(crate) fn continue_from(&mut self, from: u64) {
+        for lane in &mut self.lanes {
+            lane.seen = from;
+            lane.head = Some(LaneHead { from, ..LaneHead::default() });
+        }
+    }
+
+    /// Makes these the sums of a stretch that begins here.
+    pub(crate) fn begin(&mut self) {
+        for lane in &mut self.lanes {
+            (lane.seen, lane.head) = (0, None);
+        }
+    }
+
+    /// Whether the sums of a later part are over the same terms.
+    pub(crate) fn matches(&self, later: &StridedSums) -> bool {
+        let terms = |sums: &StridedSums| -> Vec<(usize, Vec<(u64, usize)>)> {
+            sums.lanes.iter().map(|lane| (lane.stride, lane.factors.clone())).collect()
+        };
+        self.estimators == later.estimators && terms(self) == terms(later)
+    }
+
+    /// Adds the sums of the next part. `shift` moves the phases of the stretch that it continues; `None`: it continues
+    /// none. The sums of both must match.
+    pub(crate) fn merge(&mut self, later: StridedSums, shift: Option<PhaseShift>) {
+        if shift.is_none() {
+            self.end_stretch();
+        }
+        for (lane, later) in self.lanes.iter_mut().zip(later.lanes) {
+            lane.settle(&self.estimators, &mut self.prefix);
+            lane.merge(later, shift, &self.estimators, &mut self.prefix);
+        }
     }
 
     /// Takes the next phases of the current stretch.
@@ -129,11 +232,7 @@ impl StridedSums {
     /// Ends the stretch: no term reaches across.
     pub(crate) fn end_stretch(&mut self) {
         for lane in &mut self.lanes {
-            lane.settle(&self.estimators, &mut self.prefix);
-            lane.phases.clear();
-            lane.sums.clear();
-            lane.open_sum = 0.0;
-            lane.seen = 0;
+            lane.end_stretch(&self.estimators, &mut self.prefix);
         }
     }
 
@@ -160,8 +259,109 @@ impl Lane {
         3 * self.factors.last().map_or(0, |f| f.1)
     }
 
+    /// Ends the stretch.
+    fn end_stretch(&mut self, estimators: &[Estimator], prefix: &mut Vec<f64>) {
+        self.settle(estimators, prefix);
+        let (seen, open) = (self.seen, self.open_sum);
+        if let Some(head) = self.head.as_mut().filter(|h| h.end.is_none()) {
+            if !head.full {
+                head.fill(&mut self.phases, &mut self.sums, self.stride, usize::MAX);
+            }
+            head.end = Some((seen, open));
+        }
+        self.phases.clear();
+        self.sums.clear();
+        self.open_sum = 0.0;
+        self.seen = 0;
+    }
+
+    /// Adds the sums of the same lane of the next part.
+    fn merge(
+        &mut self,
+        mut later: Lane,
+        shift: Option<PhaseShift>,
+        estimators: &[Estimator],
+        prefix: &mut Vec<f64>,
+    ) {
+        let head = later.head.take().zip(shift);
+        if let Some((mut head, shift)) = head {
+            if !head.full && head.end.is_none() {
+                let (mut phases, mut sums) = (later.phases.clone(), later.sums.clone());
+                head.fill(&mut phases, &mut sums, later.stride, usize::MAX);
+            }
+            let (seen, open) = head.end.unwrap_or((later.seen, later.open_sum));
+            self.replay(&head, shift, seen, open);
+            self.settle(estimators, prefix);
+            match (head.end, head.full) {
+                (Some(_), _) => {
+                    self.end_stretch(estimators, prefix);
+                    self.take_over(later.phases, later.sums, later.open_sum, later.seen);
+                }
+                (None, true) => {
+                    later.shift_queues(shift);
+                    self.take_over(later.phases, later.sums, self.open_sum, later.seen);
+                }
+                (None, false) => {}
+            }
+        } else {
+            self.take_over(later.phases, later.sums, later.open_sum, later.seen);
+        }
+        for (key, (sum, terms)) in later.totals {
+            let total = self.totals.entry(key).or_default();
+            total.0.add_sum(sum);
+            total.1 += terms;
+        }
+    }
+
+    fn take_over(&mut self, phases: Queue, sums: Queue, open_sum: f64, seen: u64) {
+        (self.phases, self.sums, self.open_sum, self.seen) = (phases, sums, open_sum, seen);
+    }
+
+    /// Takes what a later part held back, its phases moved by `shift`. `seen` and `open` are those at its end.
+    fn replay(&mut self, head: &LaneHead, shift: PhaseShift, seen: u64, open: f64) {
+        let stride = self.stride as u64;
+        let first = head.first(self.stride);
+        let at = |k: usize| first + k as u64 * stride;
+        self.phases.values.extend(head.phases.iter().enumerate().map(|(k, x)| x + shift.at(at(k))));
+        if first > seen {
+            // Not even the open step was completed.
+            self.open_sum += open + shift.of_sum(head.from, seen - head.from);
+            self.seen = seen;
+            return;
+        }
+        if let Some(lead) = head.lead {
+            let lead = lead + shift.of_sum(head.from, first - head.from);
+            self.sums.values.push(self.open_sum + lead);
+        }
+        self.sums.values.extend(head.sums.iter().enumerate().map(|(k, s)| s + shift.of_sum(at(k), stride)));
+        let complete = (seen / stride * stride).max(first);
+        self.open_sum = open + shift.of_sum(complete, seen - complete);
+        self.seen = seen;
+    }
+
+    /// Moves what is kept for later terms.
+    fn shift_queues(&mut self, shift: PhaseShift) {
+        let stride = self.stride as u64;
+        let last = self.seen.saturating_sub(1) / stride;
+        let phases = self.phases.values.iter_mut().rev().zip((0..=last).rev());
+        phases.for_each(|(x, step)| *x += shift.at(step * stride));
+        let sums = self.sums.values.iter_mut().rev().zip((0..self.seen / stride).rev());
+        sums.for_each(|(s, step)| *s += shift.of_sum(step * stride, stride));
+    }
+
     /// Adds up the terms that end in what came since the last time.
     fn settle(&mut self, estimators: &[Estimator], prefix: &mut Vec<f64>) {
+        let reach = self.reach();
+        let modified = estimators.contains(&Estimator::Modified);
+        if let Some(head) = self.head.as_mut().filter(|h| !h.full && h.end.is_none()) {
+            let lead = usize::from(head.from < head.first(self.stride));
+            let sums = if modified { reach + lead } else { 0 };
+            if self.phases.values.len() < reach || self.sums.values.len() < sums {
+                return;
+            }
+            head.full = true;
+            head.fill(&mut self.phases, &mut self.sums, self.stride, reach);
+        }
         for estimator in estimators {
             if *estimator == Estimator::Modified {
                 self.modified(prefix);
@@ -169,7 +369,6 @@ impl Lane {
                 self.differences(*estimator);
             }
         }
-        let reach = self.reach();
         self.phases.trim(reach);
         self.sums.trim(reach);
     }

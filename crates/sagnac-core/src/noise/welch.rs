@@ -3,6 +3,7 @@
 //! record tells about its white noise is lost; with three quarters all weigh the same.
 
 use super::data::WelchSpectrum;
+use super::part::{Head, MergeError};
 use realfft::num_complex::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 use std::sync::Arc;
@@ -32,6 +33,9 @@ pub struct WelchResult {
 /// 2^20 samples or at the end, whichever is first; until then samples are kept.
 #[derive(Clone)]
 pub struct WelchAccumulator {
+    head: Head,
+    /// Whether the segment length was chosen from the samples of this part.
+    chosen: bool,
     kept: Vec<f64>,
     starts: Vec<usize>,
     engine: Option<Engine>,
@@ -45,9 +49,16 @@ struct Engine {
     scratch: Vec<Complex<f64>>,
     input: Vec<f64>,
     output: Vec<Complex<f64>>,
+    /// Samples of a part that are in no segment of its own.
+    skipped: usize,
     /// Samples of the current stretch that a later segment needs.
     tail: Vec<f64>,
+    /// Samples and segments of the current stretch.
+    samples_in_stretch: u64,
     in_stretch: u64,
+    /// The same of the first stretch, where a part continues it and it has ended.
+    first_stretch: Option<(u64, u64)>,
+    leading: bool,
     power: Vec<f64>,
     segments: u64,
     /// Pairs of segments that lie 1, 2 and 3 quarters of a segment apart.
@@ -73,7 +84,7 @@ impl std::fmt::Debug for WelchAccumulator {
 impl WelchAccumulator {
     /// An empty accumulator that chooses the segment length itself.
     pub fn new() -> Self {
-        WelchAccumulator { kept: vec![], starts: vec![], engine: None }
+        WelchAccumulator { head: Head::default(), chosen: false, kept: vec![], starts: vec![], engine: None }
     }
 
     /// An accumulator with a given segment length: rounded up to a power of two from 64 to 65536.
@@ -82,11 +93,82 @@ impl WelchAccumulator {
         WelchAccumulator { engine: Some(Engine::new(length)), ..Self::new() }
     }
 
+    /// The accumulator of a part with `samples_before` samples of its stretch before it. `segment` is that of
+    /// [`WelchAccumulator::with_segment`]; without it the part keeps its samples, and can be merged while it has fewer than
+    /// 2^20 of them.
+    pub fn of_part(samples_before: u64, segment: Option<usize>) -> Self {
+        let Some(segment) = segment else {
+            return WelchAccumulator { head: Head::new(samples_before, 0), ..Self::new() };
+        };
+        let mut part = Self::with_segment(segment);
+        if let Some(engine) = part.engine.as_mut().filter(|_| samples_before > 0) {
+            let (length, hop) = (engine.window.len(), engine.hop());
+            engine.skipped = (hop - (samples_before % hop as u64) as usize) % hop;
+            engine.leading = true;
+            part.head = Head::new(samples_before, engine.skipped + length - hop);
+        }
+        part
+    }
+
+    /// Samples in a segment; `None` until it is chosen.
+    pub fn segment_len(&self) -> Option<usize> {
+        self.engine.as_ref().map(|e| e.window.len())
+    }
+
+    /// Adds the next part of the recording. Segments are those of one pass, the sums of their powers agree to rounding.
+    ///
+    /// # Errors
+    /// Where the part begins elsewhere than this one ends, or the parts have not the same segment length. A part that has
+    /// not chosen its length follows any other.
+    pub fn merge(&mut self, later: WelchAccumulator) -> Result<(), MergeError> {
+        if later.head.is_empty() {
+            return Ok(());
+        }
+        self.head.accepts(&later.head)?;
+        let Some(mut further) = later.engine else {
+            let ends = later.starts.iter().skip(1).copied().chain([later.kept.len()]);
+            for (k, (from, to)) in later.starts.iter().copied().zip(ends).enumerate() {
+                self.push(
+                    later.kept.get(from..to).unwrap_or_default(),
+                    k == 0 && later.head.begun().is_some(),
+                );
+            }
+            return Ok(());
+        };
+        if self.segment_len() != Some(further.window.len()) || later.chosen {
+            return Err(MergeError::Settings);
+        }
+        match later.head.begun() {
+            Some(_) => self.push(later.head.held(), true),
+            None => self.end_stretch(),
+        }
+        if later.head.ended_inside() {
+            self.end_stretch();
+            further.first_stretch = None;
+        }
+        let Some(engine) = &mut self.engine else { return Ok(()) };
+        if later.head.is_passed() {
+            engine.follow(&further, later.head.begun().is_some() && !later.head.ended_inside());
+        }
+        engine.add(&further);
+        self.head.follow(&later.head);
+        Ok(())
+    }
+
+    fn end_stretch(&mut self) {
+        self.head.end_stretch();
+        if let Some(engine) = &mut self.engine {
+            engine.end_stretch();
+        }
+    }
+
     /// Takes finite contiguous samples; `continues = false` starts a new stretch.
     pub fn push(&mut self, samples: &[f64], continues: bool) {
         if samples.is_empty() {
             return;
         }
+        // A copy is held back: the first segments of a part lie in its head too.
+        self.head.take(samples, continues);
         if let Some(engine) = &mut self.engine {
             engine.push(samples, continues);
             return;
@@ -119,6 +201,7 @@ impl WelchAccumulator {
         while length > SHORTEST_SEGMENT && (length * SEGMENTS > total || !usable(length)) {
             length /= 2;
         }
+        self.chosen = true;
         let mut engine = Engine::new(length);
         for (from, to) in stretches {
             engine.push(self.kept.get(from..to).unwrap_or_default(), false);
@@ -145,8 +228,12 @@ impl Engine {
             input: plan.make_input_vec(),
             output: plan.make_output_vec(),
             plan,
+            skipped: 0,
             tail: Vec::with_capacity(length),
+            samples_in_stretch: 0,
             in_stretch: 0,
+            first_stretch: None,
+            leading: false,
             power: vec![0.0; length / 2 + 1],
             segments: 0,
             pairs: [0; OVERLAPPING - 1],
@@ -158,26 +245,78 @@ impl Engine {
         if !continues {
             self.end_stretch();
         }
-        let length = self.window.len();
-        let mut rest = samples;
+        let (length, hop) = (self.window.len(), self.hop());
+        let (_, mut rest) = samples.split_at(self.skipped.min(samples.len()));
+        self.skipped -= samples.len() - rest.len();
+        self.samples_in_stretch += rest.len() as u64;
         while !rest.is_empty() {
             let (now, later) = rest.split_at((length - self.tail.len()).min(rest.len()));
             self.tail.extend_from_slice(now);
             rest = later;
             if self.tail.len() == length {
                 self.transform();
-                self.tail.drain(..length / OVERLAPPING);
+                self.tail.drain(..hop);
             }
         }
     }
 
+    /// Samples from one segment to the next.
+    fn hop(&self) -> usize {
+        self.window.len() / OVERLAPPING
+    }
+
+    /// Samples of a stretch that are in none of its segments.
+    fn unused_of(&self, (samples, segments): (u64, u64)) -> u64 {
+        let used = segments.checked_sub(1).map_or(0, |n| n * self.hop() as u64 + self.window.len() as u64);
+        samples.saturating_sub(used)
+    }
+
     fn end_stretch(&mut self) {
-        // Behind a whole segment all of the tail but what came since was used already.
-        let hop = self.window.len() / OVERLAPPING;
-        let used = if self.in_stretch > 0 { self.window.len() - hop } else { 0 };
-        self.unused += self.tail.len().saturating_sub(used) as u64;
+        let stretch = (self.samples_in_stretch, self.in_stretch);
+        if std::mem::take(&mut self.leading) {
+            self.first_stretch = Some(stretch);
+        } else {
+            self.unused += self.unused_of(stretch);
+        }
         self.tail.clear();
-        self.in_stretch = 0;
+        (self.samples_in_stretch, self.in_stretch, self.skipped) = (0, 0, 0);
+    }
+
+    /// Goes on where a later part ends, after what it held back has been replayed; `joined`: its first stretch continues
+    /// the current one.
+    fn follow(&mut self, later: &Engine, joined: bool) {
+        if joined {
+            let (samples, segments) =
+                later.first_stretch.unwrap_or((later.samples_in_stretch, later.in_stretch));
+            for (apart, pairs) in (1..).zip(&mut self.pairs) {
+                let lapping = |segments: u64| segments.saturating_sub(apart);
+                *pairs += lapping(self.in_stretch + segments) - lapping(self.in_stretch) - lapping(segments);
+            }
+            // The first samples of its own are those of the replay.
+            self.samples_in_stretch += samples.saturating_sub((self.window.len() - self.hop()) as u64);
+            self.in_stretch += segments;
+        }
+        if later.leading {
+            self.tail.clone_from(&later.tail);
+        } else {
+            if joined {
+                self.end_stretch();
+            }
+            self.tail.clone_from(&later.tail);
+            (self.samples_in_stretch, self.in_stretch) = (later.samples_in_stretch, later.in_stretch);
+        }
+    }
+
+    /// Adds the sums of a later part.
+    fn add(&mut self, later: &Engine) {
+        for (power, more) in self.power.iter_mut().zip(&later.power) {
+            *power += more;
+        }
+        self.segments += later.segments;
+        for (pairs, more) in self.pairs.iter_mut().zip(later.pairs) {
+            *pairs += more;
+        }
+        self.unused += later.unused;
     }
 
     fn transform(&mut self) {
@@ -202,11 +341,12 @@ impl Engine {
 
     fn finish(mut self) -> WelchResult {
         self.end_stretch();
+        self.unused += self.first_stretch.map_or(0, |stretch| self.unused_of(stretch));
         if self.segments == 0 {
             return WelchResult { unused_samples: self.unused, ..WelchResult::default() };
         }
         let count = self.segments as f64;
-        let hop = self.window.len() / OVERLAPPING;
+        let hop = self.hop();
         // Sums over two windows so many quarters apart, each with the pairs of segments that lie so: amplitudes that
         // both hold make a bin of one like that of the other, powers make samples weigh more than once.
         let (mut alike, mut square) = (count, count * lapped(&self.window, 0, 2));

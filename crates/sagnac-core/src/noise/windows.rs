@@ -3,6 +3,8 @@
 //! No normative text fixes the details; here: non-overlapping windows from the start of each unbroken stretch, the
 //! remainder dropped, mean removed only, n − 1 in the denominator.
 
+use super::part::{Head, MergeError};
+
 /// Window means kept one by one; beyond, only their moments.
 pub const KEPT_MEANS: usize = 1_000_000;
 
@@ -43,9 +45,19 @@ impl WindowStatistics {
 /// Streaming window means of one length.
 #[derive(Debug, Clone)]
 pub struct WindowMeans {
+    head: Head,
     window_s: f64,
     samples: u64,
+    /// Samples of the open window, those before the part included.
     filled: u64,
+    /// Samples of the open window that are in `sum`.
+    summed: u64,
+    /// What a part adds to the window that was open before it.
+    lead: Option<Lead>,
+    /// Whether the open window was open before the part.
+    leading: bool,
+    /// Windows of the stretch that the part continues, where that has ended.
+    in_first: Option<u64>,
     /// First sample of the window.
     reference: f64,
     sum: f64,
@@ -59,14 +71,27 @@ pub struct WindowMeans {
     in_stretch: u64,
 }
 
+/// Sum of samples of one window about a reference.
+#[derive(Debug, Clone, Copy)]
+struct Lead {
+    reference: f64,
+    sum: f64,
+    count: u64,
+}
+
 impl WindowMeans {
     /// Windows of `window_s` seconds, rounded to whole samples of `tau0_s` seconds (at least one).
     pub fn new(window_s: f64, tau0_s: f64) -> Self {
         let samples = (window_s / tau0_s).round().max(1.0) as u64;
         WindowMeans {
+            head: Head::default(),
             window_s,
             samples,
             filled: 0,
+            summed: 0,
+            lead: None,
+            leading: false,
+            in_first: None,
             reference: 0.0,
             sum: 0.0,
             n: 0,
@@ -79,14 +104,24 @@ impl WindowMeans {
         }
     }
 
+    /// The accumulator of a part with `samples_before` samples of its stretch before it.
+    pub fn of_part(window_s: f64, tau0_s: f64, samples_before: u64) -> Self {
+        let mut part = Self::new(window_s, tau0_s);
+        part.head = Head::new(samples_before, 0);
+        part.filled = samples_before % part.samples;
+        part.leading = part.filled > 0;
+        part
+    }
+
     /// Takes finite contiguous samples; `continues` as everywhere: false starts a new stretch and a new window.
     pub fn push(&mut self, samples: &[f64], continues: bool) {
         if !continues {
             self.end_stretch();
         }
+        self.head.take(samples, continues);
         let mut rest = samples;
         while let Some(first) = rest.first() {
-            if self.filled == 0 {
+            if self.summed == 0 {
                 self.reference = *first;
                 self.sum = 0.0;
             }
@@ -97,17 +132,88 @@ impl WindowMeans {
                 self.sum += block.iter().map(|y| y - self.reference).sum::<f64>();
             }
             self.filled += now.len() as u64;
-            if self.filled == self.samples {
-                self.add(self.sum / self.samples as f64);
-                self.filled = 0;
-            }
+            self.summed += now.len() as u64;
+            self.close_full();
             rest = later;
         }
+    }
+
+    /// Adds the next part of the recording. Windows are those of one pass, their moments agree to rounding.
+    ///
+    /// # Errors
+    /// Where the part begins elsewhere than this one ends, or has other windows.
+    pub fn merge(&mut self, later: WindowMeans) -> Result<(), MergeError> {
+        if later.head.is_empty() {
+            return Ok(());
+        }
+        self.head.accepts(&later.head)?;
+        if self.samples != later.samples {
+            return Err(MergeError::Settings);
+        }
+        if self.head.is_empty() && later.head.begun().is_some() {
+            *self = later;
+            return Ok(());
+        }
+        if later.head.begun().is_some() {
+            let open = Lead { reference: later.reference, sum: later.sum, count: later.summed };
+            let lead = later.lead.or(later.leading.then_some(open));
+            if let Some(Lead { reference, sum, count }) = lead {
+                self.sum += sum + count as f64 * (reference - self.reference);
+                self.filled += count;
+                self.summed += count;
+                self.close_full();
+            }
+        } else {
+            self.end_stretch();
+        }
+        self.add_moments(&later);
+        if later.head.has_ended() || later.head.begun().is_none() {
+            self.in_stretch += later.in_first.unwrap_or(0);
+            self.end_stretch();
+            self.per_stretch.extend(&later.per_stretch);
+            self.per_stretch.truncate(KEPT_MEANS);
+        }
+        self.in_stretch += later.in_stretch;
+        if !later.leading {
+            (self.filled, self.summed) = (later.filled, later.summed);
+            (self.reference, self.sum) = (later.reference, later.sum);
+        }
+        self.head.follow(&later.head);
+        Ok(())
+    }
+
+    /// Adds the windows of another part to the moments (Chan, Golub and LeVeque 1983).
+    fn add_moments(&mut self, later: &WindowMeans) {
+        let Some(origin) = later.origin else { return };
+        let shift = origin - *self.origin.get_or_insert(origin);
+        let (here, there) = (self.n as f64, later.n as f64);
+        let apart = later.mean + shift - self.mean;
+        self.n += later.n;
+        self.mean += apart * there / (here + there);
+        self.squares += later.squares + apart * apart * here * there / (here + there);
+        let room = KEPT_MEANS.saturating_sub(self.means.len());
+        self.means.extend(later.means.iter().take(room));
+    }
+
+    /// Closes the open window if it is full.
+    fn close_full(&mut self) {
+        if self.filled < self.samples {
+            return;
+        }
+        if std::mem::take(&mut self.leading) {
+            self.lead = Some(Lead { reference: self.reference, sum: self.sum, count: self.summed });
+        } else {
+            self.add(self.sum / self.samples as f64);
+        }
+        (self.filled, self.summed) = (0, 0);
     }
 
     /// The statistics of all complete windows so far.
     pub fn finish(mut self) -> WindowStatistics {
         self.end_stretch();
+        if let Some(first) = self.in_first.filter(|n| *n > 0) {
+            self.per_stretch.insert(0, first);
+        }
         let kept = self.n as usize <= KEPT_MEANS;
         WindowStatistics {
             window_s: self.window_s,
@@ -125,11 +231,17 @@ impl WindowMeans {
     }
 
     fn end_stretch(&mut self) {
-        if self.in_stretch > 0 && self.per_stretch.len() < KEPT_MEANS {
+        let continued = self.head.is_leading() && !self.head.is_empty();
+        if std::mem::take(&mut self.leading) {
+            self.lead = Some(Lead { reference: self.reference, sum: self.sum, count: self.summed });
+        }
+        if continued {
+            self.in_first = Some(self.in_stretch);
+        } else if self.in_stretch > 0 && self.per_stretch.len() < KEPT_MEANS {
             self.per_stretch.push(self.in_stretch);
         }
-        self.in_stretch = 0;
-        self.filled = 0;
+        self.head.end_stretch();
+        (self.in_stretch, self.filled, self.summed) = (0, 0, 0);
     }
 
     /// Adds the mean of a window, given from its first sample.

@@ -1,7 +1,7 @@
 //! Sums that keep their digits.
 
 /// A sum with Neumaier's compensation.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Compensated {
     sum: f64,
     lost: f64,
@@ -14,6 +14,12 @@ impl Compensated {
         self.lost +=
             if self.sum.abs() >= value.abs() { (self.sum - sum) + value } else { (value - sum) + self.sum };
         self.sum = sum;
+    }
+
+    /// Adds another sum with what it has lost.
+    pub fn add_sum(&mut self, other: Compensated) {
+        self.add(other.sum);
+        self.lost += other.lost;
     }
 
     /// The sum.
