@@ -1,6 +1,6 @@
 //! Options that say how a recording is to be read.
 
-use crate::config::read_words::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding};
+use crate::config::recording_keys::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding};
 use crate::ingest::layout::LayoutFile;
 use crate::ingest::{ReadOptions, TextOptions};
 use clap::Args;

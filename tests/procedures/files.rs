@@ -5,8 +5,8 @@ use sagnac::config::procedure::check::{check, check_report};
 use sagnac::config::procedure::model::{Allowance, EarthRate, Taus};
 use sagnac::config::procedure::spec::{Kind, Need, TableSpec};
 use sagnac::config::procedure::tables::PROCEDURE_FILE;
-use sagnac::config::procedure::tables_limits::LIMITS_FILE;
-use sagnac::config::procedure::tables_phases::PHASES_FILE;
+use sagnac::config::procedure::tables::limits::LIMITS_FILE;
+use sagnac::config::procedure::tables::phases::PHASES_FILE;
 use sagnac::config::procedure::{
     effective, guide, load, load_limits, parse_limits, parse_procedure, power, schema,
 };

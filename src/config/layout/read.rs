@@ -3,7 +3,8 @@
 use super::tables::LAYOUT_FILE;
 use crate::config::diagnostics::{Problems, Span};
 use crate::config::file::{self, Wording};
-use crate::config::reader::{Reader, checked};
+use crate::config::read_tables::checked;
+use crate::config::reader::Reader;
 use crate::config::section::{Entry, Section};
 use crate::i18n::Note;
 use crate::units::Unit;

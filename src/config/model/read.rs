@@ -4,7 +4,8 @@ use super::tables::MODEL_FILE;
 use super::{Claim, ModelFile, Profile, SimulationPlan, Stated, Uncertainty};
 use crate::config::diagnostics::Problems;
 use crate::config::file::{self, Wording};
-use crate::config::reader::{Reader, checked, shorten};
+use crate::config::read_tables::checked;
+use crate::config::reader::{Reader, shorten};
 use crate::config::section::{Given, Named, Section};
 use crate::effect::{
     self, ClaimedMean, Column, Drivers, EFFECTS, Earth, Effect, Param, Temperature, Value, Values,

@@ -2,7 +2,7 @@
 
 use super::quantity;
 use super::reader::Reader;
-use super::reading;
+use super::recording_options;
 use super::section::{Entry, Section};
 use crate::i18n::Note;
 use crate::recording::{Channel, Role};
@@ -15,7 +15,7 @@ use crate::units::Unit;
 pub(super) fn read(section: &Section, reader: &mut Reader<'_>) -> Option<(Channel, String)> {
     let id = section.text("id")?;
     let column = match section.entry("column") {
-        Some(Entry::Column(column)) => reading::column(section, column.clone()),
+        Some(Entry::Column(column)) => recording_options::column(section, column.clone()),
         _ => return None,
     };
     let role = Role::ALL.iter().copied().find(|r| Some(r.id()) == section.word("role"))?;

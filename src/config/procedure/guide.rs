@@ -2,10 +2,10 @@
 
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::tables::PROCEDURE_FILE;
-use super::tables_limits::LIMITS_FILE;
-use super::tables_phases::PHASES_FILE;
+use super::tables::limits::LIMITS_FILE;
+use super::tables::phases::PHASES_FILE;
 use crate::config::layout::tables::LAYOUT_FILE;
-use crate::config::manifest_tables::MANIFEST_FILE;
+use crate::config::manifest::tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
 use crate::i18n::{Lang, Localize};
 use crate::ids::MEASURANDS;

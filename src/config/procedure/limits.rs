@@ -1,87 +1,17 @@
 //! Limits, reference values and typical values; and how a limits file goes over the limits of a procedure.
 
-use super::diagnostics::{Problem, SourceText, Span};
+use super::diagnostics::{Problem, SourceText};
+pub use super::limit_set::{Expected, LimitSet, LimitSpec, LimitsFile, Reference};
 use super::model::{Loaded, Procedure};
 use super::quantity::AS_RECORDED;
 use super::reader::Reader;
 use super::recorded;
 use super::section::{Entry, Section};
-use super::slips::{self, FastUnit};
+use super::slips;
 use crate::estimate::{Limit, Rule};
 use crate::i18n::Note;
 use crate::ids::MeasurandId;
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
-
-/// Limits, references and typical values of one file, in the units of the measurands.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct LimitSet {
-    /// Limits.
-    pub limits: Vec<LimitSpec>,
-    /// Published values, in the order of the file.
-    pub references: Vec<Reference>,
-    /// Typical values of the family.
-    pub expected: Vec<Expected>,
-    /// Limits that are written per second or in radians.
-    pub fast_units: Vec<FastUnit>,
-}
-
-/// A limit and what it is for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LimitSpec {
-    /// Measurand judged.
-    pub measurand: &'static MeasurandId,
-    /// Channel judged; `None`: every one without a limit of its own.
-    pub channel: Option<String>,
-    /// The limit, in the unit of the measurand.
-    pub limit: Limit,
-    /// The unit of the limit where that of the measurand is as recorded.
-    pub recorded_unit: Option<&'static str>,
-    /// Where it is declared, in the file `limit.source`.
-    pub span: Span,
-}
-
-/// A published value.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// Measurand.
-    pub measurand: &'static MeasurandId,
-    /// Channel; `None`: every one.
-    pub channel: Option<String>,
-    /// Value and where it was published.
-    pub record: ReferenceRecord,
-    /// Conventions a reader must know.
-    pub note: Option<String>,
-    /// Where it is declared.
-    pub span: Span,
-}
-
-/// A typical value of the family.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Expected {
-    /// Measurand.
-    pub measurand: &'static MeasurandId,
-    /// Value in its unit.
-    pub value: f64,
-    /// Where it is declared.
-    pub span: Span,
-}
-
-/// A limits file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LimitsFile {
-    /// Id.
-    pub id: String,
-    /// Title.
-    pub title: String,
-    /// Revision.
-    pub revision: String,
-    /// Family of devices.
-    pub family: Option<String>,
-    /// Where the values come from.
-    pub source: Option<String>,
-    /// What it states. Limits made by a factor are among them.
-    pub set: LimitSet,
-}
 
 impl Loaded<LimitsFile> {
     /// The identity of the file as it stands in results.
@@ -264,10 +194,17 @@ fn about(key: &'static str, measurand: &MeasurandId) -> Note {
 
 /// The limit that a factor makes of a typical value: an upper one, or one on the magnitude of what can be negative.
 /// `None` when no unit could meet it or no number could hold it.
-fn by_factor(measurand: &MeasurandId, factor: f64, typical: f64) -> Option<(Option<f64>, Option<f64>)> {
+fn by_factor(measurand: &MeasurandId, factor: f64, typical: f64) -> Option<Bounds> {
     let bound = factor * typical.abs();
     let usable = bound.is_finite() && bound > 0.0;
-    usable.then_some((measurand.signed.then_some(-bound), Some(bound)))
+    usable.then_some(Bounds { min: measurand.signed.then_some(-bound), max: Some(bound) })
+}
+
+/// What a value must not fall below and not exceed.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    min: Option<f64>,
+    max: Option<f64>,
 }
 
 /// Makes a limit of every first reference value that has no limit of its own.
@@ -278,7 +215,7 @@ fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
             l.measurand == reference.measurand && (l.channel.is_none() || l.channel == reference.channel)
         };
         let made = by_factor(reference.measurand, factor, reference.record.value);
-        let Some((min, max)) = made.filter(|_| !set.limits.iter().any(taken)) else { continue };
+        let Some(Bounds { min, max }) = made.filter(|_| !set.limits.iter().any(taken)) else { continue };
         set.limits.push(LimitSpec {
             measurand: reference.measurand,
             channel: reference.channel.clone(),
@@ -289,45 +226,15 @@ fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
     }
 }
 
+/// The keys that bound a value.
+const BOUNDS: [&str; 4] = ["min", "max", "max_abs", "factor"];
+
 fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'_>) -> Option<LimitSpec> {
     let measurand = section.measurand("measurand")?;
     let channel = section.text("channel");
-    let given = ["min", "max", "max_abs", "factor"].map(|key| section.number(key));
-    let [mut min, mut max, max_abs, factor] = given;
-    let states = |key: &str| section.entry(key).is_some();
-    if !["min", "max", "max_abs", "factor"].iter().any(|key| states(key)) {
-        reader.error(
-            &section.span,
-            about("check.limit_without_value", measurand),
-            Some("check.help.limit_value".into()),
-        );
-        return None;
-    }
-    let alone =
-        |key: &str| states(key) && ["min", "max", "max_abs", "factor"].iter().any(|k| *k != key && states(k));
-    for key in ["max_abs", "factor"] {
-        if alone(key) {
-            let message = Note::new("check.stands_alone").with("key", key);
-            reader.error(&section.span_of(key), message, Some("check.help.stands_alone".into()));
-            return None;
-        }
-    }
-    if let Some(bound) = max_abs {
-        let at = section.span_of("max_abs");
-        if !measurand.signed {
-            reader.error(
-                &at,
-                about("check.never_negative", measurand),
-                Some("check.help.max_for_max_abs".into()),
-            );
-            return None;
-        }
-        if bound <= 0.0 {
-            reader.error(&at, "check.max_abs_zero", None);
-            return None;
-        }
-        (min, max) = (Some(-bound), Some(bound));
-    }
+    bounds_are_stated_once(section, measurand, reader)?;
+    let mut bounds = stated_bounds(section, measurand, reader)?;
+    let factor = section.number("factor");
     let units: Vec<&'static str> =
         ["min", "max", "max_abs"].into_iter().filter_map(|key| section.recorded_unit(key)).collect();
     if units.windows(2).any(|pair| pair[0] != pair[1]) || factor.is_some() && measurand.unit.is_empty() {
@@ -338,27 +245,86 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
     if let Some(factor) = factor {
         let matching =
             |r: &&Reference| r.measurand == measurand && (r.channel == channel || r.channel.is_none());
-        match references.iter().find(matching) {
-            Some(reference) => match by_factor(measurand, factor, reference.record.value) {
-                Some(made) => (min, max) = made,
-                None => {
-                    let message = Note::new("check.factor_gives_none")
-                        .with("value", reference.record.value.to_string());
-                    let help = "check.help.max_for_factor";
-                    reader.error(&section.span_of("factor"), message, Some(help.into()));
-                    return None;
-                }
-            },
-            None => {
-                reader.error(
-                    &section.span_of("factor"),
-                    about("check.factor_without_reference", measurand),
-                    Some("check.help.factor".into()),
-                );
-                return None;
-            }
-        }
+        let reference = references.iter().find(matching);
+        bounds = bounds_by_factor(section, measurand, factor, reference, reader)?;
     }
+    bounds_can_be_met(section, measurand, bounds, reader)?;
+    let Bounds { min, max } = bounds;
+    if min.is_none() && max.is_none() {
+        return None;
+    }
+    let rule = if section.word("rule") == Some("simple") { Rule::Simple } else { Rule::GuardBand };
+    let risk = section.number("risk").unwrap_or(0.05);
+    let limit = Limit { min, max, rule, risk, source: reader.source.name.clone() };
+    let recorded_unit = units.first().copied();
+    Some(LimitSpec { measurand, channel, limit, recorded_unit, span: section.span.clone() })
+}
+
+/// Reports a limit without bounds, or with `max_abs` or `factor` beside other bounds.
+fn bounds_are_stated_once(section: &Section, measurand: &MeasurandId, reader: &mut Reader<'_>) -> Option<()> {
+    let states = |key: &str| section.entry(key).is_some();
+    if !BOUNDS.iter().any(|key| states(key)) {
+        let help = Some("check.help.limit_value".into());
+        reader.error(&section.span, about("check.limit_without_value", measurand), help);
+        return None;
+    }
+    let others = |key: &str| BOUNDS.iter().any(|k| *k != key && states(k));
+    if let Some(key) = ["max_abs", "factor"].into_iter().find(|key| states(key) && others(key)) {
+        let message = Note::new("check.stands_alone").with("key", key);
+        reader.error(&section.span_of(key), message, Some("check.help.stands_alone".into()));
+        return None;
+    }
+    Some(())
+}
+
+/// The bounds that are given as values.
+fn stated_bounds(section: &Section, measurand: &MeasurandId, reader: &mut Reader<'_>) -> Option<Bounds> {
+    let Some(bound) = section.number("max_abs") else {
+        return Some(Bounds { min: section.number("min"), max: section.number("max") });
+    };
+    let at = section.span_of("max_abs");
+    if !measurand.signed {
+        let help = Some("check.help.max_for_max_abs".into());
+        reader.error(&at, about("check.never_negative", measurand), help);
+        return None;
+    }
+    if bound <= 0.0 {
+        reader.error(&at, "check.max_abs_zero", None);
+        return None;
+    }
+    Some(Bounds { min: Some(-bound), max: Some(bound) })
+}
+
+/// The bounds that a factor makes of the typical value.
+fn bounds_by_factor(
+    section: &Section,
+    measurand: &MeasurandId,
+    factor: f64,
+    reference: Option<&Reference>,
+    reader: &mut Reader<'_>,
+) -> Option<Bounds> {
+    let at = section.span_of("factor");
+    let Some(reference) = reference else {
+        let help = Some("check.help.factor".into());
+        reader.error(&at, about("check.factor_without_reference", measurand), help);
+        return None;
+    };
+    let made = by_factor(measurand, factor, reference.record.value);
+    if made.is_none() {
+        let value = reference.record.value.to_string();
+        let message = Note::new("check.factor_gives_none").with("value", value);
+        reader.error(&at, message, Some("check.help.max_for_factor".into()));
+    }
+    made
+}
+
+/// Reports bounds that no value can meet.
+fn bounds_can_be_met(
+    section: &Section,
+    measurand: &MeasurandId,
+    Bounds { min, max }: Bounds,
+    reader: &mut Reader<'_>,
+) -> Option<()> {
     if let (Some(low), Some(high)) = (min, max)
         && low > high
     {
@@ -371,18 +337,11 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
     }
     if let Some(high) = max.filter(|high| !measurand.signed && *high <= 0.0) {
         let key = if high < 0.0 { "check.unmet_negative" } else { "check.unmet_zero" };
-        let message = about(key, measurand);
-        reader.error(&section.span_of(if factor.is_some() { "factor" } else { "max" }), message, None);
+        let at = if section.number("factor").is_some() { "factor" } else { "max" };
+        reader.error(&section.span_of(at), about(key, measurand), None);
         return None;
     }
-    if min.is_none() && max.is_none() {
-        return None;
-    }
-    let rule = if section.word("rule") == Some("simple") { Rule::Simple } else { Rule::GuardBand };
-    let risk = section.number("risk").unwrap_or(0.05);
-    let limit = Limit { min, max, rule, risk, source: reader.source.name.clone() };
-    let recorded_unit = units.first().copied();
-    Some(LimitSpec { measurand, channel, limit, recorded_unit, span: section.span.clone() })
+    Some(())
 }
 
 /// Two limits for the same measurand and channel contradict each other.

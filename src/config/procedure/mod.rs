@@ -4,6 +4,7 @@
 mod channel;
 pub mod check;
 pub mod guide;
+pub mod limit_set;
 pub mod limits;
 mod load;
 pub mod model;
@@ -11,19 +12,12 @@ pub mod obtainable;
 mod parse;
 pub mod phases;
 pub mod power;
-pub mod reading;
 pub mod recorded;
+pub mod recording_options;
 pub mod schema;
 pub mod site;
 pub mod slips;
 pub mod tables;
-mod tables_conditions;
-mod tables_influence;
-pub mod tables_limits;
-pub mod tables_phases;
-mod tables_rate_table;
-mod tables_site;
-pub mod tables_temperature;
 mod validate;
 
 pub use crate::config::diagnostics;

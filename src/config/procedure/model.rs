@@ -1,7 +1,7 @@
 //! A procedure after reading: plain values in inside units (deg/h, s, degC, Hz).
 
 use super::diagnostics::{Problem, SourceText, Span};
-use super::limits::{LimitSet, LimitsFile};
+use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
 use crate::ids::MeasurandId;

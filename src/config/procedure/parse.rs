@@ -7,13 +7,14 @@ use super::model::{
     MeasurandSpec, Procedure, RecordingSpec, ReportSpec, SupplyCondition, Taus, TemperatureCondition,
     UnitSpec, Waiver,
 };
-use super::reader::{Reader, checked};
+use super::reader::Reader;
 use super::section::{Entry, Section};
 use super::site::{Orientation, Site};
 use super::tables::PROCEDURE_FILE;
-use super::tables_limits::LIMITS_FILE;
-use super::{channel, reading, validate};
+use super::tables::limits::LIMITS_FILE;
+use super::{channel, recording_options, validate};
 use crate::config::inside;
+use crate::config::read_tables::checked;
 use crate::record::{ClauseRecord, WaiverRecord};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
 use sagnac_ingest::layout::LayoutFile;
@@ -89,7 +90,9 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
         clause: text("clause"),
         author: text("author"),
         unit_under_test: unit(root.table("unit_under_test")),
-        recording: RecordingSpec { read: reading::options(recording, root.tables("channel"), reader) },
+        recording: RecordingSpec {
+            read: recording_options::options(recording, root.tables("channel"), reader),
+        },
         sample_rate_hz: recording.and_then(|r| r.number("sample_rate")),
         sample_rate_tolerance: recording.and_then(|r| r.number("sample_rate_tolerance")).unwrap_or(0.01),
         channels: root.tables("channel").iter().filter_map(|s| one_channel(s, reader)).collect(),
@@ -97,13 +100,13 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
         exclusions: root.tables("exclude").iter().map(exclusion).collect(),
         site: root.table("site").map(site),
         instruments: root.tables("instrument").iter().map(instrument).collect(),
-        rate_table: root.table("rate_table").map(|s| super::tables_rate_table::setup(s, root)),
+        rate_table: root.table("rate_table").map(|s| super::tables::rate_table::setup(s, root)),
         analysis: analysis(root.table("analysis")),
         explain: root.table("explain").map(explain),
         temperature_test: root.table("temperature_test").map(temperature_test),
         warm_up_test: root.table("warm_up_test").map(warm_up_test),
-        repeatability_test: root.table("repeatability_test").map(super::tables_influence::repeatability),
-        comparison_test: super::tables_influence::comparison(root),
+        repeatability_test: root.table("repeatability_test").map(super::tables::influence::repeatability),
+        comparison_test: super::tables::influence::comparison(root),
         measurands: root.tables("measurand").iter().filter_map(measurand).collect(),
         limits: limits::read_set(root, None, reader),
         clauses: root.tables("clause").iter().map(clause).collect(),

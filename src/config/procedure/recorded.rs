@@ -1,6 +1,6 @@
 //! The unit of a quantity that is given as it was recorded: the scale factor.
 
-use super::limits::LimitSpec;
+use super::limit_set::LimitSpec;
 use super::model::Procedure;
 use crate::i18n::Note;
 use crate::recording::Role;

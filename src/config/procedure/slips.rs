@@ -1,7 +1,7 @@
 //! What in limits and procedures is likely a slip of the pen, although it can be used.
 
 use super::diagnostics::{Problem, SourceText, Span};
-use super::limits::{LimitSet, LimitSpec};
+use super::limit_set::{FastUnit, LimitSet, LimitSpec};
 use super::model::{ChannelSpec, Loaded, Procedure};
 use super::reader::Reader;
 use super::section::Section;
@@ -19,17 +19,6 @@ const FAR: f64 = 500.0;
 
 /// No drift of a working gyro is as large, deg/h.
 const IMPLAUSIBLE_DEG_H: f64 = 1000.0;
-
-/// A limit that is written in a fast unit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FastUnit {
-    /// Where the limit is declared.
-    pub limit: Span,
-    /// Where its value stands.
-    pub value: Span,
-    /// The unit as it is written.
-    pub unit: String,
-}
 
 /// The fast unit that a limit is written in.
 pub(super) fn fast_unit(section: &Section, reader: &Reader<'_>) -> Option<FastUnit> {

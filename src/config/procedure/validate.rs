@@ -20,8 +20,8 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     limits(procedure, reader);
     waivers(procedure, root, reader);
     averaging_times(procedure, root, reader);
-    super::tables_rate_table::validate(procedure, root, reader);
-    super::tables_influence::validate(procedure, root, reader);
+    super::tables::rate_table::validate(procedure, root, reader);
+    super::tables::influence::validate(procedure, root, reader);
 }
 
 /// What is worth knowing about a procedure that can be used.

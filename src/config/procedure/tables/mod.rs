@@ -1,13 +1,21 @@
 //! The tables of a procedure file.
 
-use super::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
-use super::tables_conditions::{CONDITIONS, EXCLUDE};
-use super::tables_influence::{MAGNETIC_TEST, REPEATABILITY_TEST, SUPPLY_TEST, VIBRATION_TEST};
-use super::tables_limits::{LIMIT, REFERENCE};
-use super::tables_rate_table::RATE_TABLE;
-use super::tables_site::{INSTRUMENT, SITE};
-use super::tables_temperature::{TEMPERATURE_TEST, WARM_UP_TEST};
-use crate::config::reading_tables;
+mod conditions;
+pub(crate) mod influence;
+pub mod limits;
+pub mod phases;
+pub(crate) mod rate_table;
+mod site;
+pub mod temperature;
+
+use crate::config::recording_keys;
+use crate::config::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
+use conditions::{CONDITIONS, EXCLUDE};
+use influence::{MAGNETIC_TEST, REPEATABILITY_TEST, SUPPLY_TEST, VIBRATION_TEST};
+use limits::{LIMIT, REFERENCE};
+use rate_table::RATE_TABLE;
+use site::{INSTRUMENT, SITE};
+use temperature::{TEMPERATURE_TEST, WARM_UP_TEST};
 
 /// Roles a channel may have, with their meaning.
 pub const ROLES: &[Word] = &[
@@ -119,7 +127,7 @@ pub static PROCEDURE_FILE: TableSpec = TableSpec {
     ],
 };
 
-pub(super) static PROCEDURE: TableSpec = TableSpec {
+pub(crate) static PROCEDURE: TableSpec = TableSpec {
     name: "procedure",
     doc: "Identity of the procedure, shown in the header of every report.",
     keys: &[
@@ -137,7 +145,7 @@ pub(super) static PROCEDURE: TableSpec = TableSpec {
     ],
 };
 
-pub(super) static UNIT_UNDER_TEST: TableSpec = TableSpec {
+pub(crate) static UNIT_UNDER_TEST: TableSpec = TableSpec {
     name: "unit_under_test",
     doc: "The unit the procedure is for. The serial number is given when the test is run.",
     keys: &[
@@ -171,14 +179,14 @@ static RECORDING: TableSpec = TableSpec {
             "\"0.1 %\"",
             "Maximum relative difference between the declared and the measured sample rate.",
         ),
-        reading_tables::FORMAT,
-        reading_tables::ENCODING,
-        reading_tables::DELIMITER,
-        reading_tables::DECIMAL,
-        reading_tables::HEADER_LINE,
-        reading_tables::FIRST_LINE,
-        reading_tables::COMMENT,
-        reading_tables::PART,
+        recording_keys::FORMAT,
+        recording_keys::ENCODING,
+        recording_keys::DELIMITER,
+        recording_keys::DECIMAL,
+        recording_keys::HEADER_LINE,
+        recording_keys::FIRST_LINE,
+        recording_keys::COMMENT,
+        recording_keys::PART,
         optional(
             "layout",
             Kind::Text,
@@ -361,7 +369,7 @@ pub const EARTH_RATE: &[Word] = &[
     ("keep", "the mean rate is reported as recorded"),
 ];
 
-pub(super) static CLAUSE: TableSpec = TableSpec {
+pub(crate) static CLAUSE: TableSpec = TableSpec {
     name: "clause",
     doc: "A clause of the standard and where it is covered.",
     keys: &[

@@ -1,6 +1,6 @@
 //! The tables of a limits file; limits and references may stand in a procedure too.
 
-use super::spec::{Kind, Range, TableSpec, Word, optional, required, with_default};
+use crate::config::spec::{Kind, Range, TableSpec, Word, optional, required, with_default};
 
 /// The limits file as a whole.
 pub static LIMITS_FILE: TableSpec = TableSpec {

@@ -1,10 +1,10 @@
 //! The tables of a procedure that ask for a series of switching off and on, and for comparisons without and with an
 //! influence.
 
-use super::model::Procedure;
-use super::reader::Reader;
-use super::section::Section;
-use super::spec::{
+use crate::config::procedure::model::Procedure;
+use crate::config::reader::Reader;
+use crate::config::section::Section;
+use crate::config::spec::{
     KeySpec, Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
 };
 use crate::i18n::Note;
@@ -26,7 +26,7 @@ const TEMPERATURE: KeySpec =
     optional("temperature", Kind::Id, "\"temp\"", "Channel of the unit's temperature. Default: the first.");
 const AXIS: KeySpec = optional("axis", Kind::Id, "\"x\"", "Axis along which it acts, if several are tested.");
 
-pub(super) static REPEATABILITY_TEST: TableSpec = TableSpec {
+pub(crate) static REPEATABILITY_TEST: TableSpec = TableSpec {
     name: "repeatability_test",
     doc: "A series of turn-ons. Without [[repeatability_test.run]], every file of a manifest is one run, and \
           within one file every stretch between pauses in the output.",
@@ -136,7 +136,7 @@ const EVIDENCES: &[Word] =
 macro_rules! comparison_table {
     ($table:ident, $interval:ident, $name:literal, $interval_name:literal, $unit:literal, $reference:literal,
      $level:literal, $range:expr, $doc:literal) => {
-        pub(super) static $table: TableSpec = TableSpec {
+        pub(crate) static $table: TableSpec = TableSpec {
             name: $name,
             doc: $doc,
             keys: &[
@@ -220,7 +220,7 @@ fn stretch(s: &Section) -> Stated {
 }
 
 /// The series of switching off and on that a table declares.
-pub(super) fn repeatability(section: &Section) -> RepeatabilityTest {
+pub(crate) fn repeatability(section: &Section) -> RepeatabilityTest {
     let number = |key| section.number(key);
     RepeatabilityTest {
         settling_s: number("settling").unwrap_or(0.0),
@@ -233,7 +233,7 @@ pub(super) fn repeatability(section: &Section) -> RepeatabilityTest {
 }
 
 /// The comparison that a procedure declares.
-pub(super) fn comparison(root: &Section) -> Option<ComparisonTest> {
+pub(crate) fn comparison(root: &Section) -> Option<ComparisonTest> {
     let (influence, section) = Influence::ALL.into_iter().find_map(|i| Some((i, root.table(i.table())?)))?;
     let number = |key| section.number(key);
     let usual = if influence == Influence::Supply { 5.0 } else { 0.0 };
@@ -270,7 +270,7 @@ fn table_of(id: &str) -> &'static str {
 }
 
 /// What such tests and their measurands need of each other.
-pub(super) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     let tests = [REPEATABILITY_TEST.name, MAGNETIC_TEST.name, SUPPLY_TEST.name, VIBRATION_TEST.name];
     let others = ["rate_table", "temperature_test", "warm_up_test"];
     let asked: Vec<&str> = tests.into_iter().chain(others).filter(|t| root.table(t).is_some()).collect();

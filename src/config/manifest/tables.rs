@@ -1,6 +1,6 @@
 //! The tables of a manifest.
 
-use super::reading_tables;
+use crate::config::recording_keys;
 use crate::config::spec::{Kind, TableSpec, optional, required, with_default};
 
 /// A manifest as a whole.
@@ -60,14 +60,14 @@ static READING: TableSpec = TableSpec {
     name: "recording",
     doc: "How the files are read. Omitted keys are detected from each file.",
     keys: &[
-        reading_tables::FORMAT,
-        reading_tables::ENCODING,
-        reading_tables::DELIMITER,
-        reading_tables::DECIMAL,
-        reading_tables::HEADER_LINE,
-        reading_tables::FIRST_LINE,
-        reading_tables::COMMENT,
-        reading_tables::PART,
+        recording_keys::FORMAT,
+        recording_keys::ENCODING,
+        recording_keys::DELIMITER,
+        recording_keys::DECIMAL,
+        recording_keys::HEADER_LINE,
+        recording_keys::FIRST_LINE,
+        recording_keys::COMMENT,
+        recording_keys::PART,
         optional("layout", Kind::Text, "\"layout.toml\"", "Layout of the records of raw binary files."),
     ],
 };

@@ -1,13 +1,13 @@
 //! How a file is to be read, as the keys say that procedures and manifests share.
 
-use super::read_words::{decimal, delimiter, encoding};
+use super::recording_keys::{decimal, delimiter, encoding};
 use crate::config::reader::{Reader, shorten};
 use crate::config::section::Section;
 use crate::i18n::Note;
 use sagnac_ingest::{FORMATS, ReadOptions, TextOptions};
 
-/// What the keys of [`super::reading_tables`] decide. The layout is left to the caller: each kind of file has its own rule where it may stand.
-pub(crate) fn options(section: &Section, reader: &mut Reader<'_>) -> ReadOptions {
+/// What the keys of [`super::recording_keys`] decide. The layout is left to the caller: each kind of file has its own rule where it may stand.
+pub(crate) fn read(section: &Section, reader: &mut Reader<'_>) -> ReadOptions {
     let format = section.text("format");
     if let Some(unknown) = format.as_deref().filter(|id| !FORMATS.iter().any(|f| f.id() == *id)) {
         let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();

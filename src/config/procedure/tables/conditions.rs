@@ -1,8 +1,8 @@
 //! The tables of a procedure that declare its conditions.
 
-use super::spec::{Kind, Range, TableSpec, difference, optional, quantity, required, with_default};
+use crate::config::spec::{Kind, Range, TableSpec, difference, optional, quantity, required, with_default};
 
-pub(super) static CONDITIONS: TableSpec = TableSpec {
+pub(crate) static CONDITIONS: TableSpec = TableSpec {
     name: "conditions",
     doc: "Conditions under which the test is valid. A condition that is not proven to be met makes the \
           verdict indeterminate, because an invalid test neither passes nor fails a unit.",
@@ -144,7 +144,7 @@ static FAULTS: TableSpec = TableSpec {
     ],
 };
 
-pub(super) static EXCLUDE: TableSpec = TableSpec {
+pub(crate) static EXCLUDE: TableSpec = TableSpec {
     name: "exclude",
     doc: "A span excluded from the evaluation for a reason known before the data were examined.",
     keys: &[

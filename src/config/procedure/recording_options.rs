@@ -2,7 +2,7 @@
 
 use super::reader::Reader;
 use super::section::{Entry, Section};
-use crate::config::reading;
+use crate::config::recording_options;
 use crate::i18n::Note;
 use crate::recording::{ColumnRef, Role};
 use sagnac_ingest::{ReadOptions, StampOptions, StampWriting};
@@ -13,7 +13,7 @@ pub(super) fn options(
     channels: &[Section],
     reader: &mut Reader<'_>,
 ) -> ReadOptions {
-    let mut options = section.map(|s| reading::options(s, reader)).unwrap_or_default();
+    let mut options = section.map(|s| recording_options::read(s, reader)).unwrap_or_default();
     options.text.stamps = channels.iter().filter_map(|c| stamps(c, reader)).collect();
     options
 }

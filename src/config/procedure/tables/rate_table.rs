@@ -1,16 +1,18 @@
 //! The table of a procedure that declares a test on a rate table.
 
-use super::model::Procedure;
-use super::reader::Reader;
-use super::section::Section;
-use super::spec::{Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default};
+use crate::config::procedure::model::Procedure;
+use crate::config::reader::Reader;
+use crate::config::section::Section;
+use crate::config::spec::{
+    Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
+};
 use crate::i18n::Note;
 use crate::ids::Test;
 use crate::rate_table::Setup;
 use crate::rate_table::known::{Input, Known};
 use crate::recording::Role;
 
-pub(super) static RATE_TABLE: TableSpec = TableSpec {
+pub(crate) static RATE_TABLE: TableSpec = TableSpec {
     name: "rate_table",
     doc: "A test on a rate table: steps of constant rate are found in the channels with the roles `table_rate`, \
           `table_angle` and `outer_rate`, and the output is held against them. Uncertainties are standard uncertainties \
@@ -128,15 +130,15 @@ pub(super) static RATE_TABLE: TableSpec = TableSpec {
 const RESPONSES: &[Word] =
     &[("line", "a straight line: a closed loop"), ("sine", "a sine: an interferometer without a loop")];
 
-const PHASE: super::spec::KeySpec =
+const PHASE: crate::config::spec::KeySpec =
     optional("phase", Kind::Text, "\"z_up\"", "Its phase in the manifest; instead of `from` and `to`.");
-const FROM: super::spec::KeySpec = optional(
+const FROM: crate::config::spec::KeySpec = optional(
     "from",
     quantity("s", Range::NOT_NEGATIVE),
     "\"0 s\"",
     "Start, from the start of the recording.",
 );
-const TO: super::spec::KeySpec =
+const TO: crate::config::spec::KeySpec =
     optional("to", quantity("s", Range::POSITIVE), "\"300 s\"", "End, from the start of the recording.");
 const ANGLE: Range = Range::between(-360.0, 360.0);
 
@@ -204,7 +206,7 @@ static REST: TableSpec = TableSpec {
 };
 
 /// The setup that the table declares.
-pub(super) fn setup(section: &Section, root: &Section) -> Setup {
+pub(crate) fn setup(section: &Section, root: &Section) -> Setup {
     let number = |key: &str| section.number(key);
     let usual = Setup::default();
     Setup {
@@ -252,7 +254,7 @@ fn known(section: &Section) -> Vec<Known> {
 }
 
 /// What a table test and its measurands need of each other.
-pub(super) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
+pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     for section in root.tables("measurand") {
         let Some(measurand) = section.measurand("id") else { continue };
         let at = section.span_of("id");

@@ -1,6 +1,8 @@
 //! The tables of a procedure that ask for a test over temperature, and for the warm-up time.
 
-use super::spec::{Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default};
+use crate::config::spec::{
+    Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
+};
 
 const REACHABLE: Range = Range::between(-273.15, 1000.0);
 
@@ -12,7 +14,7 @@ pub const SEGMENTS: &[Word] = &[
     ("dwell", "constant temperature after a ramp"),
 ];
 
-pub(super) static TEMPERATURE_TEST: TableSpec = TableSpec {
+pub(crate) static TEMPERATURE_TEST: TableSpec = TableSpec {
     name: "temperature_test",
     doc: "A temperature test: ramps and dwells, checked from the recording. This table makes the temperature \
           measurands available.",
@@ -164,7 +166,7 @@ pub const STARTS: &[Word] = &[
     ("temperature", "a thermometer that stands at `cold` first and rises"),
 ];
 
-pub(super) static WARM_UP_TEST: TableSpec = TableSpec {
+pub(crate) static WARM_UP_TEST: TableSpec = TableSpec {
     name: "warm_up_test",
     doc: "A warm-up test, from turn-on. The recording must show the turn-on, or the procedure must declare \
           it: a recording with its start missing shows a shorter warm-up. Otherwise no warm-up time can \

@@ -1,7 +1,7 @@
 //! The tables of a procedure of several phases.
 
-use super::spec::{Kind, TableSpec, optional, required};
-use super::tables::{CLAUSE, PROCEDURE, UNIT_UNDER_TEST};
+use super::{CLAUSE, PROCEDURE, UNIT_UNDER_TEST};
+use crate::config::spec::{Kind, TableSpec, optional, required};
 
 /// A procedure of several phases as a whole.
 pub static PHASES_FILE: TableSpec = TableSpec {

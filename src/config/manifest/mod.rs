@@ -2,12 +2,14 @@
 //!
 //! A manifest is checked as a whole before a file is read: every problem has its place in it.
 
-use super::manifest_tables::MANIFEST_FILE;
-use super::reading;
+pub mod tables;
+
+use super::recording_options;
 use crate::config::diagnostics::{Problems, Span};
 use crate::config::file::{self, Wording};
 use crate::config::inside::{self, Inside};
-use crate::config::reader::{Reader, checked};
+use crate::config::read_tables::checked;
+use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::i18n::Note;
 use sagnac_ingest::layout::LayoutFile;
@@ -16,6 +18,7 @@ use sagnac_ingest::pattern::natural;
 use sagnac_ingest::{ReadOptions, TextOptions, compressed, pattern};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use tables::MANIFEST_FILE;
 
 /// What is said of a manifest that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
@@ -236,5 +239,5 @@ fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOpt
         let at = reader.source.inside_quotes(&section.span_of("layout"));
         inside::file(&text, folder, &at, reader).map(|f| LayoutFile::at(f.path))
     });
-    ReadOptions { layout, ..reading::options(section, reader) }
+    ReadOptions { layout, ..recording_options::read(section, reader) }
 }

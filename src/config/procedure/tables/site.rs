@@ -1,12 +1,12 @@
 //! The tables of a procedure that declare site and instruments.
 
-use super::spec::{Kind, Range, TableSpec, optional, quantity, required, with_default};
+use crate::config::spec::{Kind, Range, TableSpec, optional, quantity, required, with_default};
 
 const HALF_TURN: Range = Range::between(-360.0, 360.0);
 const RIGHT_ANGLE: Range = Range::between(-90.0, 90.0);
 const SMALL_ANGLE: Range = Range::between(0.0, 90.0);
 
-pub(super) static SITE: TableSpec = TableSpec {
+pub(crate) static SITE: TableSpec = TableSpec {
     name: "site",
     doc: "Where the unit stands and where its input axis points: the Earth rate along the axis follows from it. \
           Uncertainties are standard uncertainties (k = 1).",
@@ -83,7 +83,7 @@ static AXIS: TableSpec = TableSpec {
     ],
 };
 
-pub(super) static INSTRUMENT: TableSpec = TableSpec {
+pub(crate) static INSTRUMENT: TableSpec = TableSpec {
     name: "instrument",
     doc: "An instrument and the validity of its calibration. A calibration that has expired on the day of \
           the test is a condition not met.",

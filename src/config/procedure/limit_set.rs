@@ -1,0 +1,88 @@
+//! Limits, reference values and typical values as data, in the units of their measurands.
+
+use super::diagnostics::Span;
+use crate::estimate::Limit;
+use crate::ids::MeasurandId;
+use crate::record::ReferenceRecord;
+
+/// Limits, references and typical values of one file, in the units of the measurands.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LimitSet {
+    /// Limits.
+    pub limits: Vec<LimitSpec>,
+    /// Published values, in the order of the file.
+    pub references: Vec<Reference>,
+    /// Typical values of the family.
+    pub expected: Vec<Expected>,
+    /// Limits that are written per second or in radians.
+    pub fast_units: Vec<FastUnit>,
+}
+
+/// A limit and what it is for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitSpec {
+    /// Measurand judged.
+    pub measurand: &'static MeasurandId,
+    /// Channel judged; `None`: every one without a limit of its own.
+    pub channel: Option<String>,
+    /// The limit, in the unit of the measurand.
+    pub limit: Limit,
+    /// The unit of the limit where that of the measurand is as recorded.
+    pub recorded_unit: Option<&'static str>,
+    /// Where it is declared, in the file `limit.source`.
+    pub span: Span,
+}
+
+/// A published value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// Measurand.
+    pub measurand: &'static MeasurandId,
+    /// Channel; `None`: every one.
+    pub channel: Option<String>,
+    /// Value and where it was published.
+    pub record: ReferenceRecord,
+    /// Conventions a reader must know.
+    pub note: Option<String>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A typical value of the family.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// Measurand.
+    pub measurand: &'static MeasurandId,
+    /// Value in its unit.
+    pub value: f64,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A limits file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LimitsFile {
+    /// Id.
+    pub id: String,
+    /// Title.
+    pub title: String,
+    /// Revision.
+    pub revision: String,
+    /// Family of devices.
+    pub family: Option<String>,
+    /// Where the values come from.
+    pub source: Option<String>,
+    /// What it states. Limits made by a factor are among them.
+    pub set: LimitSet,
+}
+
+/// A limit that is written in a fast unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FastUnit {
+    /// Where the limit is declared.
+    pub limit: Span,
+    /// Where its value stands.
+    pub value: Span,
+    /// The unit as it is written.
+    pub unit: String,
+}

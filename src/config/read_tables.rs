@@ -1,0 +1,343 @@
+//! Reads a TOML file by its description: unknown keys, missing keys, types, units and ranges are checked here, all
+//! at once, each with its place.
+
+use super::diagnostics::{Problem, Problems, SourceText, Span};
+use super::reader::{Reader, example, meant, shorten};
+use super::section::{Entry, Section};
+use super::spec::{KeySpec, Kind, Need, TableSpec};
+use super::{syntax, values};
+use crate::i18n::{Arg, Lang, Note, lookup};
+use crate::ids::MeasurandId;
+use crate::recording::Role;
+use sagnac_core::spelling::nearest;
+use std::collections::BTreeMap;
+use toml::de::{DeTable, DeValue};
+
+/// At most this many syntax errors are shown: a file that is no TOML at all has one in every line.
+const SYNTAX_ERRORS: usize = 5;
+
+/// Longest chain of dotted keys and nested brackets in one line that is handed to the TOML parser.
+const DEEPEST: usize = 500;
+
+/// Reads a file by its description.
+///
+/// The section is there whenever the text is TOML at all, with the values that are sound; the problems tell the rest.
+fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Problems) {
+    let mut reader = Reader { source, root, problems: Problems::default() };
+    if let Some(problem) = too_deep(source) {
+        return (None, problem.into());
+    }
+    let (table, errors) = DeTable::parse_recoverable(&source.text);
+    if !errors.is_empty() {
+        for error in errors.iter().take(SYNTAX_ERRORS) {
+            let span = error.span().unwrap_or(0..0);
+            reader.problems.list.push(syntax::problem(source, &span, error.message()));
+        }
+        reader.problems.sort();
+        return (None, reader.problems);
+    }
+    if let Some(problem) = other_format(source, root, table.get_ref()) {
+        return (None, problem.into());
+    }
+    let section = reader.table(root, table.get_ref(), &(0..0));
+    reader.problems.sort();
+    (Some(section), reader.problems)
+}
+
+/// Reads by description, builds, and gives the value only when nothing forbids its use. The problems are all there
+/// are, warnings among them, in the order of the text.
+pub(crate) fn checked<T>(
+    source: &SourceText,
+    spec: &'static TableSpec,
+    build: impl FnOnce(&Section, &mut Reader<'_>) -> T,
+) -> (Option<T>, Problems) {
+    let (root, problems) = read(source, spec);
+    let Some(root) = root else { return (None, problems) };
+    let mut reader = Reader { source, root: spec, problems };
+    let value = build(&root, &mut reader);
+    let mut problems = reader.problems;
+    problems.sort();
+    ((!problems.has_errors()).then_some(value), problems)
+}
+
+/// A file of another kind or version: one problem says it, in place of one for every key in it.
+fn other_format(source: &SourceText, root: &TableSpec, table: &DeTable<'_>) -> Option<Problem> {
+    let wanted = root.keys.iter().find_map(|k| match k.kind {
+        Kind::Format(text) => Some(text),
+        _ => None,
+    })?;
+    let value = table.get("format")?;
+    let given = value.get_ref().as_str().filter(|given| *given != wanted)?;
+    let message = Note::new("keyed.other_format").with("given", shorten(given));
+    let help = Note::new("keyed.help.format").with("wanted", wanted);
+    Some(source.error(&value.span(), message).help(help))
+}
+
+/// Refuses a text by its nesting before the parser sees it; [`super::file::source`] has bounded its size.
+fn too_deep(source: &SourceText) -> Option<Problem> {
+    let mut start = 0;
+    for line in source.text.split('\n') {
+        let depth = line.bytes().filter(|b| matches!(b, b'.' | b'[' | b'{')).count();
+        if depth > DEEPEST && !line.trim_start().starts_with('#') && nests(line) {
+            return Some(source.error(&(start..start + line.len()), "keyed.too_deep"));
+        }
+        start += line.len() + 1;
+    }
+    None
+}
+
+/// True when the dots and brackets of a line outside quotes exceed the bound. Decimal points in a list nest nothing.
+fn nests(line: &str) -> bool {
+    let (mut quote, mut count) = (None, 0);
+    for (i, c) in line.char_indices() {
+        match (quote, c) {
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(q), c) if c == q => quote = None,
+            (None, '.') if is_decimal_point(line, i) => {}
+            (None, '.' | '[' | '{') => count += 1,
+            (None, '#') => break,
+            _ => {}
+        }
+    }
+    count > DEEPEST
+}
+
+/// True for the dot of a number that a comma or a closing bracket follows, as no dotted key is.
+fn is_decimal_point(line: &str, at: usize) -> bool {
+    let bytes = line.as_bytes();
+    let digits_before = bytes[..at].iter().rev().take_while(|b| b.is_ascii_digit()).count();
+    let before = at.checked_sub(digits_before + 1).and_then(|i| bytes.get(i));
+    let begins = matches!(before, Some(b'[' | b',' | b' ' | b'-' | b'+'));
+    let after = bytes.get(at + 1..).unwrap_or_default();
+    let number = |b: &&u8| b.is_ascii_digit() || matches!(b, b'e' | b'E' | b'-' | b'+');
+    let end = after.iter().find(|b| !number(b));
+    digits_before > 0 && begins && matches!(end, Some(b',' | b']'))
+}
+
+impl Reader<'_> {
+    fn table(&mut self, spec: &'static TableSpec, table: &DeTable<'_>, span: &Span) -> Section {
+        let mut section = Section { span: span.clone(), entries: BTreeMap::new() };
+        let mut dependent = vec![];
+        let mut meant = vec![];
+        for (key, value) in table.iter() {
+            let Some(described) = spec.key(key.get_ref()) else {
+                meant.extend(self.unknown_key(spec, key.get_ref(), &key.span()));
+                continue;
+            };
+            if let Kind::QuantityBy(by) = described.kind {
+                dependent.push((described, by, value));
+                section.entries.insert(described.name, (Entry::Flag(true), key.span()));
+                continue;
+            }
+            let entry = self.value(described, value.get_ref(), &value.span(), &key.span());
+            // A key that is there but wrong must not be reported as missing too.
+            let entry = entry.unwrap_or(Entry::Flag(false));
+            section
+                .entries
+                .insert(described.name, (entry, span_of_value(described, value.span(), key.span())));
+        }
+        self.missing_keys(spec, &mut section, &meant);
+        for (described, by, value) in dependent {
+            let entry = dependent_unit(&section, by)
+                .and_then(|unit| values::quantity_by(self, described, &unit, value.get_ref(), &value.span()));
+            let entry = entry.unwrap_or(Entry::Flag(false));
+            section.entries.insert(described.name, (entry, value.span()));
+        }
+        section
+    }
+
+    /// Reports required keys that are not there and fills in defaults. A key that was misspelt is not missing too.
+    fn missing_keys(&mut self, spec: &'static TableSpec, section: &mut Section, meant: &[&str]) {
+        for key in spec.keys {
+            if section.entries.contains_key(key.name) {
+                continue;
+            }
+            match key.need {
+                Need::Optional => {}
+                Need::Required if meant.contains(&key.name) => {}
+                Need::Required => {
+                    let message =
+                        self.placed("keyed.missing", "keyed.missing_in", spec).with("key", written(key));
+                    let help = if key.example.is_empty() {
+                        Note::new("keyed.help.add").with("key", written(key)).with("doc", doc(key))
+                    } else {
+                        Note::new("keyed.help.add_example").with("example", example(key))
+                    };
+                    self.error(&section.span.clone(), message, Some(help));
+                }
+                Need::Default(text) => {
+                    let Ok(value) = DeValue::parse(text) else { continue };
+                    if let Some(entry) = self.value(key, value.get_ref(), &section.span, &section.span) {
+                        section.entries.insert(key.name, (entry, section.span.clone()));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Reports an unknown key; gives the key that was meant, when one is near.
+    fn unknown_key(&mut self, spec: &'static TableSpec, key: &str, span: &Span) -> Option<&'static str> {
+        let known: Vec<&'static str> = spec.keys.iter().map(|k| k.name).collect();
+        let near = nearest(key, known.iter().copied());
+        let help = match near {
+            Some(near) => meant(near),
+            None => self
+                .elsewhere(spec, key)
+                .unwrap_or_else(|| Note::new("keyed.help.known").with("keys", known.join(", "))),
+        };
+        let message =
+            self.placed("keyed.unknown_key", "keyed.unknown_key_in", spec).with("key", shorten(key));
+        self.error(span, message, Some(help));
+        near
+    }
+
+    /// Says where a key belongs that is known in another table.
+    fn elsewhere(&self, spec: &TableSpec, key: &str) -> Option<Note> {
+        let home = self.root.walk().into_iter().find(|t| t.name != spec.name && t.key(key).is_some())?;
+        Some(if home.name.is_empty() {
+            Note::new("keyed.help.at_beginning").with("key", key)
+        } else {
+            Note::new("keyed.help.belongs").with("key", key).with("table", self.header(home))
+        })
+    }
+
+    /// A table as its header is written.
+    fn header(&self, spec: &TableSpec) -> String {
+        let listed = |k: &KeySpec| matches!(k.kind, Kind::Tables(t) if t.name == spec.name);
+        if self.root.walk().iter().any(|t| t.keys.iter().any(listed)) {
+            format!("[[{}]]", spec.name)
+        } else {
+            format!("[{}]", spec.name)
+        }
+    }
+
+    /// The sentence about a key of the file itself, or the one about a key in a table.
+    fn placed(&self, of_file: &'static str, in_table: &'static str, spec: &TableSpec) -> Note {
+        if spec.name.is_empty() {
+            Note::new(of_file)
+        } else {
+            Note::new(in_table).with("table", self.header(spec))
+        }
+    }
+
+    fn value(
+        &mut self,
+        key: &'static KeySpec,
+        value: &DeValue<'_>,
+        span: &Span,
+        key_span: &Span,
+    ) -> Option<Entry> {
+        match key.kind {
+            Kind::Table(spec) => match value {
+                DeValue::Table(table) => Some(Entry::Table(self.table(spec, table, key_span))),
+                _ => self.wrong(key, value, span),
+            },
+            Kind::Tables(spec) | Kind::TableOrTables(spec) => self.tables(key, spec, value, span, key_span),
+            Kind::QuantityMap => match value {
+                DeValue::Table(table) => Some(Entry::Quantities(self.quantities(key, table))),
+                _ => self.wrong(key, value, span),
+            },
+            _ => values::scalar(self, key, value, span),
+        }
+    }
+
+    /// Reads a list of tables, or one table where that is allowed.
+    fn tables(
+        &mut self,
+        key: &'static KeySpec,
+        spec: &'static TableSpec,
+        value: &DeValue<'_>,
+        span: &Span,
+        key_span: &Span,
+    ) -> Option<Entry> {
+        match value {
+            DeValue::Table(table) if matches!(key.kind, Kind::TableOrTables(_)) => {
+                Some(Entry::Table(self.table(spec, table, key_span)))
+            }
+            DeValue::Table(_) => {
+                let message = Note::new("keyed.is_list").with("key", key.name);
+                let help = Note::new("keyed.help.write_tables").with("table", spec.name);
+                self.error(key_span, message, Some(help));
+                None
+            }
+            DeValue::Array(items) if items.is_empty() && key.need == Need::Required => {
+                let message = Note::new("keyed.empty").with("key", key.name);
+                let help = Note::new("keyed.help.add_table").with("table", spec.name);
+                self.error(span, message, Some(help));
+                None
+            }
+            DeValue::Array(items) => {
+                let mut sections = vec![];
+                for item in items.iter() {
+                    match item.get_ref() {
+                        DeValue::Table(table) => {
+                            let start = item.span();
+                            sections.push(self.table(spec, table, &first_line(self.source, &start)));
+                        }
+                        other => {
+                            let _: Option<Entry> = self.wrong(key, other, &item.span());
+                        }
+                    }
+                }
+                Some(Entry::Tables(sections))
+            }
+            _ => self.wrong(key, value, span),
+        }
+    }
+
+    fn quantities(
+        &mut self,
+        key: &'static KeySpec,
+        table: &DeTable<'_>,
+    ) -> Vec<(&'static MeasurandId, f64, Span)> {
+        let mut found = vec![];
+        for (name, value) in table.iter() {
+            let Some(id) = self.measurand(name.get_ref(), &name.span()) else { continue };
+            let read = values::quantity_by(self, key, id.unit, value.get_ref(), &value.span());
+            if let Some(Entry::Number(number) | Entry::AsRecorded(number, _)) = read {
+                found.push((id, number, name.span()));
+            }
+        }
+        found
+    }
+}
+
+/// The unit a dependent quantity is converted to; `None` when the key it depends on is unusable.
+fn dependent_unit(section: &Section, by: &str) -> Option<String> {
+    match section.entry(by)? {
+        Entry::Measurand(id) => Some(id.unit.to_owned()),
+        Entry::Word(role) => {
+            let role = Role::ALL.iter().find(|r| r.id() == *role)?;
+            match (role.internal_unit(), section.entry("unit")) {
+                (Some(unit), _) => Some(unit.to_owned()),
+                (None, Some(Entry::Unit(unit))) => Some(unit.text().to_owned()),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}
+
+fn span_of_value(key: &KeySpec, value: Span, name: Span) -> Span {
+    if key.kind.table().is_some() { name } else { value }
+}
+
+/// The first line of a span: the header of a table.
+fn first_line(source: &SourceText, span: &Span) -> Span {
+    let text = source.text.get(span.clone()).unwrap_or("");
+    span.start..span.start + text.find('\n').unwrap_or(text.len())
+}
+
+fn written(key: &KeySpec) -> String {
+    match key.kind {
+        Kind::Table(t) | Kind::TableOrTables(t) => format!("[{}]", t.name),
+        Kind::Tables(t) => format!("[[{}]]", t.name),
+        _ => format!("`{}`", key.name),
+    }
+}
+
+/// What a table declares: in words of the tables where they have it, else as it is described.
+fn doc(key: &KeySpec) -> Arg {
+    let id = format!("table_doc.{}", key.name);
+    if lookup(Lang::En, &id).is_some() { Arg::Key(id) } else { Arg::from(key.doc) }
+}
