@@ -269,7 +269,7 @@ fn the_guide_names_every_column_of_the_table() {
     for column in text.lines().next().unwrap().split(',') {
         assert!(guide.contains(&format!("`{column}`")), "{column} is not in the guide");
     }
-    assert!(root().join("docs/methods-compare.md").is_file());
+    assert!(root().join("docs/methods/comparison.md").is_file());
 }
 
 /// Rates of white noise of N = 0.002 deg/√h with something added, as a file.

@@ -172,7 +172,7 @@ fn identity(all: &Explanation, context: &Context, words: Words) -> Vec<Field> {
     put("explain.fact.rows", count(r.rows as u64, words.lang));
     put("explain.fact.missing", count(r.missing as u64, words.lang));
     put("explain.fact.interval", duration(r.sample_interval_s, words.lang));
-    put("explain.fact.length", duration(r.length_s, words.lang));
+    put("explain.fact.length", duration(r.duration_s(), words.lang));
     let list = |names: &[String]| names.join(&words.t("number.list"));
     put("explain.fact.columns", list(&r.columns));
     put("explain.fact.hidden", list(&r.hidden));

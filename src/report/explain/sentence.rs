@@ -114,7 +114,7 @@ pub fn verdict(explanation: &Explanation, words: Words) -> Vec<String> {
     if explanation.effects.is_empty() {
         let r = &explanation.recording;
         let alpha = digits(explanation.alpha, 1, words.lang);
-        let (rows, length) = (count(r.rows as u64, words.lang), duration(r.length_s, words.lang));
+        let (rows, length) = (count(r.rows as u64, words.lang), duration(r.duration_s(), words.lang));
         let given = [("rows", rows.as_str()), ("length", &length), ("p", &p), ("alpha", &alpha)];
         let key = match explanation.verdict == "consistent" {
             true if explanation.family_p_value < explanation.alpha => "explain.sentence.consistent_faint",

@@ -193,6 +193,13 @@ pub struct RecordingFacts {
     pub hidden: Vec<String>,
 }
 
+impl RecordingFacts {
+    /// Time that the samples cover, s: each is a mean over its interval, so the last one lasts as long as the others.
+    pub fn duration_s(&self) -> f64 {
+        self.length_s + self.sample_interval_s
+    }
+}
+
 /// What would decide between two kinds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -1,0 +1,73 @@
+//! The tutorial, carried out as it is written: every command, every output.
+
+mod support;
+
+use std::path::Path;
+use support::{program, root};
+
+/// A block of the page: its language and its lines.
+struct Block {
+    language: String,
+    text: String,
+}
+
+fn blocks(page: &str) -> Vec<Block> {
+    let mut out: Vec<Block> = vec![];
+    let mut open = false;
+    for line in page.lines() {
+        match (line.strip_prefix("```"), open) {
+            (Some(language), false) => {
+                out.push(Block { language: language.to_owned(), text: String::new() });
+                open = true;
+            }
+            (Some(_), true) => open = false,
+            (None, true) => {
+                let block = out.last_mut().unwrap();
+                block.text.push_str(line);
+                block.text.push('\n');
+            }
+            (None, false) => {}
+        }
+    }
+    out
+}
+
+fn standard_output(folder: &Path, command: &str) -> String {
+    let mut words = command.split_whitespace();
+    assert_eq!(words.next(), Some("sagnac"), "{command}");
+    let done = assert_cmd::Command::new(program())
+        .current_dir(folder)
+        .args(words)
+        .env("LANG", "C.UTF-8")
+        .env_remove("LC_ALL")
+        .output()
+        .unwrap();
+    assert_eq!(String::from_utf8_lossy(&done.stderr), "", "{command}");
+    String::from_utf8(done.stdout).unwrap()
+}
+
+#[test]
+fn every_command_gives_the_output_on_the_page() {
+    let page = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for file in std::fs::read_dir(root().join("docs/tutorial")).unwrap() {
+        let file = file.unwrap().path();
+        std::fs::copy(&file, folder.path().join(file.file_name().unwrap())).unwrap();
+    }
+    let (mut last, mut compared) = (String::new(), 0);
+    for block in blocks(&page) {
+        match block.language.as_str() {
+            "sh" => block.text.lines().for_each(|command| last = standard_output(folder.path(), command)),
+            "text" => {
+                assert!(last.contains(&block.text), "on the page:\n{}\nprinted:\n{last}", block.text);
+                compared += 1;
+            }
+            other => panic!("a block of `{other}`"),
+        }
+    }
+    assert_eq!(compared, 7);
+    let report = std::fs::read_to_string(folder.path().join("report/report.md")).unwrap();
+    for value in ["0.1186", "10.64 °/h", "0.001994", "| 0.0043 | 0.0028 … 0.0058 |", "0.0133 °/h"] {
+        assert!(report.contains(value), "{value} is not in the report");
+    }
+}
