@@ -8,7 +8,6 @@
 //! spectrum bends more than a power law over many bins can.
 
 use super::data::WelchSpectrum;
-use super::sinusoids::Sinusoid;
 use crate::estimate::normal_probability;
 use statrs::function::beta::beta_reg;
 
@@ -29,6 +28,21 @@ const NEAREST: usize = 12;
 /// Variance of a median against a mean (π/2) times the correlation of neighbouring bins under a Hann window
 /// (1 + 2·(4/9 + 1/36)).
 const FLOOR_INFLATION: f64 = std::f64::consts::FRAC_PI_2 * 1.9444;
+
+/// A sinusoid in block means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sinusoid {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Coefficients of cosine and sine from the middle of the first block on, deg/h.
+    pub coefficients_deg_h: [f64; 2],
+    /// Standard deviation of the amplitude, deg/h.
+    pub amplitude_deviation_deg_h: f64,
+    /// Standard deviation of the frequency, Hz.
+    pub frequency_deviation_hz: f64,
+    /// Rms times √2 of what a line that wanders a little has beside it, deg/h; 0 for one that does not.
+    pub skirt_deg_h: f64,
+}
 
 /// A line in a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,8 @@
 //! record can tell (Rife and Boorstyn, IEEE Trans. Inf. Theory 20, 1974) instead of as well as one segment can.
 
 use super::data::BlockSeries;
-use super::lines::SpectralLine;
+use super::lines::{Sinusoid, SpectralLine};
+use crate::numeric::optimize::golden_section_maximum;
 use realfft::RealFftPlanner;
 use std::f64::consts::PI;
 
@@ -30,21 +31,6 @@ const SKIRT: usize = 8;
 const RING: usize = 12;
 /// Standard deviations by which the power of the skirt must stand above the noise.
 const WANDERS: f64 = 5.0;
-
-/// A sinusoid in block means.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sinusoid {
-    /// Frequency, Hz.
-    pub frequency_hz: f64,
-    /// Coefficients of cosine and sine from the middle of the first block on, deg/h.
-    pub coefficients_deg_h: [f64; 2],
-    /// Standard deviation of the amplitude, deg/h.
-    pub amplitude_deviation_deg_h: f64,
-    /// Standard deviation of the frequency, Hz.
-    pub frequency_deviation_hz: f64,
-    /// Rms times √2 of what a line that wanders a little has beside it, deg/h; 0 for one that does not.
-    pub skirt_deg_h: f64,
-}
 
 impl Sinusoid {
     /// True when it stands far above the noise about it and leaves nothing beside: a line then, however strong it was
@@ -150,24 +136,8 @@ impl Means {
         let at = |f: f64| ((f / step).round().max(0.0) as usize).min(spectrum.len() - 1);
         let (low, high) = (at(frequency_hz - reach_hz).max(1), at(frequency_hz + reach_hz));
         let best = (low..=high).max_by(|a, b| spectrum[*a].norm_sqr().total_cmp(&spectrum[*b].norm_sqr()))?;
-        // Golden sections between the neighbours of the best.
-        let turn = |f: f64| 2.0 * PI * f * self.block_s;
-        let (mut a, mut b) = ((best as f64 - 1.0) * step, (best as f64 + 1.0) * step);
-        let golden = 0.5 * (5f64.sqrt() - 1.0);
-        let (mut x, mut y) = (b - golden * (b - a), a + golden * (b - a));
-        let (mut at_x, mut at_y) = (self.power(turn(x)), self.power(turn(y)));
-        for _ in 0..24 {
-            if at_x > at_y {
-                (b, y, at_y) = (y, x, at_x);
-                x = b - golden * (b - a);
-                at_x = self.power(turn(x));
-            } else {
-                (a, x, at_x) = (x, y, at_y);
-                y = a + golden * (b - a);
-                at_y = self.power(turn(y));
-            }
-        }
-        Some(0.5 * (a + b))
+        let (low, high) = ((best as f64 - 1.0) * step, (best as f64 + 1.0) * step);
+        Some(golden_section_maximum(low, high, 24, |f| self.power(2.0 * PI * f * self.block_s)))
     }
 
     /// The sinusoid about a frequency.

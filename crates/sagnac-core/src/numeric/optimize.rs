@@ -1,7 +1,17 @@
-//! Minimisation and root finding: searches along one variable (bisection, golden sections, the peak of a parabola through
-//! three points), step halving, and quadratic functions with bounded variables, of which Newton steps are made.
+//! Root finding and optimisation.
+//!
+//! | what | functions |
+//! |---|---|
+//! | one variable | [`bisect`], [`golden_section`], [`golden_section_maximum`], [`parabolic_peak`] |
+//! | a few variables without derivatives | [`coordinate_ascent`] |
+//! | the step of a Newton ascent within bounds | [`nonnegative_quadratic`], [`bounded_quadratic`] |
+//! | how long that step may be | [`shortened_steps`], [`Damping`] |
+//!
+//! A likelihood brings its derivatives and the scale of its variables; the loop around them, a few lines with a stopping
+//! rule that was calibrated for it, stays with it.
 
 use nalgebra::{DMatrix, DVector};
+use std::ops::ControlFlow;
 
 /// Bisection: halves the span between `inside`, where `holds` is true, and `outside`, where it is false, `times` times or
 /// until no number lies between. Gives the ends of the span that is left, in the same order.
@@ -36,16 +46,102 @@ pub fn parabolic_peak(values: &[f64], at: usize) -> f64 {
     if curve < 0.0 { (0.5 * (before - after) / curve).clamp(-0.5, 0.5) } else { 0.0 }
 }
 
-/// Tries steps of length 1, ½, ¼, … at most `times` times and gives what the first acceptable one gave.
-pub fn halved_steps<T>(times: usize, mut acceptable: impl FnMut(f64) -> Option<T>) -> Option<T> {
+/// Tries steps of length 1 and then ever shorter ones, at most `times`: `shorter` gives the next length. Gives what the first
+/// acceptable one gave, and the last length.
+pub fn shortened_steps<T>(
+    times: usize,
+    shorter: impl Fn(f64) -> f64,
+    mut acceptable: impl FnMut(f64) -> Option<T>,
+) -> (Option<T>, f64) {
     let mut step = 1.0;
     for _ in 0..times {
         if let Some(accepted) = acceptable(step) {
-            return Some(accepted);
+            return (Some(accepted), step);
         }
-        step *= 0.5;
+        step = shorter(step);
     }
-    None
+    (None, step)
+}
+
+/// Damping of Newton steps, raised until a step is accepted and eased after (Levenberg 1944, Marquardt 1963).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damping {
+    /// Damping of the next step, as a share of the curvature.
+    pub value: f64,
+    /// Factor after an accepted step, below 1.
+    pub eased_by: f64,
+    /// Least damping after that.
+    pub least: f64,
+    /// Factor after a refused step, above 1.
+    pub raised_by: f64,
+    /// Least damping after that.
+    pub least_raised: f64,
+}
+
+impl Damping {
+    /// Tries steps with ever more damping, at most `times`. `trial` takes the damping and breaks with an accepted step, or
+    /// with `None` to give up.
+    pub fn search<T>(
+        &mut self,
+        times: usize,
+        mut trial: impl FnMut(f64) -> ControlFlow<Option<T>>,
+    ) -> Option<T> {
+        for _ in 0..times {
+            if let ControlFlow::Break(end) = trial(self.value) {
+                if end.is_some() {
+                    self.value = (self.value * self.eased_by).max(self.least);
+                }
+                return end;
+            }
+            self.value = (self.value * self.raised_by).max(self.least_raised);
+        }
+        None
+    }
+}
+
+/// Climbs along one coordinate at a time: every coordinate is multiplied and divided by a factor, the last move that gains is made
+/// while there is one (at most `moves` for each of `factors`), then the next factor is tried. `value` is `None` where a
+/// point is not allowed. Coordinates stay between `low` and `high`.
+pub fn coordinate_ascent(
+    start: (f64, Vec<f64>),
+    (low, high): (f64, f64),
+    (factors, moves): (&[f64], usize),
+    value: impl Fn(&[f64]) -> Option<f64>,
+) -> (f64, Vec<f64>) {
+    let mut best = start;
+    for factor in factors {
+        for _ in 0..moves {
+            let steps = (0..best.1.len()).flat_map(|i| [(i, *factor), (i, 1.0 / factor)]);
+            let tried = steps.filter_map(|(i, f)| {
+                let mut next = best.1.clone();
+                next[i] = (next[i] * f).clamp(low, high);
+                Some((value(&next).filter(|v| *v > best.0)?, next))
+            });
+            let Some(better) = tried.last() else { break };
+            best = better;
+        }
+    }
+    best
+}
+
+/// As [`golden_section`] for a maximum, with one new value of the function a section: for functions that take long.
+pub fn golden_section_maximum(low: f64, high: f64, times: usize, of: impl Fn(f64) -> f64) -> f64 {
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    let (mut a, mut b) = (low, high);
+    let (mut x, mut y) = (b - golden * (b - a), a + golden * (b - a));
+    let (mut at_x, mut at_y) = (of(x), of(y));
+    for _ in 0..times {
+        if at_x > at_y {
+            (b, y, at_y) = (y, x, at_x);
+            x = b - golden * (b - a);
+            at_x = of(x);
+        } else {
+            (a, x, at_x) = (x, y, at_y);
+            y = a + golden * (b - a);
+            at_y = of(y);
+        }
+    }
+    0.5 * (a + b)
 }
 
 /// The x ≥ 0 that minimises ½xᵀHx − bᵀx, with x = 0 where not `free`: every active set is tried and the best feasible
@@ -163,5 +259,51 @@ mod tests {
         );
         let open = bounded_quadratic(&h, &g, &[f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0]);
         assert!((2.0 * open[0] + 1.9 * open[1] - 2.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn both_golden_sections_find_one_extremum() {
+        let f = |x: f64| (x - 0.7).powi(2) + 0.1 * (x - 0.7).powi(4);
+        let minimum = golden_section(-1.0, 4.0, 40, f);
+        let maximum = golden_section_maximum(-1.0, 4.0, 40, |x| -f(x));
+        assert!((minimum - 0.7).abs() < 1e-6 && (maximum - 0.7).abs() < 1e-6, "{minimum} {maximum}");
+    }
+
+    #[test]
+    fn the_exact_minimum_over_nonnegative_numbers() {
+        // ½(2x² + 2xy + 2y²) − (3x + 0y): without bounds x = 2, y = −1; with them y = 0 and x = 3/2.
+        let h = [[2.0, 1.0], [1.0, 2.0]];
+        let x = nonnegative_quadratic(&h, &[3.0, 0.0], &[true, true]);
+        assert!((x[0] - 1.5).abs() < 1e-15 && x[1] == 0.0, "{x:?}");
+        assert_eq!(nonnegative_quadratic(&h, &[3.0, 3.0], &[false, true]), [0.0, 1.5]);
+        assert_eq!(nonnegative_quadratic(&h, &[-1.0, -1.0], &[true, true]), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn steps_are_shortened_until_one_is_accepted() {
+        let halved = |step: f64| 0.5 * step;
+        assert_eq!(shortened_steps(9, halved, |step| (step < 0.2).then_some(step)), (Some(0.125), 0.125));
+        assert_eq!(shortened_steps(2, halved, |_| None::<f64>), (None, 0.25));
+    }
+
+    #[test]
+    fn damping_grows_while_steps_are_refused_and_falls_after() {
+        let mut damping =
+            Damping { value: 1.0, eased_by: 0.1, least: 1e-3, raised_by: 10.0, least_raised: 1e-2 };
+        let accepted = damping
+            .search(5, |d| if d > 50.0 { ControlFlow::Break(Some(d)) } else { ControlFlow::Continue(()) });
+        assert_eq!((accepted, damping.value), (Some(100.0), 10.0));
+        let given_up = damping.search(5, |_| ControlFlow::Break(None::<f64>));
+        assert_eq!((given_up, damping.value), (None, 10.0));
+        assert_eq!(damping.search(3, |_| ControlFlow::<Option<f64>>::Continue(())), None);
+        assert_eq!(damping.value, 1e4);
+    }
+
+    #[test]
+    fn coordinates_climb_to_the_peak_within_their_bounds() {
+        let value = |x: &[f64]| Some(-(x[0].ln() - 1.0).powi(2) - (x[1].ln() - 5.0).powi(2));
+        let start = (value(&[1.0, 1.0]).unwrap_or(f64::NAN), vec![1.0, 1.0]);
+        let (_, at) = coordinate_ascent(start, (0.1, 20.0), (&[1.3, 1.1, 1.02, 1.005], 40), value);
+        assert!((at[0] / 1f64.exp() - 1.0).abs() < 0.01 && at[1] == 20.0, "{at:?}");
     }
 }

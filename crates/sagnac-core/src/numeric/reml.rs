@@ -6,7 +6,9 @@
 
 use super::inverse::inverse;
 use super::log_determinant::log_determinant;
+use super::optimize::Damping;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::ops::ControlFlow;
 
 /// Steps of the ascent.
 const STEPS: usize = 60;
@@ -135,7 +137,7 @@ pub fn fit(
         (1.0 - known / scatter.max(f64::MIN_POSITIVE)).clamp(0.05, 1.0) / components.len().max(1) as f64;
     let mut variance_components: Vec<f64> = units.iter().map(|u| u * share).collect();
     let mut state = evaluate(y, x, fixed, components, &variance_components)?;
-    let mut damping = 1e-3;
+    let mut damping = Damping { value: 1e-3, eased_by: 0.2, least: 1e-6, raised_by: 8.0, least_raised: 1e-4 };
     for _ in 0..STEPS {
         if components.is_empty() {
             break;
@@ -148,16 +150,9 @@ pub fn fit(
         if free.is_empty() {
             break;
         }
-        let mut gained = None;
-        for _ in 0..12 {
-            let m = free.len();
-            let matrix = DMatrix::from_fn(m, m, |i, j| {
-                let v = information[(free[i], free[j])];
-                if i == j { v * (1.0 + damping) } else { v }
-            });
-            let right = DVector::from_fn(m, |i, _| score[free[i]]);
-            let step = Cholesky::new(matrix).map(|c| c.solve(&right));
-            let trial = step.map(|step| {
+        let better = damping.search(12, |damping| {
+            let stepped = step_within(&score, &information, &free, damping);
+            let trial = stepped.map(|step| {
                 let mut next = variance_components.clone();
                 for (i, k) in free.iter().enumerate() {
                     // A strength is brought down by decades before it is given up.
@@ -174,19 +169,34 @@ pub fn fit(
                 && let Some(after) = evaluate(y, x, fixed, components, &next)
                 && after.twice_log_likelihood >= state.twice_log_likelihood - 1e-9
             {
-                let gain = after.twice_log_likelihood - state.twice_log_likelihood;
-                (variance_components, state) = (next, after);
-                damping = (damping * 0.2).max(1e-6);
-                gained = Some(gain);
-                break;
+                return ControlFlow::Break(Some((next, after)));
             }
-            damping = (damping * 8.0).max(1e-4);
-        }
-        if gained.is_none_or(|g| g < 1e-6) {
+            ControlFlow::Continue(())
+        });
+        let Some((next, after)) = better else { break };
+        let gain = after.twice_log_likelihood - state.twice_log_likelihood;
+        (variance_components, state) = (next, after);
+        if gain < 1e-6 {
             break;
         }
     }
     Some(finish(state, x, y, components, variance_components))
+}
+
+/// The step of the free strengths under damping.
+fn step_within(
+    score: &DVector<f64>,
+    information: &DMatrix<f64>,
+    free: &[usize],
+    damping: f64,
+) -> Option<DVector<f64>> {
+    let m = free.len();
+    let matrix = DMatrix::from_fn(m, m, |i, j| {
+        let v = information[(free[i], free[j])];
+        if i == j { v * (1.0 + damping) } else { v }
+    });
+    let right = DVector::from_fn(m, |i, _| score[free[i]]);
+    Cholesky::new(matrix).map(|c| c.solve(&right))
 }
 
 fn evaluate(

@@ -9,7 +9,9 @@ use crate::noise::data::NoiseType;
 use crate::noise::model::unit_mode_variance;
 use crate::numeric::cosine::dct2;
 use crate::numeric::log_determinant::log_determinant;
+use crate::numeric::optimize::Damping;
 use nalgebra::{DMatrix, DVector};
+use std::ops::ControlFlow;
 
 /// Terms of the noise: N in deg/sqrt(h), B in deg/h, K in deg/h/sqrt(h).
 pub const TERMS: [NoiseType; 3] = [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
@@ -158,29 +160,38 @@ impl Modes {
         };
         let floor = noise.map(|c| 1e-4 * c);
         let mut solved = self.solve(data, columns, &noise)?;
-        let mut damping = 1e-3;
+        let mut damping =
+            Damping { value: 1e-3, eased_by: 0.3, least: 1e-9, raised_by: 8.0, least_raised: 1e-6 };
         let mut information = DMatrix::zeros(3, 3);
         for _ in 0..60 {
             let (gradient, fisher) = self.derivatives(data, columns, &noise, &solved);
             information = fisher;
-            let mut moved = None;
-            for _ in 0..10 {
+            let mut solvable = true;
+            let moved = damping.search(10, |damping| {
                 let mut damped = information.clone();
                 for i in 0..3 {
                     damped[(i, i)] += damping * information[(i, i)] + 1e-9;
                 }
-                let Some(step) = damped.cholesky().map(|c| c.solve(&gradient)) else { break };
+                let Some(step) = damped.cholesky().map(|c| c.solve(&gradient)) else {
+                    return ControlFlow::Break(None);
+                };
                 let mut next = noise;
                 for i in 0..3 {
                     next[i] = (noise[i] * step[i].clamp(-1.5, 1.5).exp()).max(floor[i]);
                 }
-                let tried = self.solve(data, columns, &next)?;
-                if tried.log_likelihood > solved.log_likelihood {
-                    moved = Some((next, tried));
-                    damping = (damping * 0.3).max(1e-9);
-                    break;
+                match self.solve(data, columns, &next) {
+                    Some(tried) if tried.log_likelihood > solved.log_likelihood => {
+                        ControlFlow::Break(Some((next, tried)))
+                    }
+                    Some(_) => ControlFlow::Continue(()),
+                    None => {
+                        solvable = false;
+                        ControlFlow::Break(None)
+                    }
                 }
-                damping = (damping * 8.0).max(1e-6);
+            });
+            if !solvable {
+                return None;
             }
             let Some((next, tried)) = moved else { break };
             let gain = tried.log_likelihood - solved.log_likelihood;

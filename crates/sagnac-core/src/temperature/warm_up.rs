@@ -10,6 +10,7 @@ use super::settled::{Settled, settled};
 use super::start::Start;
 use super::test::WarmUpTest;
 use super::track::{Means, bridged};
+use crate::numeric::optimize::coordinate_ascent;
 
 /// Blocks at most.
 const BLOCKS: usize = 2048;
@@ -153,30 +154,13 @@ fn best(
     let mut noise = start.noise;
     let score =
         |shape: &[f64], noise: &[f64; 3]| modes.solve(data, &of(shape), noise).map(|s| s.log_likelihood);
-    let climb = |shapes: Vec<Vec<f64>>, noise: &[f64; 3]| -> Option<(f64, Vec<f64>)> {
+    let ascend = |shapes: Vec<Vec<f64>>, noise: &[f64; 3]| -> Option<(f64, Vec<f64>)> {
         let rated = shapes.into_iter().filter_map(|s| Some((score(&s, noise)?, s)));
-        let mut best = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        for factor in [1.3, 1.1, 1.04] {
-            for _ in 0..6 {
-                let mut better = None;
-                for i in 0..best.1.len() {
-                    for f in [factor, 1.0 / factor] {
-                        let mut next = best.1.clone();
-                        next[i] = (next[i] * f).clamp(range.0, range.1);
-                        if let Some(l) = score(&next, noise).filter(|l| apart(&next) && *l > best.0) {
-                            better = Some((l, next));
-                        }
-                    }
-                }
-                match better {
-                    Some(b) => best = b,
-                    None => break,
-                }
-            }
-        }
-        Some(best)
+        let start = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let value = |shape: &[f64]| score(shape, noise).filter(|_| apart(shape));
+        Some(coordinate_ascent(start, range, (&[1.3, 1.1, 1.04], 6), value))
     };
-    let one = climb(grid.iter().map(|g| vec![*g]).collect(), &noise)?;
+    let one = ascend(grid.iter().map(|g| vec![*g]).collect(), &noise)?;
     let one_fit = modes.fit(data, &of(&one.1), Some(noise))?;
     noise = one_fit.noise;
     // A slow decay that is missing passes for a random walk, and a walk then hides it: the search goes on from both.
@@ -187,9 +171,9 @@ fn best(
         .flat_map(|(i, a)| grid.iter().skip(i + 2).map(move |b| vec![*a, *b]))
         .collect();
     let settled = |start: [f64; 3]| -> Option<(Fitted, Vec<f64>)> {
-        let first = climb(pairs.clone(), &start)?.1;
+        let first = ascend(pairs.clone(), &start)?.1;
         let fit = modes.fit(data, &of(&first), Some(start))?;
-        let second = climb(vec![first], &fit.noise)?.1;
+        let second = ascend(vec![first], &fit.noise)?.1;
         Some((modes.fit(data, &of(&second), Some(fit.noise))?, second))
     };
     let two = [noise, quiet]

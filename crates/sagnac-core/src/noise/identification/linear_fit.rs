@@ -8,7 +8,7 @@ use super::likelihood::{BandPower, best_ramp, deviance, ramp_information, starti
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 use crate::noise::model::{NoiseModel, TERMS};
-use crate::numeric::optimize::{halved_steps, nonnegative_quadratic};
+use crate::numeric::optimize::{nonnegative_quadratic, shortened_steps};
 
 /// Number of terms with a spectrum: the first four of [`TERMS`].
 pub const SPECTRAL: usize = 4;
@@ -128,12 +128,16 @@ impl Likelihood {
             let before = deviance;
             deviance = self.deviance(&v, r, restricted);
             let target = self.scoring_step(&v, r, &free, restricted);
-            let shorter = halved_steps(40, |step| {
-                let trial = std::array::from_fn(|i| (v[i] + step * (target[i] - v[i])).max(0.0));
-                let value = self.deviance(&trial, r, restricted);
-                (value < deviance).then_some((trial, value))
-            });
-            if let Some(better) = shorter {
+            let (better, _) = shortened_steps(
+                40,
+                |step| 0.5 * step,
+                |step| {
+                    let trial = std::array::from_fn(|i| (v[i] + step * (target[i] - v[i])).max(0.0));
+                    let value = self.deviance(&trial, r, restricted);
+                    (value < deviance).then_some((trial, value))
+                },
+            );
+            if let Some(better) = better {
                 (v, deviance) = better;
             }
             if before - deviance < 1e-7 {

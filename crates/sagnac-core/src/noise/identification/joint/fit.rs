@@ -7,7 +7,7 @@ use super::columns::{Columns, base, process};
 use super::model::{BASE, Free, JointPoint, Shape, Variable};
 use crate::noise::composite::{Bandwidth, Sampling};
 use crate::noise::evidence::Evidence;
-use crate::numeric::optimize::bounded_quadratic;
+use crate::numeric::optimize::{bounded_quadratic, shortened_steps};
 use nalgebra::{DMatrix, DVector};
 
 /// Fall of the deviance below which a fit is done.
@@ -257,34 +257,20 @@ impl<'a> Joint<'a> {
             }
             let step = bounded_quadratic(&h, &g, &lower);
             let before = point.deviance;
-            let mut scale = 1.0;
-            let mut improved = false;
-            for _ in 0..12 {
-                let mut trial = point.clone();
-                let mut bent = false;
-                for (variable, d) in variables.iter().zip(step.iter()) {
-                    match variable {
-                        Variable::Variance(i) => {
-                            trial.variance[*i] = (trial.variance[*i] + scale * d).max(0.0);
-                        }
-                        other => {
-                            trial.shape = self.moved(&trial.shape, *other, (scale * d).clamp(-1.0, 1.0));
-                            bent = true;
-                        }
-                    }
-                }
+            let shorter = |scale: f64| scale * if scale > 0.2 { 0.5 } else { 0.25 };
+            let (better, scale) = shortened_steps(12, shorter, |scale| {
+                let (mut trial, bent) = self.moved_along(&point, &variables, &step, scale);
                 let trial_columns = if bent { self.columns(&trial.shape) } else { columns.clone() };
                 let trial_s = self.density(&trial_columns, &trial.variance);
                 if restricted && trial_s.iter().all(|s| *s > 0.0) {
                     trial.ramp = best_ramp(self.expected(&trial_s));
                 }
                 trial.deviance = deviance(self.expected(&trial_s), trial.ramp, restricted);
-                if trial.deviance < point.deviance {
-                    (point, columns, s) = (trial, trial_columns, trial_s);
-                    improved = true;
-                    break;
-                }
-                scale *= if scale > 0.2 { 0.5 } else { 0.25 };
+                (trial.deviance < point.deviance).then_some((trial, trial_columns, trial_s))
+            });
+            let improved = better.is_some();
+            if let Some(better) = better {
+                (point, columns, s) = better;
             }
             damping = if scale < 1.0 { (damping + 0.1) * 2.0 } else { damping * 0.3 };
             if !improved || before - point.deviance < DONE {
@@ -292,6 +278,29 @@ impl<'a> Joint<'a> {
             }
         }
         point
+    }
+
+    /// The point after a share of a step, and whether that changed a time or a frequency.
+    fn moved_along(
+        &self,
+        point: &JointPoint,
+        variables: &[Variable],
+        step: &DVector<f64>,
+        scale: f64,
+    ) -> (JointPoint, bool) {
+        let (mut trial, mut bent) = (point.clone(), false);
+        for (variable, d) in variables.iter().zip(step.iter()) {
+            match variable {
+                Variable::Variance(i) => {
+                    trial.variance[*i] = (trial.variance[*i] + scale * d).max(0.0);
+                }
+                other => {
+                    trial.shape = self.moved(&trial.shape, *other, (scale * d).clamp(-1.0, 1.0));
+                    bent = true;
+                }
+            }
+        }
+        (trial, bent)
     }
 
     /// Moves free variances that are exactly zero off the boundary, so that the first step sees a gradient of their terms.
