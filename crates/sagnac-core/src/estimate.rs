@@ -8,41 +8,18 @@
 
 use crate::message::Note;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 mod decision;
-mod student;
+mod distribution;
 mod tail;
 
 pub use decision::{Judgement, Limit, Rule, Verdict, judge};
+pub use distribution::{chi_square_quantile, normal_probability, normal_quantile};
 pub use tail::{
     chi_square_tail, chi_square_two_sided, ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided,
     normal_two_sided,
 };
-
-/// The standard normal quantile of a probability.
-pub fn normal_quantile(probability: f64) -> f64 {
-    Normal::standard().inverse_cdf(probability.clamp(1e-15, 1.0 - 1e-15))
-}
-
-/// The standard normal cumulative probability.
-pub fn normal_probability(z: f64) -> f64 {
-    Normal::standard().cdf(z)
-}
-
-/// The quantile of χ² with `dof` degrees of freedom (not necessarily whole).
-pub fn chi_square_quantile(probability: f64, dof: f64) -> f64 {
-    // Exact inversion takes seconds there; the cube root (Wilson and Hilferty 1931) is right to 1e-7.
-    if dof > 1e5 {
-        let spread = 2.0 / (9.0 * dof);
-        let z = normal_quantile(probability.clamp(1e-12, 1.0 - 1e-12));
-        return dof * (1.0 - spread + z * spread.sqrt()).powi(3);
-    }
-    match ChiSquared::new(dof.max(1e-3)) {
-        Ok(d) => d.inverse_cdf(probability.clamp(1e-12, 1.0 - 1e-12)),
-        Err(_) => f64::NAN,
-    }
-}
 
 /// A two-sided interval with its coverage probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -113,7 +90,7 @@ impl Spread {
                 Some(value + normal_quantile(confidence) * u)
             }
             Spread::StudentT { standard_uncertainty, dof } => {
-                Some(value + student::quantile(confidence, *dof) * standard_uncertainty)
+                Some(value + distribution::student_quantile(confidence, *dof) * standard_uncertainty)
             }
             Spread::ChiSquare { dof } => {
                 let q = chi_square_quantile(1.0 - confidence, *dof);
@@ -135,7 +112,7 @@ impl Spread {
                 }
             }
             Spread::StudentT { standard_uncertainty: u, dof } => {
-                (*u > 0.0).then(|| student::upper_tail((threshold - value) / u, *dof))
+                (*u > 0.0).then(|| distribution::student_upper_tail((threshold - value) / u, *dof))
             }
             Spread::ChiSquare { dof } => {
                 let d = ChiSquared::new(dof.max(1e-3)).ok()?;

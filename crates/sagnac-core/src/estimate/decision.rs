@@ -89,34 +89,7 @@ pub struct Judgement {
 /// A quantity that the record cannot show passes when its upper bound is inside the limit, fails when its lower bound is
 /// beyond an upper limit, and is otherwise indeterminate; a lower limit cannot be shown by it.
 pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
-    let Some(value) = estimate.value else {
-        let inside = limit.min.is_none_or(|m| m <= 0.0)
-            && match (limit.max, estimate.upper_limit) {
-                (Some(max), Some(bound)) => bound.value <= max && bound.coverage >= 1.0 - limit.risk - 1e-9,
-                (Some(_), None) => false,
-                (None, _) => limit.min.is_some(),
-            };
-        let beyond = limit
-            .max
-            .zip(estimate.lower_limit)
-            .filter(|(max, bound)| bound.value > *max && bound.coverage >= 1.0 - limit.risk - 1e-9);
-        let margin = match beyond {
-            Some((max, bound)) => Some(max - bound.value),
-            None => limit.max.zip(estimate.upper_limit).map(|(max, bound)| max - bound.value),
-        };
-        let verdict = match beyond {
-            Some(_) => Verdict::Fail,
-            None if inside => Verdict::Pass,
-            None => Verdict::Indeterminate,
-        };
-        return Judgement {
-            verdict,
-            acceptance_max: None,
-            acceptance_min: None,
-            specific_risk: None,
-            margin,
-        };
-    };
+    let Some(value) = estimate.value else { return judge_bounds(estimate, limit) };
     let margin = [limit.max.map(|max| max - value), limit.min.map(|min| value - min)]
         .into_iter()
         .flatten()
@@ -127,31 +100,49 @@ pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
         (Some(a), Some(b)) => Some((a + b).min(1.0)),
         (a, b) => a.or(b),
     };
-    if limit.rule == Rule::Simple {
-        let outside = limit.max.is_some_and(|max| value > max) || limit.min.is_some_and(|min| value < min);
-        let verdict = if outside { Verdict::Fail } else { Verdict::Pass };
-        return Judgement {
-            verdict,
-            acceptance_max: limit.max,
-            acceptance_min: limit.min,
-            specific_risk,
-            margin,
-        };
-    }
-    let (low, high) =
-        (estimate.spread.bound(value, limit.risk), estimate.spread.bound(value, 1.0 - limit.risk));
-    let (Some(low), Some(high)) = (low, high) else {
-        return Judgement {
-            verdict: Verdict::Indeterminate,
-            acceptance_max: None,
-            acceptance_min: None,
-            specific_risk,
-            margin,
-        };
+    let (verdict, acceptance_max, acceptance_min) = match limit.rule {
+        Rule::Simple => {
+            let outside =
+                limit.max.is_some_and(|max| value > max) || limit.min.is_some_and(|min| value < min);
+            let verdict = if outside { Verdict::Fail } else { Verdict::Pass };
+            (verdict, limit.max, limit.min)
+        }
+        Rule::GuardBand => guard_band(value, &estimate.spread, limit),
     };
+    Judgement { verdict, acceptance_max, acceptance_min, specific_risk, margin }
+}
+
+/// Decides on a quantity without a value by its bounds.
+fn judge_bounds(estimate: &Estimate, limit: &Limit) -> Judgement {
+    let inside = limit.min.is_none_or(|m| m <= 0.0)
+        && match (limit.max, estimate.upper_limit) {
+            (Some(max), Some(bound)) => bound.value <= max && bound.coverage >= 1.0 - limit.risk - 1e-9,
+            (Some(_), None) => false,
+            (None, _) => limit.min.is_some(),
+        };
+    let beyond = limit
+        .max
+        .zip(estimate.lower_limit)
+        .filter(|(max, bound)| bound.value > *max && bound.coverage >= 1.0 - limit.risk - 1e-9);
+    let margin = match beyond {
+        Some((max, bound)) => Some(max - bound.value),
+        None => limit.max.zip(estimate.upper_limit).map(|(max, bound)| max - bound.value),
+    };
+    let verdict = match beyond {
+        Some(_) => Verdict::Fail,
+        None if inside => Verdict::Pass,
+        None => Verdict::Indeterminate,
+    };
+    Judgement { verdict, acceptance_max: None, acceptance_min: None, specific_risk: None, margin }
+}
+
+/// Verdict, largest and smallest accepted value under a guard band.
+fn guard_band(value: f64, spread: &Spread, limit: &Limit) -> (Verdict, Option<f64>, Option<f64>) {
+    let bounds = spread.bound(value, limit.risk).zip(spread.bound(value, 1.0 - limit.risk));
+    let Some((low, high)) = bounds else { return (Verdict::Indeterminate, None, None) };
     // A spread that grows with the value (a deviation) moves the limit by a factor, any other by a difference.
     let scales = value > 0.0
-        && match &estimate.spread {
+        && match spread {
             Spread::ChiSquare { .. } => true,
             Spread::Curve(points) => points.first().is_some_and(|p| p.1 >= 0.0),
             _ => false,
@@ -162,17 +153,10 @@ pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
     };
     let passes = limit.max.is_none_or(|max| high <= max) && limit.min.is_none_or(|min| low >= min);
     let fails = limit.max.is_some_and(|max| low > max) || limit.min.is_some_and(|min| high < min);
-    Judgement {
-        verdict: if passes {
-            Verdict::Pass
-        } else if fails {
-            Verdict::Fail
-        } else {
-            Verdict::Indeterminate
-        },
-        acceptance_max: limit.max.map(|max| shift(max, high)),
-        acceptance_min: limit.min.map(|min| shift(min, low)),
-        specific_risk,
-        margin,
-    }
+    let verdict = match (passes, fails) {
+        (true, _) => Verdict::Pass,
+        (_, true) => Verdict::Fail,
+        _ => Verdict::Indeterminate,
+    };
+    (verdict, limit.max.map(|max| shift(max, high)), limit.min.map(|min| shift(min, low)))
 }

@@ -170,15 +170,7 @@ fn analyse(
         vec![]
     };
     let chosen = terms(order::choose(&orders).map_or(test.highest_order.min(3), |t| t.order));
-    let top = orders.iter().map(|t| t.log_score).fold(f64::NEG_INFINITY, f64::max);
-    let mut weights: Vec<(usize, f64)> = orders
-        .iter()
-        .map(|t| (t.order, (t.log_score - top).exp()))
-        .filter(|(order, w)| *w > LEAST_WEIGHT || *order == chosen.order)
-        .collect();
-    if weights.is_empty() {
-        weights.push((chosen.order, 1.0));
-    }
+    let weights = weights(&orders, chosen.order);
     let models: Vec<(Posterior, f64)> = weights
         .into_iter()
         .filter_map(|(order, w)| Some((posterior::sample(&course, terms(order), span, SWEEPS)?, w)))
@@ -196,17 +188,7 @@ fn analyse(
     let level_deg_h = mean(&course.rate_deg_h) - mean(&raw);
     let modelled: Vec<f64> = raw.iter().map(|v| v + level_deg_h).collect();
     let each = ((test.residual_average_s / course.block_s).round() as usize).clamp(1, course.len() / 8);
-    let residual: Vec<(f64, f64, f64)> = (0..course.len() / each)
-        .map(|j| {
-            let part = j * each..(j + 1) * each;
-            let average = |v: &dyn Fn(usize) -> f64| part.clone().map(v).sum::<f64>() / each as f64;
-            (
-                course.first_s + (j as f64 + 0.5) * each as f64 * course.block_s,
-                average(&|i| course.temperature_deg_c[i]),
-                average(&|i| course.rate_deg_h[i] - modelled[i]),
-            )
-        })
-        .collect();
+    let residual = averaged_residual(&course, &modelled, each);
     let powers = &best.fitted.solved.powers;
     let kept = &powers[..(powers.len() / each).max(1)];
     let (sum, squares) = kept.iter().fold((0.0, 0.0), |(s, q), p| (s + p, q + p * p));
@@ -229,6 +211,32 @@ fn analyse(
         residual,
         course,
     })
+}
+
+/// The orders that the model is averaged over, with their weights: what is far from as good as the best is left out.
+fn weights(orders: &[Tried], chosen: usize) -> Vec<(usize, f64)> {
+    let top = orders.iter().map(|t| t.log_score).fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<(usize, f64)> = orders
+        .iter()
+        .map(|t| (t.order, (t.log_score - top).exp()))
+        .filter(|(order, w)| *w > LEAST_WEIGHT || *order == chosen)
+        .collect();
+    if weights.is_empty() { vec![(chosen, 1.0)] } else { weights }
+}
+
+/// Time, s, temperature, degC, and what the model leaves, deg/h, in means over `each` blocks.
+fn averaged_residual(course: &Course, modelled: &[f64], each: usize) -> Vec<(f64, f64, f64)> {
+    (0..course.len() / each)
+        .map(|j| {
+            let part = j * each..(j + 1) * each;
+            let average = |v: &dyn Fn(usize) -> f64| part.clone().map(v).sum::<f64>() / each as f64;
+            (
+                course.first_s + (j as f64 + 0.5) * each as f64 * course.block_s,
+                average(&|i| course.temperature_deg_c[i]),
+                average(&|i| course.rate_deg_h[i] - modelled[i]),
+            )
+        })
+        .collect()
 }
 
 /// Root of the mean over temperature of the mean square at each, and the share of the degrees of freedom that even weights

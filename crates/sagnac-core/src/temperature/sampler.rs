@@ -6,7 +6,7 @@
 //! them, and the inverse square (half-Cauchy) too narrow. Each number of the shape has a flat density over its range, or in
 //! its logarithm.
 
-use super::gls::{Fitted, Modes};
+use super::gls::{Fitted, Modes, Solved};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -63,79 +63,131 @@ pub fn sample(
     start: (&[f64], &Fitted),
     sweeps: usize,
 ) -> Vec<Draw> {
-    let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x7465_6d70);
-    let mut noise = start.1.noise;
-    let mut shape = start.0.to_vec();
-    let mut columns = columns_of(&shape);
-    let Some(mut here) = modes.solve(data, &columns, &noise) else { return vec![] };
+    let Some(mut chain) = Chain::new(modes, data, (columns_of, coefficients), start) else { return vec![] };
     // Steps of B and K by the information where they are seen, by themselves where not.
-    let slow = |i: usize| noise[i] * start.1.log_deviation[i].clamp(0.1, 3.0);
+    let slow = |i: usize| start.1.noise[i] * start.1.log_deviation[i].clamp(0.1, 3.0);
     let mut steps = vec![slow(1), slow(2)];
     steps.extend(ranges.iter().map(|r| r.step));
-    let visible = modes.visible(noise[0]);
-    let prior = |noise: &[f64; 3]| -FALLS * ((noise[1] + visible[0]).ln() + (noise[2] + visible[1]).ln());
-    let density = |columns: &[Vec<f64>]| match coefficients {
-        Coefficients::Flat => Some(0.0),
-        Coefficients::Scaled => {
-            modes.solve(data, columns, &start.1.noise)?.log_information().map(|l| 0.5 * l)
-        }
-    };
-    let Some(mut weight) = density(&columns) else { return vec![] };
     let burn = sweeps / 3;
     let mut draws = vec![];
     for sweep in 0..sweeps + burn {
         for (which, step) in steps.iter_mut().enumerate() {
-            let z = normal(&mut rng) * *step;
-            let (mut next_noise, mut next_shape) = (noise, shape.clone());
-            let mut inside = true;
-            if let Some((range, value)) =
-                which.checked_sub(2).and_then(|i| Some((ranges.get(i)?, next_shape.get_mut(i)?)))
-            {
-                *value = if range.log { *value * z.exp() } else { *value + z };
-                // Reflected at zero, so that a number that may be zero can come near it.
-                if range.low == 0.0 {
-                    *value = value.abs();
-                }
-                inside = (range.low..=range.high).contains(value);
-            } else if let Some(c) = next_noise.get_mut(which + 1) {
-                *c = (*c + z).abs();
-            }
-            let mut accepted = false;
-            if inside {
-                let next_columns = (which >= 2).then(|| columns_of(&next_shape));
-                let tried = modes.solve(data, next_columns.as_ref().unwrap_or(&columns), &next_noise);
-                let next_weight = next_columns.as_ref().map_or(Some(weight), |c| density(c));
-                if let Some((tried, next_weight)) = tried.zip(next_weight)
-                    && rng.random::<f64>().max(1e-300).ln()
-                        < tried.log_likelihood + prior(&next_noise) + next_weight
-                            - here.log_likelihood
-                            - prior(&noise)
-                            - weight
-                {
-                    accepted = true;
-                    here = tried;
-                    weight = next_weight;
-                    (noise, shape) = (next_noise, next_shape);
-                    if let Some(next) = next_columns {
-                        columns = next;
-                    }
-                }
-            }
+            let accepted = chain.step(which, *step, ranges);
             if sweep < burn {
                 // Towards accepting four in ten.
                 *step *= if accepted { 1.25 } else { 0.86 };
             }
         }
         if sweep >= burn {
-            draws.push(Draw {
-                shape: shape.clone(),
-                noise,
-                coefficients: here.coefficients.clone(),
-                covariance: here.covariance.clone(),
-            });
+            draws.push(chain.draw());
         }
     }
     draws
+}
+
+/// A Markov chain over the noise and the shape (Metropolis), the coefficients integrated out.
+struct Chain<'a> {
+    modes: &'a Modes,
+    data: &'a [f64],
+    columns_of: Columns<'a>,
+    coefficients: Coefficients,
+    start_noise: [f64; 3],
+    visible: [f64; 2],
+    rng: Xoshiro256PlusPlus,
+    noise: [f64; 3],
+    shape: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+    here: Solved,
+    weight: f64,
+}
+
+impl<'a> Chain<'a> {
+    fn new(
+        modes: &'a Modes,
+        data: &'a [f64],
+        (columns_of, coefficients): (Columns<'a>, Coefficients),
+        (shape, fitted): (&[f64], &Fitted),
+    ) -> Option<Chain<'a>> {
+        let noise = fitted.noise;
+        let columns = columns_of(shape);
+        let here = modes.solve(data, &columns, &noise)?;
+        let mut chain = Chain {
+            modes,
+            data,
+            columns_of,
+            coefficients,
+            start_noise: noise,
+            visible: modes.visible(noise[0]),
+            rng: Xoshiro256PlusPlus::seed_from_u64(0x7465_6d70),
+            noise,
+            shape: shape.to_vec(),
+            columns,
+            here,
+            weight: 0.0,
+        };
+        chain.weight = chain.density(&chain.columns)?;
+        Some(chain)
+    }
+
+    /// Logarithm of the density of the coefficients.
+    fn density(&self, columns: &[Vec<f64>]) -> Option<f64> {
+        match self.coefficients {
+            Coefficients::Flat => Some(0.0),
+            Coefficients::Scaled => {
+                let solved = self.modes.solve(self.data, columns, &self.start_noise)?;
+                solved.log_information().map(|l| 0.5 * l)
+            }
+        }
+    }
+
+    fn prior(&self, noise: &[f64; 3]) -> f64 {
+        -FALLS * ((noise[1] + self.visible[0]).ln() + (noise[2] + self.visible[1]).ln())
+    }
+
+    /// Tries a step of B, K or a number of the shape; true where it is accepted.
+    fn step(&mut self, which: usize, step: f64, ranges: &[Range]) -> bool {
+        let z = normal(&mut self.rng) * step;
+        let (mut noise, mut shape) = (self.noise, self.shape.clone());
+        if let Some((range, value)) =
+            which.checked_sub(2).and_then(|i| Some((ranges.get(i)?, shape.get_mut(i)?)))
+        {
+            *value = if range.log { *value * z.exp() } else { *value + z };
+            // Reflected at zero, so that a number that may be zero can come near it.
+            if range.low == 0.0 {
+                *value = value.abs();
+            }
+            if !(range.low..=range.high).contains(value) {
+                return false;
+            }
+        } else if let Some(c) = noise.get_mut(which + 1) {
+            *c = (*c + z).abs();
+        }
+        let columns = (which >= 2).then(|| (self.columns_of)(&shape));
+        let tried = self.modes.solve(self.data, columns.as_ref().unwrap_or(&self.columns), &noise);
+        let weight = columns.as_ref().map_or(Some(self.weight), |c| self.density(c));
+        let Some((tried, weight)) = tried.zip(weight) else { return false };
+        let accepted = self.rng.random::<f64>().max(1e-300).ln()
+            < tried.log_likelihood + self.prior(&noise) + weight
+                - self.here.log_likelihood
+                - self.prior(&self.noise)
+                - self.weight;
+        if accepted {
+            (self.here, self.weight, self.noise, self.shape) = (tried, weight, noise, shape);
+            if let Some(columns) = columns {
+                self.columns = columns;
+            }
+        }
+        accepted
+    }
+
+    fn draw(&self) -> Draw {
+        Draw {
+            shape: self.shape.clone(),
+            noise: self.noise,
+            coefficients: self.here.coefficients.clone(),
+            covariance: self.here.covariance.clone(),
+        }
+    }
 }
 
 /// A standard normal number.

@@ -16,31 +16,18 @@
 //! Other units exist at the edges only: in files that are read and in numbers that are shown.
 
 mod describe;
+mod dimension;
 mod error;
 mod parse;
 mod rate;
 mod symbols;
 
+use dimension::*;
 pub use error::UnitError;
 use parse::Parser;
 pub use rate::RateUnit;
 use std::fmt;
 use symbols::{CELSIUS, FAHRENHEIT};
-
-/// Number of base dimensions a unit is made of.
-const BASES: usize = 9;
-const ANGLE: usize = 0;
-const TIME: usize = 1;
-const TEMPERATURE: usize = 2;
-const VOLTAGE: usize = 3;
-const MAGNETIC: usize = 4;
-const PRESSURE: usize = 5;
-const LENGTH: usize = 6;
-const CURRENT: usize = 7;
-const COUNT: usize = 8;
-
-/// Exponents of the base dimensions, in halves, so that `1/sqrt(h)` is exact.
-type Dimension = [i8; BASES];
 
 /// A parsed unit: a factor to the base units and the dimension it carries.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,8 @@
 //! The grammar of units: products, powers, roots.
 
+use super::dimension::{BASES, Dimension};
+use super::error::UnitError;
 use super::symbols::{SUGGESTED, symbol};
-use super::{BASES, Dimension, UnitError};
 
 pub(super) struct Parser<'a> {
     pub text: &'a str,

@@ -1,23 +1,42 @@
-//! Turns block means and an averaged periodogram into bands.
+//! Turns block means and an averaged periodogram into an evidence.
 
-use super::fine::widest;
+use super::bands::{FineBin, Piece, banded};
 use super::series::{LEAST_STRETCH, Series};
-use super::{Band, Cell, Evidence, FineBin, Mask, Piece, Zone};
-use crate::noise::data::WelchSpectrum;
+use super::spectrum::Evidence;
+use crate::noise::data::{BlockSeries, WelchSpectrum};
+use crate::noise::model::{NoiseModel, TERMS};
 use crate::numeric::cosine::dct2;
 use std::sync::Arc;
 
 /// Modes that keep a band of their own.
 const SINGLE_MODES: usize = 64;
-/// Relative width of a band.
-const BAND_WIDTH: f64 = 0.04;
-/// Bands beyond this number, which only many gaps can make, are joined.
-const MANY_BANDS: usize = 800;
 /// Most coarse blocks when a record has gaps.
 const COARSE_BLOCKS: usize = 1024;
 
+/// A frequency range to leave out: a spectral line found elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mask {
+    /// Frequency of the line, Hz.
+    pub frequency_hz: f64,
+    /// Half width of the range left out of modes, Hz; one resolution step of the transform is added to it.
+    pub half_width_hz: f64,
+    /// The same of an averaged periodogram, Hz.
+    pub windowed_half_width_hz: f64,
+}
+
+impl Mask {
+    /// Whether a mode of means over `tau_s` is left out, or a bin of a periodogram: the line, folded back about multiples
+    /// of 1/τ, lies near.
+    pub fn hides(&self, frequency_hz: f64, step_hz: f64, tau_s: f64, windowed: bool) -> bool {
+        let turns = self.frequency_hz * tau_s;
+        let folded = (turns - turns.round()).abs() / tau_s;
+        let half_width_hz = if windowed { self.windowed_half_width_hz } else { self.half_width_hz };
+        (frequency_hz - folded).abs() <= half_width_hz + step_hz
+    }
+}
+
 /// Cosine modes of a ramp of 1 deg/h/h over `blocks` means.
-pub(super) fn ramp_modes(blocks: usize, tau_s: f64) -> Vec<f64> {
+fn ramp_modes(blocks: usize, tau_s: f64) -> Vec<f64> {
     // The exact sum: only odd modes, −√(2/M)·cos(a)/(2 sin²(a)) each, with a = πk/(2M).
     let m = blocks as f64;
     let scale = (2.0 / m).sqrt() * tau_s / 3600.0;
@@ -29,83 +48,18 @@ pub(super) fn ramp_modes(blocks: usize, tau_s: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Joins bands of different stretches that lie side by side.
-fn merge(bands: Vec<Band>) -> Vec<Band> {
-    let mut out: Vec<Band> = vec![];
-    for band in bands {
-        match out.last_mut() {
-            Some(last)
-                if band.high_hz <= last.low_hz * (1.0 + BAND_WIDTH) && last.dof.min(band.dof) > 1.0
-                    || band.low_hz == last.low_hz =>
-            {
-                let total = last.dof + band.dof;
-                let share = band.dof / total;
-                last.power += (band.power - last.power) * share;
-                last.cross += (band.cross - last.cross) * share;
-                last.ramp += (band.ramp - last.ramp) * share;
-                last.dof = total;
-                last.high_hz = last.high_hz.max(band.high_hz);
-                last.cells.extend(band.cells);
-            }
-            _ => out.push(band),
-        }
-    }
-    out
-}
-
-/// Bands of bins: those of one transform that lie side by side are joined while the band stays narrow enough.
-pub(super) fn banded(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
-    let mut bands: Vec<Band> = vec![];
-    for bin in fine {
-        let (piece, k, f) = (bin.piece as usize, bin.index as usize, bin.frequency_hz);
-        // Bins of one transform arrive in ascending order, so that only the newest band can take them.
-        if !bin.alone
-            && let Some(band) = bands.last_mut()
-            && let Some(cell) = band.cells.last_mut()
-            && cell.piece == piece
-            && cell.to + 1 == k
-            && f - band.low_hz <= widest(0.5 * (f + band.low_hz), BAND_WIDTH, zones)
-        {
-            let total = band.dof + bin.dof;
-            let sums = [bin.power, bin.cross, bin.ramp];
-            for (value, sum) in [&mut band.power, &mut band.cross, &mut band.ramp].into_iter().zip(sums) {
-                *value += (sum - *value) * bin.dof / total;
-            }
-            band.dof = total;
-            band.high_hz = f;
-            cell.to = k;
-            cell.dof = total;
-            continue;
-        }
-        bands.push(Band {
-            low_hz: f,
-            high_hz: f,
-            dof: bin.dof,
-            power: bin.power,
-            cross: bin.cross,
-            ramp: bin.ramp,
-            cells: vec![Cell { piece, from: k, to: k, dof: bin.dof }],
-        });
-    }
-    bands.sort_by(|a, b| a.low_hz.total_cmp(&b.low_hz));
-    if bands.len() > MANY_BANDS + 64 * zones.len() {
-        bands = merge(bands);
-    }
-    bands
-}
-
-pub(super) struct Builder<'a> {
+struct Builder<'a> {
     evidence: Evidence,
     masks: &'a [Mask],
     fine: Vec<FineBin>,
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(tau0_s: f64, masks: &'a [Mask]) -> Builder<'a> {
+    fn new(tau0_s: f64, masks: &'a [Mask]) -> Builder<'a> {
         Builder { evidence: Evidence { tau0_s, ..Default::default() }, masks, fine: vec![] }
     }
 
-    pub(super) fn finish(mut self, span_s: f64, usable_s: f64) -> Evidence {
+    fn finish(mut self, span_s: f64, usable_s: f64) -> Evidence {
         self.evidence.span_s = span_s;
         self.evidence.usable_s = usable_s;
         self.evidence.bands = banded(&self.fine, &[]);
@@ -113,7 +67,7 @@ impl<'a> Builder<'a> {
         self.evidence
     }
 
-    pub(super) fn piece(&mut self, piece: Piece) -> usize {
+    fn piece(&mut self, piece: Piece) -> usize {
         self.evidence.pieces.push(piece);
         self.evidence.pieces.len() - 1
     }
@@ -122,7 +76,7 @@ impl<'a> Builder<'a> {
         self.masks.iter().any(|mask| mask.hides(frequency_hz, step_hz, tau_s, windowed))
     }
 
-    pub(super) fn add_series(&mut self, series: &Series, top: f64) {
+    fn add_series(&mut self, series: &Series, top: f64) {
         if series.is_whole() {
             self.add_stretch(series, 0..series.len(), 0.0, top, true);
             return;
@@ -187,15 +141,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds the modes of a piece with `from` < f ≤ `to`.
-    pub(super) fn add_modes(
-        &mut self,
-        piece: usize,
-        modes: &[f64],
-        ramp: &[f64],
-        from: f64,
-        to: f64,
-        single: bool,
-    ) {
+    fn add_modes(&mut self, piece: usize, modes: &[f64], ramp: &[f64], from: f64, to: f64, single: bool) {
         let Some(&Piece { tau_s, step_hz, .. }) = self.evidence.pieces.get(piece) else { return };
         for (k, (c, r)) in modes.iter().zip(ramp).enumerate().skip(1) {
             let f = k as f64 * step_hz;
@@ -207,7 +153,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    pub(super) fn add_welch(&mut self, welch: &WelchSpectrum, from: f64) {
+    fn add_welch(&mut self, welch: &WelchSpectrum, from: f64) {
         let tau0_s = self.evidence.tau0_s;
         let step_hz = 1.0 / (welch.segment_len as f64 * tau0_s);
         let piece = self.piece(Piece { tau_s: tau0_s, step_hz, blocks: 0, filling: 1.0 });
@@ -235,5 +181,85 @@ impl<'a> Builder<'a> {
             index: k as u32,
             alone,
         });
+    }
+}
+
+impl Evidence {
+    /// Builds the evidence of a record.
+    ///
+    /// `blocks` gives the low frequencies and, when its blocks hold one sample, all of them; `welch` the rest.
+    /// Frequencies within a mask are left out, also where the line folds back into the block means.
+    pub fn new(blocks: &BlockSeries, welch: Option<&WelchSpectrum>, tau0_s: f64, masks: &[Mask]) -> Evidence {
+        let series = Series::new(blocks, tau0_s);
+        let mut builder = Builder::new(tau0_s, masks);
+        let Some(series) = series.trimmed() else { return builder.finish(0.0, 0.0) };
+        let (span_s, usable_s) = (series.len() as f64 * series.tau_s, series.samples() * tau0_s);
+        let block_nyquist = 0.5 / series.tau_s;
+        let mut top = block_nyquist;
+        if blocks.block_len > 1
+            && let Some(welch) = welch.filter(|w| w.segment_len >= 16 && w.segments > 0)
+        {
+            let step = 1.0 / (welch.segment_len as f64 * tau0_s);
+            // Half the block Nyquist frequency keeps clear of what block averaging folds back.
+            top = (0.5 * block_nyquist).max(4.0 * step).min(block_nyquist);
+            builder.add_welch(welch, top);
+        }
+        builder.add_series(&series, top);
+        builder.finish(span_s, usable_s)
+    }
+
+    /// The evidence a record of `samples` samples is expected to give if `model` is true: power equal to its
+    /// expectation in every band.
+    pub fn expected(model: &NoiseModel, samples: u64, tau0_s: f64) -> Evidence {
+        let mut block_len = 1u64;
+        while samples / block_len > 1 << 18 {
+            block_len *= 2;
+        }
+        // Frequencies that blocks do not resolve are described by a periodogram of as many bins as suffice.
+        let count = (samples / block_len) as usize;
+        let mut builder = Builder::new(tau0_s, &[]);
+        let tau_s = block_len as f64 * tau0_s;
+        let mut top = 0.5 / tau_s;
+        if block_len > 1 {
+            let segment_len = (64 * block_len) as usize;
+            let averages = 2.0 * samples as f64 / segment_len as f64;
+            top *= 0.5;
+            let spectrum = WelchSpectrum {
+                segment_len,
+                segments: (2.0 * averages) as u64,
+                effective_averages: averages,
+                averages_in_sums: averages,
+                density: vec![1.0; segment_len / 2 + 1],
+            };
+            builder.add_welch(&spectrum, top);
+        }
+        if count >= LEAST_STRETCH {
+            let piece = builder.piece(Piece {
+                tau_s,
+                step_hz: 0.5 / (count as f64 * tau_s),
+                blocks: count,
+                filling: 1.0,
+            });
+            let ramp = ramp_modes(count, tau_s);
+            builder.add_modes(piece, &vec![0.0; count], &ramp, 0.0, top, true);
+        }
+        let length = samples as f64 * tau0_s;
+        let mut evidence = builder.finish(length, length);
+        // There is nothing in it that could be looked at more closely.
+        evidence.fine = Arc::default();
+        let mut power = vec![0.0; evidence.bands.len()];
+        for term in TERMS {
+            let square = model.coefficient(term).powi(2);
+            if square > 0.0 {
+                for (p, e) in power.iter_mut().zip(evidence.expectation(&term)) {
+                    *p += square * e;
+                }
+            }
+        }
+        for (band, p) in evidence.bands.iter_mut().zip(power) {
+            band.power = p + model.r * model.r * band.ramp;
+            band.cross = model.r * band.ramp;
+        }
+        evidence
     }
 }

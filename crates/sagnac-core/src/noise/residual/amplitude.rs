@@ -4,8 +4,8 @@
 //! Sources: R. B. D'Agostino, Biometrika 57 (1970) 679 (skewness); F. J. Anscombe, W. J. Glynn, Biometrika 70 (1983)
 //! 227 (kurtosis).
 
+use super::view::{Departure, Judged, View};
 use super::whiten::Whitened;
-use super::{Departure, Judged, View};
 use crate::estimate::normal_probability;
 use statrs::distribution::{DiscreteCDF, Poisson};
 

@@ -8,7 +8,7 @@ use super::super::data::DeviationPoint;
 use super::grid::Grid;
 use super::null::probability_of_largest;
 use super::spectrum::log_gradients;
-use super::{Departure, Judged, View};
+use super::view::{Departure, Judged, View};
 use crate::noise::identification::misfit::normal_score;
 use nalgebra::DMatrix;
 

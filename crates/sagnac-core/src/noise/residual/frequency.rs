@@ -4,7 +4,7 @@ use super::super::composite::{Composite, Described};
 use super::super::evidence::Evidence;
 use super::null::{Fitted, at_most_bonferroni};
 use super::spectrum::{ModelSpectrum, log_gradients};
-use super::{Departure, Judged, View};
+use super::view::{Departure, Judged, View};
 use crate::noise::identification::misfit::normal_score;
 use nalgebra::DMatrix;
 

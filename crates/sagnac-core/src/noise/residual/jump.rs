@@ -5,7 +5,7 @@
 //! over the record is judged by the mean number of times that such an estimate crosses its level (S. O. Rice, Bell System
 //! Technical Journal 24, 1945).
 
-use super::{Departure, Judged, View};
+use super::view::{Departure, Judged, View};
 use crate::estimate::normal_probability;
 use crate::numeric::cosine::inverse_dct2;
 use realfft::RealFftPlanner;

@@ -12,6 +12,7 @@ mod jump;
 mod lag;
 mod null;
 mod spectrum;
+mod view;
 mod whiten;
 
 pub use amplitude::{Amplitude, TAIL};
@@ -19,6 +20,7 @@ pub use averaging::{OctaveRatio, degrees_of_freedom};
 pub use frequency::BandRatio;
 pub use jump::Jump;
 pub use lag::ResidualCorrelation;
+pub use view::{Departure, Judged, View};
 pub use whiten::{Whitened, whitened};
 
 use super::composite::{Described, Line};
@@ -27,62 +29,6 @@ use super::spectral_record::SpectralRecord;
 
 /// Probability, for all views together, below which a departure is called one.
 pub const LEVEL: f64 = 0.01;
-
-/// A way to look at a residual.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum View {
-    /// Power by frequency.
-    Frequency,
-    /// Autocorrelation by lag.
-    Lag,
-    /// Allan variance by averaging time.
-    AveragingTime,
-    /// Distribution of the values.
-    Amplitude,
-    /// Jumps of the level.
-    Jump,
-}
-
-impl View {
-    /// Every view, in the order of reports.
-    pub const ALL: [View; 5] = [View::Frequency, View::Lag, View::AveragingTime, View::Amplitude, View::Jump];
-
-    /// Id in results.
-    pub fn id(self) -> &'static str {
-        match self {
-            View::Frequency => "frequency",
-            View::Lag => "lag",
-            View::AveragingTime => "averaging_time",
-            View::Amplitude => "amplitude",
-            View::Jump => "jump",
-        }
-    }
-}
-
-/// Where a record departs most from its model.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Departure {
-    /// Begin: Hz, s, s, standard deviations, or s since the record began, by view.
-    pub from: f64,
-    /// End, same unit.
-    pub to: f64,
-    /// Size: power over model less 1; autocorrelation; deviation over model less 1; values beyond four standard
-    /// deviations over expected ones less 1; deg/h.
-    pub excess: f64,
-}
-
-/// One view judged.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Judged {
-    /// The view.
-    pub view: View,
-    /// Largest departure as a normal score; the excess kurtosis for amplitudes.
-    pub statistic: f64,
-    /// Probability of a larger one anywhere in this view if the model is right.
-    pub p_value: f64,
-    /// Where it is.
-    pub departure: Departure,
-}
 
 /// How well a description fits a record.
 #[derive(Debug, Clone, PartialEq, Default)]

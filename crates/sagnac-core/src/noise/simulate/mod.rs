@@ -4,18 +4,15 @@
 //! lines, ramp, a filter of the output and rounding of the angle. A seed fixes every bit of the output, however it is
 //! cut into blocks.
 
-mod flicker;
 mod output;
-mod rotating;
+mod process;
 
-use self::flicker::{Flicker, Markov};
 use self::output::Output;
-use self::rotating::Rotating;
+use self::process::{Flicker, Markov, Rotating, normal};
 use super::composite::{Composite, Line};
 use super::model::NoiseModel;
 use rand::RngExt as _;
 use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::{SplitMix64, Xoshiro256PlusPlus};
 use std::f64::consts::PI;
 
@@ -154,10 +151,6 @@ impl Simulator {
         self.fill(&mut out);
         out
     }
-}
-
-fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
-    StandardNormal.sample(rng)
 }
 
 /// Interval means of a Wiener process.

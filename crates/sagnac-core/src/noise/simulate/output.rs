@@ -1,7 +1,6 @@
 //! The filter between the physics and the samples.
 
-use super::flicker::Markov;
-use super::normal;
+use super::process::{Markov, normal};
 use crate::noise::composite::Bandwidth;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::collections::VecDeque;

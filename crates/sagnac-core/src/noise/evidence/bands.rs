@@ -1,0 +1,191 @@
+//! Bands of the modes and bins of transforms: mean powers, and where narrow structure must be resolved.
+
+use crate::noise::model::{Bin, Spectral};
+
+/// Relative width of a band.
+const BAND_WIDTH: f64 = 0.04;
+/// Bands beyond this number, which only many gaps can make, are joined.
+const MANY_BANDS: usize = 800;
+/// Width of a band over the distance to the centre of a zone plus the half width of that.
+const GRADING: f64 = 0.2;
+
+/// One transform that contributes modes or bins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Piece {
+    /// Averaging time of the means, s.
+    pub(super) tau_s: f64,
+    /// Frequency step, Hz.
+    pub(super) step_hz: f64,
+    /// Means transformed; 0 for the averaged periodogram.
+    pub(super) blocks: usize,
+    /// Mean of full count / usable count.
+    pub(super) filling: f64,
+}
+
+impl Piece {
+    fn bin(&self, index: f64) -> Bin {
+        Bin {
+            frequency_hz: index * self.step_hz,
+            tau_s: self.tau_s,
+            filling: self.filling,
+            mode: if self.blocks > 0 { index.round() as usize } else { 0 },
+            blocks: self.blocks,
+            segment: if self.blocks > 0 { 0 } else { (1.0 / (self.step_hz * self.tau_s)).round() as usize },
+        }
+    }
+
+    pub(super) fn expectation(&self, term: &dyn Spectral, index: f64) -> f64 {
+        let here = term.density(&self.bin(index));
+        let nyquist = 0.5 / (self.tau_s * self.step_hz);
+        if self.blocks > 0 || index < 2.0 || index + 1.0 > nyquist || term.knows_windows() {
+            return here;
+        }
+        let bin = |index: f64| self.bin(index);
+        // A Hann window spreads a density over a kernel with a second moment of one third of a bin squared.
+        here + (term.density(&bin(index - 1.0)) - 2.0 * here + term.density(&bin(index + 1.0))) / 6.0
+    }
+}
+
+/// A run of neighbouring modes of one piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cell {
+    pub(super) piece: usize,
+    pub(super) from: usize,
+    pub(super) to: usize,
+    pub(super) dof: f64,
+}
+
+/// Mean power in one band.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Band {
+    /// Lowest frequency in it, Hz.
+    pub low_hz: f64,
+    /// Highest frequency in it, Hz.
+    pub high_hz: f64,
+    /// Degrees of freedom: the power is distributed as its expectation times χ²/dof.
+    pub dof: f64,
+    /// Two-sided density, (deg/h)²/Hz.
+    pub power: f64,
+    /// Cross term of the data with a ramp of 1 deg/h/h, same scale.
+    pub cross: f64,
+    /// Power of a ramp of 1 deg/h/h, same scale.
+    pub ramp: f64,
+    pub(super) cells: Vec<Cell>,
+}
+
+impl Band {
+    /// The power that is left when a ramp of `r` deg/h/h is taken out.
+    pub fn power_without_ramp(&self, r: f64) -> f64 {
+        (self.power - 2.0 * r * self.cross + r * r * self.ramp).max(0.0)
+    }
+
+    /// Its middle on a logarithmic scale, Hz.
+    pub fn centre_hz(&self) -> f64 {
+        (self.low_hz * self.high_hz).sqrt()
+    }
+}
+
+/// One mode or bin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FineBin {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Two-sided density, (deg/h)²/Hz.
+    pub power: f64,
+    /// Degrees of freedom.
+    pub dof: f64,
+    pub(super) cross: f64,
+    pub(super) ramp: f64,
+    pub(super) piece: u32,
+    pub(super) index: u32,
+    /// Keeps a band of its own.
+    pub(super) alone: bool,
+}
+
+/// A resonance that bands must resolve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Zone {
+    /// Its centre, Hz.
+    pub centre_hz: f64,
+    /// Half its width at half power, Hz.
+    pub half_width_hz: f64,
+}
+
+impl FineBin {
+    /// True when `next` is the neighbour above in the same transform.
+    pub fn precedes(&self, next: &FineBin) -> bool {
+        self.piece == next.piece && self.index + 1 == next.index
+    }
+}
+
+/// Widest band at a frequency, Hz.
+fn widest(frequency_hz: f64, relative: f64, zones: &[Zone]) -> f64 {
+    zones.iter().fold(relative * frequency_hz, |width, zone| {
+        width.min(GRADING * ((frequency_hz - zone.centre_hz).abs() + zone.half_width_hz))
+    })
+}
+
+/// Joins bands of different stretches that lie side by side.
+fn merge(bands: Vec<Band>) -> Vec<Band> {
+    let mut out: Vec<Band> = vec![];
+    for band in bands {
+        match out.last_mut() {
+            Some(last)
+                if band.high_hz <= last.low_hz * (1.0 + BAND_WIDTH) && last.dof.min(band.dof) > 1.0
+                    || band.low_hz == last.low_hz =>
+            {
+                let total = last.dof + band.dof;
+                let share = band.dof / total;
+                last.power += (band.power - last.power) * share;
+                last.cross += (band.cross - last.cross) * share;
+                last.ramp += (band.ramp - last.ramp) * share;
+                last.dof = total;
+                last.high_hz = last.high_hz.max(band.high_hz);
+                last.cells.extend(band.cells);
+            }
+            _ => out.push(band),
+        }
+    }
+    out
+}
+
+/// Bands of bins: those of one transform that lie side by side are joined while the band stays narrow enough.
+pub(super) fn banded(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
+    let mut bands: Vec<Band> = vec![];
+    for bin in fine {
+        let (piece, k, f) = (bin.piece as usize, bin.index as usize, bin.frequency_hz);
+        // Bins of one transform arrive in ascending order, so that only the newest band can take them.
+        if !bin.alone
+            && let Some(band) = bands.last_mut()
+            && let Some(cell) = band.cells.last_mut()
+            && cell.piece == piece
+            && cell.to + 1 == k
+            && f - band.low_hz <= widest(0.5 * (f + band.low_hz), BAND_WIDTH, zones)
+        {
+            let total = band.dof + bin.dof;
+            let sums = [bin.power, bin.cross, bin.ramp];
+            for (value, sum) in [&mut band.power, &mut band.cross, &mut band.ramp].into_iter().zip(sums) {
+                *value += (sum - *value) * bin.dof / total;
+            }
+            band.dof = total;
+            band.high_hz = f;
+            cell.to = k;
+            cell.dof = total;
+            continue;
+        }
+        bands.push(Band {
+            low_hz: f,
+            high_hz: f,
+            dof: bin.dof,
+            power: bin.power,
+            cross: bin.cross,
+            ramp: bin.ramp,
+            cells: vec![Cell { piece, from: k, to: k, dof: bin.dof }],
+        });
+    }
+    bands.sort_by(|a, b| a.low_hz.total_cmp(&b.low_hz));
+    if bands.len() > MANY_BANDS + 64 * zones.len() {
+        bands = merge(bands);
+    }
+    bands
+}

@@ -1,0 +1,109 @@
+//! The evidence: bands with the expectation of every term in them.
+
+use super::bands::{Band, FineBin, Piece, Zone, banded};
+use crate::noise::model::Spectral;
+use std::sync::Arc;
+
+/// The evidence of one rate channel.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Evidence {
+    /// Sample interval, s.
+    pub tau0_s: f64,
+    /// Length of the record from the first to the last usable block, s.
+    pub span_s: f64,
+    /// Usable time, s.
+    pub usable_s: f64,
+    /// Bands, ascending in frequency within each piece.
+    pub bands: Vec<Band>,
+    /// Samples in stretches too short between gaps to be transformed at high frequency; they still count in the
+    /// coarse means.
+    pub samples_in_short_stretches: u64,
+    pub(super) pieces: Vec<Piece>,
+    pub(super) fine: Arc<Vec<FineBin>>,
+}
+
+impl Evidence {
+    /// The mean power that a term of coefficient 1 is expected to have in each band, (deg/h)²/Hz.
+    pub fn expectation(&self, term: &dyn Spectral) -> Vec<f64> {
+        self.bands
+            .iter()
+            .map(|band| {
+                let mut sum = 0.0;
+                for cell in &band.cells {
+                    let Some(piece) = self.pieces.get(cell.piece) else { continue };
+                    let width = cell.to - cell.from + 1;
+                    let points = width.min(4);
+                    let mean: f64 = (0..points)
+                        .map(|i| {
+                            let offset = (i as f64 + 0.5) * width as f64 / points as f64 - 0.5;
+                            piece.expectation(term, cell.from as f64 + offset)
+                        })
+                        .sum::<f64>()
+                        / points as f64;
+                    sum += cell.dof * mean;
+                }
+                sum / band.dof
+            })
+            .collect()
+    }
+
+    /// The part of the evidence at and below a frequency.
+    pub fn up_to(&self, highest_hz: f64) -> Evidence {
+        let mut part = self.clone();
+        part.bands.retain(|b| b.high_hz <= highest_hz);
+        part.fine = Arc::new(self.fine.iter().filter(|b| b.frequency_hz <= highest_hz).copied().collect());
+        part
+    }
+
+    /// Degrees of freedom of all bands together.
+    pub fn dof(&self) -> f64 {
+        self.bands.iter().map(|b| b.dof).sum()
+    }
+
+    /// The bins, in ascending frequency within each transform; empty for an expected evidence.
+    pub fn fine(&self) -> &[FineBin] {
+        &self.fine
+    }
+
+    /// The same evidence with bands that resolve the zones.
+    pub fn resolving(&self, zones: &[Zone]) -> Evidence {
+        if zones.is_empty() || self.fine.is_empty() {
+            return self.clone();
+        }
+        let bands: Vec<Band> = banded(&self.fine, zones);
+        Evidence { bands, ..self.clone() }
+    }
+
+    /// The same evidence without the cosine modes that `hidden` names by the averaging time of their means (s), their order
+    /// and the number of means.
+    pub fn leaving_out(&self, hidden: impl Fn(f64, usize, usize) -> bool) -> Evidence {
+        let out = |bin: &FineBin| {
+            let piece = self.pieces.get(bin.piece as usize).filter(|p| p.blocks > 0);
+            piece.is_some_and(|p| hidden(p.tau_s, bin.index as usize, p.blocks))
+        };
+        let fine: Vec<FineBin> = self.fine.iter().filter(|b| !out(b)).copied().collect();
+        if fine.len() == self.fine.len() {
+            return self.clone();
+        }
+        Evidence { bands: banded(&fine, &[]), fine: Arc::new(fine), ..self.clone() }
+    }
+
+    /// Mean power of the band nearest to a frequency, (deg/h)²/Hz; 0 without any.
+    pub fn power_near(&self, frequency_hz: f64) -> f64 {
+        let distance = |b: &Band| (b.centre_hz() - frequency_hz).abs();
+        self.bands.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(0.0, |b| b.power)
+    }
+
+    /// Frequency step of the transform that shows a frequency best, Hz.
+    pub fn resolution_hz(&self, frequency_hz: f64) -> f64 {
+        let nearest = self
+            .fine
+            .iter()
+            .min_by(|a, b| {
+                let distance = |x: &FineBin| (x.frequency_hz - frequency_hz).abs();
+                distance(a).total_cmp(&distance(b))
+            })
+            .and_then(|bin| self.pieces.get(bin.piece as usize));
+        nearest.map_or(f64::INFINITY, |p| p.step_hz)
+    }
+}
