@@ -4,7 +4,7 @@ use super::choose::{Chosen, choose};
 use super::{Faults, Series, SeriesError, SeriesOptions};
 use crate::effect::Column;
 use crate::ingest::{Source, TimeBaseSpec, open_recording, prepare};
-use crate::recording::{Sink, Slab};
+use crate::recording::{SampleBlock, Sink};
 use std::path::PathBuf;
 
 /// Reads a recording: a file of any kind that is read, several in sequence, a pattern, or a manifest.
@@ -70,7 +70,7 @@ pub fn load_series_of(
     Ok(series)
 }
 
-/// Takes the slabs of a recording.
+/// Takes the sample blocks of a recording.
 struct Rows<'a> {
     chosen: &'a Chosen,
     interval_s: f64,
@@ -89,11 +89,11 @@ impl<'a> Rows<'a> {
 }
 
 impl Sink for Rows<'_> {
-    fn push(&mut self, slab: &Slab<'_>) {
-        let Some(rates) = slab.values.get(self.chosen.rate) else { return };
-        let stamps = self.chosen.time.and_then(|t| slab.values.get(t)).filter(|s| !s.is_empty());
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        let Some(rates) = block.values.get(self.chosen.rate) else { return };
+        let stamps = self.chosen.time.and_then(|t| block.values.get(t)).filter(|s| !s.is_empty());
         // After a clock that was set back, the scale of the recording goes on and that of the stamps does not.
-        let shift = stamps.and_then(|s| s.first()).map_or(0.0, |first| slab.time_s - first);
+        let shift = stamps.and_then(|s| s.first()).map_or(0.0, |first| block.time_s - first);
         let series = &mut self.series;
         for (i, rate) in rates.iter().enumerate() {
             if !rate.is_finite() {
@@ -102,13 +102,13 @@ impl Sink for Rows<'_> {
             }
             let time_s = match stamps.and_then(|s| s.get(i)) {
                 Some(stamp) => stamp + shift,
-                None => slab.time_s + i as f64 * self.interval_s,
+                None => block.time_s + i as f64 * self.interval_s,
             };
             series.time_s.push(time_s);
             series.rate_deg_h.push(*rate);
-            series.index.push(slab.first_index + i as u64);
+            series.index.push(block.first_index + i as u64);
             for (column, slot, (factor, offset)) in &self.chosen.beside {
-                let value = slab.values.get(*slot).and_then(|v| v.get(i)).copied().unwrap_or(f64::NAN);
+                let value = block.values.get(*slot).and_then(|v| v.get(i)).copied().unwrap_or(f64::NAN);
                 if let Some(values) = series.columns.get_mut(column) {
                     values.push(value * factor + offset);
                 }

@@ -38,7 +38,7 @@ pub struct Record {
 impl Record {
     /// With at most `most` block means.
     pub fn of(samples: &[f64], most: usize) -> Record {
-        let mut blocks = BlockSeriesAccumulator::with_most_blocks(most);
+        let mut blocks = BlockSeriesAccumulator::with_max_blocks(most);
         blocks.push(samples, 0);
         let mut welch = WelchAccumulator::with_segment(1024);
         welch.push(samples, false);

@@ -15,7 +15,7 @@ use sagnac::noise::tau_grid::TauGrid;
 use sagnac::recording::clock::{Cadence, Clock, ClockError, Step, Tracker};
 use sagnac::recording::faults::FaultLog;
 use sagnac::recording::value_checks::{ValueChecks, ValueFacts, ValueFaults};
-use sagnac::recording::{Channel, ColumnRef, Role, Sink, Slab};
+use sagnac::recording::{Channel, ColumnRef, Role, SampleBlock, Sink};
 use sagnac::units::Unit;
 
 /// Stamps whose exact values are the doubles; everything about them follows in extended precision.
@@ -218,7 +218,13 @@ fn checked(values: &[f64]) -> (ValueFacts, ValueFaults) {
     };
     let mut checks = ValueChecks::new(&[channel], 1.0);
     let columns = [values.to_vec()];
-    checks.push(&Slab { first_index: 0, first_row: 1, time_s: 0.0, continues: false, values: &columns });
+    checks.push(&SampleBlock {
+        first_index: 0,
+        first_row: 1,
+        time_s: 0.0,
+        continues: false,
+        values: &columns,
+    });
     let (facts, faults) = checks.finish(&mut FaultLog::default());
     (facts[0], faults)
 }

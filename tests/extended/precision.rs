@@ -205,7 +205,7 @@ fn block_means_and_their_modes_are_right_on_hard_records() {
     let mut worst = Worst::default();
     for record in hard_records() {
         let whole = record.stretches.len() == 1;
-        let mut a = BlockSeriesAccumulator::with_most_blocks(300);
+        let mut a = BlockSeriesAccumulator::with_max_blocks(300);
         for (first, y) in &record.stretches {
             for (k, part) in y.chunks(777).enumerate() {
                 a.push(part, first + 777 * k as u64);

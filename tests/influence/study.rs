@@ -12,7 +12,7 @@ use sagnac::influence::cut::FileSpan;
 use sagnac::influence::repeatability::{self, Repeatability};
 use sagnac::influence::{ComparisonTest, Influence, RepeatabilityTest, intervals, runs};
 use sagnac::rate_table::blocks::{Blocks, Collector};
-use sagnac::recording::{Channel, ColumnRef, Role, Sink, Slab};
+use sagnac::recording::{Channel, ColumnRef, Role, SampleBlock, Sink};
 use sagnac::units::Unit;
 
 /// The blocks of a recording, and its level beside.
@@ -37,7 +37,7 @@ fn blocks(r: &Recorded, dt: f64) -> Blocks {
         let level = if r.level.is_empty() { vec![0.0; i - start] } else { r.level[start..i].to_vec() };
         let values = [r.rate[start..i].to_vec(), r.temperature[start..i].to_vec(), level];
         let first_index = (r.time_s[start] / dt).round() as u64;
-        collector.push(&Slab {
+        collector.push(&SampleBlock {
             first_index,
             first_row: start as u64 + 1,
             time_s: r.time_s[start],

@@ -17,7 +17,7 @@ use sagnac::estimate::Estimate;
 use sagnac::ids;
 use sagnac::rate_table::blocks::{Blocks, Collector};
 use sagnac::rate_table::{Setup, TableRun, alignment, scale_factor};
-use sagnac::recording::{Channel, ColumnRef, Role, Sink, Slab};
+use sagnac::recording::{Channel, ColumnRef, Role, SampleBlock, Sink};
 use sagnac::units::Unit;
 use std::path::PathBuf;
 
@@ -142,7 +142,13 @@ fn blocks_of(channels: Vec<(&str, Role, Vec<f64>)>, dt: f64) -> Blocks {
         .collect();
     let values: Vec<Vec<f64>> = channels.into_iter().map(|c| c.2).collect();
     let mut collector = Collector::new(&list, dt, None);
-    collector.push(&Slab { first_index: 0, first_row: 1, time_s: 0.0, continues: false, values: &values });
+    collector.push(&SampleBlock {
+        first_index: 0,
+        first_row: 1,
+        time_s: 0.0,
+        continues: false,
+        values: &values,
+    });
     collector.finish(dt)
 }
 

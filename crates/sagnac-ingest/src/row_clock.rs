@@ -11,7 +11,7 @@ use crate::value_checks::plausible::Plausible;
 use sagnac_core::message::{Arg, Note};
 use sagnac_core::numeric::range::settled;
 use sagnac_core::recording::integrity::Integrity;
-use sagnac_core::recording::{Sink, Slab};
+use sagnac_core::recording::{SampleBlock, Sink};
 
 /// The samples of one file.
 pub(super) struct FileSpan {
@@ -47,7 +47,7 @@ pub(super) struct RowClock<'a> {
     /// The first row of the block was placed by its file.
     joined: bool,
     angles: Angles,
-    /// The next slab of differences begins a stretch.
+    /// The next sample block of differences begins a stretch.
     broken: bool,
     /// Losses of the plan that were told.
     lost: usize,
@@ -413,15 +413,16 @@ impl<'a> RowClock<'a> {
     }
 
     fn pass_on(&mut self, values: &[Vec<f64>], first_row: u64, time_s: f64, sinks: &mut [&mut dyn Sink]) {
-        let slab = Slab { first_index: self.index, first_row, time_s, continues: self.connected, values };
+        let sample_block =
+            SampleBlock { first_index: self.index, first_row, time_s, continues: self.connected, values };
         self.pauses.passed(time_s - self.plan.start_s());
-        self.checks.push(&slab);
-        self.plausible.push(&slab, &mut self.log);
+        self.checks.push(&sample_block);
+        self.plausible.push(&sample_block, &mut self.log);
         for sink in sinks {
-            sink.push(&slab);
+            sink.push(&sample_block);
         }
-        self.index += slab.len() as u64;
-        self.used += slab.len() as u64;
+        self.index += sample_block.len() as u64;
+        self.used += sample_block.len() as u64;
         self.connected = true;
     }
 

@@ -1,4 +1,4 @@
-//! A recording as a stream: columns become channels in inside units, stamps become a time base, slabs go to sinks.
+//! A recording as a stream: columns become channels in inside units, stamps become a time base, sample blocks go to sinks.
 
 use super::plan::{Plan, TimeBaseSpec, prepare};
 use super::row_clock::RowClock;
@@ -85,7 +85,7 @@ pub struct StreamReport {
 }
 
 impl Plan<'_> {
-    /// Reads the recording to its end. Every sink gets every slab; `progress` is told bytes read and bytes in all.
+    /// Reads the recording to its end. Every sink gets every sample block; `progress` is told bytes read and bytes in all.
     ///
     /// # Errors
     /// What [`Source::read`] says, or a recording in which no row is usable.

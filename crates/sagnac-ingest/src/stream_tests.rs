@@ -1,7 +1,7 @@
 use super::*;
 use crate::english::english;
 use sagnac_core::recording::ColumnRef;
-use sagnac_core::recording::Slab;
+use sagnac_core::recording::SampleBlock;
 use sagnac_core::units::Unit;
 
 fn channel(id: &str, role: Role, unit: &str, scale: f64) -> Channel {
@@ -14,14 +14,14 @@ fn channel(id: &str, role: Role, unit: &str, scale: f64) -> Channel {
     }
 }
 
-/// A slab as a sink gets it: first index, first row, time, continues, values.
+/// A sample block as a sink gets it: first index, first row, time, continues, values.
 type Kept = (u64, u64, f64, bool, Vec<Vec<f64>>);
 
 #[derive(Default)]
 struct Keep(Vec<Kept>);
 
 impl Sink for Keep {
-    fn push(&mut self, s: &Slab<'_>) {
+    fn push(&mut self, s: &SampleBlock<'_>) {
         self.0.push((s.first_index, s.first_row, s.time_s, s.continues, s.values.to_vec()));
     }
 }

@@ -153,7 +153,7 @@ fn floor(unit: &Unit, detail: &ComparisonRecord) -> Option<Note> {
     let note = Note::new(key)
         .with("b", Arg::rounded(b, 3))
         .with("crossover", time(f.crossover_s))
-        .with("longest_h", crate::noise::identifiable::LONGEST_H);
+        .with("longest_h", crate::noise::identifiable::MAX_HOURS);
     Some(match f.identifiable_h {
         Some(h) => note.with("needed", time(h * 3600.0)),
         None => note,

@@ -4,7 +4,7 @@
 use super::facts::{Condition, Facts, record};
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
-use crate::temperature::findings::{LEAST_SPAN_DEG_C, Schedule as Run};
+use crate::temperature::findings::{MIN_SPAN_DEG_C, Schedule as Run};
 use crate::temperature::segments::Segment;
 use crate::temperature::{SegmentKind, TemperatureTest};
 
@@ -38,7 +38,7 @@ impl Condition for Schedule {
             return vec![record("temperature_course", ConditionStatus::Invalid, &[], None, note)];
         }
         let width = run.reached.high - run.reached.low;
-        if width < LEAST_SPAN_DEG_C {
+        if width < MIN_SPAN_DEG_C {
             let note = Note::new("schedule.flat")
                 .with("channel", channel)
                 .with("value", Arg::figures(0.5 * (run.reached.low + run.reached.high), 4))

@@ -12,7 +12,7 @@ use crate::noise::envelope::EnvelopeAccumulator;
 use crate::noise::identification::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::noise::motion::{Motion, motion, together};
-use crate::recording::{Channel, Role, Sink, Slab};
+use crate::recording::{Channel, Role, SampleBlock, Sink};
 
 /// Time over which temperatures are smoothed, s.
 const SMOOTHING_S: f64 = 60.0;
@@ -283,24 +283,24 @@ impl Pass {
 }
 
 impl Sink for Pass {
-    fn push(&mut self, slab: &Slab<'_>) {
+    fn push(&mut self, block: &SampleBlock<'_>) {
         for gyro in &mut self.gyros {
-            let Some(values) = slab.values.get(gyro.slot) else { continue };
-            gyro.digest.push(values, slab.first_index, slab.continues);
+            let Some(values) = block.values.get(gyro.slot) else { continue };
+            gyro.digest.push(values, block.first_index, block.continues);
             gyro.angle.push(values, self.tau0_s);
         }
         for (slot, track, envelope) in &mut self.temperatures {
-            if let Some(values) = slab.values.get(*slot) {
-                track.push(values, slab.time_s - self.start_s, slab.continues);
-                envelope.push(values, slab.first_index);
+            if let Some(values) = block.values.get(*slot) {
+                track.push(values, block.time_s - self.start_s, block.continues);
+                envelope.push(values, block.first_index);
             }
         }
         for (slot, levels) in &mut self.driven {
-            levels.push(slab.values.get(*slot).map(Vec::as_slice).unwrap_or_default());
+            levels.push(block.values.get(*slot).map(Vec::as_slice).unwrap_or_default());
         }
-        let Some(table) = self.table.and_then(|t| slab.values.get(t)) else { return };
+        let Some(table) = self.table.and_then(|t| block.values.get(t)) else { return };
         for (slot, follow) in &mut self.follow {
-            follow.push(table, slab.values.get(*slot).map(Vec::as_slice).unwrap_or_default());
+            follow.push(table, block.values.get(*slot).map(Vec::as_slice).unwrap_or_default());
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::acceptance::condition::influence::Acted;
 use crate::influence::intervals::Intervals;
 use crate::influence::{ComparisonTest, Influence};
 use crate::rate_table::blocks::Blocks;
-use crate::recording::{Sink, Slab};
+use crate::recording::{SampleBlock, Sink};
 
 /// Share of the largest level by which a channel may differ from what is stated.
 const AGREES: f64 = 0.1;
@@ -27,16 +27,16 @@ struct Loudness {
 }
 
 impl Sink for Loudness {
-    fn push(&mut self, slab: &Slab<'_>) {
-        let end = slab.first_index + slab.len() as u64;
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        let end = block.first_index + block.len() as u64;
         for (at, (from, to)) in self.spans.iter().enumerate() {
-            let (first, last) = ((*from).max(slab.first_index), (*to).min(end));
+            let (first, last) = ((*from).max(block.first_index), (*to).min(end));
             if first >= last {
                 continue;
             }
-            let inside = (first - slab.first_index) as usize..(last - slab.first_index) as usize;
+            let inside = (first - block.first_index) as usize..(last - block.first_index) as usize;
             for (slot, sums) in &mut self.gyros {
-                let values = slab.values.get(*slot).and_then(|v| v.get(inside.clone())).unwrap_or_default();
+                let values = block.values.get(*slot).and_then(|v| v.get(inside.clone())).unwrap_or_default();
                 let Some(sum) = sums.get_mut(at) else { continue };
                 for part in values.chunks(WITHIN).filter(|p| p.iter().all(|v| v.is_finite())) {
                     let mean = part.iter().sum::<f64>() / part.len() as f64;

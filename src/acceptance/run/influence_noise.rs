@@ -9,7 +9,7 @@ use crate::influence::comparison::level_name;
 use crate::influence::intervals::Intervals;
 use crate::noise::digest::{DigestPlan, RateAccumulator};
 use crate::rate_table::blocks::Blocks;
-use crate::recording::{Sink, Slab};
+use crate::recording::{SampleBlock, Sink};
 
 /// N of one channel in one state.
 struct State {
@@ -57,18 +57,18 @@ struct Collector {
 }
 
 impl Sink for Collector {
-    fn push(&mut self, slab: &Slab<'_>) {
-        let end = slab.first_index + slab.len() as u64;
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        let end = block.first_index + block.len() as u64;
         for (at, (from, to, state)) in self.spans.iter().enumerate() {
-            let (first, last) = ((*from).max(slab.first_index), (*to).min(end));
+            let (first, last) = ((*from).max(block.first_index), (*to).min(end));
             if first >= last {
                 continue;
             }
-            let continues = slab.continues && first == slab.first_index && self.last == Some(at);
+            let continues = block.continues && first == block.first_index && self.last == Some(at);
             self.last = Some(at);
-            let inside = (first - slab.first_index) as usize..(last - slab.first_index) as usize;
+            let inside = (first - block.first_index) as usize..(last - block.first_index) as usize;
             for (slot, digests) in &mut self.gyros {
-                let values = slab.values.get(*slot).and_then(|v| v.get(inside.clone()));
+                let values = block.values.get(*slot).and_then(|v| v.get(inside.clone()));
                 if let (Some(values), Some(digest)) = (values, digests.get_mut(*state)) {
                     digest.push(values, first, continues);
                 }

@@ -8,7 +8,7 @@ use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
 use crate::noise::family::Estimator;
 use crate::noise::tau_grid::TauGrid;
 use crate::recording::integrity::Fault;
-use crate::recording::{Channel, Role, Sink, Slab};
+use crate::recording::{Channel, Role, SampleBlock, Sink};
 use crate::temperature::track::{Means, Track};
 use std::collections::BTreeMap;
 
@@ -102,21 +102,21 @@ impl Inside {
 }
 
 impl Sink for Inside {
-    fn push(&mut self, slab: &Slab<'_>) {
+    fn push(&mut self, block: &SampleBlock<'_>) {
         for (slot, digest) in &mut self.gyros {
-            if let Some(values) = slab.values.get(*slot) {
-                digest.push(values, slab.first_index, slab.continues);
+            if let Some(values) = block.values.get(*slot) {
+                digest.push(values, block.first_index, block.continues);
             }
         }
         for (_, slot, track) in &mut self.stability {
-            if let Some(values) = slab.values.get(*slot) {
-                track.push(values, slab.time_s - self.start_s, slab.continues);
+            if let Some(values) = block.values.get(*slot) {
+                track.push(values, block.time_s - self.start_s, block.continues);
             }
         }
         if let Some((slots, track)) = &mut self.track {
             for (at, slot) in slots.iter().enumerate() {
-                if let Some(values) = slab.values.get(*slot) {
-                    track.push(at, values, slab.first_index);
+                if let Some(values) = block.values.get(*slot) {
+                    track.push(at, values, block.first_index);
                 }
             }
         }
@@ -198,18 +198,18 @@ impl Overview {
 }
 
 impl Sink for Overview {
-    fn push(&mut self, slab: &Slab<'_>) {
+    fn push(&mut self, block: &SampleBlock<'_>) {
         for (slot, envelope) in &mut self.channels {
-            if let Some(values) = slab.values.get(*slot) {
-                envelope.push(values, slab.first_index);
+            if let Some(values) = block.values.get(*slot) {
+                envelope.push(values, block.first_index);
             }
         }
         for r in &mut self.rails {
-            let Some(values) = slab.values.get(r.slot) else { continue };
+            let Some(values) = block.values.get(r.slot) else { continue };
             for (i, v) in values.iter().enumerate() {
                 if *v <= r.low || *v >= r.high {
                     r.count += 1;
-                    r.first.get_or_insert((slab.first_row + i as u64, slab.time_s));
+                    r.first.get_or_insert((block.first_row + i as u64, block.time_s));
                 }
             }
         }

@@ -31,12 +31,12 @@ pub fn chi_square_quantile(probability: f64, dof: f64) -> f64 {
 }
 
 /// Degrees of freedom from which the expansion about the normal distribution is used: its error is below 1e-9 there.
-const MANY: f64 = 1000.0;
+const EXPANSION_DOF: f64 = 1000.0;
 
 /// Upper tail beyond `t`.
 pub(super) fn student_upper_tail(t: f64, dof: f64) -> f64 {
     let dof = dof.max(1.0);
-    if dof >= MANY {
+    if dof >= EXPANSION_DOF {
         // Wallace, Annals of Mathematical Statistics 30 (1959) 1121.
         let size = if dof.is_finite() { (dof * (t * t / dof).ln_1p()).sqrt() } else { t.abs() };
         let ratio = if dof.is_finite() { (8.0 * dof + 1.0) / (8.0 * dof + 3.0) } else { 1.0 };
@@ -48,7 +48,7 @@ pub(super) fn student_upper_tail(t: f64, dof: f64) -> f64 {
 /// The quantile of a probability.
 pub(super) fn student_quantile(probability: f64, dof: f64) -> f64 {
     let (dof, p) = (dof.max(1.0), probability.clamp(1e-15, 1.0 - 1e-15));
-    if dof >= MANY {
+    if dof >= EXPANSION_DOF {
         // Abramowitz and Stegun 26.7.5.
         let z = normal_quantile(p);
         let (z2, inverse) = (z * z, 1.0 / dof);

@@ -3,7 +3,7 @@
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, LowerLimit, UpperLimit};
 use crate::message::{Arg, Note};
-use crate::temperature::settled::SHOWN;
+use crate::temperature::settled::STATEMENT_PROBABILITY;
 use crate::temperature::start::{Missing, Start};
 use crate::temperature::warm_up::WarmUpFindings;
 
@@ -38,8 +38,8 @@ pub fn warm_up(found: &WarmUpFindings, channel: &str) -> Vec<Estimate> {
 
 /// A row whose time counts from an unknown moment: it is at least what is seen from the first sample on.
 fn unknown(row: Estimate, why: Missing) -> Estimate {
-    let seen = row.value.and_then(|v| row.spread.bound(v, 1.0 - SHOWN)).filter(|v| *v > 0.0);
-    let least = row.lower_limit.or(seen.map(|value| LowerLimit { value, coverage: SHOWN }));
+    let seen = row.value.and_then(|v| row.spread.bound(v, 1.0 - STATEMENT_PROBABILITY)).filter(|v| *v > 0.0);
+    let least = row.lower_limit.or(seen.map(|value| LowerLimit { value, coverage: STATEMENT_PROBABILITY }));
     let least = least.filter(|_| row.id == "warm_up_time");
     let mut out = Estimate::not_identifiable(row.id, &row.channel, None, row.unit, METHOD).at_least(least);
     out.notes = row.notes;
@@ -68,7 +68,7 @@ fn time(found: &WarmUpFindings, channel: &str, described: Note) -> Estimate {
             Note::new("thermal.warm_up_too_short").with("hours", hours)
         };
         let least = found.settled.at_least_s;
-        let limit = (least > 0.0).then_some(LowerLimit { value: least, coverage: SHOWN });
+        let limit = (least > 0.0).then_some(LowerLimit { value: least, coverage: STATEMENT_PROBABILITY });
         return Estimate::not_identifiable(id, channel, None, "s", METHOD).at_least(limit).note(note);
     }
     if r.value <= 0.0 {

@@ -1,6 +1,6 @@
 //! The Allan family of a record that arrives in blocks: σ(τ) of unbroken stretches, pooled.
 //!
-//! Up to [`KEPT_SAMPLES`] samples, or at any length on request, the phase is kept and every overlapping term is summed:
+//! Up to [`MAX_KEPT_SAMPLES`] samples, or at any length on request, the phase is kept and every overlapping term is summed:
 //! values agree with the textbook sum to rounding. Beyond, the sums go on in a few MB with steps of at most m/64.
 //! A gap splits the record: only terms whose points all lie in unbroken data are used.
 //!
@@ -16,10 +16,10 @@ use super::strided::{PhaseShift, StridedSums};
 use super::tau_grid::TauGrid;
 
 /// Samples up to which every phase is kept without being asked for.
-pub const KEPT_SAMPLES: u64 = 4_000_000;
+pub const MAX_KEPT_SAMPLES: u64 = 4_000_000;
 
 /// Largest factor at which white angle noise makes a strided record sum every term.
-const DENSE_FACTOR_LIMIT: u64 = 1 << 16;
+const MAX_DENSE_FACTOR: u64 = 1 << 16;
 
 /// What is to be computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -229,7 +229,7 @@ impl AllanAccumulator {
 
     fn bound_memory(&mut self) {
         let first = self.first_end.map_or(0, |e| e.1);
-        if !self.plan.exact && self.stretches.samples() + first + self.current > KEPT_SAMPLES {
+        if !self.plan.exact && self.stretches.samples() + first + self.current > MAX_KEPT_SAMPLES {
             self.stop_keeping(None);
         }
     }
@@ -359,10 +359,10 @@ fn stretches_of<'a>(phases: &'a [f64], starts: &'a [usize]) -> impl Iterator<Ite
 /// Averaging factor below which white angle noise rules: σ falls nearly as 1/τ over the octave. There a strided sum
 /// would lose degrees of freedom in proportion to the terms left out.
 fn white_angle_reach(phases: &[f64], starts: &[usize]) -> u64 {
-    let octaves = TauGrid::Octave.factors(1.0, None, 2 * DENSE_FACTOR_LIMIT);
+    let octaves = TauGrid::Octave.factors(1.0, None, 2 * MAX_DENSE_FACTOR);
     let points = kept_points(Estimator::Allan, &octaves, phases, starts);
     let steep = |w: &&[DeviationPoint]| w[1].deviation < 0.6 * w[0].deviation;
-    points.windows(2).filter(steep).map(|w| 2 * w[1].m).max().unwrap_or(0).min(2 * DENSE_FACTOR_LIMIT)
+    points.windows(2).filter(steep).map(|w| 2 * w[1].m).max().unwrap_or(0).min(2 * MAX_DENSE_FACTOR)
 }
 
 fn kept_points(

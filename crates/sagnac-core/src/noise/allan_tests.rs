@@ -199,7 +199,7 @@ fn a_stride_of_one_sixty_fourth_scatters_no_more() {
 
 #[test]
 fn a_long_record_goes_on_strided_and_stays_close() {
-    let count = KEPT_SAMPLES as usize + 500_000;
+    let count = MAX_KEPT_SAMPLES as usize + 500_000;
     let y = white(count, 5);
     let run = |exact| {
         let estimators = vec![Estimator::Allan, Estimator::Total];
@@ -223,7 +223,7 @@ fn a_long_record_goes_on_strided_and_stays_close() {
 
 #[test]
 fn white_angle_noise_keeps_every_term() {
-    let angle = white(KEPT_SAMPLES as usize + 300_001, 6);
+    let angle = white(MAX_KEPT_SAMPLES as usize + 300_001, 6);
     let y: Vec<f64> = angle.windows(2).map(|w| w[1] - w[0]).collect();
     let mut allan =
         AllanAccumulator::new(AllanPlan { estimators: vec![Estimator::Allan], ..plan(TauGrid::Octave) });

@@ -4,9 +4,9 @@ use super::data::BlockSeries;
 use super::phase::two_sum;
 
 /// Blocks that remain at most.
-pub const MOST_BLOCKS: usize = 1 << 18;
+pub const MAX_BLOCKS: usize = 1 << 18;
 
-/// Streaming block means. Blocks are aligned to the grid index; where more than [`MOST_BLOCKS`] would remain,
+/// Streaming block means. Blocks are aligned to the grid index; where more than [`MAX_BLOCKS`] would remain,
 /// neighbours are merged.
 #[derive(Debug, Clone)]
 pub struct BlockSeriesAccumulator {
@@ -25,13 +25,13 @@ const LAST_INDEX: u64 = 1 << 62;
 
 impl Default for BlockSeriesAccumulator {
     fn default() -> Self {
-        Self::with_most_blocks(MOST_BLOCKS)
+        Self::with_max_blocks(MAX_BLOCKS)
     }
 }
 
 impl BlockSeriesAccumulator {
     /// An empty accumulator that keeps at most `most` blocks (at least 2).
-    pub fn with_most_blocks(most: usize) -> Self {
+    pub fn with_max_blocks(most: usize) -> Self {
         BlockSeriesAccumulator { shift: 0, first_block: 0, blocks: vec![], most: most.max(2), reference: 0.0 }
     }
 
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn blocks_are_aligned_and_gaps_are_empty() {
-        let mut acc = BlockSeriesAccumulator::with_most_blocks(4);
+        let mut acc = BlockSeriesAccumulator::with_max_blocks(4);
         acc.push(&[1.0, 2.0, 3.0], 5);
         acc.push(&[7.0], 11);
         acc.push(&[9.0, 11.0], 14);
@@ -166,7 +166,7 @@ mod tests {
         assert!(series.mean[1].is_nan() && series.count == vec![1, 0, 1]);
         acc.push(&[5.0], 1 << 61);
         let far = acc.finish();
-        assert!(far.mean.len() <= MOST_BLOCKS);
+        assert!(far.mean.len() <= MAX_BLOCKS);
         assert_eq!(far.count.iter().map(|c| u64::from(*c)).sum::<u64>(), 3);
     }
 

@@ -7,11 +7,11 @@
 
 /// Allan deviation times τ, in steps, below which the output is coarse where one of the first octaves has it. Rounding
 /// alone gives a half; with noise of half a step a sample it is 0.7 from the first octave on.
-const COARSE: f64 = 0.7;
+const COARSE_SHARE: f64 = 0.7;
 /// Octaves that are looked at: a pattern of two levels that alternate is large in the first alone.
 const OCTAVES: usize = 3;
 /// The same of the shortest time that is used.
-const MOVED: f64 = 2.0;
+const MIN_STEPS_MOVED: f64 = 2.0;
 
 /// The highest frequency that is used, Hz; `None` where rounding is fine enough for all of them.
 ///
@@ -21,11 +21,11 @@ pub fn highest_hz(step_deg_h: f64, tau0_s: f64, points: &[(u64, f64)]) -> Option
     let step_arcsec = step_deg_h * tau0_s;
     let steps = |(m, deviation): &(u64, f64)| deviation * (*m as f64 * tau0_s) / step_arcsec;
     points.first().filter(|p| p.0 == 1)?;
-    let coarse = points.iter().take(OCTAVES).any(|p| steps(p) < COARSE);
+    let coarse = points.iter().take(OCTAVES).any(|p| steps(p) < COARSE_SHARE);
     if step_arcsec.is_nan() || step_arcsec <= 0.0 || !coarse {
         return None;
     }
-    let (m, _) = points.iter().find(|p| steps(p) >= MOVED).or(points.last())?;
+    let (m, _) = points.iter().find(|p| steps(p) >= MIN_STEPS_MOVED).or(points.last())?;
     Some(0.5 / (*m as f64 * tau0_s))
 }
 

@@ -7,16 +7,16 @@ use super::lines::SpectralLine;
 const CORE_SHARE: f64 = 0.7;
 /// Half width of the core in modes, where a line of any phase and frequency keeps nine tenths of its power, and in
 /// bins of a windowed periodogram.
-const CORE: [usize; 2] = [3, 2];
+const CORE_HALF_WIDTH: [usize; 2] = [3, 2];
 /// Bins of the periodogram to each side that a disturbance may fill.
-const WINDOW: f64 = 8.0;
+const WINDOW_BINS: f64 = 8.0;
 /// Excess, in standard deviations of noise, that is needed to tell.
-const NEEDED: f64 = 6.0;
+const MIN_SCORE: f64 = 6.0;
 
 /// True unless the power of the peak is spread over more of the spectrum than a line spreads.
 pub fn is_coherent(evidence: &Evidence, line: &SpectralLine) -> bool {
     let near = |bin: &&FineBin, reach: f64| (bin.frequency_hz - line.frequency_hz).abs() <= reach;
-    let reach_hz = WINDOW * line.resolution_hz;
+    let reach_hz = WINDOW_BINS * line.resolution_hz;
     let ring: Vec<f64> = evidence
         .fine()
         .iter()
@@ -32,11 +32,11 @@ pub fn is_coherent(evidence: &Evidence, line: &SpectralLine) -> bool {
     let dof = window.first().map_or(1.0, |b| b.dof);
     let excess: f64 = window.iter().map(|b| b.power - floor).sum();
     let sigma = floor * (2.0 * window.len() as f64 / dof).sqrt();
-    if excess < NEEDED * sigma {
+    if excess < MIN_SCORE * sigma {
         return true;
     }
     let peak = (0..window.len()).max_by(|a, b| window[*a].power.total_cmp(&window[*b].power)).unwrap_or(0);
-    let half = if dof > 1.5 { CORE[1] } else { CORE[0] };
+    let half = if dof > 1.5 { CORE_HALF_WIDTH[1] } else { CORE_HALF_WIDTH[0] };
     let core = window.get(peak.saturating_sub(half)..(peak + half + 1).min(window.len())).unwrap_or(&[]);
     core.iter().map(|b| b.power - floor).sum::<f64>() >= CORE_SHARE * excess
 }

@@ -14,11 +14,11 @@ use crate::estimate::{Estimate, Interval, Spread};
 use crate::message::Note;
 
 /// Share of the variance that a term must have where it is read.
-const RULES: f64 = 0.5;
+const DOMINANT_SHARE: f64 = 0.5;
 /// Relative difference of two readings that says nothing: no model of a real output is better.
-const HARMLESS: f64 = 0.02;
+const HARMLESS_DIFFERENCE: f64 = 0.02;
 /// Least degrees of freedom of a point that is read.
-const LEAST_EDF: f64 = 4.0;
+const MIN_EDF: f64 = 4.0;
 /// Coverage of the intervals that are compared.
 const COVERAGE: f64 = 0.95;
 
@@ -47,7 +47,7 @@ impl Curve {
                 deviation: p.point.deviation,
                 edf: p.edf,
             })
-            .filter(|p| p.tau_s >= shortest_s && p.deviation > 0.0 && p.edf >= LEAST_EDF)
+            .filter(|p| p.tau_s >= shortest_s && p.deviation > 0.0 && p.edf >= MIN_EDF)
             .collect();
         Curve { observed }
     }
@@ -74,7 +74,9 @@ fn reading(
     let share = |p: &SlopePoint| parts.allan_variance(p.tau_s, tau0_s) / p.deviation.powi(2);
     let line = runs(&predicted, term)
         .into_iter()
-        .filter(|r| predicted.get(r.clone()).is_some_and(|line| line.iter().all(|p| share(p) >= RULES)))
+        .filter(|r| {
+            predicted.get(r.clone()).is_some_and(|line| line.iter().all(|p| share(p) >= DOMINANT_SHARE))
+        })
         .max_by_key(|r| r.len())?;
     let (seen, expected) = (curve.observed.get(line.clone())?, predicted.get(line)?);
     let (seen_line, expected_line) = (through(seen, term)?, through(expected, term)?);
@@ -149,8 +151,10 @@ fn disputed(estimate: &mut Estimate, read: &Reading) {
     let Interval { low, high, .. } = read.interval;
     let fitted = estimate.interval95();
     let differs = match (fitted, estimate.upper_limit) {
-        (Some(i), _) => low * (1.0 - HARMLESS) > i.high || high * (1.0 + HARMLESS) < i.low,
-        (None, Some(limit)) => low * (1.0 - HARMLESS) > limit.value,
+        (Some(i), _) => {
+            low * (1.0 - HARMLESS_DIFFERENCE) > i.high || high * (1.0 + HARMLESS_DIFFERENCE) < i.low
+        }
+        (None, Some(limit)) => low * (1.0 - HARMLESS_DIFFERENCE) > limit.value,
         (None, None) => false,
     };
     if !differs {

@@ -18,7 +18,7 @@ use crate::numeric::range;
 const SLICE: usize = 8192;
 
 /// Largest rate that can be used, deg/h: the largest number of a file in rad/s, rounded up.
-const LARGEST: f64 = 1e6 * range::LARGEST;
+const MAX_RATE_DEG_H: f64 = 1e6 * range::LARGEST;
 
 /// What a digest of a rate channel is to hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +60,7 @@ pub struct PartSettings {
 }
 
 fn usable(rate_deg_h: f64) -> bool {
-    rate_deg_h.abs() <= LARGEST
+    rate_deg_h.abs() <= MAX_RATE_DEG_H
 }
 
 /// Everything one pass leaves behind. Rates in deg/h.

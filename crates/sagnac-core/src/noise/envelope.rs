@@ -1,7 +1,7 @@
 //! A channel over time for a plot: least, greatest and mean value of at most 2048 spans.
 
 /// Spans that remain at most.
-pub const MOST_SPANS: usize = 2048;
+pub const MAX_SPANS: usize = 2048;
 
 /// Indices beyond are taken for this one, so that they can be added to.
 const LAST_INDEX: u64 = 1 << 62;
@@ -97,7 +97,7 @@ impl EnvelopeAccumulator {
         }
         let first_index = first_index.max(self.first_bin << self.shift);
         let last = first_index.saturating_add(samples.len() as u64 - 1);
-        while (last >> self.shift) - self.first_bin >= MOST_SPANS as u64 {
+        while (last >> self.shift) - self.first_bin >= MAX_SPANS as u64 {
             self.halve();
         }
         let needed = ((last >> self.shift) - self.first_bin) as usize + 1;
@@ -138,7 +138,7 @@ impl EnvelopeAccumulator {
             other.halve();
         }
         let end = |spans: &Self| spans.first_bin + spans.bins.len() as u64;
-        while end(self).max(end(&other)) - self.first_bin > MOST_SPANS as u64 {
+        while end(self).max(end(&other)) - self.first_bin > MAX_SPANS as u64 {
             self.halve();
             other.halve();
         }

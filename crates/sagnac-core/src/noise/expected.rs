@@ -7,7 +7,7 @@
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::identification::StandardThresholds;
-use super::identification::claims::{IDENTIFIABLE, LIMIT_RISE, RIVALRY, rival_of};
+use super::identification::claims::{IDENTIFIABLE, LIMIT_RISE, MIN_RIVAL_RATIO, rival_of};
 use super::identification::linear_fit::{Likelihood, RAMP, Structure, position, toggled};
 use super::identification::profile::Profile;
 use super::model::{NoiseModel, TERMS};
@@ -15,9 +15,9 @@ use crate::estimate::{chi_square_quantile, normal_probability, normal_quantile};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Probability that both decisions must reach before a record counts as long enough.
-pub const POWER_WANTED: f64 = 0.8;
+pub const MIN_POWER: f64 = 0.8;
 /// Longest record considered, h.
-const LONGEST_H: f64 = 1000.0;
+const MAX_HOURS: f64 = 1000.0;
 
 /// What a test with an upper limit can decide.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,14 +29,14 @@ pub struct Power {
     /// Upper limit that the record is expected to give for a unit without the term, unit of the term. `None` where
     /// no such limit exists.
     pub expected_upper_limit_at_zero: Option<f64>,
-    /// Shortest record, h, with which both probabilities reach [`POWER_WANTED`]; `None` when 1000 h do not suffice.
+    /// Shortest record, h, with which both probabilities reach [`MIN_POWER`]; `None` when 1000 h do not suffice.
     pub needed_duration_h: Option<f64>,
 }
 
 impl Power {
     /// True when both decisions are likely enough.
     pub fn is_enough(&self) -> bool {
-        self.fail_probability_at_1_5 >= POWER_WANTED && self.pass_probability_at_half >= POWER_WANTED
+        self.fail_probability_at_1_5 >= MIN_POWER && self.pass_probability_at_half >= MIN_POWER
     }
 }
 
@@ -62,7 +62,7 @@ pub fn decision_power(
     };
     let (fail, pass) = at(samples)?;
     let enough = |hours: f64| {
-        at((hours * 3600.0 / tau0_s) as u64).is_some_and(|(f, p)| f >= POWER_WANTED && p >= POWER_WANTED)
+        at((hours * 3600.0 / tau0_s) as u64).is_some_and(|(f, p)| f >= MIN_POWER && p >= MIN_POWER)
     };
     Some(Power {
         fail_probability_at_1_5: fail,
@@ -106,7 +106,7 @@ fn over_hours(
     let (fail, pass) = at(hours);
     let enough = |h: f64| {
         let (f, p) = at(h);
-        f >= POWER_WANTED && p >= POWER_WANTED
+        f >= MIN_POWER && p >= MIN_POWER
     };
     Power {
         fail_probability_at_1_5: fail,
@@ -118,7 +118,7 @@ fn over_hours(
 
 /// Shortest duration, h, that is enough: halving and doubling from a start, then bisection to 5 %.
 fn shortest(start_h: f64, enough: impl Fn(f64) -> bool) -> Option<f64> {
-    let (mut low, mut high) = (0.0, start_h.clamp(1e-3, LONGEST_H));
+    let (mut low, mut high) = (0.0, start_h.clamp(1e-3, MAX_HOURS));
     if enough(high) {
         for _ in 0..12 {
             if !enough(0.5 * high) {
@@ -129,11 +129,11 @@ fn shortest(start_h: f64, enough: impl Fn(f64) -> bool) -> Option<f64> {
         }
     } else {
         loop {
-            if high >= LONGEST_H {
+            if high >= MAX_HOURS {
                 return None;
             }
             low = high;
-            high = (2.0 * high).min(LONGEST_H);
+            high = (2.0 * high).min(MAX_HOURS);
             if enough(high) {
                 break;
             }
@@ -237,17 +237,17 @@ struct Pair {
 }
 
 /// Relative step from one to the other.
-const STEP: f64 = 0.03;
+const RELATIVE_STEP: f64 = 0.03;
 
 impl Pair {
     fn new(term: NoiseType, value: f64, background: &NoiseModel, samples: u64, tau0_s: f64) -> Option<Pair> {
         let case = |v| Case::new(term, v, background, samples, tau0_s);
-        Some(Pair { here: case(value)?, above: case(value * (1.0 + STEP))? })
+        Some(Pair { here: case(value)?, above: case(value * (1.0 + RELATIVE_STEP))? })
     }
 
     fn scatter(&self, of: impl Fn(&Case) -> Option<f64>) -> Option<Score> {
         let (mean, above) = (of(&self.here)?, of(&self.above)?);
-        let slope = (above - mean) / STEP;
+        let slope = (above - mean) / RELATIVE_STEP;
         // Beyond its own size a term is not seen at all, and the laws below, made for small scatter, would run away.
         let sigma = self.here.relative_sigma(&self.here.structure).min(1.0);
         // The square of the coefficient is estimated like a χ², whose median lies below its mean.
@@ -308,9 +308,9 @@ fn fail_probability(
     let Some(r) = pair.here.rival_ratio() else { return Some(failed(score.needs(guard))) };
     // A rival that is not claimed widens the interval where chance makes it gain so much: it then takes a part of the
     // term, whose estimate lies lower by its share of the mean of what is beyond that gain.
-    let bound = RIVALRY.sqrt();
+    let bound = MIN_RIVAL_RATIO.sqrt();
     let beyond = 1.0 - normal_probability(bound);
-    let density = (-0.5 * RIVALRY).exp() / (2.0 * std::f64::consts::PI).sqrt();
+    let density = (-0.5 * MIN_RIVAL_RATIO).exp() / (2.0 * std::f64::consts::PI).sqrt();
     let taken = density / beyond * (1.0 - r * r).sqrt();
     Some((1.0 - beyond) * failed(score.needs(guard)) + beyond * failed(score.needs((guard + taken) / r)))
 }

@@ -5,12 +5,12 @@ use super::part::{Head, MergeError};
 /// Samples in a block whose mean is taken off.
 const BLOCK: usize = 1024;
 /// A shorter rest of a stretch than this is left out.
-const SHORTEST: usize = 64;
+const MIN_BLOCK: usize = 64;
 /// Bins from −8 to +8 scale units.
 const BINS: usize = 128;
-const REACH: f64 = 8.0;
+const HALF_RANGE: f64 = 8.0;
 /// Fourth powers beyond are summed in other units: many of them would leave the range of a double.
-const LARGEST_POWER: f64 = 1e150;
+const MAX_POWER: f64 = 1e150;
 
 /// Histogram with moments. Values in deg/h.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -150,8 +150,8 @@ impl HistogramAccumulator {
             |moment: f64, power: f64| if variance > 0.0 { moment / variance.powf(power) } else { 0.0 };
         Histogram {
             scale,
-            from: -REACH * scale,
-            bin_width: 2.0 * REACH * scale / BINS as f64,
+            from: -HALF_RANGE * scale,
+            bin_width: 2.0 * HALF_RANGE * scale / BINS as f64,
             counts: self.counts,
             below: self.below,
             above: self.above,
@@ -165,7 +165,7 @@ impl HistogramAccumulator {
 
     fn end_stretch(&mut self) {
         self.head.end_stretch();
-        if self.pending.len() >= SHORTEST {
+        if self.pending.len() >= MIN_BLOCK {
             self.flush();
         }
         self.unused += self.pending.len() as u64;
@@ -192,7 +192,7 @@ impl HistogramAccumulator {
                 two += square;
                 three += square * u;
                 four += square * square;
-                let bin = (u + REACH) * (BINS as f64 / (2.0 * REACH));
+                let bin = (u + HALF_RANGE) * (BINS as f64 / (2.0 * HALF_RANGE));
                 if bin < 0.0 {
                     self.below += 1;
                 } else if let Some(count) = self.counts.get_mut(bin as usize) {
@@ -201,7 +201,7 @@ impl HistogramAccumulator {
                     self.above += 1;
                 }
             }
-            if four > LARGEST_POWER || self.magnitude > 0.0 {
+            if four > MAX_POWER || self.magnitude > 0.0 {
                 self.add_far(inverse);
             } else {
                 self.powers[0] += two;

@@ -9,15 +9,15 @@ use super::model::{NoiseModel, TERMS};
 use nalgebra::{DMatrix, DVector};
 
 /// Longest record considered, h.
-pub const LONGEST_H: f64 = 20_000.0;
+pub const MAX_HOURS: f64 = 20_000.0;
 /// Means that stand for a record: slow terms need no more.
-const MEANS: f64 = 16_384.0;
+const MAX_MEANS: f64 = 16_384.0;
 
 /// Relative standard deviation at the Cramér-Rao bound of a coefficient in a record of `hours`, the terms of `model`
 /// being all there is; `None` when the model lacks the term or the record is too short.
 pub fn relative_bound(term: NoiseType, model: &NoiseModel, hours: f64, tau0_s: f64) -> Option<f64> {
     let value = model.coefficient(term).abs();
-    let tau_s = tau0_s.max(hours * 3600.0 / MEANS);
+    let tau_s = tau0_s.max(hours * 3600.0 / MAX_MEANS);
     let samples = (hours * 3600.0 / tau_s).floor();
     if value <= 0.0 || samples.is_nan() || samples < 64.0 {
         return None;
@@ -29,7 +29,7 @@ pub fn relative_bound(term: NoiseType, model: &NoiseModel, hours: f64, tau0_s: f
     (sd.is_finite() && sd > 0.0).then_some(sd / value)
 }
 
-/// Shortest record, h, in which a term of `model` is identifiable; `None` when [`LONGEST_H`] do not suffice.
+/// Shortest record, h, in which a term of `model` is identifiable; `None` when [`MAX_HOURS`] do not suffice.
 pub fn hours_until_identifiable(term: NoiseType, model: &NoiseModel, tau0_s: f64) -> Option<f64> {
     shortest(|h| relative_bound(term, model, h, tau0_s))
 }
@@ -40,7 +40,7 @@ fn shortest(bound: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     while !enough(high) {
         low = high;
         high *= 2.0;
-        if high > LONGEST_H {
+        if high > MAX_HOURS {
             return None;
         }
     }
@@ -52,7 +52,7 @@ fn shortest(bound: impl Fn(f64) -> Option<f64>) -> Option<f64> {
 }
 
 /// Frequencies at which a model is looked at for an octave.
-const AN_OCTAVE: f64 = 24.0;
+const PER_OCTAVE: f64 = 24.0;
 
 /// As [`relative_bound`], of a description with Markov processes and disturbances, everything in `parameters` unknown:
 /// the Fisher information of Whittle's likelihood, summed over the modes of the record.
@@ -66,7 +66,7 @@ fn relative_bound_among(
     let at = parameters.iter().position(|p| *p == wanted)?;
     let length_s = hours * 3600.0;
     let (lowest_hz, highest_hz) = (0.5 / length_s, 0.5 / tau0_s);
-    let steps = ((highest_hz / lowest_hz).log2() * AN_OCTAVE).ceil();
+    let steps = ((highest_hz / lowest_hz).log2() * PER_OCTAVE).ceil();
     if !(steps >= 1.0 && steps.is_finite()) || length_s < 64.0 * tau0_s {
         return None;
     }

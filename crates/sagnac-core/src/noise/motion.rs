@@ -6,17 +6,17 @@ use std::f64::consts::SQRT_2;
 
 /// Scatter of means over 1 s beyond which a unit may have moved: 0.1 deg/s. Slower than any table test, faster than
 /// the bias of a gyro that is worth testing wanders.
-const MOVED_DEG_H: f64 = 360.0;
+const MAX_SCATTER_DEG_H: f64 = 360.0;
 /// How many times the scatter must exceed what the sample noise explains.
-const BEYOND_NOISE: f64 = 5.0;
+const MIN_NOISE_RATIO: f64 = 5.0;
 /// A single mean so far from the middle one tells of a short turn in a long rest.
-const TURNED_DEG_H: f64 = 1800.0;
+const MAX_FARTHEST_DEG_H: f64 = 1800.0;
 /// Ratio of the steps between neighbouring means to their scatter below which the change is slow.
-const SLOW: f64 = 0.35;
+const MAX_STEP_RATIO: f64 = 0.35;
 /// Share of a mean that the rounding of its sum may make up.
-const ROUNDED: f64 = 1e-12;
+const ROUNDING_SHARE: f64 = 1e-12;
 /// Range of a temperature that can explain a slow change of the bias, degC.
-const WARMING_DEG_C: f64 = 5.0;
+const MIN_WARMING_DEG_C: f64 = 5.0;
 
 /// Whether a channel stood still.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,14 +77,14 @@ pub fn motion(
     let median = *median;
     let farthest = means.iter().map(|m| (m - median).abs()).fold(0.0, f64::max);
     let samples = merged as f64 * blocks.block_len.max(1) as f64;
-    let noise = (sample_noise_deg_h.unwrap_or(0.0) / samples.sqrt()).max(ROUNDED * median.abs());
-    let moved = deviation > MOVED_DEG_H.max(BEYOND_NOISE * noise)
-        || farthest > TURNED_DEG_H.max(2.0 * BEYOND_NOISE * noise);
+    let noise = (sample_noise_deg_h.unwrap_or(0.0) / samples.sqrt()).max(ROUNDING_SHARE * median.abs());
+    let moved = deviation > MAX_SCATTER_DEG_H.max(MIN_NOISE_RATIO * noise)
+        || farthest > MAX_FARTHEST_DEG_H.max(2.0 * MIN_NOISE_RATIO * noise);
     if !moved {
         let known = sample_noise_deg_h.is_some_and(|s| s > 0.0);
         let beyond_noise = if known { deviation / noise } else { 0.0 };
         Motion::Rest { scatter_deg_h: deviation, beyond_noise }
-    } else if steps < SLOW * deviation && warming_deg_c >= WARMING_DEG_C {
+    } else if steps < MAX_STEP_RATIO * deviation && warming_deg_c >= MIN_WARMING_DEG_C {
         Motion::Slow { scatter_deg_h: deviation }
     } else {
         Motion::Moved { scatter_deg_h: deviation, farthest_deg_h: farthest }

@@ -11,33 +11,33 @@ use realfft::RealFftPlanner;
 use std::f64::consts::PI;
 
 /// Highest frequency that block means follow, in cycles a block.
-const HIGHEST: f64 = 0.45;
+const MAX_CYCLES_PER_BLOCK: f64 = 0.45;
 /// Fewest cycles in a record.
-const FEWEST_CYCLES: f64 = 3.0;
+const MIN_CYCLES: f64 = 3.0;
 /// Fewest block means.
-const FEWEST: usize = 64;
+const MIN_BLOCKS: usize = 64;
 /// Lines that are fitted at most, the strongest first.
 const MAX_SINUSOIDS: usize = 24;
 /// Reach of the search about the frequency that the averaged periodogram shows, in its bins.
-const REACH: f64 = 0.6;
+const SEARCH_REACH: f64 = 0.6;
 /// Share of the power over the floor that a sinusoid must hold to stand for a line: less is no coherent line.
-const LEAST_SHARE: f64 = 0.5;
+const MIN_POWER_SHARE: f64 = 0.5;
 /// Standard deviations of its amplitude from which a sinusoid stands for a line that was taken to be stronger: noise alone
 /// reaches them in one of 10¹³ modes.
-const ALONE: f64 = 8.0;
+const MIN_SCORE_ALONE: f64 = 8.0;
 /// Modes to each side of a line over which it spreads where it wanders a little.
 const SKIRT: usize = 8;
 /// Modes beyond whose power is the noise about it.
 const RING: usize = 12;
 /// Standard deviations by which the power of the skirt must stand above the noise.
-const WANDERS: f64 = 5.0;
+const MIN_SKIRT_SCORE: f64 = 5.0;
 
 impl Sinusoid {
     /// True when it stands far above the noise about it and leaves nothing beside: a line then, however strong it was
     /// taken to be. A disturbance that hardly decays shows in a single mode, which tells its rms by a factor of two.
     fn stands_alone(&self) -> bool {
         let [a, b] = self.coefficients_deg_h;
-        self.skirt_deg_h == 0.0 && a.hypot(b) > ALONE * self.amplitude_deviation_deg_h
+        self.skirt_deg_h == 0.0 && a.hypot(b) > MIN_SCORE_ALONE * self.amplitude_deviation_deg_h
     }
 }
 
@@ -163,7 +163,7 @@ impl Means {
         let noise = ring.iter().sum::<f64>() / ring.len().max(1) as f64;
         let n = self.count() as f64;
         let more = skirt.iter().map(|p| p - noise).sum::<f64>();
-        if more > WANDERS * noise * (skirt.len() as f64).sqrt() {
+        if more > MIN_SKIRT_SCORE * noise * (skirt.len() as f64).sqrt() {
             out.skirt_deg_h = (4.0 * more / n).sqrt();
         }
         out.amplitude_deviation_deg_h = (2.0 * noise / n).sqrt();
@@ -187,10 +187,10 @@ pub fn fit(blocks: &BlockSeries, tau0_s: f64, lines: &mut [SpectralLine]) {
     let mut means = Means::of(blocks, tau0_s);
     let span_s = means.values.len() as f64 * means.block_s;
     let follows = |l: &SpectralLine| {
-        l.frequency_hz * means.block_s < HIGHEST && l.frequency_hz * span_s > FEWEST_CYCLES
+        l.frequency_hz * means.block_s < MAX_CYCLES_PER_BLOCK && l.frequency_hz * span_s > MIN_CYCLES
     };
     let mut order: Vec<usize> = (0..lines.len()).filter(|i| follows(&lines[*i])).collect();
-    if means.count() < FEWEST {
+    if means.count() < MIN_BLOCKS {
         return;
     }
     order.sort_by(|a, b| lines[*b].amplitude_deg_h.total_cmp(&lines[*a].amplitude_deg_h));
@@ -201,7 +201,7 @@ pub fn fit(blocks: &BlockSeries, tau0_s: f64, lines: &mut [SpectralLine]) {
             continue;
         }
         let before = means.values.clone();
-        let found = means.sinusoid(line.frequency_hz, REACH * line.resolution_hz);
+        let found = means.sinusoid(line.frequency_hz, SEARCH_REACH * line.resolution_hz);
         let share = found.map(|s| {
             let [a, b] = s.coefficients_deg_h;
             let kept = kept(s.frequency_hz, blocks.block_len, tau0_s);
@@ -209,7 +209,7 @@ pub fn fit(blocks: &BlockSeries, tau0_s: f64, lines: &mut [SpectralLine]) {
         });
         match share {
             Some((s, amplitude, kept))
-                if amplitude > LEAST_SHARE.sqrt() * line.amplitude_deg_h || s.stands_alone() =>
+                if amplitude > MIN_POWER_SHARE.sqrt() * line.amplitude_deg_h || s.stands_alone() =>
             {
                 line.frequency_hz = s.frequency_hz;
                 line.amplitude_deg_h = amplitude;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// Kinds of length that are told apart; beyond, lengths are rounded down to 1/64.
-const KINDS: usize = 4096;
+const MAX_LENGTHS: usize = 4096;
 
 /// Lengths of unbroken stretches of samples with their numbers, in bounded memory.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -31,7 +31,7 @@ impl StretchLengths {
         self.longest = self.longest.max(samples);
         let length = if self.rounded { rounded(samples) } else { samples };
         *self.lengths.entry(length).or_default() += 1;
-        if self.lengths.len() > KINDS && !self.rounded {
+        if self.lengths.len() > MAX_LENGTHS && !self.rounded {
             self.round();
         }
     }
@@ -43,7 +43,7 @@ impl StretchLengths {
         for (length, count) in &other.lengths {
             *self.lengths.entry(*length).or_default() += count;
         }
-        if other.rounded || self.rounded || self.lengths.len() > KINDS {
+        if other.rounded || self.rounded || self.lengths.len() > MAX_LENGTHS {
             self.round();
         }
     }
@@ -93,7 +93,7 @@ mod tests {
         let mut s = StretchLengths::default();
         (0..20_000).for_each(|n| s.add(n));
         assert_eq!((s.samples(), s.longest(), s.count()), (19_999 * 10_000, 19_999, 19_999));
-        assert!(s.iter().count() < KINDS);
+        assert!(s.iter().count() < MAX_LENGTHS);
         let kept: u64 = s.iter().map(|(n, c)| n * c).sum();
         assert!(kept <= s.samples() && kept as f64 > 0.984 * s.samples() as f64);
     }

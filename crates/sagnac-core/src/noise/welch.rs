@@ -9,11 +9,11 @@ use realfft::{RealFftPlanner, RealToComplex};
 use std::sync::Arc;
 
 /// Longest segment, samples.
-pub const LONGEST_SEGMENT: usize = 1 << 16;
+pub const MAX_SEGMENT: usize = 1 << 16;
 /// Shortest segment, samples.
-pub const SHORTEST_SEGMENT: usize = 1 << 6;
+pub const MIN_SEGMENT: usize = 1 << 6;
 /// Segments that fit into a record at least, end to end, where the record allows.
-const SEGMENTS: usize = 16;
+const MIN_SEGMENTS: usize = 16;
 /// Segments that a sample lies in.
 const OVERLAPPING: usize = 4;
 
@@ -89,7 +89,7 @@ impl WelchAccumulator {
 
     /// An accumulator with a given segment length: rounded up to a power of two from 64 to 65536.
     pub fn with_segment(samples: usize) -> Self {
-        let length = samples.clamp(SHORTEST_SEGMENT, LONGEST_SEGMENT).next_power_of_two();
+        let length = samples.clamp(MIN_SEGMENT, MAX_SEGMENT).next_power_of_two();
         WelchAccumulator { engine: Some(Engine::new(length)), ..Self::new() }
     }
 
@@ -177,7 +177,7 @@ impl WelchAccumulator {
             self.starts.push(self.kept.len());
         }
         self.kept.extend_from_slice(samples);
-        if self.kept.len() >= SEGMENTS * LONGEST_SEGMENT {
+        if self.kept.len() >= MIN_SEGMENTS * MAX_SEGMENT {
             self.choose();
         }
     }
@@ -197,8 +197,8 @@ impl WelchAccumulator {
         let usable = |length: usize| {
             stretches.iter().map(|(from, to)| to - from).filter(|n| *n >= length).sum::<usize>() * 2 >= total
         };
-        let mut length = LONGEST_SEGMENT;
-        while length > SHORTEST_SEGMENT && (length * SEGMENTS > total || !usable(length)) {
+        let mut length = MAX_SEGMENT;
+        while length > MIN_SEGMENT && (length * MIN_SEGMENTS > total || !usable(length)) {
             length /= 2;
         }
         self.chosen = true;
@@ -349,11 +349,12 @@ impl Engine {
         let hop = self.hop();
         // Sums over two windows so many quarters apart, each with the pairs of segments that lie so: amplitudes that
         // both hold make a bin of one like that of the other, powers make samples weigh more than once.
-        let (mut alike, mut square) = (count, count * lapped(&self.window, 0, 2));
+        let (mut alike, mut square) = (count, count * window_product_sum(&self.window, 0, 2));
         for (apart, pairs) in (1..).zip(self.pairs) {
             let pairs = 2.0 * pairs as f64;
-            alike += pairs * (lapped(&self.window, apart * hop, 1) / self.power_of_window).powi(2);
-            square += pairs * lapped(&self.window, apart * hop, 2);
+            alike +=
+                pairs * (window_product_sum(&self.window, apart * hop, 1) / self.power_of_window).powi(2);
+            square += pairs * window_product_sum(&self.window, apart * hop, 2);
         }
         let samples = (count * self.power_of_window).powi(2) / square;
         let scale = 1.0 / (count * self.power_of_window);
@@ -372,7 +373,7 @@ impl Engine {
 }
 
 /// Sum of a power of the products of a window and itself, moved by so many samples.
-fn lapped(window: &[f64], moved: usize, power: i32) -> f64 {
+fn window_product_sum(window: &[f64], moved: usize, power: i32) -> f64 {
     window.iter().zip(window.iter().skip(moved)).map(|(a, b)| (a * b).powi(power)).sum()
 }
 

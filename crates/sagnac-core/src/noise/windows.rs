@@ -6,7 +6,7 @@
 use super::part::{Head, MergeError};
 
 /// Window means kept one by one; beyond, only their moments.
-pub const KEPT_MEANS: usize = 1_000_000;
+pub const MAX_KEPT_MEANS: usize = 1_000_000;
 
 /// What the windows gave.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,14 +21,14 @@ pub struct WindowStatistics {
     pub mean: f64,
     /// Standard deviation of the window means with n − 1, deg/h; NaN below two windows.
     pub standard_deviation: f64,
-    /// The means in order, deg/h, `None` when there were more than [`KEPT_MEANS`].
+    /// The means in order, deg/h, `None` when there were more than [`MAX_KEPT_MEANS`].
     pub means: Option<Vec<f64>>,
     /// Number of means in each unbroken stretch that has any, in order; the last entries are missing when the means are.
     pub per_stretch: Vec<u64>,
 }
 
 /// Largest relative difference of a window of whole samples from the one asked for: 1 % in a standard deviation.
-const FITTING: f64 = 0.02;
+const MAX_LENGTH_ERROR: f64 = 0.02;
 
 impl WindowStatistics {
     /// What the windows hold, s.
@@ -38,7 +38,7 @@ impl WindowStatistics {
 
     /// Whether whole samples make the window that was asked for. A figure of other windows is another figure.
     pub fn fits(&self, tau0_s: f64) -> bool {
-        (self.exact_s(tau0_s) / self.window_s - 1.0).abs() <= FITTING
+        (self.exact_s(tau0_s) / self.window_s - 1.0).abs() <= MAX_LENGTH_ERROR
     }
 }
 
@@ -171,7 +171,7 @@ impl WindowMeans {
             self.in_stretch += later.in_first.unwrap_or(0);
             self.end_stretch();
             self.per_stretch.extend(&later.per_stretch);
-            self.per_stretch.truncate(KEPT_MEANS);
+            self.per_stretch.truncate(MAX_KEPT_MEANS);
         }
         self.in_stretch += later.in_stretch;
         if !later.leading {
@@ -191,7 +191,7 @@ impl WindowMeans {
         self.n += later.n;
         self.mean += apart * there / (here + there);
         self.squares += later.squares + apart * apart * here * there / (here + there);
-        let room = KEPT_MEANS.saturating_sub(self.means.len());
+        let room = MAX_KEPT_MEANS.saturating_sub(self.means.len());
         self.means.extend(later.means.iter().take(room));
     }
 
@@ -214,7 +214,7 @@ impl WindowMeans {
         if let Some(first) = self.in_first.filter(|n| *n > 0) {
             self.per_stretch.insert(0, first);
         }
-        let kept = self.n as usize <= KEPT_MEANS;
+        let kept = self.n as usize <= MAX_KEPT_MEANS;
         WindowStatistics {
             window_s: self.window_s,
             samples: self.samples,
@@ -237,7 +237,7 @@ impl WindowMeans {
         }
         if continued {
             self.in_first = Some(self.in_stretch);
-        } else if self.in_stretch > 0 && self.per_stretch.len() < KEPT_MEANS {
+        } else if self.in_stretch > 0 && self.per_stretch.len() < MAX_KEPT_MEANS {
             self.per_stretch.push(self.in_stretch);
         }
         self.head.end_stretch();
@@ -253,14 +253,14 @@ impl WindowMeans {
         let step = value - self.mean;
         self.mean += step / self.n as f64;
         self.squares += step * (value - self.mean);
-        if self.means.len() < KEPT_MEANS {
+        if self.means.len() < MAX_KEPT_MEANS {
             self.means.push(self.reference + above);
         }
     }
 }
 
 /// Windows that degrees of freedom are computed for.
-const MOST_WINDOWS: u64 = 1 << 20;
+const MAX_WINDOWS: u64 = 1 << 20;
 
 /// Equivalent degrees of freedom of the variance of `n` adjacent window means: 2E\[s²\]²/Var\[s²\] for Gaussian noise
 /// with the given variance of a mean over t, as [`super::model::NoiseModel::mean_variance`] (the unit of t is the caller's; a deterministic ramp has no part in it).
@@ -272,7 +272,7 @@ pub fn edf_of_window_std(n: u64, window: f64, variance_of_average: impl Fn(f64) 
     if n < 2 {
         return None;
     }
-    let n = n.min(MOST_WINDOWS);
+    let n = n.min(MAX_WINDOWS);
     let size = n as usize;
     let count = n as f64;
     // Variance of the angle turned in k windows; its second difference is twice the covariance of window means.

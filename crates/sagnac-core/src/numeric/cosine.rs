@@ -4,7 +4,7 @@ use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Lengths whose plans are kept. All threads share them: the tables of a long record are large.
-const KEPT: usize = 16;
+const MAX_PLANS: usize = 16;
 static PLANS: Mutex<Vec<Plan>> = Mutex::new(vec![]);
 
 /// What transforms of one length share.
@@ -32,7 +32,7 @@ fn plan(n: usize) -> Plan {
         inverse: planner.plan_fft_inverse(n),
         turns: Arc::new((0..=n / 2).map(|k| (angle * k as f64).sin_cos()).collect()),
     };
-    if plans.len() == KEPT {
+    if plans.len() == MAX_PLANS {
         plans.remove(0);
     }
     plans.push(made.clone());
@@ -103,7 +103,7 @@ pub fn inverse_dct2(coefficients: &[f64]) -> Vec<f64> {
 }
 
 /// Modes beside that of a sinusoid whose distance is worked out by itself: a difference of squares would lose it.
-const BESIDE: usize = 64;
+const NEAR_MODES: usize = 64;
 
 /// [`dct2`] of cos(β + ω(j+½)) and sin(β + ω(j+½)), j = 0 … n−1, without a transform; 0 < ω < π. With θ_k = πk/n both are
 /// sin(ω/2) cos(θ_k/2)/(sin²(ω/2) − sin²(θ_k/2)) times what the phase is at both ends, in the one sense for even k and in
@@ -141,7 +141,7 @@ pub fn sinusoid_modes(n: usize, omega: f64, phase: f64) -> [Vec<f64>; 2] {
     }
     // Σ exp iα(j+½) = exp(iαn/2) sin(αn/2)/sin(α/2), α = ω ± θ.
     let nearest = (half / angle).round() as usize;
-    for k in nearest.saturating_sub(BESIDE)..(nearest + BESIDE).min(n) {
+    for k in nearest.saturating_sub(NEAR_MODES)..(nearest + NEAR_MODES).min(n) {
         let mut sum = (0.0, 0.0);
         for at in [half + angle * k as f64, half - angle * k as f64] {
             let length = if at.abs() < 1e-14 { n as f64 } else { (at * n as f64).sin() / at.sin() };

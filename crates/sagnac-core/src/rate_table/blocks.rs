@@ -1,6 +1,6 @@
 //! A recording on a rate table, averaged over short blocks: bounded in memory at any length.
 
-use crate::recording::{Channel, Role, Sink, Slab};
+use crate::recording::{Channel, Role, SampleBlock, Sink};
 
 /// Blocks are joined in pairs beyond this number.
 const MOST_BLOCKS: usize = 1 << 17;
@@ -226,16 +226,16 @@ fn join(first: &mut Block, second: &Block) {
 }
 
 impl Sink for Collector {
-    fn push(&mut self, slab: &Slab<'_>) {
-        if !slab.continues {
+    fn push(&mut self, sample_block: &SampleBlock<'_>) {
+        if !sample_block.continues {
             self.close();
         }
-        let mut continues = slab.continues;
+        let mut continues = sample_block.continues;
         let at = |slot: Option<usize>, i: usize| {
-            slot.and_then(|s| slab.values.get(s)).and_then(|v| v.get(i)).copied().unwrap_or(f64::NAN)
+            slot.and_then(|s| sample_block.values.get(s)).and_then(|v| v.get(i)).copied().unwrap_or(f64::NAN)
         };
-        for i in 0..slab.len() {
-            let index = slab.first_index + i as u64;
+        for i in 0..sample_block.len() {
+            let index = sample_block.first_index + i as u64;
             let rate = at(self.slots.rate, i);
             let raw = at(self.slots.angle, i);
             let angle =
@@ -244,7 +244,7 @@ impl Sink for Collector {
             let open = self.open.get_or_insert_with(|| Open {
                 block: Block {
                     first_index: index,
-                    first_row: slab.first_row + i as u64,
+                    first_row: sample_block.first_row + i as u64,
                     samples: 0,
                     continues,
                     gyro: vec![0.0; gyros],

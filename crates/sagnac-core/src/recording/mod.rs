@@ -1,7 +1,7 @@
-//! A recording as the analysis sees it: channels with role and unit, delivered as slabs of contiguous samples.
+//! A recording as the analysis sees it: channels with role and unit, delivered as sample blocks of contiguous samples.
 //!
-//! A recording is never held as a whole: readers deliver blocks, the time base turns them into [`Slab`]s without a gap
-//! inside, and every consumer is a [`Sink`] that takes slabs.
+//! A recording is never held as a whole: readers deliver blocks, the time base turns them into [`SampleBlock`]s without a gap
+//! inside, and every consumer is a [`Sink`] that takes sample blocks.
 
 pub mod integrity;
 pub mod window;
@@ -125,20 +125,20 @@ pub struct Channel {
 
 /// Contiguous samples of every channel: no gap inside.
 #[derive(Debug, Clone, Copy)]
-pub struct Slab<'a> {
+pub struct SampleBlock<'a> {
     /// Position of the first sample on the uniform grid of the recording (0: first sample; a gap skips positions).
     pub first_index: u64,
     /// Row of the first sample in the file, counted from 1 without header lines.
     pub first_row: u64,
     /// Time of the first sample on the recording's own scale, s.
     pub time_s: f64,
-    /// True when this slab follows the one before without a gap.
+    /// True when this sample block follows the one before without a gap.
     pub continues: bool,
     /// One vector a channel, all of one length, in inside units; NaN where the value cannot be used.
     pub values: &'a [Vec<f64>],
 }
 
-impl Slab<'_> {
+impl SampleBlock<'_> {
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.values.first().map_or(0, Vec::len)
@@ -150,8 +150,8 @@ impl Slab<'_> {
     }
 }
 
-/// A consumer of slabs.
+/// A consumer of sample blocks.
 pub trait Sink {
-    /// Takes the next slab.
-    fn push(&mut self, slab: &Slab<'_>);
+    /// Takes the next sample block.
+    fn push(&mut self, block: &SampleBlock<'_>);
 }

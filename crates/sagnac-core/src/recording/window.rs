@@ -1,6 +1,6 @@
 //! The evaluated part of a recording: warm-up and declared spans left out, gaps noted.
 
-use super::{Sink, Slab};
+use super::{SampleBlock, Sink};
 use serde::{Deserialize, Serialize};
 
 /// Gaps listed at most.
@@ -124,35 +124,35 @@ impl<S: Sink> Windowed<S> {
         (self.inner, window)
     }
 
-    /// Passes samples `from..to` of a slab on.
-    fn pass(&mut self, slab: &Slab<'_>, from: usize, to: usize) {
-        let first_index = slab.first_index + from as u64;
+    /// Passes samples `from..to` of a sample block on.
+    fn pass(&mut self, block: &SampleBlock<'_>, from: usize, to: usize) {
+        let first_index = block.first_index + from as u64;
         let continues = self.expected == Some(first_index);
-        let time_s = slab.time_s + from as f64 * self.interval_s;
-        let first_row = slab.first_row + from as u64;
+        let time_s = block.time_s + from as f64 * self.interval_s;
+        let first_row = block.first_row + from as u64;
         let elapsed = time_s - self.start_s;
         self.first_s.get_or_insert(elapsed);
         self.last_s = elapsed + (to - from) as f64 * self.interval_s;
         self.passed += (to - from) as u64;
-        self.expected = Some(slab.first_index + to as u64);
-        if from == 0 && to == slab.len() {
-            self.inner.push(&Slab { first_index, first_row, time_s, continues, values: slab.values });
+        self.expected = Some(block.first_index + to as u64);
+        if from == 0 && to == block.len() {
+            self.inner.push(&SampleBlock { first_index, first_row, time_s, continues, values: block.values });
             return;
         }
-        self.scratch.resize_with(slab.values.len(), Vec::new);
-        for (part, values) in self.scratch.iter_mut().zip(slab.values) {
+        self.scratch.resize_with(block.values.len(), Vec::new);
+        for (part, values) in self.scratch.iter_mut().zip(block.values) {
             part.clear();
             part.extend_from_slice(values.get(from..to).unwrap_or_default());
         }
-        self.inner.push(&Slab { first_index, first_row, time_s, continues, values: &self.scratch });
+        self.inner.push(&SampleBlock { first_index, first_row, time_s, continues, values: &self.scratch });
     }
 
-    /// The first sample of a slab at or after a time.
-    fn sample_at(&self, time_s: f64, slab: &Slab<'_>) -> usize {
-        let ahead = (time_s + self.start_s - slab.time_s) / self.interval_s;
+    /// The first sample of a sample block at or after a time.
+    fn sample_at(&self, time_s: f64, block: &SampleBlock<'_>) -> usize {
+        let ahead = (time_s + self.start_s - block.time_s) / self.interval_s;
         // Times that fall on a sample are meant to fall on it, whatever the last digit says.
         let index = (ahead - 1e-6).ceil();
-        if index <= 0.0 { 0 } else { (index as usize).min(slab.len()) }
+        if index <= 0.0 { 0 } else { (index as usize).min(block.len()) }
     }
 
     fn excluded_at(&self, elapsed_s: f64) -> bool {
@@ -161,33 +161,33 @@ impl<S: Sink> Windowed<S> {
 }
 
 impl<S: Sink> Sink for Windowed<S> {
-    fn push(&mut self, slab: &Slab<'_>) {
-        let elapsed = slab.time_s - self.start_s;
-        if !slab.continues && self.end_s > 0.0 && self.gaps.len() < LISTED_GAPS {
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        let elapsed = block.time_s - self.start_s;
+        if !block.continues && self.end_s > 0.0 && self.gaps.len() < LISTED_GAPS {
             let (from_s, to_s) = (self.end_s, elapsed);
             if !(self.excluded_at(from_s) && self.excluded_at(to_s)) {
                 self.gaps.push(ExcludedSpan { from_s, to_s, reason: "gap".to_owned() });
             }
         }
-        self.end_s = elapsed + slab.len() as f64 * self.interval_s;
+        self.end_s = elapsed + block.len() as f64 * self.interval_s;
         let mut at = 0;
         for i in 0..self.left_out.len() {
             let Some(&(from, to)) = self.left_out.get(i) else { break };
-            let (from, to) = (self.sample_at(from, slab), self.sample_at(to, slab));
+            let (from, to) = (self.sample_at(from, block), self.sample_at(to, block));
             if from > at {
-                self.pass(slab, at, from);
+                self.pass(block, at, from);
             }
             at = at.max(to);
         }
-        if at < slab.len() {
-            self.pass(slab, at, slab.len());
+        if at < block.len() {
+            self.pass(block, at, block.len());
         }
     }
 }
 
 impl<S: Sink + ?Sized> Sink for &mut S {
-    fn push(&mut self, slab: &Slab<'_>) {
-        (**self).push(slab);
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        (**self).push(block);
     }
 }
 
@@ -199,13 +199,13 @@ mod tests {
     struct Keep(Vec<(u64, u64, bool, Vec<f64>)>);
 
     impl Sink for Keep {
-        fn push(&mut self, s: &Slab<'_>) {
+        fn push(&mut self, s: &SampleBlock<'_>) {
             self.0.push((s.first_index, s.first_row, s.continues, s.values[0].clone()));
         }
     }
 
-    fn slab(values: &[Vec<f64>], first: u64, continues: bool) -> Slab<'_> {
-        Slab {
+    fn block(values: &[Vec<f64>], first: u64, continues: bool) -> SampleBlock<'_> {
+        SampleBlock {
             first_index: first,
             first_row: first + 1,
             time_s: 100.0 + first as f64 * 0.5,
@@ -223,7 +223,7 @@ mod tests {
         let spec = WindowSpec { from_s: 5.0, to_s: Some(40.0), exclusions: vec![(10.0, 12.0), (11.0, 13.0)] };
         let mut w = Windowed::new(Keep::default(), spec, 100.0, 0.5);
         for k in 0..5 {
-            w.push(&slab(&numbers(20 * k, 20 * k + 20), 20 * k, k > 0));
+            w.push(&block(&numbers(20 * k, 20 * k + 20), 20 * k, k > 0));
         }
         let (kept, window) = w.finish();
         let all: Vec<f64> = kept.0.iter().flat_map(|k| k.3.clone()).collect();
@@ -253,8 +253,8 @@ mod tests {
     #[test]
     fn gaps_are_noted_and_break_the_samples() {
         let mut w = Windowed::new(Keep::default(), WindowSpec::default(), 100.0, 0.5);
-        w.push(&slab(&numbers(0, 10), 0, false));
-        w.push(&slab(&numbers(14, 20), 14, false));
+        w.push(&block(&numbers(0, 10), 0, false));
+        w.push(&block(&numbers(14, 20), 14, false));
         let (kept, window) = w.finish();
         assert_eq!(kept.0.iter().map(|k| k.2).collect::<Vec<_>>(), [false, false]);
         assert_eq!(window.excluded, [ExcludedSpan { from_s: 5.0, to_s: 7.0, reason: "gap".to_owned() }]);

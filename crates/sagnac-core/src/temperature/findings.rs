@@ -12,15 +12,15 @@ use super::zones::{self, Zone};
 use crate::numeric::cosine::inverse_dct2;
 
 /// Blocks of the model at most.
-const BLOCKS: usize = 2048;
+const MAX_BLOCKS: usize = 2048;
 /// Shortest block of the model, s.
-const SHORTEST_BLOCK_S: f64 = 2.0;
+const MIN_BLOCK_S: f64 = 2.0;
 /// Sweeps over what is not known.
 const SWEEPS: usize = 360;
 /// Weight, of the largest, below which an order is left out.
-const LEAST_WEIGHT: f64 = 0.03;
+const MIN_WEIGHT: f64 = 0.03;
 /// Temperatures, degC, that a record must cover to say anything over temperature.
-pub const LEAST_SPAN_DEG_C: f64 = 2.0;
+pub const MIN_SPAN_DEG_C: f64 = 2.0;
 
 /// The schedule that was run.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,8 +116,8 @@ pub fn schedule(
 }
 
 fn coarse_factor(means: &Means) -> usize {
-    let by_count = means.len().div_ceil(BLOCKS);
-    let by_length = (SHORTEST_BLOCK_S / means.block_s).ceil() as usize;
+    let by_count = means.len().div_ceil(MAX_BLOCKS);
+    let by_length = (MIN_BLOCK_S / means.block_s).ceil() as usize;
     by_count.max(by_length).max(1)
 }
 
@@ -155,7 +155,7 @@ fn analyse(
         bridged: bridged_share,
     };
     let span = course.span();
-    if course.len() < 40 || span.high - span.low < LEAST_SPAN_DEG_C {
+    if course.len() < 40 || span.high - span.low < MIN_SPAN_DEG_C {
         return None;
     }
     let ramps: Vec<&Segment> = schedule.segments.iter().filter(|s| s.kind.is_ramp()).collect();
@@ -219,7 +219,7 @@ fn weights(orders: &[Tried], chosen: usize) -> Vec<(usize, f64)> {
     let weights: Vec<(usize, f64)> = orders
         .iter()
         .map(|t| (t.order, (t.log_score - top).exp()))
-        .filter(|(order, w)| *w > LEAST_WEIGHT || *order == chosen)
+        .filter(|(order, w)| *w > MIN_WEIGHT || *order == chosen)
         .collect();
     if weights.is_empty() { vec![(chosen, 1.0)] } else { weights }
 }
@@ -259,9 +259,9 @@ fn rms_over_temperature(residual: &[(f64, f64, f64)], span: &Span) -> (f64, f64)
 }
 
 /// Ratio of ramp rates from which they count as different.
-const DIFFERENT: f64 = 1.5;
+const MIN_RATE_RATIO: f64 = 1.5;
 /// Lags that a rest must last for the rate of the coil to die away.
-const REST: f64 = 2.0;
+const MIN_REST_LAGS: f64 = 2.0;
 
 fn parted(segments: &[Segment], lag_s: f64) -> bool {
     let rates = segments.iter().filter(|s| s.kind.is_ramp()).map(|s| s.rate_deg_c_h.abs());
@@ -269,8 +269,8 @@ fn parted(segments: &[Segment], lag_s: f64) -> bool {
     let rest = segments
         .iter()
         .filter(|s| s.kind == SegmentKind::Dwell)
-        .any(|s| s.length_s() > (REST * lag_s).max(600.0));
-    fast > DIFFERENT * slow || rest
+        .any(|s| s.length_s() > (MIN_REST_LAGS * lag_s).max(600.0));
+    fast > MIN_RATE_RATIO * slow || rest
 }
 
 /// Each ramp with half of the quiet segments about it.
@@ -297,7 +297,7 @@ impl Findings {
 }
 
 /// Shares of the longest lag looked at that the fastest ramp must take over the whole range.
-const SETTLES: f64 = 0.4;
+const MAX_CROSSING_SHARE: f64 = 0.4;
 
 impl Analysis {
     /// Time that the fastest ramp takes over the whole range, s.
@@ -309,7 +309,7 @@ impl Analysis {
     /// True where the range is over before the coil can follow a ramp steadily: a lag, its rate of temperature and the
     /// turning round of the hysteresis then have nearly the same course, and intervals of the first two are too short.
     pub fn narrow(&self) -> bool {
-        self.crossing_s() < SETTLES * self.posterior.longest_lag_s
+        self.crossing_s() < MAX_CROSSING_SHARE * self.posterior.longest_lag_s
     }
 
     /// Whether a term with so much inflation of its variance can be stated singly.

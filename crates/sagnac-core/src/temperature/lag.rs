@@ -22,7 +22,7 @@ const LAGS: usize = 37;
 /// Lags that are tried to find where a table must reach.
 const TRIED: usize = 28;
 /// Shortest of them, as a share of the longest.
-const SHORTEST: f64 = 0.001;
+const MIN_LAG_SHARE: f64 = 0.001;
 /// Loss of log-likelihood from which a lag is out of question at the best noise.
 const LOST: f64 = 14.0;
 /// Loss of log-likelihood up to which a lag comes into question where degrees of freedom are counted.
@@ -65,9 +65,9 @@ pub struct Profile {
 
 /// Lags to be tabled, by the log-likelihood at the best noise and by the lags drawn: everything that comes into question.
 pub fn grid(draws: &[Draw], longest_s: f64, log_likelihood: impl Fn(f64) -> Option<f64>) -> Vec<f64> {
-    let ratio = (1.0 / SHORTEST).powf(1.0 / (TRIED - 2) as f64);
+    let ratio = (1.0 / MIN_LAG_SHARE).powf(1.0 / (TRIED - 2) as f64);
     let tried: Vec<f64> = (0..TRIED)
-        .map(|i| if i == 0 { 0.0 } else { longest_s * SHORTEST * ratio.powi(i as i32 - 1) })
+        .map(|i| if i == 0 { 0.0 } else { longest_s * MIN_LAG_SHARE * ratio.powi(i as i32 - 1) })
         .map(|lag| lag.min(longest_s))
         .collect();
     let logs: Vec<f64> = tried.iter().map(|lag| log_likelihood(*lag).unwrap_or(f64::NEG_INFINITY)).collect();

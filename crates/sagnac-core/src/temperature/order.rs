@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
 /// Highest order tried.
-pub const HIGHEST: usize = 6;
+pub const MAX_ORDER: usize = 6;
 /// Blocks of the record for this purpose at most.
 const BLOCKS: usize = 480;
 
@@ -45,7 +45,7 @@ pub fn try_orders(
     let coarse = course.merged(course.len().div_ceil(BLOCKS));
     let modes = Modes::new(coarse.len(), coarse.block_s);
     let data = modes.of(&coarse.rate_deg_h);
-    (1..=highest.min(HIGHEST))
+    (1..=highest.min(MAX_ORDER))
         .filter_map(|order| {
             let terms = terms(order);
             let (best, _) = posterior::best(&coarse, terms, span)?;

@@ -8,11 +8,11 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Draws of the coefficients at each state.
-const EACH: usize = 12;
+const DRAWS_PER_STATE: usize = 12;
 /// Normal scores at which a spread is kept.
 const SCORES: usize = 65;
 /// Largest score.
-const FARTHEST: f64 = 3.2;
+const MAX_SCORE: f64 = 3.2;
 
 /// A value with its spread.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +46,7 @@ impl Reading {
 }
 
 fn scores() -> impl Iterator<Item = f64> {
-    (0..SCORES).map(|i| FARTHEST * (2.0 * i as f64 / (SCORES - 1) as f64 - 1.0))
+    (0..SCORES).map(|i| MAX_SCORE * (2.0 * i as f64 / (SCORES - 1) as f64 - 1.0))
 }
 
 /// A number that is linear in the coefficients: `weights` of the coefficients at a state.
@@ -84,12 +84,12 @@ pub fn of_distribution(below: impl Fn(f64) -> f64, (low, high): (f64, f64)) -> R
 /// mean, which takes the bias of a maximum or a square out to first order.
 pub fn bent(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x6265_6e74);
-    let mut values = Vec::with_capacity(draws.len() * EACH);
+    let mut values = Vec::with_capacity(draws.len() * DRAWS_PER_STATE);
     for draw in draws {
         let p = draw.coefficients.len();
         let factor = factor(&draw.covariance);
         let middle = of(draw, &draw.coefficients);
-        for _ in 0..EACH {
+        for _ in 0..DRAWS_PER_STATE {
             let z = DVector::from_fn(p, |_, _| normal(&mut rng));
             let drawn = &draw.coefficients + &factor * z;
             values.push(2.0 * middle - of(draw, &drawn));
@@ -101,10 +101,10 @@ pub fn bent(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading
 /// A number of state and coefficients as it is drawn, for what has no bias to be taken out, such as a time.
 pub fn drawn(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x6472_6177);
-    let mut values = Vec::with_capacity(draws.len() * EACH);
+    let mut values = Vec::with_capacity(draws.len() * DRAWS_PER_STATE);
     for draw in draws {
         let factor = factor(&draw.covariance);
-        for _ in 0..EACH {
+        for _ in 0..DRAWS_PER_STATE {
             let z = DVector::from_fn(draw.coefficients.len(), |_, _| normal(&mut rng));
             values.push(of(draw, &(&draw.coefficients + &factor * z)));
         }
@@ -122,12 +122,12 @@ pub fn by_chance(draws: &[Draw], of: impl Fn(&DVector<f64>) -> f64) -> f64 {
     let mut as_large = 0usize;
     for draw in draws {
         let factor = factor(&draw.covariance);
-        for _ in 0..EACH {
+        for _ in 0..DRAWS_PER_STATE {
             let z = DVector::from_fn(size, |_, _| normal(&mut rng));
             as_large += usize::from(of(&(&draw.coefficients - &mean + &factor * z)) >= found);
         }
     }
-    as_large as f64 / (draws.len() * EACH) as f64
+    as_large as f64 / (draws.len() * DRAWS_PER_STATE) as f64
 }
 
 /// A reading from draws.

@@ -13,7 +13,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Power by which the density of B and K falls. By simulation (validated in the study over temperature): intervals at one rate
 /// hold too often with 1, those at two too seldom with 1.5.
-const FALLS: f64 = 1.25;
+const PRIOR_EXPONENT: f64 = 1.25;
 
 /// Range of a number of the shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,7 +141,7 @@ impl<'a> Chain<'a> {
     }
 
     fn prior(&self, noise: &[f64; 3]) -> f64 {
-        -FALLS * ((noise[1] + self.visible[0]).ln() + (noise[2] + self.visible[1]).ln())
+        -PRIOR_EXPONENT * ((noise[1] + self.visible[0]).ln() + (noise[2] + self.visible[1]).ln())
     }
 
     /// Tries a step of B, K or a number of the shape; true where it is accepted.

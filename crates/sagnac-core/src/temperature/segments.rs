@@ -169,8 +169,8 @@ fn measure(
 
 /// Theil-Sen slope, and its standard uncertainty from the scatter about the line.
 fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
-    const MOST: usize = 300;
-    let stride = points.len().div_ceil(MOST).max(1);
+    const MAX_SEGMENTS: usize = 300;
+    let stride = points.len().div_ceil(MAX_SEGMENTS).max(1);
     let few: Vec<(f64, f64)> = points.iter().step_by(stride).copied().collect();
     if few.len() < 3 {
         return None;

@@ -12,11 +12,11 @@ use nalgebra::DVector;
 /// Longest time constants in lengths of the record: of every decay but the slowest, and of the slowest. Two that are both
 /// long could cancel over the record and leave its end open; one far longer than the record is a straight line, and where
 /// a line leads is a guess.
-const LONGEST: (f64, f64) = (0.35, 1.0);
+const MAX_TIME_SHARE: (f64, f64) = (0.35, 1.0);
 /// Sweeps over what is not known.
 const SWEEPS: usize = 500;
 /// Probability of both statements.
-pub const SHOWN: f64 = 0.95;
+pub const STATEMENT_PROBABILITY: f64 = 0.95;
 /// Times at which a transient is looked at.
 const STEPS: usize = 400;
 
@@ -40,7 +40,7 @@ pub fn settled(
     band_deg_h: f64,
 ) -> Option<Settled> {
     let last = constants.len().saturating_sub(1);
-    let high = |i: usize| length_s * if i == last { LONGEST.1 } else { LONGEST.0 };
+    let high = |i: usize| length_s * if i == last { MAX_TIME_SHARE.1 } else { MAX_TIME_SHARE.0 };
     let ranges: Vec<Range> =
         (0..=last).map(|i| Range { low: low_s, high: high(i), log: true, step: 0.3 }).collect();
     let start: Vec<f64> = constants.iter().enumerate().map(|(i, c)| c.clamp(low_s, high(i))).collect();
@@ -59,8 +59,8 @@ pub fn settled(
         (0..=STEPS).rev().find(|i| off(d, c, time(*i)) > band_deg_h).map_or(0.0, time)
     });
     Some(Settled {
-        at_most_deg_h: remaining.spread.bound(remaining.value, SHOWN)?,
-        at_least_s: inside_from.spread.bound(inside_from.value, 1.0 - SHOWN)?,
+        at_most_deg_h: remaining.spread.bound(remaining.value, STATEMENT_PROBABILITY)?,
+        at_least_s: inside_from.spread.bound(inside_from.value, 1.0 - STATEMENT_PROBABILITY)?,
         remaining,
     })
 }

@@ -7,13 +7,13 @@ use super::test::StartAsked;
 use super::track::Means;
 
 /// Share of its later value from which a supply counts as on.
-const ON: f64 = 0.5;
+const ON_SHARE: f64 = 0.5;
 /// Times the tolerance that a thermometer must rise to show that it would have told a warm start.
-const RISES: f64 = 3.0;
+const MIN_RISE: f64 = 3.0;
 /// Time over which the first temperature is read, s.
 const FIRST_S: f64 = 30.0;
 /// Lengths of the recording beyond which its first stamp is that of a clock with a zero of its own.
-const OTHER_CLOCK: f64 = 10.0;
+const MAX_START_RATIO: f64 = 10.0;
 
 /// What is known of the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ pub fn start(asked: &StartAsked, means: &Means, channel: Option<usize>, first_st
     let missing = match asked {
         StartAsked::Nothing => Missing::NotAsked,
         StartAsked::Declared => match first_stamp_s {
-            Some(at) if at > slack_s && at < OTHER_CLOCK * length_s => Missing::Late(at),
+            Some(at) if at > slack_s && at < MAX_START_RATIO * length_s => Missing::Late(at),
             _ => return Start::Declared,
         },
         StartAsked::Stamp { power_on_s } => match first_stamp_s.map(|at| at - power_on_s) {
@@ -74,7 +74,7 @@ pub fn start(asked: &StartAsked, means: &Means, channel: Option<usize>, first_st
                 }
                 Some(first) => {
                     let last = mean(values.iter().rev().take(values.len().div_ceil(10)));
-                    if last.is_some_and(|l| (l - first).abs() > RISES * tolerance_deg_c) {
+                    if last.is_some_and(|l| (l - first).abs() > MIN_RISE * tolerance_deg_c) {
                         return Start::Shown(0.0);
                     }
                     Missing::NoRise
@@ -93,7 +93,7 @@ fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> Option<f64> {
 /// The block in which a supply comes on for good: the last one below half of its later value, and one.
 fn switched_on(supply: &[f64]) -> Option<usize> {
     let later = mean(supply.iter().skip(supply.len() / 2))?;
-    let off = |v: &f64| v.is_finite() && v.abs() < ON * later.abs();
+    let off = |v: &f64| v.is_finite() && v.abs() < ON_SHARE * later.abs();
     (later != 0.0).then(|| supply.iter().rposition(off).map_or(0, |i| i + 1))
 }
 

@@ -1,7 +1,7 @@
 //! Block means of several channels on the grid of a recording, in memory that does not grow with it.
 
 /// Blocks kept at most; beyond, neighbours are put together.
-const MOST: usize = 1 << 16;
+const MAX_BLOCKS: usize = 1 << 16;
 
 /// Collects block means while a recording goes by.
 #[derive(Debug, Clone)]
@@ -33,7 +33,7 @@ impl Track {
         Track { tau0_s, samples, base: 0, started: false, channels: vec![vec![]; channels] }
     }
 
-    /// Takes samples of a channel from a grid position on. All channels of a slab have the same positions.
+    /// Takes samples of a channel from a grid position on. All channels of a sample block have the same positions.
     pub fn push(&mut self, channel: usize, values: &[f64], first_index: u64) {
         if values.is_empty() || channel >= self.channels.len() {
             return;
@@ -43,7 +43,7 @@ impl Track {
             self.base = first_index / self.samples;
         }
         let last = first_index + values.len() as u64 - 1;
-        while (last / self.samples).saturating_sub(self.base) >= MOST as u64 {
+        while (last / self.samples).saturating_sub(self.base) >= MAX_BLOCKS as u64 {
             self.halve();
         }
         let (samples, base) = (self.samples, self.base);
@@ -150,13 +150,13 @@ mod tests {
     #[test]
     fn blocks_grow_and_keep_their_means() {
         let mut track = Track::new(1, 1.0);
-        let n = 3 * MOST as u64 + 17;
+        let n = 3 * MAX_BLOCKS as u64 + 17;
         let all: Vec<f64> = (0..n).map(|i| i as f64).collect();
         for (i, part) in all.chunks(999).enumerate() {
             track.push(0, part, 5 + 999 * i as u64);
         }
         let means = track.finish().unwrap();
-        assert!(means.len() <= MOST && means.block_s == 4.0);
+        assert!(means.len() <= MAX_BLOCKS && means.block_s == 4.0);
         // The block that starts at grid position 8 holds the values 3, 4, 5, 6.
         let at = ((8.0 - means.first_s) / 4.0) as usize;
         assert_eq!(means.values[0][at], 4.5);

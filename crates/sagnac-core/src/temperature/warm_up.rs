@@ -13,9 +13,9 @@ use super::track::{Means, bridged};
 use crate::numeric::optimize::coordinate_ascent;
 
 /// Blocks at most.
-const BLOCKS: usize = 2048;
+const MAX_BLOCKS: usize = 2048;
 /// Logarithm of the ratio of two time constants at least, in the search for the best.
-const APART: f64 = 0.4;
+const MIN_LOG_RATIO: f64 = 0.4;
 /// Sweeps over what is not known.
 const SWEEPS: usize = 500;
 
@@ -67,7 +67,7 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest, start: Start) -> Opti
         _ => None,
     };
     let means = since.as_ref().unwrap_or(means);
-    let coarse = means.merged(means.len().div_ceil(BLOCKS).max(1));
+    let coarse = means.merged(means.len().div_ceil(MAX_BLOCKS).max(1));
     let (y, _) = bridged(coarse.values.get(rate)?)?;
     let n = y.len();
     if n < 60 {
@@ -139,7 +139,7 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest, start: Start) -> Opti
 
 /// Whether two time constants differ enough to be two decays.
 fn apart(constants: &[f64]) -> bool {
-    constants.windows(2).all(|w| (w[0] / w[1]).ln().abs() > APART)
+    constants.windows(2).all(|w| (w[0] / w[1]).ln().abs() > MIN_LOG_RATIO)
 }
 
 /// Two decays where they can be told apart, else one, with the time constants.

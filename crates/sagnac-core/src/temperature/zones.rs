@@ -10,17 +10,17 @@ use super::track::Means;
 use crate::estimate::{chi_square_tail, normal_quantile};
 
 /// Second differences that a zone needs.
-const LEAST: usize = 30;
+const MIN_DIFFERENCES: usize = 30;
 /// Samples in a mean at least where the sample rate allows: filters act on fewer.
-const SAMPLES: u64 = 8;
+const MIN_SAMPLES: u64 = 8;
 /// Shortest and longest mean aimed at, s.
 const LENGTH_S: (f64, f64) = (1.0, 10.0);
 /// States of the slow noise that its spread is counted with.
 const STATES: usize = 32;
 /// Share of the distribution without white noise from which none is claimed.
-const CLAIMED_BELOW: f64 = 0.05;
+const MAX_ABSENT_SHARE: f64 = 0.05;
 /// Deviation of the logarithm of B up to which it is seen; beyond, draws alone say what it may be.
-const SEEN: f64 = 0.5;
+const MAX_LOG_DEVIATION: f64 = 0.5;
 /// Lags of second differences that are counted as correlated.
 const LAGS: usize = 12;
 
@@ -98,7 +98,7 @@ fn states_of(draws: &[Draw], log_deviation: f64, average_h: f64) -> Vec<[f64; 2]
     }
     let mean = all.iter().map(|s| s[0]).sum::<f64>() / all.len() as f64;
     let drawn = all.iter().map(|s| (s[0] - mean).powi(2)).sum::<f64>() / all.len() as f64 / (mean * mean);
-    let seen = log_deviation < SEEN && drawn < SEEN * SEEN;
+    let seen = log_deviation < MAX_LOG_DEVIATION && drawn < MAX_LOG_DEVIATION * MAX_LOG_DEVIATION;
     let further = if seen { (log_deviation.powi(2) - drawn).max(0.0).sqrt() } else { 0.0 };
     let count = STATES.min(all.len());
     (0..count)
@@ -120,7 +120,7 @@ pub fn zones(
     (draws, log_deviation): (&[Draw], f64),
     test: &TemperatureTest,
 ) -> Vec<Zone> {
-    let by_samples = SAMPLES.div_ceil(means.samples) as usize;
+    let by_samples = MIN_SAMPLES.div_ceil(means.samples) as usize;
     let by_length = (LENGTH_S.0 / means.block_s).ceil() as usize;
     let longest = ((LENGTH_S.1 / means.block_s) as usize).max(1);
     let short = means.merged(by_samples.max(by_length).clamp(1, longest));
@@ -158,10 +158,11 @@ pub fn zones(
         .map(|(&deg_c, (sum, count))| {
             // White means of variance σ² have second differences of 6 σ².
             let seen = sum / (6.0 * count.max(1) as f64);
-            let found = (count >= LEAST && seen > 0.0).then(|| white(seen, count, &states, average_h));
+            let found =
+                (count >= MIN_DIFFERENCES && seen > 0.0).then(|| white(seen, count, &states, average_h));
             Zone {
                 deg_c,
-                by_slow_noise: found.as_ref().is_some_and(|f| f.1 > CLAIMED_BELOW),
+                by_slow_noise: found.as_ref().is_some_and(|f| f.1 > MAX_ABSENT_SHARE),
                 slow_share: found
                     .as_ref()
                     .map_or(0.0, |f| (1.0 - f.0.value * f.0.value / average_h / seen).clamp(0.0, 1.0)),

@@ -23,7 +23,7 @@ use quantization_grid::QuantizationGrid;
 use rails::Rails;
 use repeats::Repeats;
 use sagnac_core::message::{Arg, Note};
-use sagnac_core::recording::{Channel, Sink, Slab};
+use sagnac_core::recording::{Channel, SampleBlock, Sink};
 use stuck::Runs;
 use summary::{CHUNK, Summary, summary};
 
@@ -280,9 +280,9 @@ impl ValueChecks {
 }
 
 impl Sink for ValueChecks {
-    fn push(&mut self, slab: &Slab<'_>) {
-        let place = Place { row: slab.first_row, time_s: slab.time_s };
-        for (channel, values) in self.channels.iter_mut().zip(slab.values) {
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        let place = Place { row: block.first_row, time_s: block.time_s };
+        for (channel, values) in self.channels.iter_mut().zip(block.values) {
             channel.take(values, place, self.interval_s);
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::faults::FaultLog;
 use sagnac_core::message::{Arg, Note};
-use sagnac_core::recording::{Channel, Role, Slab};
+use sagnac_core::recording::{Channel, Role, SampleBlock};
 
 /// Bounds of a quantity, in the unit inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,12 +87,12 @@ impl Plausible {
         Plausible { channels: channels.iter().map(watched).collect(), interval_s }
     }
 
-    /// Looks at a slab and lists what is impossible.
-    pub fn push(&mut self, slab: &Slab<'_>, log: &mut FaultLog) {
+    /// Looks at a sample block and lists what is impossible.
+    pub fn push(&mut self, block: &SampleBlock<'_>, log: &mut FaultLog) {
         let interval_s = self.interval_s;
-        for (watched, values) in self.channels.iter_mut().zip(slab.values) {
+        for (watched, values) in self.channels.iter_mut().zip(block.values) {
             let Some(w) = watched else { continue };
-            if !slab.continues {
+            if !block.continues {
                 w.latest = None;
             }
             let (low, high) = w.bound.values;
@@ -111,8 +111,8 @@ impl Plausible {
                     continue;
                 }
                 w.count += 1;
-                let at = slab.time_s + i as f64 * interval_s;
-                log.push("implausible", Some(&w.id), Some(at), slab.first_row + i as u64, 1, || {
+                let at = block.time_s + i as f64 * interval_s;
+                log.push("implausible", Some(&w.id), Some(at), block.first_row + i as u64, 1, || {
                     if out {
                         beyond(w.role, value, low, high)
                     } else {
@@ -169,8 +169,9 @@ mod tests {
         };
         let mut plausible = Plausible::new(&[channel], 0.01);
         let values = [values];
-        let slab = Slab { first_index: 0, first_row: 1, time_s: 0.0, continues: false, values: &values };
-        plausible.push(&slab, &mut FaultLog::default());
+        let block =
+            SampleBlock { first_index: 0, first_row: 1, time_s: 0.0, continues: false, values: &values };
+        plausible.push(&block, &mut FaultLog::default());
         plausible.count()
     }
 

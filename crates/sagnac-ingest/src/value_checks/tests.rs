@@ -20,7 +20,7 @@ fn check(
     role: Role,
 ) -> (ValueFacts, ValueFaults, Vec<sagnac_core::recording::integrity::Fault>) {
     let mut checks = ValueChecks::new(&[channel(role)], 0.01);
-    // Uneven slabs, so that no result hangs on where a block ends.
+    // Uneven sample blocks, so that no result hangs on where a block ends.
     let mut at = 0;
     for length in [1usize, 7, 1000, 40_000, 3].iter().cycle() {
         if at >= values.len() {
@@ -28,7 +28,7 @@ fn check(
         }
         let end = (at + length).min(values.len());
         let part = vec![values[at..end].to_vec()];
-        checks.push(&Slab {
+        checks.push(&SampleBlock {
             first_index: at as u64,
             first_row: at as u64 + 1,
             time_s: at as f64 * 0.01,

@@ -3,9 +3,9 @@
 use crate::noise::model::{Bin, Spectral};
 
 /// Relative width of a band.
-const BAND_WIDTH: f64 = 0.04;
+const RELATIVE_WIDTH: f64 = 0.04;
 /// Bands beyond this number, which only many gaps can make, are joined.
-const MANY_BANDS: usize = 800;
+const MAX_BANDS: usize = 800;
 /// Width of a band over the distance to the centre of a zone plus the half width of that.
 const GRADING: f64 = 0.2;
 
@@ -119,7 +119,7 @@ impl FineBin {
 }
 
 /// Widest band at a frequency, Hz.
-fn widest(frequency_hz: f64, relative: f64, zones: &[Zone]) -> f64 {
+fn max_width_hz(frequency_hz: f64, relative: f64, zones: &[Zone]) -> f64 {
     zones.iter().fold(relative * frequency_hz, |width, zone| {
         width.min(GRADING * ((frequency_hz - zone.centre_hz).abs() + zone.half_width_hz))
     })
@@ -131,7 +131,7 @@ fn merge(bands: Vec<Band>) -> Vec<Band> {
     for band in bands {
         match out.last_mut() {
             Some(last)
-                if band.high_hz <= last.low_hz * (1.0 + BAND_WIDTH) && last.dof.min(band.dof) > 1.0
+                if band.high_hz <= last.low_hz * (1.0 + RELATIVE_WIDTH) && last.dof.min(band.dof) > 1.0
                     || band.low_hz == last.low_hz =>
             {
                 let total = last.dof + band.dof;
@@ -150,7 +150,7 @@ fn merge(bands: Vec<Band>) -> Vec<Band> {
 }
 
 /// Bands of bins: those of one transform that lie side by side are joined while the band stays narrow enough.
-pub(super) fn banded(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
+pub(super) fn bands_of(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
     let mut bands: Vec<Band> = vec![];
     for bin in fine {
         let (piece, k, f) = (bin.piece as usize, bin.index as usize, bin.frequency_hz);
@@ -160,7 +160,7 @@ pub(super) fn banded(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
             && let Some(cell) = band.cells.last_mut()
             && cell.piece == piece
             && cell.to + 1 == k
-            && f - band.low_hz <= widest(0.5 * (f + band.low_hz), BAND_WIDTH, zones)
+            && f - band.low_hz <= max_width_hz(0.5 * (f + band.low_hz), RELATIVE_WIDTH, zones)
         {
             let total = band.dof + bin.dof;
             let sums = [bin.power, bin.cross, bin.ramp];
@@ -184,7 +184,7 @@ pub(super) fn banded(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
         });
     }
     bands.sort_by(|a, b| a.low_hz.total_cmp(&b.low_hz));
-    if bands.len() > MANY_BANDS + 64 * zones.len() {
+    if bands.len() > MAX_BANDS + 64 * zones.len() {
         bands = merge(bands);
     }
     bands

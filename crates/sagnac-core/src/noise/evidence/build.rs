@@ -1,7 +1,7 @@
 //! Turns block means and an averaged periodogram into an evidence.
 
-use super::bands::{FineBin, Piece, banded};
-use super::series::{LEAST_STRETCH, Series};
+use super::bands::{FineBin, Piece, bands_of};
+use super::series::{MIN_STRETCH, Series};
 use super::spectrum::Evidence;
 use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::model::{NoiseModel, TERMS};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Modes that keep a band of their own.
 const SINGLE_MODES: usize = 64;
 /// Most coarse blocks when a record has gaps.
-const COARSE_BLOCKS: usize = 1024;
+const MAX_COARSE_BLOCKS: usize = 1024;
 
 /// A frequency range to leave out: a spectral line found elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +62,7 @@ impl<'a> Builder<'a> {
     fn finish(mut self, span_s: f64, usable_s: f64) -> Evidence {
         self.evidence.span_s = span_s;
         self.evidence.usable_s = usable_s;
-        self.evidence.bands = banded(&self.fine, &[]);
+        self.evidence.bands = bands_of(&self.fine, &[]);
         self.evidence.fine = Arc::new(self.fine);
         self.evidence
     }
@@ -84,10 +84,10 @@ impl<'a> Builder<'a> {
         // The coarse scale: the finest at which no block is empty.
         let mut factor = 1;
         let mut coarse = None;
-        while series.len() / (2 * factor) >= LEAST_STRETCH {
+        while series.len() / (2 * factor) >= MIN_STRETCH {
             factor *= 2;
             let merged = series.merged(factor);
-            if merged.is_whole() && merged.len() <= COARSE_BLOCKS {
+            if merged.is_whole() && merged.len() <= MAX_COARSE_BLOCKS {
                 coarse = Some(merged);
                 break;
             }
@@ -129,7 +129,7 @@ impl<'a> Builder<'a> {
             return;
         };
         let blocks = mean.len();
-        if blocks < LEAST_STRETCH {
+        if blocks < MIN_STRETCH {
             return;
         }
         let filling = count.iter().map(|c| series.full / c).sum::<f64>() / blocks as f64;
@@ -233,7 +233,7 @@ impl Evidence {
             };
             builder.add_welch(&spectrum, top);
         }
-        if count >= LEAST_STRETCH {
+        if count >= MIN_STRETCH {
             let piece = builder.piece(Piece {
                 tau_s,
                 step_hz: 0.5 / (count as f64 * tau_s),

@@ -3,9 +3,9 @@
 use crate::noise::data::BlockSeries;
 
 /// Blocks with less than this share of their samples count as empty.
-const LEAST_FILLING: f64 = 0.125;
+const MIN_FILLING: f64 = 0.125;
 /// Shortest stretch of blocks that is transformed on its own.
-pub(super) const LEAST_STRETCH: usize = 16;
+pub(super) const MIN_STRETCH: usize = 16;
 
 /// Block means with counts, at one averaging time.
 pub(super) struct Series {
@@ -19,7 +19,7 @@ pub(super) struct Series {
 impl Series {
     pub(super) fn new(blocks: &BlockSeries, tau0_s: f64) -> Series {
         let full = blocks.block_len.max(1) as f64;
-        let usable = |m: f64, c: u32| m.is_finite() && c > 0 && f64::from(c) >= LEAST_FILLING * full;
+        let usable = |m: f64, c: u32| m.is_finite() && c > 0 && f64::from(c) >= MIN_FILLING * full;
         let pairs: Vec<(f64, f64)> = blocks
             .about_first()
             .into_iter()
@@ -48,7 +48,7 @@ impl Series {
         let last = self.count.iter().rposition(|c| *c > 0.0)?;
         self.mean = self.mean.get(first..=last)?.to_vec();
         self.count = self.count.get(first..=last)?.to_vec();
-        (self.len() >= LEAST_STRETCH).then_some(self)
+        (self.len() >= MIN_STRETCH).then_some(self)
     }
 
     pub(super) fn is_whole(&self) -> bool {
@@ -61,13 +61,13 @@ impl Series {
         let pairs = self.mean.chunks_exact(factor).zip(self.count.chunks_exact(factor)).map(|(m, c)| {
             let count: f64 = c.iter().sum();
             let sum: f64 = m.iter().zip(c).map(|(m, c)| m * c).sum();
-            if count >= LEAST_FILLING * full { (sum / count, count) } else { (0.0, 0.0) }
+            if count >= MIN_FILLING * full { (sum / count, count) } else { (0.0, 0.0) }
         });
         let (mean, count) = pairs.unzip();
         Series { tau_s: self.tau_s * factor as f64, mean, count, full }
     }
 
-    /// Ranges of blocks without an empty one, at least [`LEAST_STRETCH`] long.
+    /// Ranges of blocks without an empty one, at least [`MIN_STRETCH`] long.
     pub(super) fn stretches(&self) -> Vec<std::ops::Range<usize>> {
         let mut out = vec![];
         let mut start = None;
@@ -75,7 +75,7 @@ impl Series {
             match (self.count.get(i).is_some_and(|c| *c > 0.0), start) {
                 (true, None) => start = Some(i),
                 (false, Some(s)) => {
-                    if i - s >= LEAST_STRETCH {
+                    if i - s >= MIN_STRETCH {
                         out.push(s..i);
                     }
                     start = None;

@@ -1,6 +1,6 @@
 //! The evidence: bands with the expectation of every term in them.
 
-use super::bands::{Band, FineBin, Piece, Zone, banded};
+use super::bands::{Band, FineBin, Piece, Zone, bands_of};
 use crate::noise::model::Spectral;
 use std::sync::Arc;
 
@@ -70,7 +70,7 @@ impl Evidence {
         if zones.is_empty() || self.fine.is_empty() {
             return self.clone();
         }
-        let bands: Vec<Band> = banded(&self.fine, zones);
+        let bands: Vec<Band> = bands_of(&self.fine, zones);
         Evidence { bands, ..self.clone() }
     }
 
@@ -85,7 +85,7 @@ impl Evidence {
         if fine.len() == self.fine.len() {
             return self.clone();
         }
-        Evidence { bands: banded(&fine, &[]), fine: Arc::new(fine), ..self.clone() }
+        Evidence { bands: bands_of(&fine, &[]), fine: Arc::new(fine), ..self.clone() }
     }
 
     /// Mean power of the band nearest to a frequency, (deg/h)²/Hz; 0 without any.

@@ -56,17 +56,17 @@ impl Default for SlowPrices {
 }
 
 /// Preference in 2 ln L below which another description counts as nearly as good.
-pub const NEARLY: f64 = 4.0;
+pub const NEARLY_AS_GOOD: f64 = 4.0;
 
 /// Preference that flicker needs where it is known well: of records of white noise with a random walk that shows, 8 % are
 /// described better by flicker, and half of those by less.
-const CLEARER: f64 = 2.0;
+const FLICKER_PREFERENCE: f64 = 2.0;
 
 /// Preference in 2 ln L over the best description without a slow term of some relative uncertainty that its claim needs.
 pub fn needed_preference(term: NoiseType, relative_sigma: f64) -> f64 {
     match term {
-        _ if relative_sigma.is_nan() || relative_sigma > IDENTIFIABLE => NEARLY,
-        NoiseType::Flicker => CLEARER,
+        _ if relative_sigma.is_nan() || relative_sigma > IDENTIFIABLE => NEARLY_AS_GOOD,
+        NoiseType::Flicker => FLICKER_PREFERENCE,
         _ => 0.0,
     }
 }
@@ -107,7 +107,8 @@ impl SlowPrices {
 
     /// By how much the best set without a term of [`crate::noise::model::TERMS`] costs more than the one chosen.
     pub fn preference(&self, deviance: &[f64; SETS], choice: SlowChoice, term: usize) -> f64 {
-        self.choose_among(deviance, |set| !holds(set, term)).map_or(f64::INFINITY, |c| c.cost - choice.cost)
+        self.choose_among(deviance, |set| !contains_term(set, term))
+            .map_or(f64::INFINITY, |c| c.cost - choice.cost)
     }
 
     /// 2 Δ ln L that a slow term of some relative uncertainty needs against the best model without it, its rival in its
@@ -124,8 +125,8 @@ impl SlowPrices {
     }
 }
 
-/// True when a set holds a term of [`crate::noise::model::TERMS`] by position.
-pub fn holds(set: SlowSet, term: usize) -> bool {
+/// True when a set contains_term a term of [`crate::noise::model::TERMS`] by position.
+pub fn contains_term(set: SlowSet, term: usize) -> bool {
     match term {
         1 => set & B != 0,
         2 => set & K != 0,
@@ -140,12 +141,12 @@ pub(crate) const FLICKER: usize = 1;
 pub(crate) const WALK: usize = 2;
 pub(crate) const QUANTIZATION: usize = 3;
 /// 2 Δ ln L from which a term that is not claimed widens the interval of N.
-pub(crate) const SUSPICION: f64 = 1.0;
+pub(crate) const MIN_SUSPICION_RATIO: f64 = 1.0;
 /// 2 Δ ln L from which a rival that is not claimed widens the interval of a slow term.
-pub(crate) const RIVALRY: f64 = 0.5;
+pub(crate) const MIN_RIVAL_RATIO: f64 = 0.5;
 pub(crate) const METHOD: &str = "whittle";
 /// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
-pub(crate) const PRICE: f64 = 2.71;
+pub(crate) const TERM_PRICE: f64 = 2.71;
 /// Coverage of upper limits.
 pub(crate) const LIMIT_COVERAGE: f64 = 0.95;
 /// Rise of the deviance that makes an upper limit. A limit is only given when the term was not claimed, that is when
@@ -162,7 +163,7 @@ pub(crate) fn is_claimable(term: usize, preference: f64, relative_sigma: f64) ->
 /// Says so where another slow term in place of this one describes the record nearly as well.
 pub(crate) fn with_rivals(estimate: Estimate, term: usize, preference: f64) -> Estimate {
     let slow = matches!(term, FLICKER | WALK | RAMP);
-    if slow && preference < NEARLY {
+    if slow && preference < NEARLY_AS_GOOD {
         estimate.note(Note::new("slow_alike.term").with("fall", preference))
     } else {
         estimate

@@ -7,7 +7,7 @@ use super::linear_fit::{Likelihood, Point, RAMP, SPECTRAL, Structure};
 use crate::estimate::{Spread, normal_probability};
 
 /// Outermost normal score of a curve.
-const REACH: f64 = 4.0;
+const MAX_SCORE: f64 = 4.0;
 
 /// How a confidence curve is traced.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +49,7 @@ pub(super) fn trace_curve<S: Clone>(
             let gained = (score - z).abs();
             (at, z) = (further, score);
             points.push((z, at));
-            if z.abs() >= REACH {
+            if z.abs() >= MAX_SCORE {
                 break;
             }
             step *= (trace.spacing / gained.max(1e-3)).clamp(0.4, 2.5);

@@ -19,15 +19,15 @@ use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 
 /// Probability of a larger misfit below which a range does not pass.
-const LEAST_PROBABILITY: f64 = 0.02;
+const MIN_PROBABILITY: f64 = 0.02;
 /// Probability below which the model of all frequencies fails above a range.
-const FAILS: f64 = 1e-5;
+const FAILURE_PROBABILITY: f64 = 1e-5;
 /// Departure of the worst band that does no harm, whatever its significance: 2 % in power is 1 % in N.
-const HARMLESS: f64 = 0.02;
+const HARMLESS_EXCESS: f64 = 0.02;
 /// Octaves that may be given up.
-const OCTAVES: u32 = 8;
+const MAX_OCTAVES: u32 = 8;
 /// Degrees of freedom that a range must keep.
-const LEAST_DOF: f64 = 200.0;
+const MIN_DOF: f64 = 200.0;
 
 /// An identification and the range it rests on.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,11 +61,11 @@ pub fn describe_in_range(
 ) -> RangedIdentification {
     let mut best: Option<RangedIdentification> = None;
     let mut whole: Option<Identification> = None;
-    for octave in 0..=OCTAVES {
+    for octave in 0..=MAX_OCTAVES {
         let highest_hz = nyquist_hz / f64::from(1u32 << octave);
         let restricted = (octave > 0).then(|| evidence.up_to(highest_hz));
         let used = restricted.as_ref().unwrap_or(evidence);
-        if octave > 0 && used.dof() < LEAST_DOF {
+        if octave > 0 && used.dof() < MIN_DOF {
             break;
         }
         let justified = whole.as_ref().is_none_or(|whole| fails_above(evidence, whole, highest_hz));
@@ -74,8 +74,8 @@ pub fn describe_in_range(
         }
         let identification = describe(channel, used, options);
         whole.get_or_insert_with(|| identification.clone());
-        let fits = identification.misfit.probability >= LEAST_PROBABILITY
-            || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS;
+        let fits = identification.misfit.probability >= MIN_PROBABILITY
+            || (identification.misfit.worst_excess - 1.0).abs() <= HARMLESS_EXCESS;
         let highest_hz = (octave > 0).then_some(highest_hz);
         let candidate =
             RangedIdentification { identification, highest_hz, rounded_above_hz: None, widened: 1.0 };
@@ -109,7 +109,7 @@ pub fn identify_over(
         None => complete(channel, evidence, options, &range.identification),
     };
     identification.highest_hz = range.highest_hz;
-    annotated(stated(RangedIdentification { identification, ..*range }, evidence.tau0_s))
+    with_notes(without_unseen(RangedIdentification { identification, ..*range }, evidence.tau0_s))
 }
 
 /// True when a model of the whole evidence fails above a frequency. A departure that chance made at low frequencies is
@@ -126,12 +126,12 @@ fn fails_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -> 
         above.bands.push(band.clone());
     }
     let misfit = Misfit::of(&above, &whitened, 0);
-    misfit.probability < FAILS || misfit.worst_probability < FAILS
+    misfit.probability < FAILURE_PROBABILITY || misfit.worst_probability < FAILURE_PROBABILITY
 }
 
 /// Takes back what a restricted range cannot show: a filter whose cut-off, or quantisation whose rise above the white
 /// noise, lies beyond the range.
-fn stated(mut ranged: RangedIdentification, tau0_s: f64) -> RangedIdentification {
+fn without_unseen(mut ranged: RangedIdentification, tau0_s: f64) -> RangedIdentification {
     let Some(highest_hz) = ranged.highest_hz else { return ranged };
     let found = &mut ranged.identification;
     if found.cutoff.as_ref().is_some_and(|c| c.value.is_none_or(|hz| hz > highest_hz)) {
@@ -150,7 +150,7 @@ fn stated(mut ranged: RangedIdentification, tau0_s: f64) -> RangedIdentification
 }
 
 /// Puts the notes on the estimates, and the widening on their spreads.
-fn annotated(mut ranged: RangedIdentification) -> RangedIdentification {
+fn with_notes(mut ranged: RangedIdentification) -> RangedIdentification {
     let misfit = ranged.identification.misfit;
     let RangedIdentification { highest_hz, rounded_above_hz, widened, .. } = ranged;
     for row in &mut ranged.identification.described.covariance {

@@ -1,8 +1,9 @@
 //! Identification of N, B, K, Q and R alone.
 
 use super::claims::{
-    FLICKER, LIMIT_COVERAGE, LIMIT_RISE, METHOD, QUANTIZATION, RIVALRY, SUSPICION, SlowChoice, WALK, WHITE,
-    holds, is_claimable, low_frequency_note, rival_of, suspects, with_rivals,
+    FLICKER, LIMIT_COVERAGE, LIMIT_RISE, METHOD, MIN_RIVAL_RATIO, MIN_SUSPICION_RATIO, QUANTIZATION,
+    SlowChoice, WALK, WHITE, contains_term, is_claimable, low_frequency_note, rival_of, suspects,
+    with_rivals,
 };
 use super::linear_fit::{Likelihood, RAMP, Structure, toggled};
 use super::misfit::Misfit;
@@ -46,10 +47,10 @@ pub(super) fn identify_standard(
     let fit = |structure: &Structure| likelihood.maximise(structure, None, None);
     let mut claimed: Structure = [
         search.ratios[WHITE] > thresholds.white,
-        holds(search.slow.set, FLICKER),
-        holds(search.slow.set, WALK),
+        contains_term(search.slow.set, FLICKER),
+        contains_term(search.slow.set, WALK),
         search.ratios[QUANTIZATION] > thresholds.quantization,
-        holds(search.slow.set, RAMP),
+        contains_term(search.slow.set, RAMP),
     ];
     if let Some(best) = fit(&search.supported(&claimed)) {
         let model = best.model();
@@ -72,7 +73,7 @@ pub(super) fn identify_standard(
     out.described = described(out.supported, &out.covariance);
     // Quantisation too weak to be claimed lies in the level of the white noise, which a prediction must allow for.
     if !claimed[QUANTIZATION]
-        && search.ratios[QUANTIZATION] > SUSPICION
+        && search.ratios[QUANTIZATION] > MIN_SUSPICION_RATIO
         && let structure = toggled(&supported, QUANTIZATION, true)
         && let Some(with) = fit(&structure)
     {
@@ -121,7 +122,7 @@ fn estimate(
         // What is too weak to be named may still hold a part of the level of the white noise.
         for other in suspects(term) {
             if !structure[*other]
-                && ratios[*other] > SUSPICION
+                && ratios[*other] > MIN_SUSPICION_RATIO
                 && let Some(wide) = Profile::new(likelihood, &toggled(&structure, *other, true), term)
             {
                 spread = wider(profile.value(), &spread, &wide.spread());
@@ -131,7 +132,7 @@ fn estimate(
         // what this term was given.
         if let Some(rival) = rival_of(term)
             && !structure[rival]
-            && ratios[rival] > RIVALRY
+            && ratios[rival] > MIN_RIVAL_RATIO
             && let Some(other) = Profile::new(likelihood, &toggled(&structure, rival, true), term)
         {
             spread = wider(profile.value(), &spread, &other.spread());

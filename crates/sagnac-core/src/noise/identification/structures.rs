@@ -1,6 +1,6 @@
 //! Every structure of N, B, K, Q and R fitted, and the one that a record is given.
 
-use super::claims::{B, FLICKER, K, PRICE, QUANTIZATION, R, SETS, SlowChoice, SlowPrices, WALK};
+use super::claims::{B, FLICKER, K, QUANTIZATION, R, SETS, SlowChoice, SlowPrices, TERM_PRICE, WALK};
 use super::linear_fit::{Likelihood, Point, RAMP, SPECTRAL, Structure, toggled};
 
 /// All structures fitted.
@@ -90,7 +90,8 @@ impl Structures {
         let ramp = usize::from(claimed[RAMP]);
         let must = (0..SPECTRAL).filter(|i| claimed[*i]).fold(0usize, |set, i| set | 1 << i);
         let cost = |set: usize| {
-            self.points[set][ramp].map_or(f64::INFINITY, |p| p.deviance + PRICE * f64::from(set.count_ones()))
+            self.points[set][ramp]
+                .map_or(f64::INFINITY, |p| p.deviance + TERM_PRICE * f64::from(set.count_ones()))
         };
         // Quantisation is nearly white at the highest frequencies: on suspicion alone it would spoil N.
         let suspected = ALL ^ if claimed[QUANTIZATION] { 0 } else { 1 << QUANTIZATION };

@@ -1,4 +1,4 @@
-//! The evidence that a filter leaves to be judged.
+//! The evidence that a filter leaves to be usable_evidence.
 
 use super::model::Extras;
 use crate::noise::composite::{Bandwidth, averaged_white_mode};
@@ -6,7 +6,7 @@ use crate::noise::evidence::{Evidence, Zone};
 use std::f64::consts::PI;
 
 /// Share of a mode's power that the ends of the record may make.
-const MOST_BY_ENDS: f64 = 0.05;
+const MAX_SHARE_OF_ENDS: f64 = 0.05;
 
 /// Power that a mean over so many samples lets through at a frequency in cycles a sample.
 fn gain(samples: u32, x: f64) -> f64 {
@@ -18,7 +18,7 @@ fn gain(samples: u32, x: f64) -> f64 {
 /// What the likelihood may take as independent. About the zeros of a moving average the modes of a record hold the few
 /// samples at its ends and little else: all of them the same, so that they are left out, and bands next to them are
 /// narrow, for the power falls to nothing within them.
-pub(super) fn judged(evidence: &Evidence, extras: &Extras) -> Evidence {
+pub(super) fn usable_evidence(evidence: &Evidence, extras: &Extras) -> Evidence {
     let Some(Bandwidth::MovingAverage { samples }) = extras.shape.filter else {
         return evidence.resolving(&extras.zones);
     };
@@ -26,7 +26,7 @@ pub(super) fn judged(evidence: &Evidence, extras: &Extras) -> Evidence {
     let by_ends = |tau_s: f64, mode: usize, blocks: usize| {
         tau_s < 1.5 * tau0_s && {
             let all = averaged_white_mode(samples, mode as f64, blocks);
-            gain(samples, mode as f64 / (2.0 * blocks as f64)) < (1.0 - MOST_BY_ENDS) * all
+            gain(samples, mode as f64 / (2.0 * blocks as f64)) < (1.0 - MAX_SHARE_OF_ENDS) * all
         }
     };
     let span = evidence.span_s.max(tau0_s);
@@ -69,7 +69,7 @@ mod tests {
                 .take(n)
                 .collect();
             let blocks = BlockSeries { block_len: 1, mean, count: vec![1; n], ..BlockSeries::default() };
-            let evidence = judged(&Evidence::new(&blocks, None, 1.0, &[]), &extras);
+            let evidence = usable_evidence(&Evidence::new(&blocks, None, 1.0, &[]), &extras);
             let expected = expected_power(&evidence, &model);
             sums.resize(evidence.bands.len(), (0.0, 0.0));
             for ((sum, band), e) in sums.iter_mut().zip(&evidence.bands).zip(&expected) {

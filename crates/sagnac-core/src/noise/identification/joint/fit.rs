@@ -11,13 +11,13 @@ use crate::numeric::optimize::{bounded_quadratic, shortened_steps};
 use nalgebra::{DMatrix, DVector};
 
 /// Fall of the deviance below which a fit is done.
-const DONE: f64 = 1e-3;
+const MIN_FALL: f64 = 1e-3;
 /// Steps of a fit at most.
-const STEPS: usize = 80;
+const MAX_STEPS: usize = 80;
 /// Periods that an oscillation lasts at least.
 const MIN_PERIODS: f64 = 2.0;
 /// Relative step of numeric derivatives.
-const EPSILON: f64 = 1e-3;
+const DERIVATIVE_STEP: f64 = 1e-3;
 
 /// The joint likelihood of an evidence.
 pub struct Joint<'a> {
@@ -157,17 +157,17 @@ impl<'a> Joint<'a> {
             match *variable {
                 Variable::Variance(i) => columns.all().nth(i).cloned().unwrap_or_default(),
                 Variable::FilterTime => {
-                    let moved = self.columns(&self.moved(&point.shape, *variable, EPSILON));
+                    let moved = self.columns(&self.moved(&point.shape, *variable, DERIVATIVE_STEP));
                     let mut out = vec![0.0; self.bands.len()];
                     for ((now, then), v) in columns.base.iter().zip(&moved.base).zip(&point.variance) {
                         for ((o, a), b) in out.iter_mut().zip(now).zip(then) {
-                            *o += v * (b - a) / EPSILON;
+                            *o += v * (b - a) / DERIVATIVE_STEP;
                         }
                     }
                     out
                 }
                 Variable::DecayTime(i) | Variable::Frequency(i) => {
-                    let up = self.moved(&point.shape, *variable, EPSILON);
+                    let up = self.moved(&point.shape, *variable, DERIVATIVE_STEP);
                     let Some(((_, d), v)) = up.damped.get(i).zip(point.variance.get(BASE.len() + i)) else {
                         return vec![0.0; self.bands.len()];
                     };
@@ -175,7 +175,7 @@ impl<'a> Joint<'a> {
                     let (Some(then), Some(now)) = (then.first(), columns.damped.get(i)) else {
                         return vec![0.0; self.bands.len()];
                     };
-                    now.iter().zip(then).map(|(a, b)| v * (b - a) / EPSILON).collect()
+                    now.iter().zip(then).map(|(a, b)| v * (b - a) / DERIVATIVE_STEP).collect()
                 }
                 Variable::Ramp => vec![0.0; self.bands.len()],
             }
@@ -202,7 +202,7 @@ impl<'a> Joint<'a> {
 
     /// The maximum from a start; variances that are not free keep their value.
     pub fn maximise(&self, start: &JointPoint, free: &Free) -> JointPoint {
-        self.newton_ascent(start, free, STEPS)
+        self.newton_ascent(start, free, MAX_STEPS)
     }
 
     /// The maximum with N, B, K, Q and the parts of a shape.
@@ -273,7 +273,7 @@ impl<'a> Joint<'a> {
                 (point, columns, s) = better;
             }
             damping = if scale < 1.0 { (damping + 0.1) * 2.0 } else { damping * 0.3 };
-            if !improved || before - point.deviance < DONE {
+            if !improved || before - point.deviance < MIN_FALL {
                 break;
             }
         }
@@ -345,7 +345,7 @@ impl<'a> Joint<'a> {
     /// How far one step of [`Joint::moved`] changes the reported value of a variable.
     pub(super) fn unit_of(&self, point: &JointPoint, variable: Variable) -> f64 {
         let mut moved = point.clone();
-        moved.shape = self.moved(&point.shape, variable, EPSILON);
-        (moved.reported(variable) - point.reported(variable)) / EPSILON
+        moved.shape = self.moved(&point.shape, variable, DERIVATIVE_STEP);
+        (moved.reported(variable) - point.reported(variable)) / DERIVATIVE_STEP
     }
 }

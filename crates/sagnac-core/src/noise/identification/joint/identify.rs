@@ -1,8 +1,8 @@
 //! Identification with every kind of term.
 
 use super::super::claims::{
-    B, K, LIMIT_COVERAGE, LIMIT_RISE, METHOD, PRICE, R, RIVALRY, SUSPICION, holds, is_claimable,
-    low_frequency_note, rival_of, suspects, with_rivals,
+    B, K, LIMIT_COVERAGE, LIMIT_RISE, METHOD, MIN_RIVAL_RATIO, MIN_SUSPICION_RATIO, R, TERM_PRICE,
+    contains_term, is_claimable, low_frequency_note, rival_of, suspects, with_rivals,
 };
 use super::super::linear_fit::RAMP;
 use super::super::misfit::Misfit;
@@ -10,7 +10,7 @@ use super::super::options::Options;
 use super::super::profile::wider;
 use super::super::result::{IDS, Identification, MarkovFound, QuasiPeriodicFound};
 use super::super::standard::{identify_standard, slow_choice};
-use super::ends::judged;
+use super::ends::usable_evidence;
 use super::fit::Joint;
 use super::interval::{JointProfile, parameter_covariance};
 use super::model::{BASE, Extras, Free, JointPoint, ProcessKind, Shape, Variable};
@@ -28,7 +28,7 @@ use crate::noise::model::TERMS;
 use std::f64::consts::PI;
 
 /// Times that the parts of a model are looked over at most.
-const TURNS: usize = 12;
+const MAX_REVISIONS: usize = 12;
 
 /// Identifies N, B, K, Q and R, and Markov processes, quasi-periodic disturbances and a filter where the record calls for
 /// them. `known`: where a search of the same evidence ended.
@@ -68,10 +68,10 @@ pub(in super::super) fn identify_joint(
         }
     }
     // A part that became superfluous after a later one is taken out again.
-    let (mut turns, mut exchanged) = (TURNS, false);
+    let (mut turns, mut exchanged) = (MAX_REVISIONS, false);
     loop {
         turns = turns.saturating_sub(1);
-        let resolved = judged(evidence, &extras);
+        let resolved = usable_evidence(evidence, &extras);
         let Some(joint) = Joint::new(&resolved, options.sampling) else { return without_extras(plain) };
         let Some(found) = ShapeFits::of(&joint, &extras.shape, options) else { return without_extras(plain) };
         let near = long_markov(&joint, &extras.shape, found.slow.choice, &options.standard.slow);
@@ -126,7 +126,7 @@ struct ShapeFits {
 impl ShapeFits {
     fn of(joint: &Joint<'_>, shape: &Shape, options: &Options) -> Option<ShapeFits> {
         let slow = Slow::of(joint, shape, &options.standard.slow)?;
-        let ramp = holds(slow.choice.set, RAMP);
+        let ramp = contains_term(slow.choice.set, RAMP);
         let full = if ramp { slow.sloped.clone() } else { slow.level.clone() };
         if !full.deviance.is_finite() {
             return None;
@@ -148,8 +148,8 @@ impl ShapeFits {
         ];
         let mut claimed = [
             ratios[0] > options.standard.white,
-            holds(slow.choice.set, 1),
-            holds(slow.choice.set, 2),
+            contains_term(slow.choice.set, 1),
+            contains_term(slow.choice.set, 2),
             // The price is looked up only where it decides.
             ratios[3] > options.standard.quantization
                 && ratios[3] > quantization_price(joint, &full, ramp, &options.process_thresholds),
@@ -233,7 +233,7 @@ impl ShapeFits {
         let mut spread = plateau.spread(joint, &self.supported, &self.free);
         // What is too weak to be named may still hold a part of the level.
         for other in suspects(0) {
-            if !self.free.variance[*other] && self.ratios[*other] > SUSPICION {
+            if !self.free.variance[*other] && self.ratios[*other] > MIN_SUSPICION_RATIO {
                 let mut wide = self.free.clone();
                 wide.variance[*other] = true;
                 let point = joint.maximise(&self.supported, &wide);
@@ -255,13 +255,13 @@ impl ShapeFits {
             let value = best.reported(variable);
             // What is too weak to be named may still hold a part of the level of the white noise.
             for other in suspects(term) {
-                if !free.variance[*other] && self.ratios[*other] > SUSPICION {
+                if !free.variance[*other] && self.ratios[*other] > MIN_SUSPICION_RATIO {
                     let mut wide = free.clone();
                     wide.variance[*other] = true;
                     spread = wider(value, &spread, &self.profile(joint, variable, &wide).1);
                 }
             }
-            let rival = rival_of(term).filter(|r| !free.variance[*r] && self.ratios[*r] > RIVALRY);
+            let rival = rival_of(term).filter(|r| !free.variance[*r] && self.ratios[*r] > MIN_RIVAL_RATIO);
             if let Some(rival) = rival {
                 let mut wide = free.clone();
                 wide.variance[rival] = true;
@@ -372,7 +372,7 @@ fn supported(
             }
         }
         let point = joint.maximise(&start, &free);
-        let cost = point.deviance + PRICE * f64::from(set.count_ones());
+        let cost = point.deviance + TERM_PRICE * f64::from(set.count_ones());
         if point.deviance.is_finite() && best.as_ref().is_none_or(|b| cost < b.0) {
             best = Some((cost, point, free));
         }

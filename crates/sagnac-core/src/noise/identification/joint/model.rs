@@ -15,7 +15,7 @@ pub const QUANTIZATION: usize = 3;
 pub const MAX_PROCESSES: usize = 4;
 /// Shortest correlation time that is told from white noise, sample intervals: the corner then lies at half the Nyquist
 /// frequency, so that an octave of the fall beyond it is seen. A process with a higher corner is white noise.
-pub const RESOLVED: f64 = 0.637;
+pub const MIN_TIME_SAMPLES: f64 = 0.637;
 /// Longest correlation time that is told from random walk: this share of the record.
 pub const MAX_TIME_SHARE: f64 = 0.125;
 

@@ -13,11 +13,11 @@ pub(super) struct Peak {
 /// Bins left out at the low end, where slow noise rules.
 const FIRST_BIN: usize = 4;
 /// Half widths looked at reach this share of the frequency.
-const WIDEST: f64 = 0.15;
+const MAX_RELATIVE_WIDTH: f64 = 0.15;
 /// Reach of a template in half widths.
-const REACH: usize = 6;
+const TEMPLATE_REACH: usize = 6;
 /// Score from which a gain is computed.
-const WORTH: f64 = 3.0;
+const MIN_SCORE: f64 = 3.0;
 
 /// The strongest peaks, strongest first, at most `count` and none within another's width. `density` is the expected
 /// density of each band of `evidence`, that bins are compared with.
@@ -79,16 +79,16 @@ fn scan(evidence: &Evidence, run: &std::ops::Range<usize>, density: &[f64], foun
     let dof = first.dof;
     let from = FIRST_BIN.saturating_sub((first.frequency_hz / step) as usize);
     let mut half = 1usize;
-    while half * REACH < bins.len() {
+    while half * TEMPLATE_REACH < bins.len() {
         let stride = (half / 2).max(1);
         for centre in (from..bins.len()).step_by(stride) {
             let frequency = first.frequency_hz + centre as f64 * step;
-            if half as f64 * step > WIDEST * frequency {
+            if half as f64 * step > MAX_RELATIVE_WIDTH * frequency {
                 continue;
             }
             let (a, b) = (centre.saturating_sub(half), (centre + half + 1).min(bins.len()));
             let score = (sums[b] - sums[a]) / (2.0 * dof * (b - a) as f64).sqrt();
-            if score < WORTH {
+            if score < MIN_SCORE {
                 continue;
             }
             let zone = Zone { centre_hz: frequency, half_width_hz: half as f64 * step * 0.5 };
@@ -103,7 +103,7 @@ fn scan(evidence: &Evidence, run: &std::ops::Range<usize>, density: &[f64], foun
 
 /// Gain in 2 ln L of the best amplitude of a Lorentzian of half width `half` bins.
 fn gain_of(ratio: &[f64], centre: usize, half: f64, dof: f64) -> f64 {
-    let reach = ((2 * REACH) as f64 * half).ceil() as usize + 2;
+    let reach = ((2 * TEMPLATE_REACH) as f64 * half).ceil() as usize + 2;
     let (a, b) = (centre.saturating_sub(reach), (centre + reach + 1).min(ratio.len()));
     // Wide templates are summed in groups of bins.
     let group = ((half / 4.0) as usize).max(1);

@@ -14,7 +14,7 @@ use crate::noise::model::NoiseModel;
 use crate::noise::slope::{LARGEST_SHARE, SlopePoint, runs};
 
 /// Share of the octaves of the longest line from which a line at shorter averaging times is the one that is read.
-const AS_GOOD: f64 = 0.5;
+const MIN_SHARE_OF_LONGEST: f64 = 0.5;
 
 /// A line of slope −1/2 through the curve of a model, with the processes that are white on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,8 @@ impl Plateau {
             .collect();
         let lines = runs(&octaves, NoiseType::AngleRandomWalk);
         let longest = lines.iter().map(|r| r.len() - 1).max()? as f64;
-        let line = octaves.get(lines.into_iter().find(|r| (r.len() - 1) as f64 >= AS_GOOD * longest)?)?;
+        let line = octaves
+            .get(lines.into_iter().find(|r| (r.len() - 1) as f64 >= MIN_SHARE_OF_LONGEST * longest)?)?;
         let (from_s, to_s) = (line.first()?.tau_s, line.last()?.tau_s);
         let middle_s = (from_s * to_s).sqrt();
         let white: Vec<usize> = model

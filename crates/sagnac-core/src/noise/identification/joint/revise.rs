@@ -1,19 +1,21 @@
 //! Revision of a model that the search has found: parts that became superfluous are removed, a filter may take the place
 //! of a Markov process, and parts that cannot be told from one another near the upper end of the spectrum cost more.
 
-use super::super::claims::{SlowPrices, holds};
+use super::super::claims::{SlowPrices, contains_term};
 use super::super::linear_fit::RAMP;
 use super::super::options::ProcessThresholds;
 use super::fit::Joint;
 use super::interval::parameter_covariance;
-use super::model::{BASE, Extras, Free, JointPoint, ProcessKind, QUANTIZATION, RESOLVED, Shape, Variable};
+use super::model::{
+    BASE, Extras, Free, JointPoint, MIN_TIME_SAMPLES, ProcessKind, QUANTIZATION, Shape, Variable,
+};
 use super::search::shows_filter;
 use super::slow::Slow;
 use crate::noise::composite::{Bandwidth, Damped};
 
 /// Growth of the uncertainty of N by letting a part in from which the two count as confounded: a superfluous part then
 /// displaces N by several of the deviations it would have without.
-const CONFOUNDED: f64 = 2.0;
+const CONFOUNDING_GROWTH: f64 = 2.0;
 
 /// A part beside N, B, K, Q and R.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +42,7 @@ pub(super) fn without(extras: &Extras, part: Part) -> Extras {
 
 /// A Markov process whose corner a fit has moved beyond what the sampling resolves.
 pub(super) fn unresolved(joint: &Joint<'_>, points: &[&JointPoint]) -> Option<Part> {
-    let shortest_s = RESOLVED * joint.evidence().tau0_s;
+    let shortest_s = MIN_TIME_SAMPLES * joint.evidence().tau0_s;
     let white = |(i, (kind, d)): (usize, &(ProcessKind, Damped))| {
         (*kind == ProcessKind::Markov && d.decay_time_s < shortest_s).then_some(Part::Damped(i))
     };
@@ -60,7 +62,7 @@ pub(super) fn backward_elimination(
     if usize::from(shape.filter.is_some()) + shape.damped.len() < 2 {
         return None;
     }
-    let ramp = holds(slow.choice.set, RAMP);
+    let ramp = contains_term(slow.choice.set, RAMP);
     let less_by = |part: Part, threshold: f64| {
         let less = without_shape(shape, part);
         let mut start = JointPoint { shape: less.clone(), ..full.clone() };
@@ -150,7 +152,7 @@ fn confounds_white(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> bool {
         sigma_of_white(joint, point, &free)
     };
     match (sigma(true), sigma(false)) {
-        (Some(with), Some(without)) => with > CONFOUNDED * without,
+        (Some(with), Some(without)) => with > CONFOUNDING_GROWTH * without,
         // Where N has vanished, quantisation stands in its place.
         _ => point.variance.get(QUANTIZATION).is_some_and(|v| *v > 0.0) && !point.shape.is_plain(),
     }
@@ -171,7 +173,7 @@ pub(super) fn filter_price(
     };
     let without = Shape { filter: None, ..point.shape.clone() };
     match (sigma(point.shape.clone()), sigma(without)) {
-        (Some(with), Some(without)) if with > CONFOUNDED * without => thresholds.filter_confounded,
+        (Some(with), Some(without)) if with > CONFOUNDING_GROWTH * without => thresholds.filter_confounded,
         _ => thresholds.filter,
     }
 }

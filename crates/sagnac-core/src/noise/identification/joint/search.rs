@@ -1,10 +1,11 @@
 //! What there is beside N, B, K, Q and R: one more part at a time, while one is worth its parameters.
 
 use super::super::options::ProcessThresholds;
-use super::ends::judged;
+use super::ends::usable_evidence;
 use super::fit::Joint;
 use super::model::{
-    Extras, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, ProcessKind, QUANTIZATION, RESOLVED, Shape,
+    Extras, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, MIN_TIME_SAMPLES, ProcessKind, QUANTIZATION,
+    Shape,
 };
 use super::peaks::strongest;
 use crate::noise::composite::{Bandwidth, Part, Sampling};
@@ -15,14 +16,14 @@ use std::f64::consts::PI;
 /// Correlation times tried, per octave.
 const PER_OCTAVE: f64 = 1.5;
 /// Highest frequency in units of the sample rate below which a range was cut.
-const WHOLE_RANGE: f64 = 0.4;
+const UNCUT_RANGE: f64 = 0.4;
 /// Corners of processes lie at least this factor below the edge of a range that was cut.
-const EDGE: f64 = 4.0;
+const MIN_EDGE_DISTANCE: f64 = 4.0;
 /// Steps of a fit that screens a grid, and of one that counts.
-const SCREEN: usize = 3;
-const FULL: usize = 40;
+const SCREENING_STEPS: usize = 3;
+const FIT_STEPS: usize = 40;
 /// Peaks of a scan that are fitted.
-const PEAKS: usize = 3;
+const MAX_PEAKS: usize = 3;
 /// Share of the density at its cut-off that white noise must have for a filter to be seen by it.
 const FILTERED_SHARE: f64 = 0.3;
 
@@ -42,7 +43,7 @@ pub fn find_extras(
 ) -> Extras {
     let mut found = Extras { shape: Shape::default(), zones: vec![] };
     for _ in 0..MAX_PROCESSES {
-        let resolved = judged(evidence, &found);
+        let resolved = usable_evidence(evidence, &found);
         let Some(joint) = Joint::new(&resolved, sampling) else { break };
         let current = joint.best(&found.shape, ramp);
         if !current.deviance.is_finite() {
@@ -118,7 +119,7 @@ fn filters(
         .into_iter()
         .map(|filter| {
             let shape = Shape { filter: Some(filter), ..found.shape.clone() };
-            at_shape(joint, &shape, current, ramp, SCREEN)
+            at_shape(joint, &shape, current, ramp, SCREENING_STEPS)
         })
         .collect();
     // The best of each kind: a screening cannot tell kinds apart.
@@ -159,13 +160,19 @@ fn markovs(
     thresholds: &ProcessThresholds,
 ) -> Option<Candidate> {
     let evidence = joint.evidence();
-    let shortest_s = RESOLVED * evidence.tau0_s;
+    let shortest_s = MIN_TIME_SAMPLES * evidence.tau0_s;
     let octaves = (MAX_TIME_SHARE * evidence.span_s / shortest_s).log2().max(0.0);
     let count = (octaves * PER_OCTAVE) as usize;
     let best = (0..=count)
         .map(|i| {
             let time_s = shortest_s * 2f64.powf(i as f64 / PER_OCTAVE);
-            at_shape(joint, &found.shape.with(ProcessKind::Markov, 0.0, time_s), current, ramp, SCREEN)
+            at_shape(
+                joint,
+                &found.shape.with(ProcessKind::Markov, 0.0, time_s),
+                current,
+                ramp,
+                SCREENING_STEPS,
+            )
         })
         .min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
     if current.deviance - best.deviance < 0.3 * thresholds.markov {
@@ -185,8 +192,8 @@ fn markovs(
 /// What bends the spectrum at the upper edge of a range that was cut is the beginning of what was cut off, and no process.
 fn bends_at_the_edge(evidence: &Evidence, time_s: f64) -> bool {
     let highest_hz = evidence.bands.iter().map(|b| b.high_hz).fold(0.0, f64::max);
-    let cut = highest_hz * evidence.tau0_s < WHOLE_RANGE;
-    cut && EDGE / (2.0 * PI * time_s) > highest_hz
+    let cut = highest_hz * evidence.tau0_s < UNCUT_RANGE;
+    cut && MIN_EDGE_DISTANCE / (2.0 * PI * time_s) > highest_hz
 }
 
 fn periodics(
@@ -199,19 +206,20 @@ fn periodics(
 ) -> Option<Candidate> {
     let density = joint.density_at(current);
     let mut best: Option<Candidate> = None;
-    for peak in strongest(joint.evidence(), &density, PEAKS) {
+    for peak in strongest(joint.evidence(), &density, MAX_PEAKS) {
         let need = thresholds.quasi_periodic + 2.0 * resolved_places(evidence, &peak.zone).ln();
         if peak.gain < 0.5 * need {
             continue;
         }
         let mut zones = found.zones.clone();
         zones.push(peak.zone);
-        let resolved = judged(evidence, &Extras { shape: found.shape.clone(), zones: zones.clone() });
+        let resolved =
+            usable_evidence(evidence, &Extras { shape: found.shape.clone(), zones: zones.clone() });
         let Some(fine) = Joint::new(&resolved, joint.sampling()) else { continue };
-        let before = at_shape(&fine, &found.shape, current, ramp, FULL);
+        let before = at_shape(&fine, &found.shape, current, ramp, FIT_STEPS);
         let time_s = 1.0 / (2.0 * PI * peak.zone.half_width_hz);
         let shape = found.shape.with(ProcessKind::QuasiPeriodic, peak.zone.centre_hz, time_s);
-        let point = refined(&fine, &at_shape(&fine, &shape, &before, ramp, FULL), ramp);
+        let point = refined(&fine, &at_shape(&fine, &shape, &before, ramp, FIT_STEPS), ramp);
         let excess = before.deviance - point.deviance - need;
         if best.as_ref().is_none_or(|b| excess > b.excess) {
             best = Some(Candidate { point, zones, excess });

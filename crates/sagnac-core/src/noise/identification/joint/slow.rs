@@ -7,11 +7,11 @@ use super::model::{BASE, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, Proces
 use crate::message::Note;
 
 /// Fall of the deviance that fitting the correlation time brings over the grid of octaves at most.
-const REFINING: f64 = 5.0;
+const MAX_REFINEMENT: f64 = 5.0;
 /// Excess below which a Markov process counts as describing the record about as well: its price above that of flicker.
-const NEAR: f64 = 7.6;
+const NEAR_EXCESS: f64 = 7.6;
 /// Shortest correlation time of a process that can stand for flicker or random walk, sample intervals.
-const SHORTEST: f64 = 4.0;
+const MIN_TIME_SAMPLES: f64 = 4.0;
 
 /// The slow terms of one shape.
 pub(super) struct Slow {
@@ -95,7 +95,7 @@ pub(super) struct LongMarkov {
 impl LongMarkov {
     /// Says so on the estimates of flicker and random walk where the process describes the record about as well.
     pub fn annotate(&self, found: &mut Identification) {
-        if self.excess >= NEAR {
+        if self.excess >= NEAR_EXCESS {
             return;
         }
         for estimate in [&mut found.bias_instability, &mut found.rate_random_walk] {
@@ -125,7 +125,7 @@ pub(super) fn long_markov(
         .filter(|(kind, _)| *kind == ProcessKind::Markov)
         .map(|(_, d)| d.decay_time_s)
         .fold(0.0, f64::max);
-    let mut time_s = SHORTEST * evidence.tau0_s.max(known_s);
+    let mut time_s = MIN_TIME_SAMPLES * evidence.tau0_s.max(known_s);
     let mut tried = vec![];
     while time_s <= longest_s {
         let with = shape.with(ProcessKind::Markov, 0.0, time_s);
@@ -134,7 +134,7 @@ pub(super) fn long_markov(
         time_s *= 2.0;
     }
     let best = tried.into_iter().min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
-    if best.deviance + prices.markov > choice.cost + NEAR + REFINING && choice.set & R == 0 {
+    if best.deviance + prices.markov > choice.cost + NEAR_EXCESS + MAX_REFINEMENT && choice.set & R == 0 {
         return None;
     }
     let (cost, point) = [(0, prices.markov), (R, prices.markov_and_ramp)]
@@ -147,6 +147,6 @@ pub(super) fn long_markov(
     let time_s = point.shape.damped.last()?.1.decay_time_s;
     let sigma = point.variance.get(BASE.len() + shape.damped.len()).copied().unwrap_or(0.0).max(0.0).sqrt();
     let excess = cost + prices.in_place_of(choice.set) - choice.cost;
-    let usable = sigma > 0.0 && time_s <= longest_s && excess < NEAR;
+    let usable = sigma > 0.0 && time_s <= longest_s && excess < NEAR_EXCESS;
     usable.then_some(LongMarkov { shape: point.shape, excess, sigma, time_s })
 }
