@@ -1,6 +1,7 @@
 //! Commands for people who work on Sagnac.
 
 mod features;
+mod notices;
 mod same_results;
 
 use std::path::{Path, PathBuf};
@@ -14,6 +15,8 @@ same-results OLD NEW [--only TEXT]
     Run every shipped sample with two binaries and compare their result.json: numbers to the last digit.
 features [CARGO OPTION]...
     Check sagnac-ingest with every cargo feature alone, with none and with all.
+notices [--check]
+    Write THIRD-PARTY.md: licences and notices of the packages that the program contains.
 ";
 
 fn main() -> ExitCode {
@@ -26,6 +29,8 @@ fn main() -> ExitCode {
             None => usage(),
         },
         Some((command, rest)) if command == "features" => features::check(root, rest),
+        Some((command, [])) if command == "notices" => notices::run(root, false),
+        Some((command, [check])) if command == "notices" && check == "--check" => notices::run(root, true),
         _ => usage(),
     }
 }
