@@ -14,7 +14,7 @@ pub type Span = Range<usize>;
 const SHOWN: usize = 120;
 
 /// Most problems that are written out; more are counted.
-const MOST_SHOWN: usize = 100;
+const MAX_SHOWN: usize = 100;
 
 /// How serious a problem is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -131,9 +131,9 @@ impl Problems {
 
     /// All of them in a language, an empty line between two.
     pub fn say(&self, lang: Lang) -> String {
-        let shown: Vec<String> = self.list.iter().take(MOST_SHOWN).map(|p| p.say(lang)).collect();
+        let shown: Vec<String> = self.list.iter().take(MAX_SHOWN).map(|p| p.say(lang)).collect();
         let mut out = shown.join("\n");
-        if let Some(rest) = self.list.len().checked_sub(MOST_SHOWN).filter(|n| *n > 0) {
+        if let Some(rest) = self.list.len().checked_sub(MAX_SHOWN).filter(|n| *n > 0) {
             out.push_str(&format!("\n{}\n", Note::new("diagnostic.more").with("n", rest).say(lang)));
         }
         out

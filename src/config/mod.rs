@@ -3,9 +3,8 @@
 //!
 //! [`procedure`], [`model`], [`manifest`] and [`layout`] are the files; the other modules know none of them.
 
+pub(crate) mod contained_files;
 pub mod diagnostics;
-pub(crate) mod file;
-pub(crate) mod inside;
 pub mod layout;
 pub mod manifest;
 pub mod model;
@@ -18,4 +17,5 @@ pub(crate) mod recording_options;
 pub(crate) mod section;
 pub mod spec;
 mod syntax;
+pub(crate) mod text_file;
 pub(crate) mod values;

@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
 
 /// At most this many syntax errors are shown: a file that is no TOML at all has one in every line.
-const SYNTAX_ERRORS: usize = 5;
+const MAX_SYNTAX_ERRORS: usize = 5;
 
 /// Longest chain of dotted keys and nested brackets in one line that is handed to the TOML parser.
-const DEEPEST: usize = 500;
+const MAX_DEPTH: usize = 500;
 
 /// Reads a file by its description.
 ///
@@ -29,7 +29,7 @@ fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Prob
     }
     let (table, errors) = DeTable::parse_recoverable(&source.text);
     if !errors.is_empty() {
-        for error in errors.iter().take(SYNTAX_ERRORS) {
+        for error in errors.iter().take(MAX_SYNTAX_ERRORS) {
             let span = error.span().unwrap_or(0..0);
             reader.problems.list.push(syntax::problem(source, &span, error.message()));
         }
@@ -73,12 +73,12 @@ fn other_format(source: &SourceText, root: &TableSpec, table: &DeTable<'_>) -> O
     Some(source.error(&value.span(), message).help(help))
 }
 
-/// Refuses a text by its nesting before the parser sees it; [`super::file::source`] has bounded its size.
+/// Refuses a text by its nesting before the parser sees it; [`super::text_file::source`] has bounded its size.
 fn too_deep(source: &SourceText) -> Option<Problem> {
     let mut start = 0;
     for line in source.text.split('\n') {
         let depth = line.bytes().filter(|b| matches!(b, b'.' | b'[' | b'{')).count();
-        if depth > DEEPEST && !line.trim_start().starts_with('#') && nests(line) {
+        if depth > MAX_DEPTH && !line.trim_start().starts_with('#') && nests(line) {
             return Some(source.error(&(start..start + line.len()), "keyed.too_deep"));
         }
         start += line.len() + 1;
@@ -99,7 +99,7 @@ fn nests(line: &str) -> bool {
             _ => {}
         }
     }
-    count > DEEPEST
+    count > MAX_DEPTH
 }
 
 /// True for the dot of a number that a comma or a closing bracket follows, as no dotted key is.

@@ -8,7 +8,7 @@ use sagnac_core::spelling::nearest;
 use toml::de::DeValue;
 
 /// Errors after which the reader stops looking for more.
-const ENOUGH: usize = 200;
+const MAX_ERRORS: usize = 200;
 
 /// One file while it is read.
 pub(crate) struct Reader<'s> {
@@ -23,7 +23,7 @@ pub(crate) struct Reader<'s> {
 impl Reader<'_> {
     /// Adds an error at a place, while there are not too many.
     pub fn error(&mut self, span: &Span, message: impl Into<Note>, help: Option<Note>) {
-        if self.problems.list.len() < ENOUGH {
+        if self.problems.list.len() < MAX_ERRORS {
             let mut problem = self.source.error(span, message);
             problem.help = help;
             self.problems.list.push(problem);

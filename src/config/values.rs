@@ -13,16 +13,16 @@ use sagnac_core::spelling::nearest;
 use toml::de::DeValue;
 
 /// Longest text that is taken, characters.
-const LONGEST_TEXT: usize = 2000;
+const MAX_TEXT_CHARACTERS: usize = 2000;
 
 /// Most averaging times in a list.
-const MOST_TAUS: usize = 1000;
+const MAX_TAUS: usize = 1000;
 
 /// Most numbers in a list.
-const MOST_NUMBERS: usize = 100_000;
+const MAX_NUMBERS: usize = 100_000;
 
 /// Most names in a table of values.
-const MOST_NAMES: usize = 100;
+const MAX_NAMES: usize = 100;
 
 /// Reads a value that is no table.
 pub(crate) fn scalar(
@@ -83,9 +83,11 @@ fn text(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, spa
         reader.error(span, message, Some("keyed.help.fill_in".into()));
         return None;
     }
-    if text.chars().count() > LONGEST_TEXT || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t') {
+    if text.chars().count() > MAX_TEXT_CHARACTERS
+        || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t')
+    {
         let message = Note::new("keyed.no_text").with("key", key.name);
-        let help = Note::new("keyed.help.text").with("most", LONGEST_TEXT);
+        let help = Note::new("keyed.help.text").with("most", MAX_TEXT_CHARACTERS);
         reader.error(span, message, Some(help));
         return None;
     }
@@ -116,7 +118,7 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
 /// The numbers of a list; `None` where it is none, is empty or too long, or holds anything else.
 fn list(value: &DeValue<'_>) -> Option<Vec<f64>> {
     match value {
-        DeValue::Array(items) if !items.is_empty() && items.len() <= MOST_NUMBERS => {
+        DeValue::Array(items) if !items.is_empty() && items.len() <= MAX_NUMBERS => {
             items.iter().map(|v| number(v.get_ref())).collect()
         }
         _ => None,
@@ -143,7 +145,7 @@ fn named(
 ) -> Option<Vec<Named>> {
     let DeValue::Table(table) = value else { return reader.wrong(key, value, span) };
     let mut found = vec![];
-    for (name, value) in table.iter().take(MOST_NAMES) {
+    for (name, value) in table.iter().take(MAX_NAMES) {
         let given = match number(value.get_ref()) {
             Some(number) => Some(Given::Number(number)),
             None => list(value.get_ref()).map(Given::List),
@@ -285,7 +287,7 @@ fn taus(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, spa
                 None
             }
         },
-        DeValue::Array(items) if !items.is_empty() && items.len() <= MOST_TAUS => {
+        DeValue::Array(items) if !items.is_empty() && items.len() <= MAX_TAUS => {
             let list: Vec<f64> = items
                 .iter()
                 .filter_map(|v| quantity_in(reader, key, "s", false, Range::POSITIVE, v.get_ref(), &v.span()))

@@ -35,7 +35,10 @@ const ENGLISH: &[(&str, &str)] = &[
     ("crates/sagnac-ingest/src/binary/column_stream.rs", "faults of the decoder, quoted as it says them"),
     ("crates/sagnac-ingest/src/formats/tdms/mod.rs", "types of storage, quoted as the format names them"),
     ("crates/sagnac-ingest/src/formats/tdms/scale.rs", "faults of the decoder, quoted as it says them"),
-    ("crates/sagnac-ingest/src/formats/hdf5/walk.rs", "types of storage, quoted as the format names them"),
+    (
+        "crates/sagnac-ingest/src/formats/hdf5/file_tree.rs",
+        "types of storage, quoted as the format names them",
+    ),
 ];
 
 /// Single literals that are no sentence for users: file, part of the text, why.

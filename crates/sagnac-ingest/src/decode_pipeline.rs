@@ -1,9 +1,9 @@
 //! Decoding beside hashing: a binary file is decoded on one thread and hashed on another while its blocks are used.
 
-use super::compressed::{ByteStream, Digested, Packing};
+use super::byte_stream::{ByteStream, Digested, Packing};
 use super::error::{IngestError, IngestErrorKind};
 use super::guarded::guarded;
-use super::memory::non_finite;
+use super::in_memory::non_finite;
 use super::{Block, FieldFaultKind, FileFacts, OnBlock};
 use sagnac_core::numeric::range::usable;
 use std::collections::BTreeSet;

@@ -1,8 +1,8 @@
 //! What a file format implements: it recognises a file by its first bytes and opens it as a table.
 
 use crate::block::{Block, FileFacts};
+use crate::byte_stream::Packing;
 use crate::column::Column;
-use crate::compressed::Packing;
 use crate::error::IngestError;
 use crate::options::ReadOptions;
 use sagnac_core::message::Note;

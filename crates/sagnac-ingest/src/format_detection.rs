@@ -74,7 +74,7 @@ fn not_compiled_in(file: &Candidate, format: &FormatFeature) -> IngestError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compressed::Packing;
+    use crate::byte_stream::Packing;
     use crate::english::english;
     use crate::formats::FEATURES;
     use crate::layout::LayoutFile;

@@ -42,15 +42,15 @@
     allow(dead_code)
 )]
 
-mod accumulated;
 mod affine;
+mod angle_differences;
 #[cfg(any(feature = "matlab", feature = "numpy", feature = "raw"))]
 mod binary;
 mod block;
+pub mod byte_stream;
 pub mod clock;
 mod column;
 pub mod column_inference;
-pub mod compressed;
 #[cfg(any(feature = "bag", feature = "hdf5", feature = "mcap", feature = "parquet", feature = "tdms"))]
 mod decode_pipeline;
 #[cfg(test)]
@@ -58,13 +58,13 @@ mod english;
 mod error;
 pub mod faults;
 mod field_faults;
+mod file_identity;
 mod format;
 mod format_detection;
 mod formats;
 mod guarded;
-mod identity;
+mod in_memory;
 pub mod layout;
-mod memory;
 mod metadata;
 pub mod multi_file;
 mod options;
@@ -73,7 +73,7 @@ mod part_selection;
 pub mod pattern;
 mod pauses;
 mod plan;
-mod reduce;
+mod requested_columns;
 mod row_clock;
 mod source;
 mod stream;
@@ -81,8 +81,8 @@ mod system;
 pub mod value_checks;
 
 pub use block::{Block, FieldFault, FieldFaultKind, FileFacts};
+pub use byte_stream::Packing;
 pub use column::Column;
-pub use compressed::Packing;
 pub use error::{IngestError, IngestErrorKind};
 pub use format::{Candidate, Format, OnBlock, Opened, Table};
 pub use formats::FORMATS;

@@ -1,7 +1,7 @@
 //! Several files as one recording: the same columns, read one after the other, never more than one file open.
 
 use super::affine::Affine;
-use super::compressed::digest;
+use super::byte_stream::digest;
 use super::error::{IngestError, IngestErrorKind};
 use super::source::{PartFacts, ReadSeveral, SeveralFiles, Source, open_with};
 use super::{Column, FileFacts, OnBlock, Opened, ReadOptions};
@@ -40,7 +40,7 @@ pub struct PartSpec {
 /// Opens files that follow each other as one recording.
 ///
 /// # Errors
-/// What [`open_with`] says of one of them; columns that differ; a file that is there twice.
+/// What [`open_with`] says of one of them; columns that differ; a file that is there refuse_duplicates.
 pub fn open(
     name: &Path,
     specs: &[PartSpec],
@@ -58,14 +58,16 @@ pub fn open(
         let source = open_with(&spec.path, options)?;
         let columns = match &first {
             None => (0..source.columns().len()).map(|i| (i, Affine::IDENTITY)).collect(),
-            Some(columns) => matched(columns, &source, specs.first().map_or(name, |s| s.path.as_path()))?,
+            Some(columns) => {
+                match_columns(columns, &source, specs.first().map_or(name, |s| s.path.as_path()))?
+            }
         };
         first.get_or_insert_with(|| source.columns().to_vec());
         parts.push(Part { source, columns, stated_sha256: spec.sha256.clone() });
     }
     let none = || error(name, Note::new("ingest.joined.none"));
     let Some(columns) = first else { return Err(none()) };
-    twice(&parts)?;
+    refuse_duplicates(&parts)?;
     let rows = parts.iter().map(|p| p.source.rows_estimate()).sum::<Option<u64>>();
     let mut notes = vec![Note::new("ingest.joined.note").with("count", parts.len())];
     for note in parts.iter().flat_map(|p| p.source.notes()) {
@@ -87,7 +89,7 @@ pub fn open(
         notes,
         metadata,
         stated_sample_rate_hz: stated,
-        table: super::memory::nothing().table,
+        table: super::in_memory::nothing().table,
     };
     let files = specs.iter().map(|s| (s.path.clone(), s.phase.clone())).collect();
     let bytes = parts.iter().map(|p| p.source.bytes()).sum();
@@ -99,7 +101,11 @@ pub fn open(
 }
 
 /// Finds the columns of the first file in another one: by name, or by the name without its unit.
-fn matched(columns: &[Column], source: &Source, first: &Path) -> Result<Vec<(usize, Affine)>, IngestError> {
+fn match_columns(
+    columns: &[Column],
+    source: &Source,
+    first: &Path,
+) -> Result<Vec<(usize, Affine)>, IngestError> {
     let error = |key, column: &str| {
         let note = Note::new(key).with("column", column).with("first", first.display().to_string());
         IngestError::new(IngestErrorKind::Parts, source.path(), note).hint("ingest.joined.hint.same_columns")
@@ -158,8 +164,8 @@ fn conversion(to: &Column, from: &Column) -> Option<Affine> {
     Some(Affine { factor, offset: offset + days })
 }
 
-/// Refuses a file that is there twice, under one name or two.
-fn twice(parts: &[Part]) -> Result<(), IngestError> {
+/// Refuses a file that is there refuse_duplicates, under one name or two.
+fn refuse_duplicates(parts: &[Part]) -> Result<(), IngestError> {
     let mut seen: Vec<(u64, &Path, Option<String>)> = Vec::new();
     for part in parts {
         let (bytes, path) = (part.source.bytes(), part.source.path());
@@ -172,7 +178,8 @@ fn twice(parts: &[Part]) -> Result<(), IngestError> {
                 own = Some(digest(path)?.sha256);
             }
             if *hash == own {
-                let note = Note::new("ingest.joined.twice").with("other", other.display().to_string());
+                let note =
+                    Note::new("ingest.joined.refuse_duplicates").with("other", other.display().to_string());
                 return Err(
                     IngestError::new(IngestErrorKind::Parts, path, note).hint("ingest.joined.hint.name_once")
                 );

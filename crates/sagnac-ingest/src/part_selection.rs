@@ -1,6 +1,6 @@
 //! Containers that hold more than one table: which part is the recording, and which of its columns belong together.
 
-use super::compressed::Packing;
+use super::byte_stream::Packing;
 use super::error::{IngestError, IngestErrorKind, shorten};
 use super::{Candidate, Column};
 use crate::column_inference::infer;

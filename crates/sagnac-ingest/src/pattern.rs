@@ -7,7 +7,7 @@ use sagnac_core::message::Note;
 use std::path::{Component, Path, PathBuf, is_separator};
 
 /// Most entries of folders that are looked at.
-const MOST_ENTRIES: usize = 1 << 20;
+const MAX_ENTRIES: usize = 1 << 20;
 
 /// Why a pattern gives no list of files.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -115,8 +115,8 @@ impl Walk {
         above.push(real);
         for entry in entries.flatten() {
             self.entries += 1;
-            if self.entries > MOST_ENTRIES {
-                return Err(PatternError::TooWide(MOST_ENTRIES));
+            if self.entries > MAX_ENTRIES {
+                return Err(PatternError::TooWide(MAX_ENTRIES));
             }
             let name = entry.file_name();
             let next = at.join(&name);

@@ -1,7 +1,7 @@
 //! Rows put on the grid of the recording: by their stamps, by a counter, or by their number.
 
 use super::Block;
-use super::accumulated::{Angles, Wrapped};
+use super::angle_differences::{AngleRollover, Angles};
 use super::pauses::Paused;
 use super::plan::Plan;
 use crate::clock::{Cadence, CounterStep, CounterTracker, Measured, Rollover, Step, Tracker, Unwrapper};
@@ -219,7 +219,7 @@ impl<'a> RowClock<'a> {
         for i in 0..rows {
             let Some(&stamp) = stamps.get(i) else { break };
             let joined = self.joined && stamp.is_finite();
-            self.lose(first_row + i as u64);
+            self.note_loss(first_row + i as u64);
             self.joined &= !joined;
             let step = if joined { Step::Next } else { self.tracker.step(stamp, stamps.get(i + 1).copied()) };
             if step == Step::Next && (self.connected || start < i) {
@@ -233,9 +233,9 @@ impl<'a> RowClock<'a> {
     }
 
     /// Tells the tracker of samples that are missing before a row.
-    fn lose(&mut self, row: u64) {
+    fn note_loss(&mut self, row: u64) {
         while let Some(loss) = self.plan.losses.get(self.lost).filter(|l| l.row <= row) {
-            self.tracker.lose(loss.samples);
+            self.tracker.note_loss(loss.samples);
             self.lost += 1;
         }
     }
@@ -393,7 +393,7 @@ impl<'a> RowClock<'a> {
         // The first row of a stretch has no angle before it.
         let skipped = usize::from(!self.connected);
         let (rates, wraps) = self.angles.differences(values, !self.connected);
-        for Wrapped { row: at, slot, period } in wraps {
+        for AngleRollover { row: at, slot, period } in wraps {
             self.integrity.rollovers += 1;
             let id = self.plan.channels.get(slot).map(|c| c.id.as_str());
             let note = || Note::new("time_base.angle_rollover").with("period_deg", period / 3600.0);

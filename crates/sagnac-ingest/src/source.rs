@@ -1,12 +1,12 @@
 //! A recording that can be read: a file, several joined, or columns in memory.
 
-use super::compressed::{self, ByteStream, Packing, io_error};
+use super::byte_stream::{self, ByteStream, Packing, io_error};
 use super::error::{IngestError, IngestErrorKind};
+use super::file_identity::FileIdentity;
 use super::format_detection::format_of;
 use super::guarded::guarded;
-use super::identity::FileIdentity;
 use super::metadata::serial_numbers;
-use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, memory, reduce};
+use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, in_memory, requested_columns};
 use sagnac_core::message::Note;
 use sagnac_core::recording::{ColumnRef, Role};
 use std::ops::ControlFlow;
@@ -125,13 +125,13 @@ impl Source {
         columns: Vec<(String, Vec<f64>)>,
         block_rows: usize,
     ) -> Result<Source, IngestError> {
-        let opened = memory::open(Path::new(name), columns, block_rows)?;
+        let opened = in_memory::open(Path::new(name), columns, block_rows)?;
         Ok(Source::alone(PathBuf::from(name), "memory", opened))
     }
 
     /// A recording without columns under the path of one that could not be opened, so that its report can name it.
     pub fn unopened(path: &Path) -> Source {
-        let opened = memory::nothing();
+        let opened = in_memory::nothing();
         Source::alone(path.to_owned(), "unknown", opened)
     }
 
@@ -338,29 +338,29 @@ impl Source {
             }
         }
         let slots: Vec<usize> = wanted.iter().filter_map(|w| unique.iter().position(|u| u == w)).collect();
-        let mut guard = reduce::FirstRows::new(unique.len());
+        let mut guard = requested_columns::NumericCheck::new(unique.len());
         let mut refusal = None;
         let facts = self.opened.table.read(&unique, &mut |block| {
             if let Some(fault) = guard.judge(block) {
                 refusal = Some(fault);
                 return ControlFlow::Break(());
             }
-            reduce::spread(block, &slots);
+            requested_columns::repeat_columns(block, &slots);
             let flow = on_block(block);
-            reduce::gather(block, unique.len());
+            requested_columns::restore_columns(block, unique.len());
             flow
         });
         // A file that was still being written is not a damaged one.
         let facts = match (facts, &self.identity) {
-            (Err(e), Some(identity)) => return Err(identity.still_at(&self.path).err().unwrap_or(e)),
+            (Err(e), Some(identity)) => return Err(identity.check_unchanged(&self.path).err().unwrap_or(e)),
             (facts, _) => facts?,
         };
-        if let Some(fault) = refusal.or_else(|| guard.judge_short()) {
-            return Err(reduce::not_numeric(&self.path, &fault, &unique, self.columns()));
+        if let Some(fault) = refusal.or_else(|| guard.judge_at_end()) {
+            return Err(requested_columns::not_numeric(&self.path, &fault, &unique, self.columns()));
         }
         if let Some(facts) = &facts {
-            compressed::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;
-            self.identity.as_ref().map_or(Ok(()), |identity| identity.still_at(&self.path))?;
+            byte_stream::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;
+            self.identity.as_ref().map_or(Ok(()), |identity| identity.check_unchanged(&self.path))?;
         }
         if facts.as_ref().is_some_and(|f| f.rows == 0) {
             return Err(IngestError::new(IngestErrorKind::Empty, &self.path, "ingest.no_rows")

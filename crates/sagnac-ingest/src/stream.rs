@@ -4,7 +4,7 @@ use super::plan::{Plan, TimeBaseSpec, prepare};
 use super::row_clock::RowClock;
 use super::{FileFacts, IngestError, IngestErrorKind, PartFacts, Source};
 use crate::clock::{Cadence, Measured};
-use crate::value_checks::{ValueChecks, ValueFacts, fewest_for};
+use crate::value_checks::{ValueChecks, ValueFacts, min_samples_for};
 use sagnac_core::message::Note;
 use sagnac_core::recording::integrity::{Fault, Integrity, OF_ROWS, OF_STAMPS, OF_VALUES};
 use sagnac_core::recording::{Channel, Role, Sink};
@@ -129,7 +129,7 @@ fn examined(plan: &Plan<'_>, values: &[ValueFacts], rows: u64) -> Vec<String> {
     if rows > 1 && (plan.time.is_some() || plan.counter.is_some()) {
         out.extend(OF_STAMPS);
     }
-    out.extend(OF_VALUES.iter().filter(|id| samples >= fewest_for(id)));
+    out.extend(OF_VALUES.iter().filter(|id| samples >= min_samples_for(id)));
     out.into_iter().map(str::to_owned).collect()
 }
 

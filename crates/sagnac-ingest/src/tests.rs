@@ -245,7 +245,7 @@ fn a_file_that_changes_is_refused() {
         let e = source.read(&[0], &mut |_| ControlFlow::Continue(())).unwrap_err();
         assert_eq!(e.kind(), IngestErrorKind::Changed, "{e}");
     }
-    let sizes = |open, read, now| compressed::unchanged(Path::new("x"), open, read, now).is_ok();
+    let sizes = |open, read, now| byte_stream::unchanged(Path::new("x"), open, read, now).is_ok();
     assert!(sizes(5, 5, 5) && !sizes(5, 6, 6) && !sizes(5, 5, 6) && !sizes(5, 4, 5));
 }
 

@@ -142,7 +142,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
 fn unread(path: &Path) -> RecordingFile {
     RecordingFile {
         path: path.display().to_string(),
-        sha256: crate::ingest::compressed::digest(path).map(|d| d.sha256).unwrap_or_default(),
+        sha256: crate::ingest::byte_stream::digest(path).map(|d| d.sha256).unwrap_or_default(),
         bytes: std::fs::metadata(path).map_or(0, |m| m.len()),
         samples: 0,
         sample_interval_s: 0.0,

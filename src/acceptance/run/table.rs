@@ -10,7 +10,7 @@ use crate::acceptance::condition::table::{ChannelFact, Settling, TableFacts, jud
 use crate::acceptance::condition::thermometer::{Thermometer, judge_scale_of_temperature};
 use crate::acceptance::condition::{Facts, judge_all};
 use crate::config::procedure::Procedure;
-use crate::config::procedure::recorded::scale_factor_unit;
+use crate::config::procedure::scale_factor_unit::scale_factor_unit;
 use crate::estimate::Estimate;
 use crate::figure::Figure;
 use crate::i18n::{Arg, Note};

@@ -2,7 +2,7 @@
 
 use super::Request;
 use crate::config::procedure::model::MeasurandSpec;
-use crate::config::procedure::recorded::scale_factor_unit;
+use crate::config::procedure::scale_factor_unit::scale_factor_unit;
 use crate::estimate::{Estimate, Spread};
 use crate::i18n::{Arg, Note};
 use crate::noise::static_bias::EARTH_RATE_DEG_H;

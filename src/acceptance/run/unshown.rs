@@ -4,7 +4,7 @@ use super::{Request, verdict};
 use crate::config::procedure::limits::gyro_of;
 use crate::config::procedure::model::{MeasurandSpec, Procedure};
 use crate::config::procedure::obtainable;
-use crate::config::procedure::recorded::scale_factor_unit;
+use crate::config::procedure::scale_factor_unit::scale_factor_unit;
 use crate::estimate::Estimate;
 use crate::i18n::Note;
 use crate::ids::{MeasurandId, Test};

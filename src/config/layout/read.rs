@@ -2,10 +2,10 @@
 
 use super::tables::LAYOUT_FILE;
 use crate::config::diagnostics::{Problems, Span};
-use crate::config::file::{self, Wording};
 use crate::config::read_tables::checked;
 use crate::config::reader::Reader;
 use crate::config::section::{Entry, Section};
+use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
 use crate::units::Unit;
 use sagnac_ingest::layout::{ByteOrder, Field, NumberType};
@@ -17,14 +17,14 @@ use std::path::Path;
 const WORDING: Wording = Wording { unreadable: "layout.unreadable", folder: "layout.folder" };
 
 /// Longest sync word, bytes.
-const LONGEST_SYNC: usize = 16;
+const MAX_SYNC_BYTES: usize = 16;
 
 /// Reads a layout file.
 ///
 /// # Errors
 /// Every problem of the file, each with its place; a file that cannot be read is one problem without a place.
 pub fn load(path: &Path) -> Result<Layout, Problems> {
-    parse(&path.display().to_string(), &file::bytes(path, &WORDING)?)
+    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?)
 }
 
 /// Reads a layout from the bytes of a file; `name` stands in diagnostics.
@@ -32,7 +32,7 @@ pub fn load(path: &Path) -> Result<Layout, Problems> {
 /// # Errors
 /// Every problem of the text.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<Layout, Problems> {
-    let (layout, problems) = checked(&file::source(name, bytes)?, &LAYOUT_FILE, build);
+    let (layout, problems) = checked(&text_file::source(name, bytes)?, &LAYOUT_FILE, build);
     layout.flatten().ok_or(problems)
 }
 
@@ -121,11 +121,13 @@ fn sync(root: &Section, reader: &mut Reader<'_>) -> Vec<u8> {
     let hex = plain.bytes().all(|b| b.is_ascii_hexdigit());
     let bytes: Option<Vec<u8>> = plain.as_bytes().chunks(2).map(byte).collect();
     match bytes {
-        Some(bytes) if hex && plain.len().is_multiple_of(2) && (1..=LONGEST_SYNC).contains(&bytes.len()) => {
+        Some(bytes)
+            if hex && plain.len().is_multiple_of(2) && (1..=MAX_SYNC_BYTES).contains(&bytes.len()) =>
+        {
             bytes
         }
         _ => {
-            let help = Note::new("layout.write_sync").with("most", LONGEST_SYNC);
+            let help = Note::new("layout.write_sync").with("most", MAX_SYNC_BYTES);
             reader.error(&root.span_of("sync"), "layout.sync", Some(help));
             Vec::new()
         }

@@ -5,17 +5,17 @@
 pub mod tables;
 
 use super::recording_options;
+use crate::config::contained_files::{self, ContainedFile};
 use crate::config::diagnostics::{Problems, Span};
-use crate::config::file::{self, Wording};
-use crate::config::inside::{self, Inside};
 use crate::config::read_tables::checked;
 use crate::config::reader::Reader;
 use crate::config::section::Section;
+use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
 use sagnac_ingest::layout::LayoutFile;
 use sagnac_ingest::multi_file::PartSpec;
 use sagnac_ingest::pattern::natural;
-use sagnac_ingest::{ReadOptions, TextOptions, compressed, pattern};
+use sagnac_ingest::{ReadOptions, TextOptions, byte_stream, pattern};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tables::MANIFEST_FILE;
@@ -85,7 +85,7 @@ pub fn is_manifest(path: &Path) -> bool {
     if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
         return false;
     }
-    let Some(text) = file::peek(path) else { return false };
+    let Some(text) = text_file::peek(path) else { return false };
     let said = text.lines().map(str::trim).find_map(|l| l.strip_prefix("format"));
     said.map_or_else(|| path.file_stem().is_some_and(|s| s == "manifest"), |rest| rest.contains("manifest/"))
 }
@@ -95,7 +95,12 @@ pub fn is_manifest(path: &Path) -> bool {
 /// # Errors
 /// Every problem, each with its place.
 pub fn load(path: &Path) -> Result<Manifest, Problems> {
-    parse(path, &path.display().to_string(), &file::bytes(path, &WORDING)?, inside::folder_of(path))
+    parse(
+        path,
+        &path.display().to_string(),
+        &text_file::bytes(path, &WORDING)?,
+        contained_files::folder_of(path),
+    )
 }
 
 /// Reads a manifest from its bytes; its files are looked for in `folder`.
@@ -104,7 +109,7 @@ pub fn load(path: &Path) -> Result<Manifest, Problems> {
 /// As [`load`].
 pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Manifest, Problems> {
     let (manifest, problems) =
-        checked(&file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| Manifest {
+        checked(&text_file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| Manifest {
             path: path.to_owned(),
             serial: root.text("serial"),
             contiguous: root.flag("contiguous"),
@@ -159,7 +164,10 @@ fn by_list(
     for section in listed {
         let Some(text) = section.text("path") else { continue };
         let at = reader.source.inside_quotes(&section.span_of("path"));
-        let Some(Inside { path, canonical }) = inside::file(&text, folder, &at, reader) else { continue };
+        let Some(ContainedFile { path, canonical }) = contained_files::file(&text, folder, &at, reader)
+        else {
+            continue;
+        };
         if let Some(line) = real.get(&canonical) {
             let note = Note::new("manifest.twice").with("path", text.as_str()).with("line", *line);
             complain(reader, &at, note, Some("manifest.help.twice"));
@@ -187,7 +195,7 @@ fn hash_holds(stated: &str, path: &Path, section: &Section, reader: &mut Reader<
         complain(reader, &at, Note::new("manifest.no_hash"), Some("manifest.help.no_hash"));
         return false;
     }
-    match compressed::digest(path) {
+    match byte_stream::digest(path) {
         Ok(found) if found.sha256.eq_ignore_ascii_case(stated) => true,
         Ok(found) => {
             let note = Note::new("manifest.wrong_hash")
@@ -205,11 +213,11 @@ fn hash_holds(stated: &str, path: &Path, section: &Section, reader: &mut Reader<
 
 fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
     let at = reader.source.inside_quotes(span);
-    if !inside::stays(pattern, &at, reader) {
+    if !contained_files::stays(pattern, &at, reader) {
         return vec![];
     }
     let most = sagnac_ingest::multi_file::MAX_FILES;
-    let mut names = match pattern::files(&inside::joined(folder, ""), pattern, most) {
+    let mut names = match pattern::files(&contained_files::joined(folder, ""), pattern, most) {
         Ok(names) => names,
         Err(e) => {
             complain(reader, &at, e.note("manifest.bad_pattern", "manifest.wide_pattern"), None);
@@ -227,7 +235,7 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
     let mut found = Vec::new();
     for path in names {
         let relative = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().into_owned();
-        if let Some(file) = inside::file(&relative, folder, &at, reader) {
+        if let Some(file) = contained_files::file(&relative, folder, &at, reader) {
             found.push(ManifestFile { path: file.path, sha256: None, phase: None });
         }
     }
@@ -237,7 +245,7 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
 fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOptions {
     let layout = section.text("layout").and_then(|text| {
         let at = reader.source.inside_quotes(&section.span_of("layout"));
-        inside::file(&text, folder, &at, reader).map(|f| LayoutFile::at(f.path))
+        contained_files::file(&text, folder, &at, reader).map(|f| LayoutFile::at(f.path))
     });
     ReadOptions { layout, ..recording_options::read(section, reader) }
 }

@@ -3,10 +3,10 @@
 use super::tables::MODEL_FILE;
 use super::{Claim, ModelFile, Profile, SimulationPlan, Stated, Uncertainty};
 use crate::config::diagnostics::Problems;
-use crate::config::file::{self, Wording};
 use crate::config::read_tables::checked;
 use crate::config::reader::{Reader, shorten};
 use crate::config::section::{Given, Named, Section};
+use crate::config::text_file::{self, Wording};
 use crate::effect::{
     self, ClaimedMean, Column, Drivers, EFFECTS, Earth, Effect, Param, Temperature, Value, Values,
 };
@@ -34,7 +34,7 @@ pub fn load(path: &Path) -> Result<Claim, Problems> {
 /// # Errors
 /// As [`load`].
 pub fn load_model(path: &Path) -> Result<ModelFile, Problems> {
-    parse(&path.display().to_string(), &file::bytes(path, &WORDING)?)
+    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?)
 }
 
 /// Reads a claim from the bytes of a file; `name` stands in diagnostics.
@@ -42,7 +42,7 @@ pub fn load_model(path: &Path) -> Result<ModelFile, Problems> {
 /// # Errors
 /// Every problem of the text.
 pub fn parse(name: &str, bytes: &[u8]) -> Result<ModelFile, Problems> {
-    let (model, problems) = checked(&file::source(name, bytes)?, &MODEL_FILE, build);
+    let (model, problems) = checked(&text_file::source(name, bytes)?, &MODEL_FILE, build);
     model.ok_or(problems)
 }
 

@@ -6,10 +6,10 @@ use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
 use super::phases::{Phase, Phased, is_phased, load_phased};
 use super::slips;
-use crate::config::file;
 use crate::config::layout;
 use crate::config::manifest::{self, Manifest, is_manifest};
 use crate::config::model;
+use crate::config::text_file;
 use crate::i18n::{Lang, Localize, Note, visible};
 use sagnac_ingest::layout::Layout;
 use std::path::Path;
@@ -194,5 +194,5 @@ fn is_limits(path: &Path) -> bool {
 
 /// True when a line of a file is as wanted. Nothing is reported here: reading does that.
 fn says(path: &Path, wanted: impl Fn(&str) -> bool) -> bool {
-    file::peek(path).is_some_and(|text| text.lines().map(str::trim).any(wanted))
+    text_file::peek(path).is_some_and(|text| text.lines().map(str::trim).any(wanted))
 }

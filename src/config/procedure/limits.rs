@@ -5,7 +5,7 @@ pub use super::limit_set::{Expected, LimitSet, LimitSpec, LimitsFile, Reference}
 use super::model::{Loaded, Procedure};
 use super::quantity::AS_RECORDED;
 use super::reader::Reader;
-use super::recorded;
+use super::scale_factor_unit;
 use super::section::{Entry, Section};
 use super::slips;
 use crate::estimate::{Limit, Rule};
@@ -116,7 +116,7 @@ fn idle(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Option<Note> {
     let applies = |l: &LimitSpec| {
         procedure.measures(l.measurand.id, l.channel.as_deref())
             && l.channel.as_deref().is_none_or(|c| procedure.channel(gyro_of(c)).is_some())
-            && recorded::other_unit(procedure, l).is_none()
+            && scale_factor_unit::other_unit(procedure, l).is_none()
     };
     if limits.iter().any(applies) {
         return None;
@@ -141,7 +141,7 @@ fn not_measured(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Vec<Problem
                 .with("procedure", procedure.id.as_str())
                 .with("channel", channel);
             warnings.push(file.source.warning(&limit.span, message));
-        } else if let Some(message) = recorded::other_unit(procedure, limit) {
+        } else if let Some(message) = scale_factor_unit::other_unit(procedure, limit) {
             warnings.push(file.source.warning(&limit.span, message));
         }
     }

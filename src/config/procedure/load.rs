@@ -4,8 +4,8 @@ use super::diagnostics::{Problems, SourceText};
 use super::limits::LimitsFile;
 use super::model::{Loaded, Procedure};
 use super::parse;
-use crate::config::file::{self, Wording};
-use crate::config::inside;
+use crate::config::contained_files;
+use crate::config::text_file::{self, Wording};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 use std::sync::Arc;
@@ -18,8 +18,10 @@ const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "chec
 /// # Errors
 /// Every problem of the file, each with its place; a file that cannot be read is one problem without a place.
 pub fn load(path: &Path) -> Result<Loaded<Procedure>, Problems> {
-    let folder = inside::folder_of(path);
-    loaded(&name_of(path), &file::bytes(path, &WORDING)?, |source| parse::procedure(source, Some(folder)))
+    let folder = contained_files::folder_of(path);
+    loaded(&name_of(path), &text_file::bytes(path, &WORDING)?, |source| {
+        parse::procedure(source, Some(folder))
+    })
 }
 
 /// Reads a limits file.
@@ -27,7 +29,7 @@ pub fn load(path: &Path) -> Result<Loaded<Procedure>, Problems> {
 /// # Errors
 /// As [`load`].
 pub fn load_limits(path: &Path) -> Result<Loaded<LimitsFile>, Problems> {
-    parse_limits(&name_of(path), &file::bytes(path, &WORDING)?)
+    parse_limits(&name_of(path), &text_file::bytes(path, &WORDING)?)
 }
 
 /// Reads a procedure from the bytes of a file; `name` stands in diagnostics and results. Whether the files that it names
@@ -52,7 +54,7 @@ fn loaded<T>(
     bytes: &[u8],
     parse: impl Fn(&SourceText) -> (Option<T>, Problems),
 ) -> Result<Loaded<T>, Problems> {
-    let source = file::source(name, bytes)?;
+    let source = text_file::source(name, bytes)?;
     match parse(&source) {
         (Some(value), warnings) => Ok(Loaded {
             value,

@@ -13,7 +13,7 @@ use super::site::{Orientation, Site};
 use super::tables::PROCEDURE_FILE;
 use super::tables::limits::LIMITS_FILE;
 use super::{channel, recording_options, validate};
-use crate::config::inside;
+use crate::config::contained_files;
 use crate::config::read_tables::checked;
 use crate::record::{ClauseRecord, WaiverRecord};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
@@ -51,10 +51,10 @@ fn named(
     let text = section.text(key)?;
     let at = reader.source.inside_quotes(&section.span_of(key));
     match folder {
-        Some(folder) => inside::file(&text, folder, &at, reader).map(|f| f.path),
-        None => inside::stays(&text, &at, reader).then(|| {
+        Some(folder) => contained_files::file(&text, folder, &at, reader).map(|f| f.path),
+        None => contained_files::stays(&text, &at, reader).then(|| {
             let of_name = Path::new(&reader.source.name).parent().unwrap_or(Path::new(""));
-            inside::joined(of_name, &text)
+            contained_files::joined(of_name, &text)
         }),
     }
 }

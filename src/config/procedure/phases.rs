@@ -7,9 +7,9 @@ use super::model::{Loaded, Procedure};
 use super::reader::Reader;
 use super::section::Section;
 use super::tables::phases::PHASES_FILE;
-use crate::config::file::{self, Wording};
-use crate::config::inside;
+use crate::config::contained_files;
 use crate::config::read_tables::checked;
+use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
 use crate::record::{ClauseRecord, ProcedureRecord};
 use sha2::{Digest, Sha256};
@@ -59,7 +59,7 @@ struct Stated {
 
 /// True when a file states phases.
 pub fn is_phased(path: &Path) -> bool {
-    file::peek(path).is_some_and(|text| text.lines().any(|l| l.trim().starts_with("[[phase]]")))
+    text_file::peek(path).is_some_and(|text| text.lines().any(|l| l.trim().starts_with("[[phase]]")))
 }
 
 /// Reads a procedure of several phases with the procedures of all of them.
@@ -68,9 +68,9 @@ pub fn is_phased(path: &Path) -> bool {
 /// Every problem of the file; when it is sound, those of the files that it names.
 pub fn load_phased(path: &Path) -> Result<Phased, Problems> {
     let name = path.display().to_string();
-    let bytes = file::bytes(path, &WORDING)?;
-    let source = file::source(&name, &bytes)?;
-    let folder = inside::folder_of(path);
+    let bytes = text_file::bytes(path, &WORDING)?;
+    let source = text_file::source(&name, &bytes)?;
+    let folder = contained_files::folder_of(path);
     let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     let (read, problems) = read(&source, &name, sha256, folder);
     let Some((mut phased, stated)) = read else { return Err(problems) };
@@ -134,7 +134,7 @@ fn stated(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Stated>
         let mut named = |key: &str| {
             let text = section.text(key)?;
             let at = reader.source.inside_quotes(&section.span_of(key));
-            inside::file(&text, folder, &at, reader).map(|f| f.path)
+            contained_files::file(&text, folder, &at, reader).map(|f| f.path)
         };
         let (procedure, limits) = (named("procedure"), named("limits"));
         let procedure = procedure.unwrap_or_default();

@@ -345,7 +345,7 @@ fn limits(procedure: &Procedure, reader: &mut Reader<'_>) {
             let message = Note::new("check.limit_not_measured").with("id", limit.measurand.id);
             let help = Note::new("check.help.limit_not_measured").with("id", limit.measurand.id);
             reader.error(&limit.span, message, Some(help));
-        } else if let Some(message) = super::recorded::other_unit(procedure, limit) {
+        } else if let Some(message) = super::scale_factor_unit::other_unit(procedure, limit) {
             reader.error(&limit.span, message, None);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::positioned_file::{FileRange, PositionedFile, digest_unless};
 use super::records::{ROWS, fields, set_aside_unusable};
-use crate::compressed::io_error;
+use crate::byte_stream::io_error;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::layout::Field;
 use crate::{Block, FileFacts, OnBlock, Table};

@@ -1,7 +1,7 @@
 //! Bytes of a file by position. A packed file is unpacked into a nameless temporary file first.
 
 use crate::Candidate;
-use crate::compressed::{ByteStream, Packing, io_error};
+use crate::byte_stream::{ByteStream, Packing, io_error};
 use crate::error::IngestError;
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -121,7 +121,7 @@ impl io::Seek for FileRange {
 pub(crate) fn digest_unless(
     path: &Path,
     stop: &AtomicBool,
-) -> Result<Option<crate::compressed::Digested>, IngestError> {
+) -> Result<Option<crate::byte_stream::Digested>, IngestError> {
     let mut stream = ByteStream::open(path, Packing::Plain)?;
     let mut buffer = vec![0; CHUNK];
     while stream.fill(&mut buffer)? > 0 {

@@ -1,9 +1,9 @@
 //! Records of fixed length that follow each other: read and hashed by one thread, decoded by another.
 
-use crate::compressed::{ByteStream, Packing};
+use crate::byte_stream::{ByteStream, Packing};
 use crate::error::{IngestError, IngestErrorKind};
+use crate::in_memory::non_finite;
 use crate::layout::Field;
-use crate::memory::non_finite;
 use crate::{Block, FieldFault, FieldFaultKind, FileFacts, OnBlock, Table};
 use sagnac_core::message::Note;
 use sagnac_core::numeric::range::usable;
@@ -27,7 +27,7 @@ pub(crate) struct FramedRecords {
 
 impl FramedRecords {
     /// Takes records of which the last one is cut off: it becomes a bad one. `at`: place of the first in the file.
-    fn keep_rest(&mut self, bytes: &[u8], stride: usize, at: u64) {
+    fn keep_partial_record(&mut self, bytes: &[u8], stride: usize, at: u64) {
         let whole = bytes.len() / stride;
         let rest = bytes.len() - whole * stride;
         let at = at + (whole * stride) as u64;
@@ -137,7 +137,7 @@ impl Records {
         mut stream: ByteStream,
         out: &SyncSender<Chunk>,
         free: &Receiver<Vec<u8>>,
-    ) -> Result<Option<crate::compressed::Digested>, IngestError> {
+    ) -> Result<Option<crate::byte_stream::Digested>, IngestError> {
         let records = (CHUNK / self.record_bytes.max(1)).clamp(1, ROWS);
         let size = records * self.record_bytes.max(1);
         loop {
@@ -180,7 +180,7 @@ impl Records {
                     &cut.records
                 }
                 None if self.declared_rows.is_none() && !chunk.bytes.len().is_multiple_of(stride) => {
-                    cut.keep_rest(&chunk.bytes, stride, self.header_bytes + rows * stride as u64);
+                    cut.keep_partial_record(&chunk.bytes, stride, self.header_bytes + rows * stride as u64);
                     &cut.records
                 }
                 None => &chunk.bytes,
@@ -200,7 +200,7 @@ impl Records {
                 fill(&mut block, fields, piece.get(..n * stride).unwrap_or_default(), stride);
                 set_aside_unusable(&mut block, fields);
                 while let Some((at, text)) = bad.next_if(|(at, _)| *at < start + n) {
-                    spoil(&mut block, at.saturating_sub(start), text);
+                    mark_unusable(&mut block, at.saturating_sub(start), text);
                 }
                 rows += n as u64;
                 if on_block(&mut block).is_break() {
@@ -222,7 +222,7 @@ fn fill(block: &mut Block, fields: &[Field], records: &[u8], stride: usize) {
 }
 
 /// Takes the values of a row that cannot be used away, and says so for each column.
-fn spoil(block: &mut Block, row: usize, text: &str) {
+fn mark_unusable(block: &mut Block, row: usize, text: &str) {
     let number = block.first_row + row as u64;
     for slot in 0..block.columns.len() {
         if let Some(value) = block.columns.get_mut(slot).and_then(|c| c.get_mut(row)) {

@@ -23,17 +23,17 @@ const APART: f64 = 0.45;
 const DELIVERED: f64 = 0.004;
 
 /// Least number of batches from which the clock is found.
-const LEAST: usize = 24;
+const MIN_BATCHES: usize = 24;
 
 /// Least mean number of rows in a batch.
-const LEAST_ROWS: f64 = 1.5;
+const MIN_ROWS_PER_BATCH: f64 = 1.5;
 
 /// Anchors on either side of a step that must agree on it, where their scatter is small and where it is not.
-const FEW: usize = 3;
-const MANY: usize = 16;
+const CONFIRMING_ANCHORS: usize = 3;
+const CONFIRMING_ANCHORS_SCATTERED: usize = 16;
 
 /// Scatter of the anchors, in intervals, up to which few of them tell a step.
-const SMALL: f64 = 0.1;
+const SMALL_SCATTER: f64 = 0.1;
 
 /// Lift of the line, in intervals, from which samples are missing.
 const LIFT: f64 = 0.6;
@@ -48,7 +48,7 @@ const FALLEN: f64 = 0.01;
 const MISSING: f64 = 0.4;
 
 /// Anchors kept. Longer recordings are not read as batches.
-const MOST: usize = 1 << 20;
+const MAX_BATCHES: usize = 1 << 20;
 
 /// What is compared with the uniform clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,7 +147,7 @@ impl Batches {
         let step_s = stamp - current.last.1;
         if step_s < 0.0 {
             self.fallen += 1;
-        } else if step_s > self.pause_s && self.done.len() < MOST {
+        } else if step_s > self.pause_s && self.done.len() < MAX_BATCHES {
             self.done.push(*current);
             *current = fresh;
         } else {
@@ -157,16 +157,16 @@ impl Batches {
 
     /// True where there are batches enough for a clock.
     pub(super) fn enough(&self) -> bool {
-        self.done.len() + 1 >= LEAST
+        self.done.len() + 1 >= MIN_BATCHES
     }
 
     /// The uniform clock; `None` where the stamps do not tell it clearly.
     pub fn clock(mut self) -> Option<Uniform> {
         self.done.extend(self.current.take());
         let rows = self.rows as f64 / self.done.len().max(1) as f64;
-        if self.done.len() < LEAST
-            || self.done.len() >= MOST
-            || rows < LEAST_ROWS
+        if self.done.len() < MIN_BATCHES
+            || self.done.len() >= MAX_BATCHES
+            || rows < MIN_ROWS_PER_BATCH
             || self.fallen as f64 > FALLEN * self.rows as f64
         {
             return None;
@@ -175,7 +175,7 @@ impl Batches {
             .into_iter()
             .filter_map(|which| {
                 let anchors: Vec<Anchor> = self.done.iter().map(|b| which.of(b)).collect();
-                settle(&anchors, which == AnchorRow::First).map(|s| (which, s))
+                fit_with_losses(&anchors, which == AnchorRow::First).map(|s| (which, s))
             })
             .min_by(|a, b| a.1.rank().total_cmp(&b.1.rank()))?;
         let spread_s = spread(&self.done, &found);
@@ -184,13 +184,13 @@ impl Batches {
 }
 
 /// An interval with the losses that it leaves.
-struct Settled {
+struct ClockWithLosses {
     interval_s: f64,
     losses: Vec<Loss>,
     scatter: f64,
 }
 
-impl Settled {
+impl ClockWithLosses {
     /// Fewer places at which samples are missing come first, then less scatter.
     fn rank(&self) -> f64 {
         self.losses.len() as f64 + self.scatter.min(0.99)
@@ -199,15 +199,23 @@ impl Settled {
 
 /// Finds interval and losses in turns, from slopes over all distances. Of what is clear, the reading with the fewest
 /// losses is taken: a rate near that of the batches needs a loss every few batches to explain the same stamps.
-fn settle(anchors: &[Anchor], early: bool) -> Option<Settled> {
+fn fit_with_losses(anchors: &[Anchor], early: bool) -> Option<ClockWithLosses> {
     let all = anchors.len() - 1;
-    let lags = [all, all / 4, all / 16, MANY, MANY / 4, 1];
-    let starts = lags.into_iter().filter(|l| *l > 0).flat_map(|lag| [(lag, FEW), (lag, MANY)]);
-    let tried = starts.filter_map(|(lag, reach)| settle_from(anchors, early, lag, reach));
+    let lags = [all, all / 4, all / 16, CONFIRMING_ANCHORS_SCATTERED, CONFIRMING_ANCHORS_SCATTERED / 4, 1];
+    let starts = lags
+        .into_iter()
+        .filter(|l| *l > 0)
+        .flat_map(|lag| [(lag, CONFIRMING_ANCHORS), (lag, CONFIRMING_ANCHORS_SCATTERED)]);
+    let tried = starts.filter_map(|(lag, reach)| fit_with_losses_from(anchors, early, lag, reach));
     tried.min_by(|a, b| a.rank().total_cmp(&b.rank()))
 }
 
-fn settle_from(anchors: &[Anchor], early: bool, lag: usize, reach: usize) -> Option<Settled> {
+fn fit_with_losses_from(
+    anchors: &[Anchor],
+    early: bool,
+    lag: usize,
+    reach: usize,
+) -> Option<ClockWithLosses> {
     let slopes = anchors.iter().zip(anchors.get(lag..)?).map(|(a, b)| (b.stamp - a.stamp) / (b.row - a.row));
     let mut interval_s = median(slopes.filter(|s| s.is_finite()).collect())?;
     let mut found = None;
@@ -223,9 +231,9 @@ fn settle_from(anchors: &[Anchor], early: bool, lag: usize, reach: usize) -> Opt
     let rows = anchors.last()?.row - anchors.first()?.row;
     // A gap of any length is counted; what must be rare are the places.
     let short = lifts.losses.iter().map(|l| l.samples.min(8)).sum::<u64>() as f64;
-    let places = if lifts.scatter <= SMALL { 0.5 } else { 0.1 };
+    let places = if lifts.scatter <= SMALL_SCATTER { 0.5 } else { 0.1 };
     (lifts.losses.len() as f64 <= places * anchors.len() as f64 && short <= MISSING * rows)
-        .then_some(Settled { interval_s, losses: lifts.losses, scatter: lifts.scatter })
+        .then_some(ClockWithLosses { interval_s, losses: lifts.losses, scatter: lifts.scatter })
 }
 
 /// The slope of the line through all anchors, with what is lost between them.
@@ -263,7 +271,7 @@ fn lifts(anchors: &[Anchor], interval_s: f64, early: bool, reach: usize) -> Opti
     }
     let near = off.iter().zip(off.get(1..)?).map(|(a, b)| (b - a).abs()).collect();
     let scatter = median(near)?;
-    if scatter > SMALL && reach == FEW {
+    if scatter > SMALL_SCATTER && reach == CONFIRMING_ANCHORS {
         return None;
     }
     let edge = |w: &[f64]| w.iter().copied().fold(f64::MAX, f64::min);
@@ -276,7 +284,7 @@ fn lifts(anchors: &[Anchor], interval_s: f64, early: bool, reach: usize) -> Opti
         let step = edge(after) - taken - edge(before);
         let full = from + reach == j && j + reach == to;
         // Near the ends few anchors are on one side, and their scatter is no evidence of a small step.
-        let least = if scatter > SMALL && !full { 1.6 } else { LIFT };
+        let least = if scatter > SMALL_SCATTER && !full { 1.6 } else { LIFT };
         if step >= least && median(after.to_vec())? - taken - median(before.to_vec())? >= LIFT {
             let samples = step.round().max(1.0);
             taken += samples;
@@ -287,7 +295,9 @@ fn lifts(anchors: &[Anchor], interval_s: f64, early: bool, reach: usize) -> Opti
             let whole = if step <= -LIFT { step.round().min(-1.0) } else { 0.0 };
             // A row too many: the rows after it are taken as they follow.
             taken += whole;
-            fell += usize::from(whole < 0.0 && from > MANY && to + MANY < n);
+            fell += usize::from(
+                whole < 0.0 && from > CONFIRMING_ANCHORS_SCATTERED && to + CONFIRMING_ANCHORS_SCATTERED < n,
+            );
             changes.push((step - whole).abs());
         }
         *off.get_mut(j)? -= taken;
@@ -307,7 +317,7 @@ fn lifts(anchors: &[Anchor], interval_s: f64, early: bool, reach: usize) -> Opti
 }
 
 /// How far the stamps of the batches reach from the uniform clock, s.
-fn spread(batches: &[Batch], found: &Settled) -> f64 {
+fn spread(batches: &[Batch], found: &ClockWithLosses) -> f64 {
     let mut losses = found.losses.iter().peekable();
     let (mut low, mut high, mut lost) = (f64::MAX, f64::MIN, 0.0);
     let origin = batches.first().map_or(0.0, |b| b.first.1);
@@ -367,7 +377,7 @@ pub(super) fn in_batches(course: &Course) -> bool {
 
 /// True where most batches have one row and some have more: their short steps stand apart from the others and make up for
 /// the wait before them. Rows that were written twice make up for nothing.
-pub(super) fn now_and_then(t: &[f64], course: &Course) -> bool {
+pub(super) fn occasional_batches(t: &[f64], course: &Course) -> bool {
     let (mut together, mut apart, mut made_up) = (0usize, 0usize, 0usize);
     // The wait before the rows that are delivered now, and how many they are, in mean intervals.
     let (mut wait, mut rows) = (1.0, 1.0);

@@ -11,7 +11,7 @@ pub(super) const COARSE_SHARE: f64 = 0.05;
 const WINDOW: usize = 16;
 
 /// Least number of bunches from which a clock is found.
-const LEAST: usize = 8;
+const MIN_BUNCHES: usize = 8;
 
 /// Largest departure of the followed interval from that between bunches.
 const FOLLOWED: f64 = 0.05;
@@ -53,7 +53,7 @@ pub(super) fn probe(t: &[f64]) -> Option<Clock> {
         })
         .collect();
     let rows = rows_of_a_bunch(&starts)?;
-    if starts.len() < LEAST || rows < 1.5 {
+    if starts.len() < MIN_BUNCHES || rows < 1.5 {
         return None;
     }
     let interval_s = slope(&starts, period_s / rows)?;

@@ -1,7 +1,7 @@
 //! A sample counter as the time base: what it says of lost and repeated samples is exact.
 
 use super::fit::{Fit, Measured};
-use super::nominal::LARGEST_GAP;
+use super::nominal::MAX_GAP_SAMPLES;
 use super::tracker::SET_BACK_AFTER;
 
 /// Times that stamps and counter may differ about one step before it is told, in intervals.
@@ -78,7 +78,7 @@ impl CounterTracker {
             }
             return self.restart(count, stamp);
         }
-        if d - 1.0 > LARGEST_GAP {
+        if d - 1.0 > MAX_GAP_SAMPLES {
             return self.restart(count, stamp);
         }
         self.accept(count, stamp);

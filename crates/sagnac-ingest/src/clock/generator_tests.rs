@@ -93,7 +93,7 @@ fn followed(t: &[f64]) -> (f64, u64, Clock) {
         losses = batches.clock().unwrap().losses;
     }
     for (i, &stamp) in t.iter().enumerate() {
-        losses.iter().filter(|l| l.row == i as u64).for_each(|l| tracker.lose(l.samples));
+        losses.iter().filter(|l| l.row == i as u64).for_each(|l| tracker.note_loss(l.samples));
         match tracker.step(stamp, t.get(i + 1).copied()) {
             Step::Gap { missing: n, .. } => missing += n,
             Step::Next => {}

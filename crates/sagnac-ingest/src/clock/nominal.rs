@@ -4,7 +4,7 @@ use super::buffered::{AnchorRow, PAUSE, Uniform};
 
 /// Missing samples beyond which a step forward is taken for a clock that was set, not for missing samples: more than
 /// any recording holds.
-pub(super) const LARGEST_GAP: f64 = 1e8;
+pub(super) const MAX_GAP_SAMPLES: f64 = 1e8;
 
 /// Why the stamps cannot serve as a time base.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]

@@ -23,7 +23,7 @@ const SCORED: usize = 4096;
 const LAGS: [usize; 5] = [1, 2, 3, 5, 8];
 
 /// Least share of stamps in step with the base interval.
-const LEAST_SCORE: f64 = 0.12;
+const MIN_SCORE: f64 = 0.12;
 
 /// Share of samples that a clock of lost samples may miss before rows in batches are the likelier reading.
 const DOUBTFUL: f64 = 0.1;
@@ -83,7 +83,7 @@ fn probe(stamps: &[f64], declared_hz: Option<f64>) -> Result<Clock, ClockError> 
     let (median, long) = middle(&t);
     let resolution_s = resolution(&t, median);
     let rounded = resolution_s > 0.3 * median && straight(&t, resolution_s) >= 0.5;
-    let together = course.is_some_and(|c| !buffered::in_batches(&c) && buffered::now_and_then(&t, &c));
+    let together = course.is_some_and(|c| !buffered::in_batches(&c) && buffered::occasional_batches(&t, &c));
     let batches = course.filter(|c| !rounded && advances(&t) && (together || buffered::in_batches(c)));
     let steps_of_its_own = batches.filter(|_| !together).and_then(|_| in_step(&t, median, resolution_s));
     if let Some(course) = batches.filter(|_| steps_of_its_own.is_none()) {
@@ -233,7 +233,7 @@ fn scored(t: &[f64], median: f64, resolution_s: f64) -> Option<Clock> {
         .map(|tau| (tau, in_step(tau)))
         .collect();
     let best = tried.iter().map(|(_, score)| *score).fold(f64::MIN, f64::max);
-    if best < LEAST_SCORE {
+    if best < MIN_SCORE {
         return None;
     }
     let (mut tau, mut score) = tried.iter().rev().find(|(_, score)| *score >= 0.8 * best).copied()?;

@@ -2,7 +2,7 @@
 
 use super::buffered::AnchorRow;
 use super::fit::{Fit, Measured};
-use super::nominal::{Cadence, Clock, LARGEST_GAP};
+use super::nominal::{Cadence, Clock, MAX_GAP_SAMPLES};
 
 /// Rows that were set aside in a row, because their stamps are earlier than one seen before, after which the clock is
 /// taken to have been set back.
@@ -136,7 +136,7 @@ impl Tracker {
     }
 
     /// Says that samples are missing before the next row, as the batches of the recording tell.
-    pub fn lose(&mut self, samples: u64) {
+    pub fn note_loss(&mut self, samples: u64) {
         self.lost += samples;
     }
 
@@ -336,7 +336,7 @@ impl Tracker {
     fn gap(&mut self, stamp: f64, step_s: f64, missing: f64, d: f64) -> Step {
         self.set_aside_run = 0;
         self.latest = Some(stamp);
-        let clock_set = missing > LARGEST_GAP;
+        let clock_set = missing > MAX_GAP_SAMPLES;
         if clock_set {
             self.offset_s -= d - 2.0 * self.clock.interval_s;
         }

@@ -1,7 +1,7 @@
 //! ROS 1 bags, version 2.0: records of named fields and data, messages in chunks, an index at the end.
 
+use super::topics::container::{Catalog, Container, Event, Fields, OnEvent, Stream, broken, unpack};
 use super::topics::message::Encoding;
-use super::topics::source::{Catalog, Container, Event, Fields, OnEvent, Stream, broken, unpack};
 use crate::error::IngestError;
 use crate::{Candidate, Format, Opened, part_selection};
 use std::collections::BTreeSet;
@@ -69,7 +69,7 @@ fn connection<'a>(header: &'a [u8], data: &'a [u8]) -> Option<(u32, &'a str, &'a
 }
 
 /// Passes a connection or message on; nothing when it cannot be read.
-fn one(header: &[u8], data: &[u8], at: u64, on_event: &mut OnEvent<'_>) -> Option<ControlFlow<()>> {
+fn pass_record(header: &[u8], data: &[u8], at: u64, on_event: &mut OnEvent<'_>) -> Option<ControlFlow<()>> {
     Some(match code(header)? {
         CONNECTION => {
             let (id, topic, type_name) = connection(header, data)?;
@@ -141,7 +141,7 @@ impl Container for BagFile {
                 return Ok(Some(at));
             }
             if code != CHUNK {
-                if one(&header, &data, at, on_event).ok_or_else(fault)?.is_break() {
+                if pass_record(&header, &data, at, on_event).ok_or_else(fault)?.is_break() {
                     return Ok(None);
                 }
                 continue;
@@ -157,7 +157,7 @@ impl Container for BagFile {
             let mut inside = Fields(records);
             while !inside.0.is_empty() {
                 let (header, data) = inside.sized().zip(inside.sized()).ok_or_else(fault)?;
-                if one(header, data, at, on_event).ok_or_else(fault)?.is_break() {
+                if pass_record(header, data, at, on_event).ok_or_else(fault)?.is_break() {
                     return Ok(None);
                 }
             }

@@ -1,7 +1,7 @@
 //! MCAP: records with their length before them, most of them in chunks that may be packed, and an index at the end.
 
+use super::topics::container::{Catalog, Container, Event, Fields, OnEvent, Stream, broken, unpack};
 use super::topics::message::Encoding;
-use super::topics::source::{Catalog, Container, Event, Fields, OnEvent, Stream, broken, unpack};
 use crate::error::IngestError;
 use crate::{Candidate, Format, Opened, part_selection};
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,7 +26,7 @@ const DATA_END: u8 = 0x0f;
 const HEAD: u64 = 9;
 const FOOTER_BYTES: u64 = 20;
 /// Longest index that is read at once, bytes.
-const LONGEST_INDEX: u64 = 256 << 20;
+const MAX_INDEX_BYTES: u64 = 256 << 20;
 
 /// MCAP.
 pub(super) struct Mcap;
@@ -102,7 +102,7 @@ impl Container for McapFile {
             return Ok(None);
         };
         let length = footer_at.saturating_sub(start);
-        if !whole || start == 0 || start > footer_at || length > LONGEST_INDEX {
+        if !whole || start == 0 || start > footer_at || length > MAX_INDEX_BYTES {
             return Ok(None);
         }
         let mut summary = Vec::new();
@@ -164,7 +164,7 @@ impl Container for McapFile {
                 let mut flow = ControlFlow::Continue(());
                 for record in records(inside) {
                     let (code, body) = record.ok_or_else(|| broken(path, "ingest.ros.record", at))?;
-                    flow = one(code, body, at, &mut schemas, on_event)
+                    flow = pass_record(code, body, at, &mut schemas, on_event)
                         .ok_or_else(|| broken(path, "ingest.ros.record", at))?;
                     if flow.is_break() {
                         break;
@@ -172,7 +172,7 @@ impl Container for McapFile {
                 }
                 flow
             } else {
-                one(code, &body, at, &mut schemas, on_event)
+                pass_record(code, &body, at, &mut schemas, on_event)
                     .ok_or_else(|| broken(path, "ingest.ros.record", at))?
             };
             if flow.is_break() {
@@ -206,7 +206,7 @@ fn chunk(path: &Path, at: u64, body: &[u8], unpacked: &mut Vec<u8>) -> Result<Op
 }
 
 /// Passes a record on; nothing when it cannot be read.
-fn one(
+fn pass_record(
     code: u8,
     body: &[u8],
     at: u64,
@@ -230,8 +230,8 @@ fn one(
         HEADER => {
             let mut f = Fields(body);
             let (profile, library) = (f.text()?, f.text()?);
-            match on_event(Event::Said { key: "profile", value: profile }) {
-                ControlFlow::Continue(()) => on_event(Event::Said { key: "library", value: library }),
+            match on_event(Event::Statement { key: "profile", value: profile }) {
+                ControlFlow::Continue(()) => on_event(Event::Statement { key: "library", value: library }),
                 stop => stop,
             }
         }
@@ -241,7 +241,7 @@ fn one(
             let mut map = Fields(f.sized()?);
             while !map.0.is_empty() {
                 let (key, value) = (map.text()?, map.text()?);
-                if on_event(Event::Said { key, value }).is_break() {
+                if on_event(Event::Statement { key, value }).is_break() {
                     return Some(ControlFlow::Break(()));
                 }
             }

@@ -1,9 +1,9 @@
 //! Apache Parquet: columns of numbers, read in batches of rows.
 
-use crate::compressed::{Packing, io_error};
+use crate::byte_stream::{Packing, io_error};
 use crate::decode_pipeline::{Blocks, run_pipeline};
 use crate::error::{IngestError, IngestErrorKind};
-use crate::memory::non_finite;
+use crate::in_memory::non_finite;
 use crate::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -282,6 +282,6 @@ mod tests {
         let found: Vec<(u64, usize, &str)> =
             faults.iter().map(|f| (f.row, f.slot, f.text.as_str())).collect();
         assert_eq!(found, [(3, 0, "inf"), (2, 1, "null"), (6, 0, "inf"), (5, 1, "null")]);
-        assert_eq!(facts.sha256, crate::compressed::digest(f.path()).unwrap().sha256);
+        assert_eq!(facts.sha256, crate::byte_stream::digest(f.path()).unwrap().sha256);
     }
 }

@@ -9,23 +9,23 @@ const STRAIGHT: f64 = 0.02;
 /// Share of straight samples from which the output is taken for interpolated; by a factor of 2 it is a half.
 const SHARE: f64 = 0.4;
 /// Fewest samples that can be judged.
-const FEWEST: u64 = 1000;
+const MIN_SAMPLES: u64 = 1000;
 
 #[derive(Debug, Clone)]
-pub(super) struct Lines {
+pub(super) struct InterpolationCheck {
     /// The two latest samples; NaN before there were any, which judges nothing.
     last: (f64, f64),
     judged: u64,
     straight: u64,
 }
 
-impl Default for Lines {
+impl Default for InterpolationCheck {
     fn default() -> Self {
-        Lines { last: (f64::NAN, f64::NAN), judged: 0, straight: 0 }
+        InterpolationCheck { last: (f64::NAN, f64::NAN), judged: 0, straight: 0 }
     }
 }
 
-impl Lines {
+impl InterpolationCheck {
     pub(super) fn take(&mut self, values: &[f64]) {
         let (mut a, mut b) = self.last;
         let (mut straight, mut judged) = (0u64, 0u64);
@@ -45,7 +45,7 @@ impl Lines {
     /// The share of straight samples, where it tells of interpolation.
     pub(super) fn finish(&self) -> Option<f64> {
         let share = self.straight as f64 / self.judged.max(1) as f64;
-        (self.judged >= FEWEST && share >= SHARE).then_some(share)
+        (self.judged >= MIN_SAMPLES && share >= SHARE).then_some(share)
     }
 }
 
@@ -56,9 +56,9 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     fn share(values: &[f64]) -> Option<f64> {
-        let mut lines = Lines::default();
+        let mut lines = InterpolationCheck::default();
         values.chunks(97).for_each(|part| lines.take(part));
-        let mut one_by_one = Lines::default();
+        let mut one_by_one = InterpolationCheck::default();
         values.chunks(1).for_each(|part| one_by_one.take(part));
         assert_eq!(one_by_one.finish(), lines.finish());
         lines.finish()

@@ -16,30 +16,30 @@ mod stuck;
 mod summary;
 
 use crate::faults::FaultLog;
-use interpolated::Lines;
-use outliers::Outliers;
+use interpolated::InterpolationCheck;
+use outliers::OutlierCheck;
 use place::Place;
 use quantization_grid::QuantizationGrid;
-use rails::Rails;
-use repeats::Repeats;
+use rails::SaturationCheck;
+use repeats::RepetitionCheck;
 use sagnac_core::message::{Arg, Note};
 use sagnac_core::recording::{Channel, SampleBlock, Sink};
-use stuck::Runs;
+use stuck::StuckCheck;
 use summary::{CHUNK, Summary, summary};
 
 /// Samples after which a channel that never changed is remarked on.
 const CONSTANT_AFTER: u64 = 1000;
 
-/// Largest step of the quantization grid, in standard deviations, at which straight lines between samples can be told.
+/// Largest step of the quantization grid, in standard deviations, at which straight interpolation between samples can be told.
 const FINE: f64 = 1e-2;
 
 /// Fewest samples of a gyro channel from which a fault of its values can be seen.
-pub fn fewest_for(fault: &str) -> u64 {
+pub fn min_samples_for(fault: &str) -> u64 {
     match fault {
-        "outliers" => outliers::FEWEST as u64,
-        "saturated" => rails::FEWEST,
-        "stuck" => 2 * stuck::FEWEST,
-        "repeated" => 2 * repeats::FEWEST,
+        "outliers" => outliers::MIN_SAMPLES as u64,
+        "saturated" => rails::MIN_SAMPLES,
+        "stuck" => 2 * stuck::MIN_SAMPLES,
+        "repeated" => 2 * repeats::MIN_SAMPLES,
         _ => 1,
     }
 }
@@ -78,12 +78,12 @@ pub struct ValueFaults {
 
 #[derive(Debug, Clone)]
 struct GyroChecks {
-    outliers: Outliers,
-    runs: Runs,
-    rails: Rails,
+    outliers: OutlierCheck,
+    runs: StuckCheck,
+    rails: SaturationCheck,
     grid: QuantizationGrid,
-    repeats: Repeats,
-    lines: Lines,
+    repeats: RepetitionCheck,
+    interpolation: InterpolationCheck,
 }
 
 #[derive(Debug, Clone)]
@@ -147,7 +147,7 @@ impl ChannelChecks {
             g.rails.take(values, s.min, s.max, place, interval_s);
             g.grid.take(values);
             g.repeats.take(values, place);
-            g.lines.take(values);
+            g.interpolation.take(values);
         }
         self.count += values.len() as u64;
         self.min = self.min.min(s.min);
@@ -196,12 +196,12 @@ impl ValueChecks {
                 sum: 0.0,
                 squares: 0.0,
                 gyro: c.role.is_gyro().then(|| GyroChecks {
-                    outliers: Outliers::new(interval_s),
-                    runs: Runs::default(),
-                    rails: Rails::default(),
+                    outliers: OutlierCheck::new(interval_s),
+                    runs: StuckCheck::default(),
+                    rails: SaturationCheck::default(),
                     grid: QuantizationGrid::default(),
-                    repeats: Repeats::new(interval_s),
-                    lines: Lines::default(),
+                    repeats: RepetitionCheck::new(interval_s),
+                    interpolation: InterpolationCheck::default(),
                 }),
                 first: Place { row: 0, time_s: f64::NAN },
             })
@@ -263,7 +263,7 @@ impl ValueChecks {
                     });
                 }
                 let coarse = facts.quantization_step.is_some_and(|q| q > FINE * deviation);
-                if let Some(share) = g.lines.finish().filter(|_| !coarse && stuck.held.is_none()) {
+                if let Some(share) = g.interpolation.finish().filter(|_| !coarse && stuck.held.is_none()) {
                     log.push("interpolated", id, at(channel.first), channel.first.row, facts.count, || {
                         Note::new("interpolated.fault")
                             .with("percent", Arg::Text(format!("{:.0}", share * 100.0)))

@@ -17,7 +17,7 @@ const BLOCK: usize = 1024;
 /// Samples on each side that a candidate is compared with.
 const MARGIN: usize = 16;
 /// Fewest samples that can be judged.
-pub(super) const FEWEST: usize = 64;
+pub(super) const MIN_SAMPLES: usize = 64;
 /// Lowest threshold, robust standard deviations.
 const LOWEST: f64 = 5.0;
 /// The same against the scatter of the 33 samples about it, which is known less well.
@@ -25,7 +25,7 @@ const LOCAL: f64 = 3.5;
 /// False outliers allowed in a Gaussian record.
 const FALSE_ALARMS: f64 = 0.02;
 /// Candidates whose place is kept, below and above `CLEAR`.
-const KEPT: usize = 1000;
+const MAX_LISTED: usize = 1000;
 /// Deviation beyond which a candidate is an outlier in a record of any length.
 const CLEAR: f64 = 8.0;
 /// Bins of the count of candidates by deviation, each a hundredth wide, from `LOWEST` to `CLEAR`.
@@ -35,7 +35,7 @@ const BINS: usize = 300;
 const REFRESH: u32 = 32;
 
 #[derive(Debug, Clone)]
-pub(super) struct Outliers {
+pub(super) struct OutlierCheck {
     buffer: Vec<f64>,
     /// Leading samples of the buffer that were judged before.
     context: usize,
@@ -52,9 +52,9 @@ pub(super) struct Outliers {
     scratch: Vec<f64>,
 }
 
-impl Outliers {
-    pub(super) fn new(interval_s: f64) -> Outliers {
-        Outliers {
+impl OutlierCheck {
+    pub(super) fn new(interval_s: f64) -> OutlierCheck {
+        OutlierCheck {
             buffer: Vec::with_capacity(2 * BLOCK + 2 * MARGIN),
             context: 0,
             base: 0,
@@ -92,7 +92,7 @@ impl Outliers {
     /// Judges what is left; returns the number of outliers and the threshold.
     pub(super) fn finish(&mut self) -> (u64, f64) {
         let end = self.buffer.len();
-        if end - self.context >= FEWEST {
+        if end - self.context >= MIN_SAMPLES {
             self.judge(self.context, end);
         }
         self.buffer.clear();
@@ -169,7 +169,7 @@ impl Outliers {
         }
         let is_clear = z >= CLEAR;
         let kept = if is_clear { self.kept_clear } else { self.kept.len() - self.kept_clear };
-        if kept < KEPT {
+        if kept < MAX_LISTED {
             self.kept.push((self.places.of(self.base + index as u64), z));
             self.kept_clear += usize::from(is_clear);
         }

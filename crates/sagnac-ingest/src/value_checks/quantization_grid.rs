@@ -4,9 +4,9 @@
 //! every later value is checked against it and makes it smaller where needed.
 
 /// Values from which the step is first found.
-const FIRST: usize = 4096;
+const FIRST_SAMPLES: usize = 4096;
 /// Smallest step in units of the error of the values: below, a quantization grid cannot be told from rounding.
-const SMALLEST: f64 = 1e4;
+const MIN_STEP_ERRORS: f64 = 1e4;
 /// Largest deviation from the quantization grid, steps.
 const OFF: f64 = 0.02;
 
@@ -34,10 +34,11 @@ enum State {
 impl QuantizationGrid {
     pub(super) fn take(&mut self, mut values: &[f64]) {
         if self.state == State::Gathering {
-            let (head, rest) = values.split_at(values.len().min(FIRST - self.first.len().min(FIRST)));
+            let (head, rest) =
+                values.split_at(values.len().min(FIRST_SAMPLES - self.first.len().min(FIRST_SAMPLES)));
             self.first.extend_from_slice(head);
             values = rest;
-            if self.first.len() >= FIRST {
+            if self.first.len() >= FIRST_SAMPLES {
                 self.find();
             }
         }
@@ -89,7 +90,7 @@ impl QuantizationGrid {
 
     /// Makes the step divide a length, and refines it by the length where it does; false when no step is left.
     fn fit(&mut self, length: f64) -> bool {
-        if self.step < SMALLEST * f64::EPSILON * self.largest {
+        if self.step < MIN_STEP_ERRORS * f64::EPSILON * self.largest {
             return false;
         }
         let k = (length / self.step).round();
@@ -104,7 +105,7 @@ impl QuantizationGrid {
         }
         self.step = divisor(self.step, off, allowed);
         self.error = allowed;
-        self.step >= SMALLEST * f64::EPSILON * self.largest
+        self.step >= MIN_STEP_ERRORS * f64::EPSILON * self.largest
     }
 
     fn check(&mut self, values: &[f64]) {

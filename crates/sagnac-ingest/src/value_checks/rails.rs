@@ -8,7 +8,7 @@
 use super::place::Place;
 
 /// Fewest samples at one value that can be a rail.
-pub(super) const FEWEST: u64 = 8;
+pub(super) const MIN_SAMPLES: u64 = 8;
 
 #[derive(Debug, Clone, Copy)]
 struct Edge {
@@ -62,18 +62,18 @@ pub(super) struct Rail {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Rails {
+pub(super) struct SaturationCheck {
     upper: Edge,
     lower: Edge,
 }
 
-impl Default for Rails {
-    fn default() -> Rails {
-        Rails { upper: Edge::new(1.0), lower: Edge::new(-1.0) }
+impl Default for SaturationCheck {
+    fn default() -> SaturationCheck {
+        SaturationCheck { upper: Edge::new(1.0), lower: Edge::new(-1.0) }
     }
 }
 
-impl Rails {
+impl SaturationCheck {
     pub(super) fn take(&mut self, values: &[f64], min: f64, max: f64, place: Place, interval_s: f64) {
         let edges = [(&mut self.upper, max), (&mut self.lower, -min)];
         for (edge, extreme) in edges {
@@ -88,7 +88,7 @@ impl Rails {
 
     pub(super) fn found(&self, deviation: f64) -> Vec<Rail> {
         let railed = |e: &&Edge| {
-            e.count >= FEWEST
+            e.count >= MIN_SAMPLES
                 && e.count >= 4 * e.next_count + 4
                 && e.next.is_finite()
                 && e.value - e.next < 0.5 * deviation

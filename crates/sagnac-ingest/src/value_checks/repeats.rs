@@ -17,13 +17,13 @@ use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
 /// Samples from which the length of the hash is chosen.
-const FIRST: usize = 4096;
+const HASH_LENGTH_SAMPLES: usize = 4096;
 /// Most anchors that are kept.
-const MOST: usize = 1 << 17;
+const MAX_ANCHORS: usize = 1 << 17;
 /// Runs allowed by chance in a record.
 const BY_CHANCE: f64 = 1e-3;
 /// Least evidence, samples: two stuck stretches of one value must not look alike.
-pub(super) const FEWEST: u64 = 24;
+pub(super) const MIN_SAMPLES: u64 = 24;
 /// Last samples that are kept to judge a run by.
 const RECENT: usize = 512;
 /// Samples of a run that its chance is measured on.
@@ -33,7 +33,7 @@ const TRIALS: u32 = 500;
 /// Share beyond which the output repeats itself so regularly that no more of it is looked at.
 const REGULAR: f64 = 0.98;
 /// Runs whose place is kept.
-const KEPT: usize = 100;
+const MAX_LISTED: usize = 100;
 
 /// Spreads a hash that is one already.
 #[derive(Default)]
@@ -83,7 +83,7 @@ struct Run {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Repeats {
+pub(super) struct RepetitionCheck {
     first: Vec<f64>,
     /// Bits that the hash moves up with each sample; the window is 64 bits over this. 0: not chosen yet.
     shift: u32,
@@ -103,9 +103,9 @@ pub(super) struct Repeats {
     found: Vec<Repeat>,
 }
 
-impl Repeats {
-    pub(super) fn new(interval_s: f64) -> Repeats {
-        Repeats {
+impl RepetitionCheck {
+    pub(super) fn new(interval_s: f64) -> RepetitionCheck {
+        RepetitionCheck {
             first: Vec::new(),
             shift: 0,
             hash: 0,
@@ -128,7 +128,7 @@ impl Repeats {
         self.places.start(position, place);
         if self.shift == 0 {
             self.first.extend_from_slice(values);
-            if self.first.len() >= FIRST {
+            if self.first.len() >= HASH_LENGTH_SAMPLES {
                 self.choose();
             }
             return;
@@ -194,8 +194,8 @@ impl Repeats {
     fn anchor(&mut self, hash: u64, position: u64, window: u64, values: &[f64]) {
         let Some(&(earlier, earlier_row)) = self.anchors.get(&hash) else {
             self.close();
-            if self.anchors.len() >= MOST {
-                while self.anchors.len() >= MOST / 2 && self.zeros < 40 {
+            if self.anchors.len() >= MAX_ANCHORS {
+                while self.anchors.len() >= MAX_ANCHORS / 2 && self.zeros < 40 {
                     self.zeros += 1;
                     let zeros = self.zeros;
                     self.anchors.retain(|h, _| h.leading_zeros() >= zeros);
@@ -224,7 +224,7 @@ impl Repeats {
                     evidence: window,
                     first_row: earlier_row,
                     // A single window may be one of many alike; a second anchor at the same distance is asked for.
-                    judged_at: FEWEST.max(window + 8),
+                    judged_at: MIN_SAMPLES.max(window + 8),
                     by_chance: None,
                 });
             }
@@ -248,7 +248,8 @@ impl Repeats {
         samples.extend_from_slice(values.get(values.len().saturating_sub(wanted)..).unwrap_or_default());
         let needed = needed(share(&samples), run.to as f64);
         if let Some(run) = &mut self.run {
-            run.by_chance = (run.evidence >= needed.max(FEWEST)).then(|| needed.saturating_sub(1).max(1));
+            run.by_chance =
+                (run.evidence >= needed.max(MIN_SAMPLES)).then(|| needed.saturating_sub(1).max(1));
             run.judged_at = run.evidence.saturating_mul(2).max(needed.min(run.evidence.saturating_mul(64)));
         }
     }
@@ -262,7 +263,7 @@ impl Repeats {
         let end = run.to + 1;
         self.count += end - (end - length).max(self.counted_to);
         self.counted_to = end;
-        if self.found.len() < KEPT {
+        if self.found.len() < MAX_LISTED {
             self.found.push(Repeat { place: run.place, first_row: run.first_row, length, by_chance });
         }
     }

@@ -13,7 +13,7 @@ fn rounded(values: &[f64], step: f64) -> Vec<f64> {
 }
 
 fn found(values: &[f64]) -> (u64, Vec<Repeat>) {
-    let mut repeats = Repeats::new(1.0);
+    let mut repeats = RepetitionCheck::new(1.0);
     let mut at = 0;
     // Uneven pieces, so that no result hangs on where a block ends.
     for length in [1, 700, 1024, 3].iter().cycle() {

@@ -9,18 +9,18 @@
 use super::place::Place;
 
 /// Fewest equal values that can be called stuck.
-pub(super) const FEWEST: u64 = 5;
-/// Runs allowed by chance in a record.
+pub(super) const MIN_SAMPLES: u64 = 5;
+/// StuckCheck allowed by chance in a record.
 const BY_CHANCE: f64 = 1e-3;
 /// Probability of a repeat beyond which the test cannot tell anything: a held or a very coarse output.
-const LARGEST_SHARE: f64 = 0.9;
+const MAX_SHARE: f64 = 0.9;
 /// Run lengths that are counted one by one.
 const LENGTHS: usize = 4096;
 /// Longest runs whose place is kept.
-const KEPT: usize = 100;
+const MAX_LISTED: usize = 100;
 
 #[derive(Debug, Clone)]
-pub(super) struct Runs {
+pub(super) struct StuckCheck {
     value: f64,
     length: u64,
     start: Place,
@@ -31,9 +31,9 @@ pub(super) struct Runs {
     longest: Vec<(Place, u64)>,
 }
 
-impl Default for Runs {
-    fn default() -> Runs {
-        Runs {
+impl Default for StuckCheck {
+    fn default() -> StuckCheck {
+        StuckCheck {
             value: f64::NAN,
             length: 0,
             start: Place { row: 0, time_s: f64::NAN },
@@ -55,7 +55,7 @@ pub(super) struct Stuck {
     pub(super) held: Option<f64>,
 }
 
-impl Runs {
+impl StuckCheck {
     pub(super) fn take(&mut self, values: &[f64], place: Place, interval_s: f64) {
         self.samples += values.len() as u64;
         let Some((&first, &last)) = values.first().zip(values.last()) else { return };
@@ -95,10 +95,10 @@ impl Runs {
             Some(count) => *count += 1,
             None => self.beyond += length,
         }
-        if length < FEWEST {
+        if length < MIN_SAMPLES {
             return;
         }
-        if self.longest.len() < KEPT {
+        if self.longest.len() < MAX_LISTED {
             self.longest.push((self.start, length));
             return;
         }
@@ -130,7 +130,7 @@ impl Runs {
     fn limit(&self) -> u64 {
         let runs = self.runs();
         if runs <= 1 {
-            return FEWEST;
+            return MIN_SAMPLES;
         }
         let at_least =
             |length: usize| self.counts.iter().skip(length).sum::<u64>() + u64::from(self.beyond > 0);
@@ -142,11 +142,11 @@ impl Runs {
                 share = share.max(on as f64 / of.max(1) as f64);
             }
         }
-        if share > LARGEST_SHARE {
+        if share > MAX_SHARE {
             return u64::MAX;
         }
         let repeats = (BY_CHANCE / self.samples.max(1) as f64).ln() / share.ln();
-        FEWEST.max(1 + repeats.ceil() as u64)
+        MIN_SAMPLES.max(1 + repeats.ceil() as u64)
     }
 }
 
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_stuck_stretch_stands_where_it_begins_in_row_and_time() {
-        let mut runs = Runs::default();
+        let mut runs = StuckCheck::default();
         let mut values: Vec<f64> =
             (0..1000).map(|i| f64::from(i * 37 % 101) + 0.5 * f64::from(i % 7)).collect();
         values[700..740].fill(-1.0);

@@ -2,9 +2,9 @@
 
 mod attributes;
 mod container;
+mod file_tree;
 mod number;
 mod table;
-mod walk;
 
 use crate::error::{IngestError, IngestErrorKind};
 use crate::metadata::Metadata;
@@ -38,7 +38,7 @@ impl Format for Hdf5 {
         part_selection::unpacked(file, "ingest.hdf5.what")?;
         let path = &file.path;
         let container = container(path, file.bytes)?;
-        let found = walk::walk(&container).map_err(|e| damaged(path, &e))?;
+        let found = file_tree::walk(&container).map_err(|e| damaged(path, &e))?;
         let found = found.narrowed(file.options.part.as_deref());
         let parts: Vec<part_selection::Part> = found.parts.iter().map(|p| p.part.clone()).collect();
         let (chosen, mut notes) = part_selection::choose(path, &parts, file.options.part.as_deref())?;

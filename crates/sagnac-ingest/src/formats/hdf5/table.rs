@@ -1,8 +1,8 @@
 //! Rows of datasets as blocks.
 
 use super::container::{container, damaged};
+use super::file_tree::{Pick, Place};
 use super::number::{Bytes, Number, Whole};
-use super::walk::{Pick, Place};
 use crate::affine::Affine;
 use crate::column_inference::infer;
 use crate::decode_pipeline::{Blocks, run_pipeline};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// Rows in a block, and the most where chunks are longer than that.
 const ROWS: u64 = 1 << 15;
-const MOST_ROWS: u64 = 1 << 18;
+const MAX_ROWS: u64 = 1 << 18;
 /// Bytes of a dataset that are read at once.
 const SLICE: u64 = 32 << 20;
 
@@ -195,7 +195,7 @@ fn block_rows(datasets: &[Wanted<'_>]) -> u64 {
         };
         let chunk = d.dataset.chunks().and_then(|c| c.get(along).copied()).map_or(0, u64::from);
         if i == 0 && chunk > 0 {
-            rows = if chunk >= ROWS { chunk.min(MOST_ROWS) } else { ROWS / chunk * chunk };
+            rows = if chunk >= ROWS { chunk.min(MAX_ROWS) } else { ROWS / chunk * chunk };
         }
     }
     rows.min(SLICE / widest).max(1)

@@ -11,7 +11,7 @@ pub(super) const MATRIX: u32 = 14;
 pub(super) const COMPRESSED: u32 = 15;
 
 /// Longest piece of data, such as a name, that is taken into memory, bytes.
-const LONGEST: u64 = 1 << 20;
+const MAX_DATA_BYTES: u64 = 1 << 20;
 
 /// The tag of an element.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +72,7 @@ impl ElementReader {
 
     /// Reads the data of an element, and goes on to the next.
     pub fn data(&mut self, tag: &Tag) -> io::Result<Vec<u8>> {
-        if tag.bytes > LONGEST {
+        if tag.bytes > MAX_DATA_BYTES {
             return Err(damaged("a name or size is too long"));
         }
         // Taken in pieces, so that memory grows with what is there and not with what is declared.

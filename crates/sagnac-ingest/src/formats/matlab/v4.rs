@@ -4,7 +4,7 @@ use super::variables::{NumericArray, Variables};
 use crate::Candidate;
 use crate::binary::column_stream::{Coding, Stream};
 use crate::binary::positioned_file::PositionedFile;
-use crate::compressed::io_error;
+use crate::byte_stream::io_error;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::layout::{ByteOrder, Field, NumberType};
 use sagnac_core::message::Note;
@@ -14,10 +14,10 @@ use std::sync::Arc;
 const HEADER: u64 = 20;
 
 /// Longest name, bytes.
-const LONGEST_NAME: u32 = 256;
+const MAX_NAME_BYTES: u32 = 256;
 
 /// Most variables of a file.
-const MOST: usize = 4096;
+const MAX_VARIABLES: usize = 4096;
 
 /// The header of a variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +56,7 @@ fn header(bytes: &[u8]) -> Option<Header> {
         };
         let fits = machine == u32::from(order == ByteOrder::Big) && zero == 0 && class <= 2;
         let (complex, name_bytes) = (word(3)?, word(4)?);
-        let sound = fits && complex <= 1 && (1..=LONGEST_NAME).contains(&name_bytes);
+        let sound = fits && complex <= 1 && (1..=MAX_NAME_BYTES).contains(&name_bytes);
         let (rows, columns) = (word(1)?, word(2)?);
         (sound && rows < 1 << 31 && columns < 1 << 31).then_some(Header {
             order,
@@ -95,12 +95,12 @@ pub(super) fn walk(file: &Candidate, at: &Arc<PositionedFile>) -> Result<Variabl
         IngestError::new(IngestErrorKind::Damaged, &file.path, Note::new(key).with("at", at)).hint(hint)
     };
     while next < at.size {
-        if found.streams.len() >= MOST {
-            let note = Note::new("ingest.binary.too_many_columns").with("most", MOST);
+        if found.streams.len() >= MAX_VARIABLES {
+            let note = Note::new("ingest.binary.too_many_columns").with("most", MAX_VARIABLES);
             return Err(IngestError::new(IngestErrorKind::Damaged, &file.path, note)
                 .hint("ingest.hint.give_recording"));
         }
-        let mut head = vec![0; HEADER as usize + LONGEST_NAME as usize];
+        let mut head = vec![0; HEADER as usize + MAX_NAME_BYTES as usize];
         let n = at.read(next, &mut head).map_err(|e| io_error(&file.path, &e))?;
         head.truncate(n);
         let bad = || damaged("ingest.mat.no_variable", next, "ingest.hint.damaged");

@@ -15,10 +15,10 @@ use std::sync::Arc;
 const HEADER: u64 = 128;
 
 /// Most variables and fields of a file.
-const MOST: usize = 4096;
+const MAX_VARIABLES: usize = 4096;
 
 /// Longest text that is kept, bytes.
-const LONGEST_TEXT: u64 = 800;
+const MAX_TEXT_BYTES: u64 = 800;
 
 /// Byte order of a file of version 5, found at the end of its header; `None` for any other file.
 pub(super) fn byte_order(head: &[u8]) -> Option<ByteOrder> {
@@ -38,8 +38,8 @@ pub(super) fn walk(
     let mut found = Variables::default();
     let mut next = HEADER;
     while next < at.size {
-        if found.streams.len() >= MOST {
-            let note = Note::new("ingest.binary.too_many_columns").with("most", MOST);
+        if found.streams.len() >= MAX_VARIABLES {
+            let note = Note::new("ingest.binary.too_many_columns").with("most", MAX_VARIABLES);
             return Err(IngestError::new(IngestErrorKind::Damaged, &file.path, note)
                 .hint("ingest.hint.give_recording"));
         }
@@ -135,7 +135,7 @@ fn matrix(
         3 => leave("ingest.mat.object"),
         4 => {
             let tag = elements.tag()?;
-            if tag.bytes <= LONGEST_TEXT {
+            if tag.bytes <= MAX_TEXT_BYTES {
                 let data = elements.data(&tag)?;
                 found.keep(&name, &text(tag.kind, &data, order));
             }
@@ -191,7 +191,7 @@ fn structure(
         .chunks(length.clamp(1, 1 << 16))
         .map(|n| String::from_utf8_lossy(n.split(|b| *b == 0).next().unwrap_or_default()).into_owned())
         .collect();
-    for field in fields.iter().take(MOST) {
+    for field in fields.iter().take(MAX_VARIABLES) {
         let tag = elements.tag()?;
         if tag.kind != MATRIX {
             return Err(damaged("a field of a structure is no array"));

@@ -7,10 +7,10 @@ use crate::metadata::{Metadata, stated_sample_rate_hz};
 use sagnac_core::message::Note;
 
 /// Most of what is said of variables that are left out.
-const MOST_LEFT: usize = 1000;
+const MAX_SKIPPED_NOTES: usize = 1000;
 
 /// Rows of a matrix up to which it may be one row for each channel, and how many times more columns it has then.
-const MOST_CHANNELS: u64 = 64;
+const MAX_CHANNELS: u64 = 64;
 const FLAT: u64 = 8;
 
 /// An array of numbers in a file.
@@ -41,7 +41,7 @@ pub(super) struct Variables {
 impl Variables {
     /// Says why a variable is left out.
     pub fn leave(&mut self, name: &str, reason: Note) {
-        if self.left.len() < MOST_LEFT {
+        if self.left.len() < MAX_SKIPPED_NOTES {
             let name = crate::error::shorten(name);
             self.left.push(Note::new("ingest.binary.left_out").with("name", name).with("reason", reason));
         }
@@ -75,7 +75,7 @@ impl NumericArray {
         let (rows, columns, flat) = match dimensions.as_slice() {
             [n] => (*n, 1, false),
             [rows, columns] => {
-                let flat = *rows <= MOST_CHANNELS && *columns > MOST_CHANNELS && *columns / FLAT >= *rows;
+                let flat = *rows <= MAX_CHANNELS && *columns > MAX_CHANNELS && *columns / FLAT >= *rows;
                 if flat { (*columns, *rows, true) } else { (*rows, *columns, false) }
             }
             _ => return None,

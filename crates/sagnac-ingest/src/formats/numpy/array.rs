@@ -11,7 +11,7 @@ use sagnac_core::message::Note;
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// Rows of a two-dimensional array up to which it may be one row for each channel.
-const MOST_CHANNELS: u64 = 64;
+const MAX_CHANNELS: u64 = 64;
 
 /// How many times more columns than rows such an array has.
 const FLAT: u64 = 8;
@@ -133,7 +133,7 @@ impl Array {
         let (rows, count, flat) = match shape.as_slice() {
             [n] => (*n, 1, None),
             [rows, columns] if single => {
-                let flat = *rows <= MOST_CHANNELS && *columns > MOST_CHANNELS && *columns / FLAT >= *rows;
+                let flat = *rows <= MAX_CHANNELS && *columns > MAX_CHANNELS && *columns / FLAT >= *rows;
                 let note = Note::new("ingest.npy.flat").with("rows", *rows).with("columns", *columns);
                 if flat { (*columns, *rows, Some(note)) } else { (*rows, *columns, None) }
             }

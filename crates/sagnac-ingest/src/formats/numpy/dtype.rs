@@ -5,7 +5,7 @@ use crate::layout::MAX_COLUMNS;
 use crate::layout::{ByteOrder, Field, NumberType, Ticks};
 
 /// Deepest nesting of structures that is followed.
-const DEEPEST: usize = 8;
+const MAX_DEPTH: usize = 8;
 
 /// One number, or something that is none, within an element.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,7 +51,7 @@ pub(super) fn element(descr: &Literal) -> Result<Element, TypeFault> {
 
 fn append(out: &mut Element, name: &str, descr: &Literal, depth: usize) -> Result<(), TypeFault> {
     let unknown = || TypeFault::Unknown(format!("{descr:?}").chars().take(60).collect());
-    if depth > DEEPEST {
+    if depth > MAX_DEPTH {
         return Err(unknown());
     }
     out.seen += 1;

@@ -4,7 +4,7 @@ use super::array::{self, Array, Fault, MAGIC};
 use crate::binary::column_stream::{Coding, ColumnPlace, ColumnStreamTable, RecordGroup, Stream};
 use crate::binary::positioned_file::PositionedFile;
 use crate::binary::records::Records;
-use crate::compressed::Packing;
+use crate::byte_stream::Packing;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::{Candidate, Format, Opened, Table};
 use sagnac_core::message::Note;

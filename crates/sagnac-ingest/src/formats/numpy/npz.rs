@@ -14,7 +14,7 @@ use sagnac_core::message::Note;
 use zip::{CompressionMethod, ZipArchive};
 
 /// Most members of an archive.
-const MOST_MEMBERS: usize = 4096;
+const MAX_MEMBERS: usize = 4096;
 
 /// Bytes of a member that are looked at: its header and some data.
 const HEAD: usize = 1 << 16;
@@ -31,7 +31,7 @@ struct Member {
 
 /// What was found in an archive.
 #[derive(Default)]
-struct Found {
+struct ArchiveContents {
     streams: Vec<Stream>,
     members: Vec<Member>,
     arrays: Vec<array_selection::Array>,
@@ -119,18 +119,18 @@ fn other_length(array: &array_selection::Array, rows: u64) -> Note {
 }
 
 /// Looks at every member of the archive.
-fn members(file: &Candidate, at: &std::sync::Arc<PositionedFile>) -> Result<Found, IngestError> {
+fn members(file: &Candidate, at: &std::sync::Arc<PositionedFile>) -> Result<ArchiveContents, IngestError> {
     let path = &file.path;
     let damaged = |e: zip::result::ZipError| {
         let note = Note::new("ingest.npz.damaged").with("reason", e.to_string());
         IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.damaged")
     };
     let mut archive = ZipArchive::new(FileRange::new(at, 0, at.size)).map_err(damaged)?;
-    if archive.len() > MOST_MEMBERS {
-        let note = Note::new("ingest.binary.too_many_columns").with("most", MOST_MEMBERS);
+    if archive.len() > MAX_MEMBERS {
+        let note = Note::new("ingest.binary.too_many_columns").with("most", MAX_MEMBERS);
         return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.give_recording"));
     }
-    let mut found = Found::default();
+    let mut found = ArchiveContents::default();
     for index in 0..archive.len() {
         let member = archive.by_index_raw(index).map_err(damaged)?;
         let full = String::from_utf8_lossy(member.name_raw()).into_owned();
@@ -198,7 +198,7 @@ fn members(file: &Candidate, at: &std::sync::Arc<PositionedFile>) -> Result<Foun
 }
 
 /// Keeps a single value: as the sample rate where its name says so, and among what the file says of itself.
-fn scalar(found: &mut Found, name: &str, columns: &array::Columns, data: &[u8]) {
+fn scalar(found: &mut ArchiveContents, name: &str, columns: &array::Columns, data: &[u8]) {
     let Some(place) = columns.list.first() else { return };
     let Some(field) = place.field else {
         // Texts are characters of four bytes each, in the order of the machine that nearly every file comes from.

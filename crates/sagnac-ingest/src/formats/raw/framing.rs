@@ -70,7 +70,7 @@ impl Scanner {
     }
 
     /// Turns the bytes since sync was lost into rows without values.
-    fn tell_lost(&mut self, now: u64, out: &mut FramedRecords) {
+    fn report_lost(&mut self, now: u64, out: &mut FramedRecords) {
         let Some((from, told)) = self.lost.take() else { return };
         let bytes = now.saturating_sub(from);
         let record = self.record as u64;
@@ -97,12 +97,12 @@ impl Framer for Scanner {
             let here = self.at + at as u64;
             match self.look(rest, end) {
                 Match::Record => {
-                    self.tell_lost(here, out);
+                    self.report_lost(here, out);
                     out.records.extend_from_slice(rest.get(..self.record).unwrap_or_default());
                     at += self.record;
                 }
                 Match::Wrong(made, found) => {
-                    self.tell_lost(here, out);
+                    self.report_lost(here, out);
                     let word = self.checksum.as_ref().map_or("", |c| c.word);
                     self.bad_rows(1, &format!("{word} {found:x} ≠ {made:x} @{here}"), out);
                     at += self.record;
@@ -128,7 +128,7 @@ impl Framer for Scanner {
         }
         let now = self.at + at as u64;
         if end {
-            self.tell_lost(now, out);
+            self.report_lost(now, out);
         } else if let Some((from, _)) = self.lost {
             let rows = (now - from) / self.record as u64;
             if rows >= AT_ONCE {

@@ -4,7 +4,7 @@
 mod framing;
 
 use crate::binary::records::{FramedRecords, Framer, MakeFramer, Records};
-use crate::compressed::Packing;
+use crate::byte_stream::Packing;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::layout::Layout;
 use crate::{Candidate, Column, Format, Opened};

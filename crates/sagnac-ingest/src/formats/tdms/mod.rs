@@ -9,8 +9,8 @@ mod scale;
 mod segments;
 mod table;
 
+use crate::byte_stream::io_error;
 use crate::column_inference::infer;
-use crate::compressed::io_error;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::metadata::Metadata;
 use crate::part_selection::{self, Part};

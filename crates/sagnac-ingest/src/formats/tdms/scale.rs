@@ -6,7 +6,7 @@ use super::properties::Properties;
 /// Input of a scale that is the number stored.
 const RAW: f64 = 4_294_967_295.0;
 /// Most scales of a channel, and most coefficients of one.
-const MOST: usize = 64;
+const MAX_STEPS: usize = 64;
 
 /// One step from the number stored to the value: a polynomial, lowest power first.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,13 +32,13 @@ pub(super) fn steps(properties: [&Properties; 3]) -> Result<Vec<Step>, String> {
 }
 
 fn chain(p: &Properties, count: f64) -> Result<Vec<Step>, String> {
-    if !(1.0..=MOST as f64).contains(&count) {
+    if !(1.0..=MAX_STEPS as f64).contains(&count) {
         return Err(format!("{count} scales"));
     }
     let mut steps = Vec::new();
     let mut index = count as usize - 1;
     // The last scale gives the value; each names the one that it takes its input from.
-    for _ in 0..MOST {
+    for _ in 0..MAX_STEPS {
         let name = |rest: &str| format!("NI_Scale[{index}]_{rest}");
         let number = |rest: &str| p.number(&name(rest)).filter(|v| v.is_finite());
         let kind = p.text(&name("Scale_Type")).unwrap_or("DAQmx").to_owned();
@@ -50,7 +50,7 @@ fn chain(p: &Properties, count: f64) -> Result<Vec<Step>, String> {
             }
             "Polynomial" => {
                 let size = number("Polynomial_Coefficients_Size").unwrap_or(4.0);
-                if !(1.0..=MOST as f64).contains(&size) {
+                if !(1.0..=MAX_STEPS as f64).contains(&size) {
                     return Err(unknown());
                 }
                 let coefficients: Option<Vec<f64>> =
@@ -65,7 +65,7 @@ fn chain(p: &Properties, count: f64) -> Result<Vec<Step>, String> {
             steps.reverse();
             return Ok(steps);
         }
-        if !(0.0..MOST as f64).contains(&input) {
+        if !(0.0..MAX_STEPS as f64).contains(&input) {
             return Err(kind);
         }
         index = input as usize;

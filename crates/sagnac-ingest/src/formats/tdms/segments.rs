@@ -15,11 +15,11 @@ use std::path::Path;
 /// Length of a lead-in, bytes.
 const LEAD_IN: u64 = 28;
 /// Longest metadata of a segment that are read, bytes.
-const LONGEST_METADATA: u64 = 64 << 20;
+const MAX_METADATA_BYTES: u64 = 64 << 20;
 /// Most objects of a file.
-const OBJECTS: usize = 10_000;
+const MAX_OBJECTS: usize = 10_000;
 /// Most channels times segments.
-const PIECES: usize = 100_000_000;
+const MAX_PIECES: usize = 100_000_000;
 
 const HAS_METADATA: u32 = 1 << 1;
 const NEW_LIST: u32 = 1 << 2;
@@ -177,7 +177,7 @@ impl Scanner<'_> {
     }
 
     fn bytes(&mut self, at: u64, len: u64) -> Result<Vec<u8>, IngestError> {
-        let io = |path: &Path, e| crate::compressed::io_error(path, &e);
+        let io = |path: &Path, e| crate::byte_stream::io_error(path, &e);
         let mut bytes = Vec::new();
         self.file.seek(SeekFrom::Start(at)).map_err(|e| io(self.path, e))?;
         self.file.by_ref().take(len).read_to_end(&mut bytes).map_err(|e| io(self.path, e))?;
@@ -233,7 +233,7 @@ impl Scanner<'_> {
     }
 
     fn metadata(&mut self, at: u64, len: u64, big_endian: bool, new_list: bool) -> Result<(), IngestError> {
-        if len > LONGEST_METADATA {
+        if len > MAX_METADATA_BYTES {
             return Err(self.error(at, Note::new("ingest.tdms.long_metadata").with("bytes", len)));
         }
         let bytes = self.bytes(at, len)?;
@@ -331,7 +331,7 @@ impl Scanner<'_> {
             return Ok(known);
         }
         let index = self.contents.channels.len();
-        if index >= OBJECTS {
+        if index >= MAX_OBJECTS {
             return Err(MetadataFault::note("ingest.tdms.objects", path));
         }
         self.contents.channels.push(Channel {
@@ -357,7 +357,7 @@ impl Scanner<'_> {
     fn values(&mut self, at: u64, end: u64, interleaved: bool, big_endian: bool) -> Result<(), IngestError> {
         let too_large = |s: &Self| s.error(at, Note::new("ingest.tdms.too_large"));
         self.pieces = self.pieces.saturating_add(self.active.len());
-        if self.pieces > PIECES {
+        if self.pieces > MAX_PIECES {
             return Err(too_large(self));
         }
         let mut list: Vec<(usize, Index)> = Vec::new();

@@ -4,7 +4,7 @@ use super::bytes::{stamp, word};
 use super::properties::FROM_1904_S;
 use super::scale::Step;
 use super::segments::{Channel, Kind, Piece};
-use crate::compressed::io_error;
+use crate::byte_stream::io_error;
 use crate::decode_pipeline::{Blocks, run_pipeline};
 use crate::error::IngestError;
 use crate::{FileFacts, OnBlock, Table};

@@ -1,9 +1,9 @@
 //! How a text file is written, found from its first lines or as its user says.
 
-use super::encoding::{self, Found};
+use super::column_kinds::{self, Kinds};
+use super::encoding::{self, FoundEncoding};
 use super::fields::{Comments, Separator, words};
 use super::header::{self, Header};
-use super::kinds::{self, Kinds};
 use super::metadata::add_line;
 use super::rows::Lines;
 use super::separator::{self, Cut, Looks, looks};
@@ -311,7 +311,7 @@ impl Sniffed<'_> {
         let units: Vec<Option<String>> =
             names.iter().enumerate().map(|(i, n)| below(i).or_else(|| header::unit_in_name(n))).collect();
         let stamps = &self.file.options.text.stamps;
-        kinds::find(&names, &units, &cells, self.cut.decimal, stamps).map_err(|c| {
+        column_kinds::find(&names, &units, &cells, self.cut.decimal, stamps).map_err(|c| {
             let message = Note::new("ingest.delimited.not_these_stamps").with("column", c.column);
             self.error(message)
                 .at(numbers.get(c.row).copied().unwrap_or(0), None)
@@ -336,7 +336,7 @@ impl Sniffed<'_> {
         metadata.entries()
     }
 
-    fn notes(&self, found: &Found, header: &Header, above: &[Line<'_>], head: &[u8]) -> Vec<Note> {
+    fn notes(&self, found: &FoundEncoding, header: &Header, above: &[Line<'_>], head: &[u8]) -> Vec<Note> {
         let mut notes = vec![
             Note::new("ingest.delimited.encoding")
                 .with("encoding", encoding::name(found.encoding))

@@ -1,7 +1,7 @@
 //! The characters of a text file: UTF-8, UTF-16 or Windows-1251, found from its first bytes and turned into UTF-8 as the
 //! bytes pass. UTF-8 itself passes untouched.
 
-use crate::compressed::{ByteStream, Digested};
+use crate::byte_stream::{ByteStream, Digested};
 use crate::error::{IngestError, IngestErrorKind};
 use crate::options::Encoding;
 use sagnac_core::message::{Arg, Note};
@@ -18,7 +18,7 @@ const CYRILLIC_SHARE: f64 = 0.5;
 
 /// An encoding with why it was taken.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Found {
+pub(super) struct FoundEncoding {
     /// The encoding.
     pub encoding: Encoding,
     /// Why.
@@ -47,8 +47,9 @@ fn mark(head: &[u8]) -> Option<Encoding> {
 }
 
 /// Finds the encoding from the start of a file; `all`: the head is the whole file. `None`: this is no text.
-pub(super) fn find(head: &[u8], all: bool) -> Option<Found> {
-    let found = |encoding, reason| Some(Found { encoding, reason: Note::new(reason), damaged_at: None });
+pub(super) fn find(head: &[u8], all: bool) -> Option<FoundEncoding> {
+    let found =
+        |encoding, reason| Some(FoundEncoding { encoding, reason: Note::new(reason), damaged_at: None });
     match mark(head) {
         Some(encoding) => return found(encoding, "ingest.delimited.why_mark"),
         None if head.contains(&0) => {
@@ -84,7 +85,7 @@ pub(super) fn find(head: &[u8], all: bool) -> Option<Found> {
     if !sound_utf8 && letters as f64 >= CYRILLIC_SHARE * total as f64 && letters > 0 && !damaged {
         return found(Encoding::Windows1251, "ingest.delimited.why_cyrillic");
     }
-    Some(Found {
+    Some(FoundEncoding {
         encoding: Encoding::Utf8,
         reason: Note::new("ingest.delimited.why_mostly"),
         damaged_at: Some(error.valid_up_to()),
@@ -107,7 +108,12 @@ fn utf16_without_mark(head: &[u8]) -> Option<Encoding> {
 }
 
 /// The encoding that a user stated, when the file does not contradict it.
-pub(super) fn stated(path: &Path, head: &[u8], all: bool, encoding: Encoding) -> Result<Found, IngestError> {
+pub(super) fn stated(
+    path: &Path,
+    head: &[u8],
+    all: bool,
+    encoding: Encoding,
+) -> Result<FoundEncoding, IngestError> {
     let contradicts = |what: Note| {
         let message = Note::new("ingest.delimited.not_this_encoding")
             .with("stated", name(encoding))
@@ -115,8 +121,9 @@ pub(super) fn stated(path: &Path, head: &[u8], all: bool, encoding: Encoding) ->
         IngestError::new(IngestErrorKind::UnknownFormat, path, message).hint("ingest.delimited.hint_encoding")
     };
     let found = find(head, all);
-    let other =
-        |f: &Found| contradicts(Note::new("ingest.delimited.looks_like").with("encoding", name(f.encoding)));
+    let other = |f: &FoundEncoding| {
+        contradicts(Note::new("ingest.delimited.looks_like").with("encoding", name(f.encoding)))
+    };
     let wide = |e: Encoding| matches!(e, Encoding::Utf16Le | Encoding::Utf16Be);
     match &found {
         Some(f) if mark(head).is_some() && f.encoding != encoding => return Err(other(f)),
@@ -127,7 +134,7 @@ pub(super) fn stated(path: &Path, head: &[u8], all: bool, encoding: Encoding) ->
         _ => {}
     }
     let damaged_at = found.and_then(|f| f.damaged_at).filter(|_| encoding == Encoding::Utf8);
-    Ok(Found { encoding, reason: Note::new("ingest.delimited.why_stated"), damaged_at })
+    Ok(FoundEncoding { encoding, reason: Note::new("ingest.delimited.why_stated"), damaged_at })
 }
 
 fn decoder(encoding: Encoding) -> Option<encoding_rs::Decoder> {

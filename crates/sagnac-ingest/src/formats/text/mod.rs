@@ -2,11 +2,11 @@
 //!
 //! [`dialect`] finds out how the file is written and says why; [`reader`] reads it so to the end.
 
+mod column_kinds;
 mod dialect;
 mod encoding;
 mod fields;
 mod header;
-mod kinds;
 mod metadata;
 mod names;
 mod number;
@@ -14,10 +14,10 @@ mod reader;
 mod rows;
 mod separator;
 mod stamps;
-mod stated;
-mod unfinished;
+mod truncation;
+mod user_options;
 
-use crate::compressed::Packing;
+use crate::byte_stream::Packing;
 use crate::error::IngestError;
 use crate::{Candidate, Format, Opened};
 
@@ -36,7 +36,7 @@ impl Format for DelimitedText {
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
         let dialect = dialect::sniff(file)?;
-        let cut_off = unfinished::look(file)?;
+        let cut_off = truncation::look(file)?;
         let rows_estimate = (file.packing == Packing::Plain && dialect.mean_line > 0.0).then(|| {
             ((file.bytes as f64 - dialect.data_offset as f64).max(0.0) / dialect.mean_line).round() as u64
         });

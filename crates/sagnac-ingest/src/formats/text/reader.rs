@@ -2,7 +2,7 @@
 
 use super::encoding::TextStream;
 use super::rows::{LineParser, Lines};
-use crate::compressed::{ByteStream, Digested, Packing};
+use crate::byte_stream::{ByteStream, Digested, Packing};
 use crate::error::{IngestError, IngestErrorKind};
 use crate::options::Encoding;
 use crate::{Block, FileFacts, OnBlock, Table};
@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex};
 const CHUNK: usize = 1 << 20;
 
 /// Longest line of a recording, bytes.
-const LONGEST_LINE: usize = 1 << 20;
+const MAX_LINE_BYTES: usize = 1 << 20;
 
 /// Threads that parse.
 const PARSERS: usize = 2;
@@ -106,11 +106,11 @@ impl Text {
                 let cut = memchr::memrchr(b'\n', &text).map_or(0, |i| i + 1);
                 tail.extend_from_slice(text.get(cut..).unwrap_or_default());
                 text.truncate(cut);
-                if tail.len() > LONGEST_LINE {
+                if tail.len() > MAX_LINE_BYTES {
                     return Err(IngestError::new(
                         IngestErrorKind::UnknownFormat,
                         &self.path,
-                        Note::new("ingest.long_line").with("bytes", LONGEST_LINE),
+                        Note::new("ingest.long_line").with("bytes", MAX_LINE_BYTES),
                     )
                     .hint("ingest.hint.line_per_sample"));
                 }

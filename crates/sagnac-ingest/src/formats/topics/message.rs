@@ -79,7 +79,7 @@ static LAYOUTS: &[Layout] = &[
 ];
 
 /// Most numbers of a message.
-pub(crate) const MOST_NUMBERS: usize = 16;
+pub(crate) const MAX_NUMBERS: usize = 16;
 
 /// A message that was read.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +87,7 @@ pub(crate) struct Message {
     /// Stamp of the header: seconds and nanoseconds from 1970.
     pub stamp: Option<(i64, u32)>,
     /// Numbers in the order of the layout.
-    pub numbers: [f64; MOST_NUMBERS],
+    pub numbers: [f64; MAX_NUMBERS],
 }
 
 impl Layout {
@@ -119,7 +119,7 @@ impl Layout {
     /// Reads a message; nothing when it ends early or its encoding is not known.
     pub fn read(&self, data: &[u8], encoding: Encoding) -> Option<Message> {
         let mut fields = Fields::start(data, encoding)?;
-        let mut message = Message { stamp: None, numbers: [f64::NAN; MOST_NUMBERS] };
+        let mut message = Message { stamp: None, numbers: [f64::NAN; MAX_NUMBERS] };
         let mut places = message.numbers.iter_mut();
         for item in self.items {
             match item {
@@ -255,6 +255,6 @@ mod tests {
 
     #[test]
     fn no_layout_has_more_numbers_than_fit() {
-        assert!(LAYOUTS.iter().all(|l| l.numbers().count() <= MOST_NUMBERS));
+        assert!(LAYOUTS.iter().all(|l| l.numbers().count() <= MAX_NUMBERS));
     }
 }

@@ -3,16 +3,16 @@
 //! Both readers are our own. The crates at hand map the whole file into memory or let a number in the file decide how
 //! much is unpacked, and one of them brings two C libraries along; what is needed of the formats is short.
 
+pub(super) mod container;
 pub(super) mod message;
-pub(super) mod source;
 mod table;
 
 use crate::error::{IngestError, IngestErrorKind, shorten};
 use crate::metadata::Metadata;
 use crate::{Candidate, Column, Opened};
+use container::{Catalog, Container, Event, Topic};
 use message::{Encoding, Layout};
 use sagnac_core::message::{Arg, Note};
-use source::{Catalog, Container, Event, Topic};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use table::{Origin, TopicTable};
@@ -87,7 +87,7 @@ fn choose<'a>(
 
 pub(super) fn open(file: &Candidate, container: &'static dyn Container) -> Result<Opened, IngestError> {
     let path = &file.path;
-    let catalog = source::catalog(container, path, file.bytes)?;
+    let catalog = container::catalog(container, path, file.bytes)?;
     if catalog.topics.iter().all(|t| t.messages == 0) {
         if let Some(at) = catalog.broken_at {
             let note = Note::new("ingest.ros.broken_before").with("at", at);

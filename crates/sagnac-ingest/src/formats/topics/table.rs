@@ -1,7 +1,7 @@
 //! Messages of one topic as rows.
 
+use super::container::{Container, Event};
 use super::message::{Encoding, Layout};
-use super::source::{Container, Event};
 use crate::decode_pipeline::{Blocks, run_pipeline};
 use crate::error::IngestError;
 use crate::{Block, FieldFault, FieldFaultKind, FileFacts, OnBlock, Table};

@@ -11,7 +11,7 @@ use std::path::{Component, Path, PathBuf};
 
 /// A file that may be opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Inside {
+pub(crate) struct ContainedFile {
     /// Path as it can be opened.
     pub path: PathBuf,
     /// Where it really is.
@@ -51,7 +51,7 @@ pub(crate) fn stays(text: &str, at: &Span, reader: &mut Reader<'_>) -> bool {
 }
 
 /// An ordinary file in a folder or below it; `None` when a problem was reported.
-pub(crate) fn file(text: &str, folder: &Path, at: &Span, reader: &mut Reader<'_>) -> Option<Inside> {
+pub(crate) fn file(text: &str, folder: &Path, at: &Span, reader: &mut Reader<'_>) -> Option<ContainedFile> {
     if !stays(text, at, reader) {
         return None;
     }
@@ -76,7 +76,7 @@ pub(crate) fn file(text: &str, folder: &Path, at: &Span, reader: &mut Reader<'_>
     } else if !canonical.is_file() {
         ("inside.no_file", "inside.help.inside")
     } else {
-        return Some(Inside { path, canonical });
+        return Some(ContainedFile { path, canonical });
     };
     reader.error(at, about(key), Some(help.into()));
     None

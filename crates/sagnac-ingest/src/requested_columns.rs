@@ -10,16 +10,16 @@ use std::path::Path;
 const JUDGED_ROWS: u64 = 1000;
 
 /// Watches the first rows of every wanted column.
-pub(super) struct FirstRows {
+pub(super) struct NumericCheck {
     rows: u64,
     bad: Vec<u64>,
     first: Vec<Option<FieldFault>>,
     done: bool,
 }
 
-impl FirstRows {
-    pub(super) fn new(slots: usize) -> FirstRows {
-        FirstRows { rows: 0, bad: vec![0; slots], first: vec![None; slots], done: false }
+impl NumericCheck {
+    pub(super) fn new(slots: usize) -> NumericCheck {
+        NumericCheck { rows: 0, bad: vec![0; slots], first: vec![None; slots], done: false }
     }
 
     /// The first bad field of a column of which more than half of the first rows are no numbers.
@@ -55,7 +55,7 @@ impl FirstRows {
     }
 
     /// The same for a file that ended before.
-    pub(super) fn judge_short(&mut self) -> Option<FieldFault> {
+    pub(super) fn judge_at_end(&mut self) -> Option<FieldFault> {
         if self.done { None } else { self.verdict() }
     }
 
@@ -85,7 +85,7 @@ pub(super) fn not_numeric(
 }
 
 /// Turns columns read once each into columns as wanted, where one may be wanted several times.
-pub(super) fn spread(block: &mut Block, slots: &[usize]) {
+pub(super) fn repeat_columns(block: &mut Block, slots: &[usize]) {
     if slots.len() == block.columns.len() {
         return;
     }
@@ -102,7 +102,7 @@ pub(super) fn spread(block: &mut Block, slots: &[usize]) {
     }
 }
 
-/// Undoes the shape of [`spread`], so that the block's memory can be used again.
-pub(super) fn gather(block: &mut Block, unique: usize) {
+/// Undoes the shape of [`repeat_columns`], so that the block's memory can be used again.
+pub(super) fn restore_columns(block: &mut Block, unique: usize) {
     block.columns.resize_with(unique, Vec::new);
 }

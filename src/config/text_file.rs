@@ -7,13 +7,13 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 /// Largest file that is taken, bytes. A procedure is a few kilobytes.
-const LARGEST: usize = 1 << 20;
+const MAX_BYTES: usize = 1 << 20;
 
 /// The byte order mark of UTF-8; it is no part of the text.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Most bytes that are read: enough to know that a file is too large.
-const MOST_READ: u64 = (LARGEST + MARK.len() + 1) as u64;
+const MAX_READ_BYTES: u64 = (MAX_BYTES + MARK.len() + 1) as u64;
 
 /// The sentences about a file of one kind that cannot be read at all, by their keys.
 pub(crate) struct Wording {
@@ -46,7 +46,7 @@ pub(crate) fn peek(path: &Path) -> Option<String> {
 
 fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(MOST_READ).read_to_end(&mut bytes)?;
+    File::open(path)?.take(MAX_READ_BYTES).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
@@ -56,8 +56,8 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
 /// Too many bytes, or bytes that are no UTF-8, at their place.
 pub(crate) fn source(name: &str, bytes: &[u8]) -> Result<SourceText, Problems> {
     let body = bytes.strip_prefix(MARK).unwrap_or(bytes);
-    if body.len() > LARGEST {
-        let message = Note::new("keyed.too_large").with("bytes", LARGEST);
+    if body.len() > MAX_BYTES {
+        let message = Note::new("keyed.too_large").with("bytes", MAX_BYTES);
         return Err(Problem::of_file(name, message, None).into());
     }
     std::str::from_utf8(body).map(|text| SourceText::new(name, text.to_owned())).map_err(|e| {
@@ -82,7 +82,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.toml");
         for mark in [&b""[..], MARK] {
-            for (length, fits) in [(LARGEST, true), (LARGEST + 1, false), (3 * LARGEST, false)] {
+            for (length, fits) in [(MAX_BYTES, true), (MAX_BYTES + 1, false), (3 * MAX_BYTES, false)] {
                 std::fs::write(&path, [mark, &vec![b'#'; length]].concat()).unwrap();
                 let read = bytes(&path, &WORDING).unwrap();
                 match source("a.toml", &read) {
@@ -96,8 +96,8 @@ mod tests {
     #[test]
     fn a_large_file_is_too_large_wherever_a_character_is_cut() {
         for shift in 0..3 {
-            let text = format!("{}{}", "#".repeat(shift), "ж".repeat(LARGEST));
-            let cut = &text.as_bytes()[..MOST_READ as usize];
+            let text = format!("{}{}", "#".repeat(shift), "ж".repeat(MAX_BYTES));
+            let cut = &text.as_bytes()[..MAX_READ_BYTES as usize];
             assert!(said("a.toml", cut).contains("larger than"), "{shift}");
         }
     }

@@ -15,7 +15,7 @@ struct Angle {
 }
 
 /// An angle started again.
-pub(super) struct Wrapped {
+pub(super) struct AngleRollover {
     /// Row among those given.
     pub row: usize,
     pub slot: usize,
@@ -47,7 +47,7 @@ impl Angles {
     }
 
     /// Rows with rates in place of angles, without the first row where a stretch begins; and the roll-overs.
-    pub fn differences(&mut self, values: &[Vec<f64>], begins: bool) -> (Vec<Vec<f64>>, Vec<Wrapped>) {
+    pub fn differences(&mut self, values: &[Vec<f64>], begins: bool) -> (Vec<Vec<f64>>, Vec<AngleRollover>) {
         let skipped = usize::from(begins);
         let mut out: Vec<Vec<f64>> =
             values.iter().map(|v| v.get(skipped..).unwrap_or_default().to_vec()).collect();
@@ -62,7 +62,7 @@ impl Angles {
                 let mut step = *value - angle.last;
                 if let Some(period) = wrap(angle, *value, step) {
                     step -= period * (step / period).round();
-                    wraps.push(Wrapped { row: i + skipped, slot: angle.slot, period });
+                    wraps.push(AngleRollover { row: i + skipped, slot: angle.slot, period });
                 }
                 angle.last = *value;
                 *value = step / self.interval_s;

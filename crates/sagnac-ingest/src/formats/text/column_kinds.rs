@@ -5,7 +5,7 @@ use super::number::{self, Field};
 use super::rows::{FieldKind, Pair};
 use super::separator::{Looks, looks};
 use super::stamps::{self, DAY_S, Order, Shape, Stamp};
-use super::stated::{self, Contradiction};
+use super::user_options::{self, Contradiction};
 use crate::column::DATES;
 use crate::{Column, StampOptions};
 use sagnac_core::message::{Arg, Note};
@@ -72,7 +72,7 @@ pub(super) fn find(
             }
         }
     }
-    let of_stated = stated::apply(names, cells, stated, &mut shapes)?;
+    let of_stated = user_options::apply(names, cells, stated, &mut shapes)?;
     for (i, name) in names.iter().enumerate() {
         let shape = shapes.get(i).copied().flatten();
         let column = cells.get(i).map(Vec::as_slice).unwrap_or_default();

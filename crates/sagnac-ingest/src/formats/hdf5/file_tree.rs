@@ -13,10 +13,10 @@ use sagnac_core::message::Note;
 use std::collections::BTreeSet;
 
 /// Deepest group and most objects that are looked at.
-const DEEPEST: usize = 16;
-const OBJECTS: usize = 4096;
+const MAX_DEPTH: usize = 16;
+const MAX_OBJECTS: usize = 4096;
 /// A dataset with more columns, and a record with more fields, is no recording.
-const WIDEST: u64 = 1024;
+const MAX_WIDTH: u64 = 1024;
 /// Most elements of an array in a field of a record.
 const ARRAY: u64 = 16;
 
@@ -98,7 +98,7 @@ pub(super) fn walk(file: &Hdf5File) -> Result<FileTree, Error> {
     let (metadata, rate) = describe_attributes(&root.attributes().unwrap_or_default());
     (found.metadata, found.stated_rate_hz) = (metadata, rate);
     let mut seen = BTreeSet::new();
-    let mut left = OBJECTS;
+    let mut left = MAX_OBJECTS;
     let mut waiting = vec![(root, String::from("/"), 0usize)];
     while let Some((group, path, depth)) = waiting.pop() {
         if !seen.insert(group.address()) || left == 0 {
@@ -107,7 +107,7 @@ pub(super) fn walk(file: &Hdf5File) -> Result<FileTree, Error> {
         let (groups, datasets, mut notes) = members(&group, &path)?;
         left = left.saturating_sub(groups.len() + datasets.len() + 1);
         if left == 0 {
-            found.notes.push(Note::new("ingest.hdf5.many_objects").with("count", OBJECTS));
+            found.notes.push(Note::new("ingest.hdf5.many_objects").with("count", MAX_OBJECTS));
         }
         let mut part =
             GroupPart { part: Part { name: path.clone(), columns: Vec::new() }, ..GroupPart::default() };
@@ -122,7 +122,7 @@ pub(super) fn walk(file: &Hdf5File) -> Result<FileTree, Error> {
         if !part.part.columns.is_empty() {
             found.parts.push(part);
         }
-        if depth < DEEPEST {
+        if depth < MAX_DEPTH {
             // The last one is taken first, so that groups come in the order of the file.
             for child in groups.into_iter().rev() {
                 let below = join(&path, child.name());
@@ -151,10 +151,10 @@ fn members(group: &Group, path: &str) -> Result<Members, Error> {
     };
     let Ok((group_names, dataset_names)) = group.member_names() else { return Err(whole) };
     let (mut groups, mut datasets, mut notes) = (Vec::new(), Vec::new(), Vec::new());
-    for name in group_names.iter().take(OBJECTS) {
+    for name in group_names.iter().take(MAX_OBJECTS) {
         groups.extend(group.group(name));
     }
-    for name in dataset_names.iter().take(OBJECTS) {
+    for name in dataset_names.iter().take(MAX_OBJECTS) {
         match group.dataset(name) {
             Ok(dataset) => datasets.push(dataset),
             Err(e) => notes.push(
@@ -171,7 +171,7 @@ fn members(group: &Group, path: &str) -> Result<Members, Error> {
 fn describe_attributes(attributes: &[hdf5_reader::Attribute]) -> (Vec<(String, String)>, Option<f64>) {
     let mut metadata = Vec::new();
     let mut rate = None;
-    for a in attributes.iter().take(OBJECTS) {
+    for a in attributes.iter().take(MAX_OBJECTS) {
         let number = attributes::number(a);
         rate = rate.or_else(|| stated_sample_rate_hz(&a.name, number?));
         let value = attributes::text(a).or_else(|| number.map(|v| v.to_string()));
@@ -188,7 +188,7 @@ fn add(part: &mut GroupPart, dataset: &Dataset, group: &str) {
     let elements = dataset.shape().iter().try_fold(1u64, |n, d| n.checked_mul(*d)).unwrap_or(u64::MAX);
     let element_bytes = dataset.raw_element_size().unwrap_or(usize::MAX) as u64;
     if elements == 1 {
-        single(part, dataset, &name);
+        add_scalar(part, dataset, &name);
         return;
     }
     let factor = told.factor.unwrap_or(1.0) * told.to_s;
@@ -251,13 +251,13 @@ impl DescribedDataset<'_> {
     /// Adds the fields of records as columns; what attributes say of the dataset says nothing of one field.
     fn add_records(&mut self, fields: &[CompoundField], shape: &[u64]) {
         let rows = if matches!(shape, [_]) { self.elements } else { 0 };
-        for field in fields.iter().take(WIDEST as usize) {
+        for field in fields.iter().take(MAX_WIDTH as usize) {
             let offset = field.byte_offset as usize;
             let (base, count) = match &field.datatype {
                 Datatype::Array { base, dims } => {
                     (base.as_ref(), dims.iter().try_fold(1u64, |n, d| n.checked_mul(*d)).unwrap_or(u64::MAX))
                 }
-                single => (single, 1),
+                add_scalar => (add_scalar, 1),
             };
             let storage = Storage::of(base).filter(|_| count <= ARRAY && rows > 0);
             let count = if storage.is_some() { count } else { 1 };
@@ -286,7 +286,7 @@ impl DescribedDataset<'_> {
                 let pick = Pick::Column { index: 0, width: 1, rows_last: *a == 1 };
                 self.push(self.column(name, storage, words), (*a).max(*b), self.place(pick, storage));
             }
-            [a, b] if (*a).min(*b) <= WIDEST && self.elements > 0 && storage.is_some() => {
+            [a, b] if (*a).min(*b) <= MAX_WIDTH && self.elements > 0 && storage.is_some() => {
                 // A recording has more rows than columns; MATLAB stores matrices with the dimensions exchanged.
                 let rows_last = if a == b { self.told.matlab } else { a < b };
                 let (rows, width) = if rows_last { (*b, *a) } else { (*a, *b) };
@@ -317,7 +317,7 @@ impl DescribedDataset<'_> {
 }
 
 /// A dataset of one element is a remark on the others.
-fn single(part: &mut GroupPart, dataset: &Dataset, name: &str) {
+fn add_scalar(part: &mut GroupPart, dataset: &Dataset, name: &str) {
     let text = match dataset.dtype() {
         Datatype::String { .. } | Datatype::VarLen { .. } => {
             dataset.read_strings().ok().and_then(|s| s.into_iter().next())

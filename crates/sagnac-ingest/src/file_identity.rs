@@ -3,7 +3,7 @@
 //! A recording is read more than once: for its clock, for its values, for its hash. A file that is replaced or written
 //! to in between would give figures of one recording under the hash of another, and its size need not tell.
 
-use super::compressed::io_error;
+use super::byte_stream::io_error;
 use super::{IngestError, IngestErrorKind};
 use std::fs::Metadata;
 use std::path::Path;
@@ -34,7 +34,7 @@ impl FileIdentity {
     ///
     /// # Errors
     /// [`IngestErrorKind::Changed`].
-    pub(super) fn still_at(&self, path: &Path) -> Result<(), IngestError> {
+    pub(super) fn check_unchanged(&self, path: &Path) -> Result<(), IngestError> {
         let changed = |what: &'static str| {
             Err(IngestError::new(IngestErrorKind::Changed, path, what).hint("ingest.hint.wait"))
         };

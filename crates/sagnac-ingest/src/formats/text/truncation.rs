@@ -1,6 +1,6 @@
 //! Whether a text file ends within a row.
 
-use crate::compressed::{Packing, io_error};
+use crate::byte_stream::{Packing, io_error};
 use crate::{Candidate, IngestError};
 use sagnac_core::message::Note;
 use std::fs::File;

@@ -80,7 +80,7 @@ pub(crate) enum Event<'a> {
     /// A message.
     Message { id: u32, log_ns: u64, data: &'a [u8], at: u64 },
     /// Anything that the file says of itself.
-    Said { key: &'a str, value: &'a str },
+    Statement { key: &'a str, value: &'a str },
 }
 
 /// Takes events; may stop the reading.
@@ -114,7 +114,7 @@ pub(crate) fn catalog(container: &dyn Container, path: &Path, bytes: u64) -> Res
                 catalog.channel(id, topic, type_name, encoding);
             }
             Event::Message { id, .. } => catalog.count(id, 1),
-            Event::Said { key, value } => {
+            Event::Statement { key, value } => {
                 if catalog.metadata.len() < 64 {
                     catalog.metadata.push((key.to_owned(), value.to_owned()));
                 }
@@ -136,7 +136,7 @@ pub(crate) struct Stream {
 
 impl Stream {
     pub fn open(path: &Path, at: u64, size: u64) -> Result<Stream, IngestError> {
-        let io = |e| crate::compressed::io_error(path, &e);
+        let io = |e| crate::byte_stream::io_error(path, &e);
         let mut file = File::open(path).map_err(io)?;
         file.seek(SeekFrom::Start(at)).map_err(io)?;
         Ok(Stream { path: path.to_owned(), file: BufReader::with_capacity(1 << 18, file), at, size })
@@ -153,7 +153,7 @@ impl Stream {
         if len > self.left() {
             return Ok(false);
         }
-        let io = |e| crate::compressed::io_error(&self.path, &e);
+        let io = |e| crate::byte_stream::io_error(&self.path, &e);
         let n = self.file.by_ref().take(len).read_to_end(out).map_err(io)?;
         self.at += n as u64;
         Ok(n as u64 == len)
@@ -162,7 +162,7 @@ impl Stream {
     /// Passes over so many bytes; false when the file does not have them.
     pub fn skip(&mut self, len: u64) -> Result<bool, IngestError> {
         let Some(step) = i64::try_from(len).ok().filter(|_| len <= self.left()) else { return Ok(false) };
-        self.file.seek_relative(step).map_err(|e| crate::compressed::io_error(&self.path, &e))?;
+        self.file.seek_relative(step).map_err(|e| crate::byte_stream::io_error(&self.path, &e))?;
         self.at += len;
         Ok(true)
     }
