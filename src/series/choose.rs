@@ -5,7 +5,7 @@ use crate::effect::Column;
 use crate::i18n::Note;
 use crate::ingest::Source;
 use crate::recording::{Channel, ColumnRef, Role};
-use crate::units::Unit;
+use crate::units::{Affine, Unit};
 
 /// The channels that are read, and what each is.
 pub(super) struct Chosen {
@@ -14,8 +14,8 @@ pub(super) struct Chosen {
     pub time: Option<usize>,
     /// Where the rate is among them.
     pub rate: usize,
-    /// The columns beside: which, where, and factor and offset to the unit of the contract.
-    pub beside: Vec<(Column, usize, (f64, f64))>,
+    /// The columns beside: which, where, and the conversion to the unit of the contract.
+    pub beside: Vec<(Column, usize, Affine)>,
     pub read_from: Vec<ReadFrom>,
 }
 

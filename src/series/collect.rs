@@ -5,6 +5,7 @@ use super::{Faults, Series, SeriesError, SeriesOptions};
 use crate::effect::Column;
 use crate::ingest::{Source, TimeBaseSpec, open_recording, prepare};
 use crate::recording::{SampleBlock, Sink};
+use crate::units::Affine;
 use std::path::PathBuf;
 
 /// Reads a recording: a file of any kind that is read, several in sequence, a pattern, or a manifest.
@@ -107,7 +108,7 @@ impl Sink for Rows<'_> {
             series.time_s.push(time_s);
             series.rate_deg_h.push(*rate);
             series.index.push(block.first_index + i as u64);
-            for (column, slot, (factor, offset)) in &self.chosen.beside {
+            for (column, slot, Affine { factor, offset }) in &self.chosen.beside {
                 let value = block.values.get(*slot).and_then(|v| v.get(i)).copied().unwrap_or(f64::NAN);
                 if let Some(values) = series.columns.get_mut(column) {
                     values.push(value * factor + offset);

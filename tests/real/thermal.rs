@@ -2,6 +2,7 @@
 //!
 //! `SAGNAC_REAL_DATA=... cargo test --release --test real thermal -- --nocapture`; skipped without the folder.
 
+use sagnac::recording::window::TimeSpan;
 use sagnac::series::{SeriesOptions, load_series};
 use sagnac::temperature::TemperatureTest;
 use sagnac::temperature::course::{Course, Terms};
@@ -109,8 +110,8 @@ fn a_chamber_sweep_is_predicted_better_than_by_the_ladder() {
         let span = course.span();
         let n = course.len();
         let end = course.first_s + n as f64 * course.block_s;
-        let tenths: Vec<(f64, f64)> =
-            (0..10).map(|k| (end * f64::from(k) / 10.0, end * f64::from(k + 1) / 10.0)).collect();
+        let at = |k: i32| end * f64::from(k) / 10.0;
+        let tenths: Vec<TimeSpan> = (0..10).map(|k| TimeSpan { from_s: at(k), to_s: at(k + 1) }).collect();
         let t: Vec<f64> = course.temperature_deg_c.iter().map(|t| span.argument(*t)).collect();
         let time: Vec<f64> = (0..n).map(|i| i as f64 / n as f64).collect();
         let rate =

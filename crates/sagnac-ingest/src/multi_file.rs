@@ -152,7 +152,10 @@ fn conversion(to: &Column, from: &Column) -> Option<Affine> {
     let declared = |c: &Column| c.unit.as_deref().and_then(|u| Unit::parse(u).ok());
     let unit = |c: &Column| declared(c).or_else(|| named(c));
     let (factor, offset) = match (unit(from), unit(to)) {
-        (Some(a), Some(b)) if a.text() != b.text() => a.affine_to(&b).ok()?,
+        (Some(a), Some(b)) if a.text() != b.text() => {
+            let conversion = a.affine_to(&b).ok()?;
+            (conversion.factor, conversion.offset)
+        }
         _ => (1.0, 0.0),
     };
     // Stamps with a date count from a day of their own in each file.

@@ -289,7 +289,7 @@ fn conversion(path: &Path, channel: &Channel) -> Result<Affine, IngestError> {
         return Ok(Affine { factor: channel.scale, offset: 0.0 });
     };
     let affine = Unit::parse(inside).and_then(|inside| channel.unit.affine_to(&inside));
-    affine.map(|(factor, offset)| Affine { factor: factor * channel.scale, offset }).map_err(|e| {
+    affine.map(|a| Affine { factor: a.factor * channel.scale, offset: a.offset }).map_err(|e| {
         error(
             Note::new("ingest.unit")
                 .with("channel", channel.id.as_str())

@@ -6,7 +6,7 @@ use crate::config::procedure::model::TemperatureCondition;
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::column_inference;
-use crate::units::Unit;
+use crate::units::{Affine, Unit};
 
 pub(super) struct Units;
 
@@ -42,7 +42,7 @@ fn named(spec: &crate::config::procedure::model::ChannelSpec, facts: &Facts<'_>)
     if !stated.same_dimension(&declared) || spec.channel.scale.abs() != 1.0 {
         return None;
     }
-    let (factor, offset) = stated.affine_to(&declared).ok()?;
+    let Affine { factor, offset } = stated.affine_to(&declared).ok()?;
     if (factor - 1.0).abs() < 1e-9 && offset.abs() < 1e-9 {
         return None;
     }

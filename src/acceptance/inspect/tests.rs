@@ -342,8 +342,10 @@ fn a_mean_that_was_taken_out_is_noticed() {
 fn small_statistics_follow_their_definitions() {
     assert_eq!(runs(&[0.0, 5.0, 10.0, 9.5, 10.0, 4.0, 0.0, 8.0]), (2, 1));
     assert_eq!(runs(&[f64::NAN]), (0, 0));
-    let (deviation, steps) = scatter(&[1.0, -1.0, 1.0, -1.0]).unwrap();
-    assert!((deviation - (4.0f64 / 3.0).sqrt()).abs() < 1e-12 && (steps - 2.0f64.sqrt()).abs() < 1e-12);
+    let s = scatter(&[1.0, -1.0, 1.0, -1.0]).unwrap();
+    assert!(
+        (s.deviation - (4.0f64 / 3.0).sqrt()).abs() < 1e-12 && (s.of_steps - 2.0f64.sqrt()).abs() < 1e-12
+    );
     let mut follow = Follow::default();
     follow.push(&[1.0, 2.0, f64::NAN, 3.0], &[5.0, 3.0, 0.0, 1.0]);
     assert_eq!(follow.finish(), Some((-1.0, -2.0)));

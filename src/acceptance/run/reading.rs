@@ -8,7 +8,7 @@ use crate::ingest::{Pauses, Plan, Source, StreamReport, TimeBaseSpec, locate, pr
 use crate::measurand::GyroEvidence;
 use crate::record::Window;
 use crate::recording::integrity::{Fault, Integrity};
-use crate::recording::window::WindowSpec;
+use crate::recording::window::{TimeSpan, WindowSpec};
 use crate::recording::{Channel, Role};
 
 /// How the channels of a procedure are read.
@@ -62,7 +62,11 @@ pub(super) fn window(procedure: &Procedure) -> WindowSpec {
     WindowSpec {
         from_s: procedure.conditions.warm_up_s,
         to_s: None,
-        exclusions: procedure.exclusions.iter().map(|e| (e.from_s, e.to_s)).collect(),
+        exclusions: procedure
+            .exclusions
+            .iter()
+            .map(|e| TimeSpan { from_s: e.from_s, to_s: e.to_s })
+            .collect(),
     }
 }
 

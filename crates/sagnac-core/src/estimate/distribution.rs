@@ -65,8 +65,7 @@ pub(super) fn student_quantile(probability: f64, dof: f64) -> f64 {
     while student_upper_tail(high, dof) > tail && high < 1e300 {
         (low, high) = (high, 2.0 * high);
     }
-    let (low, high) = bisect(low, high, 80, |t| student_upper_tail(t, dof) > tail);
-    let t = 0.5 * (low + high);
+    let t = bisect(low, high, 80, |t| student_upper_tail(t, dof) > tail).middle();
     if p < 0.5 { -t } else { t }
 }
 

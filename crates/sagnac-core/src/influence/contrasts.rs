@@ -73,8 +73,7 @@ impl Contrasts {
             return 0.0;
         }
         let most = total / target.max(f64::MIN_POSITIVE);
-        let (low, high) = bisect(0.0, most, 200, |v| self.q(v) > target);
-        0.5 * (low + high)
+        bisect(0.0, most, 200, |v| self.q(v) > target).middle()
     }
 
     /// The variance between the means, their noise taken out.

@@ -95,8 +95,7 @@ fn mean(list: &[Possible]) -> (f64, Spread) {
         if below(0.0) >= share {
             return 0.0;
         }
-        let (low, high) = bisect(0.0, most, 100, |x| below(x) < share);
-        0.5 * (low + high)
+        bisect(0.0, most, 100, |x| below(x) < share).middle()
     };
     let points = (-35..=35).map(|i| f64::from(i) / 10.0).map(|z| (z, at(normal_probability(z)))).collect();
     let variance: f64 = list.iter().map(|p| p.weight * p.contrasts.variance()).sum();

@@ -5,7 +5,7 @@ use super::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S, degrees_of_freedom, n
 use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread, chi_square_quantile, normal_probability};
 use crate::message::Note;
-use crate::noise::composite::{Composite, Part};
+use crate::noise::composite::{Composite, Part, Propagated};
 use crate::noise::data::NoiseType;
 use crate::noise::prediction::{WindowPrediction, covariance_of, unseen_variance};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
@@ -119,7 +119,7 @@ fn random_walk_ratio(gyro: &GyroEvidence) -> Estimate {
         let p = WindowPrediction::of(&found.described, exact_s, windows.n, gyro.tau0_s)?;
         let expected =
             |m: &Composite| m.expected_variance(exact_s, windows.n, gyro.tau0_s).unwrap_or(f64::NAN);
-        let (variance, u_n) = found.described.propagate(level);
+        let Propagated { value: variance, standard_uncertainty: u_n } = found.described.propagate(level);
         let shared = covariance_of(&found.described, (level, n), (expected, p.sigma * p.sigma));
         let variance = variance * variance;
         // The interval of N may be wider: it allows for terms that the description lacks; and the description may hold

@@ -86,7 +86,7 @@ fn reading(
         seen.iter().map(|p| model.allan_variance(p.tau_s, tau0_s).max(f64::MIN_POSITIVE).ln()).sum::<f64>()
             / (2.0 * seen.len() as f64)
     };
-    let known = described.propagate(level).1;
+    let known = described.propagate(level).standard_uncertainty;
     let dof = 0.5 / (0.5 / seen_line.dof + known * known);
     let bounds = Spread::ChiSquare { dof }.interval(ratio, COVERAGE)?;
     let share = expected.iter().map(share).sum::<f64>() / expected.len() as f64;

@@ -70,7 +70,7 @@ pub fn motion(
     let eighth = (blocks.mean.len() / 8).max(1);
     let merged = ((1.0 / block_s).ceil() as usize).clamp(1, eighth);
     let means = means(blocks, merged);
-    let Some((deviation, steps)) = scatter(&means) else { return Motion::Unknown };
+    let Some(Scatter { deviation, of_steps: steps }) = scatter(&means) else { return Motion::Unknown };
     let mut sorted = means.clone();
     let middle = sorted.len() / 2;
     let (_, median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
@@ -111,9 +111,17 @@ fn means(blocks: &BlockSeries, merged: usize) -> Vec<f64> {
     sums.filter(|(_, n)| *n >= 0.5 * full).map(|(sum, n)| sum / n).collect()
 }
 
-/// Standard deviation of values, and of the steps between neighbours divided by √2: the two agree for white values,
-/// the second is far smaller for slow ones.
-pub fn scatter(values: &[f64]) -> Option<(f64, f64)> {
+/// How values scatter. The two deviations agree for white values; that of steps is far smaller for slow ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scatter {
+    /// Standard deviation, unit of the values.
+    pub deviation: f64,
+    /// Standard deviation of the steps between neighbours over √2, same unit.
+    pub of_steps: f64,
+}
+
+/// The scatter of values; `None` for fewer than three.
+pub fn scatter(values: &[f64]) -> Option<Scatter> {
     let n = values.len() as f64;
     if values.len() < 3 {
         return None;
@@ -121,7 +129,7 @@ pub fn scatter(values: &[f64]) -> Option<(f64, f64)> {
     let mean = values.iter().sum::<f64>() / n;
     let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
     let steps: f64 = values.iter().zip(values.iter().skip(1)).map(|(a, b)| (b - a).powi(2)).sum();
-    Some((deviation, (steps / (n - 1.0)).sqrt() / SQRT_2))
+    Some(Scatter { deviation, of_steps: (steps / (n - 1.0)).sqrt() / SQRT_2 })
 }
 
 /// Scatter within the quietest window of about 1 s: what the noise is where a record that moves stands still.

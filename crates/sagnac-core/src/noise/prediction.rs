@@ -6,7 +6,7 @@
 //! 1978), hence Var\[s² − E\] = Var\[s²\] − Var\[E\]: what the fit took from the record it cannot be tested against.
 //! The ratio s²/E is read as χ² with the degrees of freedom of that variance.
 
-use super::composite::{Composite, Described, Line, Part};
+use super::composite::{Composite, Described, Line, Part, Propagated};
 use super::data::NoiseType;
 use super::windows::edf_of_window_std;
 use crate::estimate::{Interval, chi_square_quantile};
@@ -120,7 +120,7 @@ impl WindowPrediction {
     /// windows or for an empty model.
     pub fn of(described: &Described, window_s: f64, windows: u64, tau0_s: f64) -> Option<WindowPrediction> {
         let expected = |m: &Composite| m.expected_variance(window_s, windows, tau0_s).unwrap_or(f64::NAN);
-        let (total, u_total) = described.propagate(expected);
+        let Propagated { value: total, standard_uncertainty: u_total } = described.propagate(expected);
         if !(total > 0.0 && total.is_finite()) {
             return None;
         }
@@ -131,7 +131,7 @@ impl WindowPrediction {
         let mut shares = described.model.parts().into_iter().map(part).collect::<Option<Vec<Share>>>()?;
         shares.sort_by(|a, b| b.share.total_cmp(&a.share));
         let noise = Described { model: scattering(&described.model), ..described.clone() };
-        let (noise_total, u_noise) = noise.propagate(expected);
+        let Propagated { value: noise_total, standard_uncertainty: u_noise } = noise.propagate(expected);
         let edf = edf_of_window_std(windows, window_s, |t| noise.model.mean_variance(t, tau0_s))
             .unwrap_or(windows.saturating_sub(1).max(1) as f64);
         let scatter = if noise_total > 0.0 { 2.0 / edf * (noise_total / total).powi(2) } else { 0.0 };
@@ -190,7 +190,10 @@ pub fn covariance_of(
     (a, size_a): (impl Fn(&Composite) -> f64, f64),
     (b, size_b): (impl Fn(&Composite) -> f64, f64),
 ) -> f64 {
-    let square = |sign: f64| described.propagate(|m| a(m) / size_a + sign * b(m) / size_b).1.powi(2);
+    let square = |sign: f64| {
+        let sum = described.propagate(|m| a(m) / size_a + sign * b(m) / size_b);
+        sum.standard_uncertainty.powi(2)
+    };
     0.25 * (square(1.0) - square(-1.0)) * size_a * size_b
 }
 

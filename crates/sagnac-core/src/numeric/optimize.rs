@@ -13,9 +13,25 @@
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 
+/// What a bisection leaves: two values with the root between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bracket {
+    /// Where the condition holds.
+    pub inside: f64,
+    /// Where it does not.
+    pub outside: f64,
+}
+
+impl Bracket {
+    /// The value in the middle.
+    pub fn middle(self) -> f64 {
+        0.5 * (self.inside + self.outside)
+    }
+}
+
 /// Bisection: halves the span between `inside`, where `holds` is true, and `outside`, where it is false, `times` times or
-/// until no number lies between. Gives the ends of the span that is left, in the same order.
-pub fn bisect(mut inside: f64, mut outside: f64, times: usize, holds: impl Fn(f64) -> bool) -> (f64, f64) {
+/// until no number lies between. Gives the span that is left.
+pub fn bisect(mut inside: f64, mut outside: f64, times: usize, holds: impl Fn(f64) -> bool) -> Bracket {
     for _ in 0..times {
         let middle = 0.5 * (inside + outside);
         if middle == inside || middle == outside {
@@ -23,7 +39,7 @@ pub fn bisect(mut inside: f64, mut outside: f64, times: usize, holds: impl Fn(f6
         }
         if holds(middle) { inside = middle } else { outside = middle }
     }
-    (inside, outside)
+    Bracket { inside, outside }
 }
 
 /// The argument of the minimum of a function with a single minimum between `low` and `high`, by `times` golden sections
@@ -236,9 +252,9 @@ mod tests {
 
     #[test]
     fn the_span_that_is_left_holds_the_root() {
-        let (inside, outside) = bisect(1.0, 2.0, 50, |x| x * x < 2.0);
+        let Bracket { inside, outside } = bisect(1.0, 2.0, 50, |x| x * x < 2.0);
         assert!(inside * inside < 2.0 && outside * outside >= 2.0 && outside - inside < 1e-14);
-        let (inside, outside) = bisect(2.0, 1.0, 200, |x| x * x > 2.0);
+        let Bracket { inside, outside } = bisect(2.0, 1.0, 200, |x| x * x > 2.0);
         assert!(inside > outside && inside * inside > 2.0, "{inside} {outside}");
     }
 

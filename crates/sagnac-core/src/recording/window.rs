@@ -32,6 +32,15 @@ pub struct ExcludedSpan {
     pub reason: String,
 }
 
+/// A span of time, its end not included, s from the start of the recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeSpan {
+    /// Its start.
+    pub from_s: f64,
+    /// Its end.
+    pub to_s: f64,
+}
+
 /// What to evaluate, s from the start of the recording.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct WindowSpec {
@@ -39,8 +48,15 @@ pub struct WindowSpec {
     pub from_s: f64,
     /// End of the evaluation; `None`: the end of the recording.
     pub to_s: Option<f64>,
-    /// Declared spans that are left out, each (from, to), the end not included.
-    pub exclusions: Vec<(f64, f64)>,
+    /// Declared spans that are left out.
+    pub exclusions: Vec<TimeSpan>,
+}
+
+impl WindowSpec {
+    /// The declared spans that are not empty.
+    fn declared(&self) -> impl Iterator<Item = TimeSpan> + '_ {
+        self.exclusions.iter().copied().filter(|s| s.from_s < s.to_s)
+    }
 }
 
 /// Passes the samples in the evaluated window to another sink, and keeps account of what was left out.
@@ -50,8 +66,8 @@ pub struct Windowed<S> {
     spec: WindowSpec,
     interval_s: f64,
     start_s: f64,
-    /// Spans left out, in order and without overlap, end not included.
-    left_out: Vec<(f64, f64)>,
+    /// Spans left out, in order and without overlap.
+    left_out: Vec<TimeSpan>,
     passed: u64,
     first_s: Option<f64>,
     last_s: f64,
@@ -65,19 +81,19 @@ pub struct Windowed<S> {
 impl<S: Sink> Windowed<S> {
     /// A window over a recording that starts at stamp `start_s` with nominal interval `interval_s`, before `inner`.
     pub fn new(inner: S, spec: WindowSpec, start_s: f64, interval_s: f64) -> Windowed<S> {
-        let mut spans: Vec<(f64, f64)> = spec.exclusions.iter().copied().filter(|(a, b)| a < b).collect();
+        let mut spans: Vec<TimeSpan> = spec.declared().collect();
         if spec.from_s > 0.0 {
-            spans.push((f64::NEG_INFINITY, spec.from_s));
+            spans.push(TimeSpan { from_s: f64::NEG_INFINITY, to_s: spec.from_s });
         }
         if let Some(to) = spec.to_s {
-            spans.push((to, f64::INFINITY));
+            spans.push(TimeSpan { from_s: to, to_s: f64::INFINITY });
         }
-        spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut left_out: Vec<(f64, f64)> = Vec::new();
-        for (from, to) in spans {
+        spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+        let mut left_out: Vec<TimeSpan> = Vec::new();
+        for span in spans {
             match left_out.last_mut() {
-                Some(last) if from <= last.1 => last.1 = last.1.max(to),
-                _ => left_out.push((from, to)),
+                Some(last) if span.from_s <= last.to_s => last.to_s = last.to_s.max(span.to_s),
+                _ => left_out.push(span),
             }
         }
         Windowed {
@@ -109,8 +125,7 @@ impl<S: Sink> Windowed<S> {
         if self.spec.from_s > 0.0 {
             excluded.push(span(0.0, self.spec.from_s, "warm_up"));
         }
-        let declared = self.spec.exclusions.iter().filter(|(a, b)| a < b);
-        excluded.extend(declared.map(|&(a, b)| span(a, b, "declared")));
+        excluded.extend(self.spec.declared().map(|s| span(s.from_s, s.to_s, "declared")));
         excluded
             .extend(self.spec.to_s.filter(|to| *to < self.end_s).map(|to| span(to, self.end_s, "declared")));
         excluded.extend(self.gaps);
@@ -156,7 +171,7 @@ impl<S: Sink> Windowed<S> {
     }
 
     fn excluded_at(&self, elapsed_s: f64) -> bool {
-        self.left_out.iter().any(|(a, b)| (*a..*b).contains(&elapsed_s))
+        self.left_out.iter().any(|s| (s.from_s..s.to_s).contains(&elapsed_s))
     }
 }
 
@@ -172,7 +187,7 @@ impl<S: Sink> Sink for Windowed<S> {
         self.end_s = elapsed + block.len() as f64 * self.interval_s;
         let mut at = 0;
         for i in 0..self.left_out.len() {
-            let Some(&(from, to)) = self.left_out.get(i) else { break };
+            let Some(&TimeSpan { from_s: from, to_s: to }) = self.left_out.get(i) else { break };
             let (from, to) = (self.sample_at(from, block), self.sample_at(to, block));
             if from > at {
                 self.pass(block, at, from);
@@ -220,7 +235,11 @@ mod tests {
 
     #[test]
     fn warm_up_and_declared_spans_are_left_out_sample_by_sample() {
-        let spec = WindowSpec { from_s: 5.0, to_s: Some(40.0), exclusions: vec![(10.0, 12.0), (11.0, 13.0)] };
+        let spec = WindowSpec {
+            from_s: 5.0,
+            to_s: Some(40.0),
+            exclusions: [(10.0, 12.0), (11.0, 13.0)].map(|(from_s, to_s)| TimeSpan { from_s, to_s }).to_vec(),
+        };
         let mut w = Windowed::new(Keep::default(), spec, 100.0, 0.5);
         for k in 0..5 {
             w.push(&block(&numbers(20 * k, 20 * k + 20), 20 * k, k > 0));

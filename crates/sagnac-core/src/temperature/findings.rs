@@ -10,6 +10,7 @@ use super::test::{SegmentKind, TemperatureTest};
 use super::track::{Means, bridged};
 use super::zones::{self, Zone};
 use crate::numeric::cosine::inverse_dct2;
+use crate::recording::window::TimeSpan;
 
 /// Blocks of the model at most.
 const MAX_BLOCKS: usize = 2048;
@@ -274,7 +275,7 @@ fn parted(segments: &[Segment], lag_s: f64) -> bool {
 }
 
 /// Each ramp with half of the quiet segments about it.
-fn folds(segments: &[Segment]) -> Vec<(f64, f64)> {
+fn folds(segments: &[Segment]) -> Vec<TimeSpan> {
     let middle = |s: &Segment| 0.5 * (s.from_s + s.to_s);
     let quiet = |at: Option<usize>| at.and_then(|i| segments.get(i)).filter(|s| !s.kind.is_ramp());
     segments
@@ -282,9 +283,9 @@ fn folds(segments: &[Segment]) -> Vec<(f64, f64)> {
         .enumerate()
         .filter(|(_, s)| s.kind.is_ramp())
         .map(|(i, s)| {
-            let from = quiet(i.checked_sub(1)).map_or(s.from_s, middle);
-            let to = quiet(Some(i + 1)).map_or(s.to_s, middle);
-            (from, to)
+            let from_s = quiet(i.checked_sub(1)).map_or(s.from_s, middle);
+            let to_s = quiet(Some(i + 1)).map_or(s.to_s, middle);
+            TimeSpan { from_s, to_s }
         })
         .collect()
 }

@@ -11,6 +11,7 @@ use super::gls::{Modes, Solved};
 use super::posterior;
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::log_determinant::log_determinant;
+use crate::recording::window::TimeSpan;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -38,7 +39,7 @@ pub struct Tried {
 pub fn try_orders(
     course: &Course,
     span: Span,
-    folds: &[(f64, f64)],
+    folds: &[TimeSpan],
     terms: impl Fn(usize) -> Terms,
     highest: usize,
 ) -> Vec<Tried> {
@@ -83,7 +84,7 @@ fn score(
     data: &[f64],
     columns: &[Vec<f64>],
     solved: &Solved,
-    folds: &[(f64, f64)],
+    folds: &[TimeSpan],
 ) -> Option<(Vec<f64>, f64)> {
     let n = course.len();
     let inverse: Vec<f64> = solved.powers.iter().map(|p| 1.0 / p).collect();
@@ -100,9 +101,9 @@ fn score(
     let influence: Vec<Vec<f64>> = columns.iter().map(|c| back(&|k| inverse[k] * c[k])).collect();
     let kernel = kernel(&inverse, n);
     let (mut scores, mut squares, mut count) = (vec![], 0.0, 0usize);
-    for (from_s, to_s) in folds {
+    for fold in folds {
         let at = |t: f64| (((t - course.first_s) / course.block_s).round().max(0.0) as usize).min(n);
-        let (from, to) = (at(*from_s), at(*to_s));
+        let (from, to) = (at(fold.from_s), at(fold.to_s));
         if to <= from + 1 || to - from >= n {
             continue;
         }
@@ -197,7 +198,7 @@ mod tests {
             temperature_deg_c: x.clone(),
             bridged: 0.0,
         };
-        let folds = [(600.0, 1200.0)];
+        let folds = [TimeSpan { from_s: 600.0, to_s: 1200.0 }];
         let (_, rms) = score(&course, &modes.of(&y), &[modes.of(&x)], &solved, &folds).unwrap();
         let errors = dense(&y, &x, &solved.powers, 10, 20);
         let expected = (errors.iter().map(|e| e * e).sum::<f64>() / 10.0).sqrt();

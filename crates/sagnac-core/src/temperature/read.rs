@@ -72,10 +72,7 @@ pub fn linear(draws: &[Draw], weights: impl Fn(&Draw) -> DVector<f64>) -> Readin
 
 /// A reading from the probability of less than a value, which all but lies between two values.
 pub fn of_distribution(below: impl Fn(f64) -> f64, (low, high): (f64, f64)) -> Reading {
-    let quantile = |p: f64| {
-        let (a, b) = bisect(low, high, 44, |x| below(x) < p);
-        0.5 * (a + b)
-    };
+    let quantile = |p: f64| bisect(low, high, 44, |x| below(x) < p).middle();
     let points: Vec<(f64, f64)> = scores().map(|z| (z, quantile(normal_probability(z)))).collect();
     Reading { value: quantile(0.5), spread: Spread::Curve(points) }
 }

@@ -29,6 +29,15 @@ pub use rate::RateUnit;
 use std::fmt;
 use symbols::{CELSIUS, FAHRENHEIT};
 
+/// A conversion of values: `value * factor + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Affine {
+    /// Factor.
+    pub factor: f64,
+    /// What is added after, in the new unit.
+    pub offset: f64,
+}
+
 /// A parsed unit: a factor to the base units and the dimension it carries.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
@@ -110,16 +119,14 @@ impl Unit {
         Ok((value * self.factor + self.offset - other.offset) / other.factor)
     }
 
-    /// The affine map `(factor, offset)` with `value_in_other = value * factor + offset`.
+    /// The conversion of values in this unit into `other`.
     ///
     /// # Errors
     /// As [`Unit::factor_to`].
-    pub fn affine_to(&self, other: &Unit) -> Result<(f64, f64), UnitError> {
+    pub fn affine_to(&self, other: &Unit) -> Result<Affine, UnitError> {
         let factor = self.factor_to(other)?;
-        Ok((
-            factor,
-            if self.offset == other.offset { 0.0 } else { (self.offset - other.offset) / other.factor },
-        ))
+        let apart = self.offset - other.offset;
+        Ok(Affine { factor, offset: if apart == 0.0 { 0.0 } else { apart / other.factor } })
     }
 }
 

@@ -5,7 +5,7 @@ use crate::estimate::{Limit, normal_quantile};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::i18n::{Arg, Note};
 use crate::measurand::GyroEvidence;
-use crate::noise::composite::Part;
+use crate::noise::composite::{Part, Propagated};
 use crate::noise::data::NoiseType;
 
 /// Points of a model curve.
@@ -127,7 +127,8 @@ fn model_curves(gyro: &GyroEvidence, from: f64, to: f64) -> Vec<Layer> {
     let curve: Vec<(f64, f64, f64)> = grid
         .iter()
         .map(|t| {
-            let (variance, u) = described.propagate(|m| m.allan_variance(*t, tau0_s));
+            let Propagated { value: variance, standard_uncertainty: u } =
+                described.propagate(|m| m.allan_variance(*t, tau0_s));
             let half =
                 if variance > 0.0 { 0.5 * normal_quantile(0.975) * (u / variance).min(WIDEST) } else { 0.0 };
             (*t, variance.max(0.0).sqrt(), half.exp())

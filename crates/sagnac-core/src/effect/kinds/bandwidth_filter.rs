@@ -68,7 +68,7 @@ fn of_samples(fitted: &[f64], dt_s: f64) -> Option<LowPass> {
 fn average_cutoff_hz(samples: usize, dt_s: f64) -> f64 {
     let n = samples as f64;
     let response = |x: f64| ((n * x).sin() / (n * x.sin())).powi(2);
-    bisect(1e-9, PI / (n + 0.5), 60, |x| response(x) > 0.5).0 / (PI * dt_s)
+    bisect(1e-9, PI / (n + 0.5), 60, |x| response(x) > 0.5).inside / (PI * dt_s)
 }
 
 /// The moving average whose cutoff is nearest.

@@ -75,7 +75,7 @@ impl Scan {
 
     /// The ratio that a window of some length reaches with probability `p`.
     fn bound(&self, length: usize, p: f64) -> f64 {
-        bisect(0.0, 12.0, 40, |x| self.p_value(length, x.exp()) > p).1.exp()
+        bisect(0.0, 12.0, 40, |x| self.p_value(length, x.exp()) > p).outside.exp()
     }
 }
 

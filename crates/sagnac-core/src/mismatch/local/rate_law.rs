@@ -56,5 +56,5 @@ fn crossing(value: impl Fn(f64) -> f64, at: f64, reach: f64, down: f64) -> f64 {
     if value(outside) > down {
         return outside;
     }
-    bisect(at, outside, 50, |x| value(x) > down).0
+    bisect(at, outside, 50, |x| value(x) > down).inside
 }

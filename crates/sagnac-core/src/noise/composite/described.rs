@@ -96,6 +96,15 @@ impl Composite {
     }
 }
 
+/// A quantity that follows from a description.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Propagated {
+    /// Value at the parameters of the description.
+    pub value: f64,
+    /// Standard uncertainty, same unit.
+    pub standard_uncertainty: f64,
+}
+
 impl Described {
     /// Keeps those lines of the model that a condition holds for, their parameters with them.
     pub fn keep_lines(&mut self, kept: impl Fn(&Line) -> bool) {
@@ -133,9 +142,9 @@ impl Described {
             .collect();
     }
 
-    /// A quantity computed from the model and its standard uncertainty from the covariance of the parameters, to
-    /// first order.
-    pub fn propagate(&self, quantity: impl Fn(&Composite) -> f64) -> (f64, f64) {
+    /// A quantity computed from the model, with its standard uncertainty from the covariance of the parameters, to first
+    /// order.
+    pub fn propagate(&self, quantity: impl Fn(&Composite) -> f64) -> Propagated {
         let value = quantity(&self.model);
         let gradient: Vec<f64> = self
             .parameters
@@ -154,7 +163,7 @@ impl Described {
         for (row, gi) in self.covariance.iter().zip(&gradient) {
             square += gi * row.iter().zip(&gradient).map(|(c, gj)| c * gj).sum::<f64>();
         }
-        (value, square.max(0.0).sqrt())
+        Propagated { value, standard_uncertainty: square.max(0.0).sqrt() }
     }
 }
 
@@ -198,7 +207,7 @@ mod tests {
             parameters: vec![Parameter::Coefficient(NoiseType::AngleRandomWalk)],
             covariance: vec![vec![1e-10]],
         };
-        let (value, u) = described.propagate(|m| m.terms.n * m.terms.n);
+        let Propagated { value, standard_uncertainty: u } = described.propagate(|m| m.terms.n * m.terms.n);
         assert!((value - 4e-6).abs() < 1e-18 && (u / (2.0 * 0.002 * 1e-5) - 1.0).abs() < 1e-6);
     }
 }

@@ -8,7 +8,7 @@ mod windowed;
 
 pub use bandwidth::{Bandwidth, averaged_white_mode};
 pub use damped::{Damped, Modes, Sampling};
-pub use described::{Described, Parameter};
+pub use described::{Described, Parameter, Propagated};
 pub use windowed::Windowed;
 
 use super::data::NoiseType;

@@ -5,6 +5,7 @@
 //! does not raise the likelihood is halved. Public for tests that check the maximum by other arithmetic.
 
 use super::likelihood::{BandPower, best_ramp, deviance, ramp_information, starting_variance, usable_bands};
+use super::misfit::WhitenedBand;
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 use crate::noise::model::{NoiseModel, TERMS};
@@ -254,10 +255,10 @@ impl Likelihood {
         if information > 0.0 { information.sqrt().recip() } else { 0.0 }
     }
 
-    /// Power over density and degrees of freedom of each band at a point.
-    pub fn whitened(&self, point: &Point) -> Vec<(f64, f64)> {
+    /// The bands set against the model at a point.
+    pub fn whitened(&self, point: &Point) -> Vec<WhitenedBand> {
         self.expected(&point.variance)
-            .map(|(band, s)| (band.without_ramp(point.ramp) / s, band.dof))
+            .map(|(band, s)| WhitenedBand { ratio: band.without_ramp(point.ramp) / s, dof: band.dof })
             .collect()
     }
 }

@@ -9,6 +9,15 @@ const BAND_DOF: f64 = 12.0;
 /// Test bands per octave at most.
 const PER_OCTAVE: f64 = 6.0;
 
+/// A band set against a model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WhitenedBand {
+    /// Power over the expected one.
+    pub ratio: f64,
+    /// Degrees of freedom.
+    pub dof: f64,
+}
+
 /// Result of the goodness-of-fit test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Misfit {
@@ -36,8 +45,8 @@ impl Misfit {
         }
     }
 
-    /// Tests `whitened` = (power / density, degrees of freedom) of the bands of an evidence.
-    pub fn of(evidence: &Evidence, whitened: &[(f64, f64)], fitted: usize) -> Misfit {
+    /// Tests the whitened bands of an evidence, of a model with `fitted` parameters.
+    pub fn of(evidence: &Evidence, whitened: &[WhitenedBand], fitted: usize) -> Misfit {
         struct Test {
             low: f64,
             high: f64,
@@ -46,7 +55,7 @@ impl Misfit {
         }
         let mut tests: Vec<Test> = vec![];
         let width = 2f64.powf(1.0 / PER_OCTAVE);
-        for (band, (ratio, dof)) in evidence.bands.iter().zip(whitened) {
+        for (band, WhitenedBand { ratio, dof }) in evidence.bands.iter().zip(whitened) {
             match tests.last_mut() {
                 Some(t) if t.dof < BAND_DOF || band.high_hz < t.low * width => {
                     t.high = t.high.max(band.high_hz);
@@ -96,11 +105,12 @@ mod tests {
     #[test]
     fn a_raised_band_is_found_and_a_fitting_model_is_left_alone() {
         let evidence = Evidence::expected(&NoiseModel { n: 0.002, ..Default::default() }, 36_000, 1.0);
-        let mut whitened: Vec<(f64, f64)> = evidence.bands.iter().map(|b| (1.0, b.dof)).collect();
+        let mut whitened: Vec<WhitenedBand> =
+            evidence.bands.iter().map(|b| WhitenedBand { ratio: 1.0, dof: b.dof }).collect();
         let clean = Misfit::of(&evidence, &whitened, 1);
         assert!(clean.probability > 0.99 && clean.worst_probability > 0.5, "{clean:?}");
         let raised = evidence.bands.iter().position(|b| b.low_hz > 0.1).unwrap();
-        whitened[raised].0 = 2.0;
+        whitened[raised].ratio = 2.0;
         let found = Misfit::of(&evidence, &whitened, 1);
         let [low, high] = found.worst_band_hz.unwrap();
         assert!(low <= evidence.bands[raised].low_hz && evidence.bands[raised].high_hz <= high);

@@ -9,7 +9,7 @@
 use super::claims::{LIMIT_COVERAGE, METHOD};
 use super::entrance::{complete, describe};
 use super::joint::expected_power;
-use super::misfit::Misfit;
+use super::misfit::{Misfit, WhitenedBand};
 use super::options::Options;
 use super::result::Identification;
 use crate::estimate::{Estimate, Spread, UpperLimit};
@@ -122,7 +122,7 @@ fn fails_above(evidence: &Evidence, found: &Identification, highest_hz: f64) -> 
     for (band, power) in
         evidence.bands.iter().zip(expected).filter(|(b, p)| b.high_hz > highest_hz && *p > 0.0)
     {
-        whitened.push((band.power_without_ramp(ramp) / power, band.dof));
+        whitened.push(WhitenedBand { ratio: band.power_without_ramp(ramp) / power, dof: band.dof });
         above.bands.push(band.clone());
     }
     let misfit = Misfit::of(&above, &whitened, 0);

@@ -3,10 +3,10 @@
 use super::claims::METHOD;
 use super::joint::{Extras, Plateau};
 use super::misfit::Misfit;
-use crate::estimate::{Estimate, normal_quantile};
+use crate::estimate::Estimate;
 use crate::noise::composite::{Composite, Described};
 use crate::noise::data::NoiseType;
-use crate::noise::model::{NoiseModel, TERMS, unit_allan_variance};
+use crate::noise::model::NoiseModel;
 
 /// What was found about the noise of one channel.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,23 +95,6 @@ pub(in crate::noise) const IDS: [(&str, &str); 5] = [
     ("rate_ramp", "deg/h/h"),
 ];
 impl Identification {
-    /// σ(τ) of the supported model with its 95 % band: (low, value, high), deg/h; zeros for an empty model.
-    pub fn sigma_band(&self, tau_s: f64) -> (f64, f64, f64) {
-        let variance = self.supported.allan_variance(tau_s);
-        if variance <= 0.0 {
-            return (0.0, 0.0, 0.0);
-        }
-        let gradient = TERMS.map(|t| 2.0 * self.supported.coefficient(t) * unit_allan_variance(t, tau_s));
-        let mut square = 0.0;
-        for (row, gi) in self.covariance.iter().zip(gradient) {
-            square += gi * row.iter().zip(gradient).map(|(c, gj)| c * gj).sum::<f64>();
-        }
-        // The band is symmetric in the logarithm, as the variance is positive.
-        let half = 0.5 * normal_quantile(0.975) * square.max(0.0).sqrt() / variance;
-        let sigma = variance.sqrt();
-        (sigma * (-half).exp(), sigma, sigma * half.exp())
-    }
-
     /// Angle random walk by its meaning: the level that is read, white noise with every process that is white there.
     pub fn read_angle_random_walk(&self) -> &Estimate {
         self.white_plateau.as_ref().unwrap_or(&self.angle_random_walk)

@@ -3,6 +3,7 @@
 use super::super::likelihood::{
     BandPower, best_ramp, deviance, ramp_information, starting_variance, usable_bands,
 };
+use super::super::misfit::WhitenedBand;
 use super::columns::{Columns, base, process};
 use super::model::{BASE, Free, JointPoint, Shape, Variable};
 use crate::noise::composite::{Bandwidth, Sampling};
@@ -327,10 +328,12 @@ impl<'a> Joint<'a> {
         }
     }
 
-    /// Power over density and degrees of freedom of each band at a point.
-    pub fn whitened(&self, point: &JointPoint) -> Vec<(f64, f64)> {
+    /// The bands set against the model at a point.
+    pub fn whitened(&self, point: &JointPoint) -> Vec<WhitenedBand> {
         let s = self.density(&self.columns(&point.shape), &point.variance);
-        self.bands.iter().zip(s).map(|(row, s)| (row.without_ramp(point.ramp) / s, row.dof)).collect()
+        self.expected(&s)
+            .map(|(band, s)| WhitenedBand { ratio: band.without_ramp(point.ramp) / s, dof: band.dof })
+            .collect()
     }
 
     pub(super) fn density_at(&self, point: &JointPoint) -> Vec<f64> {

@@ -8,7 +8,7 @@ use super::interval::parameter_covariance;
 use super::model::{Free, JointPoint};
 use crate::estimate::Spread;
 use crate::message::Note;
-use crate::noise::composite::{Composite, Described};
+use crate::noise::composite::{Composite, Described, Propagated};
 use crate::noise::data::NoiseType;
 use crate::noise::model::NoiseModel;
 use crate::noise::slope::{LARGEST_SHARE, SlopePoint, runs};
@@ -81,7 +81,7 @@ impl Plateau {
             parameters: variables.iter().filter_map(|v| point.parameter(*v)).collect(),
             covariance,
         };
-        let (value, u) = described.propagate(|m| self.level(m));
+        let Propagated { value, standard_uncertainty: u } = described.propagate(|m| self.level(m));
         if !(value > 0.0 && u > 0.0 && u.is_finite()) {
             return Spread::Unknown;
         }
