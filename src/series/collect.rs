@@ -1,11 +1,10 @@
 //! Reads a recording into memory.
 
-use super::choose::{Chosen, choose};
+use super::channels::{SeriesChannels, select_channels};
 use super::{Faults, Series, SeriesError, SeriesOptions};
 use crate::effect::Column;
 use crate::ingest::{Source, TimeBaseSpec, open_recording, prepare};
 use crate::recording::{SampleBlock, Sink};
-use crate::units::Affine;
 use std::path::PathBuf;
 
 /// Reads a recording: a file of any kind that is read, several in sequence, a pattern, or a manifest.
@@ -31,7 +30,7 @@ pub fn load_series_of(
     options: &SeriesOptions,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Series, SeriesError> {
-    let chosen = choose(source, options)?;
+    let chosen = select_channels(source, options)?;
     let spec = TimeBaseSpec {
         declared_sample_rate_hz: options.sample_rate_hz,
         use_stamps: chosen.time.is_some(),
@@ -62,7 +61,7 @@ pub fn load_series_of(
             continue;
         }
         if bad > 0 {
-            mend(column, &series.time_s, &mut values);
+            interpolate_missing(column, &series.time_s, &mut values);
             series.faults.interpolated.insert(column, bad);
         }
         values.shrink_to_fit();
@@ -73,14 +72,14 @@ pub fn load_series_of(
 
 /// Takes the sample blocks of a recording.
 struct Rows<'a> {
-    chosen: &'a Chosen,
+    chosen: &'a SeriesChannels,
     interval_s: f64,
     series: Series,
 }
 
 impl<'a> Rows<'a> {
-    fn new(chosen: &'a Chosen, interval_s: f64) -> Rows<'a> {
-        let columns = chosen.beside.iter().map(|(column, _, _)| (*column, vec![])).collect();
+    fn new(chosen: &'a SeriesChannels, interval_s: f64) -> Rows<'a> {
+        let columns = chosen.further.iter().map(|f| (f.column, vec![])).collect();
         Rows {
             chosen,
             interval_s,
@@ -108,10 +107,10 @@ impl Sink for Rows<'_> {
             series.time_s.push(time_s);
             series.rate_deg_h.push(*rate);
             series.index.push(block.first_index + i as u64);
-            for (column, slot, Affine { factor, offset }) in &self.chosen.beside {
-                let value = block.values.get(*slot).and_then(|v| v.get(i)).copied().unwrap_or(f64::NAN);
-                if let Some(values) = series.columns.get_mut(column) {
-                    values.push(value * factor + offset);
+            for further in &self.chosen.further {
+                let value = block.values.get(further.slot).and_then(|v| v.get(i)).copied();
+                if let Some(values) = series.columns.get_mut(&further.column) {
+                    values.push(further.conversion.apply(value.unwrap_or(f64::NAN)));
                 }
             }
         }
@@ -120,7 +119,7 @@ impl Sink for Rows<'_> {
 
 /// Puts straight lines in place of values that are no numbers; at the ends, the nearest value. An angle goes the
 /// shorter way round.
-fn mend(column: Column, time_s: &[f64], values: &mut [f64]) {
+fn interpolate_missing(column: Column, time_s: &[f64], values: &mut [f64]) {
     let known: Vec<usize> = (0..values.len()).filter(|i| values[*i].is_finite()).collect();
     let mut next = 0;
     for i in 0..values.len() {

@@ -2,7 +2,7 @@
 //!
 //! Acceptance never holds a recording; an explanation looks at it many times and does.
 
-mod choose;
+mod channels;
 mod collect;
 
 pub use collect::{load_series, load_series_of};

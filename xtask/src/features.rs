@@ -35,11 +35,11 @@ pub fn check(root: &Path, options: &[String]) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The names under `[features]`, but for `default`.
+/// The names under `[features]`, but for those of all formats together.
 fn features(manifest: &str) -> Vec<String> {
     let lines = manifest.lines().skip_while(|l| l.trim() != "[features]").skip(1);
     let names = lines.take_while(|l| !l.starts_with('[')).filter_map(|l| l.split_once('='));
-    names.map(|(name, _)| name.trim().to_owned()).filter(|name| name != "default").collect()
+    names.map(|(name, _)| name.trim().to_owned()).filter(|name| name != "default" && name != "all").collect()
 }
 
 /// What cargo says of the package on standard error: warnings and errors.

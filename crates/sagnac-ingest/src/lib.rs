@@ -1,11 +1,12 @@
 //! Recordings of gyroscopes as laboratories have them: file formats, columns and their roles, the clock, faults.
 //!
-//! A [`Format`] recognises a file by its first bytes and opens it as a [`Table`]; [`FORMATS`] lists every format that is
-//! compiled in, each behind a cargo feature of its name. [`open`] returns a [`Source`]: the columns of a recording and a
-//! way to read chosen columns block by block, in bounded memory. [`stream`] computes the time of every sample and passes
-//! the samples on in the units of the analysis.
+//! [`open`] finds the format of a file by its first bytes and returns a [`Source`]: the columns of the recording, what the
+//! file says of itself, and a way to read chosen columns block by block in bounded memory. [`prepare`] finds columns,
+//! units and the clock of named channels, and [`Plan::stream`] reads them once: stamps become places on a uniform grid,
+//! numbers become the units of the analysis, and every fault is counted and listed. Nothing is repaired.
 //!
 //! ```
+//! # #[cfg(feature = "text")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use std::ops::ControlFlow;
 //!
@@ -24,25 +25,46 @@
 //! assert_eq!(rates, [0.011, 0.013, 0.012]);
 //! # Ok(())
 //! # }
+//! # #[cfg(not(feature = "text"))]
+//! # fn main() {}
 //! ```
+//!
+//! # Formats
+//!
+//! Each is a module behind a cargo feature, and [`FORMATS`] lists those that are compiled in. A file of a format that is
+//! left out is refused with the name of its feature.
+//!
+//! | feature | formats |
+//! |---|---|
+//! | `text` | delimited text in any usual dialect |
+//! | `parquet` | Apache Parquet |
+//! | `numpy` | NumPy `.npy` and `.npz` |
+//! | `matlab` | MAT files of version 4, 5 and 7 |
+//! | `hdf5` | HDF5, NetCDF-4, MAT files of version 7.3 |
+//! | `tdms` | TDMS of LabVIEW |
+//! | `mcap`, `bag` | recordings of ROS 2 and ROS 1 |
+//! | `raw` | binary records by a [`layout`] |
+//!
+//! # Map
+//!
+//! | from a file to the analysis | where |
+//! |---|---|
+//! | the bytes, unpacked and hashed | [`byte_stream`] |
+//! | which format reads them | `format_detection` |
+//! | numbers in blocks of rows | [`Format`], [`Table`], `formats` |
+//! | several files as one recording | [`multi_file`] |
+//! | what a column is, by its name and unit | [`column_inference`] |
+//! | the interval of the samples, gaps, roll-overs | [`clock`] |
+//! | rows placed on the grid of the recording | [`Plan`], `row_clock` |
+//! | outliers, stuck and repeated values | [`value_checks`] |
+//! | faults with their place | [`faults`] |
+//!
+//! Decoders may panic on damaged content; the panic is caught and becomes an error of the file. No panic hook is set:
+//! see [`decoder_is_running`].
 
 // Formats share helpers; where only some formats are compiled in, some helpers have no user.
-#![cfg_attr(
-    not(all(
-        feature = "bag",
-        feature = "hdf5",
-        feature = "matlab",
-        feature = "mcap",
-        feature = "numpy",
-        feature = "parquet",
-        feature = "raw",
-        feature = "tdms",
-        feature = "text"
-    )),
-    allow(dead_code)
-)]
+#![cfg_attr(not(feature = "all"), allow(dead_code))]
 
-mod affine;
 mod angle_differences;
 #[cfg(any(feature = "matlab", feature = "numpy", feature = "raw"))]
 mod binary;

@@ -1,12 +1,12 @@
 //! Several files as one recording: the same columns, read one after the other, never more than one file open.
 
-use super::affine::Affine;
 use super::byte_stream::digest;
 use super::error::{IngestError, IngestErrorKind};
 use super::source::{PartFacts, ReadSeveral, SeveralFiles, Source, open_with};
 use super::{Column, FileFacts, OnBlock, Opened, ReadOptions};
 use crate::column_inference::{infer, stem};
 use sagnac_core::message::Note;
+use sagnac_core::units::Affine;
 use sagnac_core::units::Unit;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ pub struct PartSpec {
 /// Opens files that follow each other as one recording.
 ///
 /// # Errors
-/// What [`open_with`] says of one of them; columns that differ; a file that is there refuse_duplicates.
+/// What [`open_with`] says of one of them; columns that differ; a file that is there twice.
 pub fn open(
     name: &Path,
     specs: &[PartSpec],
@@ -151,12 +151,9 @@ fn conversion(to: &Column, from: &Column) -> Option<Affine> {
     };
     let declared = |c: &Column| c.unit.as_deref().and_then(|u| Unit::parse(u).ok());
     let unit = |c: &Column| declared(c).or_else(|| named(c));
-    let (factor, offset) = match (unit(from), unit(to)) {
-        (Some(a), Some(b)) if a.text() != b.text() => {
-            let conversion = a.affine_to(&b).ok()?;
-            (conversion.factor, conversion.offset)
-        }
-        _ => (1.0, 0.0),
+    let conversion = match (unit(from), unit(to)) {
+        (Some(a), Some(b)) if a.text() != b.text() => a.affine_to(&b).ok()?,
+        _ => Affine::IDENTITY,
     };
     // Stamps with a date count from a day of their own in each file.
     let days = match (from.epoch_s, to.epoch_s) {
@@ -164,10 +161,10 @@ fn conversion(to: &Column, from: &Column) -> Option<Affine> {
         (None, None) => 0.0,
         _ => return None,
     };
-    Some(Affine { factor, offset: offset + days })
+    Some(Affine { offset: conversion.offset + days, ..conversion })
 }
 
-/// Refuses a file that is there refuse_duplicates, under one name or two.
+/// Refuses a file that is there twice, under one name or two.
 fn refuse_duplicates(parts: &[Part]) -> Result<(), IngestError> {
     let mut seen: Vec<(u64, &Path, Option<String>)> = Vec::new();
     for part in parts {
@@ -181,8 +178,7 @@ fn refuse_duplicates(parts: &[Part]) -> Result<(), IngestError> {
                 own = Some(digest(path)?.sha256);
             }
             if *hash == own {
-                let note =
-                    Note::new("ingest.joined.refuse_duplicates").with("other", other.display().to_string());
+                let note = Note::new("ingest.joined.twice").with("other", other.display().to_string());
                 return Err(
                     IngestError::new(IngestErrorKind::Parts, path, note).hint("ingest.joined.hint.name_once")
                 );

@@ -1,11 +1,11 @@
 //! What must be known before a recording is read: its columns, the units of its channels, its clock.
 
-use super::affine::Affine;
 use super::pauses::Pauses;
 use super::{IngestError, IngestErrorKind, Source};
 use crate::clock::{Batches, Cadence, Clock, ClockError, Loss, Unwrapper, moduli};
 use sagnac_core::message::{Arg, Note};
 use sagnac_core::recording::{Channel, Role};
+use sagnac_core::units::Affine;
 use sagnac_core::units::Unit;
 use std::ops::ControlFlow;
 use std::path::Path;

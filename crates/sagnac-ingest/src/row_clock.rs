@@ -22,6 +22,12 @@ pub(super) struct FileSpan {
     pub last_s: f64,
 }
 
+/// First and last time of a recording, s.
+pub(super) struct TimeSpan {
+    pub first_s: f64,
+    pub last_s: f64,
+}
+
 /// What goes along while a recording is read.
 pub(super) struct RowClock<'a> {
     pub plan: &'a Plan<'a>,
@@ -442,14 +448,15 @@ impl<'a> RowClock<'a> {
     }
 
     /// First and last time, s.
-    pub fn span_s(&self, measured: f64) -> (f64, f64) {
+    pub fn span(&self, measured: f64) -> TimeSpan {
         let samples = self.index.saturating_sub(1) as f64;
         if self.plan.time.is_some() && self.plan.counter.is_none() {
             let first = self.tracker.first_s().unwrap_or(0.0);
-            return (first, self.tracker.latest_s().unwrap_or(first + samples * measured));
+            let last = self.tracker.latest_s().unwrap_or(first + samples * measured);
+            return TimeSpan { first_s: first, last_s: last };
         }
         let first = self.counter.first_s().unwrap_or(0.0);
-        (first, first + samples * measured)
+        TimeSpan { first_s: first, last_s: first + samples * measured }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A recording as a stream: columns become channels in inside units, stamps become a time base, sample blocks go to sinks.
 
 use super::plan::{Plan, TimeBaseSpec, prepare};
-use super::row_clock::RowClock;
+use super::row_clock::{RowClock, TimeSpan};
 use super::{FileFacts, IngestError, IngestErrorKind, PartFacts, Source};
 use crate::clock::{Cadence, Measured};
 use crate::value_checks::{ValueChecks, ValueFacts, min_samples_for};
@@ -141,7 +141,7 @@ impl RowClock<'_> {
         let (values, faults) = checks.finish(&mut self.log);
         let nominal = plan.clock.interval_s;
         let measured = clock.map(|c| c.interval_s).filter(|i| i.is_normal() && *i > 0.0).unwrap_or(nominal);
-        let (first, last) = self.span_s(measured);
+        let TimeSpan { first_s: first, last_s: last } = self.span(measured);
         let mut integrity = std::mem::take(&mut self.integrity);
         integrity.outliers = faults.outliers;
         integrity.saturated = faults.saturated;
@@ -244,7 +244,7 @@ impl RowClock<'_> {
         let parts =
             if parts.is_empty() { vec![PartFacts { facts: facts.clone(), rows_before: 0 }] } else { parts };
         let paths = source.files();
-        let (first, last) = self.span_s(measured);
+        let TimeSpan { first_s: first, last_s: last } = self.span(measured);
         let several = parts.len() > 1;
         parts
             .into_iter()

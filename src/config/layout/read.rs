@@ -7,7 +7,7 @@ use crate::config::reader::Reader;
 use crate::config::section::{Entry, Section};
 use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
-use crate::units::Unit;
+use crate::units::{Affine, Unit};
 use sagnac_ingest::layout::{ByteOrder, Field, NumberType};
 use sagnac_ingest::layout::{Checksum, Layout, LayoutColumn, MAX_COLUMNS, MAX_RECORD_BYTES, Sum};
 use std::collections::BTreeSet;
@@ -189,7 +189,7 @@ fn field(
         reader.error(&section.span_of("rolls_over"), "layout.no_rollover", help);
     }
     let summand = section.number("offset_value").unwrap_or(0.0);
-    let linear = (scale != 1.0 || summand != 0.0).then_some((scale, summand));
+    let conversion = Affine { factor: scale, offset: summand };
     let place = Taken { from, to, bits: bits.is_some(), what: name.clone() };
     overlap(&place, taken, &section.span, reader);
     taken.push(place);
@@ -200,7 +200,7 @@ fn field(
             storage,
             unit: unit.clone(),
             rollover_s,
-            field: Field { bits, linear, ..Field::plain(offset, kind, order) },
+            field: Field { bits, conversion, ..Field::plain(offset, kind, order) },
         });
     }
     Some(to)

@@ -53,7 +53,7 @@ fn a_layout_says_where_everything_stands() {
     assert_eq!(offsets, [2, 2, 4, 8, 11, 14]);
     assert_eq!(layout.columns[0].field.bits, Some((0xf0, 4)));
     assert_eq!(layout.columns[2].rollover_s, Some(4294.967296));
-    assert_eq!(layout.columns[5].field.linear, Some((0.5, 1.0)));
+    assert_eq!(layout.columns[5].field.conversion, Affine { factor: 0.5, offset: 1.0 });
     let checksum = layout.checksum.unwrap();
     assert_eq!((checksum.at, checksum.from, checksum.to), (30, 2, 30));
 }

@@ -38,6 +38,24 @@ pub struct Affine {
     pub offset: f64,
 }
 
+impl Affine {
+    /// Leaves values as they are.
+    pub const IDENTITY: Affine = Affine { factor: 1.0, offset: 0.0 };
+
+    /// The converted value.
+    #[inline]
+    pub fn apply(self, value: f64) -> f64 {
+        value * self.factor + self.offset
+    }
+
+    /// Converts values in place.
+    pub fn apply_all(self, values: &mut [f64]) {
+        if self != Affine::IDENTITY {
+            values.iter_mut().for_each(|v| *v = self.apply(*v));
+        }
+    }
+}
+
 /// A parsed unit: a factor to the base units and the dimension it carries.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {

@@ -6,7 +6,7 @@
 //! is (coarse stamps): these rows, the *anchors*, lie on the line of the uniform clock but for a delay that is bounded
 //! and does not grow. Lost samples lift that line for good, a late delivery only until the next batch.
 
-use super::steps::steps;
+use super::steps::{StampedRow, steps};
 
 /// Steps that end a batch, in mean intervals.
 pub(super) const PAUSE: f64 = 1.2;
@@ -64,8 +64,8 @@ struct Anchor {
 /// A batch: numbers and stamps of its first and last row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Batch {
-    first: (f64, f64),
-    last: (f64, f64),
+    first: StampedRow,
+    last: StampedRow,
 }
 
 /// Which row of a batch is compared with the uniform clock by which stamp.
@@ -83,12 +83,12 @@ impl AnchorRow {
     const ALL: [AnchorRow; 3] = [AnchorRow::Last, AnchorRow::Delivery, AnchorRow::First];
 
     fn of(self, batch: &Batch) -> Anchor {
-        let (row, stamp) = match self {
+        let StampedRow { row, stamp } = match self {
             AnchorRow::First => batch.first,
             AnchorRow::Last => batch.last,
-            AnchorRow::Delivery => (batch.last.0, batch.first.1),
+            AnchorRow::Delivery => StampedRow { row: batch.last.row, stamp: batch.first.stamp },
         };
-        Anchor { row, stamp, batch: batch.first.0 }
+        Anchor { row, stamp, batch: batch.first.row }
     }
 }
 
@@ -134,7 +134,7 @@ impl Batches {
 
     /// Takes the stamp of the next row.
     pub fn push(&mut self, stamp: f64) {
-        let here = (self.rows as f64, stamp);
+        let here = StampedRow { row: self.rows as f64, stamp };
         self.rows += 1;
         if !stamp.is_finite() {
             return;
@@ -144,7 +144,7 @@ impl Batches {
             self.current = Some(fresh);
             return;
         };
-        let step_s = stamp - current.last.1;
+        let step_s = stamp - current.last.stamp;
         if step_s < 0.0 {
             self.fallen += 1;
         } else if step_s > self.pause_s && self.done.len() < MAX_BATCHES {
@@ -320,12 +320,12 @@ fn lifts(anchors: &[Anchor], interval_s: f64, early: bool, reach: usize) -> Opti
 fn spread(batches: &[Batch], found: &ClockWithLosses) -> f64 {
     let mut losses = found.losses.iter().peekable();
     let (mut low, mut high, mut lost) = (f64::MAX, f64::MIN, 0.0);
-    let origin = batches.first().map_or(0.0, |b| b.first.1);
+    let origin = batches.first().map_or(0.0, |b| b.first.stamp);
     for batch in batches {
-        while let Some(loss) = losses.next_if(|l| l.row as f64 <= batch.first.0) {
+        while let Some(loss) = losses.next_if(|l| l.row as f64 <= batch.first.row) {
             lost += loss.samples as f64;
         }
-        for (row, stamp) in [batch.first, batch.last] {
+        for StampedRow { row, stamp } in [batch.first, batch.last] {
             let off = stamp - origin - (row + lost) * found.interval_s;
             (low, high) = (low.min(off), high.max(off));
         }

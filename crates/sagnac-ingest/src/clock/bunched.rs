@@ -2,7 +2,7 @@
 
 use super::nominal::{Cadence, Clock};
 use super::refine::refined;
-use super::steps::{departure, steps};
+use super::steps::{StampedRow, departure, steps};
 
 /// Share of equal consecutive stamps beyond which the stamps are coarser than the sample interval.
 pub(super) const COARSE_SHARE: f64 = 0.05;
@@ -46,10 +46,10 @@ pub(super) fn probe(t: &[f64]) -> Option<Clock> {
     let (_, period, _) = large.select_nth_unstable_by(middle, f64::total_cmp);
     let period_s = *period;
     // The first bunch may have begun before the recording did.
-    let starts: Vec<(f64, f64)> = (1..t.len())
+    let starts: Vec<StampedRow> = (1..t.len())
         .filter_map(|i| {
             let (before, now) = (t.get(i - 1)?, t.get(i)?);
-            (now - before > 0.5 * period_s).then_some((i as f64, *now))
+            (now - before > 0.5 * period_s).then_some(StampedRow { row: i as f64, stamp: *now })
         })
         .collect();
     let rows = rows_of_a_bunch(&starts)?;
@@ -58,7 +58,7 @@ pub(super) fn probe(t: &[f64]) -> Option<Clock> {
     }
     let interval_s = slope(&starts, period_s / rows)?;
     let off =
-        |w: &[(f64, f64)]| departure(&w.iter().map(|(row, t)| t - row * interval_s).collect::<Vec<f64>>());
+        |w: &[StampedRow]| departure(&w.iter().map(|s| s.stamp - s.row * interval_s).collect::<Vec<f64>>());
     let window = WINDOW.min(starts.len());
     let windows = starts.chunks_exact(window);
     let count = windows.len();
@@ -75,8 +75,8 @@ pub(super) fn probe(t: &[f64]) -> Option<Clock> {
 }
 
 /// Middle number of rows from one bunch to the next, taken as a mean over those within 1 of the median.
-fn rows_of_a_bunch(starts: &[(f64, f64)]) -> Option<f64> {
-    let mut counts: Vec<f64> = starts.iter().zip(starts.get(1..)?).map(|(a, b)| b.0 - a.0).collect();
+fn rows_of_a_bunch(starts: &[StampedRow]) -> Option<f64> {
+    let mut counts: Vec<f64> = starts.iter().zip(starts.get(1..)?).map(|(a, b)| b.row - a.row).collect();
     if counts.is_empty() {
         return None;
     }
@@ -90,12 +90,12 @@ fn rows_of_a_bunch(starts: &[(f64, f64)]) -> Option<f64> {
 
 /// Middle interval between bunches at a distance, so that single lost rows do not count. It is not positive where the
 /// bunches do not advance on the whole.
-fn slope(starts: &[(f64, f64)], guess: f64) -> Option<f64> {
+fn slope(starts: &[StampedRow], guess: f64) -> Option<f64> {
     let lag = (starts.len() / 4).clamp(1, 64);
     let mut slopes: Vec<f64> = starts
         .iter()
         .zip(starts.get(lag..)?)
-        .map(|(a, b)| (b.1 - a.1) / (b.0 - a.0))
+        .map(|(a, b)| (b.stamp - a.stamp) / (b.row - a.row))
         .filter(|s| s.is_finite())
         .collect();
     if slopes.is_empty() {

@@ -1,5 +1,14 @@
 //! Differences of stamps, and how far stamps depart from a straight line.
 
+/// A row and the stamp on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StampedRow {
+    /// Number of the row.
+    pub row: f64,
+    /// Its stamp, s.
+    pub stamp: f64,
+}
+
 /// The step from each stamp to the next.
 pub(super) fn steps(t: &[f64]) -> impl Iterator<Item = f64> {
     t.iter().zip(t.get(1..).unwrap_or_default()).map(|(a, b)| b - a)

@@ -1,5 +1,7 @@
 //! Numbers of fixed width as they stand in binary files, and their values.
 
+use sagnac_core::units::Affine;
+
 /// Order of the bytes of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ByteOrder {
@@ -80,14 +82,14 @@ pub struct Field {
     pub bits: Option<(u64, u32)>,
     /// Ticks of a clock.
     pub ticks: Option<Ticks>,
-    /// Factor and summand of the value; `None`: as it stands.
-    pub linear: Option<(f64, f64)>,
+    /// From the number stored to the value.
+    pub conversion: Affine,
 }
 
 impl Field {
     /// A number that is its own value.
     pub fn plain(offset: usize, kind: NumberType, order: ByteOrder) -> Field {
-        Field { offset, kind, order, bits: None, ticks: None, linear: None }
+        Field { offset, kind, order, bits: None, ticks: None, conversion: Affine::IDENTITY }
     }
 
     /// Appends the values of the field in records of `stride` bytes that follow each other.
@@ -100,9 +102,7 @@ impl Field {
         } else {
             self.decode_plain(records, stride, out);
         }
-        if let Some((factor, summand)) = self.linear {
-            out.iter_mut().skip(from).for_each(|v| *v = *v * factor + summand);
-        }
+        self.conversion.apply_all(out.get_mut(from..).unwrap_or_default());
     }
 
     fn decode_plain(&self, records: &[u8], stride: usize, out: &mut Vec<f64>) {
@@ -243,7 +243,7 @@ mod tests {
     fn bits_are_cut_out_and_shifted_down() {
         let mut field = Field::plain(1, NumberType::U16, ByteOrder::Big);
         field.bits = Some((0x0ff0, 4));
-        field.linear = Some((0.5, 1.0));
+        field.conversion = Affine { factor: 0.5, offset: 1.0 };
         let mut out = Vec::new();
         // 0xabcd & 0x0ff0 >> 4 is 0xbc = 188.
         field.decode(&[0, 0xab, 0xcd], 3, &mut out);

@@ -7,20 +7,31 @@ use sagnac_core::recording::{Channel, Role, SampleBlock};
 /// Bounds of a quantity, in the unit inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
-    /// Smallest and largest value that is possible.
-    pub values: (f64, f64),
-    /// Largest change from one sample to the next: at once, and what an hour between them adds.
-    pub change: Option<(f64, f64)>,
+    /// Smallest value that is possible.
+    pub low: f64,
+    /// Largest value that is possible.
+    pub high: f64,
+    /// Largest change from one sample to the next, where one is known.
+    pub change: Option<MaxChange>,
+}
+
+/// Largest change of a quantity from one sample to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MaxChange {
+    /// However short the interval between them.
+    pub at_once: f64,
+    /// What an hour between them adds.
+    pub hourly: f64,
 }
 
 /// The bounds of a role, with their reasons; `None` where nothing is known of the quantity.
 pub fn bound(role: Role) -> Option<Bound> {
-    let within = |low: f64, high: f64| Some(Bound { values: (low, high), change: None });
+    let within = |low: f64, high: f64| Some(Bound { low, high, change: None });
     let no_more = |largest: f64| within(-largest, largest);
     let turning = |fastest_deg_s: f64| {
-        let (largest, change) =
-            (fastest_deg_s * 3600.0, (AT_ONCE_DEG_S * 3600.0, SHARPEST_DEG_S2 * 3600.0 * 3600.0));
-        Some(Bound { values: (-largest, largest), change: Some(change) })
+        let largest = fastest_deg_s * 3600.0;
+        let change = MaxChange { at_once: AT_ONCE_DEG_S * 3600.0, hourly: SHARPEST_DEG_S2 * 3600.0 * 3600.0 };
+        Some(Bound { low: -largest, high: largest, change: Some(change) })
     };
     match role {
         // The fastest spin gyros read 50 000 deg/s; above, a sample is a broken number or has another unit.
@@ -29,9 +40,13 @@ pub fn bound(role: Role) -> Option<Bound> {
         Role::TableRate | Role::OuterRate => turning(FASTEST_TABLE_DEG_S),
         // A table turns on and on: only its rate is bounded.
         Role::TableAngle => Some(Bound {
-            values: (f64::NEG_INFINITY, f64::INFINITY),
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
             // Twice a turn: an angle that starts again while it turns, and readings taken between samples.
-            change: Some((2.0 * TURN_ARCSEC, FASTEST_TABLE_DEG_S * 3600.0 * 3600.0)),
+            change: Some(MaxChange {
+                at_once: 2.0 * TURN_ARCSEC,
+                hourly: FASTEST_TABLE_DEG_S * 3600.0 * 3600.0,
+            }),
         }),
         // Absolute zero, and what no electronics survives.
         Role::Temperature => within(-273.15, 1000.0),
@@ -95,13 +110,13 @@ impl Plausible {
             if !block.continues {
                 w.latest = None;
             }
-            let (low, high) = w.bound.values;
-            if w.bound.change.is_none() && values.iter().all(|v| !(*v < low || *v > high)) {
+            let Bound { low, high, change } = w.bound;
+            if change.is_none() && values.iter().all(|v| !(*v < low || *v > high)) {
                 continue;
             }
             for (i, &value) in values.iter().enumerate().filter(|(_, v)| v.is_finite()) {
                 let step = w.latest.map_or(0.0, |l| (value - l).abs());
-                let most = w.bound.change.map(|(at_once, hourly)| at_once + hourly * interval_s / 3600.0);
+                let most = change.map(|c| c.at_once + c.hourly * interval_s / 3600.0);
                 let out = value < low || value > high;
                 // What is none is no start of a change: the way back from it is not counted again.
                 if !out {

@@ -10,7 +10,7 @@ use super::place::Place;
 
 /// Fewest equal values that can be called stuck.
 pub(super) const MIN_SAMPLES: u64 = 5;
-/// StuckCheck allowed by chance in a record.
+/// Runs allowed by chance in a record.
 const BY_CHANCE: f64 = 1e-3;
 /// Probability of a repeat beyond which the test cannot tell anything: a held or a very coarse output.
 const MAX_SHARE: f64 = 0.9;

@@ -3,13 +3,13 @@
 use super::attributes;
 use super::number::Storage;
 use crate::Column;
-use crate::affine::Affine;
 use crate::metadata::stated_sample_rate_hz;
 use crate::part_selection::Part;
 use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::{CompoundField, Dataset, Datatype, Hdf5File, SliceInfo};
 use sagnac_core::message::Note;
+use sagnac_core::units::Affine;
 use std::collections::BTreeSet;
 
 /// Deepest group and most objects that are looked at.

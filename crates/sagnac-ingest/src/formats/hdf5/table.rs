@@ -3,7 +3,6 @@
 use super::container::{container, damaged};
 use super::file_tree::{Pick, Place};
 use super::number::{Bytes, Number, Whole};
-use crate::affine::Affine;
 use crate::column_inference::infer;
 use crate::decode_pipeline::{Blocks, run_pipeline};
 use crate::error::{IngestError, IngestErrorKind};
@@ -12,6 +11,7 @@ use hdf5_reader::error::Error;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, SliceInfo, SliceInfoElem};
 use sagnac_core::message::Note;
 use sagnac_core::recording::Role;
+use sagnac_core::units::Affine;
 use std::path::{Path, PathBuf};
 
 /// Rows in a block, and the most where chunks are longer than that.

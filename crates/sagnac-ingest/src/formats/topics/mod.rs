@@ -1,7 +1,8 @@
 //! What MCAP files and ROS 1 bags share: messages by topic, of which those of one topic are the rows.
 //!
-//! Both readers are our own. The crates at hand map the whole file into memory or let a number in the file decide how
-//! much is unpacked, and one of them brings two C libraries along; what is needed of the formats is short.
+//! Both readers are our own. The reader of the crate `mcap` that streams (0.26, `sans_io::LinearReader`) takes every record
+//! into memory as a whole, attachments and the chunks of other topics among them, where this one passes over them, and
+//! tells no byte at which a damaged file breaks off; it brings 16 crates. The crates for bags map the whole file.
 
 pub(super) mod container;
 pub(super) mod message;

@@ -1,4 +1,4 @@
-//! Which column of a recording is what: by the names of the contract first, else as names and units tell.
+//! Selects the columns of a recording that are read: by the names of the contract first, else as names and units tell.
 
 use super::{ReadFrom, SeriesError, SeriesOptions};
 use crate::effect::Column;
@@ -8,15 +8,24 @@ use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::{Affine, Unit};
 
 /// The channels that are read, and what each is.
-pub(super) struct Chosen {
+pub(super) struct SeriesChannels {
     pub channels: Vec<Channel>,
     /// Where the time is among them.
     pub time: Option<usize>,
     /// Where the rate is among them.
     pub rate: usize,
-    /// The columns beside: which, where, and the conversion to the unit of the contract.
-    pub beside: Vec<(Column, usize, Affine)>,
+    /// The further columns.
+    pub further: Vec<FurtherColumn>,
     pub read_from: Vec<ReadFrom>,
+}
+
+/// A column besides time and rate.
+pub(super) struct FurtherColumn {
+    pub column: Column,
+    /// Its place among the channels.
+    pub slot: usize,
+    /// To the unit of the contract.
+    pub conversion: Affine,
 }
 
 fn role(column: Column) -> Role {
@@ -38,9 +47,13 @@ fn unit(column: Column) -> &'static str {
     }
 }
 
-/// Finds the columns.
-pub(super) fn choose(source: &Source, options: &SeriesOptions) -> Result<Chosen, SeriesError> {
-    let mut chosen = Chosen { channels: vec![], time: None, rate: 0, beside: vec![], read_from: vec![] };
+/// Selects the columns that are read.
+pub(super) fn select_channels(
+    source: &Source,
+    options: &SeriesOptions,
+) -> Result<SeriesChannels, SeriesError> {
+    let mut chosen =
+        SeriesChannels { channels: vec![], time: None, rate: 0, further: vec![], read_from: vec![] };
     if !options.channels.is_empty() {
         declared(source, &options.channels, &mut chosen)?;
         return Ok(chosen);
@@ -64,15 +77,15 @@ pub(super) fn choose(source: &Source, options: &SeriesOptions) -> Result<Chosen,
         let Some(i) = found else { continue };
         let own = source.columns()[i].inferred().unit;
         // What the unit says of the column is no such quantity: it is left alone.
-        let Ok(map) = own.affine_to(&parse(unit(column))?) else { continue };
+        let Ok(conversion) = own.affine_to(&parse(unit(column))?) else { continue };
         let slot = chosen.take(column.name(), i, source, Role::Auxiliary, own);
-        chosen.beside.push((column, slot, map));
+        chosen.further.push(FurtherColumn { column, slot, conversion });
     }
     Ok(chosen)
 }
 
-/// The columns that a procedure declares: its stamps, its first gyro channel, and the first of each quantity beside.
-fn declared(source: &Source, channels: &[Channel], chosen: &mut Chosen) -> Result<(), SeriesError> {
+/// The columns that a procedure declares: its stamps, its first gyro channel, and the first of each further quantity.
+fn declared(source: &Source, channels: &[Channel], chosen: &mut SeriesChannels) -> Result<(), SeriesError> {
     let mut take = |name: &'static str, channel: &Channel, role: Role| {
         let column = match &channel.column {
             ColumnRef::Name(name) => name.clone(),
@@ -97,10 +110,10 @@ fn declared(source: &Source, channels: &[Channel], chosen: &mut Chosen) -> Resul
     };
     chosen.rate = take("rate_deg_h", rate, rate.role);
     for column in Column::ALL {
-        let Some(beside) = first(&|r| r == role(column)) else { continue };
-        let Ok(map) = beside.unit.affine_to(&parse(unit(column))?) else { continue };
-        let slot = take(column.name(), beside, Role::Auxiliary);
-        chosen.beside.push((column, slot, map));
+        let Some(channel) = first(&|r| r == role(column)) else { continue };
+        let Ok(conversion) = channel.unit.affine_to(&parse(unit(column))?) else { continue };
+        let slot = take(column.name(), channel, Role::Auxiliary);
+        chosen.further.push(FurtherColumn { column, slot, conversion });
     }
     Ok(())
 }
@@ -110,7 +123,7 @@ fn parse(unit: &str) -> Result<Unit, SeriesError> {
 }
 
 /// The column of the rate.
-fn rate(source: &Source, options: &SeriesOptions, chosen: &mut Chosen) -> Result<(), SeriesError> {
+fn rate(source: &Source, options: &SeriesOptions, chosen: &mut SeriesChannels) -> Result<(), SeriesError> {
     let unclear = |key: &'static str, names: Vec<&str>| {
         let note = Note::new(key).with("path", source.path().display().to_string());
         SeriesError::Unclear(note.with("columns", names.join(", ")))
@@ -153,7 +166,7 @@ fn rate(source: &Source, options: &SeriesOptions, chosen: &mut Chosen) -> Result
     Ok(())
 }
 
-impl Chosen {
+impl SeriesChannels {
     fn has(&self, index: usize) -> bool {
         self.channels.iter().any(|c| c.column == ColumnRef::Position(index + 1))
     }
