@@ -3,7 +3,8 @@
 //! `cargo run --example run`
 
 use sagnac::estimate::Verdict;
-use sagnac::{Format, Lang, Procedure, Recording, UnitUnderTest};
+use sagnac::export::{Csv, Json};
+use sagnac::{Lang, Procedure, Recording, UnitUnderTest};
 
 /// Runs the example from the folder of the checkout.
 pub fn main() -> Result<(), sagnac::Error> {
@@ -21,5 +22,5 @@ pub fn main() -> Result<(), sagnac::Error> {
             println!("  {:30} {:?} {} {:?}", row.id, row.value, row.unit, row.verdict);
         }
     }
-    result.write("target/example-run", &[Format::Json, Format::Csv], Lang::En)
+    result.write("target/example-run", &[&Json, &Csv], Lang::En)
 }

@@ -7,7 +7,7 @@ mod effect_text;
 mod lang;
 mod system;
 
-pub use effect_text::{EffectText, effect_text};
+pub use effect_text::{EffectText, effect_key, effect_text};
 pub use lang::Lang;
 pub use sagnac_core::message::{Arg, Note};
 use sagnac_core::render;

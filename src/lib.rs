@@ -7,21 +7,24 @@
 //!
 //! ```
 //! # fn main() -> Result<(), sagnac::Error> {
-//! use sagnac::{Format::{Html, Json}, Lang, Procedure, Recording, UnitUnderTest};
+//! use sagnac::export::{Html, Json};
+//! use sagnac::{Lang, Procedure, Recording, UnitUnderTest};
 //!
 //! let recording = Recording::open("samples/scale-factor-pass.csv")?;
 //! let result = Procedure::load("procedures/scale-factor.toml")?
 //!     .run(&recording, &UnitUnderTest::with_serial("SN-1"))?;
 //! assert_eq!(result.verdict(), sagnac::estimate::Verdict::Pass);
 //! # let folder = std::env::temp_dir().join("sagnac-doctest-run");
-//! result.write(&folder, &[Html, Json], Lang::Ru)?;
+//! result.write(&folder, &[&Html, &Json], Lang::Ru)?;
 //! # Ok(())
 //! # }
 //! ```
 //!
 //! - [`Recording`]: a file of any format that is read, or columns in memory; [`Recording::rate`] gives the samples.
 //! - [`noise::identify`]: noise terms with their intervals, Allan deviation, spectral lines.
-//! - [`Procedure`]: a test procedure with its limits, run on a recording; [`RunResult`] is what comes of it.
+//! - [`Procedure`]: a test procedure with its limits, run on a recording; [`RunResult`] is what comes of it, and is read
+//!   back from its folder.
+//! - [`export`]: the forms in which results are written, and the trait of an own one.
 //! - [`explain()`]: why a recording departs from a [`Model`] of it.
 //! - [`Error`]: the one error of all of these.
 //!
@@ -56,8 +59,9 @@ pub mod series;
 pub mod simulate;
 
 pub use i18n::Lang;
-pub use library::{Error, Explanation, Format, Model, Noise, Procedure, Rate, Recording, RunResult, explain};
+pub use library::{Error, Explanation, Model, Noise, Procedure, Rate, Recording, RunResult, explain};
 pub use record::UnitUnderTest;
+pub use report::export;
 pub use sagnac_core::{
     claim, effect, estimate, figure, ids, influence, measurand, mismatch, numeric, rate_table, temperature,
     units,

@@ -171,34 +171,49 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The file that tells the folder, and how its format begins.
-    fn marks(self) -> (&'static str, &'static str) {
+    /// Every kind.
+    pub const ALL: [Kind; 3] = [Kind::Result, Kind::Comparison, Kind::Explanation];
+
+    /// The JSON file that a folder of this kind holds, and by which it is known.
+    pub fn record_file(self) -> &'static str {
         match self {
-            Kind::Result => ("result.json", "{\"format\":\"result/"),
-            Kind::Comparison => ("comparison.json", "{\"format\":\"comparison/"),
-            Kind::Explanation => ("explain.json", "{\"format\":\"explain/"),
+            Kind::Result => "result.json",
+            Kind::Comparison => "comparison.json",
+            Kind::Explanation => "explain.json",
         }
     }
 
-    /// Names that stand in a folder of this kind.
-    fn owns(self, name: &str) -> bool {
-        name == "figures"
-            || match self {
-                Kind::Result => {
-                    matches!(name, "result.json" | "report.html" | "report.md" | "explain")
-                        || (name.starts_with("sigma_tau") && name.ends_with(".csv"))
-                        || matches!(name, "table_steps.csv" | "interval_means.csv" | "phases")
-                        || (name.starts_with("compensation")
-                            && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
-                }
-                Kind::Comparison => name
-                    .strip_prefix("comparison.")
-                    .is_some_and(|ext| matches!(ext, "json" | "html" | "md" | "csv")),
-                Kind::Explanation => matches!(
-                    name,
-                    "explain.json" | "correction.csv" | "augmented.toml" | "report.html" | "report.md"
-                ),
+    /// How that file begins, without spaces.
+    fn start(self) -> &'static str {
+        match self {
+            Kind::Result => "{\"format\":\"result/",
+            Kind::Comparison => "{\"format\":\"comparison/",
+            Kind::Explanation => "{\"format\":\"explain/",
+        }
+    }
+
+    /// True for the name of a table, or of another file that is data for other programs.
+    pub fn is_table(self, name: &str) -> bool {
+        match self {
+            Kind::Result => {
+                (name.starts_with("sigma_tau") && name.ends_with(".csv"))
+                    || matches!(name, "table_steps.csv" | "interval_means.csv")
+                    || (name.starts_with("compensation")
+                        && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
             }
+            Kind::Comparison => name == "comparison.csv",
+            Kind::Explanation => matches!(name, "correction.csv" | "augmented.toml"),
+        }
+    }
+
+    /// True for a name that stands in a folder of this kind.
+    fn owns(self, name: &str) -> bool {
+        let page = match self {
+            Kind::Result => matches!(name, "report.html" | "report.md" | "explain" | "phases"),
+            Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
+            Kind::Explanation => matches!(name, "report.html" | "report.md"),
+        };
+        page || name == "figures" || name == self.record_file() || self.is_table(name)
     }
 }
 
@@ -274,7 +289,7 @@ impl StagedFolder {
     /// [`OutputError::Io`] when the place cannot be written, [`OutputError::InTheWay`] or [`OutputError::Other`] when
     /// it was taken meanwhile.
     pub fn publish(self, record: impl Serialize) -> Result<PathBuf, OutputError> {
-        let (marks, _) = self.kind.marks();
+        let marks = self.kind.record_file();
         let mut files = self.written.borrow().clone();
         files.insert(marks.to_owned());
         let files = files.into_iter().collect();
@@ -345,9 +360,7 @@ fn replaceable(target: &Path, kind: Kind, order: &Order) -> Result<Option<Earlie
 
 /// True when a folder holds the record that was just written.
 fn is_own(folder: &Path, json: &[u8]) -> bool {
-    [Kind::Result, Kind::Comparison, Kind::Explanation]
-        .iter()
-        .any(|k| fs::read(folder.join(k.marks().0)).is_ok_and(|found| found == json))
+    Kind::ALL.iter().any(|k| fs::read(folder.join(k.record_file())).is_ok_and(|found| found == json))
 }
 
 fn sync_folder(path: &Path) -> Result<(), OutputError> {

@@ -10,7 +10,8 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
     (
         "crates/sagnac-core/src",
         &[
-            &["visible", "message", "spelling"],
+            &["real", "visible", "spelling"],
+            &["message"],
             &["render"],
             &["numeric", "units"],
             &["estimate", "figure", "ids"],

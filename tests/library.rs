@@ -1,8 +1,8 @@
 //! The library as a Rust program uses it. The examples are compiled and run here.
 
-use sagnac::Format::{Csv, Html, Json, Markdown, Svg};
 use sagnac::estimate::Verdict;
-use sagnac::{Lang, Model, Procedure, Rate, Recording, UnitUnderTest};
+use sagnac::export::{Csv, Html, Json, Markdown, Svg};
+use sagnac::{Lang, Model, Procedure, Rate, Recording, RunResult, UnitUnderTest};
 use std::fs;
 use std::path::Path;
 
@@ -49,7 +49,7 @@ fn the_explain_example_runs_and_names_the_step() {
     assert_eq!(why.effects()[0].kind, "bias_step");
     assert!(why.augmented().to_toml().contains("bias_step"));
     let folder = tempfile::tempdir().unwrap();
-    why.write(folder.path(), &[Html, Markdown, Json, Csv, Svg], Lang::Ru).unwrap();
+    why.write(folder.path(), &[&Html, &Markdown, &Json, &Csv, &Svg], Lang::Ru).unwrap();
     for name in ["report.html", "report.md", "explain.json", "correction.csv", "figures"] {
         assert!(folder.path().join(name).exists(), "{name}");
     }
@@ -135,6 +135,52 @@ fn errors_say_what_they_are_about() {
         .run(&Recording::open("samples/scale-factor-pass.csv").unwrap(), &UnitUnderTest::with_serial("SN-1"))
         .unwrap();
     assert_eq!(result.verdict(), Verdict::Pass);
-    let refused = result.write(folder.path().join("taken"), &[Json], Lang::En).unwrap_err();
+    let refused = result.write(folder.path().join("taken"), &[&Json], Lang::En).unwrap_err();
     assert!(refused.is_output() && std::error::Error::source(&refused).is_some(), "{refused}");
+}
+
+/// The files of a folder with their contents.
+fn files(folder: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
+    let mut found = std::collections::BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()) {
+        let name = entry.file_name().unwrap().to_string_lossy().into_owned();
+        if entry.is_dir() {
+            found.extend(files(&entry).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
+        } else {
+            found.insert(name, fs::read(&entry).unwrap());
+        }
+    }
+    found
+}
+
+#[test]
+fn a_result_that_is_read_back_is_written_as_the_run_writes_it_in_any_language() {
+    let all: &[&dyn sagnac::export::Exporter] = sagnac::export::EXPORTERS;
+    for (procedure, sample) in [
+        ("static-bias", "unit-faults"),
+        ("temperature-ramp", "temperature-pass"),
+        ("misalignment", "misalignment-pass"),
+        ("vibration", "vibration-fail"),
+    ] {
+        let run = Procedure::load(format!("procedures/{procedure}.toml"))
+            .unwrap()
+            .run(
+                &Recording::open(format!("samples/{sample}.csv")).unwrap(),
+                &UnitUnderTest::with_serial("SN-1"),
+            )
+            .unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        run.write(at("en"), all, Lang::En).unwrap();
+        run.write(at("ru"), all, Lang::Ru).unwrap();
+        let read = RunResult::open(at("en")).unwrap();
+        for (lang, name) in [(Lang::En, "en"), (Lang::Ru, "ru")] {
+            read.write(at("again"), all, lang).unwrap();
+            let (first, again) = (files(&at(name)), files(&at("again")));
+            assert_eq!(first.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>(), "{sample} {name}");
+            let differ: Vec<&String> = first.keys().filter(|k| first[*k] != again[*k]).collect();
+            assert!(differ.is_empty(), "{sample} {name}: {differ:?}");
+            assert!(first.contains_key("figures/data.json") && first.len() > 6, "{:?}", first.keys());
+        }
+    }
 }

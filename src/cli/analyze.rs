@@ -1,36 +1,52 @@
 //! `sagnac analyze`: the noise of a recording without a procedure.
 
+use super::columns::{ColumnArgs, about, channels, unit_contradictions};
+use super::finish::run_and_finish;
 use super::inputs::Inputs;
-use super::{AnalyzeArgs, exit, place, run};
+use super::options::{GridArgs, renderer};
+use super::place;
+use super::read::ReadArgs;
 use crate::acceptance::run::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::model::Procedure;
 use crate::i18n::{Lang, Localize, Note};
-use crate::ingest::{Source, open_recording};
+use crate::ingest::open_recording;
 use crate::output::Kind;
 use crate::record::{RunKind, UnitUnderTest};
-use crate::recording::{Channel, ColumnRef, Role};
-use crate::units::Unit;
+use crate::recording::Role;
 use chrono::Utc;
+use clap::Args;
 use std::path::{Path, PathBuf};
 
-pub fn main(args: &AnalyzeArgs, lang: Lang) -> u8 {
-    match attempt(args, lang) {
-        Ok(code) => code,
-        Err(message) => {
-            place::complain(&message);
-            exit::ERROR
-        }
-    }
+#[derive(Debug, Args)]
+pub struct AnalyzeArgs {
+    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
+    #[arg(required = true)]
+    recording: Vec<PathBuf>,
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// Output folder [default: named after the recording and UTC time]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace an existing result made from different inputs
+    #[arg(long)]
+    force: bool,
+    /// Folder of templates that override built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
+    #[command(flatten)]
+    grid: GridArgs,
+    #[command(flatten)]
+    read: ReadArgs,
 }
 
-fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
+pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
-    let taus = run::grid(&args.grid, lang)?;
-    if !(args.warm_up >= 0.0 && args.warm_up.is_finite()) {
-        return Err(say(Note::new("cli.warm_up").with("given", args.warm_up.to_string())));
+    let taus = args.grid.grid(lang)?;
+    if !(args.columns.warm_up >= 0.0 && args.columns.warm_up.is_finite()) {
+        return Err(say(Note::new("cli.warm_up").with("given", args.columns.warm_up.to_string())));
     }
-    let renderer = run::renderer(args.templates.as_deref(), lang)?;
+    let renderer = renderer(args.templates.as_deref(), lang)?;
     let now = Utc::now();
     let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
@@ -38,24 +54,30 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let folder = Inputs::new(args.force)
         .recording(&args.recording, &args.read.options())
         .options(&(
-            (&args.rate, &args.angle, &args.unit, &args.counter, &args.time),
-            (args.sample_rate, args.warm_up, &args.grid, &args.read),
+            (
+                &args.columns.rate,
+                &args.columns.angle,
+                &args.columns.unit,
+                &args.columns.counter,
+                &args.columns.time,
+            ),
+            (args.columns.sample_rate, args.columns.warm_up, &args.grid, &args.read),
         ))
         .beside(args.templates.as_deref())
         .begin(&out, Kind::Result, lang)?;
     let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
-    let channels = channels(args, &source).map_err(say)?;
-    for note in named_otherwise(&channels, &source) {
-        place::complain(&format!("{}\n", note.say(lang)));
+    let channels = channels(&args.columns, named(args), &source).map_err(say)?;
+    for note in unit_contradictions(&channels, &source) {
+        place::eprint_diagnostic(&format!("{}\n", note.say(lang)));
     }
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
-    let declared = args.sample_rate;
+    let declared = args.columns.sample_rate;
     let sample_rate = if use_stamps { declared } else { source.rate_without_stamps_hz(declared) };
     if !use_stamps && sample_rate.is_none() {
-        return Err(say(about(args, "cli.no_time")));
+        return Err(say(about(named(args), "cli.no_time")));
     }
-    let procedure: Procedure = analysis::procedure(channels, sample_rate, args.warm_up);
+    let procedure: Procedure = analysis::procedure(channels, sample_rate, args.columns.warm_up);
     let limits = EffectiveLimits::default();
     let request = Request {
         kind: RunKind::Analyze,
@@ -71,145 +93,10 @@ fn attempt(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         taus,
         exact: args.grid.exact,
     };
-    run::finish(&request, None, folder, &renderer, lang)
-}
-
-/// A sentence about the recording.
-fn about(args: &AnalyzeArgs, key: &'static str) -> Note {
-    Note::new(key).with("path", named(args).display().to_string())
+    run_and_finish(&request, None, folder, &renderer, lang)
 }
 
 /// The recording as it was named first.
 fn named(args: &AnalyzeArgs) -> &Path {
     args.recording.first().map_or(Path::new(""), PathBuf::as_path)
-}
-
-/// The channels: as named, else as their names tell.
-pub(super) fn channels(args: &AnalyzeArgs, source: &Source) -> Result<Vec<Channel>, Note> {
-    let unit = args.unit.as_deref().map(Unit::parse).transpose();
-    let unit =
-        unit.map_err(|e| Note::new("cli.of_option").with("option", "--unit").with("what", e.note()))?;
-    let mut channels = Vec::new();
-    match args.time.as_deref() {
-        Some("none") => {}
-        Some(name) => channels.push(time(source, name)?),
-        None => {
-            if let Some(column) = source.time_column().and_then(|i| source.columns().get(i)) {
-                channels.push(time(source, &column.name)?);
-            }
-        }
-    }
-    if let Some(name) = args.counter.as_deref() {
-        let column = reference(name);
-        source.resolve(&column).map_err(|e| e.note())?;
-        let unit = Unit::parse("count").map_err(|e| e.note())?;
-        channels.push(Channel { id: "counter".into(), column, role: Role::Counter, unit, scale: 1.0 });
-    }
-    let taken: Vec<ColumnRef> = channels.iter().map(|c| c.column.clone()).collect();
-    let mut wanted: Vec<(String, ColumnRef)> = if args.rate.is_empty() && args.angle.is_empty() {
-        let columns = source.columns().iter().filter(|c| c.numeric && c.inferred().role.is_gyro());
-        columns.map(|c| (c.name.clone(), ColumnRef::Name(c.name.clone()))).collect()
-    } else {
-        args.rate.iter().map(|name| (name.clone(), reference(name))).collect()
-    };
-    let rates = wanted.len();
-    wanted.extend(args.angle.iter().map(|name| (name.clone(), reference(name))));
-    for (place, (name, column)) in wanted.into_iter().enumerate() {
-        let index = source.resolve(&column).map_err(|e| e.note())?;
-        let found = &source.columns()[index];
-        let guessed = found.inferred();
-        let unit = match &unit {
-            Some(unit) => unit.clone(),
-            None if guessed.role.is_gyro() && guessed.unit_is_named => guessed.unit,
-            None if place >= rates && guessed.unit_is_named && is_angle(&guessed.unit) => guessed.unit,
-            None => {
-                return Err(about(args, "cli.unit_not_told").with("column", found.name.as_str()));
-            }
-        };
-        if wanted_twice(&channels, source, index) {
-            return Err(about(args, "cli.column_twice").with("column", found.name.as_str()));
-        }
-        let role = if place >= rates {
-            Role::AccumulatedAngle
-        } else if is_angle(&unit) {
-            Role::AngleIncrement
-        } else {
-            Role::Rate
-        };
-        let id = unused(id(&name, &found.name), &channels);
-        channels.push(Channel { id, column, role, unit, scale: 1.0 });
-    }
-    if !channels.iter().any(|c| c.role.is_gyro()) {
-        let names: Vec<&str> = source.columns().iter().map(|c| c.name.as_str()).collect();
-        return Err(about(args, "cli.no_gyro").with("columns", names.join(", ")));
-    }
-    for column in source.columns().iter().filter(|c| c.numeric) {
-        let g = column.inferred();
-        let reference = ColumnRef::Name(column.name.clone());
-        if g.role == Role::Temperature && g.unit_is_named && !taken.contains(&reference) {
-            channels.push(Channel {
-                id: column.name.clone(),
-                column: reference,
-                role: g.role,
-                unit: g.unit,
-                scale: 1.0,
-            });
-        }
-    }
-    Ok(channels)
-}
-
-/// Said of each gyro channel whose column states another unit than it is read in: `--unit` counts, and may be wrong.
-pub(super) fn named_otherwise(channels: &[Channel], source: &Source) -> Vec<Note> {
-    let gyro = channels.iter().filter(|c| c.role.is_gyro());
-    gyro.filter_map(|channel| {
-        let column = source.columns().get(source.resolve(&channel.column).ok()?)?;
-        let stated = column.inferred();
-        let factor = stated.unit.factor_to(&channel.unit).unwrap_or(f64::NAN);
-        (stated.unit_is_named && factor != 1.0).then(|| {
-            Note::new("cli.unit_otherwise")
-                .with("column", column.name.as_str())
-                .with("stated", stated.unit.text())
-                .with("unit", channel.unit.text())
-        })
-    })
-    .collect()
-}
-
-fn time(source: &Source, name: &str) -> Result<Channel, Note> {
-    let column = reference(name);
-    let index = source.resolve(&column).map_err(|e| e.note())?;
-    let found = &source.columns()[index];
-    let g = found.inferred();
-    let unit = if g.role == Role::Time { g.unit } else { Unit::parse("s").map_err(|e| e.note())? };
-    Ok(Channel { id: "time".into(), column, role: Role::Time, unit, scale: 1.0 })
-}
-
-fn is_angle(unit: &Unit) -> bool {
-    Unit::parse("deg").is_ok_and(|angle| angle.same_dimension(unit))
-}
-
-/// A number is a position, anything else a name.
-fn reference(name: &str) -> ColumnRef {
-    name.parse().map_or_else(|_| ColumnRef::Name(name.to_owned()), ColumnRef::Position)
-}
-
-/// True when a channel already reads a column.
-fn wanted_twice(channels: &[Channel], source: &Source, index: usize) -> bool {
-    channels.iter().any(|c| source.resolve(&c.column).is_ok_and(|i| i == index))
-}
-
-/// An id that no channel has: two columns may differ only in signs that file names cannot hold.
-fn unused(id: String, channels: &[Channel]) -> String {
-    let taken = |id: &str| channels.iter().any(|c| c.id == id);
-    if !taken(&id) {
-        return id;
-    }
-    (2..).map(|n| format!("{id}_{n}")).find(|candidate| !taken(candidate)).unwrap_or(id)
-}
-
-/// A channel id that is safe in file names.
-fn id(given: &str, column: &str) -> String {
-    let name = if given.parse::<usize>().is_ok() { column } else { given };
-    name.chars().map(|c| if c.is_alphanumeric() || c == '_' || c == '-' { c } else { '_' }).collect()
 }

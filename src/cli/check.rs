@@ -1,15 +1,23 @@
 //! `sagnac check`: procedures and limits without data.
 
-use super::{CheckArgs, exit, place};
+use super::{exit, place};
 use crate::acceptance::run::power::warning;
 use crate::config::diagnostics::Problem;
 use crate::config::procedure::check::{Checked, check, check_report_with};
 use crate::config::procedure::power::{questions, warnings};
 use crate::config::procedure::{LimitsFile, Loaded, effective};
 use crate::i18n::Lang;
-use std::path::Path;
+use clap::Args;
+use std::path::{Path, PathBuf};
 
-pub fn main(args: &CheckArgs, lang: Lang) -> u8 {
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Procedures, limits files, manifests and layouts (TOML)
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+}
+
+pub fn main(args: &CheckArgs, lang: Lang) -> Result<u8, String> {
     let paths: Vec<&Path> = args.files.iter().map(|p| p.as_path()).collect();
     // Limits files among the arguments are also set against every procedure among them.
     let limits: Vec<Loaded<LimitsFile>> = paths
@@ -35,5 +43,5 @@ pub fn main(args: &CheckArgs, lang: Lang) -> u8 {
             .collect()
     });
     place::print(&report.text);
-    if report.failed > 0 { exit::ERROR } else { exit::PASS }
+    Ok(if report.failed > 0 { exit::ERROR } else { exit::PASS })
 }

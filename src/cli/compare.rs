@@ -1,46 +1,66 @@
 //! `sagnac compare`: Russian against Allan figures of any units, or the published tables.
 
-use super::inputs::{self, Inputs};
-use super::progress::Progress;
-use super::{AnalyzeArgs, CompareArgs, GridArgs, analyze, exit, place, run};
+use super::columns::{ColumnArgs, channels, unit_contradictions};
+use super::finish::{with_progress, write};
+use super::inputs::Inputs;
+use super::options::renderer;
+use super::read::ReadArgs;
+use super::{exit, place};
 use crate::acceptance::compare::published::checked;
 use crate::acceptance::compare::{
-    Comparison, Origin, Unit, csv, figures, not_compared, tell_apart, tell_repeated, units_of,
+    Comparison, Origin, Unit, not_compared, tell_apart, tell_repeated, units_of,
 };
-use crate::acceptance::run::{Request, analysis, execute};
+use crate::acceptance::run::{Request, analysis};
 use crate::config::procedure::limits::LimitSpec;
 use crate::config::procedure::{EffectiveLimits, load_limits};
-use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
-use crate::record::{RunKind, UnitUnderTest};
+use crate::record::{RunKind, UnitUnderTest, read};
 use crate::recording::Role;
 use crate::report::compare::{CompareView, table};
-use crate::report::{Renderer, svg};
+use crate::report::export::EXPORTERS;
+use crate::report::{Renderer, Results};
 use chrono::{DateTime, SecondsFormat, Utc};
+use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-pub fn main(args: &CompareArgs, lang: Lang) -> u8 {
-    match attempt(args, lang) {
-        Ok(()) => exit::PASS,
-        Err(message) => {
-            place::complain(&message);
-            exit::ERROR
-        }
-    }
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// Units: one recording each, in any supported format; or a result.json, or its folder
+    #[arg(required_unless_present = "published")]
+    recording: Vec<PathBuf>,
+    /// Check the published tables of Russian and Allan figures
+    #[arg(long)]
+    published: bool,
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// Limits file: each limit applies to the figure it names; a result keeps its own limits
+    #[arg(long, value_name = "FILE")]
+    limits: Option<PathBuf>,
+    /// Output folder [default: named after the first unit and UTC time]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace an existing result made from different inputs
+    #[arg(long)]
+    force: bool,
+    /// Folder of templates that override built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
 }
 
-fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
+pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
-    if !(args.warm_up >= 0.0 && args.warm_up.is_finite()) {
-        return Err(say(Note::new("cli.warm_up").with("given", args.warm_up.to_string())));
+    if !(args.columns.warm_up >= 0.0 && args.columns.warm_up.is_finite()) {
+        return Err(say(Note::new("cli.warm_up").with("given", args.columns.warm_up.to_string())));
     }
     if args.published && !args.recording.is_empty() {
         return Err(say("compare.error.published_alone".into()));
     }
-    let renderer = run::renderer(args.templates.as_deref(), lang)?;
+    let renderer = renderer(args.templates.as_deref(), lang)?;
     let now = Utc::now();
     let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);
     let first = args.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
@@ -49,15 +69,20 @@ fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
         .recording(&read_for(&args.recording), &args.read.options())
         .file("limits", args.limits.as_deref())
         .options(&(
-            (&args.rate, &args.angle, &args.unit, &args.counter, &args.time),
-            (args.sample_rate, args.warm_up, args.published, &args.read),
+            (
+                &args.columns.rate,
+                &args.columns.angle,
+                &args.columns.unit,
+                &args.columns.counter,
+                &args.columns.time,
+            ),
+            (args.columns.sample_rate, args.columns.warm_up, args.published, &args.read),
         ))
         .beside(args.templates.as_deref())
         .begin(&out, Kind::Comparison, lang)?;
     if args.published {
         let checked = checked().ok_or_else(|| say("compare.error.tables".into()))?;
-        let rows = csv::published(&checked);
-        return finish(&Comparison::of_published(checked, stamp), &rows, &[], folder, &renderer, lang);
+        return finish(Comparison::of_published(checked, stamp), folder, &renderer, lang);
     }
     let limits = match args.limits.as_deref().map(load_limits).transpose() {
         Ok(file) => EffectiveLimits {
@@ -70,14 +95,12 @@ fn attempt(args: &CompareArgs, lang: Lang) -> Result<(), String> {
     for given in &args.recording {
         // Each file of a pattern is a unit; one recording in several files is a manifest.
         for path in each_of(given).map_err(|e| RecordingError::from(e).say(lang))? {
-            units.extend(read(args, &path, &limits, now, lang)?);
+            units.extend(read_units(args, &path, &limits, now, lang)?);
         }
     }
     tell_apart(&mut units);
     tell_repeated(&mut units);
-    let drawn = figures::all(&units);
-    let rows = csv::units(&units);
-    finish(&Comparison::of_units(units, stamp), &rows, &drawn, folder, &renderer, lang)
+    finish(Comparison::of_units(units, stamp), folder, &renderer, lang)
 }
 
 /// The name of a file or folder without its endings.
@@ -93,7 +116,7 @@ fn stem(path: &Path) -> String {
 }
 
 /// The units of one argument: a result where it is one, else a recording that is analysed.
-fn read(
+fn read_units(
     args: &CompareArgs,
     path: &Path,
     limits: &EffectiveLimits,
@@ -105,18 +128,9 @@ fn read(
     let mut otherwise = vec![];
     let (value, name, origin) = match result_file(path) {
         Some(file) => {
-            let bytes = std::fs::read(&file).map_err(|e| {
-                say(Note::new("compare.error.unreadable")
-                    .with("path", file.display().to_string())
-                    .with("reason", crate::i18n::io_reason(&e)))
-            })?;
-            let value: Value = serde_json::from_slice(&bytes).map_err(|e| {
-                let key = if e.is_eof() { "compare.more.cut_short" } else { "compare.more.no_json" };
-                say(Note::new(key)
-                    .with("path", file.display().to_string())
-                    .with("line", e.line() as u64)
-                    .with("column", e.column() as u64))
-            })?;
+            let bytes = read::bytes(&file).map_err(|e| say(e.note(&file)))?;
+            let value: Value =
+                serde_json::from_slice(&bytes).map_err(|e| say(read::ReadError::NotJson(e).note(&file)))?;
             // A result is named after its folder, for every one is called the same.
             let by = if file.file_name().is_some_and(|n| n == "result.json") {
                 file.parent().filter(|p| p.file_name().is_some()).map_or_else(|| stem(&file), stem)
@@ -126,7 +140,7 @@ fn read(
             (value, by, Origin::Result)
         }
         None if path.is_dir() => {
-            return Err(say(Note::new("compare.more.no_result_in").with("path", shown)));
+            return Err(say(Note::new("result_error.no_result_in").with("path", shown)));
         }
         None => {
             let analysed = analysed(args, path, limits, now, lang)?;
@@ -179,32 +193,17 @@ fn analysed(
     lang: Lang,
 ) -> Result<Analysed, String> {
     let say = |note: Note| place::error(&note, lang);
-    let as_analyze = AnalyzeArgs {
-        recording: vec![path.to_owned()],
-        rate: args.rate.clone(),
-        angle: args.angle.clone(),
-        unit: args.unit.clone(),
-        counter: args.counter.clone(),
-        time: args.time.clone(),
-        sample_rate: args.sample_rate,
-        warm_up: args.warm_up,
-        out: None,
-        force: false,
-        templates: None,
-        grid: GridArgs { taus: None, exact: false },
-        read: args.read.clone(),
-    };
-    let recording = open_recording(&as_analyze.recording, &args.read.options()).map_err(|e| e.say(lang))?;
+    let recording = open_recording(&[path.to_owned()], &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
-    let channels = analyze::channels(&as_analyze, &source).map_err(say)?;
-    let otherwise = analyze::named_otherwise(&channels, &source);
+    let channels = channels(&args.columns, path, &source).map_err(say)?;
+    let otherwise = unit_contradictions(&channels, &source);
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     let stated = source.stated_sample_rate_hz().filter(|_| !use_stamps);
-    let sample_rate = args.sample_rate.or(stated);
+    let sample_rate = args.columns.sample_rate.or(stated);
     if !use_stamps && sample_rate.is_none() {
         return Err(say(Note::new("cli.no_time").with("path", path.display().to_string())));
     }
-    let procedure = analysis::procedure(channels, sample_rate, args.warm_up);
+    let procedure = analysis::procedure(channels, sample_rate, args.columns.warm_up);
     let request = Request {
         kind: RunKind::Analyze,
         procedure: &procedure,
@@ -219,11 +218,7 @@ fn analysed(
         taus: None,
         exact: false,
     };
-    let mut progress = Progress::new();
-    let reading = Note::new("cli.reading").say(lang);
-    let outcome = execute(&request, &mut |done, total| progress.update(&reading, done, total));
-    progress.finish();
-    let outcome = outcome.map_err(|e| say(e.note()))?;
+    let outcome = with_progress(&request, &Note::new("cli.reading").say(lang)).map_err(|e| say(e.note()))?;
     let result = serde_json::to_value(&outcome.record)
         .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
     Ok(Analysed { result, name: stem(path), otherwise })
@@ -231,25 +226,13 @@ fn analysed(
 
 /// Writes the folder and prints the table.
 fn finish(
-    comparison: &Comparison,
-    rows: &str,
-    figures: &[Figure],
+    comparison: Comparison,
     folder: StagedFolder,
     renderer: &Renderer,
     lang: Lang,
-) -> Result<(), String> {
-    let say = |note: Note| place::error(&note, lang);
-    let view = CompareView::new(comparison, figures, lang);
-    let html = renderer.render_view("compare.html", &view, lang).map_err(|e| say(e.note()))?;
-    let markdown = renderer.render_view("compare.md", &view, lang).map_err(|e| say(e.note()))?;
-    let write = |name: &str, bytes: &[u8]| folder.write(name, bytes).map_err(|e| say(e.note()));
-    write("comparison.html", html.as_bytes())?;
-    write("comparison.md", markdown.as_bytes())?;
-    write("comparison.csv", rows.as_bytes())?;
-    for figure in figures {
-        write(&format!("figures/{}.svg", figure.id), svg::render(figure, lang).as_bytes())?;
-    }
-    let folder = inputs::publish(folder, comparison, lang)?;
-    place::print(&format!("{}{}\n", table(&view, lang), place::shown(&folder.join("comparison.html"))));
-    Ok(())
+) -> Result<u8, String> {
+    let table = table(&CompareView::new(&comparison, &[], lang), lang);
+    let folder = write(&Results::of_comparison(comparison), folder, EXPORTERS, renderer, lang)?;
+    place::print(&format!("{table}{}\n", place::shown(&folder.join("comparison.html"))));
+    Ok(exit::PASS)
 }

@@ -1,37 +1,40 @@
 //! `sagnac effects`: the catalogue, and the page of one effect.
 
-use super::{EffectsArgs, exit, place};
+use super::{exit, place};
 use crate::effect::{EFFECTS, Effect, Param, find};
 use crate::i18n::{Arg, EffectText, Lang, Localize, Note, decimal, effect_text};
 use crate::report::unit::pretty;
+use clap::Args;
 use sagnac_core::spelling::nearest;
 use serde_json::{Value, json};
 
 /// Width of the text of a page, characters.
 const WIDTH: usize = 76;
 
-pub fn main(args: &EffectsArgs, lang: Lang) -> u8 {
-    let told = match &args.effect {
+#[derive(Debug, Args)]
+pub struct EffectsArgs {
+    /// Effect to describe [default: list all]
+    #[arg(value_name = "NAME")]
+    effect: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn main(args: &EffectsArgs, lang: Lang) -> Result<u8, String> {
+    let text = match &args.effect {
         None if args.json => {
-            Ok(format!("{:#}\n", Value::Array(EFFECTS.iter().map(|e| value(*e, lang)).collect())))
+            format!("{:#}\n", Value::Array(EFFECTS.iter().map(|e| value(*e, lang)).collect()))
         }
-        None => Ok(list(lang)),
+        None => list(lang),
         Some(name) => match find(name) {
-            Some(effect) if args.json => Ok(format!("{:#}\n", value(effect, lang))),
-            Some(effect) => Ok(page(effect, lang)),
-            None => Err(unknown(name, lang)),
+            Some(effect) if args.json => format!("{:#}\n", value(effect, lang)),
+            Some(effect) => page(effect, lang),
+            None => return Err(unknown(name, lang)),
         },
     };
-    match told {
-        Ok(text) => {
-            place::print(&text);
-            exit::PASS
-        }
-        Err(message) => {
-            place::complain(&message);
-            exit::ERROR
-        }
-    }
+    place::print(&text);
+    Ok(exit::PASS)
 }
 
 fn unknown(name: &str, lang: Lang) -> String {

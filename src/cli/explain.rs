@@ -1,36 +1,75 @@
 //! `sagnac explain`: where, and because of what, a recording differs from its simulation.
 
-use super::inputs::{self, Inputs};
-use super::progress::Progress;
-use super::{ExplainArgs, exit, place, run};
-use crate::config::model::{self, Claim};
+use super::finish::write;
+use super::inputs::Inputs;
+use super::options::renderer;
+use super::progress::Watch;
+use super::read::ReadArgs;
+use super::{exit, place};
+use crate::config::model;
 use crate::effect::{Column, EFFECTS, find};
-use crate::i18n::{EffectText, Lang, Localize, Note, effect_text};
+use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
 use crate::ingest::{ReadOptions, files_read};
-use crate::mismatch::{self, Options, Outcome};
-use crate::output::{Kind, StagedFolder};
+use crate::mismatch::{self, Options};
+use crate::output::Kind;
 use crate::report::explain::{Context, ExplainView};
-use crate::report::{Renderer, svg};
+use crate::report::export::EXPORTERS;
+use crate::report::{ExplanationResults, Results};
 use crate::series::{Series, SeriesOptions, load_series};
 use chrono::{SecondsFormat, Utc};
+use clap::Args;
 use sagnac_core::spelling::nearest;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-pub fn main(args: &ExplainArgs, lang: Lang) -> u8 {
-    match attempt(args, lang) {
-        Ok(code) => code,
-        Err(message) => {
-            place::complain(&message);
-            exit::ERROR
-        }
-    }
+#[derive(Debug, Args)]
+pub struct ExplainArgs {
+    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
+    #[arg(required = true)]
+    recording: Vec<PathBuf>,
+    /// The claimed simulation (TOML)
+    #[arg(long, value_name = "FILE", required_unless_present = "simulation", conflicts_with = "simulation")]
+    model: Option<PathBuf>,
+    /// Simulated recording from which the claim is identified, instead of a model
+    #[arg(long, value_name = "FILE")]
+    simulation: Option<PathBuf>,
+    /// Probability of calling a correct claim a mismatch [default: 0.01]
+    #[arg(long, value_name = "PROBABILITY")]
+    alpha: Option<f64>,
+    /// Column to treat as not recorded, by its standard name (temp_degC); may be repeated
+    #[arg(long, value_name = "COLUMN")]
+    hide: Vec<String>,
+    /// Maximum number of effects to add to the claim [default: 3]
+    #[arg(long, value_name = "COUNT")]
+    max_effects: Option<usize>,
+    /// Effect to exclude from the search, by id (`sagnac effects`); may be repeated
+    #[arg(long, value_name = "EFFECT")]
+    without: Vec<String>,
+    /// Rate column by name or position [default: the only column that looks like a gyro output]
+    #[arg(long, value_name = "COLUMN")]
+    rate: Option<String>,
+    /// Unit of the rate column [default: from its name]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<String>,
+    /// Sample rate, required without a time column
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+    /// Output folder [default: named after the recording and UTC time]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace an existing result made from different inputs
+    #[arg(long)]
+    force: bool,
+    /// Folder of templates that override built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
 }
 
-fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
+pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     let options = options(args).map_err(say)?;
-    let renderer = run::renderer(args.templates.as_deref(), lang)?;
+    let renderer = renderer(args.templates.as_deref(), lang)?;
     // What is wrong with the model is said before a long recording is read.
     let stated = args.model.as_deref().map(model::load).transpose().map_err(|p| p.say(lang))?;
     let now = Utc::now();
@@ -65,9 +104,9 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
                 notes.push("explain.note.same_samples".into());
             }
             if !taken.shared.is_empty() {
-                let title = |kind| effect_text(kind, EffectText::Title, lang);
-                let titles: Vec<&str> = taken.shared.iter().map(|e| title(e.kind())).collect();
-                notes.push(Note::new("explain.note.shared").with("effects", titles.join(", ")));
+                let titles = taken.shared.iter().map(|e| Arg::Key(effect_key(e.kind(), EffectText::Title)));
+                let titles = Arg::Several(titles.collect(), ", ".into());
+                notes.push(Note::new("explain.note.shared").with("effects", titles));
             }
             (taken.claim, taken.outcome, shown(simulation), true)
         }
@@ -84,9 +123,9 @@ fn attempt(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
         correction: outcome.correction.is_some(),
         notes,
     };
-    let view = ExplainView::new(&outcome.explanation, &outcome.figures, &context, lang);
-    write(&outcome, &view, &folder, "", &renderer, lang)?;
-    let folder = inputs::publish(folder, &outcome.explanation, lang)?;
+    let view = ExplainView::new(&outcome.explanation, &[], &context, lang);
+    let results = Results::Explanation(Box::new(ExplanationResults::new(&outcome, context)));
+    let folder = write(&results, folder, EXPORTERS, &renderer, lang)?;
     place::print(&format!("{}{}\n", view.summary(), place::shown(&folder.join("report.html"))));
     Ok(match outcome.explanation.verdict.as_str() {
         "consistent" => exit::PASS,
@@ -159,90 +198,9 @@ fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang)
     })
 }
 
-/// Writes everything of an explanation but its record into a folder, each name with `before` in front.
-pub(super) fn write(
-    outcome: &Outcome,
-    view: &ExplainView,
-    folder: &StagedFolder,
-    before: &str,
-    renderer: &Renderer,
-    lang: Lang,
-) -> Result<(), String> {
-    let say = |note: Note| place::error(&note, lang);
-    let html = renderer.render_view("explain.html", view, lang).map_err(|e| say(e.note()))?;
-    let markdown = renderer.render_view("explain.md", view, lang).map_err(|e| say(e.note()))?;
-    let write =
-        |name: &str, bytes: &[u8]| folder.write(&format!("{before}{name}"), bytes).map_err(|e| say(e.note()));
-    if let Some(correction) = &outcome.correction {
-        write("correction.csv", csv(correction).as_bytes())?;
-    }
-    write("augmented.toml", augmented(&outcome.augmented).as_bytes())?;
-    write("report.html", html.as_bytes())?;
-    write("report.md", markdown.as_bytes())?;
-    for figure in &outcome.figures {
-        write(&format!("figures/{}.svg", figure.id), svg::render(figure, lang).as_bytes())?;
-    }
-    Ok(())
-}
-
-fn augmented(claim: &Claim) -> String {
-    model::write(claim)
-}
-
-/// `correction.csv`: the shortest digits from which time and correction come back to the bit.
-fn csv(correction: &[(f64, f64)]) -> String {
-    let mut out = String::with_capacity(24 + 32 * correction.len());
-    out.push_str("time_s,correction_deg_h\n");
-    for (time, value) in correction {
-        let _ = writeln!(out, "{time},{value:e}");
-    }
-    out
-}
-
-/// Progress of several pieces of work, one after the other.
-pub(super) struct Watch {
-    bar: Progress,
-    doing: &'static str,
-    said: String,
-    lang: Lang,
-}
-
-impl Watch {
-    pub(super) fn new(lang: Lang) -> Watch {
-        Watch { bar: Progress::of_steps(), doing: "", said: String::new(), lang }
-    }
-
-    pub(super) fn of(&mut self, p: mismatch::Progress) {
-        if p.doing != self.doing {
-            self.doing = p.doing;
-            self.said = Note::new(p.doing).say(self.lang);
-            self.bar.name(&self.said);
-        }
-        self.bar.update(&self.said, p.done, p.total);
-    }
-
-    pub(super) fn finish(&self) {
-        self.bar.finish();
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_correction_comes_back_to_the_bit() {
-        let given = [(0.1 + 0.2, -1.0 / 3.0), (1e6 + 0.1, 2.5e-9), (3.0, 0.0)];
-        let text = csv(&given);
-        let read: Vec<(f64, f64)> = text
-            .lines()
-            .skip(1)
-            .map(|l| l.split_once(',').unwrap())
-            .map(|(a, b)| (a.parse().unwrap(), b.parse().unwrap()))
-            .collect();
-        assert_eq!(read, given);
-        assert_eq!(text.lines().next(), Some("time_s,correction_deg_h"));
-    }
 
     #[test]
     fn a_folder_is_named_after_the_recording() {

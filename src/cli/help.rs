@@ -148,9 +148,9 @@ pub fn refuse(error: &Error, lang: Lang) -> ExitCode {
         let _ = error.print();
     } else if lang == Lang::En {
         // What was typed stands in it, so that it goes the way of all text from outside.
-        super::place::complain(&error.to_string());
+        super::place::eprint_diagnostic(&error.to_string());
     } else {
-        super::place::complain(&complaint(error, lang));
+        super::place::eprint_diagnostic(&complaint(error, lang));
     }
     ExitCode::from(if asked_for { super::exit::PASS } else { super::exit::ERROR })
 }

@@ -1,11 +1,13 @@
 //! What a result is made from, so that it takes the place of none made from something else.
 
 use super::place;
-use crate::i18n::{Lang, Localize};
+use crate::config::manifest::Manifest;
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{ReadOptions, files_read};
 use crate::output::{Kind, Order, StagedFolder};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::fs::File;
 use std::io::Read;
@@ -18,6 +20,13 @@ impl Inputs {
     /// None yet.
     pub fn new(force: bool) -> Inputs {
         Inputs(Order { force, ..Order::default() })
+    }
+
+    /// Those of an earlier result, which is made anew.
+    #[must_use]
+    pub fn of_result(mut self, inputs: BTreeMap<String, String>) -> Inputs {
+        self.0.inputs = inputs;
+        self
     }
 
     /// The recording, whatever files it is of.
@@ -81,6 +90,24 @@ impl Inputs {
     }
 }
 
+/// The serial number given; the manifest's where none is. Two that differ are an error: this is another unit's recording.
+pub fn serial(
+    given: Option<&str>,
+    manifest: Option<&Manifest>,
+    lang: Lang,
+) -> Result<Option<String>, String> {
+    let stated = manifest.and_then(|m| m.serial.as_deref());
+    match (given, stated) {
+        (Some(given), Some(stated)) if given.trim() != stated.trim() => {
+            let path = manifest.map(|m| m.path.display().to_string()).unwrap_or_default();
+            let note =
+                Note::new("manifest.serial").with("path", path).with("stated", stated).with("given", given);
+            Err(place::error(&note, lang))
+        }
+        _ => Ok(given.or(stated).map(str::to_owned)),
+    }
+}
+
 /// Puts a folder in its place, and says which result of other inputs it replaced.
 ///
 /// # Errors
@@ -89,7 +116,7 @@ pub fn publish(folder: StagedFolder, record: impl Serialize, lang: Lang) -> Resu
     let replaced = folder.replaces();
     let place = folder.publish(record).map_err(|e| place::error(&e.note(), lang))?;
     if let Some(note) = replaced {
-        place::complain(&format!("{}\n", note.say(lang)));
+        place::eprint_diagnostic(&format!("{}\n", note.say(lang)));
     }
     Ok(place)
 }

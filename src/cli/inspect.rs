@@ -1,33 +1,34 @@
 //! `sagnac inspect`: what a recording holds.
 
 use super::progress::Progress;
-use super::{InspectArgs, exit, place};
+use super::read::ReadArgs;
+use super::{exit, place};
 use crate::acceptance::inspect::inspect_source;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::open_recording;
+use clap::Args;
+use std::path::PathBuf;
 
-pub fn main(args: &InspectArgs, lang: Lang) -> u8 {
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
+    #[arg(required = true)]
+    recording: Vec<PathBuf>,
+    /// Sample rate, if the recording has no time column
+    #[arg(long, value_name = "HZ")]
+    sample_rate: Option<f64>,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+pub fn main(args: &InspectArgs, lang: Lang) -> Result<u8, String> {
     let mut progress = Progress::new();
     let reading = Note::new("cli.reading").say(lang);
-    let recording = match open_recording(&args.recording, &args.read.options()) {
-        Ok(recording) => recording,
-        Err(e) => {
-            place::complain(&e.say(lang));
-            return exit::ERROR;
-        }
-    };
-    let told = inspect_source(&recording.source, args.sample_rate, lang, &mut |done, total| {
+    let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
+    let report = inspect_source(&recording.source, args.sample_rate, lang, &mut |done, total| {
         progress.update(&reading, done, total);
     });
     progress.finish();
-    match told {
-        Ok(text) => {
-            place::print(&text);
-            exit::PASS
-        }
-        Err(e) => {
-            place::complain(&place::error(&e.note(), lang));
-            exit::ERROR
-        }
-    }
+    place::print(&report.map_err(|e| place::error(&e.note(), lang))?);
+    Ok(exit::PASS)
 }

@@ -6,13 +6,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Writes to standard output; a reader that went away (`| head`) is no error. What a file or its name holds cannot
-/// steer the terminal: all that the program says goes through here or [`complain`].
+/// steer the terminal: all that the program says goes through here or [`eprint_diagnostic`].
 pub fn print(text: &str) {
     let _ = std::io::stdout().lock().write_all(visible_lines(text).as_bytes());
 }
 
 /// Writes to standard error.
-pub fn complain(text: &str) {
+pub fn eprint_diagnostic(text: &str) {
     let _ = std::io::stderr().lock().write_all(visible_lines(text).as_bytes());
 }
 
@@ -24,6 +24,11 @@ pub fn shown(path: &Path) -> String {
 /// The line of an error for the terminal.
 pub fn error(note: &Note, lang: Lang) -> String {
     format!("{}: {}\n", Note::new("diagnostic.error").say(lang), note.say(lang))
+}
+
+/// The line of a warning for the terminal.
+pub fn warning(note: &Note, lang: Lang) -> String {
+    format!("{}: {}\n", Note::new("diagnostic.warning").say(lang), note.say(lang))
 }
 
 /// The default name of an output folder: what, which unit, when.

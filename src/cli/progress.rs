@@ -1,6 +1,6 @@
 //! Progress on stderr, when it is a terminal and the work takes more than about a second.
 
-use crate::i18n::visible;
+use crate::i18n::{Lang, Localize, Note, visible};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
@@ -52,5 +52,35 @@ impl Progress {
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// Progress of several pieces of work, one after the other.
+pub struct Watch {
+    bar: Progress,
+    doing: &'static str,
+    said: String,
+    lang: Lang,
+}
+
+impl Watch {
+    /// Begins, hidden.
+    pub fn new(lang: Lang) -> Watch {
+        Watch { bar: Progress::of_steps(), doing: "", said: String::new(), lang }
+    }
+
+    /// Says what is done, and how far it is.
+    pub fn of(&mut self, p: crate::mismatch::Progress) {
+        if p.doing != self.doing {
+            self.doing = p.doing;
+            self.said = Note::new(p.doing).say(self.lang);
+            self.bar.name(&self.said);
+        }
+        self.bar.update(&self.said, p.done, p.total);
+    }
+
+    /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish();
     }
 }

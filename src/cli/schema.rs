@@ -1,10 +1,33 @@
 //! `sagnac schema`: JSON Schema of the formats.
 
-use super::{SchemaArgs, SchemaKind, exit};
+use super::exit;
 use crate::output::Listed;
 use crate::record::RunRecord;
+use clap::{Args, ValueEnum};
 
-pub fn main(args: &SchemaArgs) -> u8 {
+#[derive(Debug, Args)]
+pub struct SchemaArgs {
+    /// File format
+    kind: SchemaKind,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum SchemaKind {
+    /// A test procedure
+    Procedure,
+    /// A limits file
+    Limits,
+    /// A layout of raw binary records
+    Layout,
+    /// result.json
+    Result,
+    /// A manifest: several files as one recording
+    Manifest,
+    /// A model: the expected content of a recording
+    Model,
+}
+
+pub fn main(args: &SchemaArgs) -> Result<u8, String> {
     let schema = match args.kind {
         SchemaKind::Procedure => crate::config::procedure::schema::procedure(),
         SchemaKind::Limits => crate::config::procedure::schema::limits(),
@@ -16,5 +39,5 @@ pub fn main(args: &SchemaArgs) -> u8 {
         }
     };
     super::place::print(&format!("{schema:#}\n"));
-    exit::PASS
+    Ok(exit::PASS)
 }

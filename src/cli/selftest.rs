@@ -3,8 +3,8 @@
 use super::{exit, place};
 use crate::i18n::Lang;
 
-pub fn main(lang: Lang) -> u8 {
+pub fn main(lang: Lang) -> Result<u8, String> {
     let report = crate::selftest::run();
     place::print(&report.text(lang));
-    if report.passed() { exit::PASS } else { exit::ERROR }
+    Ok(if report.passed() { exit::PASS } else { exit::ERROR })
 }

@@ -1,7 +1,7 @@
 //! `sagnac simulate`: a recording from a model.
 
 use super::progress::Progress;
-use super::{SimulateArgs, exit, place};
+use super::{exit, place};
 use crate::config::model::{ModelFile, load_model};
 use crate::config::quantity;
 use crate::i18n::{Arg, Lang, Localize, Note};
@@ -9,22 +9,37 @@ use crate::ingest::{ReadOptions, files_read};
 use crate::output::StagedFile;
 use crate::series::{Series, SeriesOptions, load_series};
 use crate::simulate::{Format, Order, Over, Simulation, Written, write};
+use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// Seed where neither the command line nor the model says one.
 const SEED: u64 = 1;
 
-pub fn main(args: &SimulateArgs, lang: Lang) -> u8 {
-    match attempt(args, lang) {
-        Ok(text) => {
-            place::print(&text);
-            exit::PASS
-        }
-        Err(message) => {
-            place::complain(&message);
-            exit::ERROR
-        }
-    }
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// Model (TOML): the expected content of the recording
+    #[arg(value_name = "FILE")]
+    model: PathBuf,
+    /// File to write, .csv or .parquet
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Replace an existing file with different content
+    #[arg(long)]
+    force: bool,
+    /// Seed, a whole number; equal seeds give equal recordings [default: as in the model, else 1]
+    #[arg(long, value_name = "SEED")]
+    seed: Option<u64>,
+    /// Length with its unit, such as 10h, 600s or "2 d" [default: as in the model]
+    #[arg(long, value_name = "LENGTH")]
+    duration: Option<String>,
+    /// Recording that provides rows and columns: timestamps, gaps, temperatures, table rates
+    #[arg(long, value_name = "RECORDING")]
+    like: Option<PathBuf>,
+}
+
+pub fn main(args: &SimulateArgs, lang: Lang) -> Result<u8, String> {
+    place::print(&attempt(args, lang)?);
+    Ok(exit::PASS)
 }
 
 fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
@@ -76,7 +91,7 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     let written = written.map_err(|e| say(&e.note()))?;
     if replaced {
         let note = Note::new("output_file.replaces").with("path", args.out.display().to_string());
-        place::complain(&format!("{}\n", note.say(lang)));
+        place::eprint_diagnostic(&format!("{}\n", note.say(lang)));
     }
     Ok(summary(args, &model, series.as_ref(), &written, seed, lang))
 }

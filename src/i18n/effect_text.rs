@@ -51,7 +51,12 @@ impl EffectText {
     }
 }
 
+/// The key of a text of the effect of that kind.
+pub fn effect_key(kind: &str, text: EffectText) -> String {
+    format!("effect.{kind}.{}", text.id())
+}
+
 /// A text of the effect of that kind; empty where no table has it.
 pub fn effect_text(kind: &str, text: EffectText, lang: Lang) -> &'static str {
-    lookup(lang, &format!("effect.{kind}.{}", text.id())).unwrap_or_default()
+    lookup(lang, &effect_key(kind, text)).unwrap_or_default()
 }

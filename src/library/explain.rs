@@ -1,17 +1,16 @@
 //! Why a recording differs from its simulation.
 
-use super::format::{json, put, put_figures};
-use super::{Error, Format, Recording};
+use super::{Error, Recording, files};
 use crate::claim::Claim;
 use crate::config::model::{self, ModelFile, Profile, SimulationPlan};
 use crate::i18n::{Lang, Note};
 use crate::mismatch::{self, Options, Outcome};
 use crate::record::explanation;
-use crate::report::Renderer;
 use crate::report::explain::{Context, ExplainView};
+use crate::report::export::Exporter;
+use crate::report::{Document, ExplanationResults};
 use crate::simulate::{Order, Over, Rows, SimulateError, Simulation};
 use chrono::{SecondsFormat, Utc};
-use std::fmt::Write;
 use std::path::Path;
 
 /// A simulation as its author believes it: noise, mean, sensitivities and effects, each with its uncertainty.
@@ -122,11 +121,11 @@ impl Explanation {
 
     /// The finding in a few lines.
     pub fn summary(&self, lang: Lang) -> String {
-        self.view(lang).summary()
+        ExplainView::new(&self.outcome.explanation, &[], &self.context(), lang).summary()
     }
 
-    fn view(&self, lang: Lang) -> ExplainView {
-        let context = Context {
+    fn context(&self) -> Context {
+        Context {
             recording: self.recording.clone(),
             claim: self.model.name.clone(),
             identified: false,
@@ -134,48 +133,21 @@ impl Explanation {
             explained_at: Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true),
             correction: self.outcome.correction.is_some(),
             notes: self.notes.clone(),
-        };
-        ExplainView::new(&self.outcome.explanation, &self.outcome.figures, &context, lang)
+        }
     }
 
-    /// Writes the formats into a folder, which is created where it is missing. Files of the same names are replaced. CSV
-    /// is `correction.csv`, where there is a correction.
+    /// Writes the explanation in some forms into a folder, which is created where it is missing. Files of the same names
+    /// are replaced. Tables are `correction.csv`, where there is a correction, and `augmented.toml`.
     ///
     /// # Errors
     /// [`Error::is_output`] when a file cannot be written.
-    pub fn write(&self, folder: impl AsRef<Path>, formats: &[Format], lang: Lang) -> Result<(), Error> {
-        let (folder, renderer, view) = (folder.as_ref(), Renderer::new(), self.view(lang));
-        let figures = &self.outcome.figures;
-        for format in formats {
-            match format {
-                Format::Html => {
-                    let page = renderer.render_view("explain.html", &view, lang)?;
-                    put(folder, "report.html", page.as_bytes())?;
-                }
-                Format::Markdown => {
-                    let page = renderer.render_view("explain.md", &view, lang)?;
-                    put(folder, "report.md", page.as_bytes())?;
-                    put_figures(folder, figures, lang)?;
-                }
-                Format::Json => put(folder, "explain.json", &json(&self.outcome.explanation)?)?,
-                Format::Csv => {
-                    if let Some(correction) = self.correction() {
-                        put(folder, "correction.csv", correction_csv(correction).as_bytes())?;
-                    }
-                }
-                Format::Svg => put_figures(folder, figures, lang)?,
-            }
-        }
-        Ok(())
+    pub fn write(
+        &self,
+        folder: impl AsRef<Path>,
+        exporters: &[&dyn Exporter],
+        lang: Lang,
+    ) -> Result<(), Error> {
+        let results = ExplanationResults::new(&self.outcome, self.context());
+        files::write(folder.as_ref(), &Document::of_explanation(&results, lang), exporters)
     }
-}
-
-/// The shortest digits from which time and correction come back to the bit.
-fn correction_csv(correction: &[(f64, f64)]) -> String {
-    let mut out = String::from("time_s,correction_deg_h\n");
-    for (time, value) in correction {
-        // A string takes whatever is written to it.
-        let _ = writeln!(out, "{time},{value:e}");
-    }
-    out
 }

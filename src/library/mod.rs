@@ -4,14 +4,13 @@
 
 mod error;
 mod explain;
-mod format;
+mod files;
 mod noise;
 mod procedure;
 mod recording;
 
 pub use error::Error;
 pub use explain::{Explanation, Model, explain};
-pub use format::Format;
 pub use noise::{Noise, identify};
 pub use procedure::{Procedure, RunResult};
 pub use recording::{Rate, Recording};

@@ -1,16 +1,16 @@
 //! A test procedure, run on a recording.
 
-use super::format::{json, put, put_figures};
-use super::{Error, Format, Recording};
+use super::{Error, Recording, files};
 use crate::acceptance::run::{Outcome, Request, execute};
 use crate::config::model;
 use crate::config::procedure::{self, EffectiveLimits, LimitsFile, Loaded, Problem, effective};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::i18n::Lang;
+use crate::i18n::{Lang, Note};
 use crate::mismatch;
-use crate::record::{ExplainedRecord, MeasurandRecord, RunKind, RunRecord, UnitUnderTest};
-use crate::report::{Renderer, render_html, render_markdown};
+use crate::record::{ExplainedRecord, MeasurandRecord, RESULT_FORMAT, RunKind, RunRecord, UnitUnderTest};
+use crate::report::export::Exporter;
+use crate::report::{Document, Results, StoredResults};
 use crate::series::SeriesOptions;
 use chrono::{DateTime, Utc};
 use std::path::Path;
@@ -19,13 +19,14 @@ use std::path::Path;
 ///
 /// ```no_run
 /// # fn main() -> Result<(), sagnac::Error> {
-/// use sagnac::{Format::{Html, Json}, Lang, Procedure, Recording, UnitUnderTest};
+/// use sagnac::export::{Html, Json};
+/// use sagnac::{Lang, Procedure, Recording, UnitUnderTest};
 ///
 /// let result = Procedure::load("procedures/static-bias.toml")?
 ///     .with_limits("procedures/limits/sample-unit.toml")?
 ///     .run(&Recording::open("run.csv")?, &UnitUnderTest::with_serial("SN-0042"))?;
 /// println!("{:?}", result.verdict());
-/// result.write("out", &[Html, Json], Lang::En)?;
+/// result.write("out", &[&Html, &Json], Lang::En)?;
 /// # Ok(())
 /// # }
 /// ```
@@ -153,6 +154,21 @@ pub struct RunResult {
 }
 
 impl RunResult {
+    /// Reads a `result.json`, or the folder of one, with the figures and tables that stand beside it. One of several
+    /// phases has the record of the whole only.
+    ///
+    /// # Errors
+    /// [`Error::is_argument`] when it is no result that this version reads.
+    pub fn open(path: impl AsRef<Path>) -> Result<RunResult, Error> {
+        match StoredResults::open(path.as_ref()).map_err(Error::argument)?.results {
+            Results::Run(results) => Ok(RunResult { outcome: results.outcome }),
+            _ => {
+                let note = Note::new("result_error.foreign").with("format", RESULT_FORMAT);
+                Err(Error::argument(note.with("path", path.as_ref().display().to_string())))
+            }
+        }
+    }
+
     /// The worst verdict of all limits and conditions.
     pub fn verdict(&self) -> Verdict {
         self.outcome.record.verdict
@@ -173,34 +189,18 @@ impl RunResult {
         &self.outcome.figures
     }
 
-    /// Writes the formats into a folder, which is created where it is missing. Files of the same names are replaced.
+    /// Writes the result in some forms into a folder, which is created where it is missing. Files of the same names are
+    /// replaced.
     ///
     /// # Errors
     /// [`Error::is_output`] when a file cannot be written.
-    pub fn write(&self, folder: impl AsRef<Path>, formats: &[Format], lang: Lang) -> Result<(), Error> {
-        let (folder, renderer) = (folder.as_ref(), Renderer::new());
-        let Outcome { record, figures, tables } = &self.outcome;
-        for format in formats {
-            match format {
-                Format::Html => {
-                    let page = render_html(record, figures, lang, &renderer)?;
-                    put(folder, "report.html", page.as_bytes())?;
-                }
-                Format::Markdown => {
-                    let page = render_markdown(record, figures, lang, &renderer)?;
-                    put(folder, "report.md", page.as_bytes())?;
-                    put_figures(folder, figures, lang)?;
-                }
-                Format::Json => put(folder, "result.json", &json(record)?)?,
-                Format::Csv => {
-                    for (name, table) in tables {
-                        put(folder, name, table.as_bytes())?;
-                    }
-                }
-                Format::Svg => put_figures(folder, figures, lang)?,
-            }
-        }
-        Ok(())
+    pub fn write(
+        &self,
+        folder: impl AsRef<Path>,
+        exporters: &[&dyn Exporter],
+        lang: Lang,
+    ) -> Result<(), Error> {
+        files::write(folder.as_ref(), &Document::of_run(&self.outcome, lang), exporters)
     }
 }
 

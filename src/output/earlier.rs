@@ -54,7 +54,7 @@ impl Earlier {
     }
 
     fn read(folder: &Path, kind: Kind) -> Option<Earlier> {
-        let path = folder.join(kind.marks().0);
+        let path = folder.join(kind.record_file());
         let record: Value = serde_json::from_slice(&fs::read(&path).ok()?).ok()?;
         let text = |v: &Value| v.as_str().map(str::to_owned);
         let files = record.get("files")?.as_array()?.iter().map(text).collect::<Option<_>>()?;
@@ -97,7 +97,7 @@ impl Earlier {
 
 /// True when a folder holds the file that tells its kind.
 pub(super) fn is_of(folder: &Path, kind: Kind) -> bool {
-    let (name, start) = kind.marks();
+    let (name, start) = (kind.record_file(), kind.start());
     let mut head = String::new();
     let read = File::open(folder.join(name)).and_then(|f| f.take(64).read_to_string(&mut head));
     read.is_ok() && head.split_whitespace().collect::<String>().starts_with(start)

@@ -157,5 +157,5 @@ fn holds_only_ours(folder: &Path) -> bool {
     let Ok(entries) = fs::read_dir(folder) else { return false };
     let names: Vec<String> =
         entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect();
-    [Kind::Result, Kind::Comparison, Kind::Explanation].iter().any(|k| names.iter().all(|n| k.owns(n)))
+    Kind::ALL.iter().any(|k| names.iter().all(|n| k.owns(n)))
 }

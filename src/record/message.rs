@@ -240,9 +240,17 @@ impl Serialize for Plain<'_> {
     }
 }
 
-/// Notes of a record that keeps them as notes.
-pub(crate) fn messages<S: Serializer>(notes: &[Note], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(notes.iter().cloned().map(Message))
+/// For `#[serde(with = "notes")]`: a list of notes in the form of [`Message`].
+pub(crate) mod notes {
+    use super::*;
+
+    pub(crate) fn serialize<S: Serializer>(notes: &[Note], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(notes.iter().cloned().map(Message))
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Note>, D::Error> {
+        Ok(Vec::<Message>::deserialize(deserializer)?.into_iter().map(|m| m.0).collect())
+    }
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ mod goodness;
 pub mod integrity;
 mod interval_mean;
 pub(crate) mod message;
+mod null_numbers;
 mod origin;
 mod phase;
 pub mod read;

@@ -1,41 +1,84 @@
-//! Reads a `result.json` back into a [`RunRecord`].
+//! Reads a `result.json`, or another file that this program wrote, back into its type.
 
+use super::null_numbers;
 use super::{RESULT_FORMAT, RunRecord};
-use serde::Deserialize;
+use crate::i18n::{Note, io_reason};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
 
 /// Largest file that is read, bytes; results of shipped samples take about a tenth of a megabyte.
 pub const MAX_BYTES: usize = 256 << 20;
 
 /// Why a file is no result that this program reads.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum ReadError {
+    /// The operating system refused.
+    #[error("the file cannot be read: {0}")]
+    Io(#[from] std::io::Error),
     /// The file is larger than [`MAX_BYTES`].
-    #[error("the result has {bytes} bytes; at most {MAX_BYTES} are read")]
-    TooLarge {
-        /// Its size.
-        bytes: usize,
-    },
+    #[error("the result has more than {MAX_BYTES} bytes")]
+    TooLarge,
     /// It is not JSON, or it is cut off.
     #[error("the file is not JSON: {0}")]
-    NotJson(String),
-    /// It is JSON without a text `format`.
-    #[error("the file names no result format; `{RESULT_FORMAT}` is read")]
-    NoFormat,
-    /// It names a format of another kind or version.
-    #[error("the file has the format `{found}`; `{RESULT_FORMAT}` is read")]
-    OtherFormat {
+    NotJson(serde_json::Error),
+    /// It is JSON of another program: it names no format, or one of another kind.
+    #[error("the file is not of the format `{expected}`")]
+    Foreign {
+        /// The format that is read.
+        expected: &'static str,
+    },
+    /// It is of another version of the format.
+    #[error("the file has the format `{found}`; `{expected}` is read")]
+    OtherVersion {
         /// The format that it names.
         found: String,
+        /// The format that is read.
+        expected: &'static str,
     },
     /// It names the right format, and a field is missing or of another type.
-    #[error("the file does not follow `{RESULT_FORMAT}`: {0}")]
-    Malformed(String),
+    #[error("the file does not follow `{expected}`: {reason}")]
+    Malformed {
+        /// The format that it names.
+        expected: &'static str,
+        /// What does not fit.
+        reason: String,
+    },
 }
 
-#[derive(Deserialize)]
-struct Header {
-    #[serde(default)]
-    format: Option<serde_json::Value>,
+impl ReadError {
+    /// What is wrong with the file at `path`, as a note. What the JSON reader says of a field is in English.
+    pub fn note(&self, path: &Path) -> Note {
+        let note = |key: &'static str| Note::new(key).with("path", path.display().to_string());
+        match self {
+            ReadError::Io(e) => note("result_error.unreadable").with("reason", io_reason(e)),
+            ReadError::TooLarge => note("result_error.too_large").with("most", MAX_BYTES),
+            ReadError::NotJson(e) => {
+                note(if e.is_eof() { "result_error.cut_short" } else { "result_error.no_json" })
+                    .with("line", e.line())
+                    .with("column", e.column())
+            }
+            ReadError::Foreign { expected } => note("result_error.foreign").with("format", *expected),
+            ReadError::OtherVersion { found, expected } => {
+                note("result_error.other_version").with("found", found.as_str()).with("format", *expected)
+            }
+            ReadError::Malformed { expected, reason } => {
+                note("result_error.malformed").with("format", *expected).with("reason", reason.as_str())
+            }
+        }
+    }
+}
+
+/// The bytes of a file that is not larger than any result.
+///
+/// # Errors
+/// [`ReadError::Io`] and [`ReadError::TooLarge`].
+pub fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let mut bytes = vec![];
+    File::open(path)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > MAX_BYTES { Err(ReadError::TooLarge) } else { Ok(bytes) }
 }
 
 /// The record that the bytes of a `result.json` hold.
@@ -43,19 +86,36 @@ struct Header {
 /// # Errors
 /// [`ReadError`] where the bytes are too many, not JSON, of another format or version, or do not follow the format.
 pub fn from_slice(bytes: &[u8]) -> Result<RunRecord, ReadError> {
+    of_format(bytes, RESULT_FORMAT)
+}
+
+/// The `format` that a JSON file names, if any.
+///
+/// # Errors
+/// [`ReadError::NotJson`].
+pub fn format_of(bytes: &[u8]) -> Result<Option<String>, ReadError> {
+    let value: Value = serde_json::from_slice(bytes).map_err(ReadError::NotJson)?;
+    Ok(value.get("format").and_then(Value::as_str).map(str::to_owned))
+}
+
+/// The value that the bytes of a JSON file hold whose `format` is `expected`, such as `result/1`.
+///
+/// # Errors
+/// As [`from_slice`].
+pub fn of_format<T: DeserializeOwned>(bytes: &[u8], expected: &'static str) -> Result<T, ReadError> {
     if bytes.len() > MAX_BYTES {
-        return Err(ReadError::TooLarge { bytes: bytes.len() });
+        return Err(ReadError::TooLarge);
     }
-    let header: Header = serde_json::from_slice(bytes).map_err(|e| match e.classify() {
-        serde_json::error::Category::Data => ReadError::NoFormat,
-        _ => ReadError::NotJson(e.to_string()),
-    })?;
-    match header.format {
-        Some(serde_json::Value::String(format)) if format == RESULT_FORMAT => {}
-        Some(serde_json::Value::String(found)) => return Err(ReadError::OtherFormat { found }),
-        _ => return Err(ReadError::NoFormat),
+    let value: Value = serde_json::from_slice(bytes).map_err(ReadError::NotJson)?;
+    let kind = |format: &str| format.split('/').next().map(str::to_owned);
+    match value.get("format").and_then(Value::as_str) {
+        Some(found) if found == expected => {}
+        Some(found) if kind(found) == kind(expected) => {
+            return Err(ReadError::OtherVersion { found: found.to_owned(), expected });
+        }
+        _ => return Err(ReadError::Foreign { expected }),
     }
-    serde_json::from_slice(bytes).map_err(|e| ReadError::Malformed(e.to_string()))
+    null_numbers::from_value(value).map_err(|e| ReadError::Malformed { expected, reason: e.to_string() })
 }
 
 #[cfg(test)]
@@ -66,16 +126,16 @@ mod tests {
     fn broken_files_are_refused_each_by_its_cause() {
         let refused = |text: &str| from_slice(text.as_bytes()).unwrap_err();
         for text in ["", "gyro", "{\"format\": \"result/1\"", &"[".repeat(100_000)] {
-            assert!(matches!(refused(text), ReadError::NotJson(_) | ReadError::NoFormat), "{text:.20}");
+            assert!(matches!(refused(text), ReadError::NotJson(_)), "{text:.20}");
         }
-        for text in ["{}", "1", "[]", "null", "{\"format\": 1}"] {
-            assert_eq!(refused(text), ReadError::NoFormat, "{text}");
+        for text in ["{}", "1", "[]", "null", "{\"format\": \"comparison/1\"}", "{\"format\": 1}"] {
+            assert!(matches!(refused(text), ReadError::Foreign { .. }), "{text}");
         }
-        assert_eq!(
-            refused("{\"format\": \"result/0\"}"),
-            ReadError::OtherFormat { found: "result/0".into() }
-        );
-        assert!(matches!(refused("{\"format\": \"result/1\"}"), ReadError::Malformed(_)));
-        assert!(matches!(refused("{\"format\": \"result/1\", \"kind\": 3}"), ReadError::Malformed(_)));
+        for version in ["result/0", "result/2"] {
+            let refused = refused(&format!("{{\"format\": \"{version}\"}}"));
+            assert!(matches!(refused, ReadError::OtherVersion { found, .. } if found == version));
+        }
+        assert!(matches!(refused("{\"format\": \"result/1\"}"), ReadError::Malformed { .. }));
+        assert!(matches!(refused("{\"format\": \"result/1\", \"kind\": 3}"), ReadError::Malformed { .. }));
     }
 }

@@ -4,16 +4,21 @@
 //! templates, [`svg`] draws the figures. Nothing is measured or decided here, and no recording is needed.
 
 pub mod compare;
+mod document;
 pub mod explain;
+pub mod export;
 pub mod methods;
 pub mod number;
 mod prose;
 pub mod render;
+mod results;
 pub mod svg;
 pub mod unit;
 pub mod view;
 
-pub use render::{Renderer, ReportError, render_html, render_markdown, render_phases};
+pub use document::Document;
+pub use render::{Renderer, ReportError, render_html, render_markdown};
+pub use results::{ExplanationResults, Results, RunResults, StoredResults};
 
 use crate::figure::Figure;
 use crate::i18n::Lang;

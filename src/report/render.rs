@@ -1,12 +1,13 @@
 //! Templates: the built-in ones, each of which a file of the same name in a folder of the user's replaces.
 
+use super::document::{run_context, view_context};
 use super::number;
 use super::prose::{self, prose};
-use super::view::{PhasePart, View, Words};
+use super::view::{View, Words};
 use crate::figure::Figure;
-use crate::i18n::{Lang, Localize, Note, io_reason, lookup, table};
+use crate::i18n::{Lang, Localize, Note, io_reason, lookup};
 use crate::record::RunRecord;
-use minijinja::value::{Kwargs, Serde, Value};
+use minijinja::value::{Kwargs, Value};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -68,6 +69,8 @@ pub enum ReportError {
         /// The reason.
         source: std::io::Error,
     },
+    /// A record cannot be written as JSON.
+    Json(serde_json::Error),
 }
 
 impl ReportError {
@@ -91,6 +94,7 @@ impl ReportError {
             ReportError::Io { path, source } => {
                 Note::new("template_error.io").with("path", path.as_str()).with("reason", io_reason(source))
             }
+            ReportError::Json(e) => Note::new("system.other").with("reason", e.to_string()),
         }
     }
 }
@@ -213,65 +217,32 @@ impl Renderer {
         Ok(env)
     }
 
-    /// Renders a template that sees nothing but a view.
+    /// Renders a template with a context, its last line ended.
     ///
     /// # Errors
     /// [`ReportError::Template`] when the template is wrong.
+    pub fn render(&self, name: &str, context: &Value, lang: Lang) -> Result<String, ReportError> {
+        let env = self.environment(lang)?;
+        let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
+        let mut text = template.render(context).map_err(|e| wrong(&e, name))?;
+        if !text.ends_with('\n') {
+            text.push('\n');
+        }
+        Ok(text)
+    }
+
+    /// Renders a template that sees nothing but a view.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
     pub fn render_view(
         &self,
         name: &str,
         view: &impl serde::Serialize,
         lang: Lang,
     ) -> Result<String, ReportError> {
-        let env = self.environment(lang)?;
-        let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
-        let context = minijinja::context! {
-            v => Value::from(Serde(view)),
-            locale => Value::from(Serde(table(lang))),
-        };
-        finished(&template, context, name)
+        self.render(name, &view_context(view, lang), lang)
     }
-
-    fn render(
-        &self,
-        name: &str,
-        record: &RunRecord,
-        figures: &[Figure],
-        lang: Lang,
-    ) -> Result<String, ReportError> {
-        let env = self.environment(lang)?;
-        let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
-        let view = View::new(record, figures, lang);
-        Renderer::filled(&template, name, &view, record, lang)
-    }
-
-    fn filled(
-        template: &minijinja::Template<'_, '_>,
-        name: &str,
-        view: &View,
-        record: &RunRecord,
-        lang: Lang,
-    ) -> Result<String, ReportError> {
-        let context = minijinja::context! {
-            v => Value::from(Serde(view)),
-            run => Value::from(Serde(record)),
-            locale => Value::from(Serde(table(lang))),
-        };
-        finished(template, context, name)
-    }
-}
-
-/// What a template makes of a context, its last line ended.
-fn finished(
-    template: &minijinja::Template<'_, '_>,
-    context: Value,
-    name: &str,
-) -> Result<String, ReportError> {
-    let mut text = template.render(context).map_err(|e| wrong(&e, name))?;
-    if !text.ends_with('\n') {
-        text.push('\n');
-    }
-    Ok(text)
 }
 
 /// Renders the HTML report: one file that needs no other.
@@ -284,7 +255,7 @@ pub fn render_html(
     lang: Lang,
     renderer: &Renderer,
 ) -> Result<String, ReportError> {
-    renderer.render("report.html", record, figures, lang)
+    renderer.render("report.html", &run_context(&View::new(record, figures, lang), record, lang), lang)
 }
 
 /// Renders the Markdown report, with links to `figures/*.svg`.
@@ -297,26 +268,7 @@ pub fn render_markdown(
     lang: Lang,
     renderer: &Renderer,
 ) -> Result<String, ReportError> {
-    renderer.render("report.md", record, figures, lang)
-}
-
-/// Renders the report of a test of several phases: HTML and Markdown.
-///
-/// # Errors
-/// [`ReportError::Template`] when a template is wrong.
-pub fn render_phases(
-    record: &RunRecord,
-    parts: &[PhasePart<'_>],
-    lang: Lang,
-    renderer: &Renderer,
-) -> Result<(String, String), ReportError> {
-    let env = renderer.environment(lang)?;
-    let view = View::of_phases(record, parts, lang);
-    let one = |name: &str| {
-        let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
-        Renderer::filled(&template, name, &view, record, lang)
-    };
-    Ok((one("phases.html")?, one("phases.md")?))
+    renderer.render("report.md", &run_context(&View::new(record, figures, lang), record, lang), lang)
 }
 
 fn wrong(error: &minijinja::Error, name: &str) -> ReportError {

@@ -1,5 +1,6 @@
 //! Every verb from the command line: exit codes, verdicts, files, messages.
 
+mod report;
 #[path = "../support/mod.rs"]
 mod support;
 mod verbs;

@@ -1,9 +1,13 @@
 //! Plots as data: axes, layers, bands. What is drawn is decided here; how it is drawn, in `report::svg`.
 
 use crate::message::Note;
+use crate::real;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// How an axis maps values to paper.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Scale {
     /// Proportional.
     Linear,
@@ -14,21 +18,23 @@ pub enum Scale {
 }
 
 /// One axis.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Key of the label in the locale tables, for example `axis.averaging_time`.
-    pub label: &'static str,
+    pub label: Cow<'static, str>,
     /// Unit shown behind the label, empty for none.
     pub unit: String,
     /// Scale.
     pub scale: Scale,
     /// Fixed range; `None` fits the data.
+    #[serde(with = "real")]
     pub range: Option<(f64, f64)>,
 }
 
 /// Part a layer plays in a figure. Colours, dashes and markers follow from it, chosen for the colour-blind and for
 /// print without colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Style {
     /// The measured data.
     Data,
@@ -47,11 +53,13 @@ pub enum Style {
 }
 
 /// One layer of a figure, drawn in order.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Layer {
     /// A line through points; a non-finite point breaks it.
     Line {
         /// Points.
+        #[serde(with = "real")]
         points: Vec<(f64, f64)>,
         /// Part it plays.
         style: Style,
@@ -61,6 +69,7 @@ pub enum Layer {
     /// Marked points.
     Points {
         /// Points.
+        #[serde(with = "real")]
         points: Vec<(f64, f64)>,
         /// Part they play.
         style: Style,
@@ -70,6 +79,7 @@ pub enum Layer {
     /// A band between two curves over the same abscissae: (x, low, high).
     Band {
         /// Triples.
+        #[serde(with = "real")]
         points: Vec<(f64, f64, f64)>,
         /// Part it plays.
         style: Style,
@@ -79,6 +89,7 @@ pub enum Layer {
     /// Bars of a histogram: (from, to, height).
     Bars {
         /// Triples.
+        #[serde(with = "real")]
         bars: Vec<(f64, f64, f64)>,
         /// Part they play.
         style: Style,
@@ -88,6 +99,7 @@ pub enum Layer {
     /// A horizontal line over the whole width.
     Horizontal {
         /// Ordinate.
+        #[serde(with = "real")]
         at: f64,
         /// Part it plays.
         style: Style,
@@ -97,8 +109,10 @@ pub enum Layer {
     /// A shaded span of the abscissa over the whole height.
     Span {
         /// Start.
+        #[serde(with = "real")]
         from: f64,
         /// End.
+        #[serde(with = "real")]
         to: f64,
         /// Part it plays.
         style: Style,
@@ -108,6 +122,7 @@ pub enum Layer {
     /// A word at a point.
     Label {
         /// Position.
+        #[serde(with = "real")]
         at: (f64, f64),
         /// The word.
         text: Note,
@@ -115,7 +130,7 @@ pub enum Layer {
 }
 
 /// One pair of axes with its layers.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// Abscissa.
     pub x: Axis,
@@ -126,12 +141,12 @@ pub struct Panel {
 }
 
 /// A figure: one or more panels, one above the other. Neighbours with the same abscissa share its range and words.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// Id, for example `sigma_tau`; also the stem of its file. A channel is appended when there are several.
     pub id: String,
     /// Key of the title in the locale tables.
-    pub title: &'static str,
+    pub title: Cow<'static, str>,
     /// Channel shown behind the title, empty when there is one only.
     pub channel: String,
     /// Panels from top to bottom.

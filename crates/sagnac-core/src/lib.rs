@@ -29,6 +29,7 @@ pub mod mismatch;
 pub mod noise;
 pub mod numeric;
 pub mod rate_table;
+mod real;
 pub mod recording;
 pub mod render;
 pub mod series;

@@ -2,16 +2,19 @@
 //!
 //! This crate has no sentences. A [`Note`] becomes text where it is shown, by a locale table that the program owns.
 
+use crate::real;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// One argument of a note.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Arg {
     /// A number; shown with up to four significant digits.
-    Number(f64),
+    Number(#[serde(with = "real")] f64),
     /// A number as it was stated, such as a requirement; shown with every digit.
-    Stated(f64),
+    Stated(#[serde(with = "real")] f64),
     /// A count; shown in full.
     Count(u64),
     /// A text, shown on one line without control characters.
@@ -25,6 +28,7 @@ pub enum Arg {
     /// A number with a fixed number of decimals.
     Decimals {
         /// The number.
+        #[serde(with = "real")]
         value: f64,
         /// Decimals.
         digits: usize,
@@ -34,6 +38,7 @@ pub enum Arg {
     /// A number with a given number of significant digits.
     Figures {
         /// The number.
+        #[serde(with = "real")]
         value: f64,
         /// Significant digits.
         digits: usize,
@@ -115,7 +120,7 @@ impl From<String> for Arg {
 }
 
 /// A message: its key in the locale tables, and its arguments.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Note {
     /// Key in the locale tables, for example `note.russian_too_short`.
     pub id: Cow<'static, str>,

@@ -1,7 +1,7 @@
 //! `comparison.csv`: one row a unit, plain numbers, empty where there is none.
 
-use super::Unit;
 use super::published::Checked;
+use super::{Comparison, Unit};
 use crate::output::quoted;
 use std::fmt::Write;
 
@@ -18,8 +18,16 @@ fn number(value: Option<f64>) -> String {
     value.filter(|v| v.is_finite()).map(|v| format!("{v:e}")).unwrap_or_default()
 }
 
+/// The table of a comparison.
+pub fn of(comparison: &Comparison) -> String {
+    match &comparison.published {
+        Some(checked) => published(checked),
+        None => units(&comparison.units),
+    }
+}
+
 /// The table of units.
-pub fn units(units: &[Unit]) -> String {
+fn units(units: &[Unit]) -> String {
     let mut out = COLUMNS.to_owned();
     for unit in units {
         let value = |id: &str| number(unit.value(id));
@@ -94,7 +102,7 @@ pub fn units(units: &[Unit]) -> String {
 }
 
 /// The published tables with what was computed from each row.
-pub fn published(checked: &Checked) -> String {
+fn published(checked: &Checked) -> String {
     let mut out = String::from(
         "device,sigma100_deg_h,bias_instability_deg_h,ratio_printed,ratio_computed,arw_russian_deg_rt_h,\
 n_deg_rt_h,arw_ratio_printed,arw_ratio_computed,six_n_deg_h,sigma100_over_six_n,crossover_h,sigma10_over_sigma100,\

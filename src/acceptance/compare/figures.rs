@@ -8,7 +8,7 @@ use crate::i18n::Note;
 const NAMED: usize = 14;
 
 fn axis(label: &'static str, unit: &str, scale: Scale) -> Axis {
-    Axis { label, unit: unit.to_owned(), scale, range: None }
+    Axis { label: label.into(), unit: unit.to_owned(), scale, range: None }
 }
 
 /// The octave identity of a unit: bars of what the data hold, points of what the model expects.
@@ -29,7 +29,7 @@ pub fn octaves(unit: &Unit, number: usize) -> Option<Figure> {
     }
     Some(Figure {
         id: format!("octaves_{number}"),
-        title: "compare.figure.octaves",
+        title: "compare.figure.octaves".into(),
         channel: unit.label(),
         panels: vec![Panel {
             x: axis("axis.averaging_time", "s", Scale::Log),
@@ -86,7 +86,7 @@ pub fn ratios(units: &[Unit]) -> Option<Figure> {
     layers.extend(labels);
     Some(Figure {
         id: "ratios".into(),
-        title: "compare.figure.ratios",
+        title: "compare.figure.ratios".into(),
         channel: String::new(),
         panels: vec![Panel {
             x: axis("compare.axis.record_length", "h", Scale::Log),

@@ -111,7 +111,7 @@ pub struct CheckedRow {
     /// σ10 over σ100, σ10 from the Russian angle random walk.
     pub sigma10_over_sigma100: f64,
     /// What does not follow, or is worth knowing.
-    #[serde(serialize_with = "crate::record::message::messages")]
+    #[serde(serialize_with = "crate::record::message::notes::serialize")]
     pub remarks: Vec<Note>,
     /// True when something does not follow.
     pub flagged: bool,
@@ -140,7 +140,7 @@ pub struct Checked {
     /// What angle random walk alone gives.
     pub null: Vec<NullRow>,
     /// Remarks on the whole.
-    #[serde(serialize_with = "crate::record::message::messages")]
+    #[serde(serialize_with = "crate::record::message::notes::serialize")]
     pub remarks: Vec<Note>,
 }
 

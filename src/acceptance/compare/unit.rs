@@ -93,10 +93,10 @@ pub struct Unit {
     /// True where the model departs from the record, so that what it predicts is indicative.
     pub indicative: bool,
     /// What it all says.
-    #[serde(serialize_with = "crate::record::message::messages")]
+    #[serde(serialize_with = "crate::record::message::notes::serialize")]
     pub says: Vec<Note>,
     /// What could not be compared, and why.
-    #[serde(serialize_with = "crate::record::message::messages")]
+    #[serde(serialize_with = "crate::record::message::notes::serialize")]
     pub missing: Vec<Note>,
 }
 

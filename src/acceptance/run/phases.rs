@@ -160,7 +160,7 @@ fn of(done: &Done<'_>) -> PhaseRecord {
             .iter()
             .map(|m| crate::record::MeasurandRecord { phase: own(), ..m.clone() })
             .collect(),
-        figures: figures(done)
+        figures: figures(&phase.id, Some(outcome))
             .iter()
             .map(|f| FigureRecord { id: f.id.clone(), file: format!("figures/{}.svg", f.id) })
             .collect(),
@@ -168,9 +168,9 @@ fn of(done: &Done<'_>) -> PhaseRecord {
 }
 
 /// The figures of a phase under names that no other phase has.
-pub fn figures(done: &Done<'_>) -> Vec<Figure> {
-    let of = |f: &Figure| Figure { id: format!("{}-{}", done.phase.id, f.id), ..f.clone() };
-    done.outcome.as_ref().map(|o| o.figures.iter().map(of).collect()).unwrap_or_default()
+pub fn figures(phase: &str, outcome: Option<&Outcome>) -> Vec<Figure> {
+    let of = |f: &Figure| Figure { id: format!("{phase}-{}", f.id), ..f.clone() };
+    outcome.map(|o| o.figures.iter().map(of).collect()).unwrap_or_default()
 }
 
 /// Faults of all phases.

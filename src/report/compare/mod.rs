@@ -59,7 +59,7 @@ impl CompareView {
 }
 
 pub(super) fn figure(figure: &Figure, number: usize, words: Words) -> FigureView {
-    let title = words.t(figure.title);
+    let title = words.t(&figure.title);
     FigureView {
         id: figure.id.clone(),
         number,

@@ -17,10 +17,21 @@ use crate::figure::Figure;
 use crate::i18n::{Lang, Note};
 use crate::record::ExplainedRecord;
 use crate::record::explanation::Explanation;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+/// What `explain.json` holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainFile {
+    /// What was found.
+    #[serde(flatten)]
+    pub explanation: Explanation,
+    /// What its page shows besides.
+    pub context: Context,
+}
 
 /// Where an explanation comes from and goes to.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Context {
     /// The recording, as named by the user.
     pub recording: String,
@@ -35,6 +46,7 @@ pub struct Context {
     /// True when `correction.csv` is written.
     pub correction: bool,
     /// What must be known of the recording.
+    #[serde(with = "crate::record::message::notes")]
     pub notes: Vec<Note>,
 }
 
@@ -96,7 +108,7 @@ pub struct ExplainView {
 
 /// What a report says of a recording that was set against the model of its family: the verdict in a word and in
 /// sentences, or why there is none.
-pub fn explained_says(explained: &ExplainedRecord, lang: Lang) -> Vec<String> {
+pub fn explained_summary(explained: &ExplainedRecord, lang: Lang) -> Vec<String> {
     let words = Words { lang };
     match (&explained.explanation, &explained.error) {
         (Some(all), _) => sentence::verdict(all, words),

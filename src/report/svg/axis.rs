@@ -58,7 +58,7 @@ impl Ruled {
         // A series over time fills its frame; what is measured keeps some distance from it.
         let room = if direction == Direction::Across { 0.01 } else { 0.08 };
         let (low, high) = range(axis.scale, axis.range, data, room);
-        let words = lookup(lang, axis.label).unwrap_or(axis.label);
+        let words = lookup(lang, &axis.label).unwrap_or(&axis.label);
         let timed = axis.scale == Scale::Linear && direction == Direction::Across && axis.unit == "s";
         let mut ruled = Ruled { scale: axis.scale, low, high, ticks: vec![], title: String::new() };
         let (prefix, unit_text) = match axis.scale {

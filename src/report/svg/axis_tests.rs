@@ -4,7 +4,7 @@ use super::*;
 use crate::figure::Axis;
 
 fn rule(scale: Scale, unit: &str, data: (f64, f64), direction: Direction, length: f64) -> Ruled {
-    let axis = Axis { label: "x", unit: unit.into(), scale, range: None };
+    let axis = Axis { label: "x".into(), unit: unit.into(), scale, range: None };
     Ruled::new(&axis, Some(data), direction, length, Lang::En)
 }
 
@@ -95,7 +95,7 @@ fn words_along_an_axis_never_overlap() {
 
 #[test]
 fn a_fixed_range_is_kept_and_a_senseless_one_is_not() {
-    let axis = |range| Axis { label: "x", unit: String::new(), scale: Scale::Linear, range };
+    let axis = |range| Axis { label: "x".into(), unit: String::new(), scale: Scale::Linear, range };
     let r = Ruled::new(&axis(Some((-2.0, 3.0))), Some((0.0, 1.0)), Direction::Up, 200.0, Lang::En);
     assert_eq!((r.low, r.high), (-2.0, 3.0));
     let r = Ruled::new(&axis(Some((3.0, f64::NAN))), Some((0.0, 1.0)), Direction::Up, 200.0, Lang::En);

@@ -71,7 +71,7 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     let legends: Vec<Legend> = panels.iter().map(|p| Legend::new(p, across, say)).collect();
 
     let mut body = String::new();
-    let mut title = say(figure.title);
+    let mut title = say(&figure.title);
     if !figure.channel.is_empty() {
         title = format!("{title} · {}", figure.channel);
     }
@@ -184,7 +184,7 @@ mod tests {
     use crate::figure::{Layer, Style};
 
     fn figure(scale: Scale, points: Vec<(f64, f64)>) -> Figure {
-        let axis = Axis { label: "axis.a & b", unit: "deg/h".into(), scale, range: None };
+        let axis = Axis { label: "axis.a & b".into(), unit: "deg/h".into(), scale, range: None };
         let layers = vec![
             Layer::Line { points: points.clone(), style: Style::Data, legend: "<one>".into() },
             Layer::Points { points: points.clone(), style: Style::Data, legend: "<one>".into() },
@@ -200,7 +200,7 @@ mod tests {
         ];
         Figure {
             id: "a\"b".into(),
-            title: "t",
+            title: "t".into(),
             channel: "x".into(),
             panels: vec![Panel { x: axis.clone(), y: axis, layers }],
             remarks: vec![],
@@ -226,8 +226,13 @@ mod tests {
                 assert!(svg.contains("id=\"a-b-title\"") && !svg.contains("<one>"));
             }
         }
-        let empty =
-            Figure { id: "e".into(), title: "t", channel: String::new(), panels: vec![], remarks: vec![] };
+        let empty = Figure {
+            id: "e".into(),
+            title: "t".into(),
+            channel: String::new(),
+            panels: vec![],
+            remarks: vec![],
+        };
         assert!(render(&empty, Lang::En).contains("</svg>"));
     }
 

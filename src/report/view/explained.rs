@@ -2,7 +2,7 @@
 
 use crate::i18n::Lang;
 use crate::record::ExplainedRecord;
-use crate::report::explain::explained_says;
+use crate::report::explain::explained_summary;
 use serde::Serialize;
 
 /// The recording against the model of its family.
@@ -21,7 +21,7 @@ impl Explained {
     pub fn new(explained: &ExplainedRecord, lang: Lang) -> Explained {
         Explained {
             model: explained.model.clone(),
-            says: explained_says(explained, lang),
+            says: explained_summary(explained, lang),
             page: explained.explanation.as_ref().map(|_| "explain/report.html"),
         }
     }

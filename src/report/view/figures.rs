@@ -30,7 +30,7 @@ pub(super) fn drawn(record: &RunRecord, figures: &[Figure], words: Words) -> Vec
         .iter()
         .enumerate()
         .map(|(i, figure)| {
-            let title = words.t(figure.title);
+            let title = words.t(&figure.title);
             let file = record
                 .figures
                 .iter()

@@ -94,6 +94,8 @@ pub struct View {
     pub evidence: evidence::Evidence,
     /// Figures.
     pub figures: Vec<FigureView>,
+    /// That there were figures whose data are not kept; empty otherwise.
+    pub figures_missing: String,
     /// The methods appendix.
     pub methods: Vec<MethodView>,
     /// Options of the analysis.
@@ -250,6 +252,11 @@ impl View {
             footnotes,
             evidence: evidence::Evidence::new(record, words),
             figures: drawn(record, figures, words),
+            figures_missing: if figures.is_empty() && !record.figures.is_empty() {
+                words.t("report.figures_missing")
+            } else {
+                String::new()
+            },
             methods: methods::applicable(record)
                 .map(|m| MethodView {
                     title: words.t(&format!("methods.{}.title", m.id)),

@@ -43,6 +43,8 @@ impl View {
     /// The view of a test of several phases.
     pub fn of_phases(record: &RunRecord, parts: &[PhasePart<'_>], lang: Lang) -> View {
         let mut whole = View::new(record, &[], lang);
+        // Each phase shows its own.
+        whole.figures_missing = String::new();
         whole.phases = parts.iter().map(|p| one(p, lang)).collect();
         whole
     }

@@ -54,7 +54,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     bands.extend(lines);
     Some(Figure {
         id: gyro.figure_id("allan_family"),
-        title: "figure.title.allan_family",
+        title: "figure.title.allan_family".into(),
         channel: gyro.figure_channel(),
         panels: vec![Panel {
             x: axis("axis.averaging_time", "s", Scale::Log),

@@ -57,7 +57,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     }
     (!panels.is_empty()).then(|| Figure {
         id: gyro.figure_id("autocorrelation"),
-        title: "figure.title.autocorrelation",
+        title: "figure.title.autocorrelation".into(),
         channel: gyro.figure_channel(),
         panels,
         remarks,

@@ -44,7 +44,7 @@ pub fn figure(found: &Repeatability, several: bool) -> Figure {
     }
     Figure {
         id: if several { format!("bias_of_runs_{}", found.channel) } else { "bias_of_runs".to_owned() },
-        title: "figure.title.bias_of_runs",
+        title: "figure.title.bias_of_runs".into(),
         channel: if several { found.channel.clone() } else { String::new() },
         panels,
         remarks: vec![],

@@ -37,7 +37,7 @@ pub fn figure(zone: &DeadZone, several: bool) -> Figure {
     }
     Figure {
         id: if several { format!("dead_zone_{}", zone.channel) } else { "dead_zone".to_owned() },
-        title: "figure.title.dead_zone",
+        title: "figure.title.dead_zone".into(),
         channel: if several { zone.channel.clone() } else { String::new() },
         panels: vec![Panel {
             x: axis("figure_table.axis_rate", "deg/h", Scale::Linear),

@@ -31,7 +31,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         (-90..=90).map(|i| f64::from(i) / 20.0).map(|z| (z * sigma, peak * (-0.5 * z * z).exp())).collect();
     Some(Figure {
         id: gyro.figure_id("histogram"),
-        title: "figure.title.histogram",
+        title: "figure.title.histogram".into(),
         channel: gyro.figure_channel(),
         panels: vec![Panel {
             x: axis("axis.deviation", "deg/h", Scale::Linear),

@@ -39,7 +39,7 @@ pub fn figure(found: &Comparison, several: bool) -> Figure {
     panels.extend(found.axes.iter().enumerate().map(|(k, name)| over_level(found, k, name)));
     Figure {
         id: if several { format!("influence_{}", found.channel) } else { "influence".to_owned() },
-        title: "figure.title.influence",
+        title: "figure.title.influence".into(),
         channel: if several { found.channel.clone() } else { String::new() },
         panels,
         remarks: vec![],

@@ -98,7 +98,7 @@ pub fn figure(run: &TableRun, channel: &ScaleFactor, several: bool) -> Option<Fi
     }
     Some(Figure {
         id: if several { format!("table_polar_{}", channel.channel) } else { "table_polar".to_owned() },
-        title: "figure.title.table_polar",
+        title: "figure.title.table_polar".into(),
         channel: if several { channel.channel.clone() } else { String::new() },
         panels: vec![Panel {
             x: axis("figure_polar.axis", "", Scale::Polar),

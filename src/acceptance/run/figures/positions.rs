@@ -48,7 +48,7 @@ pub fn figure(found: &Positions, several: bool) -> Figure {
     let x = || axis("figure_positions.axis_earth", "deg/h", Scale::Linear);
     Figure {
         id: if several { format!("positions_{}", found.channel) } else { "positions".to_owned() },
-        title: "figure.title.positions",
+        title: "figure.title.positions".into(),
         channel: if several { found.channel.clone() } else { String::new() },
         panels: vec![
             Panel { x: x(), y: axis("figure_table.axis_output", "deg/h", Scale::Linear), layers },

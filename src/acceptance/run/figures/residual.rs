@@ -44,7 +44,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     let number = |v: f64| Arg::Figures { value: v, digits: 3, zeros: false };
     Some(Figure {
         id: gyro.figure_id("residual"),
-        title: "figure.title.residual",
+        title: "figure.title.residual".into(),
         channel: gyro.figure_channel(),
         panels: vec![Panel {
             x: axis("figure.fit.residual", "", Scale::Linear),

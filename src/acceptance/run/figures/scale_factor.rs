@@ -97,7 +97,7 @@ pub fn over_time(run: &TableRun, channel: &ScaleFactor, several: bool) -> Figure
 fn figure(id: &str, title: &'static str, channel: &ScaleFactor, several: bool, panels: Vec<Panel>) -> Figure {
     Figure {
         id: if several { format!("{id}_{}", channel.channel) } else { id.to_owned() },
-        title,
+        title: title.into(),
         channel: if several { channel.channel.clone() } else { String::new() },
         panels,
         remarks: vec![],

@@ -91,7 +91,7 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
     }
     Figure {
         id: gyro.figure_id("sigma_tau"),
-        title: "figure.title.sigma_tau",
+        title: "figure.title.sigma_tau".into(),
         channel: gyro.figure_channel(),
         panels: vec![Panel {
             x: axis("axis.averaging_time", "s", Scale::Log),

@@ -92,7 +92,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     panels.extend((ratios.len() > 3).then(|| ratio(&ratios)));
     Some(Figure {
         id: gyro.figure_id("spectrum"),
-        title: "figure.title.spectrum",
+        title: "figure.title.spectrum".into(),
         channel: gyro.figure_channel(),
         panels,
         remarks: vec![Note::new("figure.remark.resolution").with("hz", step_hz)],

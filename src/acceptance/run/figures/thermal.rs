@@ -29,7 +29,7 @@ pub fn figures(
     let mut out = vec![];
     let make = |stem: &str, title: &'static str, panels: Vec<Panel>, remarks: Vec<Note>| Figure {
         id: gyro.figure_id(stem),
-        title,
+        title: title.into(),
         channel: gyro.figure_channel(),
         panels,
         remarks,

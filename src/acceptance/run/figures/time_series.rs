@@ -56,7 +56,7 @@ pub fn figure(
         let seconds = rate.bin_len as f64 * tau0_s;
         remarks.push(Note::new("figure.remark.averaged").with("seconds", seconds));
     }
-    Figure { id, title: "figure.title.time_series", channel, panels, remarks }
+    Figure { id, title: "figure.title.time_series".into(), channel, panels, remarks }
 }
 
 fn layers(

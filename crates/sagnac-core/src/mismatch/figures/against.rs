@@ -66,7 +66,7 @@ pub fn against(a: &Against<'_>) -> Option<Figure> {
     }
     Some(Figure {
         id: format!("residual_against_{}", a.domain.id()),
-        title: "figure.explain.title_against",
+        title: "figure.explain.title_against".into(),
         channel: String::new(),
         panels: vec![Panel {
             x: axis(label, unit, Scale::Linear),

@@ -46,7 +46,7 @@ pub fn time_course(course: &TimeSeries<'_>) -> Figure {
     }
     Figure {
         id: "residual_over_time".into(),
-        title: "figure.explain.title_time",
+        title: "figure.explain.title_time".into(),
         channel: String::new(),
         panels,
         remarks,
@@ -94,7 +94,7 @@ pub fn local_level(
     }
     Figure {
         id: "level_over_time".into(),
-        title: "figure.explain.title_level",
+        title: "figure.explain.title_level".into(),
         channel: String::new(),
         panels: vec![Panel {
             x: axis("axis.time", "s", Scale::Linear),

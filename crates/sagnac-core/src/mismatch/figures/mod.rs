@@ -16,7 +16,7 @@ use crate::effect::{Domain, Place};
 use crate::figure::{Axis, Layer, Scale, Style};
 
 fn axis(label: &'static str, unit: &str, scale: Scale) -> Axis {
-    Axis { label, unit: unit.to_owned(), scale, range: None }
+    Axis { label: label.into(), unit: unit.to_owned(), scale, range: None }
 }
 
 fn line(points: Vec<(f64, f64)>, style: Style, legend: &str) -> Layer {

@@ -80,7 +80,7 @@ pub fn spectrum(s: &Spectra<'_>) -> Option<Figure> {
     let x = || axis("axis.frequency", "Hz", Scale::Log);
     Some(Figure {
         id: "residual_spectrum".into(),
-        title: "figure.explain.title_spectrum",
+        title: "figure.explain.title_spectrum".into(),
         channel: String::new(),
         panels: vec![
             Panel { x: x(), y: axis("axis.density", "(deg/h)^2/Hz", Scale::Log), layers },

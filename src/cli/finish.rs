@@ -1,0 +1,172 @@
+//! From a request to the folder of its results and the words on the terminal.
+
+use super::inputs;
+use super::progress::{Progress, Watch};
+use super::{exit, place};
+use crate::acceptance::run::{Outcome, Request, RunError, execute, explained, failed};
+use crate::config::model::Claim;
+use crate::i18n::{Lang, Localize, Note, lookup};
+use crate::output::StagedFolder;
+use crate::record::{Evidence, RunRecord};
+use crate::report::explain::{Context, explained_summary};
+use crate::report::export::{EXPORTERS, Exporter, export};
+use crate::report::{ExplanationResults, Renderer, Results, RunResults};
+use chrono::SecondsFormat;
+use std::path::PathBuf;
+
+/// A model that a recording is explained against.
+pub struct Against<'a> {
+    /// The model.
+    pub claim: Claim,
+    /// The recording as named.
+    pub recording: &'a [PathBuf],
+}
+
+/// Runs a request, writes its folder and prints the outcome; gives the exit code.
+///
+/// # Errors
+/// The diagnostic, in words. Where the recording could not be evaluated, a report that says so is written all the same.
+pub fn run_and_finish(
+    request: &Request<'_>,
+    against: Option<Against<'_>>,
+    folder: StagedFolder,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<u8, String> {
+    let outcome = match with_progress(request, &Note::new("cli.reading").say(lang)) {
+        Ok(outcome) => outcome,
+        Err(error) => return Err(report_failure(request, &error, folder, renderer, lang)?),
+    };
+    let mut results = RunResults::from(outcome);
+    if let Some(against) = against {
+        explain(request, against, &mut results, lang);
+    }
+    finish(results, folder, renderer, lang)
+}
+
+/// Runs a request with a progress bar.
+///
+/// # Errors
+/// As [`execute`].
+pub fn with_progress(request: &Request<'_>, label: &str) -> Result<Outcome, RunError> {
+    let mut progress = Progress::new();
+    let outcome = execute(request, &mut |done, total| progress.update(label, done, total));
+    progress.finish();
+    outcome
+}
+
+/// Explains a recording against the model of its procedure.
+fn explain(request: &Request<'_>, against: Against<'_>, results: &mut RunResults, lang: Lang) {
+    let Some(spec) = &request.procedure.explain else { return };
+    let mut watch = Watch::new(lang);
+    let Against { claim, recording } = against;
+    let out = explained::explain(spec, claim, request.procedure, recording, &mut |p| watch.of(p));
+    watch.finish();
+    results.explanation = out.outcome.map(|(claim, notes, outcome)| {
+        let names: Vec<String> = recording.iter().map(|p| p.display().to_string()).collect();
+        let context = Context {
+            recording: names.join(", "),
+            claim: out.record.model.clone(),
+            identified: false,
+            description: claim.description,
+            explained_at: request.now.to_rfc3339_opts(SecondsFormat::Secs, true),
+            correction: outcome.correction.is_some(),
+            notes,
+        };
+        ExplanationResults::new(&outcome, context)
+    });
+    results.outcome.record.explained = Some(out.record);
+}
+
+/// Writes the folder of a run and prints the outcome; gives the exit code.
+///
+/// # Errors
+/// The diagnostic, in words.
+pub fn finish(
+    results: RunResults,
+    folder: StagedFolder,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<u8, String> {
+    let code = exit::code(results.outcome.record.verdict);
+    let summary = summary(&results.outcome.record, lang);
+    let place = write(&Results::Run(Box::new(results)), folder, EXPORTERS, renderer, lang)?;
+    place::print(&format!("{summary}{}\n", place::shown(&place.join("report.html"))));
+    Ok(code)
+}
+
+/// Writes the report of a run that could not be carried out, and gives the message for the terminal.
+///
+/// # Errors
+/// The diagnostic, in words, where not even that can be written.
+pub fn report_failure(
+    request: &Request<'_>,
+    error: &RunError,
+    folder: StagedFolder,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<String, String> {
+    let results = Results::Run(Box::new(not_run(request, error).into()));
+    let place = write(&results, folder, EXPORTERS, renderer, lang)?;
+    let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
+    Ok(format!("{}{}\n", place::error(&error.note(), lang), report.say(lang)))
+}
+
+/// The outcome of a run that could not be carried out.
+pub fn not_run(request: &Request<'_>, error: &RunError) -> Outcome {
+    Outcome { record: failed(request, error), figures: vec![], tables: vec![] }
+}
+
+/// Writes results in some forms and puts their folder in its place. The record is always written: it lists the files.
+///
+/// # Errors
+/// The diagnostic, in words.
+pub fn write(
+    results: &Results,
+    folder: StagedFolder,
+    exporters: &[&dyn Exporter],
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<PathBuf, String> {
+    let whole = results.whole(lang);
+    let record_file = whole.kind().record_file();
+    for (name, contents) in export(&whole, exporters, renderer).map_err(|e| place::error(&e.note(), lang))? {
+        if name != record_file {
+            folder.write(&name, &contents).map_err(|e| place::error(&e.note(), lang))?;
+        }
+    }
+    for (below, part) in results.parts(lang) {
+        for (name, contents) in
+            export(&part, exporters, renderer).map_err(|e| place::error(&e.note(), lang))?
+        {
+            folder.write(&format!("{below}/{name}"), &contents).map_err(|e| place::error(&e.note(), lang))?;
+        }
+    }
+    inputs::publish(folder, whole.record(), lang)
+}
+
+/// The outcome in a few lines for the terminal.
+fn summary(record: &RunRecord, lang: Lang) -> String {
+    let word = |key: String| lookup(lang, &key).map_or(key.clone(), str::to_owned);
+    let mut out = format!("{}\n", word(format!("verdict.{}", record.verdict.id())).to_uppercase());
+    for note in &record.summary {
+        out.push_str(&format!("  {}\n", note.say(lang)));
+    }
+    let mut declared: Vec<&str> = record
+        .conditions
+        .iter()
+        .filter(|c| c.evidence == Some(Evidence::Declared))
+        .map(|c| c.id.split('.').next().unwrap_or(&c.id))
+        .collect();
+    declared.sort_unstable();
+    declared.dedup();
+    if !declared.is_empty() {
+        let names: Vec<String> = declared.iter().map(|id| word(format!("condition.{id}"))).collect();
+        let note = Note::new("cli.declared").with("names", names.join(", "));
+        out.push_str(&format!("  {}\n", note.say(lang)));
+    }
+    for sentence in record.explained.iter().flat_map(|e| explained_summary(e, lang)) {
+        out.push_str(&format!("  {sentence}\n"));
+    }
+    out
+}

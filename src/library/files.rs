@@ -1,0 +1,26 @@
+//! How files get into a folder.
+
+use super::Error;
+use crate::report::export::{Exporter, export};
+use crate::report::{Document, Renderer, ReportError};
+use std::io::Write;
+use std::path::Path;
+
+/// Writes a document in some forms into a folder, which is created where it is missing. Each file appears complete or not
+/// at all, and takes the place of one of the same name.
+pub(super) fn write(
+    folder: &Path,
+    document: &Document<'_>,
+    exporters: &[&dyn Exporter],
+) -> Result<(), Error> {
+    for (name, contents) in export(document, exporters, &Renderer::new())? {
+        let path = folder.join(name);
+        let failed = |source| ReportError::Io { path: path.display().to_string(), source };
+        let parent = path.parent().unwrap_or(folder);
+        std::fs::create_dir_all(parent).map_err(failed)?;
+        let mut file = tempfile::NamedTempFile::new_in(parent).map_err(failed)?;
+        file.write_all(&contents).map_err(failed)?;
+        file.persist(&path).map_err(|e| failed(e.error))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! What is exported: a result, an explanation or a comparison, with its figures and tables, in one language.
+
+use super::compare::CompareView;
+use super::explain::{ExplainFile, ExplainView};
+use super::results::ExplanationResults;
+use super::view::{PhasePart, View};
+use crate::acceptance::compare::Comparison;
+use crate::acceptance::run::Outcome;
+use crate::acceptance::run::phases::figures as phase_figures;
+use crate::figure::Figure;
+use crate::i18n::{Lang, table};
+use crate::output::Kind;
+use crate::record::RunRecord;
+use minijinja::value::{Serde, Value};
+use serde::Serialize;
+use std::borrow::Cow;
+
+/// What every exporter is given.
+pub struct Document<'a> {
+    /// The language of words and numbers. Records and tables are the same in every language.
+    pub lang: Lang,
+    /// The figures, in the order of the page.
+    pub figures: Cow<'a, [Figure]>,
+    /// Tables and other data files, the same in every language: name and contents.
+    pub tables: &'a [(String, String)],
+    record: Record<'a>,
+    template: &'static str,
+    context: Value,
+}
+
+/// The record that the JSON file of a document holds.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Record<'a> {
+    Run(&'a RunRecord),
+    Explanation(&'a ExplainFile),
+    Comparison(&'a Comparison),
+}
+
+impl<'a> Document<'a> {
+    /// The document of a run or an analysis.
+    pub fn of_run(outcome: &'a Outcome, lang: Lang) -> Document<'a> {
+        let Outcome { record, figures, tables } = outcome;
+        Document {
+            lang,
+            context: run_context(&View::new(record, figures, lang), record, lang),
+            template: "report",
+            figures: figures.into(),
+            tables,
+            record: Record::Run(record),
+        }
+    }
+
+    /// The document of a test of several phases, whose outcomes stand in the order of the phases of `record`; `None` for
+    /// one that was not recorded.
+    pub fn of_phases(record: &'a RunRecord, phases: &[Option<Outcome>], lang: Lang) -> Document<'a> {
+        let figures: Vec<Vec<Figure>> =
+            record.phases.iter().zip(phases).map(|(p, o)| phase_figures(&p.id, o.as_ref())).collect();
+        let parts: Vec<PhasePart<'_>> = record
+            .phases
+            .iter()
+            .zip(phases)
+            .zip(&figures)
+            .map(|((phase, o), figures)| PhasePart { phase, record: o.as_ref().map(|o| &o.record), figures })
+            .collect();
+        Document {
+            lang,
+            context: run_context(&View::of_phases(record, &parts, lang), record, lang),
+            template: "phases",
+            figures: figures.concat().into(),
+            tables: &[],
+            record: Record::Run(record),
+        }
+    }
+
+    /// The document of an explanation.
+    pub fn of_explanation(results: &'a ExplanationResults, lang: Lang) -> Document<'a> {
+        let ExplanationResults { file, figures, tables } = results;
+        let view = ExplainView::new(&file.explanation, figures, &file.context, lang);
+        Document {
+            lang,
+            context: view_context(&view, lang),
+            template: "explain",
+            figures: figures.into(),
+            tables,
+            record: Record::Explanation(file),
+        }
+    }
+
+    /// The document of a comparison.
+    pub fn of_comparison(
+        comparison: &'a Comparison,
+        figures: &'a [Figure],
+        tables: &'a [(String, String)],
+        lang: Lang,
+    ) -> Document<'a> {
+        Document {
+            lang,
+            context: view_context(&CompareView::new(comparison, figures, lang), lang),
+            template: "compare",
+            figures: figures.into(),
+            tables,
+            record: Record::Comparison(comparison),
+        }
+    }
+
+    /// What the folder of the document holds.
+    pub fn kind(&self) -> Kind {
+        match self.record {
+            Record::Run(_) => Kind::Result,
+            Record::Explanation(_) => Kind::Explanation,
+            Record::Comparison(_) => Kind::Comparison,
+        }
+    }
+
+    /// Name of a page, such as `report.html`, by the ending of its file.
+    pub fn page(&self, ending: &str) -> String {
+        let stem = if self.kind() == Kind::Comparison { "comparison" } else { "report" };
+        format!("{stem}.{ending}")
+    }
+
+    /// Name of the template that makes a page, by the ending of its file.
+    pub fn template(&self, ending: &str) -> String {
+        format!("{}.{ending}", self.template)
+    }
+
+    /// What templates see: `v`, the view; `locale`, the words of the language; `run`, the record of a run.
+    pub fn context(&self) -> &Value {
+        &self.context
+    }
+
+    /// The record, for a JSON file.
+    pub fn record(&self) -> impl Serialize {
+        &self.record
+    }
+
+    /// The figures whose data are to be kept beside the record. A phase keeps its own.
+    pub fn own_figures(&self) -> &[Figure] {
+        if self.template == "phases" { &[] } else { &self.figures }
+    }
+}
+
+/// What a template of a run sees.
+pub(super) fn run_context(view: &View, record: &RunRecord, lang: Lang) -> Value {
+    minijinja::context! {
+        v => Value::from(Serde(view)),
+        run => Value::from(Serde(record)),
+        locale => Value::from(Serde(table(lang))),
+    }
+}
+
+/// What any other template sees.
+pub(super) fn view_context(view: &impl Serialize, lang: Lang) -> Value {
+    minijinja::context! {
+        v => Value::from(Serde(view)),
+        locale => Value::from(Serde(table(lang))),
+    }
+}

@@ -1,0 +1,17 @@
+//! Tables.
+
+use super::{ExportedFile, Exporter};
+use crate::report::{Document, Renderer, ReportError};
+
+/// Tables such as `sigma_tau.csv`, and what else is written for other programs, such as compensation coefficients.
+pub struct Csv;
+
+impl Exporter for Csv {
+    fn id(&self) -> &'static str {
+        "csv"
+    }
+
+    fn files(&self, document: &Document<'_>, _: &Renderer) -> Result<Vec<ExportedFile>, ReportError> {
+        Ok(document.tables.iter().map(|(name, text)| ExportedFile::new(name, text.as_str())).collect())
+    }
+}

@@ -1,0 +1,37 @@
+//! Forms in which results are written, one file each: an [`Exporter`] and its line in [`EXPORTERS`].
+
+mod csv;
+mod exporter;
+mod html;
+mod json;
+mod markdown;
+mod svg;
+
+pub use csv::Csv;
+pub use exporter::{ExportedFile, Exporter};
+pub use html::Html;
+pub use json::{FIGURES_FILE, FIGURES_FORMAT, FigureFile, Json};
+pub use markdown::Markdown;
+pub use svg::Svg;
+
+use super::{Document, Renderer, ReportError};
+use std::collections::BTreeMap;
+
+/// Every form, in the order of the help.
+pub static EXPORTERS: &[&dyn Exporter] = &[&Html, &Markdown, &Csv, &Json, &Svg];
+
+/// The files of a document in some forms: contents by name.
+///
+/// # Errors
+/// [`ReportError`] when a template is wrong.
+pub fn export(
+    document: &Document<'_>,
+    exporters: &[&dyn Exporter],
+    renderer: &Renderer,
+) -> Result<BTreeMap<String, Vec<u8>>, ReportError> {
+    let mut files = BTreeMap::new();
+    for exporter in exporters {
+        files.extend(exporter.files(document, renderer)?.into_iter().map(|f| (f.name, f.contents)));
+    }
+    Ok(files)
+}

@@ -1,0 +1,335 @@
+//! Everything that a run or an explanation gives, in memory or read back from its folder.
+
+use super::Document;
+use super::explain::{Context, ExplainFile};
+use super::export::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
+use crate::acceptance::compare::{Comparison, csv, figures};
+use crate::acceptance::run::Outcome;
+use crate::config::model;
+use crate::figure::Figure;
+use crate::i18n::{Lang, Note};
+use crate::mismatch;
+use crate::output::Kind;
+use crate::record::explanation::Explanation;
+use crate::record::read::{self, ReadError};
+use crate::record::{FigureRecord, RESULT_FORMAT, RunRecord};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Component, Path, PathBuf};
+
+/// Version of `explain.json`.
+const EXPLAIN_FORMAT: &str = "explain/1";
+
+/// What a run gives.
+pub struct RunResults {
+    /// Record, figures and tables; of a test of several phases those of the whole.
+    pub outcome: Outcome,
+    /// The outcomes of the phases, in the order of the record; `None` for one that was not recorded.
+    pub phases: Vec<Option<Outcome>>,
+    /// The recording against the model that the procedure names, where it names one.
+    pub explanation: Option<ExplanationResults>,
+}
+
+impl From<Outcome> for RunResults {
+    fn from(outcome: Outcome) -> RunResults {
+        RunResults { outcome, phases: vec![], explanation: None }
+    }
+}
+
+/// What an explanation gives.
+#[derive(Clone)]
+pub struct ExplanationResults {
+    /// What `explain.json` holds.
+    pub file: ExplainFile,
+    /// The figures, in the order of the page.
+    pub figures: Vec<Figure>,
+    /// `correction.csv`, where there is a correction, and `augmented.toml`.
+    pub tables: Vec<(String, String)>,
+}
+
+impl ExplanationResults {
+    /// The results of an explanation.
+    pub fn new(outcome: &mismatch::Outcome, context: Context) -> ExplanationResults {
+        let correction =
+            outcome.correction.as_ref().map(|c| ("correction.csv".to_owned(), correction_csv(c)));
+        let augmented = ("augmented.toml".to_owned(), model::write(&outcome.augmented));
+        ExplanationResults {
+            file: ExplainFile { explanation: outcome.explanation.clone(), context },
+            figures: outcome.figures.clone(),
+            tables: correction.into_iter().chain([augmented]).collect(),
+        }
+    }
+}
+
+/// `correction.csv`: the shortest digits from which time and correction come back to the bit.
+fn correction_csv(correction: &[(f64, f64)]) -> String {
+    let mut out = String::with_capacity(24 + 32 * correction.len());
+    out.push_str("time_s,correction_deg_h\n");
+    for (time, value) in correction {
+        let _ = writeln!(out, "{time},{value:e}");
+    }
+    out
+}
+
+/// Results of any kind.
+pub enum Results {
+    /// Of a run or an analysis.
+    Run(Box<RunResults>),
+    /// Of an explanation.
+    Explanation(Box<ExplanationResults>),
+    /// Of a comparison: the record, figures and tables.
+    Comparison(Box<Comparison>, Vec<Figure>, Vec<(String, String)>),
+}
+
+impl Results {
+    /// The results of a comparison.
+    pub fn of_comparison(comparison: Comparison) -> Results {
+        let figures = figures::all(&comparison.units);
+        let rows = csv::of(&comparison);
+        Results::Comparison(Box::new(comparison), figures, vec![("comparison.csv".into(), rows)])
+    }
+
+    /// What the folder of the results holds.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Results::Run(_) => Kind::Result,
+            Results::Explanation(_) => Kind::Explanation,
+            Results::Comparison(..) => Kind::Comparison,
+        }
+    }
+
+    /// What a folder is named after: the serial number of the unit, or the case that is explained.
+    pub fn subject(&self) -> Option<&str> {
+        match self {
+            Results::Run(results) => results.outcome.record.unit_under_test.serial.as_deref(),
+            Results::Explanation(results) => {
+                Some(results.file.explanation.case.as_str()).filter(|c| !c.is_empty())
+            }
+            Results::Comparison(..) => None,
+        }
+    }
+
+    /// The document of the whole.
+    pub fn whole(&self, lang: Lang) -> Document<'_> {
+        match self {
+            Results::Run(results) if results.outcome.record.phases.is_empty() => {
+                Document::of_run(&results.outcome, lang)
+            }
+            Results::Run(results) => Document::of_phases(&results.outcome.record, &results.phases, lang),
+            Results::Explanation(results) => Document::of_explanation(results, lang),
+            Results::Comparison(comparison, figures, tables) => {
+                Document::of_comparison(comparison, figures, tables, lang)
+            }
+        }
+    }
+
+    /// The documents that stand in folders below that of the whole, each with its folder, such as `phases/static`.
+    pub fn parts(&self, lang: Lang) -> Vec<(String, Document<'_>)> {
+        let Results::Run(results) = self else { return vec![] };
+        let phases = results.outcome.record.phases.iter().zip(&results.phases);
+        let phases = phases.filter_map(|(phase, o)| phase.folder.clone().zip(o.as_ref()));
+        let explanation = results.explanation.as_ref().map(|e| ("explain".to_owned(), e));
+        let phases = phases.map(|(folder, o)| (folder, Document::of_run(o, lang)));
+        let explanation = explanation.map(|(folder, e)| (folder, Document::of_explanation(e, lang)));
+        phases.chain(explanation).collect()
+    }
+}
+
+/// Results read back from their folder.
+pub struct StoredResults {
+    /// The results.
+    pub results: Results,
+    /// What they were made from, as the result lists it.
+    pub inputs: BTreeMap<String, String>,
+    /// What is not there any more, or was never kept: the page is made without it.
+    pub missing: Vec<Note>,
+}
+
+/// What a record says of its folder.
+#[derive(Default, Deserialize)]
+struct Listing {
+    #[serde(default)]
+    inputs: BTreeMap<String, String>,
+    #[serde(default)]
+    files: Vec<String>,
+}
+
+impl StoredResults {
+    /// Reads a `result.json`, `explain.json` or `comparison.json`, or the folder of one, with what stands beside it.
+    ///
+    /// # Errors
+    /// A note that names the file and what is wrong with it.
+    pub fn open(path: &Path) -> Result<StoredResults, Note> {
+        let file = record_file(path)?;
+        let wrong = |e: ReadError| e.note(&file);
+        let bytes = read::bytes(&file).map_err(wrong)?;
+        let format = read::format_of(&bytes).map_err(wrong)?.unwrap_or_default();
+        let listing: Listing = serde_json::from_slice(&bytes).unwrap_or_default();
+        let folder = file.parent().map(Path::to_owned).unwrap_or_default();
+        let mut from = Folder { path: folder, files: listing.files, missing: vec![] };
+        let results = match format.split('/').next() {
+            Some("explain") => Results::Explanation(Box::new(from.explanation("", &bytes).map_err(wrong)?)),
+            _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
+        };
+        Ok(StoredResults { results, inputs: listing.inputs, missing: from.missing })
+    }
+}
+
+/// The file that a path stands for.
+fn record_file(path: &Path) -> Result<PathBuf, Note> {
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    Kind::ALL
+        .iter()
+        .map(|k| path.join(k.record_file()))
+        .find(|p| p.is_file())
+        .ok_or_else(|| Note::new("result_error.no_result_in").with("path", path.display().to_string()))
+}
+
+/// A folder that results are read from.
+struct Folder {
+    path: PathBuf,
+    files: Vec<String>,
+    missing: Vec<Note>,
+}
+
+impl Folder {
+    fn run(&mut self, bytes: &[u8]) -> Result<RunResults, ReadError> {
+        let record: RunRecord = read::of_format(bytes, RESULT_FORMAT)?;
+        if !record.phases.is_empty() {
+            let phases = record.phases.iter().map(|p| self.phase(&p.id, p.folder.as_deref()?)).collect();
+            let outcome = Outcome { record, figures: vec![], tables: vec![] };
+            return Ok(RunResults { outcome, phases, explanation: None });
+        }
+        let explanation = record.explained.as_ref().and_then(|e| e.explanation.clone());
+        let outcome = self.outcome(record, "");
+        let explanation = explanation.map(|e| self.explanation_of_run(e));
+        Ok(RunResults { outcome, phases: vec![], explanation })
+    }
+
+    /// The outcome of a phase; `None` where its result is missing.
+    fn phase(&mut self, id: &str, folder: &str) -> Option<Outcome> {
+        // A result leads to no place outside its folder.
+        let inside = Path::new(folder).components().all(|c| matches!(c, Component::Normal(_)));
+        let path = self.path.join(folder).join(Kind::Result.record_file());
+        let record =
+            if inside { read::bytes(&path).and_then(|b| read::from_slice(&b)) } else { return None };
+        match record {
+            Ok(record) => Some(self.outcome(record, &format!("{folder}/"))),
+            Err(e) => {
+                self.missing
+                    .push(Note::new("result_error.no_phase").with("id", id).with("why", e.note(&path)));
+                None
+            }
+        }
+    }
+
+    fn outcome(&mut self, record: RunRecord, before: &str) -> Outcome {
+        let figures = self.figures(before, record.figures.len(), &record.figures);
+        Outcome { figures, tables: self.tables(before, Kind::Result), record }
+    }
+
+    fn explanation(&mut self, before: &str, bytes: &[u8]) -> Result<ExplanationResults, ReadError> {
+        let explanation: Explanation = read::of_format(bytes, EXPLAIN_FORMAT)?;
+        let file: ContextOf = read::of_format(bytes, EXPLAIN_FORMAT)?;
+        Ok(self.with_context(explanation, file.context, before))
+    }
+
+    /// The explanation that the record of a run holds, with what stands in its folder.
+    fn explanation_of_run(&mut self, explanation: Explanation) -> ExplanationResults {
+        let path = self.path.join("explain").join(Kind::Explanation.record_file());
+        let file = read::bytes(&path).and_then(|b| read::of_format::<ContextOf>(&b, EXPLAIN_FORMAT));
+        let context = match file {
+            Ok(file) => file.context,
+            Err(e) => {
+                self.missing.push(e.note(&path));
+                Context::default()
+            }
+        };
+        self.with_context(explanation, context, "explain/")
+    }
+
+    fn with_context(
+        &mut self,
+        explanation: Explanation,
+        context: Context,
+        before: &str,
+    ) -> ExplanationResults {
+        let figures = self.figures(before, 1, &[]);
+        let tables = self.tables(before, Kind::Explanation);
+        ExplanationResults { file: ExplainFile { explanation, context }, figures, tables }
+    }
+
+    /// The figures whose data stand below a part of the folder.
+    fn figures(&mut self, before: &str, expected: usize, named: &[FigureRecord]) -> Vec<Figure> {
+        if expected == 0 {
+            return vec![];
+        }
+        let path = self.path.join(format!("{before}{FIGURES_FILE}"));
+        let file =
+            read::bytes(&path).and_then(|b| read::of_format::<FigureFile<'static>>(&b, FIGURES_FORMAT));
+        match file {
+            Ok(file) => {
+                let known = |f: &Figure| named.is_empty() || named.iter().any(|n| n.id == f.id);
+                file.figures.into_owned().into_iter().filter(known).collect()
+            }
+            Err(e) => {
+                self.missing.push(Note::new("result_error.no_figures").with("why", e.note(&path)));
+                vec![]
+            }
+        }
+    }
+
+    /// The tables that the record lists below a part of the folder; where it lists nothing, those that are there.
+    fn tables(&mut self, before: &str, kind: Kind) -> Vec<(String, String)> {
+        let below = self.path.join(before);
+        let listed = self.files.iter().filter_map(|f| f.strip_prefix(before)).map(str::to_owned);
+        let mut names: Vec<String> = listed.filter(|n| kind.is_table(n)).collect();
+        if self.files.is_empty() {
+            let there = std::fs::read_dir(&below).into_iter().flatten().flatten();
+            names = there.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+            names.retain(|n| kind.is_table(n));
+            names.sort();
+        }
+        let mut tables = vec![];
+        for name in names {
+            let path = below.join(&name);
+            match read::bytes(&path).map(String::from_utf8) {
+                Ok(Ok(text)) => tables.push((name, text)),
+                Ok(Err(_)) => self
+                    .missing
+                    .push(Note::new("result_error.not_text").with("path", path.display().to_string())),
+                Err(e) => self.missing.push(e.note(&path)),
+            }
+        }
+        tables
+    }
+}
+
+/// The part of an `explain.json` that a page needs beside the explanation.
+#[derive(Deserialize)]
+struct ContextOf {
+    #[serde(default)]
+    context: Context,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_correction_comes_back_to_the_bit() {
+        let given = [(0.1 + 0.2, -1.0 / 3.0), (1e6 + 0.1, 2.5e-9), (3.0, 0.0)];
+        let text = correction_csv(&given);
+        let read: Vec<(f64, f64)> = text
+            .lines()
+            .skip(1)
+            .map(|l| l.split_once(',').unwrap())
+            .map(|(a, b)| (a.parse().unwrap(), b.parse().unwrap()))
+            .collect();
+        assert_eq!(read, given);
+        assert_eq!(text.lines().next(), Some("time_s,correction_deg_h"));
+    }
+}

@@ -1,0 +1,152 @@
+//! `sagnac report`: results rendered anew without their recordings.
+
+use crate::support::{limits, names, procedure, root, sagnac, sample, shipped};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use tempfile::tempdir;
+
+/// The files below a folder with their contents.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for name in names(folder) {
+        let path = folder.join(&name);
+        if path.is_dir() {
+            found.extend(files(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
+        } else {
+            found.insert(name, fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
+/// The names of files that differ between two folders.
+fn differences(a: &Path, b: &Path) -> Vec<String> {
+    let (a, b) = (files(a), files(b));
+    a.keys().chain(b.keys()).filter(|k| a.get(*k) != b.get(*k)).cloned().collect()
+}
+
+/// Renders `o` anew in English, and in Russian and from there in English again.
+fn comes_out_the_same(dir: &Path) {
+    let render = |from: &str, lang: &str, to: &str| {
+        let said = sagnac(dir, &["report", from, "--lang", lang, "--out", to]);
+        assert_eq!((said.code, said.err.as_str()), (0, ""), "{from}: {said:?}");
+        assert_eq!(said.out, format!("{to}\n"));
+    };
+    let at = |name: &str| dir.join(name);
+    render("o", "en", "again");
+    assert_eq!(differences(&at("o"), &at("again")), [""; 0]);
+    render("o", "ru", "ru");
+    let words = differences(&at("o"), &at("ru"));
+    let of_words = |name: &String| [".html", ".md", ".svg"].iter().any(|end| name.ends_with(end));
+    assert!(words.len() > 2 && words.iter().all(of_words), "{words:?}");
+    render("ru", "en", "back");
+    assert_eq!(differences(&at("o"), &at("back")), [""; 0]);
+}
+
+#[test]
+fn a_run_an_analysis_and_a_test_of_several_phases_come_out_the_same() {
+    let runs: [&[&str]; 4] = [
+        &["run", &procedure(), &sample("pass"), "--limits", &limits(), "--serial", "SN-1"],
+        &["analyze", &sample("faults")],
+        &["run", &shipped("procedures/acceptance.toml"), &shipped("samples/acceptance-fail.toml")],
+        // Shorter than what is required, so that nothing is evaluated.
+        &["run", &shipped("procedures/scale-factor.toml"), &sample("pass"), "--serial", "SN-1"],
+    ];
+    for args in runs {
+        let dir = tempdir().unwrap();
+        let said = sagnac(dir.path(), &[args, &["--lang", "en", "--out", "o"]].concat());
+        assert!(dir.path().join("o/result.json").is_file(), "{args:?}: {said:?}");
+        comes_out_the_same(dir.path());
+    }
+}
+
+#[test]
+fn an_explanation_comes_out_the_same_alone_and_in_a_run() {
+    let dir = tempdir().unwrap();
+    let model = root().join("samples/model-step.toml").display().to_string();
+    let family = root().join("samples/model-static.toml").display().to_string();
+    assert_eq!(sagnac(dir.path(), &["simulate", &model, "--out", "step.csv", "--duration", "1h"]).code, 0);
+    let said = sagnac(dir.path(), &["explain", "step.csv", "--model", &family, "--lang", "en", "--out", "o"]);
+    assert!(dir.path().join("o/explain.json").is_file(), "{said:?}");
+    comes_out_the_same(dir.path());
+
+    let dir_of_run = tempdir().unwrap();
+    let text = format!(
+        "format = \"procedure/1\"\n[procedure]\nid = \"p\"\ntitle = \"P\"\nrevision = \"A\"\n\
+         [unit_under_test]\nserial_required = false\n\
+         [[channel]]\nid = \"time\"\ncolumn = \"time_s\"\nrole = \"time\"\nunit = \"s\"\n\
+         [[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"\n\
+         [[measurand]]\nid = \"static_bias\"\n[measurand.options]\nearth_rate = \"keep\"\n\
+         [explain]\nmodel = '{family}'\n"
+    );
+    fs::write(dir_of_run.path().join("p.toml"), text).unwrap();
+    let recording = dir.path().join("step.csv").display().to_string();
+    let said = sagnac(dir_of_run.path(), &["run", "p.toml", &recording, "--lang", "en", "--out", "o"]);
+    assert!(dir_of_run.path().join("o/explain/report.html").is_file(), "{said:?}");
+    comes_out_the_same(dir_of_run.path());
+}
+
+#[test]
+fn forms_are_chosen_and_what_is_missing_is_said() {
+    let dir = tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    let run = ["run", &procedure(), &sample("indeterminate"), "--serial", "SN-1", "--out", "o"];
+    sagnac(dir.path(), &run);
+    let report = |args: &[&str]| sagnac(dir.path(), &[&["report", "o", "--lang", "en"], args].concat());
+    assert_eq!(report(&["--format", "html", "--out", "h"]).code, 0);
+    assert_eq!(names(&at("h")), ["report.html", "result.json"]);
+    assert_eq!(report(&["--format", "csv,md", "--out", "c"]).code, 0);
+    assert_eq!(names(&at("c")), ["figures", "report.md", "result.json", "sigma_tau.csv"]);
+    assert!(!names(&at("c/figures")).contains(&"data.json".to_owned()));
+
+    // Into its own folder it would take away what it reads.
+    let refused = report(&["--out", "o"]);
+    assert_eq!(refused.code, 2, "{refused:?}");
+
+    // The record alone: the page says what it lacks, and so does the terminal.
+    fs::remove_file(at("o/sigma_tau.csv")).unwrap();
+    fs::remove_file(at("o/figures/data.json")).unwrap();
+    let said = report(&["--out", "less"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.err.contains("data.json") && said.err.contains("sigma_tau.csv"), "{}", said.err);
+    assert_eq!(names(&at("less")), ["report.html", "report.md", "result.json"]);
+    let page = fs::read_to_string(at("less/report.html")).unwrap();
+    assert!(page.contains("The figures are not shown") && !page.contains("<svg"));
+    let verdict = |name: &str| fs::read_to_string(at(name)).unwrap().lines().nth(4).map(str::to_owned);
+    assert_eq!(verdict("less/report.md"), verdict("o/report.md"));
+}
+
+#[test]
+fn what_is_no_result_is_refused_in_one_message() {
+    let dir = tempdir().unwrap();
+    let whole =
+        fs::read_to_string(root().join("tests/fixtures/results/static-bias-without-presentation.json"))
+            .unwrap();
+    let cases: [(&str, String, &str); 6] = [
+        ("newer.json", whole.replacen("result/1", "result/2", 1), "`result/2` of another version"),
+        ("cut.json", whole[..whole.len() / 2].to_owned(), "ends prematurely"),
+        ("broken.json", whole.replacen(':', ";", 1), "invalid JSON at line"),
+        ("foreign.json", "{\"name\": \"package\"}".to_owned(), "not a result of this program"),
+        ("wrong.json", whole.replacen("\"verdict\": \"", "\"verdict\": \"very ", 1), "does not follow"),
+        ("empty.json", String::new(), "ends prematurely"),
+    ];
+    for (name, text, fragment) in &cases {
+        fs::write(dir.path().join(name), text).unwrap();
+        let said = sagnac(dir.path(), &["report", name, "--lang", "en", "--out", "o"]);
+        assert_eq!((said.code, said.out.as_str()), (2, ""), "{name}: {said:?}");
+        assert!(said.err.starts_with("error: ") && said.err.lines().count() == 1, "{name}: {}", said.err);
+        assert!(said.err.contains(name) && said.err.contains(fragment), "{name}: {}", said.err);
+    }
+    for (name, fragment) in [("none.json", "none.json"), (".", "without result.json")] {
+        let said = sagnac(dir.path(), &["report", name, "--lang", "en", "--out", "o"]);
+        assert_eq!(said.code, 2, "{said:?}");
+        assert!(said.err.contains(fragment), "{}", said.err);
+    }
+    assert!(!dir.path().join("o").exists());
+    // An earlier file of the format is rendered; it kept no data of figures.
+    fs::write(dir.path().join("earlier.json"), whole).unwrap();
+    let said = sagnac(dir.path(), &["report", "earlier.json", "--lang", "ru", "--out", "o"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(fs::read_to_string(dir.path().join("o/report.md")).unwrap().contains("Рисунков нет"));
+}
