@@ -52,7 +52,10 @@ macro_rules! frees {
             fn starts(&self, _look: &$crate::effect::SpectralContext<'_>) -> Vec<Vec<f64>> {
                 vec![vec![]]
             }
-            fn bounds(&self, _look: &$crate::effect::SpectralContext<'_>) -> Vec<(f64, f64)> {
+            fn bounds(
+                &self,
+                _look: &$crate::effect::SpectralContext<'_>,
+            ) -> Vec<$crate::numeric::range::Bounds> {
                 vec![]
             }
             fn trials(&self, _look: &$crate::effect::SpectralContext<'_>) -> f64 {
@@ -103,7 +106,7 @@ macro_rules! linear {
             ) -> $crate::effect::Starts {
                 $crate::effect::Starts::linear()
             }
-            fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+            fn bounds(&self, _drivers: &Drivers) -> Vec<$crate::numeric::range::Bounds> {
                 vec![]
             }
             fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> $crate::effect::Regressors {

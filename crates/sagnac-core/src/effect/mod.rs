@@ -14,6 +14,7 @@ pub use kinds::{EFFECTS, find};
 pub use low_pass::LowPass;
 pub use spectral::{ModeBin, SpectralContext, Spectrum, SpectrumAct};
 
+use crate::numeric::range::Bounds;
 use std::collections::BTreeMap;
 
 /// Kind of a cause that the format of explanations has no name for.
@@ -349,7 +350,7 @@ pub trait MeanModel: Sync {
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts;
 
     /// Bounds of each number of the shape.
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)>;
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds>;
 
     /// The course for a shape.
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors;

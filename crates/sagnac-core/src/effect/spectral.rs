@@ -3,6 +3,7 @@
 use super::{LowPass, Place, Values};
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
+use crate::numeric::range::Bounds;
 
 /// One bin of the cosine modes of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +90,7 @@ pub trait Spectrum: Sync {
     fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>>;
 
     /// Bounds of the fitted parameters.
-    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)>;
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<Bounds>;
 
     /// How many independent places a search looks at.
     fn trials(&self, context: &SpectralContext<'_>) -> f64;

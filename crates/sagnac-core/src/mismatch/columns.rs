@@ -6,6 +6,7 @@ use super::spectral_data::{SpectralData, smoothed};
 use crate::effect::{Column, Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_normal_two_sided};
 use crate::numeric::cosine::dct2;
+use crate::numeric::range::{Bounds, ends};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
@@ -48,7 +49,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Vec<Departure> {
             let mut product = centred(&named[i].1);
             product.iter_mut().zip(centred(&named[j].1)).for_each(|(x, y)| *x *= y);
             if let Some(ln_p) = gain_of(white, std::iter::once(product)) {
-                let (from, to) = crate::numeric::range::ends(&named[j].1);
+                let Bounds { low: from, high: to } = ends(&named[j].1);
                 let place = Place { domain: named[j].0, from, to };
                 out.push(Departure { test: "product", place, beside: None, ln_p });
             }
@@ -68,7 +69,7 @@ fn derivative(values: &[f64]) -> Vec<f64> {
 }
 
 fn centred(values: &[f64]) -> Vec<f64> {
-    let (low, high) = crate::numeric::range::ends(values);
+    let Bounds { low, high } = ends(values);
     let (middle, half) = (0.5 * (low + high), (0.5 * (high - low)).max(1e-300));
     values.iter().map(|v| (v - middle) / half).collect()
 }
@@ -126,7 +127,7 @@ fn when(departure: Departure, spectral: &SpectralData, values: &[f64]) -> Depart
 
 /// Whether the residual follows a smooth function of a column, and at which of its values most.
 fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]) -> Option<Departure> {
-    let (low, high) = crate::numeric::range::ends(values);
+    let Bounds { low, high } = ends(values);
     if high - low <= 1e-9 * low.abs().max(high.abs()) {
         return None;
     }
@@ -173,7 +174,7 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
     if n < 64 * GROUPS || domain == Domain::Angle {
         return None;
     }
-    let (low, high) = crate::numeric::range::ends(values);
+    let Bounds { low, high } = ends(values);
     if high - low <= 1e-9 * low.abs().max(high.abs()) {
         return None;
     }

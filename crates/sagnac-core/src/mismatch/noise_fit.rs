@@ -7,6 +7,7 @@ use super::spectral_data::SpectralData;
 use crate::claim::Claim;
 use crate::effect::{Effect, ModeBin, Model, SpectralContext, Spectrum, SpectrumAct};
 use crate::noise::data::NoiseType;
+use crate::numeric::range::Bounds;
 use nalgebra::{DMatrix, DVector};
 
 /// Index of a base coefficient in arrays.
@@ -235,7 +236,7 @@ impl Noise {
     }
 
     /// Bounds of the logarithm of a parameter.
-    fn log_bounds(&self, which: Which, context: &SpectralContext<'_>) -> (f64, f64) {
+    fn log_bounds(&self, which: Which, context: &SpectralContext<'_>) -> Bounds {
         match which {
             Which::Base(i) => {
                 let c = match self.claimed[i] {
@@ -243,12 +244,12 @@ impl Noise {
                     _ if self.is_bound(i) && !self.freed[i] => self.bound[i],
                     _ => self.base[i].max(1e-30),
                 };
-                ((c * 1e-4).ln(), (c * 1e4).ln())
+                Bounds::new((c * 1e-4).ln(), (c * 1e4).ln())
             }
             Which::Effect(e, p) => {
                 let bounds = self.spectra[e].spectrum().map(|s| s.bounds(context)).unwrap_or_default();
-                let (low, high) = bounds.get(p).copied().unwrap_or((1e-30, 1e30));
-                (low.max(1e-300).ln(), high.max(1e-300).ln())
+                let Bounds { low, high } = bounds.get(p).copied().unwrap_or(Bounds::new(1e-30, 1e30));
+                Bounds::new(low.max(1e-300).ln(), high.max(1e-300).ln())
             }
         }
     }
@@ -274,7 +275,7 @@ pub fn fit_in(noise: &mut Noise, spectral: &SpectralData, observed: &[f64], step
     let expected = noise.densities(spectral);
     let context =
         SpectralContext { bins: &spectral.bins, observed, expected: &expected, grid_step_arcsec: None };
-    let bounds: Vec<(f64, f64)> = which.iter().map(|w| noise.log_bounds(*w, &context)).collect();
+    let bounds: Vec<Bounds> = which.iter().map(|w| noise.log_bounds(*w, &context)).collect();
     let value = |noise: &Noise, densities: &[f64]| whittle(spectral, observed, densities) + noise.prior();
     let mut densities = expected.clone();
     let mut best = value(noise, &densities);
@@ -299,8 +300,7 @@ pub fn fit_in(noise: &mut Noise, spectral: &SpectralData, observed: &[f64], step
             };
             let mut next = noise.clone();
             for (i, w) in which.iter().enumerate() {
-                let x = (noise.value(*w).max(1e-300).ln() + step[i].clamp(-2.0, 2.0))
-                    .clamp(bounds[i].0, bounds[i].1);
+                let x = bounds[i].clamp(noise.value(*w).max(1e-300).ln() + step[i].clamp(-2.0, 2.0));
                 next.set(*w, x.exp());
             }
             let tried = next.densities(spectral);

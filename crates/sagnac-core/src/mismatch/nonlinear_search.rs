@@ -1,14 +1,15 @@
 //! The local search of the numbers that a course is not linear in.
 
 use crate::effect::{Drivers, MeanModel};
+use crate::numeric::range::Bounds;
 
 /// Gain that steps to either side must lose for smaller ones to be worth taking: what is left lies within a hundredth of
 /// a standard deviation then.
 const FLAT: f64 = 1e-4;
 
 /// Numbers of a shape that are searched over. One that is whole has few values: it counts in the p-value alone.
-pub fn free_numbers(course: &dyn MeanModel, bounds: &[(f64, f64)]) -> usize {
-    let free = |(i, (low, high)): (usize, &(f64, f64))| high > low && !course.whole().contains(&i);
+pub fn free_numbers(course: &dyn MeanModel, bounds: &[Bounds]) -> usize {
+    let free = |(i, b): (usize, &Bounds)| b.width() > 0.0 && !course.whole().contains(&i);
     bounds.iter().enumerate().filter(|b| free(*b)).count()
 }
 
@@ -27,23 +28,23 @@ pub fn first_steps(course: &dyn MeanModel, drivers: &Drivers) -> Vec<Option<f64>
 /// `first` are the first steps, on that scale; empty: by the bounds.
 pub fn refine(
     start: &[f64],
-    bounds: &[(f64, f64)],
+    bounds: &[Bounds],
     first: &[Option<f64>],
     evaluations: usize,
     gain: impl Fn(&[f64]) -> f64,
 ) -> (Vec<f64>, f64) {
-    let logarithmic: Vec<bool> = bounds.iter().map(|(low, high)| *low > 0.0 && high / low > 20.0).collect();
+    let logarithmic: Vec<bool> = bounds.iter().map(|b| b.low > 0.0 && b.high / b.low > 20.0).collect();
     let to = |i: usize, x: f64| if logarithmic[i] { x.max(1e-300).ln() } else { x };
     let from = |i: usize, u: f64| if logarithmic[i] { u.exp() } else { u };
     let mut at = start.to_vec();
-    for (x, (low, high)) in at.iter_mut().zip(bounds) {
-        *x = x.clamp(*low, *high);
+    for (x, bounds) in at.iter_mut().zip(bounds) {
+        *x = bounds.clamp(*x);
     }
     let mut best = gain(&at);
     let mut used = 1;
     let mut steps: Vec<f64> = (0..at.len())
         .map(|i| {
-            let width = to(i, bounds[i].1) - to(i, bounds[i].0);
+            let width = to(i, bounds[i].high) - to(i, bounds[i].low);
             if let Some(Some(step)) = first.get(i) {
                 return step.min(width);
             }
@@ -61,7 +62,7 @@ pub fn refine(
             let mut sides = [f64::NEG_INFINITY; 2];
             for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let mut next = at.clone();
-                next[i] = from(i, here + sign * steps[i]).clamp(bounds[i].0, bounds[i].1);
+                next[i] = bounds[i].clamp(from(i, here + sign * steps[i]));
                 if next[i] == at[i] {
                     continue;
                 }
@@ -81,7 +82,7 @@ pub fn refine(
                 if curve < 0.0 {
                     let mut next = at.clone();
                     let shift = 0.5 * steps[i] * (sides[1] - sides[0]) / curve;
-                    next[i] = from(i, here + shift).clamp(bounds[i].0, bounds[i].1);
+                    next[i] = bounds[i].clamp(from(i, here + shift));
                     let got = gain(&next);
                     used += 1;
                     if got > best {

@@ -1,7 +1,7 @@
 //! Samples that repeat the one before them to the last digit, more often than chance has it.
 
 use super::regular::Regular;
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 /// Fewest repeats that are more than chance.
 const FEWEST: usize = 10;
@@ -56,7 +56,7 @@ impl Repeats {
 pub fn of(regular: &Regular) -> Option<Repeats> {
     let (rate, present) = (&regular.rate, &regular.grid.present);
     let pairs = || (1..rate.len().min(present.len())).filter(|i| present[*i] && present[*i - 1]);
-    let (low, high) = ends(rate);
+    let Bounds { low, high } = ends(rate);
     let held = |i: &usize| rate[*i] == rate[*i - 1];
     let own = |i: &usize| rate[*i] > low && rate[*i] < high && rate[*i] != 0.0;
     let rows: Vec<usize> = pairs().filter(held).filter(own).collect();

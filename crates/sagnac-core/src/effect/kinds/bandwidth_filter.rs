@@ -7,6 +7,7 @@ use crate::effect::{
 use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode};
 use crate::noise::data::NoiseType;
 use crate::numeric::optimize::bisect;
+use crate::numeric::range::Bounds;
 use std::f64::consts::PI;
 
 pub struct BandwidthFilter;
@@ -184,7 +185,7 @@ impl Spectrum for BandwidthFilter {
 
     fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
         let Some(first) = context.bins.first() else { return vec![] };
-        let (low, high) = self.bounds(context)[0];
+        let Bounds { low, high } = self.bounds(context)[0];
         let cost = |start: &[f64]| {
             // The level is left open: without the filter it was drawn down to what the filter leaves.
             let factors = self.densities(start, context.bins);
@@ -223,13 +224,16 @@ impl Spectrum for BandwidthFilter {
         forms.map(|n| of(n as f64)).chain([best(averages)]).flatten().collect()
     }
 
-    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<Bounds> {
         let (dt, n) = context.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
-        vec![((10.0 / (n as f64 * dt)).min(0.1 / dt), 3.0 / dt), (1.0, FORMS.len() as f64)]
+        vec![
+            Bounds::new((10.0 / (n as f64 * dt)).min(0.1 / dt), 3.0 / dt),
+            Bounds::new(1.0, FORMS.len() as f64),
+        ]
     }
 
     fn trials(&self, context: &SpectralContext<'_>) -> f64 {
-        let (low, high) = self.bounds(context)[0];
+        let Bounds { low, high } = self.bounds(context)[0];
         (high / low).ln().max(1.0)
     }
 

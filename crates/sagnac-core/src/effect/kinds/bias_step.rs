@@ -4,6 +4,7 @@ use crate::effect::{
     Domain, Drivers, Effect, MeanModel, Model, Param, Place, Regressors, SearchContext, Starts, Values,
     number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct BiasStep;
 
@@ -83,8 +84,8 @@ impl MeanModel for BiasStep {
         instants(drivers, context)
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
-        vec![(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
+        vec![Bounds::new(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

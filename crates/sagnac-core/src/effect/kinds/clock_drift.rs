@@ -6,6 +6,7 @@ use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::range::Bounds;
 
 pub struct ClockDrift;
 
@@ -39,7 +40,7 @@ impl MeanModel for ClockDrift {
         }
         let mean = drivers.claimed_mean();
         let residual = inverse_dct2(context.modes);
-        let (low, high) = self.bounds(drivers)[0];
+        let Bounds { low, high } = self.bounds(drivers)[0];
         let track = |from: usize| {
             let (mut drift, mut until) = (0.0f64, from);
             loop {
@@ -61,8 +62,8 @@ impl MeanModel for ClockDrift {
         Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
-        vec![(-1e5, 1e5)]
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
+        vec![Bounds::new(-1e5, 1e5)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -7,7 +7,7 @@ use crate::effect::{
     Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
     list, number,
 };
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 pub struct ColumnCurve;
 
@@ -53,7 +53,7 @@ fn meant(nonlinear_parameters: &[f64]) -> Option<(Domain, usize)> {
 }
 
 fn scale(values: &[f64]) -> (f64, f64) {
-    let (low, high) = ends(values);
+    let Bounds { low, high } = ends(values);
     (0.5 * (low + high), (0.5 * (high - low)).max(1e-12))
 }
 
@@ -85,8 +85,8 @@ impl MeanModel for ColumnCurve {
         Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials }
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
-        vec![(0.0, (DOMAINS.len() - 1) as f64), (2.0, HIGHEST as f64)]
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
+        vec![Bounds::new(0.0, (DOMAINS.len() - 1) as f64), Bounds::new(2.0, HIGHEST as f64)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -8,7 +8,7 @@ use crate::effect::{
     Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
     list, number,
 };
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 pub struct ColumnProduct;
 
@@ -77,7 +77,7 @@ fn pair(nonlinear_parameters: &[f64]) -> Option<(Factor, Factor)> {
 
 /// Middle and half width of a factor; a rate is not centred, since nothing goes with it at rest.
 fn scale(factor: Factor, values: &[f64]) -> (f64, f64) {
-    let (low, high) = ends(values);
+    let Bounds { low, high } = ends(values);
     match factor {
         Factor::Of(TableRate | OuterRate) => (0.0, low.abs().max(high.abs()).max(1e-12)),
         _ => (0.5 * (low + high), (0.5 * (high - low)).max(1e-12)),
@@ -120,8 +120,8 @@ impl MeanModel for ColumnProduct {
         Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials }
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
-        vec![(0.0, (PAIRS.len() - 1) as f64)]
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
+        vec![Bounds::new(0.0, (PAIRS.len() - 1) as f64)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -5,6 +5,7 @@ use super::search::{best_of, fast_level, log_grid, peaks};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 /// Widths that are tried of a zone beyond which the response stays behind.
 const BEHIND: usize = 16;
@@ -101,11 +102,11 @@ impl MeanModel for DeadZone {
         Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         // What holds at nearly every rate is no zone around zero.
         let around_zero = |high: f64, low: f64| (AROUND * high).max(low);
-        sizes(drivers).map_or(vec![(1e-9, 1e-9), (0.0, 1.0)], |(low, high, _)| {
-            vec![(low, around_zero(high, low)), (0.0, 1.0)]
+        sizes(drivers).map_or(vec![Bounds::new(1e-9, 1e-9), Bounds::new(0.0, 1.0)], |(low, high, _)| {
+            vec![Bounds::new(low, around_zero(high, low)), Bounds::new(0.0, 1.0)]
         })
     }
 

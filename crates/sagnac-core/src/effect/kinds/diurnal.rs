@@ -5,6 +5,7 @@ use super::sinusoid::{polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct Diurnal;
 
@@ -27,7 +28,7 @@ impl MeanModel for Diurnal {
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let (low, high) = self.bounds(drivers)[0];
+        let Bounds { low, high } = self.bounds(drivers)[0];
         if low == high {
             return Starts { points: vec![vec![DAY_S]], trials: 1.0 };
         }
@@ -35,8 +36,12 @@ impl MeanModel for Diurnal {
         Starts { points: best_of(self, grid.into_iter().map(|p| vec![p]), 2, drivers, context), trials: 1.0 }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
-        if drivers.length_s() > 2.0 * DAY_S { vec![(82_800.0, 90_000.0)] } else { vec![(DAY_S, DAY_S)] }
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
+        if drivers.length_s() > 2.0 * DAY_S {
+            vec![Bounds::new(82_800.0, 90_000.0)]
+        } else {
+            vec![Bounds::new(DAY_S, DAY_S)]
+        }
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -4,6 +4,7 @@ use super::sinusoid::{Sweep, polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 use realfft::RealFftPlanner;
 
 pub struct DriftingLine;
@@ -73,7 +74,7 @@ impl MeanModel for DriftingLine {
         let mut turns = [(0.0, 0.0); BLOCK];
         let (middle, step) = (middle_s(drivers), step(drivers));
         let cell = 1.0 / (padded as f64 * drivers.dt_s);
-        let (low, high) = self.bounds(drivers)[0];
+        let Bounds { low, high } = self.bounds(drivers)[0];
         let (first, last) = ((low / cell).ceil() as usize, ((high / cell) as usize).min(with_cos.len() - 1));
         let mut best = (0.0, vec![]);
         for r in 1..=rates {
@@ -114,10 +115,13 @@ impl MeanModel for DriftingLine {
         Starts { points, trials: n as f64 * rates as f64 }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let resolution = 1.0 / drivers.length_s();
         let most = (rates(drivers.samples) + 1) as f64 * step(drivers);
-        vec![(3.0 * resolution, (0.5 / drivers.dt_s).max(4.0 * resolution)), (-most, most)]
+        vec![
+            Bounds::new(3.0 * resolution, (0.5 / drivers.dt_s).max(4.0 * resolution)),
+            Bounds::new(-most, most),
+        ]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -6,6 +6,7 @@ use super::table_harmonic::{columns, visited};
 use crate::effect::{
     Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct EarthRateProjection;
 
@@ -30,7 +31,7 @@ impl MeanModel for EarthRateProjection {
         Starts::linear()
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
         vec![]
     }
 

@@ -5,6 +5,7 @@ use super::search::gain_of;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct HeadingChange;
 
@@ -79,8 +80,8 @@ impl MeanModel for HeadingChange {
         }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
-        vec![(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
+        vec![Bounds::new(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
     }
 
     /// A step; with a table that turns, the projection as a function of its angle from then on.

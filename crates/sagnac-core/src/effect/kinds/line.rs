@@ -7,6 +7,7 @@ use crate::effect::{
 };
 use crate::numeric::cosine::sinusoid_modes;
 use crate::numeric::optimize::parabolic_peak;
+use crate::numeric::range::Bounds;
 use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 
@@ -66,7 +67,7 @@ impl MeanModel for Line {
             return Starts { points: vec![], trials: 1.0 };
         }
         let (mut gains, step) = periodogram(drivers, context);
-        let (low, high) = self.bounds(drivers)[0];
+        let Bounds { low, high } = self.bounds(drivers)[0];
         for (j, gain) in gains.iter_mut().enumerate() {
             if !(low..=high).contains(&(j as f64 * step)) {
                 *gain = 0.0;
@@ -77,9 +78,9 @@ impl MeanModel for Line {
         Starts { points: peaks(&gains, 3, apart).into_iter().map(at).collect(), trials: n as f64 }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let resolution = 1.0 / drivers.length_s();
-        vec![(resolution, (0.5 / drivers.dt_s - 0.5 * resolution).max(resolution))]
+        vec![Bounds::new(resolution, (0.5 / drivers.dt_s - 0.5 * resolution).max(resolution))]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

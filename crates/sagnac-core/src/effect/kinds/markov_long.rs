@@ -4,6 +4,7 @@ use crate::effect::{
     Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
+use crate::numeric::range::Bounds;
 
 pub struct MarkovLong;
 
@@ -95,17 +96,17 @@ impl Spectrum for MarkovLong {
     }
 
     fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
-        let (low, high) = self.bounds(context)[0];
+        let Bounds { low, high } = self.bounds(context)[0];
         starts_between(low * 1.5, high / 1.5, context)
     }
 
-    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<Bounds> {
         let (dt, n) = context.bins.first().map_or((1.0, 1), |b| (b.dt_s, b.samples));
-        vec![(SHORT_SAMPLES * dt, 0.5 * n as f64 * dt), (1e-9, 1e9)]
+        vec![Bounds::new(SHORT_SAMPLES * dt, 0.5 * n as f64 * dt), Bounds::new(1e-9, 1e9)]
     }
 
     fn trials(&self, context: &SpectralContext<'_>) -> f64 {
-        let (low, high) = self.bounds(context)[0];
+        let Bounds { low, high } = self.bounds(context)[0];
         (high / low).ln().max(1.0)
     }
 

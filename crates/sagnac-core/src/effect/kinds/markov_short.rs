@@ -3,6 +3,7 @@
 use super::markov_long::{SHORT_SAMPLES, densities, process, starts_between};
 use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
 use crate::noise::composite::Composite;
+use crate::numeric::range::Bounds;
 
 pub struct MarkovShort;
 
@@ -34,13 +35,13 @@ impl Spectrum for MarkovShort {
     }
 
     fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
-        let (low, high) = self.bounds(context)[0];
+        let Bounds { low, high } = self.bounds(context)[0];
         starts_between(2.0 * low, high, context)
     }
 
-    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<Bounds> {
         let dt = context.bins.first().map_or(1.0, |b| b.dt_s);
-        vec![(0.25 * dt, SHORT_SAMPLES * dt), (1e-9, 1e9)]
+        vec![Bounds::new(0.25 * dt, SHORT_SAMPLES * dt), Bounds::new(1e-9, 1e9)]
     }
 
     fn trials(&self, _look: &SpectralContext<'_>) -> f64 {

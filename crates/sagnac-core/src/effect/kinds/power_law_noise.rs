@@ -5,6 +5,7 @@ use crate::effect::{
     Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Composite, Damped};
+use crate::numeric::range::Bounds;
 
 pub struct PowerLawNoise;
 
@@ -93,8 +94,8 @@ impl Spectrum for PowerLawNoise {
         [0.4, 0.7, 1.4].map(|exponent| vec![density, exponent, middle]).to_vec()
     }
 
-    fn bounds(&self, _look: &SpectralContext<'_>) -> Vec<(f64, f64)> {
-        vec![(1e-30, 1e30), (0.1, 1.9), (1e-12, 1e9)]
+    fn bounds(&self, _look: &SpectralContext<'_>) -> Vec<Bounds> {
+        vec![Bounds::new(1e-30, 1e30), Bounds::new(0.1, 1.9), Bounds::new(1e-12, 1e9)]
     }
 
     fn trials(&self, _look: &SpectralContext<'_>) -> f64 {

@@ -4,6 +4,7 @@ use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, Sp
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_density;
+use crate::numeric::range::Bounds;
 
 pub struct Quantization;
 
@@ -49,8 +50,8 @@ impl Spectrum for Quantization {
         vec![vec![(12.0 * (both / square).max(0.01 * level)).sqrt()]]
     }
 
-    fn bounds(&self, _look: &SpectralContext<'_>) -> Vec<(f64, f64)> {
-        vec![(1e-9, 1e6)]
+    fn bounds(&self, _look: &SpectralContext<'_>) -> Vec<Bounds> {
+        vec![Bounds::new(1e-9, 1e6)]
     }
 
     fn trials(&self, _look: &SpectralContext<'_>) -> f64 {

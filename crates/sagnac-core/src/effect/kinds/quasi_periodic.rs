@@ -3,6 +3,7 @@
 use super::search::peaks;
 use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
 use crate::noise::composite::{Composite, Damped, Sampling};
+use crate::numeric::range::Bounds;
 use std::f64::consts::PI;
 
 pub struct QuasiPeriodic;
@@ -28,10 +29,10 @@ fn process(fitted: &[f64]) -> Damped {
 }
 
 /// Lower and upper edge of a bin, Hz.
-fn edges(bin: &ModeBin) -> (f64, f64) {
+fn edges(bin: &ModeBin) -> Bounds {
     let spacing = 0.5 / (bin.samples as f64 * bin.dt_s);
     let low = (bin.mode as f64 - 0.5) * spacing;
-    (low, low + bin.modes as f64 * spacing)
+    Bounds::new(low, low + bin.modes as f64 * spacing)
 }
 
 impl Spectrum for QuasiPeriodic {
@@ -61,7 +62,7 @@ impl Spectrum for QuasiPeriodic {
             if bin.modes == 1 {
                 return modes.power(bin.mode);
             }
-            let (low, high) = edges(bin);
+            let Bounds { low, high } = edges(bin);
             let (mut point, mut mean) = (0.0, 0.0);
             for center in [process.frequency_hz, -process.frequency_hz] {
                 point += lorentz(bin.frequency_hz - center);
@@ -91,7 +92,7 @@ impl Spectrum for QuasiPeriodic {
             let sure: Vec<f64> = (0..context.bins.len())
                 .map(|i| {
                     let modes: usize = context.bins[window(i)].iter().map(|b| b.modes).sum();
-                    let inside = context.bins[i].frequency_hz >= bounds[0].0;
+                    let inside = context.bins[i].frequency_hz >= bounds[0].low;
                     if inside {
                         excess[window(i)].iter().sum::<f64>() / (2.0 * modes as f64).sqrt()
                     } else {
@@ -108,9 +109,10 @@ impl Spectrum for QuasiPeriodic {
                         (context.observed[j] - context.expected[j]) * context.bins[j].modes as f64 / length
                     })
                     .sum();
-                let (low, high) = (edges(&context.bins[bins.start]).0, edges(&context.bins[bins.end - 1]).1);
+                let low = edges(&context.bins[bins.start]).low;
+                let high = edges(&context.bins[bins.end - 1]).high;
                 let center = context.bins[i].frequency_hz;
-                let time = (2.0 / (PI * (high - low))).clamp(bounds[2].0, bounds[2].1);
+                let time = bounds[2].clamp(2.0 / (PI * (high - low)));
                 found.push((sure[i], vec![center, power.max(1e-18).sqrt(), time]));
             }
         }
@@ -118,10 +120,14 @@ impl Spectrum for QuasiPeriodic {
         found.into_iter().take(4).map(|(_, start)| start).collect()
     }
 
-    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<Bounds> {
         let (dt, n) = context.bins.first().map_or((1.0, 16), |b| (b.dt_s, b.samples));
         let length = n as f64 * dt;
-        vec![((3.0 / length).min(0.25 / dt), 0.5 / dt), (1e-9, 1e9), (3.0 * dt, 2.0 * length)]
+        vec![
+            Bounds::new((3.0 / length).min(0.25 / dt), 0.5 / dt),
+            Bounds::new(1e-9, 1e9),
+            Bounds::new(3.0 * dt, 2.0 * length),
+        ]
     }
 
     fn trials(&self, context: &SpectralContext<'_>) -> f64 {

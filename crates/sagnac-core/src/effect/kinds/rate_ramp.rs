@@ -1,6 +1,7 @@
 //! A linear drift.
 
 use crate::effect::{Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number};
+use crate::numeric::range::Bounds;
 
 pub struct RateRamp;
 
@@ -26,7 +27,7 @@ impl MeanModel for RateRamp {
         Starts::linear()
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
         vec![]
     }
 

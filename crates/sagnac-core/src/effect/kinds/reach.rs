@@ -1,7 +1,7 @@
 //! Where along a column an effect acts, and whether the column says anything.
 
 use crate::effect::{Domain, Drivers, Place};
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 /// The values of a column at which a contribution departs from its mean by half of its largest departure or more.
 pub(super) fn reach(domain: Domain, column: &[f64], contribution: &[f64]) -> Vec<Place> {
@@ -18,7 +18,7 @@ pub(super) fn reach(domain: Domain, column: &[f64], contribution: &[f64]) -> Vec
 /// True for a column that changes by more than the rounding of its numbers.
 pub(super) fn varies(column: Option<&[f64]>) -> bool {
     let Some(column) = column else { return false };
-    let (low, high) = ends(column);
+    let Bounds { low, high } = ends(column);
     column.len() >= 8 && column.iter().all(|x| x.is_finite()) && high - low > 1e-9 * low.abs().max(high.abs())
 }
 

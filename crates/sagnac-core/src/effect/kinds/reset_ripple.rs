@@ -6,6 +6,7 @@ use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::optimize::parabolic_peak;
+use crate::numeric::range::{Bounds, ends};
 use rayon::prelude::*;
 use realfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
@@ -53,7 +54,7 @@ fn sensed(bias: f64, drivers: &Drivers) -> Option<(Vec<f64>, Vec<f64>)> {
 /// How far the sensed angle goes, arcsec.
 fn extent(bias: f64, drivers: &Drivers) -> f64 {
     sensed(bias, drivers).map_or(1.0, |(angle, _)| {
-        let (low, high) = crate::numeric::range::ends(&angle);
+        let Bounds { low, high } = ends(&angle);
         (high - low).max(1e-9)
     })
 }
@@ -196,7 +197,7 @@ impl MeanModel for ResetRipple {
         // The mean of a random walk is off from where it began by π²/3 times the variance of its slowest wave.
         let deviation = PI * (context.powers[1] / (3.0 * n as f64)).sqrt();
         let Some(angles) = sensed(fitted, drivers) else { return none };
-        let (low, high) = crate::numeric::range::ends(&angles.0);
+        let Bounds { low, high } = ends(&angles.0);
         let level = fast_level(context);
         let (mut period, mut found, mut trials) = (SHORTEST, vec![], 1.0);
         while period < (high - low) / 3.0 {
@@ -230,10 +231,10 @@ impl MeanModel for ResetRipple {
         Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let bias = drivers.claim.bias_deg_h;
         let range = extent(bias, drivers);
-        vec![(0.5 * SHORTEST, (0.5 * range).max(SHORTEST)), (bias - WIDE, bias + WIDE)]
+        vec![Bounds::new(0.5 * SHORTEST, (0.5 * range).max(SHORTEST)), Bounds::new(bias - WIDE, bias + WIDE)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -5,7 +5,7 @@ use super::search::{best_of, shortlist};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 pub struct Saturation;
 
@@ -44,9 +44,9 @@ impl MeanModel for Saturation {
         Starts { points, trials: 10.0 }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let most = largest(drivers).max(1e-12);
-        vec![(0.2 * most, most)]
+        vec![Bounds::new(0.2 * most, most)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
@@ -74,7 +74,7 @@ impl MeanModel for Saturation {
         let (Some(limit), Some(rate)) = (nonlinear_parameters.first(), &drivers.table_rate) else {
             return vec![];
         };
-        let (low, high) = ends(rate);
+        let Bounds { low, high } = ends(rate);
         let cut = |sign: f64| rate.iter().map(|r| (sign * r - limit).max(0.0)).sum::<f64>();
         let (down, up) = (cut(-1.0), cut(1.0));
         if down.max(up) <= 0.0 {
@@ -94,7 +94,7 @@ impl MeanModel for Saturation {
         let (Some(limit), Some(rate)) = (parameters.first(), &drivers.table_rate) else { return vec![] };
         let passes = |i: &usize| {
             let around = &rate[i.saturating_sub(1)..(i + 2).min(rate.len())];
-            let (low, high) = ends(around);
+            let Bounds { low, high } = ends(around);
             (low < *limit && *limit < high) || (low < -*limit && -*limit < high)
         };
         let bent: Vec<usize> = (0..rate.len()).filter(passes).collect();

@@ -2,7 +2,7 @@
 
 use super::sf_error::large_rates;
 use crate::effect::{Drivers, Param};
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 pub struct SfAsymmetry;
 
@@ -22,6 +22,6 @@ linear! { SfAsymmetry, replaces None, places large_rates }
 /// Rates of one sign alone cannot show it.
 fn applies(drivers: &Drivers) -> bool {
     let Some(rate) = &drivers.table_rate else { return false };
-    let (low, high) = ends(rate);
+    let Bounds { low, high } = ends(rate);
     low.is_finite() && high.is_finite() && low < -0.01 * high.abs() && high > 0.01 * low.abs()
 }

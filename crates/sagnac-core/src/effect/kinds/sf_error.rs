@@ -2,7 +2,7 @@
 
 use super::reach::varies;
 use crate::effect::{Domain, Drivers, Param, Place};
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 pub struct SfError;
 
@@ -16,9 +16,10 @@ describe! {
 /// Rates at which an effect that grows with the rate is at least half of its largest.
 pub(super) fn large_rates(drivers: &Drivers) -> Vec<Place> {
     let Some(rate) = &drivers.table_rate else { return vec![] };
-    let (from, to) = ends(rate);
+    let Bounds { low: from, high: to } = ends(rate);
     let largest = from.abs().max(to.abs());
-    let (from, to) = ends(&rate.iter().copied().filter(|r| r.abs() >= 0.5 * largest).collect::<Vec<_>>());
+    let Bounds { low: from, high: to } =
+        ends(&rate.iter().copied().filter(|r| r.abs() >= 0.5 * largest).collect::<Vec<_>>());
     if from <= to { vec![Place { domain: Domain::InputRate, from, to }] } else { vec![] }
 }
 

@@ -4,6 +4,7 @@ use super::reach::varies;
 use crate::effect::{
     Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct SfNonlinearity;
 
@@ -42,7 +43,7 @@ impl MeanModel for SfNonlinearity {
         Starts::linear()
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
         vec![]
     }
 

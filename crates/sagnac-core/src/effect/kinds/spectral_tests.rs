@@ -122,8 +122,8 @@ fn spectral_searches_begin_near_the_truth() {
             assert_eq!(start.len(), bounds.len(), "{kind}");
             best = best.max(likelihood(&|b| total(start, b)));
         }
-        for (x, (low, high)) in fitted.iter().zip(&bounds) {
-            assert!(low < x && x < high, "{kind}: {x} outside {low} to {high}");
+        for (x, bounds) in fitted.iter().zip(&bounds) {
+            assert!(bounds.low < *x && *x < bounds.high, "{kind}: {x} outside {bounds:?}");
         }
         let share = (best - before) / (at_truth - before);
         assert!(share > 0.3, "{kind}: {share} of {} from {starts:?}", at_truth - before);

@@ -4,6 +4,7 @@ use super::reach::{reach, varies};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct SupplySensitivity;
 
@@ -34,7 +35,7 @@ impl MeanModel for SupplySensitivity {
         Starts::linear()
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
         vec![]
     }
 

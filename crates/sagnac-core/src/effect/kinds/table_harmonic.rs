@@ -6,7 +6,7 @@ use super::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 pub struct TableHarmonic;
 
@@ -40,7 +40,7 @@ pub(super) fn columns(order: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
 /// The angles that the table went through.
 pub(super) fn visited(drivers: &Drivers) -> Vec<Place> {
     let Some(angle) = &drivers.table_angle else { return vec![] };
-    let (low, high) = ends(angle);
+    let Bounds { low, high } = ends(angle);
     if low > high {
         return vec![];
     }
@@ -63,8 +63,8 @@ impl MeanModel for TableHarmonic {
         Starts { points: best_of(self, orders, 3, drivers, context), trials: 8.0 }
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
-        vec![(1.0, 8.0)]
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
+        vec![Bounds::new(1.0, 8.0)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -6,7 +6,7 @@ use super::thermal::smooth;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 pub struct TempHysteresis;
 
@@ -44,23 +44,22 @@ impl MeanModel for TempHysteresis {
         if !varies(Some(t)) {
             return false;
         }
-        let (low, high) = ends(t);
+        let Bounds { low, high } = ends(t);
         let play = 0.05 * (high - low);
         let branches = column(play, 0.0, drivers).unwrap_or_default();
         branches.iter().any(|b| *b > 0.49) && branches.iter().any(|b| *b < -0.49)
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let (low, high) = self.bounds(drivers)[0];
+        let Bounds { low, high } = self.bounds(drivers)[0];
         let grid = log_grid(low, high, 12);
         let points = grid.into_iter().flat_map(|r| [-1.0, 0.0, 1.0].map(|first| vec![r, first]));
         Starts { points: best_of(self, points, 3, drivers, context), trials: (high / low).ln().max(1.0) }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
-        let (low, high) = smooth(drivers).map_or((0.0, 1.0), ends);
-        let range = (high - low).max(1e-6);
-        vec![(0.005 * range, 0.5 * range), (-1.0, 1.0)]
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
+        let range = smooth(drivers).map_or(Bounds::new(0.0, 1.0), ends).width().max(1e-6);
+        vec![Bounds::new(0.005 * range, 0.5 * range), Bounds::new(-1.0, 1.0)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
@@ -77,7 +76,7 @@ impl MeanModel for TempHysteresis {
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let width = number(values, PARAMS[0].name)?;
-        let (low, high) = ends(smooth(drivers)?);
+        let Bounds { low, high } = ends(smooth(drivers)?);
         let play = number(values, PARAMS[1].name).unwrap_or(0.1 * (high - low));
         let first = number(values, PARAMS[2].name).unwrap_or(0.0);
         let sense = number(values, PARAMS[3].name).unwrap_or(1.0);

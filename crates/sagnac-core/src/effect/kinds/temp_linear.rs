@@ -4,6 +4,7 @@ use crate::effect::{
     Column, Domain, Drivers, Effect, MeanModel, Model, Nuisance, Param, Place, Regressors, SearchContext,
     Starts, Values, number,
 };
+use crate::numeric::range::{Bounds, ends};
 
 pub struct TempLinear;
 
@@ -53,7 +54,7 @@ impl MeanModel for TempLinear {
         Starts::linear()
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
         vec![]
     }
 
@@ -75,7 +76,7 @@ impl MeanModel for TempLinear {
 
     fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let Some(t) = &drivers.temperature else { return vec![] };
-        let (from, to) = crate::numeric::range::ends(t);
+        let Bounds { low: from, high: to } = ends(t);
         vec![Place { domain: Domain::Temperature, from, to }]
     }
 }

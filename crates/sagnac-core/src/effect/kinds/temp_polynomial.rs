@@ -7,7 +7,7 @@ use crate::effect::{
     Domain, Drivers, MeanModel, Nuisance, Param, Place, Regressors, SearchContext, Starts, Values, list,
     number,
 };
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 
 pub struct TempPolynomial;
 
@@ -27,7 +27,7 @@ describe! {
 
 /// Middle and half width of the temperatures.
 fn scale(drivers: &Drivers) -> Option<(f64, f64)> {
-    let (low, high) = ends(drivers.temperature.as_ref()?);
+    let Bounds { low, high } = ends(drivers.temperature.as_ref()?);
     (high > low).then_some((0.5 * (low + high), 0.5 * (high - low)))
 }
 
@@ -59,8 +59,8 @@ impl MeanModel for TempPolynomial {
         Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials: 3.0 }
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
-        vec![(2.0, 4.0)]
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
+        vec![Bounds::new(2.0, 4.0)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

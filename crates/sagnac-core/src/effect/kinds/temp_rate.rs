@@ -5,6 +5,7 @@ use super::thermal::rate;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct TempRate;
 
@@ -25,7 +26,7 @@ impl MeanModel for TempRate {
         Starts::linear()
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
         vec![]
     }
 

@@ -236,8 +236,8 @@ fn courses_come_back_from_their_parameters_and_searches_find_them() {
         let mut found = f64::NEG_INFINITY;
         for nonlinear_parameters in &starts.points {
             assert_eq!(nonlinear_parameters.len(), bounds.len(), "{kind}");
-            for (x, (low, high)) in nonlinear_parameters.iter().zip(&bounds) {
-                assert!(low <= x && x <= high, "{kind}: {x} outside {low} to {high}");
+            for (x, bounds) in nonlinear_parameters.iter().zip(&bounds) {
+                assert!(bounds.contains(*x), "{kind}: {x} outside {bounds:?}");
             }
             let parts = course.regressors(nonlinear_parameters, &drivers);
             found = found.max(search::gain_of(parts.clone(), &context));
@@ -315,7 +315,7 @@ fn modes_in_closed_form_are_those_of_the_course() {
         let Model::Mean(course) = effect.model() else { continue };
         let (drivers, _) = truth(effect.kind());
         let nonlinear_parameters: Vec<f64> =
-            course.bounds(&drivers).iter().map(|(low, high)| 0.6 * low + 0.4 * high).collect();
+            course.bounds(&drivers).iter().map(|b| 0.6 * b.low + 0.4 * b.high).collect();
         let Some(modes) = course.modes(&nonlinear_parameters, &drivers) else { continue };
         let parts = course.regressors(&nonlinear_parameters, &drivers);
         assert!(parts.offset.is_none() && parts.nuisance.is_empty() && parts.columns.len() == modes.len());

@@ -7,6 +7,7 @@ use super::warmup_exponential::decay;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct ThermalLag;
 
@@ -35,15 +36,15 @@ impl MeanModel for ThermalLag {
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let (low, high) = self.bounds(drivers)[0];
+        let Bounds { low, high } = self.bounds(drivers)[0];
         let grid = log_grid(low, high, 32);
         let points = best_of(self, grid.into_iter().map(|t| vec![t]), 3, drivers, context);
         Starts { points, trials: (high / low).ln().max(1.0) }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let low = drivers.dt_s;
-        vec![(low, (0.5 * drivers.length_s()).max(4.0 * low))]
+        vec![Bounds::new(low, (0.5 * drivers.length_s()).max(4.0 * low))]
     }
 
     /// The state at the beginning is not known: what is left of it decays beside the effect.

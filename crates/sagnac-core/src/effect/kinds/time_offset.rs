@@ -6,6 +6,7 @@ use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::range::Bounds;
 use realfft::RealFftPlanner;
 
 pub struct TimeOffset;
@@ -98,7 +99,7 @@ impl MeanModel for TimeOffset {
         {
             return Starts { points: vec![], trials: 1.0 };
         }
-        let (low, high) = self.bounds(drivers)[0];
+        let Bounds { low, high } = self.bounds(drivers)[0];
         let mean = drivers.claimed_mean();
         let residual = inverse_dct2(context.modes);
         let dt = drivers.dt_s;
@@ -111,9 +112,9 @@ impl MeanModel for TimeOffset {
         Starts { points: best_of(self, points, 3, drivers, context), trials: (2.0 * high / dt).max(1.0) }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let most = (20.0 * drivers.dt_s).max(60.0).min(0.25 * drivers.length_s());
-        vec![(-most, most)]
+        vec![Bounds::new(-most, most)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -6,6 +6,7 @@ use crate::effect::{
     list,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
+use crate::numeric::range::Bounds;
 use std::f64::consts::PI;
 
 pub struct UnobservedDriver;
@@ -92,19 +93,19 @@ impl Spectrum for UnobservedDriver {
     }
 
     fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
-        let (low, high) = self.bounds(context)[1];
+        let Bounds { low, high } = self.bounds(context)[1];
         let markov = starts_between(1.5 * low, high / 1.5, context);
         markov.into_iter().map(|s| s.into_iter().rev().collect()).collect()
     }
 
-    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<(f64, f64)> {
+    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<Bounds> {
         let (dt, n) = context.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
         let length = n as f64 * dt;
-        vec![(1e-9, 1e9), ((20.0 * dt).max(0.002 * length), 2.0 * length)]
+        vec![Bounds::new(1e-9, 1e9), Bounds::new((20.0 * dt).max(0.002 * length), 2.0 * length)]
     }
 
     fn trials(&self, context: &SpectralContext<'_>) -> f64 {
-        let (low, high) = self.bounds(context)[1];
+        let Bounds { low, high } = self.bounds(context)[1];
         (high / low).ln().max(1.0)
     }
 

@@ -5,6 +5,7 @@ use super::search::{best_of, log_grid};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
+use crate::numeric::range::Bounds;
 
 pub struct WarmupExponential;
 
@@ -32,14 +33,14 @@ impl MeanModel for WarmupExponential {
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let (low, high) = self.bounds(drivers)[0];
+        let Bounds { low, high } = self.bounds(drivers)[0];
         let grid = log_grid(1.2 * low, high / 1.2, 32);
         let points = best_of(self, grid.into_iter().map(|t| vec![t]), 3, drivers, context);
         Starts { points, trials: (high / low).ln().max(1.0) }
     }
 
-    fn bounds(&self, drivers: &Drivers) -> Vec<(f64, f64)> {
-        vec![(2.0 * drivers.dt_s, drivers.length_s().max(4.0 * drivers.dt_s))]
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
+        vec![Bounds::new(2.0 * drivers.dt_s, drivers.length_s().max(4.0 * drivers.dt_s))]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

@@ -38,7 +38,7 @@ pub(super) fn try_spectrum(
     let bounds = spectrum.bounds(&context);
     let begun = starts.iter().map(|start| {
         let mut noise = before.hypothesis.noise.clone();
-        let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
+        let fitted = start.iter().zip(&bounds).map(|(x, b)| b.clamp(*x)).collect();
         noise.spectra.push(SpectrumIn { effect, fitted, stated: false });
         noise
     });

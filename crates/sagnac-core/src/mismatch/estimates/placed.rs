@@ -5,6 +5,7 @@ use crate::effect::MeanModel;
 use crate::mismatch::candidates::{SpectralDataSet, Tried};
 use crate::mismatch::hypothesis::{CourseIn, Normal, PartModes, kept};
 use crate::mismatch::spectral_data::SpectralData;
+use crate::numeric::range::Bounds;
 use nalgebra::DMatrix;
 
 /// The course, what stands beside it, and the data less what is fixed.
@@ -119,13 +120,13 @@ impl<'a> Placed<'a> {
     }
 
     /// Derivative of the course by a number of its shape, in modes.
-    fn slope(&self, i: usize, bounds: &[(f64, f64)], coefficients: &[f64]) -> Vec<f64> {
-        let (low, high) = bounds.get(i).copied().unwrap_or((f64::MIN, f64::MAX));
+    fn slope(&self, i: usize, bounds: &[Bounds], coefficients: &[f64]) -> Vec<f64> {
+        let bounds = bounds.get(i).copied().unwrap_or(Bounds::new(f64::MIN, f64::MAX));
         let nonlinear_parameters = &self.inside.nonlinear_parameters;
-        let step = (1e-3 * nonlinear_parameters[i].abs()).max(1e-6 * (high - low).min(1e12)).max(1e-12);
+        let step = (1e-3 * nonlinear_parameters[i].abs()).max(1e-6 * bounds.width().min(1e12)).max(1e-12);
         let at = |x: f64| {
             let mut moved = nonlinear_parameters.clone();
-            moved[i] = x.clamp(low, high);
+            moved[i] = bounds.clamp(x);
             let parts = self.regressors(&moved);
             let mut sum = parts.offset.unwrap_or_else(|| vec![0.0; self.data.len()]);
             for (column, c) in parts.columns.iter().zip(coefficients) {
@@ -159,24 +160,24 @@ impl<'a> Placed<'a> {
     pub fn profile(&self, deviation: f64) -> Option<[f64; 2]> {
         let i = self.free_number()?;
         let at = self.inside.nonlinear_parameters[i];
-        let (low, high) = *self.course.bounds(&self.spectral.drivers).get(i)?;
-        if high <= low {
+        let bounds = *self.course.bounds(&self.spectral.drivers).get(i)?;
+        if bounds.width() <= 0.0 {
             return None;
         }
         let top = self.log_likelihood(&self.inside.nonlinear_parameters).0;
         let drop = |x: f64| top - self.log_likelihood(&self.shape_at(i, x)).0;
-        let first = if deviation.is_finite() && deviation > 0.0 { deviation } else { 0.01 * (high - low) };
+        let first = if deviation.is_finite() && deviation > 0.0 { deviation } else { 0.01 * bounds.width() };
         let side = |sign: f64| {
             let (mut inside, mut step) = (at, first);
             let mut outside = None;
             for _ in 0..24 {
-                let x = (at + sign * step).clamp(low, high);
+                let x = bounds.clamp(at + sign * step);
                 if drop(x) >= DROP_95 {
                     outside = Some(x);
                     break;
                 }
                 inside = x;
-                if x == low || x == high {
+                if x == bounds.low || x == bounds.high {
                     break;
                 }
                 step *= 1.7;

@@ -3,7 +3,7 @@
 use crate::effect::{ClaimedMean, Column, Earth, Temperature};
 use crate::noise::composite::Composite;
 use crate::numeric::cosine::dct2;
-use crate::numeric::range::ends;
+use crate::numeric::range::{Bounds, ends};
 use crate::series::Series;
 use crate::units::EARTH_RATE_DEG_H;
 
@@ -53,7 +53,7 @@ impl Columns {
     pub fn new(series: &Series) -> Columns {
         let varies = |column: Column, least: f64| {
             let values = series.columns.get(&column)?;
-            let (low, high) = ends(values);
+            let Bounds { low, high } = ends(values);
             (high - low > least).then_some(values)
         };
         let mut terms = vec![];

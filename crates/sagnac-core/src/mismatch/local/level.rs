@@ -8,6 +8,7 @@ use crate::effect::{Column, Domain, Place};
 use crate::estimate::chi_square_tail;
 use crate::mismatch::candidates::Tried;
 use crate::mismatch::problem::Problem;
+use crate::numeric::range::{Bounds, ends};
 
 /// Groups over the values of a column.
 const GROUPS: usize = 256;
@@ -196,7 +197,7 @@ fn over_rate(rate: &[f64], flat: &Flat, indices: &[usize]) -> Option<Found> {
 
 fn over_column(column: Column, values: &[f64], flat: &Flat, indices: &[usize]) -> Option<Found> {
     let (groups, means) = by_value(|i| values[i], flat, indices);
-    let (low, high) = crate::numeric::range::ends(&means);
+    let Bounds { low, high } = ends(&means);
     if !varies(&means) {
         return None;
     }
@@ -219,7 +220,7 @@ fn over_column(column: Column, values: &[f64], flat: &Flat, indices: &[usize]) -
         Column::OuterRate => Domain::OuterRate,
         _ => return None,
     };
-    let (from, to) = raised(&means, &best.log_squares);
+    let Bounds { low: from, high: to } = raised(&means, &best.log_squares);
     let free = columns.len();
     Some(Found {
         kind: "noise_variance_time",
@@ -258,10 +259,10 @@ pub(super) fn contrast(
 }
 
 /// The interval of `at` in which the level is in the upper half of its range.
-pub(super) fn raised(at: &[f64], log_squares: &[f64]) -> (f64, f64) {
-    let (low, high) = crate::numeric::range::ends(log_squares);
+pub(super) fn raised(at: &[f64], log_squares: &[f64]) -> Bounds {
+    let Bounds { low, high } = ends(log_squares);
     let among = at.iter().zip(log_squares).filter(|(_, l)| **l >= 0.5 * (low + high)).map(|(x, _)| *x);
-    crate::numeric::range::ends(&among.collect::<Vec<f64>>())
+    ends(&among.collect::<Vec<f64>>())
 }
 
 /// A value on the lines between knots.

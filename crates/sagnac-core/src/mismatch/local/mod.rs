@@ -21,6 +21,7 @@ use super::candidates::Tried;
 use super::departures::White;
 use super::problem::Problem;
 use crate::numeric::cosine::{dct2, inverse_dct2};
+use crate::numeric::range::{Bounds, ends};
 use crate::numeric::sums::cumulated;
 
 /// Samples on either side of a running median: courses slower than this are none of a burst.
@@ -141,7 +142,7 @@ fn running_median(values: &[f64], half: usize) -> Vec<f64> {
 
 /// True where a problem's column changes at all.
 fn varies(values: &[f64]) -> bool {
-    let (low, high) = crate::numeric::range::ends(values);
+    let Bounds { low, high } = ends(values);
     high - low > 1e-9 * low.abs().max(high.abs())
 }
 

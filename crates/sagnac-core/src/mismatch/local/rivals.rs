@@ -26,7 +26,7 @@ pub fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, N
         let bounds = spectrum.bounds(&context);
         for start in spectrum.starts(&context) {
             let mut noise = tried.hypothesis.noise.clone();
-            let fitted = start.iter().zip(&bounds).map(|(x, (low, high))| x.clamp(*low, *high)).collect();
+            let fitted = start.iter().zip(&bounds).map(|(x, b)| b.clamp(*x)).collect();
             noise.spectra.push(SpectrumIn { effect: *effect, fitted, stated: false });
             let gain = noise_fit::fit(&mut noise, spectral, observed).log_likelihood - before;
             if best.as_ref().is_none_or(|b| gain > b.0) {

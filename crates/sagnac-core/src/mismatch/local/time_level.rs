@@ -101,8 +101,8 @@ pub(super) fn over_time(problem: &Problem, flat: &Flat, indices: &[usize]) -> Op
         Form::Stretch(from, to) => (edge(from), edge(to).min(end)),
         _ => {
             let starts: Vec<f64> = (0..j).map(edge).collect();
-            let (from, to) = raised(&starts, &best.log_squares);
-            (from, (to + size as f64 * problem.drivers.dt_s).min(end))
+            let raised = raised(&starts, &best.log_squares);
+            (raised.low, (raised.high + size as f64 * problem.drivers.dt_s).min(end))
         }
     };
     Some(Found {
