@@ -1,6 +1,6 @@
 //! The columns of a simulated recording: from profiles, or from a recording.
 
-use super::run::stream;
+use super::seed::stream;
 use crate::claim::{Claim, Profile};
 use crate::effect::{Column, Drivers};
 use crate::series::{Series, smooth};

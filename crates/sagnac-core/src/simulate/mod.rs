@@ -9,6 +9,7 @@ mod low_pass;
 mod noise;
 mod quantize;
 mod run;
+mod seed;
 mod shape;
 
 pub use error::SimulateError;

@@ -2,7 +2,7 @@
 
 use super::SimulateError;
 use super::low_pass::Filtering;
-use super::run::stream;
+use super::seed::stream;
 use super::shape::{SIDE, filtered, taps};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Drivers, LowPass, Model};

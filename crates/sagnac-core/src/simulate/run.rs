@@ -4,12 +4,11 @@ use super::SimulateError;
 use super::drive::{Sensors, of_recording};
 use super::noise::{Noise, composed, low_pass};
 use super::quantize::Counter;
+use super::seed::stream;
 use crate::claim::{Claim, Profile, Stated};
 use crate::effect::{Column, Drivers, Model, Samples};
 use crate::message::{Arg, Note};
 use crate::series::Series;
-use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 use std::collections::BTreeMap;
 
 /// Samples of a block where the claim states nothing that has to be made as a whole.
@@ -23,13 +22,6 @@ const MOST: u64 = 10_000_000_000;
 
 /// Most by which the sample rate of a recording may differ from that of the claim, relative.
 const RATE_TOLERANCE: f64 = 0.01;
-
-/// A seed for one use of a simulation.
-pub(super) fn stream(seed: u64, tag: u64) -> u64 {
-    let mut mixed = SplitMix64::seed_from_u64(seed);
-    let base = mixed.next_u64();
-    SplitMix64::seed_from_u64(base ^ tag.wrapping_mul(0x9e37_79b9_7f4a_7c15)).next_u64()
-}
 
 /// What a simulation goes over.
 #[derive(Clone, Copy)]

@@ -1,6 +1,6 @@
 //! The output is low-pass filtered.
 
-use super::search::log_grid;
+use crate::effect::shared::search::log_grid;
 use crate::effect::{
     Domain, LowPass, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };

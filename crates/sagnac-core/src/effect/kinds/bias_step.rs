@@ -1,8 +1,8 @@
 //! One jump of the bias.
 
+use crate::effect::shared::step::{instants, step};
 use crate::effect::{
-    Domain, Drivers, Effect, MeanModel, Model, Param, Place, Regressors, SearchContext, Starts, Values,
-    number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -13,66 +13,9 @@ static PARAMS: [Param; 2] = [
     Param::reported("time_s", "s", f64::MIN, f64::MAX),
 ];
 
-impl Effect for BiasStep {
-    fn kind(&self) -> &'static str {
-        "bias_step"
-    }
-    fn params(&self) -> &'static [Param] {
-        &PARAMS
-    }
-    fn domain(&self) -> Domain {
-        Domain::Time
-    }
-    fn confusers(&self) -> &'static [&'static str] {
-        &["heading_change", "random_telegraph", "excess_rrw"]
-    }
-    fn model(&self) -> Model {
-        Model::Mean(&BiasStep)
-    }
-}
-
-/// A step at `at_s` seconds after the first sample, the sample that it falls into averaged.
-pub(super) fn step(drivers: &Drivers, at_s: f64) -> Vec<f64> {
-    let dt = drivers.dt_s;
-    drivers.of_time(|t| ((t - at_s) / dt + 0.5).clamp(0.0, 1.0))
-}
-
-/// Instants at which a step gains most, s after the first sample; the best first.
-pub(super) fn instants(drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-    let n = drivers.samples;
-    if n < 8 {
-        return Starts { points: vec![], trials: 1.0 };
-    }
-    // The gain is (Σ_{i ≥ j} w_i)²/2 over z'C⁻¹z, and the latter varies slowly with the instant: it is computed at some
-    // and interpolated.
-    let points = 48.min(n / 4);
-    let at = |p: usize| 1.0 + (n as f64 - 2.0) * p as f64 / points as f64;
-    let weight = |j: f64| {
-        let modes = crate::numeric::cosine::dct2(&step(drivers, (j - 0.5) * drivers.dt_s));
-        modes.iter().zip(context.powers).skip(1).map(|(z, p)| z * z / p).sum::<f64>()
-    };
-    let weights: Vec<f64> = (0..=points).map(|p| weight(at(p))).collect();
-    let mut sum: f64 = 0.0;
-    let mut gains = vec![0.0; n];
-    for j in (1..n).rev() {
-        sum += context.score[j];
-        let x = (j as f64 - at(0)) / (at(1) - at(0));
-        let p = (x.max(0.0) as usize).min(points - 1);
-        let w = weights[p] + (weights[p + 1] - weights[p]) * (x - p as f64).clamp(0.0, 1.0);
-        gains[j] = if w > 0.0 { 0.5 * sum * sum / w } else { 0.0 };
-    }
-    let mut points = vec![];
-    let apart = (n / 50).max(1);
-    for _ in 0..3 {
-        let best = (1..n).max_by(|a, b| gains[*a].total_cmp(&gains[*b])).unwrap_or(1);
-        if gains[best] <= 0.0 {
-            break;
-        }
-        points.push(vec![(best as f64 - 0.5) * drivers.dt_s]);
-        gains[best.saturating_sub(apart)..(best + apart).min(n)].fill(0.0);
-    }
-    // Instants closer than the time in which the noise lets a step be placed are one; in white noise each counts.
-    Starts { points, trials: (n as f64).powf(0.75) }
+describe! {
+    BiasStep, "bias_step", Mean in Time, needs [],
+    confusers ["heading_change", "random_telegraph", "excess_rrw"]
 }
 
 impl MeanModel for BiasStep {

@@ -1,7 +1,7 @@
 //! A delay between the gyro and the columns beside it that grows.
 
-use super::delay::{follow, moves, regressors, shifted};
-use super::search::best_of;
+use crate::effect::shared::delay::{follow, moves, regressors, shifted};
+use crate::effect::shared::search::best_of;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
@@ -19,7 +19,7 @@ describe! {
 
 /// Lag of a sample in samples, for 1 ppm.
 fn per_ppm(i: usize, drivers: &Drivers) -> f64 {
-    1e-6 * (drivers.time_s(i) - super::reach::beginning_s(drivers)) / drivers.dt_s
+    1e-6 * (drivers.time_s(i) - crate::effect::shared::reach::beginning_s(drivers)) / drivers.dt_s
 }
 
 impl MeanModel for ClockDrift {
@@ -94,7 +94,7 @@ impl MeanModel for ClockDrift {
             return vec![];
         };
         let lag = Place { domain: Domain::Lag, from: last.min(0.0), to: last.max(0.0) };
-        [vec![lag], super::reach::record(drivers)].concat()
+        [vec![lag], crate::effect::shared::reach::record(drivers)].concat()
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {

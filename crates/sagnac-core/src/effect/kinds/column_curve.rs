@@ -1,8 +1,8 @@
 //! A bent dependence on a column whose bends have no kind of their own in the format of explanations.
 
-use super::polynomial::{powers, sum};
-use super::reach::{reach, varies};
-use super::search::gain_of;
+use crate::effect::shared::polynomial::{powers, sum};
+use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::search::gain_of;
 use crate::effect::{
     Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
     list, number,
@@ -25,7 +25,12 @@ describe! {
     confusers ["supply_sensitivity", "cross_axis", "temp_rate", "sf_asymmetry"],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
-    ]
+    ],
+    with {
+        fn in_format(&self) -> bool {
+            false
+        }
+    }
 }
 
 /// What the curve may follow: supply, rate of the other axis, rate of change of temperature, rate of the table.
@@ -39,9 +44,9 @@ fn values(domain: Domain, drivers: &Drivers) -> Option<Vec<f64>> {
         Domain::Supply => column(Column::Supply),
         Domain::OuterRate => column(Column::OuterRate),
         Domain::InputRate => column(Column::TableRate),
-        Domain::TemperatureRate => {
-            varies(drivers.temperature.as_deref()).then(|| super::thermal::rate(drivers)).flatten()
-        }
+        Domain::TemperatureRate => varies(drivers.temperature.as_deref())
+            .then(|| crate::effect::shared::thermal::rate(drivers))
+            .flatten(),
         _ => None,
     }
 }

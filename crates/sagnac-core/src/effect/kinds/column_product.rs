@@ -1,9 +1,9 @@
 //! A contribution that goes with the product of two columns, or of one with the time. It has no kind of its own in the
 //! format of explanations.
 
-use super::polynomial::sum;
-use super::reach::{reach, varies};
-use super::search::gain_of;
+use crate::effect::shared::polynomial::sum;
+use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::search::gain_of;
 use crate::effect::{
     Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
     list, number,
@@ -28,7 +28,12 @@ describe! {
     confusers ["supply_sensitivity", "temp_polynomial", "sf_temperature", "unobserved_driver"],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
-    ]
+    ],
+    with {
+        fn in_format(&self) -> bool {
+            false
+        }
+    }
 }
 
 /// A factor of a product.
@@ -163,7 +168,7 @@ impl MeanModel for ColumnProduct {
         let mut out = vec![];
         for factor in [first, second] {
             if factor == Factor::Time {
-                out.extend(super::reach::record(drivers));
+                out.extend(crate::effect::shared::reach::record(drivers));
             } else if let Some(values) = values(factor, drivers) {
                 out.extend(reach(domain(factor), &values, &product));
             }

@@ -1,6 +1,6 @@
 //! Sensitivity to the rate about the other axis.
 
-use super::reach::{reach, varies};
+use crate::effect::shared::reach::{reach, varies};
 use crate::effect::{Domain, Drivers, Param, Place};
 
 pub struct CrossAxis;

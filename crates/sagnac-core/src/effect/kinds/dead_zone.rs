@@ -1,6 +1,6 @@
 //! No or reduced response around zero input rate.
 
-use super::search::{best_of, fast_level, log_grid, peaks};
+use crate::effect::shared::search::{best_of, fast_level, log_grid, peaks};
 
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,

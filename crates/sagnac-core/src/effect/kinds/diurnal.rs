@@ -1,7 +1,7 @@
 //! A period of one day.
 
-use super::search::{best_of, log_grid};
-use super::sinusoid::{polar, wave};
+use crate::effect::shared::search::{best_of, log_grid};
+use crate::effect::shared::sinusoid::{columns, polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
@@ -45,8 +45,7 @@ impl MeanModel for Diurnal {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free =
-            nonlinear_parameters.first().map_or_else(Vec::new, |p| super::line::columns(1.0 / p, drivers));
+        let free = nonlinear_parameters.first().map_or_else(Vec::new, |p| columns(1.0 / p, drivers));
         Regressors { columns: free, ..Regressors::default() }
     }
 
@@ -61,7 +60,7 @@ impl MeanModel for Diurnal {
         if period.is_nan() || period <= 0.0 {
             return None;
         }
-        let columns = super::line::columns(1.0 / period, drivers);
+        let columns = columns(1.0 / period, drivers);
         Some(wave(number(values, PARAMS[0].name)?, phase, &columns))
     }
 
@@ -74,6 +73,6 @@ impl MeanModel for Diurnal {
         let Some(f) = nonlinear_parameters.first().map(|p| 1.0 / p) else { return vec![] };
         let half = 0.5 / drivers.length_s();
         let frequency = Place { domain: Domain::Frequency, from: (f - half).max(0.0), to: f + half };
-        [vec![frequency], super::reach::record(drivers)].concat()
+        [vec![frequency], crate::effect::shared::reach::record(drivers)].concat()
     }
 }

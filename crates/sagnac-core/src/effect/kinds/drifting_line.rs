@@ -1,6 +1,6 @@
 //! A sinusoid whose frequency changes steadily. It has no kind of its own in the format of explanations.
 
-use super::sinusoid::{Sweep, polar, wave};
+use crate::effect::shared::sinusoid::{Sweep, polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
@@ -19,7 +19,12 @@ static PARAMS: [Param; 5] = [
 
 describe! {
     DriftingLine, "drifting_line", Mean in Frequency, needs [],
-    confusers ["line", "quasi_periodic", "excess_arw"]
+    confusers ["line", "quasi_periodic", "excess_arw"],
+    with {
+        fn in_format(&self) -> bool {
+            false
+        }
+    }
 }
 
 /// Samples times sweeps that a search may take: a tenth of a second.
@@ -148,7 +153,7 @@ impl MeanModel for DriftingLine {
         let half = 0.5 * drift.abs() * drivers.length_s() + 0.5 / drivers.length_s();
         let band =
             Place { domain: Domain::Frequency, from: (frequency - half).max(0.0), to: frequency + half };
-        [vec![band], super::reach::record(drivers)].concat()
+        [vec![band], crate::effect::shared::reach::record(drivers)].concat()
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {

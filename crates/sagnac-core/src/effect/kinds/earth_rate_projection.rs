@@ -1,8 +1,8 @@
 //! The Earth rate as a function of heading is wrong or missing.
 
-use super::reach::varies;
-use super::sinusoid::{polar, wave};
-use super::table_harmonic::{columns, visited};
+use crate::effect::shared::reach::varies;
+use crate::effect::shared::sinusoid::{polar, wave};
+use crate::effect::shared::table_angle::{columns, visited};
 use crate::effect::{
     Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };

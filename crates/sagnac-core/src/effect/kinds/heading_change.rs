@@ -1,7 +1,7 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
-use super::bias_step::{instants, step};
-use super::search::gain_of;
+use crate::effect::shared::search::gain_of;
+use crate::effect::shared::step::{instants, step};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };

@@ -1,7 +1,7 @@
 //! A coherent sinusoid.
 
-use super::search::peaks;
-use super::sinusoid::{Sweep, averaged, polar, wave};
+use crate::effect::shared::search::peaks;
+use crate::effect::shared::sinusoid::{averaged, columns, polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
@@ -22,12 +22,6 @@ static PARAMS: [Param; 3] = [
 describe! {
     Line, "line", Mean in Frequency, needs [],
     confusers ["quasi_periodic", "diurnal", "table_harmonic", "reset_ripple"]
-}
-
-/// Cosine and sine of a frequency; the phase counts from `time_s` = 0.
-pub(super) fn columns(frequency_hz: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
-    let sweep = Sweep { first_s: drivers.time_s(0), dt_s: drivers.dt_s, frequency_hz, drift_hz_s: 0.0 };
-    sweep.pair(drivers.samples)
 }
 
 /// Twice-padded power of the score at the frequencies j/(2n·dt) of a length that transforms fast, as gains of a line,

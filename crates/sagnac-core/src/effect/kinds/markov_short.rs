@@ -1,6 +1,6 @@
 //! Exponentially correlated noise whose correlation time is a few samples.
 
-use super::markov_long::{SHORT_SAMPLES, densities, process, starts_between};
+use crate::effect::shared::markov::{SHORT_SAMPLES, densities, process, starts_between};
 use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
 use crate::noise::composite::Composite;
 use crate::numeric::range::Bounds;

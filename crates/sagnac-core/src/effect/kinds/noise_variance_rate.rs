@@ -25,7 +25,7 @@ impl Samples for NoiseVarianceRate {
             let share = table.get(i).map_or(0.0, |r| (r.abs() / largest).powf(exponent));
             (1.0 + (ratio * ratio - 1.0) * share).max(0.0).sqrt()
         };
-        super::noise_level::scale(drivers, rate, gain);
+        crate::effect::shared::noise_level::scale(drivers, rate, gain);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The level of the noise changes during the record.
 
-use super::knots::Knots;
+use crate::effect::shared::knots::Knots;
 use crate::effect::{Drivers, Param, Samples, Values, list, number};
 
 pub struct NoiseVarianceTime;
@@ -24,10 +24,14 @@ impl Samples for NoiseVarianceTime {
     /// Without knots the level rises from the claimed one to `ratio` times that over the record.
     fn apply(&self, values: &Values, drivers: &Drivers, _seed: u64, rate: &mut [f64], _keep: &mut [bool]) {
         if let Some(knots) = Knots::new(list(values, KNOT_TIMES), list(values, KNOT_RATIOS)) {
-            super::noise_level::scale(drivers, rate, |i| knots.at(drivers.time_s(i)).max(0.0));
+            crate::effect::shared::noise_level::scale(drivers, rate, |i| {
+                knots.at(drivers.time_s(i)).max(0.0)
+            });
         } else if let Some(ratio) = number(values, PARAMS[0].name) {
             let last = drivers.samples.max(2) as f64 - 1.0;
-            super::noise_level::scale(drivers, rate, |i| 1.0 + (ratio - 1.0) * i as f64 / last);
+            crate::effect::shared::noise_level::scale(drivers, rate, |i| {
+                1.0 + (ratio - 1.0) * i as f64 / last
+            });
         }
     }
 }

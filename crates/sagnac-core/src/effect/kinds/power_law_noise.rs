@@ -1,9 +1,7 @@
 //! Noise whose density falls with a power of the frequency that is neither of white, flicker nor random walk. It has no
 //! kind of its own in the format of explanations.
 
-use crate::effect::{
-    Domain, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
-};
+use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
 use crate::noise::composite::{Composite, Damped};
 use crate::numeric::range::Bounds;
 
@@ -15,21 +13,13 @@ static PARAMS: [Param; 3] = [
     Param::inner("frequency_hz", "Hz", 1e-12, 1e9),
 ];
 
-impl Effect for PowerLawNoise {
-    fn kind(&self) -> &'static str {
-        "power_law_noise"
-    }
-    fn params(&self) -> &'static [Param] {
-        &PARAMS
-    }
-    fn domain(&self) -> Domain {
-        Domain::Frequency
-    }
-    fn confusers(&self) -> &'static [&'static str] {
-        &["excess_flicker", "markov_short", "markov_long", "excess_arw"]
-    }
-    fn model(&self) -> Model {
-        Model::Spectrum(&PowerLawNoise)
+describe! {
+    PowerLawNoise, "power_law_noise", Spectrum in Frequency, needs [],
+    confusers ["excess_flicker", "markov_short", "markov_long", "excess_arw"],
+    with {
+        fn in_format(&self) -> bool {
+            false
+        }
     }
 }
 

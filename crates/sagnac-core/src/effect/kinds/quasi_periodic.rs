@@ -1,6 +1,6 @@
 //! A narrow-band disturbance of finite coherence.
 
-use super::search::peaks;
+use crate::effect::shared::search::peaks;
 use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
 use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::numeric::range::Bounds;

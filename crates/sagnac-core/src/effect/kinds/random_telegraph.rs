@@ -1,12 +1,10 @@
 //! Jumps back and forth between two levels.
 
-use crate::effect::{Domain, Drivers, Effect, Model, Param, Samples, Values, list, number};
+use crate::effect::{Drivers, Effect, Param, Samples, Values, list, number};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub struct RandomTelegraph;
-
-static LISTS: [Param; 1] = [Param::inner(SWITCHES, "s", f64::MIN, f64::MAX)];
 
 static PARAMS: [Param; 3] = [
     Param::reported("amplitude_deg_h", "deg/h", -1e6, 1e6),
@@ -17,34 +15,21 @@ static PARAMS: [Param; 3] = [
 /// Instants of the jumps, where they are known.
 const SWITCHES: &str = "switches_time_s";
 
-impl Effect for RandomTelegraph {
-    fn kind(&self) -> &'static str {
-        "random_telegraph"
-    }
-    fn params(&self) -> &'static [Param] {
-        &PARAMS
-    }
-    fn list_params(&self) -> &'static [Param] {
-        &LISTS
-    }
-    fn domain(&self) -> Domain {
-        Domain::Time
-    }
-    fn confusers(&self) -> &'static [&'static str] {
-        &["bias_step", "markov_long", "unobserved_driver"]
-    }
-    fn model(&self) -> Model {
-        Model::Samples(&RandomTelegraph)
-    }
-    /// The course of known jumps.
-    fn stated_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let switches = list(values, SWITCHES);
-        if switches.is_empty() || switches.iter().any(|t| !t.is_finite()) {
-            return None;
+describe! {
+    RandomTelegraph, "random_telegraph", Samples in Time, needs [],
+    confusers ["bias_step", "markov_long", "unobserved_driver"],
+    lists [Param::inner(SWITCHES, "s", f64::MIN, f64::MAX)],
+    with {
+        /// The course of known jumps.
+        fn stated_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+            let switches = list(values, SWITCHES);
+            if switches.is_empty() || switches.iter().any(|t| !t.is_finite()) {
+                return None;
+            }
+            let amplitude = number(values, PARAMS[0].name)?;
+            let first = if number(values, PARAMS[2].name).unwrap_or(-1.0) < 0.0 { -0.5 } else { 0.5 };
+            Some(course(amplitude * first, switches, drivers))
         }
-        let amplitude = number(values, PARAMS[0].name)?;
-        let first = if number(values, PARAMS[2].name).unwrap_or(-1.0) < 0.0 { -0.5 } else { 0.5 };
-        Some(course(amplitude * first, switches, drivers))
     }
 }
 

@@ -45,6 +45,6 @@ impl MeanModel for RateRamp {
     }
 
     fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        super::reach::record(drivers)
+        crate::effect::shared::reach::record(drivers)
     }
 }

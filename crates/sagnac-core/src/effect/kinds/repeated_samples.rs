@@ -19,7 +19,12 @@ describe! {
     lists [
         Param::inner(TIMES, "s", f64::MIN, f64::MAX),
         Param::inner(ROWS, "", 0.0, 1e7)
-    ]
+    ],
+    with {
+        fn in_format(&self) -> bool {
+            false
+        }
+    }
 }
 
 impl Samples for RepeatedSamples {

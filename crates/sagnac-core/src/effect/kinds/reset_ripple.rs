@@ -1,7 +1,7 @@
 //! A contribution that is periodic in the sensed angle.
 
-use super::search::{best_of, fast_level, peaks};
-use super::sinusoid::{averaged, pair, polar, wave};
+use crate::effect::shared::search::{best_of, fast_level, peaks};
+use crate::effect::shared::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
@@ -182,7 +182,7 @@ impl MeanModel for ResetRipple {
 
     fn applies(&self, drivers: &Drivers) -> bool {
         let slow = |r: &&f64| (3600.0 * **r * drivers.dt_s).abs() < 3600.0;
-        super::reach::varies(drivers.table_rate.as_deref())
+        crate::effect::shared::reach::varies(drivers.table_rate.as_deref())
             && drivers.table_rate.iter().flatten().filter(slow).count() >= 64
     }
 

@@ -1,7 +1,7 @@
 //! A response that is limited at large rates.
 
-use super::reach::varies;
-use super::search::{best_of, shortlist};
+use crate::effect::shared::reach::varies;
+use crate::effect::shared::search::{best_of, shortlist};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
@@ -37,7 +37,7 @@ impl MeanModel for Saturation {
     /// Limits that fall short of the largest rate by shares from a millionth to three quarters.
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let most = largest(drivers);
-        let shares = super::search::log_grid(1e-6, 0.75, 40);
+        let shares = crate::effect::shared::search::log_grid(1e-6, 0.75, 40);
         let limits = shares.into_iter().map(|s| vec![most * (1.0 - s)]);
         let limits = shortlist(self, limits, 6, drivers, context);
         let points = best_of(self, limits, 3, drivers, context);

@@ -1,6 +1,6 @@
 //! Different scale factors for positive and negative rate.
 
-use super::sf_error::large_rates;
+use crate::effect::shared::reach::large_rates;
 use crate::effect::{Drivers, Param};
 use crate::numeric::range::{Bounds, ends};
 

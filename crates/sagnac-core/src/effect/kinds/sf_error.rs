@@ -1,8 +1,7 @@
 //! A scale factor that differs from the claimed one.
 
-use super::reach::varies;
-use crate::effect::{Domain, Drivers, Param, Place};
-use crate::numeric::range::{Bounds, ends};
+use crate::effect::shared::reach::{large_rates, varies};
+use crate::effect::{Drivers, Param};
 
 pub struct SfError;
 
@@ -11,16 +10,6 @@ static PARAMS: [Param; 1] = [Param::reported("error_ppm", "ppm", -1e5, 1e5).sign
 describe! {
     SfError, "sf_error", Mean in InputRate, needs [TableRate],
     confusers ["sf_asymmetry", "sf_nonlinearity", "sf_temperature", "time_offset"]
-}
-
-/// Rates at which an effect that grows with the rate is at least half of its largest.
-pub(super) fn large_rates(drivers: &Drivers) -> Vec<Place> {
-    let Some(rate) = &drivers.table_rate else { return vec![] };
-    let Bounds { low: from, high: to } = ends(rate);
-    let largest = from.abs().max(to.abs());
-    let Bounds { low: from, high: to } =
-        ends(&rate.iter().copied().filter(|r| r.abs() >= 0.5 * largest).collect::<Vec<_>>());
-    if from <= to { vec![Place { domain: Domain::InputRate, from, to }] } else { vec![] }
 }
 
 fn column(drivers: &Drivers) -> Option<Vec<f64>> {

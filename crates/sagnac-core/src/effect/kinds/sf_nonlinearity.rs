@@ -1,6 +1,6 @@
 //! A scale factor that depends on the size of the rate.
 
-use super::reach::varies;
+use crate::effect::shared::reach::varies;
 use crate::effect::{
     Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
@@ -65,6 +65,6 @@ impl MeanModel for SfNonlinearity {
     }
 
     fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        super::sf_error::large_rates(drivers)
+        crate::effect::shared::reach::large_rates(drivers)
     }
 }

@@ -1,6 +1,6 @@
 //! A scale factor that depends on temperature.
 
-use super::reach::{reach, varies};
+use crate::effect::shared::reach::{reach, varies};
 use crate::effect::{Domain, Drivers, Param, Place};
 
 pub struct SfTemperature;
@@ -21,7 +21,7 @@ fn column(drivers: &Drivers) -> Option<Vec<f64>> {
 fn places(drivers: &Drivers) -> Vec<Place> {
     let course = column(drivers).unwrap_or_default();
     let mut out = reach(Domain::Temperature, drivers.temperature.as_deref().unwrap_or(&[]), &course);
-    out.extend(super::sf_error::large_rates(drivers));
+    out.extend(crate::effect::shared::reach::large_rates(drivers));
     out
 }
 

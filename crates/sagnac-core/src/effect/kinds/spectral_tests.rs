@@ -1,9 +1,9 @@
 //! Spectral effects held against simulation: densities must be what simulation makes, searches must begin near the truth.
 
 use super::*;
-use crate::effect::{Drivers, ModeBin, Model, Value, Values};
+use crate::effect::{Drivers, ModeBin, Model, SpectralContext, Value, Values};
 use crate::noise::composite::Composite;
-use crate::noise::model::NoiseModel;
+use crate::noise::model::{NoiseModel, unit_density};
 use crate::noise::simulate::{Setup, Simulator};
 use crate::numeric::cosine::dct2;
 

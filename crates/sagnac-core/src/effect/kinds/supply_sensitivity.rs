@@ -1,6 +1,6 @@
 //! The bias follows the supply voltage.
 
-use super::reach::{reach, varies};
+use crate::effect::shared::reach::{reach, varies};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };

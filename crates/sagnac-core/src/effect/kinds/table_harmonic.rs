@@ -1,12 +1,13 @@
 //! A contribution that is periodic in the table angle.
 
-use super::reach::varies;
-use super::search::best_of;
-use super::sinusoid::{averaged, pair, polar, wave};
+use crate::effect::shared::reach::varies;
+use crate::effect::shared::search::best_of;
+use crate::effect::shared::sinusoid::{polar, wave};
+use crate::effect::shared::table_angle::{columns, visited};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
-use crate::numeric::range::{Bounds, ends};
+use crate::numeric::range::Bounds;
 
 pub struct TableHarmonic;
 
@@ -19,34 +20,6 @@ static PARAMS: [Param; 3] = [
 describe! {
     TableHarmonic, "table_harmonic", Mean in Angle, needs [TableAngle],
     confusers ["earth_rate_projection", "line", "reset_ripple"]
-}
-
-/// Turn of the table within a sample, in turns: from the rate where it is there, else from the neighbouring angles.
-fn turn(i: usize, angle: &[f64], drivers: &Drivers) -> f64 {
-    if let Some(rate) = drivers.table_rate.as_ref().and_then(|r| r.get(i)) {
-        return rate * drivers.dt_s / 360.0;
-    }
-    let (a, b) = (i.saturating_sub(1), (i + 1).min(angle.len() - 1));
-    let apart = (angle[b] - angle[a] + 180.0).rem_euclid(360.0) - 180.0;
-    if b > a { apart / (b - a) as f64 / 360.0 } else { 0.0 }
-}
-
-/// Cosine and sine of an order of the table angle, averaged over each sample.
-pub(super) fn columns(order: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
-    let Some(angle) = &drivers.table_angle else { return vec![] };
-    pair(angle.len(), |i| (order * angle[i] / 360.0, averaged(order * turn(i, angle, drivers))))
-}
-
-/// The angles that the table went through.
-pub(super) fn visited(drivers: &Drivers) -> Vec<Place> {
-    let Some(angle) = &drivers.table_angle else { return vec![] };
-    let Bounds { low, high } = ends(angle);
-    if low > high {
-        return vec![];
-    }
-    let whole = high - low > 300.0;
-    let (from, to) = if whole { (0.0, 360.0) } else { (low, high) };
-    vec![Place { domain: Domain::Angle, from, to }]
 }
 
 impl MeanModel for TableHarmonic {

@@ -1,8 +1,8 @@
 //! A bias that depends on the direction from which a temperature was reached.
 
-use super::reach::{reach, varies};
-use super::search::{best_of, log_grid};
-use super::thermal::smooth;
+use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::search::{best_of, log_grid};
+use crate::effect::shared::thermal::smooth;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };

@@ -47,7 +47,7 @@ impl MeanModel for TempLinear {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        super::reach::varies(drivers.temperature.as_deref())
+        crate::effect::shared::reach::varies(drivers.temperature.as_deref())
     }
 
     fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {

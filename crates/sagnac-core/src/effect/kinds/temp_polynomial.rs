@@ -1,8 +1,8 @@
 //! Static nonlinear dependence of the bias on temperature.
 
-use super::polynomial::{powers, sum};
-use super::reach::{reach, varies};
-use super::search::gain_of;
+use crate::effect::shared::polynomial::{powers, sum};
+use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::search::gain_of;
 use crate::effect::{
     Domain, Drivers, MeanModel, Nuisance, Param, Place, Regressors, SearchContext, Starts, Values, list,
     number,

@@ -1,7 +1,7 @@
 //! Bias proportional to the rate of change of temperature.
 
-use super::reach::{reach, varies};
-use super::thermal::rate;
+use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::thermal::rate;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };

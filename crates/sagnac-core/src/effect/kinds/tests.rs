@@ -240,7 +240,7 @@ fn courses_come_back_from_their_parameters_and_searches_find_them() {
                 assert!(bounds.contains(*x), "{kind}: {x} outside {bounds:?}");
             }
             let parts = course.regressors(nonlinear_parameters, &drivers);
-            found = found.max(search::gain_of(parts.clone(), &context));
+            found = found.max(crate::effect::shared::search::gain_of(parts.clone(), &context));
             let columns = parts.columns.iter().chain(&parts.nuisance).chain(&parts.offset);
             assert!(columns.flatten().all(|x| x.is_finite()), "{kind}");
 

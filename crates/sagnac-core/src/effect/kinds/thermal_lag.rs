@@ -1,9 +1,9 @@
 //! The claimed temperature dependence acts through a delayed temperature.
 
-use super::reach::varies;
-use super::search::{best_of, log_grid};
-use super::thermal::{delayed, smooth};
-use super::warmup_exponential::decay;
+use crate::effect::shared::decay::decay;
+use crate::effect::shared::reach::varies;
+use crate::effect::shared::search::{best_of, log_grid};
+use crate::effect::shared::thermal::{delayed, smooth};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
@@ -80,9 +80,9 @@ impl MeanModel for ThermalLag {
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let Some(time) = nonlinear_parameters.first() else { return vec![] };
         let (from, to) = (0.5 * time, (1.5 * time).min(drivers.length_s()));
-        let rates = super::thermal::rate(drivers).unwrap_or_default();
+        let rates = crate::effect::shared::thermal::rate(drivers).unwrap_or_default();
         let mut places = vec![Place { domain: Domain::Lag, from: from.min(to), to }];
-        places.extend(super::reach::reach(Domain::TemperatureRate, &rates, &rates));
+        places.extend(crate::effect::shared::reach::reach(Domain::TemperatureRate, &rates, &rates));
         places
     }
 }

@@ -1,7 +1,7 @@
 //! A constant delay between the gyro and the columns beside it.
 
-use super::delay::{follow, moves, regressors, shifted};
-use super::search::{best_of, peaks};
+use crate::effect::shared::delay::{follow, moves, regressors, shifted};
+use crate::effect::shared::search::{best_of, peaks};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };

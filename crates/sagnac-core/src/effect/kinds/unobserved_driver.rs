@@ -1,9 +1,8 @@
 //! A smooth contribution that follows a quantity which was not recorded.
 
-use super::markov_long::starts_between;
+use crate::effect::shared::markov::starts_between;
 use crate::effect::{
-    Domain, Drivers, Effect, ModeBin, Model, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values,
-    list,
+    Domain, Drivers, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, list,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::numeric::range::Bounds;
@@ -11,38 +10,22 @@ use std::f64::consts::PI;
 
 pub struct UnobservedDriver;
 
-static LISTS: [Param; 2] =
-    [Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX), Param::inner(KNOT_VALUES, "deg/h", -1e6, 1e6)];
-
 static PARAMS: [Param; 2] =
     [Param::inner("driver_rms_deg_h", "deg/h", 0.0, 1e6), Param::inner("driver_time_s", "s", 1e-6, 1e8)];
 
 const KNOT_TIMES: &str = "knots_time_s";
 const KNOT_VALUES: &str = "knots_deg_h";
 
-impl Effect for UnobservedDriver {
-    fn kind(&self) -> &'static str {
-        "unobserved_driver"
-    }
-    fn params(&self) -> &'static [Param] {
-        &PARAMS
-    }
-    fn list_params(&self) -> &'static [Param] {
-        &LISTS
-    }
-    fn domain(&self) -> Domain {
-        Domain::Time
-    }
-    fn confusers(&self) -> &'static [&'static str] {
-        &["excess_rrw", "markov_long", "rate_ramp", "warmup_exponential"]
-    }
-    fn model(&self) -> Model {
-        Model::Spectrum(&UnobservedDriver)
-    }
-    /// Straight lines between knots, the first and last values held outside.
-    fn stated_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let knots = super::knots::Knots::new(list(values, KNOT_TIMES), list(values, KNOT_VALUES))?;
-        Some((0..drivers.samples).map(|i| knots.at(drivers.time_s(i))).collect())
+describe! {
+    UnobservedDriver, "unobserved_driver", Spectrum in Time, needs [],
+    confusers ["excess_rrw", "markov_long", "rate_ramp", "warmup_exponential"],
+    lists [Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX), Param::inner(KNOT_VALUES, "deg/h", -1e6, 1e6)],
+    with {
+        /// Straight lines between knots, the first and last values held outside.
+        fn stated_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+            let knots = crate::effect::shared::knots::Knots::new(list(values, KNOT_TIMES), list(values, KNOT_VALUES))?;
+            Some((0..drivers.samples).map(|i| knots.at(drivers.time_s(i))).collect())
+        }
     }
 }
 
@@ -85,7 +68,7 @@ impl Spectrum for UnobservedDriver {
                 let slope = (faster.power(bin.mode) - slower.power(bin.mode)) / (2.0 * LOG_STEP);
                 return (at.power(bin.mode) - slope).max(0.0);
             }
-            let averaged = super::sinusoid::averaged(bin.frequency_hz * bin.dt_s).powi(2);
+            let averaged = crate::effect::shared::sinusoid::averaged(bin.frequency_hz * bin.dt_s).powi(2);
             let ends = 1.0 + if x > 1.0 { ends } else { 0.0 };
             2.0 * rms * rms / (PI * corner) / (1.0 + x).powi(2) * averaged * ends
         };

@@ -1,7 +1,8 @@
 //! A transient that decays from the beginning of the record.
 
-use super::reach::beginning_s;
-use super::search::{best_of, log_grid};
+use crate::effect::shared::decay::decay;
+use crate::effect::shared::reach::beginning_s;
+use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
@@ -17,14 +18,6 @@ static PARAMS: [Param; 2] = [
 describe! {
     WarmupExponential, "warmup_exponential", Mean in Time, needs [],
     confusers ["rate_ramp", "excess_rrw", "thermal_lag", "unobserved_driver"]
-}
-
-/// Decay from 1 at the beginning of the record, averaged over each sample.
-pub(super) fn decay(time_constant_s: f64, drivers: &Drivers) -> Vec<f64> {
-    let before = drivers.start_s - beginning_s(drivers);
-    let half = 0.5 * drivers.dt_s / time_constant_s;
-    let averaged = if half < 1e-4 { 1.0 + half * half / 6.0 } else { half.min(600.0).sinh() / half };
-    drivers.of_time(|t| averaged * (-(t + before) / time_constant_s).exp())
 }
 
 impl MeanModel for WarmupExponential {

@@ -4,7 +4,7 @@ use crate::effect::{Domain, Drivers, Place};
 use crate::numeric::range::{Bounds, ends};
 
 /// The values of a column at which a contribution departs from its mean by half of its largest departure or more.
-pub(super) fn reach(domain: Domain, column: &[f64], contribution: &[f64]) -> Vec<Place> {
+pub(in crate::effect) fn reach(domain: Domain, column: &[f64], contribution: &[f64]) -> Vec<Place> {
     if column.is_empty() || contribution.is_empty() {
         return vec![];
     }
@@ -15,21 +15,30 @@ pub(super) fn reach(domain: Domain, column: &[f64], contribution: &[f64]) -> Vec
     if from <= to { vec![Place { domain, from, to }] } else { vec![] }
 }
 
+/// Rates at which an effect that grows with the rate is at least half of its largest.
+pub(in crate::effect) fn large_rates(drivers: &Drivers) -> Vec<Place> {
+    let Some(rate) = &drivers.table_rate else { return vec![] };
+    let Bounds { low: from, high: to } = ends(rate);
+    let largest = from.abs().max(to.abs());
+    let Bounds { low: from, high: to } =
+        ends(&rate.iter().copied().filter(|r| r.abs() >= 0.5 * largest).collect::<Vec<_>>());
+    if from <= to { vec![Place { domain: Domain::InputRate, from, to }] } else { vec![] }
+}
+
 /// True for a column that changes by more than the rounding of its numbers.
-pub(super) fn varies(column: Option<&[f64]>) -> bool {
+pub(in crate::effect) fn varies(column: Option<&[f64]>) -> bool {
     let Some(column) = column else { return false };
-    let Bounds { low, high } = ends(column);
-    column.len() >= 8 && column.iter().all(|x| x.is_finite()) && high - low > 1e-9 * low.abs().max(high.abs())
+    column.len() >= 8 && column.iter().all(|x| x.is_finite()) && ends(column).is_wide()
 }
 
 /// The time before the first sample's own interval: where the record begins, whatever the samples average.
-pub(super) fn beginning_s(drivers: &Drivers) -> f64 {
+pub(in crate::effect) fn beginning_s(drivers: &Drivers) -> f64 {
     let m = drivers.averaged.max(1) as f64;
     drivers.start_s - 0.5 * (m - 1.0) / m * drivers.dt_s
 }
 
 /// The whole record in time.
-pub(super) fn record(drivers: &Drivers) -> Vec<Place> {
+pub(in crate::effect) fn record(drivers: &Drivers) -> Vec<Place> {
     let last = drivers.samples.saturating_sub(1);
     vec![Place { domain: Domain::Time, from: drivers.time_s(0), to: drivers.time_s(last) }]
 }
@@ -46,6 +55,17 @@ mod tests {
         assert!(!varies(None) && !varies(Some(&constant)) && !varies(Some(&rounded)));
         assert!(varies(Some(&levels)));
         assert!(!varies(Some(&[f64::NAN; 20])));
+    }
+
+    #[test]
+    fn large_rates_are_those_from_half_of_the_largest() {
+        let over = |rates: &[f64]| {
+            let drivers = Drivers { table_rate: Some(rates.to_vec()), ..Drivers::default() };
+            large_rates(&drivers).first().map(|p| (p.from, p.to))
+        };
+        assert_eq!(over(&[0.0, 4.0, 5.0, 10.0]), Some((5.0, 10.0)));
+        assert_eq!(over(&[-10.0, 4.0, 6.0]), Some((-10.0, 6.0)));
+        assert_eq!(over(&[]), None);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
 /// `count` values from `low` to `high` in equal ratios.
-pub(super) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
+pub(in crate::effect) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
     if !(low > 0.0 && high >= low) || count == 0 {
         return vec![];
     }
@@ -15,7 +15,7 @@ pub(super) fn log_grid(low: f64, high: f64, count: usize) -> Vec<f64> {
 }
 
 /// Log-likelihood gain of a course for one shape: everything of it fitted, less what the columns beside it gain alone.
-pub(super) fn gain_of(parts: Regressors, context: &SearchContext<'_>) -> f64 {
+pub(in crate::effect) fn gain_of(parts: Regressors, context: &SearchContext<'_>) -> f64 {
     if parts.offset.is_none() && parts.columns.is_empty() {
         return 0.0;
     }
@@ -61,7 +61,7 @@ fn explained(columns: &[Vec<f64>], residual: &[f64], powers: &[f64]) -> f64 {
 }
 
 /// The shapes that gain most, the best first, at most `keep`; those that gain nothing are left out.
-pub(super) fn best_of(
+pub(in crate::effect) fn best_of(
     course: &dyn MeanModel,
     points: impl IntoIterator<Item = Vec<f64>>,
     keep: usize,
@@ -78,7 +78,7 @@ pub(super) fn best_of(
 }
 
 /// Level of the fast half of the noise, (deg/h)²; 0 where there is none.
-pub(super) fn fast_level(context: &SearchContext<'_>) -> f64 {
+pub(in crate::effect) fn fast_level(context: &SearchContext<'_>) -> f64 {
     let mut upper: Vec<f64> = context.powers.iter().skip(context.powers.len() / 2).copied().collect();
     if upper.is_empty() {
         return 0.0;
@@ -89,7 +89,7 @@ pub(super) fn fast_level(context: &SearchContext<'_>) -> f64 {
 
 /// The shapes that would gain most if the noise were white at the level of its fast half: one pass over the samples each
 /// instead of a transform. For courses of one column or of a fixed part alone.
-pub(super) fn shortlist(
+pub(in crate::effect) fn shortlist(
     course: &dyn MeanModel,
     points: impl IntoIterator<Item = Vec<f64>>,
     keep: usize,
@@ -125,7 +125,7 @@ pub(super) fn shortlist(
 }
 
 /// Positions of the largest of `gains`, the best first, each at least `apart` from those before it.
-pub(super) fn peaks(gains: &[f64], keep: usize, apart: usize) -> Vec<usize> {
+pub(in crate::effect) fn peaks(gains: &[f64], keep: usize, apart: usize) -> Vec<usize> {
     let mut left = gains.to_vec();
     let mut out = vec![];
     for _ in 0..keep {

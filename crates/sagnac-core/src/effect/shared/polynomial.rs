@@ -1,12 +1,12 @@
 //! Powers of a column and what coefficients make of columns.
 
 /// (v − center)/half to the powers 1 to `order`.
-pub(super) fn powers(values: &[f64], (center, half): (f64, f64), order: usize) -> Vec<Vec<f64>> {
+pub(in crate::effect) fn powers(values: &[f64], (center, half): (f64, f64), order: usize) -> Vec<Vec<f64>> {
     (1..=order as i32).map(|k| values.iter().map(|v| ((v - center) / half).powi(k)).collect()).collect()
 }
 
 /// Σ coefficient · column; empty without columns.
-pub(super) fn sum(coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
+pub(in crate::effect) fn sum(coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<f64> {
     let mut out = vec![0.0; columns.first().map_or(0, Vec::len)];
     for (c, column) in coefficients.iter().zip(columns) {
         out.iter_mut().zip(column).for_each(|(o, x)| *o += c * x);

@@ -1,14 +1,14 @@
 //! Straight lines between stated points.
 
 /// Times in rising order with a value each.
-pub(super) struct Knots<'a> {
+pub(in crate::effect) struct Knots<'a> {
     times: &'a [f64],
     values: &'a [f64],
 }
 
 impl<'a> Knots<'a> {
     /// `None` for lists that are empty, of different lengths, not finite or not rising.
-    pub(super) fn new(times: &'a [f64], values: &'a [f64]) -> Option<Knots<'a>> {
+    pub(in crate::effect) fn new(times: &'a [f64], values: &'a [f64]) -> Option<Knots<'a>> {
         let whole = !times.is_empty() && times.len() == values.len();
         let finite = times.iter().chain(values).all(|x| x.is_finite());
         let rising = times.windows(2).all(|w| w[0] < w[1]);
@@ -16,7 +16,7 @@ impl<'a> Knots<'a> {
     }
 
     /// Value at a time; that of the nearest end outside.
-    pub(super) fn at(&self, time: f64) -> f64 {
+    pub(in crate::effect) fn at(&self, time: f64) -> f64 {
         let after = self.times.partition_point(|t| *t <= time);
         match (after.checked_sub(1), self.times.get(after)) {
             (None, _) => self.values[0],

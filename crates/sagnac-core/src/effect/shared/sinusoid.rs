@@ -1,5 +1,6 @@
 //! Sinusoids as samples see them: means over the sampling interval.
 
+use crate::effect::Drivers;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -10,13 +11,13 @@ const SHARE: usize = 1 << 14;
 const ROTATED: usize = 64;
 
 /// What a mean over so many cycles leaves of a sinusoid.
-pub(super) fn averaged(cycles: f64) -> f64 {
+pub(in crate::effect) fn averaged(cycles: f64) -> f64 {
     let x = PI * cycles;
     if x.abs() < 1e-6 { 1.0 - x * x / 6.0 } else { x.sin() / x }
 }
 
 /// Cosine and sine of the phase of each sample, given in cycles, with what the sample's own mean leaves of them.
-pub(super) fn pair(samples: usize, phase: impl Fn(usize) -> (f64, f64) + Sync) -> Vec<Vec<f64>> {
+pub(in crate::effect) fn pair(samples: usize, phase: impl Fn(usize) -> (f64, f64) + Sync) -> Vec<Vec<f64>> {
     let of = |i: usize| {
         let (cycles, left) = phase(i);
         let (s, c) = (2.0 * PI * cycles.fract()).sin_cos();
@@ -28,7 +29,7 @@ pub(super) fn pair(samples: usize, phase: impl Fn(usize) -> (f64, f64) + Sync) -
 
 /// A sinusoid whose frequency changes steadily, on a grid of samples.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sweep {
+pub(in crate::effect) struct Sweep {
     /// Time of the first sample, s.
     pub first_s: f64,
     /// Sampling interval, s.
@@ -93,8 +94,14 @@ impl Sweep {
     }
 }
 
+/// Cosine and sine of a frequency; the phase counts from `time_s` = 0.
+pub(in crate::effect) fn columns(frequency_hz: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
+    let sweep = Sweep { first_s: drivers.time_s(0), dt_s: drivers.dt_s, frequency_hz, drift_hz_s: 0.0 };
+    sweep.pair(drivers.samples)
+}
+
 /// Amplitude and phase, deg, of `a cos x + b sin x` as `A cos(x + φ)`; NaN for other than two coefficients.
-pub(super) fn polar(coefficients: &[f64]) -> (f64, f64) {
+pub(in crate::effect) fn polar(coefficients: &[f64]) -> (f64, f64) {
     match coefficients {
         [a, b] => (a.hypot(*b), (-b).atan2(*a).to_degrees()),
         _ => (f64::NAN, f64::NAN),
@@ -102,7 +109,7 @@ pub(super) fn polar(coefficients: &[f64]) -> (f64, f64) {
 }
 
 /// `A cos(x + φ)` of the columns that [`pair`] gives.
-pub(super) fn wave(amplitude: f64, phase_deg: f64, columns: &[Vec<f64>]) -> Vec<f64> {
+pub(in crate::effect) fn wave(amplitude: f64, phase_deg: f64, columns: &[Vec<f64>]) -> Vec<f64> {
     let (s, c) = phase_deg.to_radians().sin_cos();
     match columns {
         [cosine, sine] => cosine.iter().zip(sine).map(|(x, y)| amplitude * (c * x - s * y)).collect(),

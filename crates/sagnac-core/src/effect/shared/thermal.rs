@@ -3,12 +3,12 @@
 use crate::effect::Drivers;
 
 /// Temperature without the noise of its sensor where it is known, °C.
-pub(super) fn smooth(drivers: &Drivers) -> Option<&[f64]> {
+pub(in crate::effect) fn smooth(drivers: &Drivers) -> Option<&[f64]> {
     drivers.smooth_temperature.as_deref().or(drivers.temperature.as_deref())
 }
 
 /// Rate of change of the temperature, °C/min; differences over two samples, over one at the ends.
-pub(super) fn rate(drivers: &Drivers) -> Option<Vec<f64>> {
+pub(in crate::effect) fn rate(drivers: &Drivers) -> Option<Vec<f64>> {
     let t = smooth(drivers)?;
     let n = t.len();
     if n < 2 {
@@ -24,7 +24,7 @@ pub(super) fn rate(drivers: &Drivers) -> Option<Vec<f64>> {
 
 /// The temperature behind a first-order delay that begins settled, °C. Between samples the temperature is taken for a
 /// straight line.
-pub(super) fn delayed(t: &[f64], time_constant_s: f64, dt_s: f64) -> Vec<f64> {
+pub(in crate::effect) fn delayed(t: &[f64], time_constant_s: f64, dt_s: f64) -> Vec<f64> {
     let Some(first) = t.first() else { return vec![] };
     let a = dt_s / time_constant_s;
     let (kept, lost) = ((-a).exp(), -(-a).exp_m1());

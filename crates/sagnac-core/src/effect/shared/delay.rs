@@ -3,7 +3,7 @@
 use crate::effect::{Drivers, Regressors};
 
 /// The claimed mean moves with the table: only then a delay against its columns can be seen.
-pub(super) fn moves(drivers: &Drivers) -> bool {
+pub(in crate::effect) fn moves(drivers: &Drivers) -> bool {
     let rate = super::reach::varies(drivers.table_rate.as_deref());
     let angle = drivers.claim.earth.is_some() && super::reach::varies(drivers.table_angle.as_deref());
     (rate || angle) && drivers.samples >= 32
@@ -121,7 +121,7 @@ fn at_an_end(series: &[f64], at: f64) -> Option<f64> {
 
 /// `m(t − lag) − m(t)` for a lag in samples that may differ from sample to sample; zero at samples whose driver lies
 /// outside the record, with their ranges.
-pub(super) fn shifted(mean: &[f64], lag: impl Fn(usize) -> f64) -> (Vec<f64>, Vec<bool>) {
+pub(in crate::effect) fn shifted(mean: &[f64], lag: impl Fn(usize) -> f64) -> (Vec<f64>, Vec<bool>) {
     let mut lost = vec![false; mean.len()];
     let course = mean
         .iter()
@@ -166,14 +166,14 @@ fn ends_out(lost: &[bool]) -> Vec<Vec<f64>> {
 }
 
 /// Parts of a delayed claimed mean.
-pub(super) fn regressors(mean: &[f64], lag: impl Fn(usize) -> f64) -> Regressors {
+pub(in crate::effect) fn regressors(mean: &[f64], lag: impl Fn(usize) -> f64) -> Regressors {
     let (fixed, lost) = shifted(mean, lag);
     Regressors { offset: Some(fixed), columns: vec![], nuisance: ends_out(&lost) }
 }
 
 /// Improves a number that delays the claimed mean, by Gauss-Newton on white noise over the samples before `until`. Bias
 /// and scale factor stay free. `lag` gives the lag of a sample per unit of the number, in samples.
-pub(super) fn follow(
+pub(in crate::effect) fn follow(
     residual: &[f64],
     mean: &[f64],
     until: usize,

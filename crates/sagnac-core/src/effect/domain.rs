@@ -1,0 +1,92 @@
+//! Where an effect shows: a domain and an interval of it.
+
+/// What a mismatch is located in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Domain {
+    /// `time_s`, s.
+    Time,
+    /// Hz.
+    Frequency,
+    /// Autocorrelation lag, or delay between columns, s.
+    Lag,
+    /// °C.
+    Temperature,
+    /// °C/min.
+    TemperatureRate,
+    /// Rate of the table about the input axis, deg/s.
+    InputRate,
+    /// Rate of the table's other axis, deg/s.
+    OuterRate,
+    /// Table angle, or period of the sensed angle, deg.
+    Angle,
+    /// Size of the residual, deg/h.
+    Amplitude,
+    /// Where `time_s` itself is at fault, s.
+    Timestamps,
+    /// V.
+    Supply,
+}
+
+impl Domain {
+    /// Every domain.
+    pub const ALL: &'static [Domain] = &[
+        Domain::Time,
+        Domain::Frequency,
+        Domain::Lag,
+        Domain::Temperature,
+        Domain::TemperatureRate,
+        Domain::InputRate,
+        Domain::OuterRate,
+        Domain::Angle,
+        Domain::Amplitude,
+        Domain::Timestamps,
+        Domain::Supply,
+    ];
+
+    /// Its id in files.
+    pub fn id(self) -> &'static str {
+        match self {
+            Domain::Time => "time",
+            Domain::Frequency => "frequency",
+            Domain::Lag => "lag",
+            Domain::Temperature => "temperature",
+            Domain::TemperatureRate => "temperature_rate",
+            Domain::InputRate => "input_rate",
+            Domain::OuterRate => "outer_rate",
+            Domain::Angle => "angle",
+            Domain::Amplitude => "amplitude",
+            Domain::Timestamps => "timestamps",
+            Domain::Supply => "supply",
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Domain::Time | Domain::Lag | Domain::Timestamps => "s",
+            Domain::Frequency => "Hz",
+            Domain::Temperature => "degC",
+            Domain::TemperatureRate => "degC/min",
+            Domain::InputRate | Domain::OuterRate => "deg/s",
+            Domain::Angle => "deg",
+            Domain::Amplitude => "deg/h",
+            Domain::Supply => "V",
+        }
+    }
+
+    /// The domain of an id.
+    pub fn of_id(id: &str) -> Option<Domain> {
+        Domain::ALL.iter().copied().find(|d| d.id() == id)
+    }
+}
+
+/// An interval of a domain, in the domain's unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// The domain.
+    pub domain: Domain,
+    /// Lower end.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+}

@@ -1,0 +1,79 @@
+//! Parameters of effects and the values that a claim states for them.
+
+use std::collections::BTreeMap;
+
+/// One parameter of an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Param {
+    /// Name, with its unit in it.
+    pub name: &'static str,
+    /// Unit as reports show it; empty for a pure number.
+    pub unit: &'static str,
+    /// Lowest plausible value.
+    pub lower: f64,
+    /// Highest plausible value.
+    pub upper: f64,
+    /// True when a report of an explanation gives it; others serve the forward model alone.
+    pub reported: bool,
+    /// True when it has a direction: a report prints its plus.
+    pub signed: bool,
+    /// True when it is a whole number: a report prints it without decimals.
+    pub whole: bool,
+    /// True when a claim states the same quantity, so that the effect corrects a stated value and adds nothing new.
+    pub corrects_claim: bool,
+}
+
+impl Param {
+    /// A parameter that reports give.
+    pub const fn reported(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Param {
+        Param { name, unit, lower, upper, reported: true, signed: false, whole: false, corrects_claim: false }
+    }
+
+    /// A parameter that the forward model needs beside them.
+    pub const fn inner(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Param {
+        Param { reported: false, ..Param::reported(name, unit, lower, upper) }
+    }
+
+    /// The same, with a direction.
+    pub const fn signed(self) -> Param {
+        Param { signed: true, ..self }
+    }
+
+    /// The same, a whole number.
+    pub const fn whole(self) -> Param {
+        Param { whole: true, ..self }
+    }
+
+    /// The same, the correction of a value that a claim states under this name.
+    pub const fn corrects_claim(self) -> Param {
+        Param { corrects_claim: true, ..self }
+    }
+}
+
+/// A stated value of a parameter: a number, or a list for courses without a short formula.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A list.
+    List(Vec<f64>),
+}
+
+/// Parameters by name.
+pub type Values = BTreeMap<String, Value>;
+
+/// The number of that name, if there.
+pub fn number(values: &Values, name: &str) -> Option<f64> {
+    match values.get(name) {
+        Some(Value::Number(x)) => Some(*x),
+        _ => None,
+    }
+}
+
+/// The list of that name; empty if not there.
+pub fn list<'a>(values: &'a Values, name: &str) -> &'a [f64] {
+    match values.get(name) {
+        Some(Value::List(x)) => x,
+        _ => &[],
+    }
+}

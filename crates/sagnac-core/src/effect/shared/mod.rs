@@ -1,0 +1,16 @@
+//! Physics and searches that several effects use. None of it names an effect.
+
+pub(super) mod decay;
+pub(super) mod delay;
+pub(super) mod knots;
+pub mod low_pass;
+pub(super) mod markov;
+pub(super) mod noise_level;
+pub(super) mod polynomial;
+pub(super) mod power_law;
+pub(super) mod reach;
+pub(super) mod search;
+pub(super) mod sinusoid;
+pub(super) mod step;
+pub(super) mod table_angle;
+pub(super) mod thermal;
