@@ -2,7 +2,6 @@
 
 use super::ambiguous_oscillation::driver_beside;
 use super::augmented::augmented;
-use super::candidates::{Candidate as Fitted, Tried};
 use super::contribution;
 use super::departures::{self, Departure};
 use super::draw::{self, Drawn};
@@ -21,6 +20,7 @@ use super::problem::Problem;
 use super::samples::Named;
 use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::single_cause;
+use super::tried::{Candidate as Fitted, Tried};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Column, Domain, Effect, Model, Place, SpectralContext, UNKNOWN, stateable};
 use std::collections::BTreeMap;

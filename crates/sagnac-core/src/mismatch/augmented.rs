@@ -1,8 +1,8 @@
 //! The claim that explains the recording.
 
-use super::candidates::Tried;
 use super::nuisances::nuisance_value;
 use super::problem::{Problem, level, scaled};
+use super::tried::Tried;
 use crate::claim::{Claim, Stated};
 use crate::effect::{Nuisance, Value};
 use std::collections::BTreeMap;

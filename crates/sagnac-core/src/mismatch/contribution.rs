@@ -1,7 +1,7 @@
 //! What chosen effects add to the rate, sample by sample.
 
-use super::candidates::{SpectralDataSet, Tried};
 use super::select::Slot;
+use super::tried::{SpectralDataSet, Tried};
 use crate::effect::{Domain, Model, Place};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::sums::cumulated;

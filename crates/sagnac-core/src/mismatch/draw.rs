@@ -1,9 +1,9 @@
 //! What an explanation shows: the residual over time, in the spectrum, against the located column, and its level.
 
-use super::candidates::Tried;
 use super::departures::White;
 use super::figures::{Against, Spectra, TimeSeries, against, local_level, spectrum, time_course};
 use super::problem::Problem;
+use super::tried::Tried;
 use crate::effect::{Column, Domain, Drivers, Place};
 use crate::figure::Figure;
 use crate::numeric::cosine::inverse_dct2;

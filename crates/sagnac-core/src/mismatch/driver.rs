@@ -1,7 +1,7 @@
 //! The course of something that was not recorded, as knots that a claim can state.
 
-use super::candidates::Tried;
 use super::problem::Problem;
+use super::tried::Tried;
 use crate::effect::{Value, Values};
 use crate::numeric::cosine::inverse_dct2;
 use rand::SeedableRng;

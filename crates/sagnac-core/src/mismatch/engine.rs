@@ -1,7 +1,7 @@
 //! The four steps: is there a mismatch and where, what could it be, which is it and how sure, does the fit improve.
 
 use super::assemble::{Evidence, Recorded, assemble};
-use super::candidates::{self, SpectralDataSet, Tried};
+use super::candidates;
 use super::coarse;
 use super::departures::{self, Departure};
 use super::filtered;
@@ -18,6 +18,7 @@ use super::regular::{Irregular, Regular};
 use super::repeats;
 use super::samples::{self, Named};
 use super::select;
+use super::tried::{SpectralDataSet, Tried};
 use crate::claim::Claim;
 use crate::effect::{Column, Domain, EFFECTS, Effect, Model, number};
 use crate::message::Note;

@@ -1,12 +1,14 @@
 //! How much longer a record must be to decide between an effect and one that serves as well.
 
-use super::candidates::{Candidate, SpectralDataSet, Tried};
 use super::finding::Experiment;
-use super::hypothesis::{CourseIn, Normal, PartModes, columns, kept, subtract};
+use super::hypothesis::{PartModes, columns, kept};
 use super::noise_fit;
 use super::nonlinear_search::{first_steps, refine};
 use super::select::{Chosen, ENOUGH, Slot};
+use super::terms::CourseIn;
+use super::tried::{Candidate, SpectralDataSet, Tried};
 use crate::effect::{MeanModel, ModeBin, Model};
+use crate::numeric::least_squares::{Normal, subtract};
 use rand::SeedableRng as _;
 use rand_distr::{ChiSquared, Distribution as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -138,8 +140,9 @@ mod tests {
     use super::*;
     use crate::effect::{Drivers, find};
     use crate::mismatch::hypothesis::{Hypothesis, fit};
-    use crate::mismatch::noise_fit::{Noise, SpectrumIn};
+    use crate::mismatch::noise_fit::Noise;
     use crate::mismatch::spectral_data::SpectralData;
+    use crate::mismatch::terms::SpectrumIn;
 
     const N: f64 = 0.004;
 

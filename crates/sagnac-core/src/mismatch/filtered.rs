@@ -4,13 +4,14 @@
 //! A likelihood that takes modes as independent counts those samples many times, and prefers a wrong filter, or bursts and
 //! jumps beside the right one. Each filter is therefore judged with the ends drawn as it would have them.
 
-use super::candidates::{self, Tried};
+use super::candidates;
 use super::hypothesis::{Fit, Hypothesis, fit};
-use super::noise_fit::SpectrumIn;
 use super::options::Options;
 use super::problem::Problem;
 use super::select;
 use super::spectral_data::SpectralData;
+use super::terms::SpectrumIn;
+use super::tried::Tried;
 use crate::effect::{EFFECTS, Effect, Model, SpectralContext, Spectrum, SpectrumAct};
 
 /// Times that the ends are drawn for one filter, each for what was fitted before.

@@ -1,15 +1,14 @@
 //! Held-out figures: ten blocks of equal time, the parameters from blocks 1, 3, 5, 7, 9, judged on 2, 4, 6, 8, 10. The
 //! likelihood of each block is that about its own mean, the rms is about the mean of all that are held out.
 
-use super::candidates::Tried;
-use super::hypothesis::{
-    Hypothesis, LeastSquares, Normal, PartModes, columns, fit, kept, less_fixed, part_modes, subtract,
-};
+use super::hypothesis::{Hypothesis, LeastSquares, PartModes, columns, fit, kept, less_fixed, part_modes};
 use super::noise_fit::whittle;
 use super::nonlinear_search::{first_steps, refine};
 use super::problem::Problem;
 use super::spectral_data::SpectralData;
+use super::tried::Tried;
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::least_squares::{Normal, subtract};
 
 /// Blocks.
 const BLOCKS: usize = 10;

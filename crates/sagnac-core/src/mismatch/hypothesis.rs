@@ -3,31 +3,12 @@
 
 use super::noise_fit::{self, Noise, NoiseFit};
 use super::spectral_data::{NuisanceColumn, SpectralData};
-use crate::effect::{Effect, MeanModel, Model, Regressors, Resolution, averages};
-use nalgebra::{DMatrix, DVector};
+use super::terms::CourseIn;
+use crate::effect::{MeanModel, Regressors, Resolution, averages};
+use crate::numeric::least_squares::{Normal, subtract};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::borrow::Cow;
-
-/// A course in a hypothesis.
-#[derive(Clone)]
-pub struct CourseIn {
-    /// The effect.
-    pub effect: &'static dyn Effect,
-    /// Its shape.
-    pub nonlinear_parameters: Vec<f64>,
-    /// Coefficients of its free columns, from the last fit.
-    pub coefficients: Vec<f64>,
-}
-
-impl CourseIn {
-    /// The forward model.
-    pub fn course(&self) -> Option<&'static dyn MeanModel> {
-        match self.effect.model() {
-            Model::Mean(c) => Some(c),
-            _ => None,
-        }
-    }
-}
 
 /// The claim plus effects.
 #[derive(Clone)]
@@ -117,111 +98,6 @@ pub fn kept<'a>(spectral: &'a SpectralData, courses: &[CourseIn]) -> Vec<&'a Nui
     spectral.nuisances.iter().filter(|n| !replaced.contains(&n.nuisance)).collect()
 }
 
-/// Weighted normal equations of some columns.
-pub struct Normal {
-    matrix: DMatrix<f64>,
-    right: DVector<f64>,
-    total: f64,
-}
-
-/// Σ a b/p. In four sums, none of which waits for the other.
-fn inner(a: &[f64], b: &[f64], powers: &[f64]) -> f64 {
-    let n = a.len().min(b.len()).min(powers.len());
-    let mut sums = [0.0; 4];
-    let (a, b, powers) = (&a[..n], &b[..n], &powers[..n]);
-    for ((x, y), p) in a.chunks(4).zip(b.chunks(4)).zip(powers.chunks(4)) {
-        for (sum, ((x, y), p)) in sums.iter_mut().zip(x.iter().zip(y).zip(p)) {
-            *sum += x * y / p;
-        }
-    }
-    sums.iter().sum()
-}
-
-impl Normal {
-    /// The equations for `columns` with prior deviations (infinite for none).
-    pub fn new(columns: &[(&[f64], f64)], data: &[f64], powers: &[f64]) -> Normal {
-        let p = columns.len();
-        let mut matrix = DMatrix::zeros(p, p);
-        let mut right = DVector::zeros(p);
-        for (i, (a, deviation)) in columns.iter().enumerate() {
-            for (j, (b, _)) in columns.iter().enumerate().take(i + 1) {
-                let value = inner(a, b, powers);
-                matrix[(i, j)] = value;
-                matrix[(j, i)] = value;
-            }
-            matrix[(i, i)] += deviation.powi(-2);
-            right[i] = inner(a, data, powers);
-        }
-        Normal { matrix, right, total: inner(data, data, powers) }
-    }
-
-    /// The equations with more columns, against the same data less a fixed part.
-    pub fn with(
-        &self,
-        old: &[(&[f64], f64)],
-        new: &[&[f64]],
-        data: &[f64],
-        fixed: bool,
-        powers: &[f64],
-    ) -> Normal {
-        let (p, q) = (old.len(), new.len());
-        let mut matrix = DMatrix::zeros(p + q, p + q);
-        matrix.view_mut((0, 0), (p, p)).copy_from(&self.matrix);
-        let mut right = DVector::zeros(p + q);
-        for (i, (a, _)) in old.iter().enumerate() {
-            right[i] = if fixed { inner(a, data, powers) } else { self.right[i] };
-        }
-        let known = |j: usize| if j < p { old[j].0 } else { new[j - p] };
-        let rows: Vec<Vec<f64>> = (0..q)
-            .into_par_iter()
-            .map(|i| {
-                let against = (0..=p + i).map(|j| inner(new[i], known(j), powers));
-                against.chain(std::iter::once(inner(new[i], data, powers))).collect()
-            })
-            .collect();
-        for (i, row) in rows.into_iter().enumerate() {
-            for (j, value) in row[..=p + i].iter().enumerate() {
-                matrix[(p + i, j)] = *value;
-                matrix[(j, p + i)] = *value;
-            }
-            right[p + i] = row[p + i + 1];
-        }
-        let total = if fixed { inner(data, data, powers) } else { self.total };
-        Normal { matrix, right, total }
-    }
-
-    /// Coefficients, covariance, and the penalised sum of squares that is left. Columns that others hold already get
-    /// no coefficient.
-    pub fn solve(&self) -> (Vec<f64>, DMatrix<f64>, f64) {
-        let p = self.right.len();
-        if p == 0 {
-            return (vec![], DMatrix::zeros(0, 0), self.total);
-        }
-        // Scaled to a unit diagonal; a ridge far below any information keeps collinear columns finite.
-        let scale: Vec<f64> = (0..p).map(|i| self.matrix[(i, i)].max(1e-300).sqrt()).collect();
-        let mut scaled = self.matrix.clone();
-        for i in 0..p {
-            for j in 0..p {
-                scaled[(i, j)] /= scale[i] * scale[j];
-            }
-            scaled[(i, i)] += 1e-9;
-        }
-        let Some(factor) = scaled.cholesky() else {
-            return (vec![0.0; p], DMatrix::zeros(p, p), self.total);
-        };
-        let right = DVector::from_fn(p, |i, _| self.right[i] / scale[i]);
-        let solution = factor.solve(&right);
-        let left = self.total - right.dot(&solution);
-        let mut covariance = factor.inverse();
-        for i in 0..p {
-            for j in 0..p {
-                covariance[(i, j)] /= scale[i] * scale[j];
-            }
-        }
-        ((0..p).map(|i| solution[i] / scale[i]).collect(), covariance, left)
-    }
-}
-
 /// Columns of nuisances and of everything in `regressors` (one entry a course), each with its prior deviation.
 pub fn columns<'a>(
     nuisances: &[&'a NuisanceColumn],
@@ -277,13 +153,6 @@ pub fn residual(spectral: &SpectralData, hypothesis: &Hypothesis, mean: &LeastSq
         subtract(&mut data, column, *c);
     }
     data
-}
-
-/// Takes a column times a coefficient out of data.
-pub fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
-    if coefficient != 0.0 {
-        data.iter_mut().zip(column).for_each(|(d, c)| *d -= coefficient * c);
-    }
 }
 
 /// Modes of every course of a hypothesis on a scene.

@@ -1,13 +1,13 @@
 //! Jumps between two levels, weighed against what else was chosen.
 
-use super::candidates::Tried;
 use super::found::Found;
 use super::local;
-use super::noise_fit::SpectrumIn;
 use super::options::Options;
 use super::problem::Problem;
 use super::samples;
 use super::select::{self, Selection, Slot};
+use super::terms::SpectrumIn;
+use super::tried::Tried;
 
 /// Samples at a level below which jumps are not told from a process.
 const FEWEST_AT_A_LEVEL: f64 = 6.0;

@@ -4,8 +4,9 @@
 //! uncertainty and no further. Fisher scoring on logarithms of the parameters, with backtracking.
 
 use super::spectral_data::SpectralData;
+use super::terms::SpectrumIn;
 use crate::claim::Claim;
-use crate::effect::{Effect, ModeBin, Model, SpectralContext, Spectrum, SpectrumAct};
+use crate::effect::{ModeBin, Model, SpectralContext, SpectrumAct};
 use crate::noise::data::NoiseType;
 use crate::numeric::range::Bounds;
 use nalgebra::{DMatrix, DVector};
@@ -13,26 +14,6 @@ use nalgebra::{DMatrix, DVector};
 /// Index of a base coefficient in arrays.
 pub fn base_index(term: NoiseType) -> Option<usize> {
     super::spectral_data::BASE.iter().position(|t| *t == term)
-}
-
-/// A spectral effect with its fitted parameters.
-#[derive(Clone)]
-pub struct SpectrumIn {
-    /// The effect.
-    pub effect: &'static dyn Effect,
-    /// Fitted parameters; the whole coefficient for one that frees.
-    pub fitted: Vec<f64>,
-    /// True when the claim states it: its parameters stay.
-    pub stated: bool,
-}
-
-impl SpectrumIn {
-    fn spectrum(&self) -> Option<&'static dyn Spectrum> {
-        match self.effect.model() {
-            Model::Spectrum(s) => Some(s),
-            _ => None,
-        }
-    }
 }
 
 /// The noise of a hypothesis.

@@ -1,9 +1,9 @@
 //! Values of the claim that it states with an uncertainty, before and after.
 
-use super::candidates::Tried;
 use super::finding::NuisanceValue;
 use super::hypothesis::kept;
 use super::problem::Problem;
+use super::tried::Tried;
 use crate::effect::Nuisance;
 
 /// The value of a nuisance column in a fit; 0 where its prior was given up.

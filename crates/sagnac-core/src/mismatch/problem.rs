@@ -1,12 +1,14 @@
 //! Recording and claim brought together: residual, scenes, and the claim's own fit.
 
-use super::candidates::{SpectralDataSet, Tried};
-use super::hypothesis::{CourseIn, Hypothesis, fit};
+use super::hypothesis::{Hypothesis, fit};
 use super::impute;
-use super::noise_fit::{Noise, SpectrumIn};
+use super::noise_fit::Noise;
 use super::quantization_grid::{self, QuantizationGrid};
 use super::regular::{Grid, Regular, fast_length};
 use super::spectral_data::{SpectralData, smoothed};
+use super::terms::CourseIn;
+use super::terms::SpectrumIn;
+use super::tried::{SpectralDataSet, Tried};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Column, Drivers, Effect, Model, Nuisance, Param, number};
 use crate::noise::model::NoiseModel;

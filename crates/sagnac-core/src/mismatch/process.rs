@@ -50,7 +50,7 @@ pub fn added_rms(
 mod tests {
     use super::*;
     use crate::effect::{Drivers, find};
-    use crate::mismatch::noise_fit::SpectrumIn;
+    use crate::mismatch::terms::SpectrumIn;
     use crate::numeric::cosine::dct2;
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};

@@ -1,6 +1,5 @@
 //! Effects on single samples as findings: bursts, a level that changes, jumps between two levels.
 
-use super::candidates::Tried;
 use super::estimates::Estimated;
 use super::finding::ParameterValue;
 use super::improvement::Improvement;
@@ -10,6 +9,7 @@ use super::quantization_grid::QuantizationGrid;
 use super::regular::Grid;
 use super::repeats::Repeats;
 use super::select::ENOUGH;
+use super::tried::Tried;
 use crate::effect::{Domain, Effect, Place, Value, find};
 use std::collections::BTreeMap;
 

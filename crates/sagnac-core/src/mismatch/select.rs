@@ -1,11 +1,14 @@
 //! The fewest effects that make the recording an ordinary draw: a beam of hypotheses grown by ΔBIC behind gates, then
 //! pruned, then asked what else would have served as well.
 
-use super::candidates::{Candidate, SpectralDataSet, Tried, all};
-use super::hypothesis::{CourseIn, Hypothesis, fit};
-use super::noise_fit::{Noise, SpectrumIn, base_index};
+use super::candidates::all;
+use super::hypothesis::{Hypothesis, fit};
+use super::noise_fit::{Noise, base_index};
 use super::nonlinear_search::free_numbers;
 use super::options::Options;
+use super::terms::CourseIn;
+use super::terms::SpectrumIn;
+use super::tried::{Candidate, SpectralDataSet, Tried};
 use crate::effect::{Effect, Model, SpectrumAct};
 
 /// ΔBIC that an effect must bring, and within which two are equivalent.

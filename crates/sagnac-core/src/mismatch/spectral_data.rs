@@ -4,7 +4,7 @@
 //! diagonal exactly and flicker nearly; the coefficients are then independent with variance S(f_k)/Δt. A scene may be
 //! cut into blocks of equal length, each transformed by itself and about its own mean.
 
-use super::noise_fit::SpectrumIn;
+use super::terms::SpectrumIn;
 use crate::claim::Claim;
 use crate::effect::{Drivers, ModeBin, Model, Nuisance};
 use crate::noise::data::NoiseType;

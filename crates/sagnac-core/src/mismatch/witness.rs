@@ -5,18 +5,20 @@
 //! With θ the effect as found, L the likelihood of the simulation and θ' what suits it best, 2 (L(θ') − L(θ)) over
 //! 1 + n_S/n_X, the uncertainty of θ itself, is χ² where both are of one process.
 
-use super::candidates::Tried;
 use super::engine::{on_grid, uncoarsened};
 use super::finding::{Explanation, Finding};
 use super::found::Found;
-use super::hypothesis::{Hypothesis, Normal, columns, fit};
-use super::noise_fit::{Noise, SpectrumIn, base_index};
+use super::hypothesis::{Hypothesis, columns, fit};
+use super::noise_fit::{Noise, base_index};
 use super::options::Options;
 use super::problem::Problem;
 use super::spectral_data::SpectralData;
+use super::terms::SpectrumIn;
+use super::tried::Tried;
 use crate::claim::{Claim, Stated};
 use crate::effect::{Drivers, Model, Nuisance, Spectrum, SpectrumAct, Value, Values, list, number};
 use crate::estimate::chi_square_tail;
+use crate::numeric::least_squares::Normal;
 use crate::series::Series;
 
 /// Deviation of the logarithm of a coefficient that is all but free.

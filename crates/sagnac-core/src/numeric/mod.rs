@@ -4,6 +4,7 @@ pub mod compensated;
 pub mod cosine;
 pub mod decimal;
 pub(crate) mod inverse;
+pub mod least_squares;
 pub(crate) mod log_determinant;
 pub mod optimize;
 pub mod range;

@@ -72,9 +72,32 @@ pub fn cosine_integral(x: f64) -> f64 {
     -multiply(h, (x.cos(), -x.sin())).0
 }
 
+/// The standard normal number of a ratio of variances (Paulson 1942).
+pub fn f_normal(ratio: f64, dof: f64, others: f64) -> f64 {
+    let (a, b) = (2.0 / (9.0 * dof), 2.0 / (9.0 * others));
+    let root = ratio.cbrt();
+    ((1.0 - b) * root - (1.0 - a)) / (b * root * root + a).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ratios_of_variances_become_normal_numbers() {
+        // Upper 5 % and 1 % points of F(10, 20) and F(30, 60) (Pearson and Hartley, table 18).
+        for (ratio, dof, others, z) in
+            [(2.348, 10.0, 20.0, 1.6449), (3.368, 10.0, 20.0, 2.3263), (1.649, 30.0, 60.0, 1.6449)]
+        {
+            assert!(
+                (f_normal(ratio, dof, others) - z).abs() < 0.01,
+                "{ratio}: {}",
+                f_normal(ratio, dof, others)
+            );
+        }
+        // The ratio the other way round has the opposite number.
+        assert!((f_normal(0.5, 12.0, 30.0) + f_normal(2.0, 30.0, 12.0)).abs() < 1e-12);
+    }
 
     #[test]
     fn hurwitz_zeta_agrees_with_known_values() {

@@ -1,14 +1,14 @@
 //! A course as an addition: the best of its shapes with the noise held, then everything fitted together.
 
-use super::{Candidate, SpectralDataSet, Tried, own_odds, rated};
 use crate::effect::{Effect, MeanModel, Resolution, SearchContext, plausible};
-use crate::mismatch::hypothesis::{
-    CourseIn, Hypothesis, Normal, PartModes, columns, fit, kept, less_fixed, subtract,
-};
+use crate::mismatch::hypothesis::{Hypothesis, PartModes, columns, fit, kept, less_fixed};
 use crate::mismatch::noise_fit::Noise;
 use crate::mismatch::nonlinear_search::{first_steps, free_numbers, refine};
 use crate::mismatch::spectral_data::SpectralData;
+use crate::mismatch::terms::CourseIn;
+use crate::mismatch::tried::{Candidate, SpectralDataSet, Tried, own_odds, rated};
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::least_squares::{Normal, subtract};
 use std::borrow::Cow;
 
 /// Gain of a fit over that of its shapes, the noise held, from which the noise stood for the course.

@@ -1,10 +1,11 @@
 //! A change of the noise's spectrum as an addition.
 
-use super::{Candidate, SpectralDataSet, Tried, own_odds, rated};
 use crate::effect::{Effect, SpectralContext, Spectrum, SpectrumAct};
 use crate::mismatch::hypothesis::fit;
-use crate::mismatch::noise_fit::{self, Noise, SpectrumIn, base_index};
+use crate::mismatch::noise_fit::{self, Noise, base_index};
 use crate::mismatch::spectral_data::SpectralData;
+use crate::mismatch::terms::SpectrumIn;
+use crate::mismatch::tried::{Candidate, SpectralDataSet, Tried, own_odds, rated};
 
 /// The best addition of a process, a filter or a coefficient set free.
 pub(super) fn try_spectrum(

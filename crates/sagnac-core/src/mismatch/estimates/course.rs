@@ -1,12 +1,12 @@
 //! Parameters of a course.
 
+use super::estimated::{Estimated, INSTANT, TWO_SIDED_95, interval};
+use super::instant;
 use super::placed::Placed;
-use super::{Estimated, INSTANT, TWO_SIDED_95, interval};
 use crate::effect::{Effect, MeanModel, Value};
-use crate::mismatch::candidates::{SpectralDataSet, Tried};
 use crate::mismatch::contribution::summed;
 use crate::mismatch::finding::ParameterValue;
-use crate::mismatch::instant;
+use crate::mismatch::tried::{SpectralDataSet, Tried};
 use nalgebra::DMatrix;
 
 /// Standard deviation of a course over the record.

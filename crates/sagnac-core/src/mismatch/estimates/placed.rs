@@ -1,10 +1,12 @@
 //! One course among the columns of its hypothesis: how well its numbers are told, the noise held.
 
-use super::DROP_95;
+use super::estimated::DROP_95;
 use crate::effect::MeanModel;
-use crate::mismatch::candidates::{SpectralDataSet, Tried};
-use crate::mismatch::hypothesis::{CourseIn, Normal, PartModes, kept};
+use crate::mismatch::hypothesis::{PartModes, kept};
 use crate::mismatch::spectral_data::SpectralData;
+use crate::mismatch::terms::CourseIn;
+use crate::mismatch::tried::{SpectralDataSet, Tried};
+use crate::numeric::least_squares::Normal;
 use crate::numeric::range::Bounds;
 use nalgebra::DMatrix;
 

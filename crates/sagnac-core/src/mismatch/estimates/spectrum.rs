@@ -1,11 +1,11 @@
 //! Parameters of a spectral effect.
 
-use super::{Estimated, TWO_SIDED_95, interval};
+use super::estimated::{Estimated, TWO_SIDED_95, interval};
 use crate::effect::{Effect, Model, SpectrumAct, Value};
-use crate::mismatch::candidates::{SpectralDataSet, Tried};
 use crate::mismatch::finding::ParameterValue;
 use crate::mismatch::noise_fit::{Which, base_index};
 use crate::mismatch::process;
+use crate::mismatch::tried::{SpectralDataSet, Tried};
 
 /// Relative deviation of a number that a fit does not move, as of a whole number of samples.
 const EXACT: f64 = 1e-6;

@@ -4,9 +4,10 @@
 //! wrong level of the claim and steps of the output make no burst.
 
 use super::{Flat, cumulated, lattice_step, median, varies};
-use crate::mismatch::candidates::Tried;
 use crate::mismatch::problem::Problem;
+use crate::mismatch::tried::Tried;
 use crate::numeric::optimize::bisect;
+use crate::numeric::special::f_normal;
 use statrs::distribution::{Binomial, DiscreteCDF, Poisson};
 use statrs::function::beta::checked_beta_reg;
 
@@ -296,7 +297,7 @@ fn rises(group: &(usize, usize), scan: &Scan, n: usize) -> bool {
     let before = first.checked_sub(m + gap).map_or(0.0, |f| scan.ratio(f, m));
     let after = if first + 2 * m + gap <= n { scan.ratio(first + m + gap, m) } else { 0.0 };
     let here = scan.ratio(first, m);
-    crate::mismatch::departures::f_normal(here / before.max(after).max(1e-9), m as f64, m as f64) > 3.0
+    f_normal(here / before.max(after).max(1e-9), m as f64, m as f64) > 3.0
 }
 
 /// The groups without those at changes of the table's motion, if that is where groups are.

@@ -6,8 +6,8 @@ use super::time_level::{DECAYS, Form, over_time};
 use super::{Flat, lattice_step, varies};
 use crate::effect::{Column, Domain, Place};
 use crate::estimate::chi_square_tail;
-use crate::mismatch::candidates::Tried;
 use crate::mismatch::problem::Problem;
+use crate::mismatch::tried::Tried;
 use crate::numeric::range::{Bounds, ends};
 
 /// Groups over the values of a column.

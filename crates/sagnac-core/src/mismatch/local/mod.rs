@@ -17,9 +17,9 @@ pub use bursts::{Bursts, bursts};
 pub use level::{Law, Level, level};
 pub use telegraph::{Telegraph, telegraph};
 
-use super::candidates::Tried;
 use super::departures::White;
 use super::problem::Problem;
+use super::tried::Tried;
 use crate::numeric::cosine::{dct2, inverse_dct2};
 use crate::numeric::range::{Bounds, ends};
 use crate::numeric::sums::cumulated;

@@ -1,10 +1,11 @@
 //! What explains a record of two levels by its spectrum alone.
 
 use crate::effect::{EFFECTS, Model, SpectralContext, SpectrumAct};
-use crate::mismatch::candidates::Tried;
 use crate::mismatch::departures::White;
-use crate::mismatch::noise_fit::{self, Noise, SpectrumIn};
+use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::problem::Problem;
+use crate::mismatch::terms::SpectrumIn;
+use crate::mismatch::tried::Tried;
 
 /// Gain of the best spectral effect of some kinds, and the noise beside it.
 pub fn rival(problem: &Problem, tried: &Tried, kinds: &[&str]) -> Option<(f64, Noise)> {

@@ -8,11 +8,12 @@ use super::path::Paths;
 use super::rivals::{freed, line, rival};
 use super::two_level::Chain;
 use crate::effect::{EFFECTS, averages};
-use crate::mismatch::candidates::Tried;
-use crate::mismatch::hypothesis::{Normal, kept, part_modes};
+use crate::mismatch::hypothesis::{kept, part_modes};
 use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::problem::Problem;
+use crate::mismatch::tried::Tried;
 use crate::numeric::cosine::{dct2, inverse_dct2};
+use crate::numeric::least_squares::Normal;
 
 /// Averages that are looked at in one length, at most and at least.
 const MOST: usize = 65_536;

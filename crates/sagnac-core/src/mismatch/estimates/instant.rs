@@ -4,8 +4,9 @@
 //! confidence. With every instant as likely beforehand, its probability given the recording is the likelihood with the
 //! size of the step fitted; the interval spans the most probable instants that hold 95 % together.
 
-use super::candidates::{SpectralDataSet, Tried};
-use super::hypothesis::{CourseIn, PartModes};
+use crate::mismatch::hypothesis::PartModes;
+use crate::mismatch::terms::CourseIn;
+use crate::mismatch::tried::{SpectralDataSet, Tried};
 use crate::numeric::cosine::{dct2, inverse_dct2};
 
 /// Probability that an interval holds.

@@ -1,9 +1,9 @@
 //! Autocorrelation of the whitened residual: what comes a second time, some time later.
 
-use super::departures::{Departure, White};
-use super::spectral_data::SpectralData;
+use super::departure::{Departure, White};
 use crate::effect::{Domain, Place};
 use crate::estimate::ln_normal_two_sided;
+use crate::mismatch::spectral_data::SpectralData;
 use crate::noise::autocorrelation::lagged_products;
 
 /// Longest lag, in samples, and as a share of the record.

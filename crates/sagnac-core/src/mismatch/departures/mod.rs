@@ -4,72 +4,24 @@
 //! so is their inverse transform. Each test scans them in one view and gives the probability of its largest departure
 //! with everything scanned counted.
 
-use super::candidates::{SpectralDataSet, Tried};
+mod columns;
+mod departure;
+mod lags;
+mod tiles;
+
+pub use departure::{Departure, White};
+
 use super::spectral_data::SpectralData;
+use super::tried::{SpectralDataSet, Tried};
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_two_sided};
-use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::sums::cumulated;
+use departure::windows;
 use rand::{RngExt as _, SeedableRng as _};
-use rand_distr::{Distribution as _, StandardNormal};
 use statrs::distribution::{DiscreteCDF, Poisson};
 
 /// Seed of the draws that take values off a lattice: a report is a function of recording and claim alone.
 const SEED: u64 = 0x5a67_6e61_6320_0006;
-/// Seed of the draws for modes that are left out.
-const UNSEEN: u64 = 0x5a67_6e61_6320_0008;
-
-/// The largest departure of one test.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Departure {
-    /// Id of the test.
-    pub test: &'static str,
-    /// Where.
-    pub place: Place,
-    /// Where in another view.
-    pub beside: Option<Place>,
-    /// Logarithm of the probability of as large a departure anywhere in the test. Of strong departures the probabilities
-    /// are all too small to be told; which is the strongest is not.
-    pub ln_p: f64,
-}
-
-impl Departure {
-    /// Probability of as large a departure anywhere in the test.
-    pub fn p_value(&self) -> f64 {
-        self.ln_p.exp().clamp(1e-300, 1.0)
-    }
-
-    /// Whether it is below a probability in a family of so many tests.
-    pub fn below(&self, probability: f64, tests: usize) -> bool {
-        self.ln_p + (tests.max(1) as f64).ln() < probability.ln()
-    }
-}
-
-/// Whitened residual of a fit.
-pub struct White {
-    /// Modes over their expected deviation.
-    pub modes: Vec<f64>,
-    /// The same in time.
-    pub series: Vec<f64>,
-    /// Expected deviation of each mode, deg/h.
-    pub roots: Vec<f64>,
-}
-
-impl White {
-    /// Whitens what a fitted hypothesis leaves.
-    pub fn of(tried: &Tried, spectra: &SpectralDataSet) -> White {
-        let mut roots = tried.powers(spectra);
-        roots.iter_mut().for_each(|p| *p = p.sqrt());
-        let mut modes = tried.residual(spectra);
-        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(UNSEEN);
-        for (k, (x, root)) in modes.iter_mut().zip(&roots).enumerate() {
-            // What is left out of the fit is no departure either: a draw stands for it.
-            *x = if k == 0 || root.is_finite() { *x / root } else { StandardNormal.sample(&mut rng) };
-        }
-        let series = inverse_dct2(&modes);
-        White { modes, series, roots }
-    }
-}
 
 /// A scan's best so far.
 struct Scan {
@@ -100,20 +52,6 @@ impl Scan {
     }
 }
 
-/// Dyadic windows of `values` positions from `shortest` up, each overlapping the next by half.
-pub fn windows(values: usize, shortest: usize, mut see: impl FnMut(usize, usize)) {
-    let mut length = shortest;
-    while length <= values {
-        let step = (length / 2).max(1);
-        let mut from = 0;
-        while from + length <= values {
-            see(from, from + length);
-            from += step;
-        }
-        length *= 2;
-    }
-}
-
 /// Every test of the residual of a fit. `level` is the local deviation of the noise, 1 where it is as the spectrum says.
 pub fn all(
     spectra: &SpectralDataSet,
@@ -134,14 +72,14 @@ pub fn all(
         out.extend(comb(spectral, &powers));
     }
     out.extend(levels(spectral, &white));
-    out.extend(super::lags::all(spectral, &white));
-    out.extend(super::tiles::all(spectral, &white.modes));
+    out.extend(lags::all(spectral, &white));
+    out.extend(tiles::all(spectral, &white.modes));
     out.extend(
         off_lattice(spectral, &white, spectra.grid_step_arcsec)
             .and_then(|values| tails(spectral, &values, usable)),
     );
     out.extend(skewness(spectral, &white));
-    out.extend(super::columns::all(spectral, &white));
+    out.extend(columns::all(spectral, &white));
     out
 }
 
@@ -225,13 +163,6 @@ fn levels(spectral: &SpectralData, white: &White) -> Option<Departure> {
         }
     });
     scan.done("level", Domain::Time)
-}
-
-/// The standard normal number of a ratio of variances (Paulson 1942).
-pub fn f_normal(ratio: f64, dof: f64, others: f64) -> f64 {
-    let (a, b) = (2.0 / (9.0 * dof), 2.0 / (9.0 * others));
-    let root = ratio.cbrt();
-    ((1.0 - b) * root - (1.0 - a)) / (b * root * root + a).sqrt()
 }
 
 /// The whitened series with counts of a continuous law: values on a lattice are moved by an even draw over its step.

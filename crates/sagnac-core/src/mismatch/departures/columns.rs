@@ -1,12 +1,13 @@
 //! Tests of the residual against the recorded columns: any smooth function of one, its rate of change, or a product of
 //! two; and the size of the residual over each.
 
-use super::departures::{Departure, White, f_normal};
-use super::spectral_data::{SpectralData, smoothed};
+use super::departure::{Departure, White};
 use crate::effect::{Column, Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_normal_two_sided};
+use crate::mismatch::spectral_data::{SpectralData, smoothed};
 use crate::numeric::cosine::dct2;
 use crate::numeric::range::{Bounds, ends};
+use crate::numeric::special::f_normal;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 

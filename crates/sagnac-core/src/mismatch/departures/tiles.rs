@@ -4,11 +4,12 @@
 //! hypothesis the points are independent standard normal numbers. Bands are octaves and their halves, quarters and so
 //! on; windows of time are dyadic.
 
-use super::departures::{Departure, f_normal, windows};
-use super::spectral_data::SpectralData;
+use super::departure::{Departure, windows};
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_two_sided, ln_normal_two_sided};
+use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::special::f_normal;
 use crate::numeric::sums::cumulated;
 use rayon::prelude::*;
 

@@ -1,0 +1,101 @@
+//! What a test of the residual gives, and the whitened residual that tests look at.
+
+use crate::effect::Place;
+use crate::mismatch::tried::{SpectralDataSet, Tried};
+use crate::numeric::cosine::inverse_dct2;
+use rand::SeedableRng as _;
+use rand_distr::{Distribution as _, StandardNormal};
+
+/// Seed of the draws for modes that are left out: a report is a function of recording and claim alone.
+const UNSEEN: u64 = 0x5a67_6e61_6320_0008;
+
+/// The largest departure of one test.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Departure {
+    /// Id of the test.
+    pub test: &'static str,
+    /// Where.
+    pub place: Place,
+    /// Where in another view.
+    pub beside: Option<Place>,
+    /// Logarithm of the probability of as large a departure anywhere in the test. Of strong departures the probabilities
+    /// are all too small to be told; which is the strongest is not.
+    pub ln_p: f64,
+}
+
+impl Departure {
+    /// Probability of as large a departure anywhere in the test.
+    pub fn p_value(&self) -> f64 {
+        self.ln_p.exp().clamp(1e-300, 1.0)
+    }
+
+    /// Whether it is below a probability in a family of so many tests.
+    pub fn below(&self, probability: f64, tests: usize) -> bool {
+        self.ln_p + (tests.max(1) as f64).ln() < probability.ln()
+    }
+}
+
+/// Whitened residual of a fit.
+pub struct White {
+    /// Modes over their expected deviation.
+    pub modes: Vec<f64>,
+    /// The same in time.
+    pub series: Vec<f64>,
+    /// Expected deviation of each mode, deg/h.
+    pub roots: Vec<f64>,
+}
+
+impl White {
+    /// Whitens what a fitted hypothesis leaves.
+    pub fn of(tried: &Tried, spectra: &SpectralDataSet) -> White {
+        let mut roots = tried.powers(spectra);
+        roots.iter_mut().for_each(|p| *p = p.sqrt());
+        let mut modes = tried.residual(spectra);
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(UNSEEN);
+        for (k, (x, root)) in modes.iter_mut().zip(&roots).enumerate() {
+            // What is left out of the fit is no departure either: a draw stands for it.
+            *x = if k == 0 || root.is_finite() { *x / root } else { StandardNormal.sample(&mut rng) };
+        }
+        let series = inverse_dct2(&modes);
+        White { modes, series, roots }
+    }
+}
+
+/// Dyadic windows of `values` positions from `shortest` up, each overlapping the next by half.
+pub fn windows(values: usize, shortest: usize, mut see: impl FnMut(usize, usize)) {
+    let mut length = shortest;
+    while length <= values {
+        let step = (length / 2).max(1);
+        let mut from = 0;
+        while from + length <= values {
+            see(from, from + length);
+            from += step;
+        }
+        length *= 2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Domain;
+
+    #[test]
+    fn windows_double_and_overlap_by_half() {
+        let mut seen = vec![];
+        windows(9, 2, |from, to| seen.push((from, to)));
+        let twos: Vec<(usize, usize)> = (0..8).map(|i| (i, i + 2)).collect();
+        assert_eq!(seen, [twos, vec![(0, 4), (2, 6), (4, 8), (0, 8)]].concat());
+        windows(3, 4, |from, to| panic!("{from} {to}"));
+    }
+
+    #[test]
+    fn departures_too_strong_for_a_double_are_ordered_by_their_logarithm() {
+        let place = Place { domain: Domain::Time, from: 0.0, to: 1.0 };
+        let of = |ln_p: f64| Departure { test: "level", place, beside: None, ln_p };
+        assert_eq!(of(-5000.0).p_value(), 1e-300);
+        assert!((of(0.05f64.ln()).p_value() - 0.05).abs() < 1e-12);
+        // Among ten tests a probability is worth ten times as much.
+        assert!(of(0.0009f64.ln()).below(0.01, 10) && !of(0.0011f64.ln()).below(0.01, 10));
+    }
+}

@@ -1,0 +1,45 @@
+//! Effects as terms of a hypothesis: each with the values of its parameters.
+
+use crate::effect::{Effect, MeanModel, Model, Spectrum};
+
+/// A course in a hypothesis.
+#[derive(Clone)]
+pub struct CourseIn {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Its shape.
+    pub nonlinear_parameters: Vec<f64>,
+    /// Coefficients of its free columns, from the last fit.
+    pub coefficients: Vec<f64>,
+}
+
+impl CourseIn {
+    /// The forward model.
+    pub fn course(&self) -> Option<&'static dyn MeanModel> {
+        match self.effect.model() {
+            Model::Mean(c) => Some(c),
+            _ => None,
+        }
+    }
+}
+
+/// A spectral effect with its fitted parameters.
+#[derive(Clone)]
+pub struct SpectrumIn {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Fitted parameters; the whole coefficient for one that frees.
+    pub fitted: Vec<f64>,
+    /// True when the claim states it: its parameters stay.
+    pub stated: bool,
+}
+
+impl SpectrumIn {
+    /// The forward model.
+    pub fn spectrum(&self) -> Option<&'static dyn Spectrum> {
+        match self.effect.model() {
+            Model::Spectrum(s) => Some(s),
+            _ => None,
+        }
+    }
+}

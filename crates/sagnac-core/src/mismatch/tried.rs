@@ -1,0 +1,110 @@
+//! Hypotheses that were fitted, and what an addition to one is worth.
+
+use super::hypothesis::{Fit, Hypothesis, PartModes, part_modes, part_modes_of_averages, residual};
+use super::spectral_data::SpectralData;
+use super::terms::CourseIn;
+use crate::effect::{Effect, Resolution};
+use crate::estimate::chi_square_tail;
+
+/// The two resolutions a problem is looked at.
+pub struct SpectralDataSet {
+    /// At the sample rate.
+    pub full: SpectralData,
+    /// Averages, for courses that they hold; `None` where the record is short enough as it is.
+    pub slow: Option<SpectralData>,
+    /// Angle increment of a lattice that the values lie on, arcsec.
+    pub grid_step_arcsec: Option<f64>,
+    /// Rows of the recording.
+    pub rows: usize,
+}
+
+impl SpectralDataSet {
+    /// The scene that a course of some pace is looked for on.
+    pub fn of(&self, resolution: Resolution) -> &SpectralData {
+        match (resolution, &self.slow) {
+            (Resolution::Averaged, Some(slow)) => slow,
+            _ => &self.full,
+        }
+    }
+
+    /// Modes of courses on the scene that one of some pace is looked for on.
+    pub fn part_modes(&self, resolution: Resolution, courses: &[CourseIn]) -> Vec<PartModes> {
+        match (resolution, &self.slow) {
+            (Resolution::Averaged, Some(slow)) => part_modes_of_averages(slow, &self.full, courses),
+            _ => part_modes(&self.full, courses),
+        }
+    }
+}
+
+/// A hypothesis with its fit.
+#[derive(Clone)]
+pub struct Tried {
+    /// The hypothesis, fitted.
+    pub hypothesis: Hypothesis,
+    /// Its fit on the full scene.
+    pub fit: Fit,
+    /// Parameters that it has beyond the claim.
+    pub parameters: usize,
+    /// Logarithm of the odds of its effects against kinds with the same course.
+    pub odds: f64,
+}
+
+impl Tried {
+    /// −2 ln L + parameters · ln rows.
+    pub fn bic(&self, rows: usize) -> f64 {
+        -2.0 * self.fit.log_likelihood + self.parameters as f64 * (rows as f64).ln()
+    }
+
+    /// Modes of what the hypothesis leaves of the full scene.
+    pub fn residual(&self, spectra: &SpectralDataSet) -> Vec<f64> {
+        residual(&spectra.full, &self.hypothesis, &self.fit.mean)
+    }
+
+    /// Variance of each mode of the full scene, (deg/h)².
+    pub fn powers(&self, spectra: &SpectralDataSet) -> Vec<f64> {
+        spectra.full.powers(&self.fit.densities)
+    }
+
+    /// What hypotheses are ordered by: BIC, and between equals what else speaks for their kinds.
+    pub fn rank(&self, rows: usize) -> f64 {
+        self.bic(rows) - 2.0 * self.odds
+    }
+}
+
+/// An addition that was fitted.
+#[derive(Clone)]
+pub struct Candidate {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// The hypothesis with it.
+    pub tried: Tried,
+    /// Gain of log-likelihood over the hypothesis without it.
+    pub gain: f64,
+    /// Parameters that it adds.
+    pub parameters: usize,
+    /// BIC without it less BIC with it.
+    pub delta_bic: f64,
+    /// Probability of such a gain without it, its own search counted.
+    pub p_value: f64,
+}
+
+/// What an addition is worth; `trials` counts the independent places that its own search looked at.
+pub(super) fn rated(
+    effect: &'static dyn Effect,
+    tried: Tried,
+    before: &Tried,
+    trials: f64,
+    rows: usize,
+) -> Candidate {
+    let gain = tried.fit.log_likelihood - before.fit.log_likelihood;
+    let parameters = tried.parameters - before.parameters;
+    let p_value = (trials.max(1.0) * chi_square_tail(2.0 * gain.max(0.0), parameters as f64)).min(1.0);
+    let delta_bic = before.bic(rows) - tried.bic(rows);
+    Candidate { effect, tried, gain, parameters, delta_bic, p_value }
+}
+
+/// Logarithm of the odds of an effect without a kind in the format of explanations against one that has one: it is named
+/// only where nothing with a name comes near.
+pub(super) fn own_odds(effect: &dyn Effect) -> f64 {
+    if effect.in_format() { 0.0 } else { -3.0 }
+}

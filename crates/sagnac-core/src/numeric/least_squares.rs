@@ -1,0 +1,174 @@
+//! Weighted linear least squares of columns with Gaussian priors, by the normal equations.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Normal equations of columns z with prior deviations σ against data x of variances p:
+/// (Σ z z'/p + diag σ⁻²) c = Σ z x/p.
+pub struct Normal {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+    total: f64,
+}
+
+/// Σ a b/p. In four sums, none of which waits for the other.
+fn inner(a: &[f64], b: &[f64], powers: &[f64]) -> f64 {
+    let n = a.len().min(b.len()).min(powers.len());
+    let mut sums = [0.0; 4];
+    let (a, b, powers) = (&a[..n], &b[..n], &powers[..n]);
+    for ((x, y), p) in a.chunks(4).zip(b.chunks(4)).zip(powers.chunks(4)) {
+        for (sum, ((x, y), p)) in sums.iter_mut().zip(x.iter().zip(y).zip(p)) {
+            *sum += x * y / p;
+        }
+    }
+    sums.iter().sum()
+}
+
+impl Normal {
+    /// The equations for `columns` with prior deviations (infinite for none).
+    pub fn new(columns: &[(&[f64], f64)], data: &[f64], powers: &[f64]) -> Normal {
+        let p = columns.len();
+        let mut matrix = DMatrix::zeros(p, p);
+        let mut right = DVector::zeros(p);
+        for (i, (a, deviation)) in columns.iter().enumerate() {
+            for (j, (b, _)) in columns.iter().enumerate().take(i + 1) {
+                let value = inner(a, b, powers);
+                matrix[(i, j)] = value;
+                matrix[(j, i)] = value;
+            }
+            matrix[(i, i)] += deviation.powi(-2);
+            right[i] = inner(a, data, powers);
+        }
+        Normal { matrix, right, total: inner(data, data, powers) }
+    }
+
+    /// The equations with more columns, against the same data less a fixed part.
+    pub fn with(
+        &self,
+        old: &[(&[f64], f64)],
+        new: &[&[f64]],
+        data: &[f64],
+        fixed: bool,
+        powers: &[f64],
+    ) -> Normal {
+        let (p, q) = (old.len(), new.len());
+        let mut matrix = DMatrix::zeros(p + q, p + q);
+        matrix.view_mut((0, 0), (p, p)).copy_from(&self.matrix);
+        let mut right = DVector::zeros(p + q);
+        for (i, (a, _)) in old.iter().enumerate() {
+            right[i] = if fixed { inner(a, data, powers) } else { self.right[i] };
+        }
+        let known = |j: usize| if j < p { old[j].0 } else { new[j - p] };
+        let rows: Vec<Vec<f64>> = (0..q)
+            .into_par_iter()
+            .map(|i| {
+                let against = (0..=p + i).map(|j| inner(new[i], known(j), powers));
+                against.chain(std::iter::once(inner(new[i], data, powers))).collect()
+            })
+            .collect();
+        for (i, row) in rows.into_iter().enumerate() {
+            for (j, value) in row[..=p + i].iter().enumerate() {
+                matrix[(p + i, j)] = *value;
+                matrix[(j, p + i)] = *value;
+            }
+            right[p + i] = row[p + i + 1];
+        }
+        let total = if fixed { inner(data, data, powers) } else { self.total };
+        Normal { matrix, right, total }
+    }
+
+    /// Coefficients, covariance, and the penalised sum of squares that is left. Columns that others hold already get
+    /// no coefficient.
+    pub fn solve(&self) -> (Vec<f64>, DMatrix<f64>, f64) {
+        let p = self.right.len();
+        if p == 0 {
+            return (vec![], DMatrix::zeros(0, 0), self.total);
+        }
+        // Scaled to a unit diagonal; a ridge far below any information keeps collinear columns finite.
+        let scale: Vec<f64> = (0..p).map(|i| self.matrix[(i, i)].max(1e-300).sqrt()).collect();
+        let mut scaled = self.matrix.clone();
+        for i in 0..p {
+            for j in 0..p {
+                scaled[(i, j)] /= scale[i] * scale[j];
+            }
+            scaled[(i, i)] += 1e-9;
+        }
+        let Some(factor) = scaled.cholesky() else {
+            return (vec![0.0; p], DMatrix::zeros(p, p), self.total);
+        };
+        let right = DVector::from_fn(p, |i, _| self.right[i] / scale[i]);
+        let solution = factor.solve(&right);
+        let left = self.total - right.dot(&solution);
+        let mut covariance = factor.inverse();
+        for i in 0..p {
+            for j in 0..p {
+                covariance[(i, j)] /= scale[i] * scale[j];
+            }
+        }
+        ((0..p).map(|i| solution[i] / scale[i]).collect(), covariance, left)
+    }
+}
+
+/// Takes a column times a coefficient out of data.
+pub fn subtract(data: &mut [f64], column: &[f64], coefficient: f64) {
+    if coefficient != 0.0 {
+        data.iter_mut().zip(column).for_each(|(d, c)| *d -= coefficient * c);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ONES: [f64; 4] = [1.0; 4];
+    const LINE: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
+
+    #[test]
+    fn a_line_through_points_is_solved_with_its_covariance() {
+        // 2 + 3x at x = 0..3, variance ½: Σ1 = 4, Σx = 6, Σx² = 14, determinant 20.
+        let data = [2.0, 5.0, 8.0, 11.0];
+        let columns: [(&[f64], f64); 2] = [(&ONES, f64::INFINITY), (&LINE, f64::INFINITY)];
+        let (c, covariance, left) = Normal::new(&columns, &data, &[0.5; 4]).solve();
+        assert!((c[0] - 2.0).abs() < 1e-6 && (c[1] - 3.0).abs() < 1e-6, "{c:?}");
+        for (at, expected) in
+            [((0, 0), 0.5 * 14.0 / 20.0), ((1, 1), 0.5 * 4.0 / 20.0), ((0, 1), -0.5 * 6.0 / 20.0)]
+        {
+            assert!((covariance[at] - expected).abs() < 1e-6, "{at:?}: {}", covariance[at]);
+        }
+        assert!(left.abs() < 1e-4, "{left}");
+    }
+
+    #[test]
+    fn a_prior_draws_a_coefficient_towards_zero() {
+        // Four values of 3 with variance 1 and a prior of deviation ½: 12/(4 + 4).
+        let (c, covariance, left) = Normal::new(&[(&ONES, 0.5)], &[3.0; 4], &ONES).solve();
+        assert!((c[0] - 1.5).abs() < 1e-8 && (covariance[(0, 0)] - 0.125).abs() < 1e-8);
+        // 4 (3 − 1.5)² + (1.5/½)².
+        assert!((left - 18.0).abs() < 1e-6, "{left}");
+    }
+
+    #[test]
+    fn columns_added_later_solve_as_if_they_had_been_there() {
+        let data = [1.0, -2.0, 4.0, 0.5];
+        let powers = [0.5, 1.0, 2.0, 4.0];
+        let columns: [(&[f64], f64); 2] = [(&ONES, 2.0), (&LINE, f64::INFINITY)];
+        let at_once = Normal::new(&columns, &data, &powers).solve();
+        let later = Normal::new(&columns[..1], &data, &powers);
+        let later = later.with(&columns[..1], &[&LINE], &data, false, &powers).solve();
+        assert!(at_once.0.iter().zip(&later.0).all(|(a, b)| (a - b).abs() < 1e-12));
+        assert!((at_once.2 - later.2).abs() < 1e-12);
+        // The same column twice: the fit is the same, whichever of the two has the coefficient.
+        let twice: [(&[f64], f64); 2] = [(&ONES, f64::INFINITY), (&ONES, f64::INFINITY)];
+        let (c, _, _) = Normal::new(&twice, &[3.0; 4], &ONES).solve();
+        assert!((c[0] + c[1] - 3.0).abs() < 1e-6, "{c:?}");
+        assert_eq!(Normal::new(&[], &data, &ONES).solve().2, 21.25);
+    }
+
+    #[test]
+    fn nothing_is_taken_out_for_no_coefficient() {
+        let mut data = vec![1.0, 2.0];
+        subtract(&mut data, &[f64::INFINITY, 1.0], 0.0);
+        subtract(&mut data, &[1.0, 0.5], 2.0);
+        assert_eq!(data, [-1.0, 1.0]);
+    }
+}
