@@ -8,18 +8,17 @@ mod studies;
 
 use local_support::*;
 use rayon::prelude::*;
-use sagnac::effect::Column;
-use sagnac::mismatch::local::{Law, bursts, level, telegraph};
+use sagnac::effect::{Column, Law, Level};
 
 /// p-values of bursts, level and telegraph signal in records of a model.
 fn p_values(model: Model, samples: usize, records: u64) -> Vec<[f64; 3]> {
     let one = |seed: u64| {
         let (problem, tried) = model.problem(samples, 1000 + seed, |_| {});
-        let levels = level(&problem, &tried);
+        let levels = levels(&problem, &tried);
         [
             bursts(&problem, &tried).map_or(1.0, |b| b.p_value),
             levels.iter().map(|l| l.p_value).fold(1.0, f64::min),
-            telegraph(&problem, &tried).map_or(1.0, |t| t.p_value),
+            telegraph(&problem, &tried).map_or(1.0, |t| t.detection.p_value),
         ]
     };
     (0..records).into_par_iter().map(one).collect()
@@ -70,7 +69,7 @@ fn steps_of_the_output_are_nothing_else() {
         });
         assert!(problem.spectra.grid_step_arcsec.is_some());
         assert!(bursts(&problem, &tried).is_none_or(|b| b.p_value > 1e-4));
-        assert!(level(&problem, &tried).is_empty());
+        assert!(levels(&problem, &tried).is_empty());
         assert!(telegraph(&problem, &tried).is_none());
     }
 }
@@ -82,7 +81,7 @@ fn a_changing_level_is_found_with_its_ratio() {
     for seed in 0..6 {
         let step = |u: f64| if u > 0.37 { 1.2 } else { 1.0 };
         let (problem, tried) = WHITE.problem(12_000, 60 + seed, |r| inject::level(r, sigma, step, seed));
-        let found = level(&problem, &tried);
+        let found = levels(&problem, &tried);
         let first = &found[0];
         held += u32::from(first.ci95[0] <= 1.2 && 1.2 <= first.ci95[1]);
         assert!(first.p_value < 1e-10 && first.gain > 40.0, "{} {}", first.p_value, first.gain);
@@ -94,7 +93,7 @@ fn a_changing_level_is_found_with_its_ratio() {
 }
 
 /// A level that follows the rate of a table, ±50 deg/s and seven periods: σ² = σ₀² (1 + (ratio² − 1)(|Ω|/max)^q).
-fn rate_level(seed: u64, ratio: f64, exponent: i32) -> (Vec<sagnac::mismatch::local::Level>, f64) {
+fn rate_level(seed: u64, ratio: f64, exponent: i32) -> (Vec<Level>, f64) {
     let share = |u: f64| (u * 44.0).sin();
     let table: Vec<f64> = (0..12_000).map(|i| 50.0 * share((i as f64 + 0.5) / 12_000.0)).collect();
     let columns = [(Column::TableRate, table.clone())].into_iter().collect();
@@ -103,7 +102,7 @@ fn rate_level(seed: u64, ratio: f64, exponent: i32) -> (Vec<sagnac::mismatch::lo
         inject::level(r, WHITE.sigma(), at, seed);
         r.iter_mut().zip(&table).for_each(|(y, w)| *y += 3600.0 * w);
     });
-    (level(&problem, &tried), bursts(&problem, &tried).map_or(1.0, |b| b.p_value))
+    (levels(&problem, &tried), bursts(&problem, &tried).map_or(1.0, |b| b.p_value))
 }
 
 #[test]
@@ -111,7 +110,7 @@ fn a_level_that_follows_the_rate_is_told_from_time() {
     let mut held = 0;
     for seed in 0..6 {
         let (found, outliers) = rate_level(seed, 1.5, 1);
-        assert_eq!(found[0].kind, "noise_variance_rate");
+        assert_eq!(found[0].effect.kind(), "noise_variance_rate");
         assert!(matches!(found[0].law, Law::Rate { .. }) && found[0].p_value < 1e-8);
         assert!(outliers > 1e-4);
         held += u32::from(found[0].ci95[0] < 1.5 && found[0].ci95[1] > 1.5);
@@ -127,17 +126,19 @@ fn two_levels_are_told_from_a_markov_process_with_their_spectrum() {
             inject::telegraph(r, sigma, 60.0, seed);
         });
         let found = telegraph(&problem, &tried).unwrap();
+        let told = &found.detection;
         assert!(
-            found.p_value < 1e-6 && found.gain > found.rival_gain + 14.0,
+            told.p_value < 1e-6 && told.gain > found.rival_gain + 14.0,
             "{} {}",
-            found.gain,
+            told.gain,
             found.rival_gain
         );
-        assert!((found.amplitude_deg_h / sigma - 1.0).abs() < 0.1, "{}", found.amplitude_deg_h);
-        assert!((found.mean_dwell_s / 6.0 - 1.0).abs() < 0.3, "{}", found.mean_dwell_s);
+        let value = |name: &str| told.reported(name).unwrap().value;
+        assert!((value("amplitude_deg_h") / sigma - 1.0).abs() < 0.1, "{told:?}");
+        assert!((value("mean_dwell_s") / 6.0 - 1.0).abs() < 0.3, "{told:?}");
         // Dwells of 60 are a correlation time of 30, levels 1 apart a deviation of ½.
         let (problem, tried) =
             WHITE.problem(12_000, 90 + seed, |r| inject::markov(r, 0.5 * sigma, 30.0, seed));
-        assert!(telegraph(&problem, &tried).is_none_or(|t| t.p_value > 1e-2));
+        assert!(telegraph(&problem, &tried).is_none_or(|t| t.detection.p_value > 1e-2));
     }
 }

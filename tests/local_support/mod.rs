@@ -7,9 +7,12 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sagnac::config::model::{Claim, Uncertainty};
-use sagnac::effect::{ClaimedMean, Column};
+use sagnac::effect::{ClaimedMean, Column, Detector, Jumps, Outliers, find};
+use sagnac::mismatch::jumps::jumps;
 use sagnac::mismatch::problem::Problem;
 use sagnac::mismatch::regular::Regular;
+pub use sagnac::mismatch::samples::levels;
+use sagnac::mismatch::samples::outliers;
 use sagnac::mismatch::tried::Tried;
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::simulate::{Setup, Simulator};
@@ -121,4 +124,16 @@ pub fn telegraph_path(samples: usize, dwell: f64, seed: u64) -> Vec<f64> {
             mean + if up { rest } else { 0.0 }
         })
         .collect()
+}
+
+/// Bursts in the residual of a hypothesis.
+pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Outliers> {
+    let Some(Detector::Outliers(detector)) = find("outlier_bursts")?.detector() else { return None };
+    outliers(detector, problem, tried)
+}
+
+/// Jumps between two levels in the residual of a hypothesis.
+pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Jumps> {
+    let Some(Detector::Jumps(detector)) = find("random_telegraph")?.detector() else { return None };
+    jumps(detector, problem, tried)
 }

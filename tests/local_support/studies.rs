@@ -3,7 +3,7 @@
 use super::local_support::*;
 use super::{below, p_values, rate_level};
 use rayon::prelude::*;
-use sagnac::mismatch::local::{Law, bursts, level, telegraph};
+use sagnac::effect::{Law, Reported};
 
 /// What each of the three claims at p < 1e-4 in 40 records with something else in them.
 fn claims(model: Model, samples: usize, change: impl Fn(&mut [f64], u64) + Sync) -> [u64; 3] {
@@ -12,8 +12,8 @@ fn claims(model: Model, samples: usize, change: impl Fn(&mut [f64], u64) + Sync)
         .map(|seed| {
             let (problem, tried) = model.problem(samples, 5000 + seed, |rate| change(rate, seed));
             let b = bursts(&problem, &tried).is_some_and(|b| b.p_value < 1e-4);
-            let l = level(&problem, &tried).iter().any(|l| l.p_value < 1e-4);
-            let t = telegraph(&problem, &tried).is_some_and(|t| t.p_value < 1e-4);
+            let l = levels(&problem, &tried).iter().any(|l| l.p_value < 1e-4);
+            let t = telegraph(&problem, &tried).is_some_and(|t| t.detection.p_value < 1e-4);
             [b, l, t].map(u64::from)
         })
         .reduce(|| [0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]])
@@ -181,7 +181,7 @@ fn study_of_detection() {
                 let (problem, tried) =
                     WHITE.problem(12_000, 700 + seed, |r| inject::level(r, sigma, profile, seed));
                 let burst = f64::from(u8::from(bursts(&problem, &tried).is_some_and(|b| b.p_value < 1e-4)));
-                match level(&problem, &tried).first() {
+                match levels(&problem, &tried).first() {
                     Some(l) => {
                         let inside = l.ci95[0] <= ratio && ratio <= l.ci95[1];
                         (1.0, l.gain, l.ratio, f64::from(u8::from(inside)), burst)
@@ -222,19 +222,23 @@ fn study_of_telegraph() {
                 match telegraph(&problem, &tried) {
                     Some(t) => {
                         let (a, d) = (amplitude * sigma, dwell / RATE_HZ);
-                        let held = |ci: [f64; 2], x: f64| f64::from(u8::from(ci[0] <= x && x <= ci[1]));
-                        let sure = f64::from(u8::from(t.p_value < 1e-4));
+                        let held =
+                            |r: &Reported, x: f64| f64::from(u8::from(r.ci95[0] <= x && x <= r.ci95[1]));
+                        let told = &t.detection;
+                        let value = |name: &str| told.reported(name).unwrap();
+                        let (size, time) = (value("amplitude_deg_h"), value("mean_dwell_s"));
+                        let sure = f64::from(u8::from(told.p_value < 1e-4));
                         let burst =
                             f64::from(u8::from(bursts(&problem, &tried).is_some_and(|b| b.p_value < 1e-4)));
                         [
                             1.0,
                             sure,
-                            t.gain,
+                            told.gain,
                             t.rival_gain,
-                            t.amplitude_deg_h / a,
-                            held(t.amplitude_ci95, a),
-                            t.mean_dwell_s / d,
-                            held(t.dwell_ci95, d),
+                            size.value / a,
+                            held(size, a),
+                            time.value / d,
+                            held(time, d),
                             burst,
                         ]
                     }
@@ -283,7 +287,7 @@ fn study_of_telegraph_in_other_processes() {
             .into_par_iter()
             .map(|seed| {
                 let (problem, tried) = WHITE.problem(6000, 5000 + seed, |rate| change(rate, seed));
-                telegraph(&problem, &tried).map_or(1.0, |t| t.p_value)
+                telegraph(&problem, &tried).map_or(1.0, |t| t.detection.p_value)
             })
             .collect();
         let below = |bound: f64| found.iter().filter(|p| **p < bound).count();

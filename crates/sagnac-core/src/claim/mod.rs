@@ -31,6 +31,13 @@ pub struct Claim {
     pub effects: Vec<Stated>,
 }
 
+impl Claim {
+    /// Whether it states an effect of that kind.
+    pub fn states(&self, effect: &dyn Effect) -> bool {
+        self.effects.iter().any(|e| e.effect.kind() == effect.kind())
+    }
+}
+
 /// One standard deviation of the author's knowledge; 0 is exact.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Uncertainty {

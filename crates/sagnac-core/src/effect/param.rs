@@ -19,6 +19,10 @@ pub struct Param {
     pub signed: bool,
     /// True when it is a whole number: a report prints it without decimals.
     pub whole: bool,
+    /// True when it is an instant of the record, of which another record has another.
+    pub instant: bool,
+    /// Of a count of events that come by chance: the variance of the count over its mean. 1 where they come one by one.
+    pub count: Option<f64>,
     /// True when a claim states the same quantity, so that the effect corrects a stated value and adds nothing new.
     pub corrects_claim: bool,
 }
@@ -26,7 +30,18 @@ pub struct Param {
 impl Param {
     /// A parameter that reports give.
     pub const fn reported(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Param {
-        Param { name, unit, lower, upper, reported: true, signed: false, whole: false, corrects_claim: false }
+        Param {
+            name,
+            unit,
+            lower,
+            upper,
+            reported: true,
+            signed: false,
+            whole: false,
+            instant: false,
+            count: None,
+            corrects_claim: false,
+        }
     }
 
     /// A parameter that the forward model needs beside them.
@@ -42,6 +57,16 @@ impl Param {
     /// The same, a whole number.
     pub const fn whole(self) -> Param {
         Param { whole: true, ..self }
+    }
+
+    /// The same, an instant of the record.
+    pub const fn instant(self) -> Param {
+        Param { instant: true, ..self }
+    }
+
+    /// The same, a whole number of events that come by chance in groups of about `together`.
+    pub const fn count(self, together: f64) -> Param {
+        Param { whole: true, count: Some(together), ..self }
     }
 
     /// The same, the correction of a value that a claim states under this name.

@@ -1,7 +1,7 @@
 //! Effects that change the spectrum of the noise.
 
 use super::{LowPass, Place, Values};
-use crate::noise::composite::Composite;
+use crate::noise::composite::{Composite, Damped};
 use crate::noise::data::NoiseType;
 use crate::numeric::range::Bounds;
 
@@ -111,6 +111,21 @@ pub trait Spectrum: Sync {
 
     /// Where it lives, principal first, at most three. `excess` is the density of the bins without it and with it.
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place>;
+
+    /// True for one of which a record can hold several, each with parameters of its own.
+    fn repeats(&self) -> bool {
+        false
+    }
+
+    /// True for exponentially correlated noise, which has the spectrum of independent jumps between two levels.
+    fn is_relaxation(&self) -> bool {
+        false
+    }
+
+    /// What a claim states of a process that was identified in samples of `dt_s`; `None` for one of another kind.
+    fn values_of(&self, _process: &Damped, _dt_s: f64) -> Option<Values> {
+        None
+    }
 
     /// True when the course of the process can be estimated sample by sample (slow or narrow-band).
     fn has_course(&self) -> bool {

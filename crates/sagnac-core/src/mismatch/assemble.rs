@@ -1,6 +1,5 @@
 //! The result of an explanation, put together from its parts.
 
-use super::ambiguous_oscillation::driver_beside;
 use super::augmented::augmented;
 use super::contribution;
 use super::departures::{self, Departure};
@@ -10,19 +9,21 @@ use super::experiment;
 use super::finding::{
     Candidate, Explanation, Finding, Fit, FitFigures, ParameterValue, PlaceRecord, RecordingFacts, Test,
 };
-use super::found::Found;
 use super::heldout::{Halves, HeldOut};
 use super::improvement;
+use super::named::{Found, Named};
 use super::nuisances::nuisances;
 use super::options::Options;
 use super::outcome::Outcome;
 use super::problem::Problem;
-use super::samples::Named;
+use super::samples;
 use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::single_cause;
 use super::tried::{Candidate as Fitted, Tried};
 use crate::claim::{Claim, Stated};
-use crate::effect::{Column, Domain, Effect, Model, Place, SpectralContext, UNKNOWN, stateable};
+use crate::effect::{
+    Column, Detection, Domain, Effect, Family, Model, Place, SpectralContext, UNKNOWN, find, stateable,
+};
 use std::collections::BTreeMap;
 
 /// A residual test counts as departed below this, its own scan and the number of tests counted.
@@ -65,79 +66,44 @@ pub(super) struct Recorded {
 pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let Evidence { problem, claim, base, held_base, selection, mut found, before, after, recorded, options } =
         parts;
-    let spectra = &problem.spectra;
+    let (best, spectra) = (&selection.best, &problem.spectra);
     let local_gain = found.local_gain();
-    // What was observed, with everything that was taken out of it since.
-    let mut observed = problem.residual.clone();
-    if let Some(taken) = &found.taken {
-        observed.iter_mut().zip(taken).for_each(|(o, t)| *o += t);
-    }
+    let observed = with(Some(problem.residual.clone()), found.taken.as_deref()).unwrap_or_default();
     // What single samples show stands before what was tried in modes.
     let ranked = found.named.iter().map(told).chain(selection.first.iter().map(candidate)).collect();
     let halves = Halves::new(problem);
     let nothing = selection.chosen.is_empty() && found.named.is_empty();
-    let held_best = if nothing { held_base } else { halves.judge(&selection.best) };
+    let held_best = if nothing { held_base } else { halves.judge(best) };
     for chosen in &selection.chosen {
         let gained = improvement::of(chosen, selection, &spectra.full, &halves, held_best.log_likelihood);
-        found
-            .named
-            .push(Named { improvement: Some(gained), ..named(chosen, &selection.best, problem, options) });
+        found.named.push(Named { improvement: Some(gained), ..named(chosen, best, problem, options) });
     }
-    if options.allows("unobserved_driver") {
-        single_cause::returned(&mut found.named, problem);
-    }
+    single_cause::returned(&mut found.named, problem, options);
     found.named.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     let something = !found.named.is_empty();
-    let mut principal: Vec<Place> = found.named.first().map(|n| n.places.clone()).unwrap_or_default();
-    if principal.is_empty() {
-        principal.extend(after.iter().filter(|d| d.below(1e-3, after.len())).map(|d| d.place).take(1));
-    }
-    let mut findings = findings(&found.named, options.max_effects);
-    if let Some(unknown) = unknown(after, !something, options.alpha) {
-        // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
-        let comb = after.iter().any(|d| d.test == "comb" && d.below(DEPARTED, after.len()));
-        if comb {
-            findings.retain(|f| f.kind != "line");
-        }
-        findings.push(unknown);
-        findings.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
-    }
-    findings.extend(dropped(problem, options));
-    let verdict = if findings.iter().any(|f| f.kind == UNKNOWN) {
-        "unknown-mismatch"
-    } else if findings.is_empty() {
-        "consistent"
-    } else {
-        "mismatch"
-    };
-    let mut correction = contribution::correction(&selection.best, spectra);
+    let principal = principal_places(&found.named, after);
+    let findings = causes(&found.named, problem, after, options);
+    let added = contribution::correction(best, spectra);
     let stated = found
         .named
         .into_iter()
         .map(|n| Stated { effect: n.effect, values: stateable(n.effect, n.estimated.stated) });
     let levelled = found.level.is_some();
-    let augmented =
-        augmented(problem, claim, &selection.best, stated.collect(), levelled, correction.as_deref());
-    if let Some(taken) = &found.taken {
-        let sum = correction.get_or_insert_with(|| vec![0.0; taken.len()]);
-        sum.iter_mut().zip(taken).for_each(|(s, t)| *s += t);
-    }
+    let augmented = augmented(problem, claim, best, stated.collect(), levelled, added.as_deref());
+    let correction = with(added, found.taken.as_deref());
     let family = smallest_p(&selection.first, before);
-    let figures_after = FitFigures {
-        log_likelihood: selection.best.fit.log_likelihood + local_gain,
-        heldout_log_likelihood: held_best.log_likelihood + 0.5 * local_gain,
-        heldout_rms_deg_h: held_best.rms_deg_h,
-        bic: selection.best.bic(spectra.rows) - 2.0 * local_gain,
-    };
-    let baseline = figures(base, &held_base, spectra.rows);
+    let baseline = figures(base, &held_base, spectra.rows, 0.0);
     let explanation = Explanation {
         format: "explain/1".to_owned(),
         case: problem.claim.case.clone(),
-        verdict: verdict.to_owned(),
+        verdict: verdict(&findings).to_owned(),
         effects: findings,
         fit: Fit {
             heldout_tau_s: halves.bin_s(),
-            augmented: if something { figures_after } else { baseline.clone() },
+            augmented: match something {
+                true => figures(best, &held_best, spectra.rows, local_gain),
+                false => baseline.clone(),
+            },
             baseline,
         },
         family_p_value: family,
@@ -145,26 +111,67 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         alpha: options.alpha,
         candidates: ranked,
         tests: tests(before, after),
-        nuisances: nuisances(problem, base, &selection.best),
+        nuisances: nuisances(problem, base, best),
         recording: facts(problem, recorded, options),
-        experiments: experiment::deciding(&selection.chosen, &selection.best, spectra),
+        experiments: experiment::deciding(&selection.chosen, best, spectra),
     };
-    let figures = draw::all(
-        problem,
-        &Drawn {
-            before: &observed,
-            base,
-            best: &selection.best,
-            correction: correction.as_deref(),
-            added: something,
-            places: &principal,
-        },
-    );
-    let correction = correction.map(|c| {
-        let on_rows = c.iter().zip(&problem.grid.present).enumerate().filter(|(_, (_, p))| **p);
-        on_rows.map(|(i, (v, _))| (problem.drivers.time_s(i), *v)).collect()
-    });
-    Outcome { explanation, correction, augmented, figures }
+    let drawn = Drawn {
+        before: &observed,
+        base,
+        best,
+        correction: correction.as_deref(),
+        added: something,
+        places: &principal,
+    };
+    let figures = draw::all(problem, &drawn);
+    Outcome { explanation, correction: correction.map(|c| on_rows(&c, problem)), augmented, figures }
+}
+
+/// A series with another one added, where there is one; of none with another, that one.
+fn with(series: Option<Vec<f64>>, other: Option<&[f64]>) -> Option<Vec<f64>> {
+    let Some(other) = other else { return series };
+    let mut sum = series.unwrap_or_else(|| vec![0.0; other.len()]);
+    sum.iter_mut().zip(other).for_each(|(s, o)| *s += o);
+    Some(sum)
+}
+
+/// A series on the grid at the rows of the recording, as (`time_s`, value).
+fn on_rows(series: &[f64], problem: &Problem) -> Vec<(f64, f64)> {
+    let rows = series.iter().zip(&problem.grid.present).enumerate().filter(|(_, (_, present))| **present);
+    rows.map(|(i, (value, _))| (problem.drivers.time_s(i), *value)).collect()
+}
+
+/// Where the leading finding shows, or else the clearest departure without a name.
+fn principal_places(named: &[Named], after: &[Departure]) -> Vec<Place> {
+    match named.first().map(|n| n.places.clone()) {
+        Some(places) if !places.is_empty() => places,
+        _ => after.iter().filter(|d| d.below(1e-3, after.len())).map(|d| d.place).take(1).collect(),
+    }
+}
+
+/// Every cause: what was named, what departs and has no name, and rows that are missing.
+fn causes(named: &[Named], problem: &Problem, after: &[Departure], options: &Options) -> Vec<Finding> {
+    let mut out = findings(named, options.max_effects);
+    if let Some(unknown) = unknown(after, named.is_empty(), options.alpha) {
+        // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
+        if after.iter().any(|d| d.test == "comb" && d.below(DEPARTED, after.len())) {
+            out.retain(|f| find(&f.kind).and_then(|e| e.family()) != Some(Family::Line));
+        }
+        out.push(unknown);
+        out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    }
+    out.extend(missing(problem, options));
+    out
+}
+
+fn verdict(causes: &[Finding]) -> &'static str {
+    if causes.iter().any(|f| f.kind == UNKNOWN) {
+        "unknown-mismatch"
+    } else if causes.is_empty() {
+        "consistent"
+    } else {
+        "mismatch"
+    }
 }
 
 /// One finding a cause: several named effects that are one cause of no kind are one.
@@ -197,27 +204,26 @@ fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
 /// A chosen effect with its parameters and places.
 fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) -> Named {
     let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.spectra);
-    if chosen.effect.kind() == "unobserved_driver"
-        && let Slot::Spectrum(i) = chosen.slot
-    {
-        estimated.stated = super::driver::knots(best, i, problem);
+    if let (Some(by_course), Slot::Spectrum(i)) = (chosen.effect.stated_by_course(), chosen.slot) {
+        estimated.stated = by_course.values(&contribution::drawn_course(best, i, problem));
     }
     let mut places = places(chosen.effect, chosen.slot, best, chosen, problem);
     // An instant lies where its interval brackets it.
-    if let Some(instant) = estimated.reported.get(estimates::INSTANT) {
+    let instant = chosen.effect.params().iter().find(|p| p.instant);
+    if let Some(instant) = instant.and_then(|p| estimated.reported.get(p.name)) {
         let half = 0.5 * problem.drivers.dt_s;
         let [from, to] = [instant.ci95[0] - half, instant.ci95[1] + half];
         places.iter_mut().filter(|p| p.domain == Domain::Time).for_each(|p| (p.from, p.to) = (from, to));
     }
-    let kind = chosen.effect.kind();
     let fitted: Vec<&str> = chosen.equivalents.iter().map(|e| e.effect.kind()).collect();
-    let driver = driver_beside(kind, &estimated.reported, problem.drivers.length_s(), options);
+    let driver =
+        ambiguous_oscillation(chosen.effect, &estimated.reported, problem.drivers.length_s(), options);
     let equivalents = chosen
         .beside
         .into_iter()
         .chain(fitted.iter().copied())
         .chain(driver.filter(|driver| !fitted.contains(driver)))
-        .filter(|_| chosen.effect.reported_kind() != UNKNOWN)
+        .filter(|_| chosen.effect.in_format())
         .take(MOST_EQUIVALENTS)
         .collect();
     Named {
@@ -237,12 +243,13 @@ fn smallest_p(first: &[Fitted], before: &[Departure]) -> f64 {
     (2.0 * named.min(departures::family(before))).min(1.0)
 }
 
-fn figures(tried: &Tried, held: &HeldOut, rows: usize) -> FitFigures {
+/// Figures of a fit; `local_gain` is what effects on single samples gained beside it.
+fn figures(tried: &Tried, held: &HeldOut, rows: usize, local_gain: f64) -> FitFigures {
     FitFigures {
-        log_likelihood: tried.fit.log_likelihood,
-        heldout_log_likelihood: held.log_likelihood,
+        log_likelihood: tried.fit.log_likelihood + local_gain,
+        heldout_log_likelihood: held.log_likelihood + 0.5 * local_gain,
         heldout_rms_deg_h: held.rms_deg_h,
-        bic: tried.bic(rows),
+        bic: tried.bic(rows) - 2.0 * local_gain,
     }
 }
 
@@ -269,7 +276,7 @@ fn record(place: &Place) -> PlaceRecord {
 }
 
 fn finding(named: &Named) -> Finding {
-    let own = named.effect.reported_kind() == UNKNOWN;
+    let own = !named.effect.in_format();
     Finding {
         kind: named.effect.reported_kind().to_owned(),
         effect: own.then(|| named.effect.kind().to_owned()),
@@ -344,34 +351,34 @@ fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Findi
     })
 }
 
-/// Rows missing on the grid that the claim states.
-fn dropped(problem: &Problem, options: &Options) -> Option<Finding> {
-    let missing = problem.grid.missing();
-    if missing == 0 || problem.claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples") {
-        return None;
-    }
-    let (first, last) = (problem.grid.gaps.first()?, problem.grid.gaps.last()?);
-    let at = |i: usize| problem.drivers.time_s(i);
-    let place = PlaceRecord {
-        domain: Domain::Timestamps.id().to_owned(),
-        from: at(first.0.saturating_sub(1)),
-        to: at(last.0 + last.1),
+/// Rows missing on the grid that the claim states. They are a fact: excluded from the search, the effect leaves a cause
+/// without a name.
+fn missing(problem: &Problem, options: &Options) -> Vec<Finding> {
+    let one = |(effect, found): (&'static dyn Effect, Detection)| {
+        let named = options.allows(effect.kind());
+        let delta_bic = found.parameters as f64 * (problem.spectra.rows as f64).ln();
+        let kind = if named { effect.reported_kind() } else { UNKNOWN };
+        let mut finding = finding(&Named::detected(effect, &found, delta_bic));
+        finding.parameters.retain(|_, _| named);
+        Finding { kind: kind.to_owned(), ..finding }
     };
-    let count = missing as f64;
-    let value = ParameterValue { value: count, unit: String::new(), ci95: [count, count] };
-    let named = options.allows("dropped_samples");
-    let parameters = [("missing_rows".to_owned(), value)].into_iter().filter(|_| named);
-    Some(Finding {
-        kind: if named { "dropped_samples" } else { UNKNOWN }.to_owned(),
-        effect: None,
-        equivalents: vec![],
-        parameters: parameters.collect(),
-        places: vec![place],
-        delta_bic: count * (problem.spectra.rows as f64).ln(),
-        p_value: 1e-300,
-        heldout_gain: None,
-        removed_share: None,
-    })
+    samples::missing(problem, &problem.claim).into_iter().map(one).collect()
+}
+
+/// Cycles of a record from which their regularity tells.
+const TELLING: f64 = 20.0;
+
+/// What may have made the few cycles of an oscillation. A thermostat or a day that was not recorded swings as regularly
+/// through them as what turns by itself, and no statistic of one record tells which it was.
+fn ambiguous_oscillation(
+    effect: &dyn Effect,
+    reported: &BTreeMap<String, ParameterValue>,
+    length_s: f64,
+    options: &Options,
+) -> Option<&'static str> {
+    let other = effect.if_few_cycles()?.kind();
+    let cycles = reported.get("frequency_hz")?.value * length_s;
+    (cycles < TELLING && options.allows(other)).then_some(other)
 }
 
 fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
@@ -403,5 +410,30 @@ fn facts(problem: &Problem, recorded: Recorded, options: &Options) -> RecordingF
             .map(|c| c.name().to_owned())
             .collect(),
         hidden: options.hide.iter().map(|c| c.name().to_owned()).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_cycles_may_be_those_of_a_driver_and_many_may_not() {
+        let at = |hz: f64| {
+            let value = ParameterValue { value: hz, unit: "Hz".into(), ci95: [hz, hz] };
+            BTreeMap::from([("frequency_hz".to_owned(), value)])
+        };
+        let options = Options::default();
+        let beside = |kind: &str, reported: &BTreeMap<String, ParameterValue>, options: &Options| {
+            ambiguous_oscillation(find(kind).unwrap(), reported, 1000.0, options)
+        };
+        const DRIVER: &str = "unobserved_driver";
+        assert_eq!(beside("line", &at(0.019), &options), Some(DRIVER));
+        assert_eq!(beside("quasi_periodic", &at(0.003), &options), Some(DRIVER));
+        assert_eq!(beside("line", &at(0.021), &options), None);
+        assert_eq!(beside("excess_rrw", &at(0.003), &options), None);
+        assert_eq!(beside("line", &BTreeMap::new(), &options), None);
+        let without = Options { without: vec![DRIVER], ..options };
+        assert_eq!(beside("line", &at(0.003), &without), None);
     }
 }

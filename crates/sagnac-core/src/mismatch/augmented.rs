@@ -2,10 +2,11 @@
 
 use super::nuisances::nuisance_value;
 use super::problem::{Problem, level, scaled};
+use super::samples;
 use super::tried::Tried;
 use crate::claim::{Claim, Stated};
-use crate::effect::{Nuisance, Value};
-use std::collections::BTreeMap;
+use crate::effect::{Effect, Model, Nuisance, SpectrumAct};
+use crate::noise::data::NoiseType;
 
 /// The claim with its nuisances as fitted and the effects stated. A coefficient that an effect sets free stays as
 /// claimed: the effect states it. A level of the noise that was found frees N as well: what it comes to is the claim's.
@@ -26,7 +27,7 @@ pub(super) fn augmented(
     claim.noise.q = given.noise.q;
     let noise = &best.hypothesis.noise;
     for (i, slot) in [&mut claim.noise.n, &mut claim.noise.b, &mut claim.noise.k].into_iter().enumerate() {
-        let by_level = i == 0 && levelled && !stated.iter().any(|s| s.effect.kind() == "excess_arw");
+        let by_level = i == 0 && levelled && !stated.iter().any(|s| frees_white_noise(s.effect));
         if !noise.freed[i] || by_level {
             *slot = noise.base[i];
         }
@@ -48,12 +49,12 @@ pub(super) fn augmented(
     if let Some((_, rms)) = level(&claim, &problem.drivers) {
         claim.noise = scaled(claim.noise, 1.0 / rms);
     }
-    if problem.grid.missing() > 0
-        && !claim.effects.iter().any(|e| e.effect.kind() == "dropped_samples")
-        && let Some(effect) = crate::effect::find("dropped_samples")
-    {
-        let missing = Value::Number(problem.grid.missing() as f64);
-        claim.effects.push(Stated { effect, values: BTreeMap::from([("missing_rows".to_owned(), missing)]) });
-    }
+    let missing = samples::missing(problem, &claim).into_iter();
+    claim.effects.extend(missing.map(|(effect, found)| Stated { effect, values: found.stated }));
     claim
+}
+
+fn frees_white_noise(effect: &dyn Effect) -> bool {
+    let frees = SpectrumAct::Frees(NoiseType::AngleRandomWalk);
+    matches!(effect.model(), Model::Spectrum(s) if s.act() == frees)
 }

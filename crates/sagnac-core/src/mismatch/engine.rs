@@ -5,22 +5,19 @@ use super::candidates;
 use super::coarse;
 use super::departures::{self, Departure};
 use super::filtered;
-use super::found::Found;
 use super::heldout::Halves;
-use super::hypothesis::fit;
-use super::jumps::{take_telegraph, with_stated_jumps};
-use super::local;
+use super::jumps::{take_jumps, with_stated_jumps};
+use super::named::{Found, Named, worth};
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::problem::{Problem, drivers};
 use super::quantization_grid::QuantizationGrid;
 use super::regular::{Irregular, Regular};
-use super::repeats;
-use super::samples::{self, Named};
+use super::samples;
 use super::select;
 use super::tried::{SpectralDataSet, Tried};
 use crate::claim::Claim;
-use crate::effect::{Column, Domain, EFFECTS, Effect, Model, number};
+use crate::effect::{Column, Detection, Domain, EFFECTS, Effect, Model, Rounding};
 use crate::message::Note;
 use crate::series::Series;
 use std::collections::BTreeMap;
@@ -44,14 +41,13 @@ pub fn explain(
     let mut regular = on_grid(series, claim, options)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
     let mut found = Found::default();
-    let repeated = take_repeats(&mut regular, claim, &mut found, options);
+    let invalid = samples::take_invalid(&mut regular, claim, &mut found, options);
     let mut problem = uncoarsened(&regular, claim, &mut found, options);
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
     drop(regular);
-    let rows = problem.spectra.rows;
     let mut base = with_stated_jumps(&mut problem, options.alpha);
     let mut before = tests(&problem, &base, problem.level.as_deref());
-    before.extend(repeated);
+    before.extend(invalid);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
     let mut moved = with_table_courses(&base, &problem.spectra, options);
@@ -60,38 +56,30 @@ pub fn explain(
         if !problem.without_bends(&moved) {
             break;
         }
-        base = refitted(&base, &problem);
+        base = problem.refitted(&base);
         moved = with_table_courses(&base, &problem.spectra, options);
     }
     let mut held_base = Halves::new(&problem).judge(&base);
     let filtered = filtered::behind(&problem, &moved, options);
-    let filtered = filtered.filter(|f| problem.impute_edges(&moved, f)).map(|f| refitted(&f, &problem));
+    let filtered = filtered.filter(|f| problem.impute_edges(&moved, f)).map(|f| problem.refitted(&f));
     if let Some(filtered) = filtered {
-        base = refitted(&base, &problem);
+        base = problem.refitted(&base);
         held_base = Halves::new(&problem).judge(&base);
         moved = with_table_courses(&filtered, &problem.spectra, options);
     }
-    let mut start = take_bursts(&mut problem, &base, &moved, &mut found, options);
+    let mut start = samples::take_outliers(&mut problem, &base, &moved, &mut found, options);
     if problem.level.is_none() {
         let moved = moved_again(&moved, &start, &problem);
-        let mut levels = local::level(&problem, &moved);
-        levels.retain(|l| options.allows(l.kind));
-        let passing =
-            levels.first().and_then(|l| samples::worth(l.gain, l.parameters, l.p_value, rows, options.alpha));
-        if let Some(delta_bic) = passing {
-            found.named.extend(samples::level(&levels, delta_bic, rows, &problem));
-            found.level = levels.into_iter().next().map(|l| l.profile);
-            start = samples::with_free_level(&start, &problem);
-        }
+        start = samples::take_level(&problem, start, &moved, &mut found, options);
     }
     let mut selection = select::select(&start, &problem.spectra, options);
     if problem.impute_edges(&selection.best, &selection.best) {
-        base = refitted(&base, &problem);
+        base = problem.refitted(&base);
         held_base = Halves::new(&problem).judge(&base);
-        start = refitted(&start, &problem);
+        start = problem.refitted(&start);
         selection = select::select(&start, &problem.spectra, options);
     }
-    take_telegraph(&mut problem, &start, &mut selection, &mut found, options);
+    take_jumps(&mut problem, &start, &mut selection, &mut found, options);
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
     let level = found.level.clone().or_else(|| problem.level.clone());
     let after = tests(&problem, &selection.best, level.as_deref());
@@ -120,33 +108,6 @@ pub(super) fn on_grid(series: Series, claim: &Claim, options: &Options) -> Resul
     Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)
 }
 
-/// Sets samples aside that repeat the one before them: they say nothing of the rate. The test that they fail, where the
-/// claim does not state them.
-fn take_repeats(
-    regular: &mut Regular,
-    claim: &Claim,
-    found: &mut Found,
-    options: &Options,
-) -> Option<Departure> {
-    let stated = claim.effects.iter().any(|e| e.effect.kind() == "repeated_samples");
-    if !stated && !options.allows("repeated_samples") {
-        return None;
-    }
-    let repeats = repeats::of(regular)?;
-    let rows = regular.grid.present.iter().filter(|p| **p).count();
-    let delta_bic = samples::worth(repeats.gain, 1, repeats.chance, rows, options.alpha)?;
-    for row in &repeats.rows {
-        regular.grid.present[*row] = false;
-    }
-    if stated {
-        return None;
-    }
-    let named = samples::repeats(&repeats, delta_bic, &regular.grid)?;
-    let place = *named.places.first()?;
-    found.named.push(named);
-    Some(Departure { test: "repeats", place, beside: None, ln_p: -repeats.gain })
-}
-
 /// What departs from a hypothesis.
 fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departure> {
     departures::all(&problem.spectra, tried, level, &problem.usable)
@@ -156,10 +117,10 @@ fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departu
 /// not state is named first: nothing finer can be judged beside it.
 pub(super) fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Options) -> Problem {
     let problem = Problem::new(regular, claim);
-    let as_effect = claim.effects.iter().filter(|e| e.effect.kind() == "quantization");
-    let as_effect = as_effect.filter_map(|e| number(&e.values, "lsb_arcsec")).fold(0.0, f64::max);
+    let as_effect = claim.effects.iter().filter_map(|e| e.effect.rounding()?.step_arcsec(&e.values));
+    let as_effect = as_effect.fold(0.0, f64::max);
     let stated = claim.quantization_lsb_arcsec.max(as_effect);
-    let quantization_grid = problem.quantization_grid.filter(|_| options.allows("quantization"));
+    let quantization_grid = problem.quantization_grid.filter(|_| rounding(options).is_some());
     let lsb = if stated > 0.0 { Some(stated) } else { quantization_grid.map(|l| l.increment_arcsec) };
     let m = lsb.map_or(1, |lsb| coarse::group(lsb, &problem.claim, problem.residual.len()));
     let mut claim = claim.clone();
@@ -197,17 +158,29 @@ fn as_rounded(
     let rows = problem.spectra.rows;
     let gain = with.baseline().fit.log_likelihood - problem.baseline().fit.log_likelihood;
     let chance = |gain: f64| crate::estimate::chi_square_tail(2.0 * gain.max(0.0), 1.0);
-    let worth = |total: f64| samples::worth(total, 1, chance(total), rows, options.alpha);
+    let worth = |total: f64| worth(total, 1, chance(total), rows, options.alpha);
     let by_spectrum = worth(gain);
-    if needed {
-        return samples::quantization(quantization_grid, gain, by_spectrum?, chance(gain), problem);
-    }
+    let (effect, rounding) = rounding(options)?;
+    let QuantizationGrid { increment_arcsec, open_arcsec, .. } = quantization_grid;
     let dt_s = problem.grid.dt_s;
+    let named = |delta_bic: f64, p_value: f64| {
+        let detection = rounding.detection(increment_arcsec, open_arcsec, dt_s);
+        Named::detected(effect, &Detection { gain, p_value, ..detection }, delta_bic)
+    };
+    if needed {
+        return by_spectrum.map(|delta_bic| named(delta_bic, chance(gain)));
+    }
     let by_values = gain + quantization_grid.gain(rows, 60.0 * problem.claim.noise.n * dt_s.sqrt());
     if by_spectrum.is_some() || gain <= 0.0 {
         return None;
     }
-    samples::quantization(quantization_grid, gain, worth(by_values)?, chance(by_values), problem)
+    worth(by_values).map(|delta_bic| named(delta_bic, chance(by_values)))
+}
+
+/// The effect that rounds the output, where it is thought of.
+fn rounding(options: &Options) -> Option<(&'static dyn Effect, &'static dyn Rounding)> {
+    let mut all = EFFECTS.iter().filter_map(|e| Some((*e, e.rounding()?)));
+    all.find(|(e, _)| options.allows(e.kind()))
 }
 
 /// What single samples are judged on: the claim with the courses of a moving table that it leaves out. Their corners,
@@ -246,41 +219,7 @@ fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
     if moved.hypothesis.courses.is_empty() && filters(moved) == filters(start) {
         return start.clone();
     }
-    refitted(moved, problem)
-}
-
-/// A hypothesis fitted to what a problem has become.
-fn refitted(tried: &Tried, problem: &Problem) -> Tried {
-    let mut hypothesis = tried.hypothesis.clone();
-    let fit = fit(&mut hypothesis, &problem.spectra.full);
-    Tried { hypothesis, fit, ..tried.clone() }
-}
-
-/// Sets bursts aside; the claim's fit without them.
-fn take_bursts(
-    problem: &mut Problem,
-    base: &Tried,
-    moved: &Tried,
-    found: &mut Found,
-    options: &Options,
-) -> Tried {
-    let (rows, alpha) = (problem.spectra.rows, options.alpha);
-    let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "outlier_bursts");
-    if !stated && !options.allows("outlier_bursts") {
-        return base.clone();
-    }
-    let Some(bursts) = local::bursts(problem, moved) else { return base.clone() };
-    let Some(delta_bic) = samples::worth(bursts.gain, bursts.parameters, bursts.p_value, rows, alpha) else {
-        return base.clone();
-    };
-    let whole = problem.residual.clone();
-    problem.without(&bursts.samples, moved);
-    if !stated {
-        let removed: Vec<f64> = whole.iter().zip(&problem.residual).map(|(w, r)| w - r).collect();
-        found.named.extend(samples::bursts(&bursts, delta_bic, &removed, problem));
-        found.take(removed);
-    }
-    refitted(base, problem)
+    problem.refitted(moved)
 }
 
 fn note(why: Irregular) -> Note {

@@ -1,20 +1,115 @@
-//! Jumps between two levels, weighed against what else was chosen.
+//! Courses of jumps, weighed against what else was chosen and against processes that have their spectrum.
 
-use super::found::Found;
-use super::local;
+use super::departures::White;
+use super::hypothesis::{kept, part_modes};
+use super::named::{Found, Named, worth};
+use super::noise_fit::{self, Noise};
 use super::options::Options;
 use super::problem::Problem;
-use super::samples;
+use super::samples::with_free_level;
 use super::select::{self, Selection, Slot};
 use super::terms::SpectrumIn;
 use super::tried::Tried;
+use crate::effect::{
+    Background, Detector, EFFECTS, Effect, JumpDetector, Jumps, Model, SpectralContext, Spectrum, SpectrumAct,
+};
 
-/// Samples at a level below which jumps are not told from a process.
-const FEWEST_AT_A_LEVEL: f64 = 6.0;
+/// Gain by exponentially correlated noise, which has the spectrum of independent jumps, below which there are no jumps
+/// either.
+const LEAST_GAIN: f64 = 8.0;
 
-/// Jumps between two levels on one of the hypotheses that they may stand beside.
-struct Jumps {
-    telegraph: local::Telegraph,
+/// Jumps in the residual of a hypothesis.
+pub fn jumps(detector: &dyn JumpDetector, problem: &Problem, tried: &Tried) -> Option<Jumps> {
+    let (gain, noise) = rival(problem, tried, |s| s.is_relaxation()).filter(|r| r.0 >= LEAST_GAIN)?;
+    let rival_gain = || {
+        gain.max(rival(problem, tried, |s| !s.is_relaxation()).map_or(0.0, |r| r.0))
+            .max(freed(problem, tried))
+            .max(line(problem, tried))
+    };
+    detector.find(&background(problem, tried, &noise), &rival_gain)
+}
+
+/// A record before a hypothesis with another noise.
+fn background<'a>(problem: &'a Problem, tried: &Tried, noise: &Noise) -> Background<'a> {
+    let spectral = &problem.spectra.full;
+    let courses = &tried.hypothesis.courses;
+    let mut columns: Vec<(Vec<f64>, f64)> =
+        kept(spectral, courses).into_iter().map(|n| (n.modes.clone(), n.deviation)).collect();
+    for part in part_modes(spectral, courses) {
+        columns.extend(part.columns.into_iter().chain(part.nuisance).map(|c| (c, f64::INFINITY)));
+    }
+    let densities = noise.densities(spectral);
+    let without = noise_fit::whittle(spectral, &tried.fit.observed, &densities) + noise.prior();
+    Background {
+        drivers: &problem.drivers,
+        modes: tried.residual(&problem.spectra),
+        powers: spectral.powers(&densities),
+        columns,
+        lost: tried.fit.noise.log_likelihood - without,
+        grid_step_arcsec: problem.spectra.grid_step_arcsec,
+    }
+}
+
+/// Gain of the best spectral effect that is `wanted`, and the noise beside it.
+fn rival(problem: &Problem, tried: &Tried, wanted: impl Fn(&dyn Spectrum) -> bool) -> Option<(f64, Noise)> {
+    let spectral = &problem.spectra.full;
+    let observed = &tried.fit.observed;
+    let before = tried.fit.noise.log_likelihood;
+    let context = SpectralContext {
+        bins: &spectral.bins,
+        observed,
+        expected: &tried.fit.densities,
+        grid_step_arcsec: problem.spectra.grid_step_arcsec,
+    };
+    let mut best: Option<(f64, Noise)> = None;
+    for effect in EFFECTS {
+        let Model::Spectrum(spectrum) = effect.model() else { continue };
+        if spectrum.act() != SpectrumAct::Adds || !wanted(spectrum) {
+            continue;
+        }
+        let bounds = spectrum.bounds(&context);
+        for start in spectrum.starts(&context) {
+            let mut noise = tried.hypothesis.noise.clone();
+            let fitted = start.iter().zip(&bounds).map(|(x, b)| b.clamp(*x)).collect();
+            noise.spectra.push(SpectrumIn { effect: *effect, fitted, stated: false });
+            let gain = noise_fit::fit(&mut noise, spectral, observed).log_likelihood - before;
+            if best.as_ref().is_none_or(|b| gain > b.0) {
+                noise.spectra.pop();
+                best = Some((gain, noise));
+            }
+        }
+    }
+    best
+}
+
+/// Gain of flicker or random walk set free.
+fn freed(problem: &Problem, tried: &Tried) -> f64 {
+    let spectral = &problem.spectra.full;
+    let observed = &tried.fit.observed;
+    let mut best = 0.0f64;
+    for i in 1..3 {
+        for level in [1.0, 6.0, 33.0, 200.0] {
+            let mut noise = tried.hypothesis.noise.clone();
+            let beside = (noise.base[0] * 0.01).max(1e-9);
+            noise.base[i] = noise.base[i].max(beside) * level;
+            noise.freed[i] = true;
+            let fitted = noise_fit::fit(&mut noise, spectral, observed).log_likelihood;
+            best = best.max(fitted - tried.fit.noise.log_likelihood);
+        }
+    }
+    best
+}
+
+/// Gain of the best line: half the power of the whitened residual in a pair of neighbouring modes, which hold nearly
+/// all of a line.
+fn line(problem: &Problem, tried: &Tried) -> f64 {
+    let white = White::of(tried, &problem.spectra);
+    white.modes.windows(4).map(|w| 0.5 * w.iter().map(|u| u * u).sum::<f64>()).fold(0.0, f64::max)
+}
+
+/// Jumps on one of the hypotheses that they may stand beside.
+struct Weighed {
+    jumps: Jumps,
     delta_bic: f64,
     /// True when nothing else explains nearly as much.
     told: bool,
@@ -26,7 +121,13 @@ struct Jumps {
 
 /// The best of jumps on the claim alone, and beside what else was chosen in place of each of its processes: they have the
 /// spectrum of a slow process, and with another effect in the record neither the one nor the other alone comes near a pair.
-fn jumps(problem: &Problem, start: &Tried, selection: &Selection, alpha: f64) -> Option<Jumps> {
+fn weighed(
+    detector: &dyn JumpDetector,
+    problem: &Problem,
+    start: &Tried,
+    selection: &Selection,
+    alpha: f64,
+) -> Option<Weighed> {
     let rows = problem.spectra.rows;
     let several = selection.chosen.len() > 1;
     let processes = selection.chosen.iter().filter(|c| several && matches!(c.slot, Slot::Spectrum(_)));
@@ -34,79 +135,80 @@ fn jumps(problem: &Problem, start: &Tried, selection: &Selection, alpha: f64) ->
     let grounds =
         std::iter::once((start, single)).chain(processes.map(|c| (&c.without, Some(c.effect.kind()))));
     let judged = grounds.filter_map(|(tried, instead)| {
-        let telegraph = local::telegraph(problem, tried)?;
-        // Jumps every few samples are what a short Markov process looks like, even ones a periodic course.
-        if telegraph.mean_dwell_s < FEWEST_AT_A_LEVEL * problem.drivers.dt_s || telegraph.regular {
-            return None;
-        }
-        let (gain, parameters) = (telegraph.gain, telegraph.parameters);
-        let delta_bic = samples::worth(gain, parameters, telegraph.chance, rows, alpha)?;
-        let told = samples::worth(gain, parameters, telegraph.p_value, rows, alpha).is_some();
+        let jumps = jumps(detector, problem, tried).filter(|j| j.resolved)?;
+        let (gain, parameters) = (jumps.detection.gain, jumps.detection.parameters);
+        let delta_bic = worth(gain, parameters, jumps.chance, rows, alpha)?;
+        let told = worth(gain, parameters, jumps.detection.p_value, rows, alpha).is_some();
         let rival = tried.bic(rows) - selection.best.bic(rows);
-        Some(Jumps { telegraph, delta_bic, told, rival, instead })
+        Some(Weighed { jumps, delta_bic, told, rival, instead })
     });
     judged.max_by(|a, b| (a.delta_bic - a.rival).total_cmp(&(b.delta_bic - b.rival)))
 }
 
-/// The claim's own fit where it states jumps between two levels: they are taken out where they are found as they are
-/// stated, and stand as the Markov process that has their spectrum where they cannot be told one by one.
+/// The claim's own fit where it states jumps without saying when: they are taken out where they are found as they are
+/// stated, and stand as the process that has their spectrum where they cannot be told one by one.
 pub(super) fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> Tried {
-    const AS_STATED: f64 = 2.0;
     let base = problem.baseline();
-    let Some((amplitude, dwell_s)) = problem.stated_telegraph() else { return base };
+    let Some((detector, stated)) = problem.stated_jumps() else { return base };
+    let Some((effect, fitted)) = detector.process(stated) else { return base };
     let alone = Selection { best: base.clone(), chosen: vec![], first: vec![] };
-    if let Some(Jumps { telegraph, .. }) = jumps(problem, &base, &alone, alpha).filter(|j| j.told) {
-        let [low, high] = telegraph.amplitude_ci95;
-        if (telegraph.amplitude_deg_h - amplitude).abs() < 0.5 * AS_STATED * (high - low) {
-            problem.take(&telegraph.course);
-            return problem.baseline();
+    let found = weighed(detector, problem, &base, &alone, alpha).filter(|w| w.told);
+    match found.filter(|w| detector.agrees(stated, &w.jumps.detection)) {
+        Some(Weighed { jumps, .. }) => {
+            problem.take(&jumps.course);
+            problem.baseline()
         }
+        None => problem.baseline_with(Some(SpectrumIn { effect, fitted, stated: true })),
     }
-    let markov = crate::effect::find("markov_long");
-    let same = markov.map(|effect| SpectrumIn {
-        effect,
-        fitted: vec![0.5 * dwell_s, 0.5 * amplitude],
-        stated: true,
-    });
-    problem.baseline_with(same)
 }
 
-/// Takes out jumps between two levels where they explain more than anything else does; where they explain about as much,
-/// they are an equivalent.
-pub(super) fn take_telegraph(
+/// Takes out jumps where they explain more than anything else does; where they explain about as much, they are an
+/// equivalent.
+pub(super) fn take_jumps(
     problem: &mut Problem,
     start: &Tried,
     selection: &mut Selection,
     found: &mut Found,
     options: &Options,
 ) {
-    let stated = problem.claim.effects.iter().any(|e| e.effect.kind() == "random_telegraph");
-    if stated || selection.chosen.is_empty() || !options.allows("random_telegraph") {
-        return;
+    for effect in EFFECTS {
+        let Some(Detector::Jumps(detector)) = effect.detector() else { continue };
+        if problem.claim.states(*effect) || selection.chosen.is_empty() || !options.allows(effect.kind()) {
+            continue;
+        }
+        if let Some(weighed) = weighed(detector, problem, start, selection, options.alpha) {
+            take(*effect, weighed, problem, start, selection, found, options);
+        }
     }
-    let Some(Jumps { telegraph, delta_bic, told, rival, instead }) =
-        jumps(problem, start, selection, options.alpha)
-    else {
-        return;
-    };
+}
+
+fn take(
+    effect: &'static dyn Effect,
+    weighed: Weighed,
+    problem: &mut Problem,
+    start: &Tried,
+    selection: &mut Selection,
+    found: &mut Found,
+    options: &Options,
+) {
+    let Weighed { jumps, delta_bic, told, rival, instead } = weighed;
     if !told || delta_bic < rival {
         if delta_bic > rival - select::ENOUGH {
             let replaced = selection.chosen.iter_mut().find(|c| Some(c.effect.kind()) == instead);
-            replaced.into_iter().for_each(|c| c.beside = Some("random_telegraph"));
+            replaced.into_iter().for_each(|c| c.beside = Some(effect.kind()));
         }
         return;
     }
-    problem.take(&telegraph.course);
+    problem.take(&jumps.course);
     let mut base = problem.baseline();
     if start.hypothesis.noise.freed[0] {
-        base = samples::with_free_level(&base, problem);
+        base = with_free_level(&base, problem);
     }
-    if let Some(mut named) = samples::telegraph(&telegraph, delta_bic, problem) {
-        named.equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
-        found.gained_in_fit += base.fit.log_likelihood - start.fit.log_likelihood;
-        found.named.push(named);
-        found.take(telegraph.course);
-    }
+    let equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
+    let named = Named { equivalents, ..Named::detected(effect, &jumps.detection, delta_bic) };
+    found.gained_in_fit += base.fit.log_likelihood - start.fit.log_likelihood;
+    found.named.push(named);
+    found.take(jumps.course);
     // What was tried on the claim alone is what the jumps stood against.
     let first = std::mem::take(&mut selection.first);
     *selection = Selection { first, ..select::select(&base, &problem.spectra, options) };

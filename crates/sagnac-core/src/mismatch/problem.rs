@@ -10,7 +10,9 @@ use super::terms::CourseIn;
 use super::terms::SpectrumIn;
 use super::tried::{SpectralDataSet, Tried};
 use crate::claim::{Claim, Stated};
-use crate::effect::{Column, Drivers, Effect, Model, Nuisance, Param, number};
+use crate::effect::{
+    Column, Detector, Drivers, Effect, JumpDetector, Model, Nuisance, Param, Rows, Values, number,
+};
 use crate::noise::model::NoiseModel;
 use crate::numeric::cosine::inverse_dct2;
 use std::sync::Arc;
@@ -99,13 +101,28 @@ impl Problem {
         }
     }
 
-    /// Size of the jumps (deg/h) and mean time at a level (s) where the claim states jumps between two levels without
-    /// saying when.
-    pub fn stated_telegraph(&self) -> Option<(f64, f64)> {
-        let stated = self.claim.effects.iter().find(|e| e.effect.kind() == "random_telegraph")?;
+    /// The effect of jumps that the claim states without saying when, with what it states.
+    pub fn stated_jumps(&self) -> Option<(&'static dyn JumpDetector, &Values)> {
+        let of = |e: &Stated| match e.effect.detector() {
+            Some(Detector::Jumps(detector)) => Some(detector),
+            _ => None,
+        };
+        let (detector, stated) = self.claim.effects.iter().find_map(|e| Some((of(e)?, e)))?;
         let known = stated.effect.stated_course(&stated.values, &self.drivers).is_some();
-        let of = |name: &str| number(&stated.values, name);
-        Some((of("amplitude_deg_h")?.abs(), of("mean_dwell_s")?)).filter(|_| !known)
+        (!known).then_some((detector, &stated.values))
+    }
+
+    /// The grid as detectors of missing rows look at it.
+    pub fn rows(&self) -> Rows<'_> {
+        let Grid { present, gaps, .. } = &self.grid;
+        Rows { rate: &[], present, gaps, start_s: self.drivers.start_s, dt_s: self.drivers.dt_s }
+    }
+
+    /// A hypothesis fitted to what the problem has become.
+    pub fn refitted(&self, tried: &Tried) -> Tried {
+        let mut hypothesis = tried.hypothesis.clone();
+        let fit = fit(&mut hypothesis, &self.spectra.full);
+        Tried { hypothesis, fit, ..tried.clone() }
     }
 
     /// Takes a course out of the residual.
@@ -245,8 +262,7 @@ pub(super) fn scaled(noise: NoiseModel, factor: f64) -> NoiseModel {
 /// The level of the noise that stated effects give each sample, scaled to a mean square of 1, and its root mean square
 /// over what N, B and K say.
 pub(super) fn level(claim: &Claim, drivers: &Drivers) -> Option<(Vec<f64>, f64)> {
-    let kinds = ["noise_variance_time", "noise_variance_rate"];
-    let stated: Vec<&Stated> = claim.effects.iter().filter(|e| kinds.contains(&e.effect.kind())).collect();
+    let stated: Vec<&Stated> = claim.effects.iter().filter(|e| e.effect.sets_level()).collect();
     if stated.is_empty() {
         return None;
     }

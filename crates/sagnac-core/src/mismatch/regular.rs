@@ -1,6 +1,6 @@
 //! A recording on the uniform grid that its claim states, with what is missing on it.
 
-use crate::effect::Column;
+use crate::effect::{Column, Rows};
 use std::collections::BTreeMap;
 
 /// Rows on a grid.
@@ -51,6 +51,12 @@ impl Grid {
 }
 
 impl Regular {
+    /// The rows as detectors look at them.
+    pub fn rows(&self) -> Rows<'_> {
+        let Grid { dt_s, start_s, present, gaps, .. } = &self.grid;
+        Rows { rate: &self.rate, present, gaps, start_s: *start_s, dt_s: *dt_s }
+    }
+
     /// Puts rows on the grid of `sample_rate_hz`. An interval counts as the nearest whole number of sample intervals, so
     /// that the rounding of stamps and a slow error of the clock do no harm.
     ///

@@ -1,236 +1,244 @@
-//! Effects on single samples as findings: bursts, a level that changes, jumps between two levels.
+//! What the detectors of effects on single samples find in a record, and what is done with it.
 
-use super::estimates::Estimated;
-use super::finding::ParameterValue;
-use super::improvement::Improvement;
-use super::local::{Bursts, Law, Level, Telegraph};
+use super::departures::Departure;
+use super::flat::flat;
+use super::hypothesis::fit;
+use super::named::{Found, Named, worth};
+use super::options::Options;
 use super::problem::Problem;
-use super::quantization_grid::QuantizationGrid;
-use super::regular::Grid;
-use super::repeats::Repeats;
+use super::regular::Regular;
 use super::select::ENOUGH;
 use super::tried::Tried;
-use crate::effect::{Domain, Effect, Place, Value, find};
-use std::collections::BTreeMap;
+use crate::claim::Claim;
+use crate::effect::{
+    Detection, Detector, EFFECTS, Effect, FlatResidual, Law, Level, LevelLaw, OutlierDetector, Outliers,
+    Reported, RowsFound, Value,
+};
+use crate::estimate::chi_square_tail;
 
-/// An effect that was named, however it was found.
-pub struct Named {
-    /// The effect.
-    pub effect: &'static dyn Effect,
-    /// Parameters.
-    pub estimated: Estimated,
-    /// Kinds that would have served as well.
-    pub equivalents: Vec<&'static str>,
-    /// Where, principal first.
-    pub places: Vec<Place>,
-    /// BIC without it less BIC with it.
-    pub delta_bic: f64,
-    /// Probability without it, everything counted.
-    pub p_value: f64,
-    /// What it improves, where the fit in cosine modes tells.
-    pub improvement: Option<Improvement>,
-    /// Gain of log-likelihood that the fit in cosine modes does not hold.
-    pub local_gain: f64,
+/// Laws that compete: forms over time, over columns, over the rate.
+const LAWS: f64 = 16.0;
+/// Fewest samples from which a level is told.
+const FEWEST: usize = 128;
+
+/// The detectors that are asked: those of effects that are thought of, and of those that the claim states. `true` with the
+/// latter: they are taken out and not reported.
+fn asked<'a>(
+    claim: &'a Claim,
+    options: &'a Options,
+) -> impl Iterator<Item = (&'static dyn Effect, Detector, bool)> + 'a {
+    EFFECTS.iter().filter_map(move |effect| {
+        let stated = claim.states(*effect);
+        let detector = effect.detector().filter(|_| stated || options.allows(effect.kind()))?;
+        Some((*effect, detector, stated))
+    })
 }
 
-/// Whether a gain is worth its parameters and is no chance. `family` counts the catalogue.
-pub fn worth(gain: f64, parameters: usize, p_value: f64, rows: usize, alpha: f64) -> Option<f64> {
-    const FAMILY: f64 = 40.0;
-    let delta_bic = 2.0 * gain - parameters as f64 * (rows as f64).ln();
-    (delta_bic >= ENOUGH && FAMILY * p_value < alpha).then_some(delta_bic)
+/// Sets rows aside that hold no value of their own. The tests that they fail, where the claim does not state them.
+pub fn take_invalid(
+    regular: &mut Regular,
+    claim: &Claim,
+    found: &mut Found,
+    options: &Options,
+) -> Vec<Departure> {
+    let mut out = vec![];
+    for (effect, detector, stated) in asked(claim, options) {
+        let Detector::Invalid(detector) = detector else { continue };
+        let Some(RowsFound { rows, detection }) = detector.find(&regular.rows()) else { continue };
+        let count = regular.grid.present.iter().filter(|p| **p).count();
+        let Detection { gain, parameters, p_value, .. } = detection;
+        let Some(delta_bic) = worth(gain, parameters, p_value, count, options.alpha) else { continue };
+        for row in &rows {
+            regular.grid.present[*row] = false;
+        }
+        let Some(place) = detection.places.first().copied().filter(|_| !stated) else { continue };
+        found.named.push(Named::detected(effect, &detection, delta_bic));
+        out.push(Departure { test: detector.test(), place, beside: None, ln_p: -gain });
+    }
+    out
 }
 
-fn value(value: f64, unit: &str, ci95: [f64; 2]) -> ParameterValue {
-    ParameterValue { value, unit: unit.to_owned(), ci95 }
+/// Groups of outlying samples in the residual of a hypothesis.
+pub fn outliers(detector: &dyn OutlierDetector, problem: &Problem, tried: &Tried) -> Option<Outliers> {
+    detector.find(&flat(tried, problem))
 }
 
-/// Rounding in steps that the values themselves show, as a finding.
-pub fn quantization(
-    quantization_grid: QuantizationGrid,
-    gain: f64,
-    delta_bic: f64,
-    p_value: f64,
+/// Sets outliers aside; the claim's fit without them. `moved` is the hypothesis that they are judged on.
+pub fn take_outliers(
+    problem: &mut Problem,
+    base: &Tried,
+    moved: &Tried,
+    found: &mut Found,
+    options: &Options,
+) -> Tried {
+    let rows = problem.spectra.rows;
+    let mut start = base.clone();
+    let claim = problem.claim.clone();
+    for (effect, detector, stated) in asked(&claim, options) {
+        let Detector::Outliers(detector) = detector else { continue };
+        let Some(outliers) = outliers(detector, problem, moved) else { continue };
+        let (gain, parameters, p_value) = (outliers.gain, outliers.parameters, outliers.p_value);
+        let Some(delta_bic) = worth(gain, parameters, p_value, rows, options.alpha) else { continue };
+        let whole = problem.residual.clone();
+        problem.without(&outliers.samples, moved);
+        if !stated {
+            let removed: Vec<f64> = whole.iter().zip(&problem.residual).map(|(w, r)| w - r).collect();
+            let detection = detector.describe(&outliers, &removed, &problem.drivers);
+            found.named.extend(detection.map(|d| Named::detected(effect, &d, delta_bic)));
+            found.take(removed);
+        }
+        start = problem.refitted(base);
+    }
+    start
+}
+
+/// Every law of the level of the noise that says more than one level does, the best by BIC first.
+pub fn levels(problem: &Problem, tried: &Tried) -> Vec<Level> {
+    let residual = flat(tried, problem);
+    let samples: Vec<usize> = (0..residual.flat.len()).filter(|i| residual.counts(*i)).collect();
+    // Where rounding is coarse, the size of the residual says how near the rate is to a step.
+    if samples.len() < FEWEST || residual.rounding_step > FlatResidual::COARSE {
+        return vec![];
+    }
+    let mut out = vec![];
+    for effect in EFFECTS {
+        let Some(Detector::Level(detector)) = effect.detector() else { continue };
+        let laws = detector.laws(&residual, &samples).into_iter();
+        out.extend(laws.filter_map(|law| rated(*effect, law, &residual, &samples)));
+    }
+    let rows = (samples.len() as f64).ln();
+    let score = |l: &Level| 2.0 * l.gain - l.parameters as f64 * rows;
+    out.sort_by(|a, b| score(b).total_cmp(&score(a)));
+    out
+}
+
+/// Finds what the level of the noise follows, where the claim states nothing of it: the claim's fit with N free, since the
+/// level is not the claimed one everywhere.
+pub fn take_level(
     problem: &Problem,
-) -> Option<Named> {
-    let (lsb_arcsec, open) = (quantization_grid.increment_arcsec, quantization_grid.open_arcsec);
-    let ci95 = [lsb_arcsec - open, lsb_arcsec + open];
-    let step = lsb_arcsec / problem.grid.dt_s;
-    // Successive errors of the angle are subtracted: twice the variance of a rounding error.
-    let rms = step / 6f64.sqrt();
-    let reported = BTreeMap::from([
-        ("lsb_arcsec".to_owned(), value(lsb_arcsec, "arcsec", ci95)),
-        ("rms_deg_h".to_owned(), value(rms, "deg/h", [rms * 0.999, rms * 1.001])),
-    ]);
-    Some(Named {
-        effect: find("quantization")?,
-        estimated: Estimated {
-            reported,
-            stated: BTreeMap::from([("lsb_arcsec".to_owned(), Value::Number(lsb_arcsec))]),
-        },
-        equivalents: vec![],
-        places: vec![Place { domain: Domain::Amplitude, from: 0.0, to: step }],
-        delta_bic,
-        p_value,
-        improvement: None,
-        local_gain: gain,
-    })
+    start: Tried,
+    moved: &Tried,
+    found: &mut Found,
+    options: &Options,
+) -> Tried {
+    let rows = problem.spectra.rows;
+    let mut levels = levels(problem, moved);
+    levels.retain(|l| options.allows(l.effect.kind()));
+    let passing = levels.first().and_then(|l| worth(l.gain, l.parameters, l.p_value, rows, options.alpha));
+    let Some(delta_bic) = passing else { return start };
+    found.named.extend(level_named(&levels, delta_bic, problem));
+    found.level = levels.into_iter().next().map(|l| l.profile);
+    with_free_level(&start, problem)
 }
 
-/// Bursts as a finding.
-pub fn bursts(found: &Bursts, delta_bic: f64, removed: &[f64], problem: &Problem) -> Option<Named> {
-    let drivers = &problem.drivers;
-    let count = found.groups.len() as f64;
-    let n = removed.len().max(1) as f64;
-    let mean = removed.iter().sum::<f64>() / n;
-    let rms = (removed.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / n).sqrt();
-    let spread = 1.96 / (2.0 * found.samples.len().max(1) as f64).sqrt();
-    let mut reported = BTreeMap::new();
-    reported.insert("count".to_owned(), value(count, "", [count, count + found.missed as f64]));
-    reported.insert("rms_deg_h".to_owned(), value(rms, "deg/h", [rms * (-spread).exp(), rms * spread.exp()]));
-    let size = |g: &(usize, usize)| {
-        let inside = &removed[g.0..g.0 + g.1];
-        (inside.iter().map(|r| r * r).sum::<f64>() / inside.len().max(1) as f64).sqrt()
-    };
-    let list = |f: &dyn Fn(&(usize, usize)) -> f64| Value::List(found.groups.iter().map(f).collect());
-    let stated = BTreeMap::from([
-        ("count".to_owned(), Value::Number(count)),
-        ("bursts_time_s".to_owned(), list(&|g| drivers.time_s(g.0))),
-        ("bursts_duration_s".to_owned(), list(&|g| g.1 as f64 * drivers.dt_s)),
-        ("bursts_size_deg_h".to_owned(), list(&size)),
-    ]);
-    let (first, last) = (found.groups.first()?, found.groups.last()?);
-    let mut places = vec![Place {
-        domain: Domain::Time,
-        from: drivers.time_s(first.0) - drivers.dt_s,
-        to: drivers.time_s(last.0 + last.1),
-    }];
-    let largest = found.samples.iter().map(|i| removed[*i].abs()).fold(0.0, f64::max);
-    places.push(Place { domain: Domain::Amplitude, from: 0.3 * largest, to: largest });
-    Some(Named {
-        effect: find("outlier_bursts")?,
-        estimated: Estimated { reported, stated },
-        equivalents: vec![],
-        places,
-        delta_bic,
-        p_value: found.p_value,
-        improvement: None,
-        local_gain: found.gain,
-    })
-}
-
-/// Samples that repeat the one before them as a finding.
-pub fn repeats(found: &Repeats, delta_bic: f64, grid: &Grid) -> Option<Named> {
-    /// Runs that a claim lists one by one.
-    const LISTED: usize = 256;
-    let runs = found.runs();
-    let (k, n) = (found.rows.len() as f64, found.of.max(1) as f64);
-    let share = k / n;
-    let each = k / runs.len().max(1) as f64;
-    // Rows of one run repeat together.
-    let half = 1.96 * (share * (1.0 - share) * each / n).sqrt();
-    let ci95 = [(share - half).max(0.0), (share + half).min(1.0)];
-    let time_s = |row: usize| grid.start_s + row as f64 * grid.dt_s;
-    let mut stated = BTreeMap::from([
-        ("repeated_share".to_owned(), Value::Number(share)),
-        ("repeated_rows_each".to_owned(), Value::Number(each)),
-    ]);
-    if runs.len() <= LISTED {
-        let times = runs.iter().map(|r| time_s(r.0)).collect();
-        stated.insert("repeats_time_s".to_owned(), Value::List(times));
-        stated.insert("repeats_rows".to_owned(), Value::List(runs.iter().map(|r| r.1 as f64).collect()));
-    }
-    let (first, last) = found.stretch()?;
-    Some(Named {
-        effect: find("repeated_samples")?,
-        estimated: Estimated {
-            reported: BTreeMap::from([("repeated_share".to_owned(), value(share, "", ci95))]),
-            stated,
-        },
-        equivalents: vec![],
-        places: vec![Place { domain: Domain::Time, from: time_s(first - 1), to: time_s(last) }],
-        delta_bic,
-        p_value: found.chance,
-        improvement: None,
-        local_gain: found.gain,
-    })
-}
-
-/// A level that changes as a finding. The second best law of another kind is its equivalent when it is near.
-pub fn level(found: &[Level], delta_bic: f64, rows: usize, problem: &Problem) -> Option<Named> {
-    let best = found.first()?;
-    let score = |l: &Level| 2.0 * l.gain - l.parameters as f64 * (rows as f64).ln();
-    let equivalents = found
-        .iter()
-        .skip(1)
-        .filter(|l| l.kind != best.kind && score(l) > score(best) - ENOUGH)
-        .map(|l| l.kind)
-        .take(1)
-        .collect();
-    let reported = BTreeMap::from([("ratio".to_owned(), value(best.ratio, "", best.ci95))]);
-    let mut stated = BTreeMap::from([("ratio".to_owned(), Value::Number(best.ratio))]);
-    if let Law::Rate { exponent, .. } = &best.law {
-        stated.insert("exponent".to_owned(), Value::Number(f64::from(*exponent)));
-    }
-    if best.kind == "noise_variance_time" {
-        let knots = match &best.law {
-            Law::Time(knots) => knots.clone(),
-            _ => profile_knots(&best.profile, problem),
-        };
-        stated.insert("knots_time_s".to_owned(), Value::List(knots.iter().map(|k| k.0).collect()));
-        stated.insert("knots_ratio".to_owned(), Value::List(knots.iter().map(|k| k.1).collect()));
-    }
-    Some(Named {
-        effect: find(best.kind)?,
-        estimated: Estimated { reported, stated },
-        equivalents,
+/// The leading law as a finding. The second best law of another effect is its equivalent when it is near.
+fn level_named(levels: &[Level], delta_bic: f64, problem: &Problem) -> Option<Named> {
+    let best = levels.first()?;
+    let Some(Detector::Level(detector)) = best.effect.detector() else { return None };
+    let ratio = best.effect.params().first()?;
+    let rows = (problem.spectra.rows as f64).ln();
+    let score = |l: &Level| 2.0 * l.gain - l.parameters as f64 * rows;
+    let mut others = levels.iter().skip(1).filter(|l| l.effect.kind() != best.effect.kind());
+    let equivalent = others.find(|l| score(l) > score(best) - ENOUGH).map(|l| l.effect.kind());
+    let mut stated = detector.stated(best, &problem.drivers);
+    stated.insert(ratio.name.to_owned(), Value::Number(best.ratio));
+    let detection = Detection {
+        reported: vec![Reported::new(ratio.name, ratio.unit, best.ratio, best.ci95)],
+        stated,
         places: best.places.clone(),
-        delta_bic,
+        gain: best.gain,
+        parameters: best.parameters,
         p_value: best.p_value,
-        improvement: None,
-        local_gain: best.gain,
+    };
+    let equivalents = equivalent.into_iter().collect();
+    Some(Named { equivalents, ..Named::detected(best.effect, &detection, delta_bic) })
+}
+
+/// A law held against single samples; `None` for one that they do not bear out.
+fn rated(
+    effect: &'static dyn Effect,
+    mut found: LevelLaw,
+    residual: &FlatResidual<'_>,
+    samples: &[usize],
+) -> Option<Level> {
+    let n = found.profile.len() as f64;
+    let root = (found.profile.iter().map(|g| g * g).sum::<f64>() / n).sqrt();
+    found.profile.iter_mut().for_each(|g| *g /= root);
+    match &mut found.law {
+        Law::Time(knots) | Law::Column(_, knots) => knots.iter_mut().for_each(|k| k.value /= root),
+        Law::Rate { .. } => {}
+    }
+    let sample = |i: &usize| (residual.white[*i], found.profile[*i]);
+    let on_white = gain_of(samples.iter().map(sample));
+    let difference = |i: &usize| {
+        let last = i.checked_sub(1)?;
+        Some((residual.flat[*i] - residual.flat[last], (found.profile[*i] * found.profile[last]).sqrt()))
+    };
+    let on_differences = gain_of(samples.iter().filter_map(difference));
+    // What the whitened residual does not show, or shows for another reason, is not counted; nor is a smooth course,
+    // which differences do not have.
+    let gain = found.gain.min(on_white).min(on_differences);
+    let tail = chi_square_tail(2.0 * gain.max(0.0) / found.dispersion, found.free as f64);
+    let p_value = (LAWS * found.trials * tail).min(1.0);
+    let keep = gain.is_finite() && gain > 0.5 * found.free as f64 && p_value < 0.05;
+    keep.then_some(Level {
+        effect,
+        law: found.law,
+        profile: found.profile,
+        gain,
+        parameters: found.parameters,
+        p_value,
+        ratio: found.ratio,
+        ci95: found.ci95,
+        places: vec![found.place],
     })
 }
 
-/// A profile over time at some hundred knots.
-fn profile_knots(profile: &[f64], problem: &Problem) -> Vec<(f64, f64)> {
-    let step = (profile.len() / 256).max(1);
-    (0..profile.len()).step_by(step).map(|i| (problem.drivers.time_s(i), profile[i])).collect()
+/// Gain of log-likelihood of values by their relative deviations, each side with a level of its own.
+fn gain_of(values: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (mut before, mut after, mut logs, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for (e, g) in values {
+        before += e * e;
+        after += (e / g).powi(2);
+        logs += g.ln();
+        count += 1.0;
+    }
+    -logs - 0.5 * count * (after / before).ln()
 }
 
-/// Jumps between two levels as a finding.
-pub fn telegraph(found: &Telegraph, delta_bic: f64, problem: &Problem) -> Option<Named> {
-    let n = found.path.len().max(1) as f64;
-    let share = found.path.iter().map(|p| p * p).sum::<f64>() / n;
-    let rms = found.amplitude_deg_h.abs() * share.sqrt();
-    let [low, high] = found.amplitude_ci95.map(|a| a.abs() * share.sqrt());
-    let reported = BTreeMap::from([
-        ("amplitude_deg_h".to_owned(), value(found.amplitude_deg_h, "deg/h", found.amplitude_ci95)),
-        ("mean_dwell_s".to_owned(), value(found.mean_dwell_s, "s", found.dwell_ci95)),
-        ("rms_deg_h".to_owned(), value(rms, "deg/h", [low.min(high), low.max(high)])),
-    ]);
-    let stated = BTreeMap::from([
-        ("amplitude_deg_h".to_owned(), Value::Number(found.amplitude_deg_h)),
-        ("mean_dwell_s".to_owned(), Value::Number(found.mean_dwell_s)),
-    ]);
-    let jumps: Vec<usize> = (1..found.path.len()).filter(|i| found.path[*i] != found.path[*i - 1]).collect();
-    let (first, last) = (*jumps.first()?, *jumps.last()?);
-    let at = |i: usize| problem.drivers.time_s(i);
-    Some(Named {
-        effect: find("random_telegraph")?,
-        estimated: Estimated { reported, stated },
-        equivalents: vec![],
-        places: vec![Place { domain: Domain::Time, from: at(first), to: at(last) }],
-        delta_bic,
-        p_value: found.p_value,
-        improvement: None,
-        local_gain: found.gain,
-    })
+/// Rows that are missing on the grid of the claim and that it does not state, effect by effect.
+pub fn missing(problem: &Problem, claim: &Claim) -> Vec<(&'static dyn Effect, Detection)> {
+    let one = |effect: &&'static dyn Effect| {
+        let Some(Detector::Missing(detector)) = effect.detector() else { return None };
+        if claim.states(*effect) {
+            return None;
+        }
+        detector.find(&problem.rows()).map(|found| (*effect, found.detection))
+    };
+    EFFECTS.iter().filter_map(one).collect()
 }
 
 /// The same hypothesis with N set free, for a level of the noise that is not the claimed one everywhere.
 pub fn with_free_level(base: &Tried, problem: &Problem) -> Tried {
     let mut hypothesis = base.hypothesis.clone();
     hypothesis.noise.freed[0] = true;
-    let fit = super::hypothesis::fit(&mut hypothesis, &problem.spectra.full);
+    let fit = fit(&mut hypothesis, &problem.spectra.full);
     Tried { hypothesis, fit, parameters: base.parameters + 1, odds: base.odds }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gain_of_known_deviations_is_that_of_their_likelihood() {
+        // Deviations 1 and 3 in turns, each value one of its deviation: with one level for all, of mean square 5, the
+        // likelihood is lower by ½ n ln 5 − Σ ln g.
+        let values = (0..200).map(|i| if i % 2 == 0 { (1.0, 1.0) } else { (-3.0, 3.0) });
+        let expected = 100.0 * 5f64.ln() - 100.0 * 3f64.ln();
+        assert!((gain_of(values) - expected).abs() < 1e-9);
+        // A level that values do not follow loses what they would have gained by its inverse.
+        let wrong = (0..200).map(|i| if i % 2 == 0 { (1.0, 2.0) } else { (1.0, 1.0) });
+        assert!(gain_of(wrong) < 0.0);
+    }
 }

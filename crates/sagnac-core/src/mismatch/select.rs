@@ -18,8 +18,6 @@ pub const MOST_EQUIVALENTS: usize = 3;
 /// Times that one effect of the chosen is exchanged for another at most: what was best alone need not be the best beside
 /// what was found after it.
 const EXCHANGES: usize = 3;
-/// A single jump.
-const JUMP: &str = "bias_step";
 /// Hypotheses kept at each depth.
 const WIDTH: usize = 3;
 
@@ -168,7 +166,8 @@ pub fn select(base: &Tried, spectra: &SpectralDataSet, options: &Options) -> Sel
             }
         }
         next.sort_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)));
-        let jump = next.iter().skip(WIDTH).find(|t| set(t) == [JUMP]).cloned();
+        let only_jump = |t: &&Tried| matches!(slots(&t.hypothesis)[..], [(_, e)] if is_jump(e));
+        let jump = next.iter().skip(WIDTH).find(only_jump).cloned();
         next.truncate(WIDTH);
         next.extend(jump);
         let Some(leader) = next.first() else { break };
@@ -214,10 +213,15 @@ fn beam_survivors<'a>(passing: &[&'a Candidate]) -> Vec<&'a Candidate> {
         out.push(course);
     }
     // A level that leaves and returns is two jumps, of which one alone explains little.
-    if !out.iter().any(|c| c.effect.kind() == JUMP) {
-        out.extend(passing.iter().find(|c| c.effect.kind() == JUMP));
+    if !out.iter().any(|c| is_jump(c.effect)) {
+        out.extend(passing.iter().find(|c| is_jump(c.effect)));
     }
     out
+}
+
+/// True for a jump that a second one may take back.
+fn is_jump(effect: &dyn Effect) -> bool {
+    effect.reversed_pair().is_some()
 }
 
 /// How many effects were tried, those in single samples among them.
@@ -263,7 +267,7 @@ fn chosen(
             };
             let equivalents = rivals
                 .iter()
-                .filter(|c| c.effect.kind() != effect.kind() && c.effect.reported_kind() == c.effect.kind())
+                .filter(|c| c.effect.kind() != effect.kind() && c.effect.in_format())
                 .filter(|c| near(c))
                 .take(MOST_EQUIVALENTS)
                 .cloned()

@@ -4,11 +4,12 @@
 //! a spectrum that no kind has; three jumps are a staircase; a level that leaves and
 //! returns is one driver that was not recorded. Each of them, named alone, would say what is not the case.
 
-use super::estimates::{Estimated, INSTANT};
+use super::estimates::Estimated;
 use super::finding::ParameterValue;
+use super::named::Named;
+use super::options::Options;
 use super::problem::Problem;
-use super::samples::Named;
-use crate::effect::{Domain, Place, Value, find};
+use crate::effect::{Domain, Family, Knot, Place};
 use std::collections::BTreeMap;
 
 /// Ratio of frequencies below which two lines are neighbours.
@@ -30,24 +31,10 @@ pub(super) struct Together {
     pub places: Vec<Place>,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Family {
-    Line,
-    Spectrum,
-    Jump,
-}
-
+/// The family of a finding. Rounding that the values themselves show is no part of the shape of a spectrum.
 fn family(named: &Named) -> Option<Family> {
-    // Rounding that the values themselves show is no part of the shape of a spectrum.
-    let in_spectrum = frequency(named).is_some();
-    match named.effect.kind() {
-        "line" => Some(Family::Line),
-        "quantization" if !in_spectrum => None,
-        "excess_arw" | "excess_flicker" | "excess_rrw" | "markov_short" | "markov_long"
-        | "quasi_periodic" | "bandwidth_filter" | "quantization" => Some(Family::Spectrum),
-        "bias_step" | "heading_change" => Some(Family::Jump),
-        _ => None,
-    }
+    let by_values = named.effect.rounding().is_some() && frequency(named).is_none();
+    named.effect.family().filter(|_| !by_values)
 }
 
 /// The hull of the places of some findings, one in each domain, at most three.
@@ -89,7 +76,7 @@ fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
 fn reversible_step_pair(named: &[Named]) -> Option<[usize; 2]> {
     let jumps: Vec<usize> = (0..named.len()).filter(|i| family(&named[*i]) == Some(Family::Jump)).collect();
     // A gyro that was turned and turned back changed its heading twice.
-    let steps = jumps.iter().all(|i| named[*i].effect.kind() == "bias_step");
+    let steps = jumps.iter().all(|i| named[*i].effect.reversed_pair().is_some());
     let [a, b] = jumps[..] else { return None };
     let parameter = |i: usize, name: &str| named[i].estimated.reported.get(name);
     let (first, second) = (parameter(a, STEP)?, parameter(b, STEP)?);
@@ -97,18 +84,21 @@ fn reversible_step_pair(named: &[Named]) -> Option<[usize; 2]> {
     let left = (first.value + second.value).abs();
     let back = left < BACK * first.value.abs().max(second.value.abs())
         && left < BACK_DEVIATIONS * deviation(first).hypot(deviation(second));
-    let ordered = parameter(a, INSTANT)?.value <= parameter(b, INSTANT)?.value;
+    let ordered = named[a].instant()?.value <= named[b].instant()?.value;
     (steps && back).then_some(if ordered { [a, b] } else { [b, a] })
 }
 
 /// Two jumps, there and back, made the one thing that the format of explanations calls them: something that was not
 /// recorded came and went.
-pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem) {
+pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem, options: &Options) {
     let Some([first, second]) = reversible_step_pair(named) else { return };
-    let Some(effect) = find("unobserved_driver") else { return };
+    let pair = named[first].effect.reversed_pair().filter(|e| options.allows(e.kind()));
+    let Some((effect, by_course)) = pair.and_then(|e| Some((e, e.stated_by_course()?))) else { return };
     let value = |i: usize, name: &str| named[i].estimated.reported.get(name).cloned();
     let (Some(up), Some(down)) = (value(first, STEP), value(second, STEP)) else { return };
-    let (Some(from), Some(to)) = (value(first, INSTANT), value(second, INSTANT)) else { return };
+    let (Some(from), Some(to)) = (named[first].instant().cloned(), named[second].instant().cloned()) else {
+        return;
+    };
     let weight = |p: &ParameterValue| (p.ci95[1] - p.ci95[0]).max(1e-300).powi(-2);
     let (a, b) = (weight(&up), weight(&down));
     let height = (a * up.value - b * down.value) / (a + b);
@@ -123,11 +113,9 @@ pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem) {
     };
     let edge = 1e-3 * drivers.dt_s;
     let times = [from.value - edge, from.value + edge, to.value - edge, to.value + edge];
-    let list = |x: &[f64]| Value::List(x.to_vec());
-    let stated = BTreeMap::from([
-        ("knots_time_s".to_owned(), list(&times)),
-        ("knots_deg_h".to_owned(), list(&[0.0, height, height, 0.0])),
-    ]);
+    let knot = |(at, value): (&f64, f64)| Knot { at: *at, value };
+    let knots: Vec<Knot> = times.iter().zip([0.0, height, height, 0.0]).map(knot).collect();
+    let stated = by_course.values(&knots);
     let pair = [&named[first], &named[second]];
     let whole = Named {
         effect,
@@ -166,4 +154,64 @@ pub(super) fn together(named: &[Named], allowed: usize) -> Vec<Together> {
             Together { members, places }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::effect::find;
+    use std::collections::BTreeMap;
+
+    /// A jump of some size at an instant.
+    fn jump(kind: &str, size: f64, at: f64) -> Named {
+        let value = |value: f64, half: f64| ParameterValue {
+            value,
+            unit: String::new(),
+            ci95: [value - half, value + half],
+        };
+        let reported = BTreeMap::from([
+            ("step_deg_h".to_owned(), value(size, 0.1)),
+            ("time_s".to_owned(), value(at, 1.0)),
+        ]);
+        Named {
+            effect: find(kind).unwrap(),
+            estimated: Estimated { reported, ..Estimated::default() },
+            equivalents: vec![],
+            places: vec![Place { domain: Domain::Time, from: at - 1.0, to: at + 1.0 }],
+            delta_bic: 50.0,
+            p_value: 1e-9,
+            improvement: None,
+            local_gain: 0.0,
+        }
+    }
+
+    fn line(frequency_hz: f64) -> Named {
+        let place = Place { domain: Domain::Frequency, from: frequency_hz, to: frequency_hz };
+        Named { effect: find("line").unwrap(), places: vec![place], ..jump("line", 0.0, 0.0) }
+    }
+
+    #[test]
+    fn a_level_that_comes_back_is_a_pair_in_the_order_of_time() {
+        let pair = |second: Named| reversible_step_pair(&[jump("bias_step", -0.98, 700.0), second]);
+        assert_eq!(pair(jump("bias_step", 1.0, 400.0)), Some([1, 0]));
+        // Not back: of the same sign, too much left, or a heading that changed.
+        assert_eq!(pair(jump("bias_step", -1.0, 400.0)), None);
+        assert_eq!(pair(jump("bias_step", 2.1, 400.0)), None);
+        assert_eq!(pair(jump("heading_change", 1.0, 400.0)), None);
+    }
+
+    #[test]
+    fn lines_side_by_side_are_one_cause_and_lines_apart_are_two() {
+        let groups = |f: &[f64]| {
+            let named: Vec<Named> = f.iter().map(|f| line(*f)).collect();
+            together(&named, 3).into_iter().map(|t| t.members).collect::<Vec<_>>()
+        };
+        assert_eq!(groups(&[1.14, 1.0]), [[1, 0]]);
+        assert!(groups(&[1.16, 1.0]).is_empty());
+        assert_eq!(groups(&[1.0, 5.0, 20.0]), [[0, 1, 2]]);
+        // Allowed five, three were all there were.
+        let named: Vec<Named> = [1.0, 5.0, 20.0].map(line).into();
+        assert!(together(&named, 5).is_empty());
+    }
 }

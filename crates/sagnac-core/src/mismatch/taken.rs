@@ -8,7 +8,7 @@ use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::witness::Witness;
 use crate::claim::{Claim, Stated};
-use crate::effect::{Effect, Model, SpectrumAct, number};
+use crate::effect::{Effect, Model, SpectrumAct};
 use crate::estimate::{chi_square_tail, normal_quantile};
 use crate::message::Note;
 use crate::noise::data::NoiseType;
@@ -118,8 +118,7 @@ fn same_samples(a: &Series, b: &Series) -> bool {
 /// Takes effects into a claim. Coefficients of the noise and the step of the output are values of the claim itself.
 fn take(claim: &mut Claim, effects: Vec<Stated>, augmented: &Claim) {
     for stated in effects {
-        let kind = stated.effect.kind();
-        if kind.starts_with("noise_variance") {
+        if stated.effect.sets_level() {
             (claim.noise.n, claim.noise.b, claim.noise.k) =
                 (augmented.noise.n, augmented.noise.b, augmented.noise.k);
         }
@@ -137,8 +136,7 @@ fn take(claim: &mut Claim, effects: Vec<Stated>, augmented: &Claim) {
             continue;
         }
         let near = |lsb: f64| (lsb / claim.quantization_lsb_arcsec - 1.0).abs() < 0.3;
-        if kind == "quantization"
-            && let Some(lsb) = number(&stated.values, "lsb_arcsec")
+        if let Some(lsb) = stated.effect.rounding().and_then(|r| r.step_arcsec(&stated.values))
             && (claim.quantization_lsb_arcsec == 0.0 || near(lsb))
         {
             claim.quantization_lsb_arcsec = lsb;

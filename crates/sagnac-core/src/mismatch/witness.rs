@@ -7,8 +7,8 @@
 
 use super::engine::{on_grid, uncoarsened};
 use super::finding::{Explanation, Finding};
-use super::found::Found;
 use super::hypothesis::{Hypothesis, columns, fit};
+use super::named::Found;
 use super::noise_fit::{Noise, base_index};
 use super::options::Options;
 use super::problem::Problem;
@@ -16,7 +16,7 @@ use super::spectral_data::SpectralData;
 use super::terms::SpectrumIn;
 use super::tried::Tried;
 use crate::claim::{Claim, Stated};
-use crate::effect::{Drivers, Model, Nuisance, Spectrum, SpectrumAct, Value, Values, list, number};
+use crate::effect::{Drivers, Model, Nuisance, Spectrum, SpectrumAct, Value, Values, parameter};
 use crate::estimate::chi_square_tail;
 use crate::numeric::least_squares::Normal;
 use crate::series::Series;
@@ -86,9 +86,8 @@ impl Witness<'_> {
             Model::Mean(_) => self.by_course(stated, claim),
             Model::Samples(_) => None,
         };
-        let told_by_kind =
-            matches!(stated.effect.model(), Model::Samples(_)) || stated.effect.kind() == "unobserved_driver";
-        let own = if told_by_kind { own() } else { None };
+        let by_findings = stated.effect.detector().is_some() || stated.effect.stated_by_course().is_some();
+        let own = if by_findings { own() } else { None };
         let by_kind = own.map(|own| self.by_kind(stated.effect.kind(), found, &own));
         by_model.unwrap_or(0.0).max(by_kind.unwrap_or(0.0))
     }
@@ -96,8 +95,7 @@ impl Witness<'_> {
     fn by_spectrum(&self, spectrum: &'static dyn Spectrum, stated: &Stated, claim: &Claim) -> Option<f64> {
         let mut with = free(claim);
         // A driver is stated as a course; in another record the same quantity takes another one of the same size and pace.
-        let driver =
-            (stated.effect.kind() == "unobserved_driver").then(|| resolution(&stated.values)).flatten();
+        let driver = stated.effect.stated_by_course().and_then(|s| s.process(&stated.values));
         let parameters = match &driver {
             Some(driver) => driver.len(),
             None => spectrum.stated(&stated.values)?.len(),
@@ -106,9 +104,8 @@ impl Witness<'_> {
             with.effects.push(stated.clone());
         }
         let problem = self.problem(&with)?;
-        if stated.effect.kind() == "quantization"
-            && let (Some(quantization_grid), Some(lsb)) =
-                (problem.quantization_grid, number(&stated.values, "lsb_arcsec"))
+        let stated_step = stated.effect.rounding().and_then(|r| r.step_arcsec(&stated.values));
+        if let (Some(quantization_grid), Some(lsb)) = (problem.quantization_grid, stated_step)
             && (quantization_grid.increment_arcsec / lsb - 1.0).abs() < 0.01
         {
             return Some(1.0);
@@ -194,11 +191,12 @@ impl Witness<'_> {
 fn unlike(here: &Finding, there: &Finding, share: f64) -> f64 {
     let mut least = 1.0f64;
     for (name, a) in &here.parameters {
-        let Some(b) = there.parameters.get(name).filter(|_| name != "time_s") else { continue };
-        let chance = if matches!(name.as_str(), "count" | "missing_rows") {
-            // Groups come by chance, and rows are lost in groups: counts are compared with a wide law.
+        let param = parameter(name);
+        let comparable = param.is_none_or(|p| !p.instant);
+        let Some(b) = there.parameters.get(name).filter(|_| comparable) else { continue };
+        let chance = if let Some(together) = param.and_then(|p| p.count) {
             let (x, y) = (a.value * share, b.value);
-            let spread = (x * share.max(1.0) + y).max(1.0) * if name == "count" { 1.0 } else { 10.0 };
+            let spread = (x * share.max(1.0) + y).max(1.0) * together;
             chi_square_tail((x - y).powi(2) / spread, 1.0)
         } else {
             let deviation = |ends: [f64; 2]| (ends[1] - ends[0]).abs() / WIDTH95;
@@ -226,17 +224,52 @@ fn shifted(values: &Values, name: &str, by: f64) -> Values {
     out
 }
 
-/// Root mean square and time of the course through stated knots, as of a smooth process: its slope is the one over the
-/// other.
-fn resolution(values: &Values) -> Option<Vec<f64>> {
-    let (times, knots) = (list(values, "knots_time_s"), list(values, "knots_deg_h"));
-    if knots.len() < 8 || times.len() != knots.len() {
-        return None;
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_are_compared_by_their_intervals_and_counts_by_chance() {
+        let finding = |parameters: &[(&str, f64, f64)]| Finding {
+            kind: String::new(),
+            effect: None,
+            equivalents: vec![],
+            parameters: parameters
+                .iter()
+                .map(|(name, value, half)| {
+                    let ci95 = [value - 1.96 * half, value + 1.96 * half];
+                    let value =
+                        super::super::finding::ParameterValue { value: *value, unit: String::new(), ci95 };
+                    ((*name).to_owned(), value)
+                })
+                .collect(),
+            places: vec![],
+            delta_bic: 0.0,
+            p_value: 1.0,
+            heldout_gain: None,
+            removed_share: None,
+        };
+        // 5 apart, deviations 3 and 4: one deviation, 31.7 %.
+        let of = |a: &[(&str, f64, f64)], b: &[(&str, f64, f64)], share: f64| {
+            unlike(&finding(a), &finding(b), share)
+        };
+        assert!((of(&[("size", 10.0, 3.0)], &[("size", 15.0, 4.0)], 1.0) - 0.317_31).abs() < 1e-4);
+        // The sign is no part of a size, and instants are not compared.
+        assert_eq!(
+            of(
+                &[("size", 10.0, 3.0), ("time_s", 5.0, 0.1)],
+                &[("size", -10.0, 3.0), ("time_s", 900.0, 0.1)],
+                1.0
+            ),
+            1.0
+        );
+        // Counts of 10 and 20: (10)² over their sum.
+        let chance = chi_square_tail(100.0 / 30.0, 1.0);
+        assert!((of(&[("count", 10.0, 0.0)], &[("count", 20.0, 0.0)], 1.0) - chance).abs() < 1e-12);
+        // Rows are lost ten together.
+        let chance = chi_square_tail(100.0 / 300.0, 1.0);
+        assert!(
+            (of(&[("missing_rows", 10.0, 0.0)], &[("missing_rows", 20.0, 0.0)], 1.0) - chance).abs() < 1e-12
+        );
     }
-    let n = knots.len() as f64;
-    let mean = knots.iter().sum::<f64>() / n;
-    let rms = (knots.iter().map(|k| (k - mean).powi(2)).sum::<f64>() / n).sqrt();
-    let slopes = times.windows(2).zip(knots.windows(2)).map(|(t, k)| ((k[1] - k[0]) / (t[1] - t[0])).powi(2));
-    let slope = (slopes.sum::<f64>() / (n - 1.0)).sqrt();
-    (rms > 0.0 && slope > 0.0 && slope.is_finite()).then(|| vec![rms, rms / slope])
 }

@@ -7,6 +7,7 @@ pub(crate) mod inverse;
 pub mod least_squares;
 pub(crate) mod log_determinant;
 pub mod optimize;
+pub mod order;
 pub mod range;
 pub mod reml;
 pub mod special;

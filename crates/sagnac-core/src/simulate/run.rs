@@ -262,7 +262,7 @@ fn on_samples(claim: &Claim, seed: u64, drivers: &Drivers, rate: &mut [f64], kee
             acting.push((place, stated, samples));
         }
     }
-    acting.sort_by_key(|(_, stated, _)| !stated.effect.kind().starts_with("noise_variance"));
+    acting.sort_by_key(|(_, stated, _)| !stated.effect.sets_level());
     for (place, stated, samples) in acting {
         samples.apply(&stated.values, drivers, stream(seed, 1000 + place as u64), rate, keep);
     }

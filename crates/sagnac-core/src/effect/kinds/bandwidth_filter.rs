@@ -2,7 +2,7 @@
 
 use crate::effect::shared::search::log_grid;
 use crate::effect::{
-    Domain, LowPass, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
+    Domain, Family, LowPass, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
 };
 use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode};
 use crate::noise::data::NoiseType;
@@ -84,7 +84,12 @@ fn average_samples(cutoff_hz: f64, dt_s: f64) -> usize {
 
 describe! {
     BandwidthFilter, "bandwidth_filter", Spectrum in Frequency, needs [],
-    confusers ["markov_short", "excess_arw", "time_offset"]
+    confusers ["markov_short", "excess_arw", "time_offset"],
+    with {
+        fn family(&self) -> Option<Family> {
+            Some(Family::Spectrum)
+        }
+    }
 }
 
 /// Offsets in half widths of a bin, and weights, that average a density within it: about the zeros of a moving average it
@@ -265,5 +270,32 @@ impl Spectrum for BandwidthFilter {
         let (Some(cutoff), Some(bin)) = (fitted.first(), context.bins.first()) else { return vec![] };
         let nyquist = 0.5 / bin.dt_s;
         vec![Place { domain: Domain::Frequency, from: (0.5 * cutoff).min(0.5 * nyquist), to: nyquist }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_of_two_samples_has_half_of_the_power_at_a_quarter_of_the_rate() {
+        // cos²(πf dt) = ½.
+        assert!((average_cutoff_hz(2, 0.1) - 2.5).abs() < 1e-9);
+        for samples in [2, 5, 17] {
+            assert_eq!(average_samples(average_cutoff_hz(samples, 0.02), 0.02), samples);
+        }
+        // sin²(πnx)/(n sin πx)² at the cutoff of 5 samples.
+        let x = average_cutoff_hz(5, 1.0);
+        let power = ((5.0 * PI * x).sin() / (5.0 * (PI * x).sin())).powi(2);
+        assert!((power - 0.5).abs() < 1e-9, "{power}");
+    }
+
+    #[test]
+    fn three_points_average_a_parabola_exactly() {
+        let bin =
+            ModeBin { frequency_hz: 0.0, mode: 10, modes: 21, samples: 100, dt_s: 1.0, even_ends: false };
+        // Over 20 ± 10 as a continuum: 20² + 10²/3.
+        assert!((mean_within(&bin, |k| k * k) - (400.0 + 100.0 / 3.0)).abs() < 1e-9);
+        assert_eq!(mean_within(&ModeBin { modes: 1, ..bin }, |k| k), 10.0);
     }
 }

@@ -1,8 +1,10 @@
 //! One jump of the bias.
 
+use super::unobserved_driver::UnobservedDriver;
 use crate::effect::shared::step::{instants, step};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, Effect, Family, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values,
+    number,
 };
 use crate::numeric::range::Bounds;
 
@@ -10,12 +12,20 @@ pub struct BiasStep;
 
 static PARAMS: [Param; 2] = [
     Param::reported("step_deg_h", "deg/h", -1e6, 1e6).signed(),
-    Param::reported("time_s", "s", f64::MIN, f64::MAX),
+    Param::reported("time_s", "s", f64::MIN, f64::MAX).instant(),
 ];
 
 describe! {
     BiasStep, "bias_step", Mean in Time, needs [],
-    confusers ["heading_change", "random_telegraph", "excess_rrw"]
+    confusers ["heading_change", "random_telegraph", "excess_rrw"],
+    with {
+        fn family(&self) -> Option<Family> {
+            Some(Family::Jump)
+        }
+        fn reversed_pair(&self) -> Option<&'static dyn Effect> {
+            Some(&UnobservedDriver)
+        }
+    }
 }
 
 impl MeanModel for BiasStep {

@@ -1,13 +1,16 @@
 //! Rows are missing.
 
-use crate::effect::{Drivers, Param, Samples, Values, list, number};
+use crate::effect::{
+    Detection, Detector, Domain, Drivers, Param, Place, Reported, RowDetector, Rows, RowsFound, Samples,
+    Value, Values, list, number,
+};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub struct DroppedSamples;
 
 static PARAMS: [Param; 2] =
-    [Param::reported("missing_rows", "", 1.0, 1e7).whole(), Param::inner("gaps", "", 1.0, 1e6)];
+    [Param::reported("missing_rows", "", 1.0, 1e7).count(10.0), Param::inner("gaps", "", 1.0, 1e6)];
 
 /// Last instant before each gap is later than this; rows that the gap swallows.
 const TIMES: &str = "gaps_time_s";
@@ -59,12 +62,42 @@ impl Samples for DroppedSamples {
             }
         }
     }
+
+    fn detector(&self) -> Detector {
+        Detector::Missing(&DroppedSamples)
+    }
+}
+
+impl RowDetector for DroppedSamples {
+    fn test(&self) -> &'static str {
+        "gaps"
+    }
+
+    /// Every place of the grid that no row fills. Each counts as a parameter: which row it was is known.
+    fn find(&self, rows: &Rows<'_>) -> Option<RowsFound> {
+        let (first, last) = (rows.gaps.first()?, rows.gaps.last()?);
+        let missing: Vec<usize> = rows.gaps.iter().flat_map(|(first, count)| *first..first + count).collect();
+        let count = missing.len() as f64;
+        let place = Place {
+            domain: Domain::Timestamps,
+            from: rows.time_s(first.0.saturating_sub(1)),
+            to: rows.time_s(last.0 + last.1),
+        };
+        let detection = Detection {
+            reported: vec![Reported::new(PARAMS[0].name, PARAMS[0].unit, count, [count, count])],
+            stated: Values::from([(PARAMS[0].name.to_owned(), Value::Number(count))]),
+            places: vec![place],
+            gain: f64::INFINITY,
+            parameters: missing.len(),
+            p_value: 1e-300,
+        };
+        Some(RowsFound { rows: missing, detection })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
 
     fn lost(values: &Values, n: usize, seed: u64) -> Vec<usize> {
         let drivers = Drivers { dt_s: 0.1, start_s: 5.0, samples: n, ..Drivers::default() };
@@ -80,6 +113,18 @@ mod tests {
             (ROWS.to_owned(), Value::List(vec![2.0, 1.0, 5.0])),
         ]);
         assert_eq!(lost(&values, 20, 0), [3, 4, 10]);
+    }
+
+    #[test]
+    fn every_missing_row_is_found_between_its_neighbours() {
+        let rows = Rows { rate: &[], present: &[], gaps: &[(3, 2), (10, 1)], start_s: 5.0, dt_s: 0.5 };
+        let found = DroppedSamples.find(&rows).unwrap();
+        assert_eq!(found.rows, [3, 4, 10]);
+        let Detection { reported, places, .. } = found.detection;
+        assert_eq!((reported[0].value, reported[0].ci95), (3.0, [3.0, 3.0]));
+        // From the row before the first gap, at 6 s, to that behind the last, at 10.5 s.
+        assert_eq!((places[0].from, places[0].to), (6.0, 10.5));
+        assert!(DroppedSamples.find(&Rows { gaps: &[], ..rows }).is_none());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Angle random walk that differs from the claimed one.
 
-use crate::effect::Param;
+use crate::effect::{Family, Param};
 
 pub struct ExcessArw;
 
@@ -8,7 +8,12 @@ static PARAMS: [Param; 1] = [Param::reported("N_deg_rt_h", "deg/√h", 0.0, 1e3)
 
 describe! {
     ExcessArw, "excess_arw", Spectrum in Frequency, needs [],
-    confusers ["markov_short", "noise_variance_time", "outlier_bursts"]
+    confusers ["markov_short", "noise_variance_time", "outlier_bursts"],
+    with {
+        fn family(&self) -> Option<Family> {
+            Some(Family::Spectrum)
+        }
+    }
 }
 
 frees! { ExcessArw, AngleRandomWalk, n, course false }

@@ -1,6 +1,6 @@
 //! Rate random walk that differs from the claimed one.
 
-use crate::effect::Param;
+use crate::effect::{Family, Param};
 
 pub struct ExcessRrw;
 
@@ -8,7 +8,12 @@ static PARAMS: [Param; 1] = [Param::reported("K_deg_h_rt_h", "deg/h/√h", 0.0, 
 
 describe! {
     ExcessRrw, "excess_rrw", Spectrum in Frequency, needs [],
-    confusers ["unobserved_driver", "markov_long", "excess_flicker", "bias_step"]
+    confusers ["unobserved_driver", "markov_long", "excess_flicker", "bias_step"],
+    with {
+        fn family(&self) -> Option<Family> {
+            Some(Family::Spectrum)
+        }
+    }
 }
 
 frees! { ExcessRrw, RateRandomWalk, k, course true }

@@ -3,7 +3,8 @@
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::step::{instants, step};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Domain, Drivers, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
+    number,
 };
 use crate::numeric::range::Bounds;
 
@@ -11,7 +12,7 @@ pub struct HeadingChange;
 
 static PARAMS: [Param; 4] = [
     Param::reported("step_deg_h", "deg/h", -1e3, 1e3).signed(),
-    Param::reported("time_s", "s", f64::MIN, f64::MAX),
+    Param::reported("time_s", "s", f64::MIN, f64::MAX).instant(),
     Param::inner("cosine_deg_h", "deg/h", -1e3, 1e3),
     Param::inner("sine_deg_h", "deg/h", -1e3, 1e3),
 ];
@@ -28,7 +29,12 @@ fn turning(drivers: &Drivers) -> Option<&[f64]> {
 
 describe! {
     HeadingChange, "heading_change", Mean in Time, needs [],
-    confusers ["bias_step", "earth_rate_projection", "random_telegraph"]
+    confusers ["bias_step", "earth_rate_projection", "random_telegraph"],
+    with {
+        fn family(&self) -> Option<Family> {
+            Some(Family::Jump)
+        }
+    }
 }
 
 /// How far the table's angle changes at an instant, deg, against how far it moves in as long a time elsewhere.

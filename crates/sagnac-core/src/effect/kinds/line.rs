@@ -1,9 +1,11 @@
 //! A coherent sinusoid.
 
+use super::unobserved_driver::UnobservedDriver;
 use crate::effect::shared::search::peaks;
 use crate::effect::shared::sinusoid::{averaged, columns, polar, wave};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Domain, Drivers, Effect, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
+    Values, number,
 };
 use crate::numeric::cosine::sinusoid_modes;
 use crate::numeric::optimize::parabolic_peak;
@@ -21,7 +23,15 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     Line, "line", Mean in Frequency, needs [],
-    confusers ["quasi_periodic", "diurnal", "table_harmonic", "reset_ripple"]
+    confusers ["quasi_periodic", "diurnal", "table_harmonic", "reset_ripple"],
+    with {
+        fn family(&self) -> Option<Family> {
+            Some(Family::Line)
+        }
+        fn if_few_cycles(&self) -> Option<&'static dyn Effect> {
+            Some(&UnobservedDriver)
+        }
+    }
 }
 
 /// Twice-padded power of the score at the frequencies j/(2n·dt) of a length that transforms fast, as gains of a line,

@@ -1,8 +1,10 @@
 //! Exponentially correlated noise whose correlation time is many samples.
 
 use crate::effect::shared::markov::{SHORT_SAMPLES, densities, process, starts_between};
-use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
-use crate::noise::composite::Composite;
+use crate::effect::{
+    Domain, Family, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Value, Values, number,
+};
+use crate::noise::composite::{Composite, Damped};
 use crate::numeric::range::Bounds;
 
 pub struct MarkovLong;
@@ -14,7 +16,12 @@ static PARAMS: [Param; 2] = [
 
 describe! {
     MarkovLong, "markov_long", Spectrum in Lag, needs [],
-    confusers ["excess_flicker", "excess_rrw", "random_telegraph"]
+    confusers ["excess_flicker", "excess_rrw", "random_telegraph"],
+    with {
+        fn family(&self) -> Option<Family> {
+            Some(Family::Spectrum)
+        }
+    }
 }
 
 impl Spectrum for MarkovLong {
@@ -24,6 +31,17 @@ impl Spectrum for MarkovLong {
 
     fn scales_with(&self, parameter: usize) -> Option<f64> {
         (parameter == 1).then_some(2.0)
+    }
+
+    fn is_relaxation(&self) -> bool {
+        true
+    }
+
+    fn values_of(&self, process: &Damped, dt_s: f64) -> Option<Values> {
+        let time = process.decay_time_s;
+        let own = process.frequency_hz == 0.0 && time >= SHORT_SAMPLES * dt_s;
+        let values = [time, process.rms_deg_h].map(Value::Number);
+        own.then(|| PARAMS.iter().map(|p| p.name.to_owned()).zip(values).collect())
     }
 
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {

@@ -1,6 +1,9 @@
 //! The output is quantised in angle.
 
-use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
+use crate::effect::{
+    Detection, Domain, Family, ModeBin, Param, Place, Reported, Rounding, SpectralContext, Spectrum,
+    SpectrumAct, Value, Values, number,
+};
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_density;
@@ -12,7 +15,38 @@ static PARAMS: [Param; 1] = [Param::reported("lsb_arcsec", "arcsec", 0.0, 1e6)];
 
 describe! {
     Quantization, "quantization", Spectrum in Amplitude, needs [],
-    confusers ["excess_arw", "dead_zone"]
+    confusers ["excess_arw", "dead_zone"],
+    with {
+        fn rounding(&self) -> Option<&'static dyn Rounding> {
+            Some(&Quantization)
+        }
+        fn family(&self) -> Option<Family> {
+            Some(Family::Spectrum)
+        }
+    }
+}
+
+impl Rounding for Quantization {
+    fn step_arcsec(&self, stated: &Values) -> Option<f64> {
+        number(stated, PARAMS[0].name)
+    }
+
+    fn detection(&self, step_arcsec: f64, open_arcsec: f64, dt_s: f64) -> Detection {
+        let step = step_arcsec / dt_s;
+        // Successive errors of the angle are subtracted: twice the variance of a rounding error.
+        let rms = step / 6f64.sqrt();
+        let ci95 = [step_arcsec - open_arcsec, step_arcsec + open_arcsec];
+        Detection {
+            reported: vec![
+                Reported::new(PARAMS[0].name, PARAMS[0].unit, step_arcsec, ci95),
+                Reported::new("rms_deg_h", "deg/h", rms, [rms * 0.999, rms * 1.001]),
+            ],
+            stated: Values::from([(PARAMS[0].name.to_owned(), Value::Number(step_arcsec))]),
+            places: vec![Place { domain: Domain::Amplitude, from: 0.0, to: step }],
+            parameters: 1,
+            ..Detection::default()
+        }
+    }
 }
 
 impl Spectrum for Quantization {
@@ -77,5 +111,37 @@ impl Spectrum for Quantization {
             Place { domain: Domain::Amplitude, from: 0.0, to: lsb / bin.dt_s },
             Place { domain: Domain::Frequency, from: 0.25 / bin.dt_s, to: 0.5 / bin.dt_s },
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_of_the_angle_has_the_rms_of_two_errors_of_an_even_law() {
+        let told = Quantization.detection(0.6, 0.01, 0.1);
+        // A step of 6 deg/h: each error has step²/12.
+        let rms = told.reported("rms_deg_h").unwrap().value;
+        assert!((rms - (2.0 * 36.0 / 12.0f64).sqrt()).abs() < 1e-12, "{rms}");
+        assert_eq!(told.reported("lsb_arcsec").unwrap().ci95, [0.59, 0.61]);
+        assert_eq!(Quantization.step_arcsec(&told.stated), Some(0.6));
+        assert!((told.places[0].to - 6.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_density_of_the_rounding_adds_up_to_its_variance() {
+        // Over all frequencies of 4000 modes at 0.1 s: step²/6.
+        let n = 4000;
+        let bin = |mode: usize| ModeBin {
+            frequency_hz: mode as f64 / (2.0 * n as f64 * 0.1),
+            mode,
+            modes: 1,
+            samples: n,
+            dt_s: 0.1,
+            even_ends: false,
+        };
+        let sum: f64 = (1..n).map(|k| Quantization.density(&[0.6], &bin(k)) / (0.1 * n as f64)).sum();
+        assert!((sum / 6.0 - 1.0).abs() < 1e-3, "{sum}");
     }
 }

@@ -1,7 +1,11 @@
 //! A narrow-band disturbance of finite coherence.
 
+use super::unobserved_driver::UnobservedDriver;
 use crate::effect::shared::search::peaks;
-use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
+use crate::effect::{
+    Domain, Effect, Family, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Value, Values,
+    number,
+};
 use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::numeric::range::Bounds;
 use std::f64::consts::PI;
@@ -16,7 +20,15 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     QuasiPeriodic, "quasi_periodic", Spectrum in Frequency, needs [],
-    confusers ["line", "markov_long", "table_harmonic"]
+    confusers ["line", "markov_long", "table_harmonic"],
+    with {
+        fn family(&self) -> Option<Family> {
+            Some(Family::Spectrum)
+        }
+        fn if_few_cycles(&self) -> Option<&'static dyn Effect> {
+            Some(&UnobservedDriver)
+        }
+    }
 }
 
 fn process(fitted: &[f64]) -> Damped {
@@ -42,6 +54,16 @@ impl Spectrum for QuasiPeriodic {
 
     fn scales_with(&self, parameter: usize) -> Option<f64> {
         (parameter == 1).then_some(2.0)
+    }
+
+    fn repeats(&self) -> bool {
+        true
+    }
+
+    fn values_of(&self, process: &Damped, _dt_s: f64) -> Option<Values> {
+        let values = [process.frequency_hz, process.rms_deg_h, process.decay_time_s].map(Value::Number);
+        let own = process.frequency_hz > 0.0;
+        own.then(|| PARAMS.iter().map(|p| p.name.to_owned()).zip(values).collect())
     }
 
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
@@ -156,5 +178,33 @@ impl Spectrum for QuasiPeriodic {
 
     fn has_course(&self) -> bool {
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_bins_share_an_edge() {
+        let bin = |mode, modes| ModeBin {
+            frequency_hz: 0.0,
+            mode,
+            modes,
+            samples: 100,
+            dt_s: 0.5,
+            even_ends: false,
+        };
+        // Modes lie 0.01 Hz apart.
+        let (low, high) = (edges(&bin(10, 4)), edges(&bin(14, 1)));
+        assert!((low.low - 0.095).abs() < 1e-12 && (low.high - 0.135).abs() < 1e-12, "{low:?}");
+        assert!((low.high - high.low).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_identified_oscillation_is_stated_by_its_numbers() {
+        let values = QuasiPeriodic.values_of(&process(&[2.0, 0.5, 30.0]), 0.1).unwrap();
+        assert_eq!(QuasiPeriodic.stated(&values), Some(vec![2.0, 0.5, 30.0]));
+        assert!(QuasiPeriodic.values_of(&process(&[0.0, 0.5, 30.0]), 0.1).is_none());
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::effect::shared::markov::starts_between;
 use crate::effect::{
-    Domain, Drivers, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, list,
+    Domain, Drivers, Knot, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, StatedByCourse,
+    Value, Values, list,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::numeric::range::Bounds;
@@ -26,6 +27,37 @@ describe! {
             let knots = crate::effect::shared::knots::Knots::new(list(values, KNOT_TIMES), list(values, KNOT_VALUES))?;
             Some((0..drivers.samples).map(|i| knots.at(drivers.time_s(i))).collect())
         }
+        fn stated_by_course(&self) -> Option<&'static dyn StatedByCourse> {
+            Some(&UnobservedDriver)
+        }
+    }
+}
+
+/// Fewest knots of a course that its size and pace are told by.
+const FEWEST_KNOTS: usize = 8;
+
+impl StatedByCourse for UnobservedDriver {
+    fn values(&self, knots: &[Knot]) -> Values {
+        Values::from([
+            (KNOT_TIMES.to_owned(), Value::List(knots.iter().map(|k| k.at).collect())),
+            (KNOT_VALUES.to_owned(), Value::List(knots.iter().map(|k| k.value).collect())),
+        ])
+    }
+
+    /// Root mean square, and the time that it takes a smooth process to change by as much: its slope is the one over the
+    /// other.
+    fn process(&self, stated: &Values) -> Option<Vec<f64>> {
+        let (times, knots) = (list(stated, KNOT_TIMES), list(stated, KNOT_VALUES));
+        if knots.len() < FEWEST_KNOTS || times.len() != knots.len() {
+            return None;
+        }
+        let n = knots.len() as f64;
+        let mean = knots.iter().sum::<f64>() / n;
+        let rms = (knots.iter().map(|k| (k - mean).powi(2)).sum::<f64>() / n).sqrt();
+        let slopes =
+            times.windows(2).zip(knots.windows(2)).map(|(t, k)| ((k[1] - k[0]) / (t[1] - t[0])).powi(2));
+        let slope = (slopes.sum::<f64>() / (n - 1.0)).sqrt();
+        (rms > 0.0 && slope > 0.0 && slope.is_finite()).then(|| vec![rms, rms / slope])
     }
 }
 
@@ -147,6 +179,17 @@ mod tests {
             }
         }
         sum
+    }
+
+    #[test]
+    fn a_stated_course_has_the_size_and_the_pace_of_its_knots() {
+        // Deviations ±2 about 5, a change of 4 each 10 s: a slope of 0.4 √(9/9) deg/h/s.
+        let knots: Vec<Knot> = (0..10)
+            .map(|i| Knot { at: 10.0 * f64::from(i), value: if i % 2 == 0 { 7.0 } else { 3.0 } })
+            .collect();
+        let fitted = UnobservedDriver.process(&UnobservedDriver.values(&knots)).unwrap();
+        assert!((fitted[0] - 2.0).abs() < 1e-12 && (fitted[1] - 5.0).abs() < 1e-12, "{fitted:?}");
+        assert!(UnobservedDriver.process(&UnobservedDriver.values(&knots[..7])).is_none());
     }
 
     #[test]

@@ -14,3 +14,4 @@ pub(super) mod sinusoid;
 pub(super) mod step;
 pub(super) mod table_angle;
 pub(super) mod thermal;
+pub(super) mod variance;

@@ -9,6 +9,7 @@ use crate::mismatch::terms::CourseIn;
 use crate::mismatch::tried::{Candidate, SpectralDataSet, Tried, own_odds, rated};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
+use crate::numeric::range::Bounds;
 use std::borrow::Cow;
 
 /// Gain of a fit over that of its shapes, the noise held, from which the noise stood for the course.
@@ -115,6 +116,44 @@ impl<'a> ShapeSearch<'a> {
     }
 }
 
+/// The best of the shapes that a course begins from, the noise held, each improved by a local search, with its gain.
+fn best_shape(starts: &[Vec<f64>], local: &LocalSearch, search: &ShapeSearch<'_>) -> Option<(Vec<f64>, f64)> {
+    let mut rough: Vec<(Vec<f64>, f64)> = starts.iter().map(|s| (s.clone(), search.gain(s))).collect();
+    rough.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let leader = rough.first()?.1;
+    let promising = rough.into_iter().filter(|(_, g)| *g > 0.7 * leader).take(2);
+    promising
+        .map(|(s, g)| if s.is_empty() { (s, g) } else { local.refine(&s, search) })
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(_, gain)| !gain.is_nan() && *gain >= 0.5)
+}
+
+/// Where and in which steps a shape is improved.
+struct LocalSearch {
+    bounds: Vec<Bounds>,
+    steps: Vec<Option<f64>>,
+}
+
+impl LocalSearch {
+    fn refine(&self, start: &[f64], search: &ShapeSearch<'_>) -> (Vec<f64>, f64) {
+        const EVALUATIONS: usize = 60;
+        refine(start, &self.bounds, &self.steps, EVALUATIONS, |x| search.gain(x))
+    }
+}
+
+/// A hypothesis with one more course, and another noise.
+fn with_course(
+    before: &Hypothesis,
+    effect: &'static dyn Effect,
+    nonlinear_parameters: &[f64],
+    noise: &Noise,
+) -> Hypothesis {
+    let mut hypothesis = Hypothesis { noise: noise.clone(), ..before.clone() };
+    let nonlinear_parameters = nonlinear_parameters.to_vec();
+    hypothesis.courses.push(CourseIn { effect, nonlinear_parameters, coefficients: vec![] });
+    hypothesis
+}
+
 /// The best addition of a course, over its shapes.
 pub(super) fn try_course(
     effect: &'static dyn Effect,
@@ -123,77 +162,50 @@ pub(super) fn try_course(
     spectra: &SpectralDataSet,
     grounds: &Grounds<'_>,
 ) -> Option<Candidate> {
-    let repeated = before.hypothesis.courses.iter().filter(|c| c.effect.kind() == effect.kind()).count();
+    let repeated = before.hypothesis.courses.iter().any(|c| c.effect.kind() == effect.kind());
     let ground = grounds.of(course.resolution());
-    let spectral = ground.spectral;
-    if !course.applies(&spectral.drivers)
-        || effect.needs().iter().any(|c| spectral.drivers.column(*c).is_none())
-    {
+    let drivers = &ground.spectral.drivers;
+    if !course.applies(drivers) || effect.needs().iter().any(|c| drivers.column(*c).is_none()) {
         return None;
     }
-    let starts = course.starts(&spectral.drivers, &ground.context());
+    let starts = course.starts(drivers, &ground.context());
     // A linear course twice is the same column twice.
-    if repeated > 0 && starts.points.iter().all(Vec::is_empty) {
+    if repeated && starts.points.iter().all(Vec::is_empty) {
         return None;
     }
-    let bounds = course.bounds(&spectral.drivers);
-    let steps = first_steps(course, &spectral.drivers);
-    let search = ShapeSearch::new(course, ground);
-    let mut rough: Vec<(Vec<f64>, f64)> = starts.points.iter().map(|s| (s.clone(), search.gain(s))).collect();
-    rough.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let leader = rough.first()?.1;
-    let promising = rough.into_iter().filter(|(_, g)| *g > 0.7 * leader).take(2);
-    let (nonlinear_parameters, gain) = promising
-        .map(|(s, g)| if s.is_empty() { (s, g) } else { refine(&s, &bounds, &steps, 60, |x| search.gain(x)) })
-        .max_by(|a, b| a.1.total_cmp(&b.1))?;
-    if gain.is_nan() || gain < 0.5 {
-        return None;
-    }
-    let parts = course.regressors(&nonlinear_parameters, &spectral.drivers);
-    let free_shape = free_numbers(course, &bounds);
-    let parameters = before.parameters + parts.columns.len() + parts.nuisance.len() + free_shape;
-    let odds = course.odds(&nonlinear_parameters, &spectral.drivers) + own_odds(effect);
-    let with = |nonlinear_parameters: &[f64], noise: &Noise| {
-        let mut hypothesis = Hypothesis { noise: noise.clone(), ..before.hypothesis.clone() };
-        hypothesis.courses.push(CourseIn {
-            effect,
-            nonlinear_parameters: nonlinear_parameters.to_vec(),
-            coefficients: vec![],
-        });
-        hypothesis
-    };
-    let mut hypothesis = with(&nonlinear_parameters, &before.hypothesis.noise);
+    let local = LocalSearch { bounds: course.bounds(drivers), steps: first_steps(course, drivers) };
+    let (shape, gain) = best_shape(&starts.points, &local, &ShapeSearch::new(course, ground))?;
+    let parts = course.regressors(&shape, drivers);
+    let added = parts.columns.len() + parts.nuisance.len() + free_numbers(course, &local.bounds);
+    let mut hypothesis = with_course(&before.hypothesis, effect, &shape, &before.hypothesis.noise);
     // The noise, fitted anew, can give at most about as much again.
-    let worth = 4.0 * gain - (parameters - before.parameters) as f64 * (spectra.rows as f64).ln();
-    let fit_of = |hypothesis: &mut Hypothesis| fit(hypothesis, &spectra.full);
-    let mut fit = if worth > 0.0 { fit_of(&mut hypothesis) } else { before.fit.raised(gain) };
+    let worth = 4.0 * gain - added as f64 * (spectra.rows as f64).ln();
+    let mut fitted = if worth > 0.0 { fit(&mut hypothesis, &spectra.full) } else { before.fit.raised(gain) };
     // Noise that had to stand for the course weighed the samples wrongly while its shape was sought.
-    if !nonlinear_parameters.is_empty() && fit.log_likelihood - before.fit.log_likelihood > STOOD_FOR * gain {
+    if !shape.is_empty() && fitted.log_likelihood - before.fit.log_likelihood > STOOD_FOR * gain {
+        let noise = &hypothesis.noise;
         let quieter = Tried {
-            hypothesis: Hypothesis { noise: hypothesis.noise.clone(), ..before.hypothesis.clone() },
+            hypothesis: Hypothesis { noise: noise.clone(), ..before.hypothesis.clone() },
             ..before.clone()
         };
-        let ground = Ground::new(&quieter, spectral, ground.parts.clone());
-        let search = ShapeSearch::new(course, &ground);
-        let (nonlinear_parameters, _) =
-            refine(&nonlinear_parameters, &bounds, &steps, 60, |x| search.gain(x));
-        let mut again = with(&nonlinear_parameters, &hypothesis.noise);
-        let better = fit_of(&mut again);
-        if better.log_likelihood > fit.log_likelihood {
-            (hypothesis, fit) = (again, better);
+        let ground = Ground::new(&quieter, ground.spectral, ground.parts.clone());
+        let (shape, _) = local.refine(&shape, &ShapeSearch::new(course, &ground));
+        let mut again = with_course(&before.hypothesis, effect, &shape, noise);
+        let better = fit(&mut again, &spectra.full);
+        if better.log_likelihood > fitted.log_likelihood {
+            (hypothesis, fitted) = (again, better);
         }
     }
     // A fit with a value that the effect cannot have (a zone that answers more than the rest) is another effect.
     let allowed = hypothesis.courses.last().is_none_or(|inside| {
-        inside.coefficients.len() != parts.columns.len()
-            || plausible(
-                effect,
-                &course.parameters(&inside.nonlinear_parameters, &inside.coefficients, &spectral.drivers),
-            )
+        let parameters = || course.parameters(&inside.nonlinear_parameters, &inside.coefficients, drivers);
+        inside.coefficients.len() != parts.columns.len() || plausible(effect, &parameters())
     });
-    if !allowed {
-        return None;
-    }
-    let tried = Tried { hypothesis, fit, parameters, odds: before.odds + odds };
-    Some(rated(effect, tried, before, starts.trials, spectra.rows))
+    let tried = Tried {
+        hypothesis,
+        fit: fitted,
+        parameters: before.parameters + added,
+        odds: before.odds + (course.odds(&shape, drivers) + own_odds(effect)),
+    };
+    allowed.then(|| rated(effect, tried, before, starts.trials, spectra.rows))
 }

@@ -32,7 +32,7 @@ pub(super) fn try_spectrum(
     }
     let repeated =
         before.hypothesis.noise.spectra.iter().any(|s| !s.stated && s.effect.kind() == effect.kind());
-    if repeated && effect.kind() != "quasi_periodic" {
+    if repeated && !spectrum.repeats() {
         return None;
     }
     let starts = spectrum.starts(&context);

@@ -1,6 +1,6 @@
 //! Parameters of a course.
 
-use super::estimated::{Estimated, INSTANT, TWO_SIDED_95, interval};
+use super::estimated::{Estimated, TWO_SIDED_95, interval};
 use super::instant;
 use super::placed::Placed;
 use crate::effect::{Effect, MeanModel, Value};
@@ -66,7 +66,7 @@ pub(super) fn of_course(
             (still.get(i) == Some(value) && a != b).then_some([a.min(b), a.max(b)])
         });
         let Some(mut ci95) = by_shape.or_else(|| interval(param, *value, deviations[i])) else { continue };
-        if param.name == INSTANT
+        if param.instant
             && let Some([from, to]) = instant::interval(placed.inside, best, spectra)
         {
             ci95 = [from.min(*value), to.max(*value)];

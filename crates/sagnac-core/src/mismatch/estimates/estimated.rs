@@ -12,9 +12,6 @@ pub(super) const DROP_95: f64 = 1.920_729;
 /// Factor either way within which a parameter must be told for it to be stated.
 const OPEN: f64 = 100.0;
 
-/// Name of the parameter that is an instant.
-pub const INSTANT: &str = "time_s";
-
 /// An effect's parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Estimated {

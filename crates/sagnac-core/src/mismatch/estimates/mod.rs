@@ -10,7 +10,7 @@ use super::select::Slot;
 use super::tried::{SpectralDataSet, Tried};
 use crate::effect::{Effect, Model};
 use course::of_course;
-pub use estimated::{Estimated, INSTANT};
+pub use estimated::Estimated;
 use spectrum::of_spectrum;
 
 /// The parameters of one effect of a fitted hypothesis.

@@ -2,9 +2,9 @@
 
 use super::estimated::{Estimated, TWO_SIDED_95, interval};
 use crate::effect::{Effect, Model, SpectrumAct, Value};
+use crate::mismatch::contribution::added_rms;
 use crate::mismatch::finding::ParameterValue;
 use crate::mismatch::noise_fit::{Which, base_index};
-use crate::mismatch::process;
 use crate::mismatch::tried::{SpectralDataSet, Tried};
 
 /// Relative deviation of a number that a fit does not move, as of a whole number of samples.
@@ -37,7 +37,7 @@ pub(super) fn of_spectrum(
     let residual = &best.residual(spectra);
     let all = |fitted: &[f64]| {
         let mut out = spectrum.parameters(fitted);
-        out.push(process::added_rms(noise, index, fitted, spectral, residual).0);
+        out.push(added_rms(noise, index, fitted, spectral, residual).0);
         out
     };
     let values = all(&part.fitted);
@@ -74,7 +74,7 @@ pub(super) fn of_spectrum(
             out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
         }
     }
-    let chance = process::added_rms(noise, index, &part.fitted, spectral, residual).1;
+    let chance = added_rms(noise, index, &part.fitted, spectral, residual).1;
     let (spread, last) = (values[values.len() - 1], deviation(values.len() - 1).hypot(chance));
     if spread > 0.0 && spread.is_finite() {
         let factor = (TWO_SIDED_95 * last / spread).min(30.0).exp();

@@ -1,9 +1,9 @@
 //! The noise of a simulated recording, as a claim states it.
 
 use crate::claim::Stated;
-use crate::effect::{Value, Values, find};
+use crate::effect::{EFFECTS, Model};
 use crate::estimate::Estimate;
-use crate::noise::composite::{Composite, Sampling};
+use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::noise::digest::{DigestPlan, RateAccumulator};
 use crate::noise::lines::{FALSE_ALARM_RATE, find_lines};
 use crate::noise::spectral_record::SpectralRecord;
@@ -16,8 +16,6 @@ const HALF_WIDTH: f64 = 1.96;
 const OF_LIMIT: f64 = 6.0;
 /// Logarithm of the ratio of a value to the end of its interval that counts at most.
 const LARGEST: f64 = 3.0;
-/// Correlation time, in samples, that divides short from long.
-const SHORT_SAMPLES: f64 = 10.0;
 
 /// A coefficient.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -89,21 +87,8 @@ pub fn identify(series: &Series, residual: &[f64]) -> Found {
     let noise = record.identify("rate");
     let identification = noise.ranged.identification;
     let composite = identification.described.model.clone();
-    let mut effects = vec![];
-    for m in &composite.markov {
-        let short = m.decay_time_s < SHORT_SAMPLES * tau0_s;
-        let kind = if short { "markov_short" } else { "markov_long" };
-        let values = [("correlation_time_s", m.decay_time_s), ("sigma_deg_h", m.rms_deg_h)];
-        effects.extend(stated(kind, &values));
-    }
-    for q in &composite.quasi_periodic {
-        let values = [
-            ("frequency_hz", q.frequency_hz),
-            ("amplitude_rms_deg_h", q.rms_deg_h),
-            ("coherence_time_s", q.decay_time_s),
-        ];
-        effects.extend(stated("quasi_periodic", &values));
-    }
+    let processes = composite.markov.iter().chain(&composite.quasi_periodic);
+    let effects = processes.filter_map(|p| stated(p, tau0_s)).collect();
     Found {
         n: coefficient(&identification.angle_random_walk),
         b: coefficient(&identification.bias_instability),
@@ -114,8 +99,33 @@ pub fn identify(series: &Series, residual: &[f64]) -> Found {
     }
 }
 
-/// An effect with its parameters; `None` where the catalogue lacks it.
-fn stated(kind: &str, values: &[(&str, f64)]) -> Option<Stated> {
-    let values: Values = values.iter().map(|(name, v)| ((*name).to_owned(), Value::Number(*v))).collect();
-    Some(Stated { effect: find(kind)?, values })
+/// The effect that an identified process is; `None` where the catalogue lacks it.
+fn stated(process: &Damped, dt_s: f64) -> Option<Stated> {
+    EFFECTS.iter().find_map(|effect| {
+        let Model::Spectrum(spectrum) = effect.model() else { return None };
+        Some(Stated { effect: *effect, values: spectrum.values_of(process, dt_s)? })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::number;
+
+    #[test]
+    fn an_identified_process_is_stated_as_the_effect_that_it_is() {
+        let of = |frequency_hz: f64, decay_time_s: f64| {
+            stated(&Damped { rms_deg_h: 0.3, frequency_hz, decay_time_s }, 0.1).unwrap()
+        };
+        // Ten samples divide short from long.
+        assert_eq!(of(0.0, 0.99).effect.kind(), "markov_short");
+        let long = of(0.0, 1.0);
+        assert_eq!(long.effect.kind(), "markov_long");
+        assert_eq!(number(&long.values, "correlation_time_s"), Some(1.0));
+        assert_eq!(number(&long.values, "sigma_deg_h"), Some(0.3));
+        let line = of(2.5, 40.0);
+        assert_eq!(line.effect.kind(), "quasi_periodic");
+        assert_eq!(number(&line.values, "frequency_hz"), Some(2.5));
+        assert_eq!(number(&line.values, "coherence_time_s"), Some(40.0));
+    }
 }

@@ -1,21 +1,19 @@
 //! Forms of the level of the noise over time: a line, slow waves, a step, a stretch, a period.
 
-use super::gamma::{GammaFit, Group, fit, overdispersion};
-use super::level::{Found, Law, between, contrast, raised, thinned};
-use super::{Flat, cumulated};
-use crate::effect::{Domain, Place};
-use crate::mismatch::problem::Problem;
+use crate::effect::shared::variance::{
+    FEWEST, GammaFit, Group, between, contrast, fit, mean_square, overdispersion, raised, thinned,
+};
+use crate::effect::{Domain, FlatResidual, Knot, Law, LevelLaw, Place};
+use crate::numeric::sums::cumulated;
 use std::f64::consts::PI;
 
 /// Groups of neighbouring samples.
 const GROUPS: usize = 512;
-/// Fewest samples of a group.
-const FEWEST: usize = 16;
 /// Fewest samples on a side of a change.
 const SIDE: f64 = 48.0;
 
 /// Time constants of a decay that are tried, and the shortest as a share of the record; each 1.5 times the last.
-pub(super) const DECAYS: usize = 10;
+const DECAYS: usize = 10;
 const SHORTEST: f64 = 0.02;
 
 /// A form of ln g over time.
@@ -36,6 +34,19 @@ pub enum Form {
 }
 
 impl Form {
+    /// Coefficients, parameters with what was searched, and how many independent places were.
+    fn counts(self, groups: usize) -> (usize, usize, f64) {
+        let j = groups as f64;
+        match self {
+            Form::Line => (1, 1, 1.0),
+            Form::Decay(_) => (1, 2, DECAYS as f64),
+            Form::Waves(k) => (k, k, 1.0),
+            Form::Step(_) => (1, 2, j),
+            Form::Stretch(..) => (1, 3, 16.0 * j),
+            Form::Periodic(_) => (2, 3, 0.5 * j),
+        }
+    }
+
     fn columns(self, groups: usize) -> Vec<Vec<f64>> {
         let column = |f: &dyn Fn(usize) -> f64| (0..groups).map(f).collect::<Vec<f64>>();
         let turn = |i: usize, k: usize| PI * k as f64 * (i as f64 + 0.5) / groups as f64;
@@ -54,13 +65,13 @@ impl Form {
 }
 
 /// The best form over time, if any gains.
-pub(super) fn over_time(problem: &Problem, flat: &Flat, indices: &[usize]) -> Option<Found> {
-    let n = flat.flat.len();
+pub(super) fn over_time(residual: &FlatResidual<'_>, samples: &[usize]) -> Option<LevelLaw> {
+    let (n, drivers) = (residual.flat.len(), residual.drivers);
     let size = n.div_ceil(GROUPS).max(FEWEST);
     let mut sums = vec![(0.0, 0.0); n.div_ceil(size)];
-    for i in indices {
+    for i in samples {
         let sum = &mut sums[i / size];
-        sum.0 += flat.flat[*i].powi(2);
+        sum.0 += residual.flat[*i].powi(2);
         sum.1 += 1.0;
     }
     // A group without rows weighs nothing.
@@ -73,27 +84,27 @@ pub(super) fn over_time(problem: &Problem, flat: &Flat, indices: &[usize]) -> Op
     forms.extend((0..DECAYS).map(Form::Decay));
     forms.extend(changes(&groups));
     forms.extend(period(&groups));
-    let rows = (indices.len() as f64).ln();
+    let rows = (samples.len() as f64).ln();
     let fits = forms.into_iter().filter_map(|form| Some((form, fit(&groups, &form.columns(j))?)));
     let score = |form: &Form, f: &GammaFit| 2.0 * f.gain - form.counts(j).1 as f64 * rows;
     let (form, best) = fits.max_by(|a, b| score(&a.0, &a.1).total_cmp(&score(&b.0, &b.1)))?;
     let (free, parameters, trials) = form.counts(j);
-    let middle =
-        |g: usize| problem.drivers.time_s(0) + ((g as f64 + 0.5) * size as f64 - 0.5) * problem.drivers.dt_s;
-    let edge = |g: usize| problem.drivers.time_s(0) + (g as f64 * size as f64 - 0.5) * problem.drivers.dt_s;
+    let middle = |g: usize| drivers.time_s(0) + ((g as f64 + 0.5) * size as f64 - 0.5) * drivers.dt_s;
+    let edge = |g: usize| drivers.time_s(0) + (g as f64 * size as f64 - 0.5) * drivers.dt_s;
     let levels: Vec<f64> = best.log_squares.iter().map(|l| (0.5 * l).exp()).collect();
     let sharp = match form {
         Form::Step(at) => vec![at],
         Form::Stretch(from, to) => vec![from, to],
         _ => vec![],
     };
-    let end = edge(0).max(problem.drivers.time_s(n - 1));
+    let end = edge(0).max(drivers.time_s(n - 1));
     let knots = if sharp.is_empty() {
-        let mut knots: Vec<(f64, f64)> = levels.iter().enumerate().map(|(g, l)| (middle(g), *l)).collect();
-        knots.last_mut().iter_mut().for_each(|k| k.0 = k.0.min(end));
+        let mut knots: Vec<Knot> =
+            levels.iter().enumerate().map(|(g, l)| Knot { at: middle(g), value: *l }).collect();
+        knots.last_mut().iter_mut().for_each(|k| k.at = k.at.min(end));
         knots
     } else {
-        sharp_knots(&sharp, &levels, edge(0), end, problem.drivers.dt_s, edge)
+        sharp_knots(&sharp, &levels, edge(0), end, drivers.dt_s, edge)
     };
     let (ratio, ci95) = contrast(&best.log_squares, &best.covariance, &form.columns(j));
     let (from, to) = match form {
@@ -102,12 +113,11 @@ pub(super) fn over_time(problem: &Problem, flat: &Flat, indices: &[usize]) -> Op
         _ => {
             let starts: Vec<f64> = (0..j).map(edge).collect();
             let raised = raised(&starts, &best.log_squares);
-            (raised.low, (raised.high + size as f64 * problem.drivers.dt_s).min(end))
+            (raised.low, (raised.high + size as f64 * drivers.dt_s).min(end))
         }
     };
-    Some(Found {
-        kind: "noise_variance_time",
-        profile: (0..n).map(|i| between(&knots, problem.drivers.time_s(i))).collect(),
+    Some(LevelLaw {
+        profile: (0..n).map(|i| between(&knots, drivers.time_s(i))).collect(),
         law: Law::Time(if sharp.is_empty() && !matches!(form, Form::Periodic(_)) {
             thinned(&knots)
         } else {
@@ -132,15 +142,16 @@ fn sharp_knots(
     end: f64,
     dt_s: f64,
     edge: impl Fn(usize) -> f64,
-) -> Vec<(f64, f64)> {
+) -> Vec<Knot> {
     let level = |g: usize| levels.get(g).copied().unwrap_or(1.0);
-    let mut out = vec![(start, level(0))];
+    let knot = |at: f64, value: f64| Knot { at, value };
+    let mut out = vec![knot(start, level(0))];
     for at in changes.iter().filter(|at| **at > 0 && **at < levels.len()) {
         // A quarter of a sample on either side: no sample lies between.
-        out.push((edge(*at) - 0.25 * dt_s, level(at - 1)));
-        out.push((edge(*at) + 0.25 * dt_s, level(*at)));
+        out.push(knot(edge(*at) - 0.25 * dt_s, level(at - 1)));
+        out.push(knot(edge(*at) + 0.25 * dt_s, level(*at)));
     }
-    out.push((end, level(levels.len() - 1)));
+    out.push(knot(end, level(levels.len() - 1)));
     out
 }
 
@@ -183,7 +194,7 @@ fn changes(groups: &[Group]) -> Vec<Form> {
 /// The period that the level follows best, shorter than what slow waves hold.
 fn period(groups: &[Group]) -> Option<Form> {
     let j = groups.len();
-    let level = super::gamma::mean_square(groups);
+    let level = mean_square(groups);
     let power = |k: usize| {
         let (mut c, mut s) = (0.0, 0.0);
         for (i, g) in groups.iter().enumerate() {
@@ -196,4 +207,38 @@ fn period(groups: &[Group]) -> Option<Form> {
     };
     let best = (5..j / 2).map(|k| (power(k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(Form::Periodic(best.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn groups(level: impl Fn(usize) -> f64) -> Vec<Group> {
+        (0..64).map(|i| Group { square: level(i), dof: 100.0 }).collect()
+    }
+
+    #[test]
+    fn the_best_change_is_where_the_level_changes() {
+        let step = changes(&groups(|i| if i < 20 { 1.0 } else { 2.0 }));
+        assert_eq!(step.first(), Some(&Form::Step(20)));
+        let stretch = changes(&groups(|i| if (10..15).contains(&i) { 3.0 } else { 1.0 }));
+        assert!(stretch.contains(&Form::Stretch(10, 15)), "{stretch:?}");
+        assert!(changes(&groups(|_| 1.0)).is_empty());
+    }
+
+    #[test]
+    fn the_period_is_counted_in_half_waves_of_the_record() {
+        let wave = |i: usize| 1.0 + 0.5 * (PI * 14.0 * (i as f64 + 0.5) / 64.0).sin();
+        assert_eq!(period(&groups(wave)), Some(Form::Periodic(14)));
+    }
+
+    #[test]
+    fn a_sharp_change_is_one_within_half_a_sample() {
+        let knots = sharp_knots(&[2], &[1.0, 1.0, 3.0, 3.0], 0.0, 40.0, 1.0, |g| 10.0 * g as f64);
+        let told: Vec<(f64, f64)> = knots.iter().map(|k| (k.at, k.value)).collect();
+        assert_eq!(told, [(0.0, 1.0), (19.75, 1.0), (20.25, 3.0), (40.0, 3.0)]);
+        // A step in the middle of 64 groups has one coefficient and one instant, sought among 64.
+        assert_eq!(Form::Step(32).counts(64), (1, 2, 64.0));
+        assert_eq!(Form::Line.columns(4), [[-0.75, -0.25, 0.25, 0.75]]);
+    }
 }

@@ -1,6 +1,11 @@
 //! Isolated groups of outlying samples.
 
-use crate::effect::{Drivers, Param, Samples, Values, list, number};
+mod detect;
+
+use crate::effect::{
+    Detection, Detector, Domain, Drivers, FlatResidual, OutlierDetector, Outliers, Param, Place, Reported,
+    Samples, Value, Values, list, number,
+};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -8,7 +13,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 pub struct OutlierBursts;
 
 static PARAMS: [Param; 3] = [
-    Param::reported("count", "", 1.0, 1e5).whole(),
+    Param::reported("count", "", 1.0, 1e5).count(1.0),
     Param::inner("size_deg_h", "deg/h", 0.0, 1e9),
     Param::inner("duration_s", "s", 0.0, 1e6),
 ];
@@ -64,12 +69,61 @@ impl Samples for OutlierBursts {
             }
         }
     }
+
+    fn detector(&self) -> Detector {
+        Detector::Outliers(&OutlierBursts)
+    }
+}
+
+impl OutlierDetector for OutlierBursts {
+    fn find(&self, residual: &FlatResidual<'_>) -> Option<Outliers> {
+        detect::bursts(residual)
+    }
+
+    fn describe(&self, found: &Outliers, removed: &[f64], drivers: &Drivers) -> Option<Detection> {
+        let count = found.groups.len() as f64;
+        let n = removed.len().max(1) as f64;
+        let mean = removed.iter().sum::<f64>() / n;
+        let rms = (removed.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / n).sqrt();
+        let spread = 1.96 / (2.0 * found.samples.len().max(1) as f64).sqrt();
+        let size = |g: &(usize, usize)| {
+            let inside = &removed[g.0..g.0 + g.1];
+            (inside.iter().map(|r| r * r).sum::<f64>() / inside.len().max(1) as f64).sqrt()
+        };
+        let list = |f: &dyn Fn(&(usize, usize)) -> f64| Value::List(found.groups.iter().map(f).collect());
+        let stated = Values::from([
+            (PARAMS[0].name.to_owned(), Value::Number(count)),
+            (TIMES.to_owned(), list(&|g| drivers.time_s(g.0))),
+            (DURATIONS.to_owned(), list(&|g| g.1 as f64 * drivers.dt_s)),
+            (SIZES.to_owned(), list(&size)),
+        ]);
+        let (first, last) = (found.groups.first()?, found.groups.last()?);
+        let largest = found.samples.iter().map(|i| removed[*i].abs()).fold(0.0, f64::max);
+        let places = vec![
+            Place {
+                domain: Domain::Time,
+                from: drivers.time_s(first.0) - drivers.dt_s,
+                to: drivers.time_s(last.0 + last.1),
+            },
+            Place { domain: Domain::Amplitude, from: 0.3 * largest, to: largest },
+        ];
+        Some(Detection {
+            reported: vec![
+                Reported::new(PARAMS[0].name, PARAMS[0].unit, count, [count, count + found.missed as f64]),
+                Reported::new("rms_deg_h", "deg/h", rms, [rms * (-spread).exp(), rms * spread.exp()]),
+            ],
+            stated,
+            places,
+            gain: found.gain,
+            parameters: found.parameters,
+            p_value: found.p_value,
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
 
     #[test]
     fn only_the_listed_samples_are_disturbed_and_the_seed_fixes_them() {
@@ -89,6 +143,33 @@ mod tests {
         assert_eq!(hit, [4, 5, 6, 34]);
         assert_eq!(run(1), run(1));
         assert_ne!(run(1), run(2));
+    }
+
+    #[test]
+    fn groups_are_described_by_what_was_taken_out() {
+        let drivers = Drivers { dt_s: 0.5, start_s: 10.0, samples: 10, ..Drivers::default() };
+        let mut removed = vec![0.0; 10];
+        (removed[2], removed[3], removed[7]) = (3.0, -4.0, 5.0);
+        let found = Outliers {
+            groups: vec![(2, 2), (7, 1)],
+            samples: vec![2, 3, 7],
+            missed: 1,
+            deviation: 3.0,
+            gain: 20.0,
+            parameters: 5,
+            p_value: 1e-6,
+        };
+        let told = OutlierBursts.describe(&found, &removed, &drivers).unwrap();
+        let value = |name: &str| told.reported(name).unwrap();
+        assert_eq!((value("count").value, value("count").ci95), (2.0, [2.0, 3.0]));
+        // Mean 0.4, mean square 5.
+        assert!((value("rms_deg_h").value - 4.84f64.sqrt()).abs() < 1e-12);
+        assert_eq!(list(&told.stated, SIZES), [12.5f64.sqrt(), 5.0]);
+        assert_eq!(
+            (list(&told.stated, TIMES), list(&told.stated, DURATIONS)),
+            (&[11.0, 13.5][..], &[1.0, 0.5][..])
+        );
+        assert_eq!((told.places[0].from, told.places[0].to, told.places[1].to), (10.5, 14.0, 5.0));
     }
 
     #[test]

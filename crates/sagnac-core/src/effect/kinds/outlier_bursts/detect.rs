@@ -1,13 +1,14 @@
-//! Isolated groups of outlying samples.
+//! Bursts in a residual.
 //!
 //! Windows of 1 to 512 samples are compared with the level of the noise on both sides of them; a level that changes, a
 //! wrong level of the claim and steps of the output make no burst.
 
-use super::{Flat, cumulated, lattice_step, median, varies};
-use crate::mismatch::problem::Problem;
-use crate::mismatch::tried::Tried;
+use crate::effect::{Drivers, FlatResidual, Outliers};
 use crate::numeric::optimize::bisect;
+use crate::numeric::order::{NORMAL_MEDIAN, upper_median};
+use crate::numeric::range::ends;
 use crate::numeric::special::f_normal;
+use crate::numeric::sums::cumulated;
 use statrs::distribution::{Binomial, DiscreteCDF, Poisson};
 use statrs::function::beta::checked_beta_reg;
 
@@ -28,26 +29,6 @@ const SEVERAL: usize = 3;
 const RATES: usize = 8;
 /// Efficiency of the median of absolute values as an estimate of a deviation.
 const EFFICIENCY: f64 = 0.367_5;
-
-/// Groups of outlying samples.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Bursts {
-    /// First sample and length of each, by time.
-    pub groups: Vec<(usize, usize)>,
-    /// Samples to set aside.
-    pub samples: Vec<usize>,
-    /// Groups at most that are too small to be found: as many as there are between the smallest that is found and twice
-    /// its size, if sizes are no more frequent below it.
-    pub missed: usize,
-    /// Deviation of the whitened samples set aside; 1 where the noise is as the hypothesis says.
-    pub deviation: f64,
-    /// Gain of log-likelihood by a deviation of their own, against the level of their neighbourhood.
-    pub gain: f64,
-    /// Two a group, and the deviation.
-    pub parameters: usize,
-    /// Probability of as much under no bursts, everything scanned counted.
-    pub p_value: f64,
-}
 
 /// Squares over the local level, ready for windows.
 struct Scan {
@@ -80,15 +61,14 @@ impl Scan {
     }
 }
 
-/// Looks for bursts in the residual of a hypothesis.
-pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Bursts> {
-    let flat = Flat::of(tried, problem);
+/// Bursts in a residual.
+pub(super) fn bursts(flat: &FlatResidual<'_>) -> Option<Outliers> {
     let n = flat.flat.len();
     let longest = LONGEST.min(n / 20);
     if longest < 2 {
         return None;
     }
-    let (squares, others) = squares(problem, &flat);
+    let (squares, others) = squares(flat);
     let lengths = lengths(longest);
     let trials = lengths.iter().map(|m| ((n - m) / (m / 4).max(1) + 1) as f64).sum();
     let scan = Scan { sums: cumulated(squares.iter().copied()), others, trials };
@@ -114,21 +94,21 @@ pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Bursts> {
         taken[first..first + m].fill(true);
         groups.push((first, m));
     }
-    let groups = isolated(merged(&scan, groups, n), &scan, &flat, longest)?;
-    let groups = unmoved(problem, groups);
+    let groups = isolated(merged(&scan, groups, n), &scan, flat, longest)?;
+    let groups = unmoved(flat.drivers, groups);
     let (groups, p_value) = admitted(&scan, groups);
     if groups.is_empty() {
         return None;
     }
     let samples: Vec<usize> =
-        groups.iter().flat_map(|(first, m)| *first..first + m).filter(|i| flat.counts(problem, *i)).collect();
+        groups.iter().flat_map(|(first, m)| *first..first + m).filter(|i| flat.counts(*i)).collect();
     let k = samples.len() as f64;
     let excess = samples.iter().map(|i| squares[*i]).sum::<f64>() / k;
     let gain = 0.5 * k * (excess - 1.0 - excess.ln());
     let deviation = (samples.iter().map(|i| flat.white[*i].powi(2)).sum::<f64>() / k).sqrt();
     let parameters = 2 * groups.len() + 1;
     let missed = missed(&scan, &groups);
-    Some(Bursts { groups, samples, missed, deviation, gain, parameters, p_value })
+    Some(Outliers { groups, samples, missed, deviation, gain, parameters, p_value })
 }
 
 /// Groups that may have been too small to be found.
@@ -153,27 +133,28 @@ fn lengths(longest: usize) -> Vec<usize> {
 }
 
 /// Squares of the flat residual over the local level, and the degrees of freedom that the level has.
-fn squares(problem: &Problem, flat: &Flat) -> (Vec<f64>, f64) {
+fn squares(flat: &FlatResidual<'_>) -> (Vec<f64>, f64) {
     let n = flat.flat.len();
     let mut sizes: Vec<f64> = flat.flat.iter().map(|e| e.abs()).collect();
     let mut spent = 0.0;
-    if let Some(rate) = problem.drivers.table_rate.as_deref().filter(|r| varies(r)) {
+    if let Some(rate) = flat.drivers.table_rate.as_deref().filter(|r| ends(r).is_wide()) {
         // Noise that grows with the rate of the table is no burst each time it turns.
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| rate[*a].abs().total_cmp(&rate[*b].abs()));
         for group in order.chunks(n.div_ceil(RATES)) {
-            let level = median(&mut group.iter().map(|i| sizes[*i]).collect::<Vec<f64>>()) / super::MEDIAN;
+            let level =
+                upper_median(&mut group.iter().map(|i| sizes[*i]).collect::<Vec<f64>>()) / NORMAL_MEDIAN;
             group.iter().for_each(|i| sizes[*i] /= level.max(1e-12));
         }
         spent = RATES as f64 / (EFFICIENCY * n as f64);
     }
     // Values on a lattice differ by whole steps even where nothing happens.
-    let least = 0.5 * lattice_step(problem, flat);
+    let least = 0.5 * flat.rounding_step;
     let guard = (LONGEST / 2).min(n / 40);
     let width = (n / 6).clamp(24, 4096);
     let stride = (width / 16).max(1);
     let side = |from: usize, to: usize| {
-        (to >= from + width / 2).then(|| median(&mut sizes[from..to].to_vec()) / super::MEDIAN)
+        (to >= from + width / 2).then(|| upper_median(&mut sizes[from..to].to_vec()) / NORMAL_MEDIAN)
     };
     let levels: Vec<f64> = (0..n.div_ceil(stride))
         .map(|s| {
@@ -188,7 +169,7 @@ fn squares(problem: &Problem, flat: &Flat) -> (Vec<f64>, f64) {
     let squares = (0..n)
         .map(|i| {
             let level = levels[i / stride].max(1e-12);
-            if flat.counts(problem, i) { sizes[i] * sizes[i] / (level * level + least * least) } else { 1.0 }
+            if flat.counts(i) { sizes[i] * sizes[i] / (level * level + least * least) } else { 1.0 }
         })
         .collect();
     let dof = 1.0 / (spent + 1.0 / (EFFICIENCY * width as f64));
@@ -250,7 +231,7 @@ fn merged(scan: &Scan, mut groups: Vec<(usize, usize)>, n: usize) -> Vec<(usize,
 fn isolated(
     groups: Vec<(usize, usize)>,
     scan: &Scan,
-    flat: &Flat,
+    flat: &FlatResidual<'_>,
     longest: usize,
 ) -> Option<Vec<(usize, usize)>> {
     let n = flat.flat.len();
@@ -278,7 +259,7 @@ fn isolated(
 }
 
 /// Whether what a group holds is seen in its sums and not in its differences.
-fn is_smooth(group: &(usize, usize), scan: &Scan, flat: &Flat) -> bool {
+fn is_smooth(group: &(usize, usize), scan: &Scan, flat: &FlatResidual<'_>) -> bool {
     let (first, m) = *group;
     if m < ROUGH {
         return false;
@@ -301,17 +282,16 @@ fn rises(group: &(usize, usize), scan: &Scan, n: usize) -> bool {
 }
 
 /// The groups without those at changes of the table's motion, if that is where groups are.
-fn unmoved(problem: &Problem, mut groups: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
-    let drivers = &problem.drivers;
+fn unmoved(drivers: &Drivers, mut groups: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
     for rate in [drivers.table_rate.as_deref(), drivers.outer_rate.as_deref()].into_iter().flatten() {
         let n = rate.len();
-        if !varies(rate) || n < 3 {
+        if !ends(rate).is_wide() || n < 3 {
             continue;
         }
         let mut steps: Vec<f64> = rate.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
         let largest = steps.iter().copied().fold(0.0, f64::max);
         let moving: Vec<bool> = steps.iter().map(|s| *s > 0.1 * largest).collect();
-        if median(&mut steps) > 0.1 * largest {
+        if upper_median(&mut steps) > 0.1 * largest {
             continue;
         }
         let sums = cumulated(moving.iter().map(|m| f64::from(u8::from(*m))));
@@ -348,4 +328,40 @@ fn admitted(scan: &Scan, groups: Vec<(usize, usize)>) -> (Vec<(usize, usize)>, f
     let mut out: Vec<(usize, usize)> = rated.into_iter().take(count).map(|r| r.1).collect();
     out.sort_unstable();
     (out, p_value.min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_double_and_have_their_three_quarters_between() {
+        assert_eq!(lengths(16), [1, 2, 3, 4, 6, 8, 12, 16]);
+        assert_eq!(lengths(2), [1, 2]);
+    }
+
+    #[test]
+    fn the_gain_of_a_level_of_its_own_is_half_the_deviance() {
+        let squares = [1.0, 1.0, 9.0, 7.0, 1.0];
+        let scan = Scan { sums: cumulated(squares.iter().copied()), others: 1e9, trials: 1.0 };
+        assert_eq!(scan.ratio(2, 2), 8.0);
+        assert!((scan.gain(2, 2) - (7.0 - 8f64.ln())).abs() < 1e-12);
+        assert_eq!(scan.gain(0, 2), 0.0);
+        // Against a known level the sum of two squares is χ² with 2 degrees of freedom: exp(−x/2).
+        assert!((scan.p_value(2, 8.0) / (-8f64).exp() - 1.0).abs() < 1e-5);
+        assert!((scan.bound(2, 1e-4) / 1e-4f64.ln().abs() - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn neighbours_are_one_group_where_one_describes_them_as_well() {
+        let mut squares = vec![1.0; 60];
+        squares[20..30].fill(16.0);
+        let scan = Scan { sums: cumulated(squares.iter().copied()), others: 1e9, trials: 1.0 };
+        assert_eq!(merged(&scan, vec![(25, 5), (20, 5)], 60), [(20, 10)]);
+        assert_eq!(trimmed(&scan, 18, 16, &[false; 60]), (20, 10));
+        squares[30..50].fill(1.0);
+        squares[50..55].fill(16.0);
+        let scan = Scan { sums: cumulated(squares.iter().copied()), others: 1e9, trials: 1.0 };
+        assert_eq!(merged(&scan, vec![(20, 10), (50, 5)], 60), [(20, 10), (50, 5)]);
+    }
 }

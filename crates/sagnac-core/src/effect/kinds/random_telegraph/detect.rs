@@ -4,24 +4,18 @@
 //! its paths, beside the slow noise of the hypothesis. A process with the same spectrum gains by its spectrum alone; only
 //! what the chain gains beyond that tells two levels from it.
 
+use super::chain::Chain;
 use super::path::Paths;
-use super::rivals::{freed, line, rival};
-use super::two_level::Chain;
-use crate::effect::{EFFECTS, averages};
-use crate::mismatch::hypothesis::{kept, part_modes};
-use crate::mismatch::noise_fit::{self, Noise};
-use crate::mismatch::problem::Problem;
-use crate::mismatch::tried::Tried;
+use crate::effect::{Background, FlatResidual, averages};
 use crate::numeric::cosine::{dct2, inverse_dct2};
 use crate::numeric::least_squares::Normal;
+use crate::numeric::order::upper_median;
 
 /// Averages that are looked at in one length, at most and at least.
-const MOST: usize = 65_536;
-const LEAST: usize = 64;
+const MAX_AVERAGES: usize = 65_536;
+const MIN_AVERAGES: usize = 64;
 /// Jumps below which a course is none of this kind: a level that leaves and returns has two.
 const JUMPS: usize = 3;
-/// Gain by a Markov process below which there is no telegraph signal either.
-const LEAST_GAIN: f64 = 8.0;
 /// Turns of Baum-Welch for each start, and for the best in each round.
 const FIRST_TURNS: usize = 5;
 const TURNS: usize = 15;
@@ -37,7 +31,7 @@ const SLOWEST: usize = 64;
 
 /// Jumps between two levels.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Telegraph {
+pub(super) struct Telegraph {
     /// 0 and 1 for the two levels less their mean, for each sample.
     pub path: Vec<f64>,
     /// What is expected of each sample given all, less the mean, deg/h.
@@ -50,8 +44,6 @@ pub struct Telegraph {
     pub mean_dwell_s: f64,
     /// Its 95 % interval.
     pub dwell_ci95: [f64; 2],
-    /// Jumps.
-    pub jumps: usize,
     /// True when the jumps come as regularly as of a periodic course.
     pub regular: bool,
     /// Gain of log-likelihood over all paths.
@@ -68,18 +60,13 @@ pub struct Telegraph {
 
 /// What does not change while paths are tried.
 struct Ground<'a> {
-    problem: &'a Problem,
-    /// Modes of what the hypothesis leaves, and the same in time.
-    modes: Vec<f64>,
+    background: &'a Background<'a>,
+    /// What the hypothesis leaves, in time.
     residual: Vec<f64>,
-    powers: Vec<f64>,
-    columns: Vec<(Vec<f64>, f64)>,
     /// Share of each mode that is slow noise.
     slow: Vec<f64>,
     /// Variance of a sample's white noise, (deg/h)².
     white: f64,
-    /// What the noise beside jumps loses against that of the hypothesis where there are no jumps.
-    lost: f64,
 }
 
 /// A path that was judged.
@@ -92,30 +79,16 @@ struct Judged {
 }
 
 impl<'a> Ground<'a> {
-    fn new(problem: &'a Problem, tried: &'a Tried, noise: Noise) -> Ground<'a> {
-        let spectral = &problem.spectra.full;
-        let courses = &tried.hypothesis.courses;
-        let mut columns: Vec<(Vec<f64>, f64)> =
-            kept(spectral, courses).into_iter().map(|n| (n.modes.clone(), n.deviation)).collect();
-        for part in part_modes(spectral, courses) {
-            columns.extend(part.columns.into_iter().chain(part.nuisance).map(|c| (c, f64::INFINITY)));
-        }
-        let powers = spectral.powers(&noise.densities(spectral));
-        let modes = tried.residual(&problem.spectra);
+    fn new(background: &'a Background<'a>) -> Ground<'a> {
+        let powers = &background.powers;
         let mut high: Vec<f64> = powers[powers.len() / 2..].to_vec();
-        let white = super::median(&mut high);
+        let white = upper_median(&mut high);
         let slow = |p: &f64| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 };
-        let without =
-            noise_fit::whittle(spectral, &tried.fit.observed, &noise.densities(spectral)) + noise.prior();
         Ground {
-            problem,
-            residual: inverse_dct2(&modes),
-            modes,
+            background,
+            residual: inverse_dct2(&background.modes),
             slow: powers.iter().map(slow).collect(),
-            powers,
-            columns,
             white,
-            lost: tried.fit.noise.log_likelihood - without,
         }
     }
 
@@ -131,13 +104,16 @@ impl<'a> Ground<'a> {
             .sum();
         let beside: f64 = self.residual.iter().zip(background).map(|(r, b)| (r - b).powi(2)).sum();
         // White noise beside the best slow noise: what the spectrum leaves of each mode.
-        let alone: f64 = self.modes.iter().zip(&self.slow).map(|(x, s)| x * x * (1.0 - s)).sum();
+        let alone: f64 = self.background.modes.iter().zip(&self.slow).map(|(x, s)| x * x * (1.0 - s)).sum();
         let values = self.values(background, m);
         let variance = white / m as f64;
         let flat: f64 = values.iter().map(|v| v * v / variance).sum();
         let flat = -0.5 * (flat + values.len() as f64 * (std::f64::consts::TAU * variance).ln());
         let chain = Chain { variance, ..*chain };
-        chain.log_likelihood(&values) - flat - 0.5 * (of_background + (beside - alone) / white) - self.lost
+        chain.log_likelihood(&values)
+            - flat
+            - 0.5 * (of_background + (beside - alone) / white)
+            - self.background.lost
     }
 
     /// The best estimate of the slow noise under a path, deg/h.
@@ -150,10 +126,13 @@ impl<'a> Ground<'a> {
     /// Amplitude of a known path, and its deviation.
     fn amplitude(&self, path: &[bool]) -> (f64, f64) {
         let series: Vec<f64> = path.iter().map(|p| f64::from(u8::from(*p))).collect();
-        let modes = self.problem.spectra.full.transform(&series);
-        let old: Vec<(&[f64], f64)> = self.columns.iter().map(|(c, d)| (c.as_slice(), *d)).collect();
-        let before = Normal::new(&old, &self.modes, &self.powers);
-        let (c, covariance, _) = before.with(&old, &[&modes], &self.modes, false, &self.powers).solve();
+        let mut modes = dct2(&series);
+        modes.iter_mut().take(1).for_each(|first| *first = 0.0);
+        let old: Vec<(&[f64], f64)> =
+            self.background.columns.iter().map(|(c, d)| (c.as_slice(), *d)).collect();
+        let before = Normal::new(&old, &self.background.modes, &self.background.powers);
+        let (c, covariance, _) =
+            before.with(&old, &[&modes], &self.background.modes, false, &self.background.powers).solve();
         let at = old.len();
         let variance = if covariance.nrows() > at { covariance[(at, at)] } else { 0.0 };
         (c.get(at).copied().unwrap_or(0.0), variance.max(0.0).sqrt())
@@ -171,7 +150,7 @@ impl<'a> Ground<'a> {
     /// What is slower than any dwell that averages of `m` are looked at for.
     fn drift(&self, m: usize) -> Vec<f64> {
         let last = self.residual.len() / (SLOWEST * m);
-        let modes = self.modes.iter().zip(&self.slow).enumerate();
+        let modes = self.background.modes.iter().zip(&self.slow).enumerate();
         let modes: Vec<f64> = modes.map(|(k, (x, s))| if k <= last { x * s } else { 0.0 }).collect();
         inverse_dct2(&modes)
     }
@@ -191,7 +170,8 @@ impl<'a> Ground<'a> {
         let mut best: Option<Judged> = None;
         let coloured = self.coloured();
         let paths = (coloured && values.len() <= PATHS).then(|| {
-            let powers: Vec<f64> = self.powers.iter().take(values.len()).map(|p| p / m as f64).collect();
+            let powers: Vec<f64> =
+                self.background.powers.iter().take(values.len()).map(|p| p / m as f64).collect();
             Paths::new(&averages(&self.residual, m), &powers, white)
         });
         for _ in 0..ROUNDS {
@@ -249,18 +229,13 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// Looks for a telegraph signal in the residual of a hypothesis.
-pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
-    let n = problem.residual.len();
-    // Its spectrum is that of a Markov process: without a gain by one there is nothing to look for.
-    let (markov, noise) = rival(problem, tried, &["markov_long", "markov_short"])?;
-    if markov < LEAST_GAIN {
-        return None;
-    }
-    let ground = Ground::new(problem, tried, noise);
-    let finest = n.div_ceil(MOST).max(1);
+/// Looks for a telegraph signal beside a hypothesis.
+pub(super) fn telegraph(background: &Background<'_>, rival_gain: &dyn Fn() -> f64) -> Option<Telegraph> {
+    let n = background.modes.len();
+    let ground = Ground::new(background);
+    let finest = n.div_ceil(MAX_AVERAGES).max(1);
     let mut m = finest;
-    while n / (4 * m) >= LEAST {
+    while n / (4 * m) >= MIN_AVERAGES {
         m *= 4;
     }
     let mut lengths = 0.0f64;
@@ -277,19 +252,16 @@ pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Telegraph> {
         m /= 4;
     }
     let best = best.filter(|b| b.gain > 0.0)?;
-    let others: Vec<&str> = EFFECTS.iter().map(|e| e.kind()).filter(|k| !k.starts_with("markov")).collect();
-    let rival_gain = markov
-        .max(rival(problem, tried, &others).map_or(0.0, |r| r.0))
-        .max(freed(problem, tried))
-        .max(line(problem, tried));
+    let rival_gain = rival_gain();
     // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
     // fitted, ½ ln M nats.
     let log_p = lengths.ln() + 1.5 * ((n / best.averaged) as f64).ln() - best.gain;
     let [chance, p_value] = [log_p, log_p.max(rival_gain - best.gain)].map(|p| p.min(0.0).exp().max(1e-300));
     let told = Telegraph { chance, p_value, ..ground.told(best, rival_gain) };
     // Two neighbouring steps of a coarse lattice are two levels as well.
-    let step = problem.spectra.grid_step_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s);
-    let quantization_grid = step > super::COARSE * ground.white.sqrt() && told.amplitude_deg_h < 1.5 * step;
+    let step = background.grid_step_arcsec.map_or(0.0, |a| a / background.drivers.dt_s);
+    let quantization_grid =
+        step > FlatResidual::COARSE * ground.white.sqrt() && told.amplitude_deg_h < 1.5 * step;
     (!quantization_grid).then_some(told)
 }
 
@@ -314,8 +286,7 @@ impl Ground<'_> {
                 break;
             }
         }
-        let step = best.averaged as f64 * self.problem.drivers.dt_s;
-        let jumps = best.path.windows(2).filter(|w| w[0] != w[1]).count();
+        let step = best.averaged as f64 * self.background.drivers.dt_s;
         let up = best.path.iter().filter(|p| **p).count() as f64;
         let share = up / n as f64;
         size = best.chain.apart();
@@ -338,7 +309,6 @@ impl Ground<'_> {
             amplitude_ci95: [(size - half).max(0.0), size + half],
             mean_dwell_s,
             dwell_ci95: [mean_dwell_s / factor, mean_dwell_s * factor],
-            jumps,
             regular: regular(&best.path),
             gain: best.gain,
             rival_gain,
@@ -390,4 +360,51 @@ fn starts(values: &[f64], white: f64) -> Vec<Chain> {
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_dwells_are_those_of_a_periodic_course() {
+        let even: Vec<bool> = (0..2000).map(|i| i / 50 % 2 == 1).collect();
+        assert!(regular(&even));
+        // Dwells of 5, 10, 15, ...: their deviation is more than half of their mean.
+        let mut uneven = vec![];
+        for k in 1..=40 {
+            uneven.extend(vec![k % 2 == 0; 5 * k]);
+        }
+        assert!(!regular(&uneven));
+        // Too few to say.
+        assert!(!regular(&even[..400]));
+    }
+
+    #[test]
+    fn the_amplitude_of_a_known_path_is_that_of_least_squares() {
+        // White noise of variance ¼; half of 200 samples are raised by 3.
+        let path: Vec<bool> = (0..200).map(|i| i / 20 % 2 == 1).collect();
+        let series: Vec<f64> = path.iter().map(|p| 3.0 * f64::from(u8::from(*p))).collect();
+        let mut modes = dct2(&series);
+        modes[0] = 0.0;
+        let drivers = crate::effect::Drivers { dt_s: 1.0, samples: 200, ..Default::default() };
+        let mut powers = vec![0.25; 200];
+        powers[0] = f64::INFINITY;
+        let background = Background {
+            drivers: &drivers,
+            modes,
+            powers,
+            columns: vec![],
+            lost: 0.0,
+            grid_step_arcsec: None,
+        };
+        let ground = Ground::new(&background);
+        let (size, deviation) = ground.amplitude(&path);
+        // ¼ over 100 · 100/200 samples' worth.
+        assert!(
+            (size - 3.0).abs() < 1e-6 && (deviation - 0.005f64.sqrt()).abs() < 1e-6,
+            "{size} {deviation}"
+        );
+        assert!(!ground.coloured() && ground.white == 0.25);
+    }
 }

@@ -1,6 +1,14 @@
 //! Jumps back and forth between two levels.
 
-use crate::effect::{Drivers, Effect, Param, Samples, Values, list, number};
+mod chain;
+mod detect;
+mod path;
+
+use super::markov_long::MarkovLong;
+use crate::effect::{
+    Background, Detection, Detector, Domain, Drivers, Effect, JumpDetector, Jumps, Param, Place, Reported,
+    Samples, Value, Values, list, number,
+};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -79,12 +87,77 @@ impl Samples for RandomTelegraph {
             rate.iter_mut().zip(course).for_each(|(y, c)| *y += c);
         }
     }
+
+    fn detector(&self) -> Detector {
+        Detector::Jumps(&RandomTelegraph)
+    }
+}
+
+/// Samples at a level below which jumps are not told from a process.
+const FEWEST_AT_A_LEVEL: f64 = 6.0;
+/// Half widths of the interval of the amplitude within which a stated one is that which was found.
+const AS_STATED: f64 = 2.0;
+
+impl RandomTelegraph {
+    fn stated_size(stated: &Values) -> Option<(f64, f64)> {
+        Some((number(stated, PARAMS[0].name)?.abs(), number(stated, PARAMS[1].name)?))
+    }
+}
+
+impl JumpDetector for RandomTelegraph {
+    fn find(&self, background: &Background<'_>, rival_gain: &dyn Fn() -> f64) -> Option<Jumps> {
+        let drivers = background.drivers;
+        let found = detect::telegraph(background, rival_gain)?;
+        let n = found.path.len().max(1) as f64;
+        let share = found.path.iter().map(|p| p * p).sum::<f64>() / n;
+        let rms = found.amplitude_deg_h.abs() * share.sqrt();
+        let [low, high] = found.amplitude_ci95.map(|a| a.abs() * share.sqrt());
+        let (amplitude, dwell) = (&PARAMS[0], &PARAMS[1]);
+        let jumps: Vec<usize> =
+            (1..found.path.len()).filter(|i| found.path[*i] != found.path[*i - 1]).collect();
+        let (first, last) = (*jumps.first()?, *jumps.last()?);
+        let detection = Detection {
+            reported: vec![
+                Reported::new(amplitude.name, amplitude.unit, found.amplitude_deg_h, found.amplitude_ci95),
+                Reported::new(dwell.name, dwell.unit, found.mean_dwell_s, found.dwell_ci95),
+                Reported::new("rms_deg_h", "deg/h", rms, [low.min(high), low.max(high)]),
+            ],
+            stated: Values::from([
+                (amplitude.name.to_owned(), Value::Number(found.amplitude_deg_h)),
+                (dwell.name.to_owned(), Value::Number(found.mean_dwell_s)),
+            ]),
+            places: vec![Place {
+                domain: Domain::Time,
+                from: drivers.time_s(first),
+                to: drivers.time_s(last),
+            }],
+            gain: found.gain,
+            parameters: found.parameters,
+            p_value: found.p_value,
+        };
+        let resolved = found.mean_dwell_s >= FEWEST_AT_A_LEVEL * drivers.dt_s && !found.regular;
+        let detect::Telegraph { course, chance, rival_gain, .. } = found;
+        Some(Jumps { course, detection, chance, rival_gain, resolved })
+    }
+
+    fn agrees(&self, stated: &Values, found: &Detection) -> bool {
+        let found = found.reported(PARAMS[0].name);
+        RandomTelegraph::stated_size(stated).zip(found).is_some_and(|((amplitude, _), found)| {
+            let [low, high] = found.ci95;
+            (found.value - amplitude).abs() < 0.5 * AS_STATED * (high - low)
+        })
+    }
+
+    /// A Markov process: the autocovariance of the jumps is (amplitude/2)² exp(−2|t|/dwell).
+    fn process(&self, stated: &Values) -> Option<(&'static dyn Effect, Vec<f64>)> {
+        let (amplitude, dwell_s) = RandomTelegraph::stated_size(stated)?;
+        Some((&MarkovLong, vec![0.5 * dwell_s, 0.5 * amplitude]))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
 
     #[test]
     fn the_autocovariance_is_that_of_the_telegraph_process() {
@@ -104,6 +177,26 @@ mod tests {
             assert!((got - expected).abs() < 0.05, "{lag}: {got} {expected}");
         }
         assert!(rate.iter().all(|y| y.abs() <= 1.0 + 1e-12));
+    }
+
+    #[test]
+    fn stated_jumps_have_the_process_of_their_spectrum_and_agree_within_their_interval() {
+        let stated = |amplitude: f64| {
+            Values::from([
+                ("amplitude_deg_h".to_owned(), Value::Number(amplitude)),
+                ("mean_dwell_s".to_owned(), Value::Number(30.0)),
+            ])
+        };
+        let (effect, fitted) = RandomTelegraph.process(&stated(-2.0)).unwrap();
+        assert_eq!((effect.kind(), fitted), ("markov_long", vec![15.0, 1.0]));
+        assert!(RandomTelegraph.process(&Values::new()).is_none());
+        let found = Detection {
+            reported: vec![Reported::new("amplitude_deg_h", "deg/h", 2.0, [1.9, 2.1])],
+            ..Detection::default()
+        };
+        assert!(
+            RandomTelegraph.agrees(&stated(-2.19), &found) && !RandomTelegraph.agrees(&stated(2.21), &found)
+        );
     }
 
     #[test]

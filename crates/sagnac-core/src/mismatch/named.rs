@@ -1,0 +1,116 @@
+//! Effects that were named: by the fit in cosine modes, or by their detectors in single samples.
+
+use super::estimates::Estimated;
+use super::finding::ParameterValue;
+use super::improvement::Improvement;
+use super::select::ENOUGH;
+use crate::effect::{Detection, Effect, Place};
+
+/// An effect that was named, however it was found.
+pub struct Named {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// Parameters.
+    pub estimated: Estimated,
+    /// Kinds that would have served as well.
+    pub equivalents: Vec<&'static str>,
+    /// Where, principal first.
+    pub places: Vec<Place>,
+    /// BIC without it less BIC with it.
+    pub delta_bic: f64,
+    /// Probability without it, everything counted.
+    pub p_value: f64,
+    /// What it improves, where the fit in cosine modes tells.
+    pub improvement: Option<Improvement>,
+    /// Gain of log-likelihood that the fit in cosine modes does not hold.
+    pub local_gain: f64,
+}
+
+impl Named {
+    /// An effect as its detector found it.
+    pub fn detected(effect: &'static dyn Effect, found: &Detection, delta_bic: f64) -> Named {
+        let value = |r: &crate::effect::Reported| {
+            let value = ParameterValue { value: r.value, unit: r.unit.to_owned(), ci95: r.ci95 };
+            (r.name.to_owned(), value)
+        };
+        Named {
+            effect,
+            estimated: Estimated {
+                reported: found.reported.iter().map(value).collect(),
+                stated: found.stated.clone(),
+            },
+            equivalents: vec![],
+            places: found.places.clone(),
+            delta_bic,
+            p_value: found.p_value,
+            improvement: None,
+            local_gain: found.gain,
+        }
+    }
+
+    /// Its reported instant, for an effect that has one.
+    pub fn instant(&self) -> Option<&ParameterValue> {
+        let param = self.effect.params().iter().find(|p| p.instant)?;
+        self.estimated.reported.get(param.name)
+    }
+}
+
+/// Whether a gain is worth its parameters and is no chance. `family` counts the catalogue.
+pub fn worth(gain: f64, parameters: usize, p_value: f64, rows: usize, alpha: f64) -> Option<f64> {
+    const FAMILY: f64 = 40.0;
+    let delta_bic = 2.0 * gain - parameters as f64 * (rows as f64).ln();
+    (delta_bic >= ENOUGH && FAMILY * p_value < alpha).then_some(delta_bic)
+}
+
+/// What was found in single samples.
+#[derive(Default)]
+pub struct Found {
+    /// What was named.
+    pub named: Vec<Named>,
+    /// Deviation of the noise of each sample over that of the record.
+    pub level: Option<Vec<f64>>,
+    /// What was taken out of the residual, deg/h.
+    pub taken: Option<Vec<f64>>,
+    /// What the fits without it gained, which counts it as known.
+    pub gained_in_fit: f64,
+}
+
+impl Found {
+    /// Takes a course out of what is left to explain.
+    pub fn take(&mut self, course: Vec<f64>) {
+        match &mut self.taken {
+            Some(sum) => sum.iter_mut().zip(course).for_each(|(s, c)| *s += c),
+            None => self.taken = Some(course),
+        }
+    }
+
+    /// Gain that the fits in cosine modes do not hold.
+    pub fn local_gain(&self) -> f64 {
+        self.named.iter().map(|n| n.local_gain).sum::<f64>() - self.gained_in_fit
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gain_must_pay_for_its_parameters_and_be_no_chance() {
+        // 2 · 20 − 2 ln 1000 = 26.18.
+        let delta_bic = worth(20.0, 2, 1e-5, 1000, 0.01).unwrap();
+        assert!((delta_bic - 26.184_489_442).abs() < 1e-6, "{delta_bic}");
+        // 40 effects were looked for: 2.5e-4 is the 0.01 that was asked for.
+        assert!(worth(20.0, 2, 2.4e-4, 1000, 0.01).is_some() && worth(20.0, 2, 2.6e-4, 1000, 0.01).is_none());
+        // 2 · 9.9 − 2 ln 1000 = 5.98 is less than 6.
+        assert!(worth(9.9, 2, 1e-9, 1000, 0.01).is_none() && worth(9.92, 2, 1e-9, 1000, 0.01).is_some());
+    }
+
+    #[test]
+    fn what_was_taken_out_adds_up() {
+        let mut found = Found::default();
+        found.take(vec![1.0, 2.0]);
+        found.take(vec![0.5, -2.0]);
+        assert_eq!(found.taken, Some(vec![1.5, 0.0]));
+        assert_eq!(found.local_gain(), 0.0);
+    }
+}
