@@ -90,3 +90,16 @@ pub struct Place {
     /// Upper end.
     pub to: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_domain_is_found_by_its_id_and_no_other() {
+        for domain in Domain::ALL {
+            assert_eq!(Domain::of_id(domain.id()), Some(*domain));
+        }
+        assert_eq!(Domain::of_id("Time"), None);
+    }
+}

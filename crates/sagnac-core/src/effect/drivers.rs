@@ -196,3 +196,52 @@ impl Drivers {
 pub fn averages(values: &[f64], m: usize) -> Vec<f64> {
     values.chunks_exact(m.max(1)).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_claimed_mean_is_the_sum_of_what_a_claim_states() {
+        let claim = ClaimedMean {
+            bias_deg_h: 7.0,
+            temperature: Some(Temperature { coefficient_deg_h_per_degc: 0.5, reference_degc: 20.0 }),
+            scale_factor_ppm: Some(100.0),
+            earth: Some(Earth { latitude_deg: 60.0, azimuth_deg: 90.0 }),
+        };
+        let drivers = Drivers {
+            dt_s: 1.0,
+            samples: 2,
+            temperature: Some(vec![20.0, 26.0]),
+            table_rate: Some(vec![0.0, 1.0]),
+            table_angle: Some(vec![0.0, -90.0]),
+            claim,
+            ..Drivers::default()
+        };
+        // East sees nothing of the Earth rate; north half of it at 60°. The bias is not in it.
+        let mean = drivers.claimed_mean();
+        assert!(mean[0].abs() < 1e-12, "{mean:?}");
+        assert!((mean[1] - (3.0 + 3600.36 + 0.5 * 15.041_067)).abs() < 1e-5, "{mean:?}");
+    }
+
+    #[test]
+    fn averages_are_placed_in_the_middle_of_their_samples() {
+        let drivers = Drivers {
+            dt_s: 0.5,
+            start_s: 10.0,
+            samples: 7,
+            averaged: 1,
+            supply: Some((0..7).map(f64::from).collect()),
+            table_angle: Some(vec![1.0; 7]),
+            ..Drivers::default()
+        };
+        let means = drivers.averages(3);
+        assert_eq!((means.samples, means.averaged, means.dt_s, means.time_s(1)), (2, 3, 1.5, 12.0));
+        assert_eq!(means.supply, Some(vec![1.0, 4.0]));
+        assert!(means.table_angle.is_none());
+        assert_eq!(drivers.averages(1), drivers);
+        let mut cut = drivers.clone();
+        cut.truncate(2);
+        assert_eq!((cut.samples, cut.supply), (2, Some(vec![0.0, 1.0])));
+    }
+}

@@ -137,3 +137,21 @@ fn refine_shapes(hypothesis: &mut Hypothesis, spectral: &SpectralData) {
         hypothesis.courses[i].nonlinear_parameters = nonlinear_parameters;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coefficient_that_the_training_half_hardly_holds_is_nothing() {
+        let fitted = |deviations: [f64; 2]| LeastSquares {
+            coefficients: vec![3.0, -2.0],
+            covariance: nalgebra::DMatrix::from_diagonal(&deviations.map(|d| d * d).to_vec().into()),
+            prior: 0.0,
+        };
+        let whole = fitted([0.1, 0.1]);
+        assert_eq!(known(&fitted([99.0, 0.2]), &whole), [3.0, -2.0]);
+        assert_eq!(known(&fitted([101.0, 0.2]), &whole), [0.0, -2.0]);
+        assert_eq!(known(&fitted([f64::NAN, 0.2]), &whole)[1], -2.0);
+    }
+}

@@ -1,7 +1,17 @@
-//! The noise of a hypothesis and its fit: penalised Whittle likelihood over the bins of a scene.
+//! The noise of a hypothesis and its fit: penalised Whittle likelihood over the bins of a record.
 //!
 //! −ln L = ½ Σ n_b (ln S_b + I_b/S_b) + ½ Σ (ln c − ln c₀)²/σ²: stated coefficients move within their stated
-//! uncertainty and no further. Fisher scoring on logarithms of the parameters, with backtracking.
+//! uncertainty and no further. Fisher scoring on logarithms of the parameters, with backtracking
+//! (Whittle, Ark. Mat. 2, 1953).
+//!
+//! # Why this is no fit of `noise::identification`
+//! Both maximise the same sum over bins, and share no step of it. The identification asks which of a few known terms a
+//! record has: it has no priors, its unknowns are variances that enter the expected powers linearly and may be exactly 0,
+//! and its data are band powers of a Welch spectrum and of block means with a ramp taken out. This fit holds a *stated*
+//! model against a record: coefficients carry the prior of a claim, densities are those of any effect of the catalogue,
+//! filters multiply the rest, parameters are positive and enter by their logarithms, and the data are cosine modes of a
+//! residual from which a mean was fitted, with no more than their own bins in common. A common optimiser would need both
+//! bounded steps of variances and damped steps of logarithms, and be neither.
 
 use super::spectral_data::SpectralData;
 use super::terms::SpectrumIn;
@@ -396,4 +406,59 @@ fn log_slopes(noise: &Noise, which: &[Which], spectral: &SpectralData, densities
         }
     };
     which.iter().map(|w| one(*w)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(n: f64, deviation: f64) -> Noise {
+        let base = [n, 0.0, 0.0];
+        Noise {
+            base,
+            claimed: base,
+            deviation: [deviation, 0.0, 0.0],
+            bound: [0.0; 3],
+            freed: [false; 3],
+            quantization_arcsec: 0.0,
+            spectra: vec![],
+        }
+    }
+
+    fn empty(samples: usize) -> SpectralData {
+        let drivers = crate::effect::Drivers { dt_s: 1.0, samples, averaged: 1, ..Default::default() };
+        SpectralData::new(drivers, &vec![0.0; samples], &[])
+    }
+
+    #[test]
+    fn white_noise_has_3600_times_n_squared() {
+        let spectral = empty(500);
+        // N = 1/60 deg/√h is 1 (deg/h)²/Hz.
+        let densities = noise(1.0 / 60.0, 0.0).densities(&spectral);
+        assert!(densities.iter().all(|s| (s - 1.0).abs() < 1e-12));
+        // ½ Σ n (ln S + I/S) of 499 modes with I = 2 and S = 1.
+        let observed = vec![2.0; spectral.bins.len()];
+        assert!((whittle(&spectral, &observed, &densities) + 499.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_prior_weighs_a_claim_against_the_record() {
+        let spectral = empty(500);
+        let observed = vec![4.0; spectral.bins.len()];
+        // Set free, N doubles.
+        let mut free = noise(1.0 / 60.0, 0.0);
+        free.freed[0] = true;
+        fit(&mut free, &spectral, &observed);
+        assert!((free.base[0] * 60.0 / 2.0 - 1.0).abs() < 1e-4, "{}", free.base[0]);
+        // Claimed to within 1 %: the slopes of −½ · 499 (2x + 4 e^(−2x)) and of −½ (x/0.01)² meet at x = ln(N/N₀).
+        let mut held = noise(1.0 / 60.0, 0.01);
+        fit(&mut held, &spectral, &observed);
+        let x = (held.base[0] * 60.0).ln();
+        assert!((499.0 * (4.0 * (-2.0 * x).exp() - 1.0) - x / 1e-4).abs() < 1.0, "{x}");
+        assert!((held.prior() + 0.5 * (x / 0.01).powi(2)).abs() < 1e-9);
+        // A coefficient claimed as 0 with a bound is as likely as a normal number of it.
+        let bound =
+            Noise { base: [0.3, 0.0, 0.0], claimed: [0.0; 3], bound: [0.1, 0.0, 0.0], ..noise(0.0, 0.0) };
+        assert!((bound.prior() + 4.5).abs() < 1e-12 && (bound.begin(0) - 0.01).abs() < 1e-12);
+    }
 }

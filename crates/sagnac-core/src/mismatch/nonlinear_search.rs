@@ -100,3 +100,23 @@ pub fn refine(
     }
     (at, best)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_top_of_a_hill_is_reached_within_its_bounds() {
+        let bounds = [Bounds::new(0.1, 1000.0), Bounds::new(-1.0, 1.0)];
+        let hill = |x: &[f64]| -50.0 * ((x[0] / 30.0).ln().powi(2) + (x[1] - 0.4).powi(2));
+        let (at, gain) = refine(&[5.0, -0.5], &bounds, &[], 400, hill);
+        assert!(
+            (at[0] / 30.0 - 1.0).abs() < 2e-3 && (at[1] - 0.4).abs() < 2e-3 && gain > -1e-3,
+            "{at:?} {gain}"
+        );
+        // A top outside is left for the end that is nearest; a number whose first step is 0 stays.
+        let (at, _) =
+            refine(&[0.0, 0.7], &[Bounds::new(-1.0, 1.0); 2], &[None, Some(0.0)], 400, |x| x[0] - x[1]);
+        assert!((at[0] - 1.0).abs() < 1e-6 && at[1] == 0.7, "{at:?}");
+    }
+}

@@ -306,3 +306,53 @@ pub fn smoothed(values: &[f64]) -> Vec<f64> {
 fn edge(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bins_hold_every_mode_once_and_narrow_towards_zeros_of_a_filter() {
+        for zeros in [vec![], vec![700.0, 2000.0]] {
+            let bins = bins(5000, 0.1, &zeros);
+            assert_eq!(bins.iter().map(|b| b.modes).sum::<usize>(), 4999);
+            assert!(bins.windows(2).all(|w| w[0].mode + w[0].modes == w[1].mode));
+            for zero in &zeros {
+                let at = bins.iter().find(|b| ((b.mode + b.modes) as f64) > *zero).unwrap();
+                assert!(at.modes <= 2, "{at:?}");
+            }
+        }
+        // Mode 1000 of 5000 samples at 10 Hz lies at 1 Hz.
+        let bin = bins(5000, 0.1, &[]).into_iter().find(|b| b.mode + b.modes > 1000).unwrap();
+        assert!((bin.frequency_hz - 1.0).abs() < 0.005);
+    }
+
+    #[test]
+    fn powers_and_observed_densities_are_each_other() {
+        let series: Vec<f64> = (0..400).map(|i| f64::from(i * 37 % 101) - 50.0).collect();
+        let drivers = Drivers { dt_s: 0.5, samples: 400, averaged: 1, ..Drivers::default() };
+        let spectral = SpectralData::new(drivers, &series, &[]);
+        let observed = spectral.observed(&spectral.modes);
+        // All modes but the mean hold the variance of the series (Parseval).
+        let total: f64 =
+            spectral.bins.iter().zip(&observed).map(|(b, s)| spectral.weight(b) * s / b.dt_s).sum();
+        let mean = series.iter().sum::<f64>() / 400.0;
+        let variance: f64 = series.iter().map(|x| (x - mean).powi(2)).sum();
+        assert!((total / variance - 1.0).abs() < 1e-9);
+        let powers = spectral.powers(&observed);
+        assert!(powers[0].is_infinite() && (powers[1] - spectral.modes[1].powi(2)).abs() < 1e-9 * powers[1]);
+    }
+
+    #[test]
+    fn a_line_in_sensor_noise_is_kept_and_the_noise_is_not() {
+        let noise = |i: usize| ((i * i * 31 + 7 * i) % 211) as f64 / 211.0 - 0.5;
+        let values: Vec<f64> = (0..4000).map(|i| 20.0 + 0.01 * i as f64 + 0.5 * noise(i)).collect();
+        let smooth = smoothed(&values);
+        let off = |v: &[f64]| {
+            let square: f64 = v.iter().enumerate().map(|(i, x)| (x - 20.0 - 0.01 * i as f64).powi(2)).sum();
+            (square / 4000.0).sqrt()
+        };
+        assert!(off(&smooth) < 0.25 * off(&values), "{} {}", off(&smooth), off(&values));
+        assert_eq!(smoothed(&values[..10]), values[..10]);
+    }
+}

@@ -94,3 +94,15 @@ fn on_grid(index: &[u64], values: &[f64], samples: usize, is_angle: bool) -> Vec
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaps_are_bridged_the_short_way_round() {
+        assert_eq!(on_grid(&[0, 1, 4], &[0.0, 3.0, 9.0], 6, false), [0.0, 3.0, 5.0, 7.0, 9.0, 0.0]);
+        assert_eq!(on_grid(&[0, 2], &[350.0, 20.0], 3, true), [350.0, 5.0, 20.0]);
+        assert_eq!(on_grid(&[0, 2], &[20.0, 350.0], 3, true), [20.0, 5.0, 350.0]);
+    }
+}

@@ -58,3 +58,20 @@ impl Filtering {
         out
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_passes_unchanged_and_blocks_do_not_show() {
+        let mut whole = Filtering::new(LowPass::smoothing(0.05));
+        let mut parts = Filtering::new(LowPass::smoothing(0.05));
+        let values: Vec<f64> = (0..200).map(|i| 7.0 + f64::from(i * 37 % 11)).collect();
+        let at_once = whole.through(values.clone());
+        let pieces = [parts.through(values[..33].to_vec()), parts.through(values[33..].to_vec())].concat();
+        assert_eq!(at_once, pieces);
+        let mut level = Filtering::new(LowPass::butterworth(0.1));
+        assert!(level.through(vec![3.0; 50]).iter().all(|y| (y - 3.0).abs() < 1e-12));
+    }
+}

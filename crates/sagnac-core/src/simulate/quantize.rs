@@ -23,3 +23,19 @@ impl Counter {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_less_than_a_step_stays_for_the_next_sample() {
+        // 0.4 arcsec each 0.5 s: 0.8 deg/h, counted in steps of 1 arcsec, which are 2 deg/h.
+        let mut counter = Counter::new(1.0, 0.5).unwrap();
+        let mut rate = vec![0.8; 5];
+        counter.count(&mut rate);
+        // Angles 0.4, 0.8, 1.2, 1.6, 2.0 are 0, 1, 1, 2, 2 steps.
+        assert_eq!(rate, [0.0, 2.0, 0.0, 2.0, 0.0]);
+        assert!(Counter::new(0.0, 1.0).is_none());
+    }
+}

@@ -101,3 +101,20 @@ impl MeanModel for ClockDrift {
         vec![0.05 / per_ppm(drivers.samples.max(2) - 1, drivers).max(1e-12)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lag_grows_by_a_millionth_of_the_time_for_each_ppm() {
+        // One sample each second, from 100 s on: after 50 000 samples 1 ppm is 0.05 s.
+        let drivers =
+            Drivers { dt_s: 1.0, start_s: 100.0, samples: 50_001, averaged: 1, ..Drivers::default() };
+        assert_eq!(per_ppm(0, &drivers), 0.0);
+        assert!((per_ppm(50_000, &drivers) - 0.05).abs() < 1e-12);
+        // In averages of ten the record began 4.5 s before the middle of the first.
+        let coarse = Drivers { dt_s: 10.0, averaged: 10, ..drivers };
+        assert!((per_ppm(0, &coarse) - 0.45e-6).abs() < 1e-15);
+    }
+}

@@ -26,3 +26,18 @@ linear! { CrossAxis, replaces None, places places }
 fn applies(drivers: &Drivers) -> bool {
     varies(drivers.outer_rate.as_deref())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{MeanModel, Value, Values};
+
+    #[test]
+    fn a_milliradian_sees_a_thousandth_of_the_other_axis() {
+        let drivers = Drivers { outer_rate: Some(vec![10.0, -5.0]), ..Drivers::default() };
+        let course = CrossAxis
+            .course(&Values::from([("misalignment_mrad".to_owned(), Value::Number(2.0))]), &drivers)
+            .unwrap();
+        assert!((course[0] - 72.0).abs() < 1e-12 && (course[1] + 36.0).abs() < 1e-12, "{course:?}");
+    }
+}

@@ -148,3 +148,35 @@ impl MeanModel for DeadZone {
         nonlinear_parameters.first().map(at).into_iter().collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn within_the_zone_all_of_the_rate_is_lost_and_beyond_what_stays_behind() {
+        // 0.36, 3.6 and −7.2 deg/h.
+        let drivers = Drivers { table_rate: Some(vec![1e-4, 1e-3, -2e-3]), ..Drivers::default() };
+        let stated = Values::from([("half_width_deg_h".to_owned(), Value::Number(3.0))]);
+        let course = DeadZone.course(&stated, &drivers).unwrap();
+        assert!((course[0] + 0.36).abs() < 1e-12 && course[1..] == [0.0, 0.0], "{course:?}");
+        let stated = Values::from([
+            ("half_width_deg_h".to_owned(), Value::Number(3.0)),
+            ("stays_behind".to_owned(), Value::Number(1.0)),
+        ]);
+        let course = DeadZone.course(&stated, &drivers).unwrap();
+        assert!((course[0] + 0.36).abs() < 1e-12 && course[1..] == [-3.0, 3.0], "{course:?}");
+    }
+
+    #[test]
+    fn the_width_that_gains_most_ends_the_lost_rates() {
+        let rate: Vec<f64> =
+            (1..=100).map(|i| if i % 2 == 0 { f64::from(i) } else { -f64::from(i) } / 3600.0).collect();
+        let residual: Vec<f64> =
+            rate.iter().map(|r| if (3600.0 * r).abs() < 30.5 { -3600.0 * r } else { 0.0 }).collect();
+        let drivers = Drivers { dt_s: 1.0, samples: 100, table_rate: Some(rate), ..Drivers::default() };
+        let context = SearchContext { score: &residual, modes: &residual, powers: &[1.0; 100] };
+        assert!((widths(&drivers, &context, 1)[0] - 30.5).abs() < 1e-9);
+    }
+}

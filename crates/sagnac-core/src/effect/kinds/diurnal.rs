@@ -76,3 +76,25 @@ impl MeanModel for Diurnal {
         [vec![frequency], crate::effect::shared::reach::record(drivers)].concat()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn half_a_day_turns_the_sign() {
+        let drivers = Drivers { dt_s: 3600.0, start_s: 0.0, samples: 24, ..Drivers::default() };
+        let course = Diurnal
+            .course(&Values::from([("amplitude_deg_h".to_owned(), Value::Number(3.0))]), &drivers)
+            .unwrap();
+        for i in 0..12 {
+            assert!((course[i] + course[i + 12]).abs() < 1e-9, "{i}");
+        }
+        // The mean of an hour leaves sin(π/24)/(π/24) of a day's cosine.
+        let left = (std::f64::consts::PI / 24.0).sin() / (std::f64::consts::PI / 24.0);
+        assert!((course[0] - 3.0 * left).abs() < 1e-9 && course[6].abs() < 1e-9, "{}", course[0]);
+        assert!(!Diurnal.applies(&Drivers { samples: 11, ..drivers.clone() }));
+        assert_eq!(Diurnal.bounds(&drivers)[0].width(), 0.0);
+    }
+}

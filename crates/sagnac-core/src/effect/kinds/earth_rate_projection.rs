@@ -61,3 +61,25 @@ impl MeanModel for EarthRateProjection {
         if drivers.claim.earth.is_none() && turns { -2.0 } else { 2.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn a_resting_table_shows_the_projection_at_its_angle() {
+        let drivers =
+            Drivers { dt_s: 1.0, samples: 3, table_angle: Some(vec![60.0; 3]), ..Drivers::default() };
+        let stated = Values::from([
+            ("amplitude_deg_h".to_owned(), Value::Number(10.0)),
+            ("phase_deg".to_owned(), Value::Number(30.0)),
+        ]);
+        let course = EarthRateProjection.course(&stated, &drivers).unwrap();
+        assert!(course.iter().all(|x| x.abs() < 1e-12), "{course:?}");
+        let course = EarthRateProjection
+            .course(&Values::from([("amplitude_deg_h".to_owned(), Value::Number(10.0))]), &drivers)
+            .unwrap();
+        assert!(course.iter().all(|x| (x - 5.0).abs() < 1e-12), "{course:?}");
+    }
+}

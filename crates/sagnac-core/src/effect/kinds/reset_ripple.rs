@@ -274,3 +274,20 @@ impl MeanModel for ResetRipple {
         vec![0.1 * 9.0 / range, 0.1 * 3.0 / drivers.length_s()]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sensed_angle_is_that_of_the_table_and_of_the_bias() {
+        // 1 deg/h over 1 s is 1 arcsec.
+        let drivers =
+            Drivers { dt_s: 2.0, samples: 2, table_rate: Some(vec![0.0, 0.001]), ..Drivers::default() };
+        let (middles, steps) = sensed(10.0, &drivers).unwrap();
+        assert!((steps[0] - 20.0).abs() < 1e-12 && (steps[1] - 27.2).abs() < 1e-12, "{steps:?}");
+        assert!((middles[0] - 10.0).abs() < 1e-12 && (middles[1] - 33.6).abs() < 1e-12, "{middles:?}");
+        assert!((extent(10.0, &drivers) - 23.6).abs() < 1e-12);
+        assert_eq!(extent(10.0, &Drivers::default()), 1.0);
+    }
+}

@@ -25,3 +25,23 @@ fn applies(drivers: &Drivers) -> bool {
     let Bounds { low, high } = ends(rate);
     low.is_finite() && high.is_finite() && low < -0.01 * high.abs() && high > 0.01 * low.abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{MeanModel, Value, Values};
+
+    #[test]
+    fn both_signs_of_the_rate_are_off_by_half_of_the_asymmetry() {
+        let drivers = Drivers { table_rate: Some(vec![-2.0, 0.0, 2.0]), ..Drivers::default() };
+        let course = SfAsymmetry
+            .course(&Values::from([("asymmetry_ppm".to_owned(), Value::Number(100.0))]), &drivers)
+            .unwrap();
+        // 7200 deg/h · 50 ppm.
+        for (got, expected) in course.iter().zip([0.36, 0.0, 0.36]) {
+            assert!((got - expected).abs() < 1e-12, "{course:?}");
+        }
+        assert!(applies(&drivers));
+        assert!(!applies(&Drivers { table_rate: Some(vec![0.0, 2.0]), ..Drivers::default() }));
+    }
+}

@@ -21,3 +21,20 @@ linear! { SfError, replaces Some(crate::effect::Nuisance::ScaleFactor), places l
 fn applies(drivers: &Drivers) -> bool {
     varies(drivers.table_rate.as_deref())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{MeanModel, Value, Values};
+
+    #[test]
+    fn a_millionth_of_one_deg_s_is_0_0036_deg_h() {
+        let drivers = Drivers { table_rate: Some(vec![-2.0, 0.0, 5.0]), ..Drivers::default() };
+        let course =
+            SfError.course(&Values::from([("error_ppm".to_owned(), Value::Number(50.0))]), &drivers).unwrap();
+        for (got, expected) in course.iter().zip([-0.36, 0.0, 0.9]) {
+            assert!((got - expected).abs() < 1e-12, "{course:?}");
+        }
+        assert!(SfError.course(&Values::new(), &drivers).is_none());
+    }
+}

@@ -68,3 +68,21 @@ impl MeanModel for SfNonlinearity {
         crate::effect::shared::reach::large_rates(drivers)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn the_error_grows_with_the_square_of_the_rate_to_its_value_at_the_largest() {
+        let drivers = Drivers { table_rate: Some(vec![-10.0, 5.0, 10.0]), ..Drivers::default() };
+        let course = SfNonlinearity
+            .course(&Values::from([("cubic_ppm_at_max".to_owned(), Value::Number(20.0))]), &drivers)
+            .unwrap();
+        // 36 000 deg/h · 20 ppm; at half the rate an eighth of it.
+        for (got, expected) in course.iter().zip([-0.72, 0.09, 0.72]) {
+            assert!((got - expected).abs() < 1e-12, "{course:?}");
+        }
+    }
+}

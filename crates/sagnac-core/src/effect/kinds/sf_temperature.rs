@@ -31,3 +31,23 @@ fn applies(drivers: &Drivers) -> bool {
     let moving = drivers.table_rate.as_ref().is_some_and(|r| r.iter().any(|r| *r != 0.0));
     moving && varies(drivers.temperature.as_deref())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{MeanModel, Value, Values};
+
+    #[test]
+    fn the_scale_factor_is_the_claimed_one_at_the_reference() {
+        let drivers = Drivers {
+            table_rate: Some(vec![10.0, 10.0]),
+            temperature: Some(vec![20.0, 30.0]),
+            ..Drivers::default()
+        };
+        let course = SfTemperature
+            .course(&Values::from([("coefficient_ppm_per_degC".to_owned(), Value::Number(2.0))]), &drivers)
+            .unwrap();
+        // 36 000 deg/h · 20 ppm.
+        assert!(course[0] == 0.0 && (course[1] - 0.72).abs() < 1e-12, "{course:?}");
+    }
+}

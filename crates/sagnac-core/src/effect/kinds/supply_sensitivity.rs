@@ -57,3 +57,20 @@ impl MeanModel for SupplySensitivity {
         reach(Domain::Supply, supply, supply)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn the_bias_follows_the_voltage_about_its_mean() {
+        let drivers = Drivers { supply: Some(vec![5.0, 5.2, 4.8, 5.0]), ..Drivers::default() };
+        let course = SupplySensitivity
+            .course(&Values::from([("coefficient_deg_h_per_V".to_owned(), Value::Number(-3.0))]), &drivers)
+            .unwrap();
+        for (got, expected) in course.iter().zip([0.0, -0.6, 0.6, 0.0]) {
+            assert!((got - expected).abs() < 1e-12, "{course:?}");
+        }
+    }
+}

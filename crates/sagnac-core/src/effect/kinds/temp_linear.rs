@@ -80,3 +80,21 @@ impl MeanModel for TempLinear {
         vec![Place { domain: Domain::Temperature, from, to }]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn a_stated_coefficient_adds_what_it_exceeds_the_claimed_one_by() {
+        let claimed = crate::effect::Temperature { coefficient_deg_h_per_degc: 0.1, reference_degc: 25.0 };
+        let claim = crate::effect::ClaimedMean { temperature: Some(claimed), ..Default::default() };
+        let drivers = Drivers { temperature: Some(vec![25.0, 35.0]), claim, ..Drivers::default() };
+        let course = TempLinear
+            .course(&Values::from([("coefficient_deg_h_per_degC".to_owned(), Value::Number(0.3))]), &drivers)
+            .unwrap();
+        assert!(course[0] == 0.0 && (course[1] - 2.0).abs() < 1e-12, "{course:?}");
+        assert_eq!(TempLinear.parameters(&[], &[0.2], &drivers), [0.1 + 0.2]);
+    }
+}

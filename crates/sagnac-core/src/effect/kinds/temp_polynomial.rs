@@ -105,3 +105,24 @@ impl MeanModel for TempPolynomial {
         &[0]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn orders_are_powers_of_the_temperature_from_minus_one_to_one() {
+        let drivers = Drivers { temperature: Some(vec![10.0, 30.0, 50.0]), ..Drivers::default() };
+        let columns = TempPolynomial.regressors(&[3.0], &drivers).columns;
+        assert_eq!(columns, [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]]);
+        assert_eq!(TempPolynomial.parameters(&[3.0], &[], &drivers), [30.0, 20.0]);
+        let mut stated = Values::from([
+            ("center_degC".to_owned(), Value::Number(20.0)),
+            ("half_range_degC".to_owned(), Value::Number(10.0)),
+        ]);
+        stated.insert(COEFFICIENTS.to_owned(), Value::List(vec![0.5, -0.25]));
+        // At 10, 30 and 50 °C: x = −1, 1, 3.
+        assert_eq!(TempPolynomial.course(&stated, &drivers).unwrap(), [-0.75, 0.25, -0.75]);
+    }
+}

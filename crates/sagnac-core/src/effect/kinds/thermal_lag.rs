@@ -86,3 +86,21 @@ impl MeanModel for ThermalLag {
         places
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn behind_a_long_ramp_the_bias_trails_by_the_time_constant() {
+        // 0.02 °C/s: the delayed temperature is 40 s · 0.02 °C/s behind.
+        let ramp: Vec<f64> = (0..1000).map(|i| 0.02 * f64::from(i)).collect();
+        let claimed = crate::effect::Temperature { coefficient_deg_h_per_degc: 0.5, reference_degc: 20.0 };
+        let claim = crate::effect::ClaimedMean { temperature: Some(claimed), ..Default::default() };
+        let drivers =
+            Drivers { dt_s: 1.0, samples: 1000, temperature: Some(ramp), claim, ..Drivers::default() };
+        let course = difference(40.0, &drivers).unwrap();
+        assert!(course[0] == 0.0 && (course[999] + 0.4).abs() < 1e-9, "{}", course[999]);
+        assert!(difference(0.0, &drivers).is_none() && difference(f64::INFINITY, &drivers).is_none());
+    }
+}

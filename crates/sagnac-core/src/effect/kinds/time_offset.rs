@@ -151,3 +151,32 @@ impl MeanModel for TimeOffset {
         vec![0.05 * drivers.dt_s]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn correlations_by_transforms_are_the_sums() {
+        let a: Vec<f64> = (0..37).map(|i| f64::from(i * 7 % 11) - 4.0).collect();
+        let b: Vec<f64> = (0..37).map(|i| f64::from(i * 5 % 13) - 6.0).collect();
+        let all = correlation(&a, &b);
+        for lag in -36i32..=36 {
+            let of = |i: i32| b.get(usize::try_from(i - lag).ok()?);
+            let sum: f64 = (0..37).filter_map(|i| Some(a[i as usize] * of(i)?)).sum();
+            let at = if lag >= 0 { lag as usize } else { all.len() - lag.unsigned_abs() as usize };
+            assert!((all[at] - sum).abs() < 1e-9, "{lag}: {} {sum}", all[at]);
+        }
+    }
+
+    #[test]
+    fn the_whole_lag_of_a_delayed_mean_is_the_first() {
+        let wave = |i: i32| 50.0 * (0.11 * f64::from(i)).sin() + 20.0 * (0.37 * f64::from(i)).cos();
+        let mean: Vec<f64> = (0..500).map(wave).collect();
+        let residual: Vec<f64> = (0..500).map(|i| wave(i - 6) - wave(i)).collect();
+        let modes = crate::numeric::cosine::dct2(&residual);
+        let powers = vec![1.0; 500];
+        let context = SearchContext { score: &residual, modes: &modes, powers: &powers };
+        assert_eq!(whole_lags(&mean, &context, 20)[0], 6.0);
+    }
+}

@@ -64,3 +64,23 @@ impl MeanModel for WarmupExponential {
         vec![Place { domain: Domain::Time, from, to: from + (3.0 * time).min(drivers.length_s()) }]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn a_transient_falls_by_e_in_its_time_constant() {
+        let drivers = Drivers { dt_s: 1.0, samples: 3000, averaged: 1, ..Drivers::default() };
+        let stated = Values::from([
+            ("amplitude_deg_h".to_owned(), Value::Number(2.0)),
+            ("time_constant_s".to_owned(), Value::Number(1000.0)),
+        ]);
+        let course = WarmupExponential.course(&stated, &drivers).unwrap();
+        assert!(
+            (course[0] - 2.0).abs() < 1e-6 && (course[0] / course[1000] - std::f64::consts::E).abs() < 1e-9
+        );
+        assert_eq!(WarmupExponential.bounds(&drivers), [Bounds::new(2.0, 3000.0)]);
+    }
+}

@@ -13,3 +13,16 @@ pub(in crate::effect) fn sum(coefficients: &[f64], columns: &[Vec<f64>]) -> Vec<
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_are_of_the_scaled_column() {
+        let columns = powers(&[10.0, 40.0], (20.0, 10.0), 3);
+        assert_eq!(columns, [[-1.0, 2.0], [1.0, 4.0], [-1.0, 8.0]]);
+        assert_eq!(sum(&[1.0, 0.5], &columns), [-0.5, 4.0]);
+        assert!(sum(&[1.0], &[]).is_empty());
+    }
+}

@@ -202,3 +202,32 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
     let place = Place { domain, from: best.1, to: best.2 };
     Some(Departure { test: "size", place, beside: None, ln_p: (best.0 + trials.ln()).min(0.0) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn legendre_polynomials_are_those_of_the_tables() {
+        // P₄(½) = −0.2890625, P₅(½) = 0.08984375 (Abramowitz and Stegun, table 8.1).
+        assert!(
+            (legendre(4, 0.5) + 0.289_062_5).abs() < 1e-12 && (legendre(5, 0.5) - 0.089_843_75).abs() < 1e-12
+        );
+        assert!((1..=6).all(|k| (legendre(k, 1.0) - 1.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn the_part_of_a_column_where_the_residual_is_largest_is_found() {
+        let values: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
+        let series: Vec<f64> = values
+            .iter()
+            .enumerate()
+            .map(|(i, v)| if (7.0..8.0).contains(v) { 1.0 } else { [-0.5, 0.5][i % 2] })
+            .collect();
+        let white = White { modes: vec![], series, roots: vec![] };
+        let (from, to) = extreme(&white, &values, 0.0, 10.0);
+        assert!((from - 7.0).abs() < 1e-9 && (to - 8.0).abs() < 1e-9, "{from} {to}");
+        assert_eq!(centred(&[0.0, 5.0, 10.0]), [-1.0, 0.0, 1.0]);
+        assert_eq!(derivative(&[0.0, 1.0, 4.0]), [1.0, 2.0, 3.0]);
+    }
+}

@@ -205,3 +205,21 @@ fn solve(normal: &[Vec<f64>], right: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let of = |i: usize, at: usize| if dead[i] { 0.0 } else { rows[i][at] };
     ((0..n).map(|i| of(i, n)).collect(), (0..n).map(|i| of(i, n + 1 + i)).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normal_equations_are_solved_and_a_column_twice_is_left_out_once() {
+        let (solution, covariance) = solve(&[vec![4.0, 2.0], vec![2.0, 3.0]], &[10.0, 9.0]);
+        // Determinant 8: (30 − 18)/8 and (36 − 20)/8; the inverse has 3/8 and 4/8.
+        assert!((solution[0] - 1.5).abs() < 1e-12 && (solution[1] - 2.0).abs() < 1e-12, "{solution:?}");
+        assert!(
+            (covariance[0] - 0.375).abs() < 1e-12 && (covariance[1] - 0.5).abs() < 1e-12,
+            "{covariance:?}"
+        );
+        let (solution, covariance) = solve(&[vec![4.0, 4.0], vec![4.0, 4.0]], &[8.0, 8.0]);
+        assert_eq!((solution, covariance[1]), (vec![2.0, 0.0], 0.0));
+    }
+}
