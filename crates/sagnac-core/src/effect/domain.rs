@@ -1,6 +1,6 @@
 //! Where an effect shows: a domain and an interval of it.
 
-/// What a mismatch is located in.
+/// A quantity along which an effect or a departure is located.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Domain {
     /// `time_s`, s.
@@ -21,7 +21,7 @@ pub enum Domain {
     Angle,
     /// Size of the residual, deg/h.
     Amplitude,
-    /// Where `time_s` itself is at fault, s.
+    /// `time_s`, s, where the stamps themselves are at fault.
     Timestamps,
     /// V.
     Supply,
@@ -80,7 +80,7 @@ impl Domain {
     }
 }
 
-/// An interval of a domain, in the domain's unit.
+/// An interval of a domain, in its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// The domain.

@@ -20,27 +20,28 @@ pub enum Nuisance {
     InitialState,
 }
 
-/// Whether a course is seen at the sample rate, or whole in averages.
+/// The sampling at which a mean model must be fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resolution {
-    /// Averages over many samples hold all of it.
+    /// Averages over many samples hold all of it: long records are fitted in averages.
     Averaged,
-    /// It has to be fitted to the samples themselves.
+    /// It changes within such averages and is fitted to the samples themselves.
     FullRate,
 }
 
-/// A course for one shape: `fixed + Σ coefficient·free + Σ coefficient·beside`.
+/// A mean model for given nonlinear parameters: `offset + Σ coefficient·column + Σ coefficient·nuisance`. Every series has
+/// one value a sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Regressors {
-    /// What the shape alone determines, deg/h.
+    /// What the nonlinear parameters alone determine, deg/h; `None` for nothing.
     pub offset: Option<Vec<f64>>,
-    /// Columns of the effect, deg/h for a coefficient of 1.
+    /// Columns whose coefficients are fitted, deg/h for a coefficient of 1.
     pub columns: Vec<Vec<f64>>,
-    /// Columns that must be free for the fit to be right and are no part of the effect, as an unknown initial state.
+    /// Columns that are fitted beside the effect and are no part of it, such as an unknown initial state.
     pub nuisance: Vec<Vec<f64>>,
 }
 
-/// What the search for a shape may look at. All series are on the grid of the drivers.
+/// What a search for nonlinear parameters may use. Every series has one value a sample, or a mode, of the drivers.
 pub struct SearchContext<'a> {
     /// C⁻¹r in the time domain: the residual weighted by the inverse covariance of the noise.
     pub score: &'a [f64],
@@ -51,7 +52,7 @@ pub struct SearchContext<'a> {
 }
 
 impl SearchContext<'_> {
-    /// Log-likelihood gain of one column with a free coefficient, noise and everything else held.
+    /// Gain of log-likelihood, nats, by one column with a fitted coefficient; the noise and everything else stay.
     pub fn gain(&self, column: &[f64]) -> f64 {
         let modes = crate::numeric::cosine::dct2(column);
         let (mut zr, mut zz) = (0.0, 0.0);
@@ -63,30 +64,30 @@ impl SearchContext<'_> {
     }
 }
 
-/// Shapes to begin a fit from.
+/// Points that a local search begins from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Starts {
-    /// The shapes, the most promising first. One empty shape for a course that is linear in its coefficients.
+    /// Nonlinear parameters, the most promising point first. One empty point for a model that has none.
     pub points: Vec<Vec<f64>>,
-    /// How many independent places were looked at: what the p-value is multiplied by.
+    /// Independent points that the search looked at: the p-value is multiplied by their number (look-elsewhere effect).
     pub trials: f64,
 }
 
 impl Starts {
-    /// The only start of a course that has no shape.
+    /// The start of a model without nonlinear parameters.
     pub fn linear() -> Starts {
         Starts { points: vec![vec![]], trials: 1.0 }
     }
 }
 
-/// An effect that adds a determined course to the rate.
+/// An effect that adds a course to the rate which its parameters and the recorded columns determine.
 pub trait MeanModel: Sync {
-    /// Whether averages hold all of it.
+    /// The sampling at which it must be fitted.
     fn resolution(&self) -> Resolution {
         Resolution::Averaged
     }
 
-    /// The nuisance whose prior has to go when the effect is fitted, since both are the same column.
+    /// The value of the claim whose prior is given up when the effect is fitted, since both are the same column.
     fn replaces(&self) -> Option<Nuisance> {
         None
     }
@@ -94,65 +95,65 @@ pub trait MeanModel: Sync {
     /// False where the columns, or the claim, leave nothing to fit (a constant temperature, a table at rest).
     fn applies(&self, drivers: &Drivers) -> bool;
 
-    /// Where to begin the search of the shape.
+    /// At most four points from which a local search of the nonlinear parameters begins, found over their whole range.
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts;
 
-    /// Bounds of each number of the shape.
+    /// Bounds of each nonlinear parameter.
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds>;
 
-    /// The course for a shape.
+    /// The columns for given nonlinear parameters.
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors;
 
-    /// Orthonormal cosine modes of the free columns over all samples of the grid, of a course that has nothing but these
-    /// and whose transform is known in closed form.
-    fn modes(&self, _shape: &[f64], _drivers: &Drivers) -> Option<Vec<Vec<f64>>> {
+    /// Orthonormal cosine modes (DCT-II) of the columns, for a model that has nothing but columns and whose transform is known
+    /// in closed form; `None`: they are transformed.
+    fn modes(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Option<Vec<Vec<f64>>> {
         None
     }
 
-    /// The parameters in the order of [`Effect::params`], from a shape and the coefficients of `columns`; NaN for one that
-    /// the fit does not determine.
+    /// The parameters in the order of [`Effect::params`](super::Effect::params), from the nonlinear ones and the coefficients
+    /// of the columns; NaN for one that the fit does not determine.
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64>;
 
-    /// Lists that the forward model needs beside the numbers, by name.
+    /// Lists that a claim states beside the numbers, by name.
     fn lists(
         &self,
-        _shape: &[f64],
+        _nonlinear_parameters: &[f64],
         _coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<(&'static str, Vec<f64>)> {
         vec![]
     }
 
-    /// The course that stated parameters give, deg/h. `None` where one that is needed is missing.
+    /// The course of stated parameters, deg/h, one value a sample; `None` where a parameter or a column is missing.
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>>;
 
-    /// Where it lives, principal first, at most three.
+    /// Where it shows, principal place first, at most three.
     fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place>;
 
-    /// First step of a local search in each number of the shape, where the likelihood has a peak much narrower than the
-    /// bounds; empty: by the bounds.
+    /// First step of the local search in each nonlinear parameter, where the likelihood has a peak much narrower than the
+    /// bounds; empty: a hundredth of the bounds.
     fn steps(&self, _drivers: &Drivers) -> Vec<f64> {
         vec![]
     }
 
-    /// Positions of numbers of the shape that are whole: tried by [`MeanModel::starts`] and not refined.
+    /// Positions of nonlinear parameters that are whole numbers: tried by [`MeanModel::starts`] and not refined.
     fn whole(&self) -> &'static [usize] {
         &[]
     }
 
-    /// Samples of which averaged columns do not tell the course, since it bends within them; `parameters` in the order of
-    /// [`Effect::params`].
+    /// Samples within which the course bends, so that the means of the columns do not determine it: they are left out of the
+    /// fit. `parameters` in the order of [`Effect::params`](super::Effect::params).
     fn bends_within(&self, _parameters: &[f64], _drivers: &Drivers) -> Vec<usize> {
         vec![]
     }
 
-    /// Columns that stay free when a claim states the effect: a state before the record that no claim can know.
+    /// Columns that are fitted when a claim states the effect: a state before the record that no claim can know.
     fn nuisance_columns(&self, _values: &Values, _drivers: &Drivers) -> Vec<Vec<f64>> {
         vec![]
     }
 
-    /// Natural logarithm of the odds against kinds with the same course, from what else the columns show at that place.
-    fn odds(&self, _shape: &[f64], _drivers: &Drivers) -> f64 {
+    /// Natural logarithm of the odds of this effect against others with the same course, from what else the columns show.
+    fn odds(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> f64 {
         0.0
     }
 }

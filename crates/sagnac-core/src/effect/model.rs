@@ -1,15 +1,15 @@
-//! What every effect says of itself, and the classes of effects.
+//! What every effect has: id, parameters, class, properties.
 
 use super::{
     Column, Detector, Domain, Drivers, Knot, MeanModel, Param, Rounding, Samples, Spectrum, Value, Values,
 };
 
-/// Kind of a cause that the format of explanations has no name for.
+/// Kind, in `explain.json`, of a cause that the format has no kind for.
 pub const UNKNOWN: &str = "unknown";
 
-/// One piece of physics.
+/// One piece of physics that a simulation can leave out.
 pub trait Effect: Sync {
-    /// Its kind in files.
+    /// Its id in files, on the command line and in the locale tables.
     fn kind(&self) -> &'static str;
     /// Whether format `explain/1` has a kind for it. It is named only where nothing that has one explains nearly as much.
     fn in_format(&self) -> bool {
@@ -19,21 +19,21 @@ pub trait Effect: Sync {
     fn reported_kind(&self) -> &'static str {
         if self.in_format() { self.kind() } else { UNKNOWN }
     }
-    /// Its parameters.
+    /// Its parameters, in the order in which reports list them.
     fn params(&self) -> &'static [Param];
-    /// Lists that its stated form may carry beside the numbers, by name; the bounds are those of every value.
+    /// Lists that a claim may state beside the numbers; the bounds are those of every value.
     fn list_params(&self) -> &'static [Param] {
         &[]
     }
-    /// Columns without which it cannot be seen.
+    /// Recorded columns without which it cannot be found.
     fn needs(&self) -> &'static [Column] {
         &[]
     }
-    /// The view where it shows first.
+    /// The view in which it is clearest.
     fn domain(&self) -> Domain;
-    /// Kinds it is most easily taken for, the nearest first.
+    /// Effects that it is most easily taken for, the nearest first.
     fn confusers(&self) -> &'static [&'static str];
-    /// How it acts.
+    /// Its class and forward model.
     fn model(&self) -> Model;
     /// How it is found in single samples; `None` for an effect that is fitted to the whole record.
     fn detector(&self) -> Option<Detector> {
@@ -42,32 +42,32 @@ pub trait Effect: Sync {
             _ => None,
         }
     }
-    /// True for an effect that scales the noise of each sample.
+    /// True for an effect that multiplies the noise of each sample.
     fn sets_level(&self) -> bool {
         matches!(self.detector(), Some(Detector::Level(_)))
     }
-    /// The effect as one that rounds the output, which a claim states as a value of its own.
+    /// For an effect that rounds the output: how the step is stated and found.
     fn rounding(&self) -> Option<&'static dyn Rounding> {
         None
     }
-    /// Which effects it is alike, of which several together are one cause that has no name.
+    /// The family of effects of which several at once are one cause without a name; `None` for an effect that stands alone.
     fn family(&self) -> Option<Family> {
         None
     }
-    /// What two of it are together where the second takes back what the first brought.
+    /// The effect that two of this kind are together, where the second takes back what the first brought.
     fn reversed_pair(&self) -> Option<&'static dyn Effect> {
         None
     }
-    /// What else a record shows where it holds few cycles of an effect that oscillates at `frequency_hz`.
+    /// For an effect that oscillates at `frequency_hz`: what a record of few cycles cannot tell it from.
     fn if_few_cycles(&self) -> Option<&'static dyn Effect> {
         None
     }
-    /// The effect as one that a claim states by its course and not by its fitted parameters.
+    /// For an effect that is fitted as a process and stated as the course that the process took.
     fn stated_by_course(&self) -> Option<&'static dyn StatedByCourse> {
         None
     }
-    /// The course that stated parameters give where the effect is no [`MeanModel`] for fitting, deg/h; `None` where they
-    /// give none.
+    /// The course of stated parameters of an effect that is no [`MeanModel`], deg/h, one value a sample; `None` where they
+    /// determine none.
     fn stated_course(&self, _values: &Values, _drivers: &Drivers) -> Option<Vec<f64>> {
         None
     }
@@ -94,10 +94,10 @@ pub trait StatedByCourse: Sync {
     fn process(&self, stated: &Values) -> Option<Vec<f64>>;
 }
 
-/// How an effect acts on the output.
+/// The class of an effect, with its forward model.
 #[derive(Clone, Copy)]
 pub enum Model {
-    /// Adds a course to the rate that its parameters and the columns determine.
+    /// Adds to the rate what its parameters and the recorded columns determine.
     Mean(&'static dyn MeanModel),
     /// Changes the spectrum of the noise.
     Spectrum(&'static dyn Spectrum),
@@ -105,13 +105,13 @@ pub enum Model {
     Samples(&'static dyn Samples),
 }
 
-/// Whether numbers in the order of an effect's parameters are within what it allows; one that is not known is.
+/// Whether numbers, in the order of an effect's parameters, are within their bounds. NaN, a value that is not known, is.
 pub fn plausible(effect: &dyn Effect, parameters: &[f64]) -> bool {
     let within = |(p, v): (&Param, &f64)| v.is_nan() || (p.lower..=p.upper).contains(v);
     effect.params().iter().zip(parameters).all(within)
 }
 
-/// Values as a claim may state them: within the bounds of their parameters, those that are no numbers left out.
+/// Values as a claim may state them: clamped to the bounds of their parameters, NaN left out.
 pub fn stateable(effect: &dyn Effect, values: Values) -> Values {
     let param = |name: &str| effect.params().iter().chain(effect.list_params()).find(|p| p.name == name);
     let one = |(name, value): (String, Value)| {

@@ -5,19 +5,19 @@ use std::collections::BTreeMap;
 /// One parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Param {
-    /// Name, with its unit in it.
+    /// Name in files; ends in the unit.
     pub name: &'static str,
-    /// Unit as reports show it; empty for a pure number.
+    /// Unit as reports print it; empty for a pure number.
     pub unit: &'static str,
     /// Lowest plausible value.
     pub lower: f64,
     /// Highest plausible value.
     pub upper: f64,
-    /// True when a report of an explanation gives it; others serve the forward model alone.
+    /// True when explanations report it; others serve the forward model alone.
     pub reported: bool,
-    /// True when it has a direction: a report prints its plus.
+    /// True when its sign has a meaning: reports print the plus.
     pub signed: bool,
-    /// True when it is a whole number: a report prints it without decimals.
+    /// True for a whole number: reports print no decimals.
     pub whole: bool,
     /// True when it is an instant of the record, of which another record has another.
     pub instant: bool,
@@ -44,50 +44,50 @@ impl Param {
         }
     }
 
-    /// A parameter that the forward model needs beside them.
+    /// A parameter that only the forward model needs.
     pub const fn inner(name: &'static str, unit: &'static str, lower: f64, upper: f64) -> Param {
         Param { reported: false, ..Param::reported(name, unit, lower, upper) }
     }
 
-    /// The same, with a direction.
+    /// A copy whose sign has a meaning.
     pub const fn signed(self) -> Param {
         Param { signed: true, ..self }
     }
 
-    /// The same, a whole number.
+    /// A copy that is a whole number.
     pub const fn whole(self) -> Param {
         Param { whole: true, ..self }
     }
 
-    /// The same, an instant of the record.
+    /// A copy that is an instant of the record.
     pub const fn instant(self) -> Param {
         Param { instant: true, ..self }
     }
 
-    /// The same, a whole number of events that come by chance in groups of about `together`.
+    /// A copy that counts events which come by chance in groups of about `together`.
     pub const fn count(self, together: f64) -> Param {
         Param { whole: true, count: Some(together), ..self }
     }
 
-    /// The same, the correction of a value that a claim states under this name.
+    /// A copy that corrects a value which a claim states under this name.
     pub const fn corrects_claim(self) -> Param {
         Param { corrects_claim: true, ..self }
     }
 }
 
-/// A stated value of a parameter: a number, or a list for courses without a short formula.
+/// A stated value of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A number.
     Number(f64),
-    /// A list.
+    /// A list, for courses that no few numbers describe.
     List(Vec<f64>),
 }
 
-/// Parameters by name.
+/// Stated parameters by name.
 pub type Values = BTreeMap<String, Value>;
 
-/// The number of that name, if there.
+/// The number of a name; `None` where there is none.
 pub fn number(values: &Values, name: &str) -> Option<f64> {
     match values.get(name) {
         Some(Value::Number(x)) => Some(*x),
@@ -95,7 +95,7 @@ pub fn number(values: &Values, name: &str) -> Option<f64> {
     }
 }
 
-/// The list of that name; empty if not there.
+/// The list of a name; empty where there is none.
 pub fn list<'a>(values: &'a Values, name: &str) -> &'a [f64] {
     match values.get(name) {
         Some(Value::List(x)) => x,

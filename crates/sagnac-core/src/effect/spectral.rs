@@ -5,7 +5,7 @@ use crate::noise::composite::{Composite, Damped};
 use crate::noise::data::NoiseType;
 use crate::numeric::range::Bounds;
 
-/// One bin of the cosine modes of a record.
+/// Neighbouring cosine modes (DCT-II) of a record that are taken together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeBin {
     /// Mean frequency of its modes, Hz.
@@ -18,12 +18,12 @@ pub struct ModeBin {
     pub samples: usize,
     /// Sample interval, s.
     pub dt_s: f64,
-    /// True where the ends of the record were drawn from noise that is even about them: what a filter would do there leaks
-    /// into no mode.
+    /// True where the ends of the record were replaced by a draw of noise that is even about them, so that what a filter does
+    /// at the ends leaks into no mode.
     pub even_ends: bool,
 }
 
-/// What a search for spectral effects may look at.
+/// What a search for spectral effects may use.
 pub struct SpectralContext<'a> {
     /// The bins, by frequency.
     pub bins: &'a [ModeBin],
@@ -31,7 +31,7 @@ pub struct SpectralContext<'a> {
     pub observed: &'a [f64],
     /// Density of the current noise, (deg/h)²/Hz.
     pub expected: &'a [f64],
-    /// Steps of a lattice that the values were found to lie on, as an angle increment, arcsec.
+    /// Step that the values were found to be rounded to, as an angle increment, arcsec.
     pub grid_step_arcsec: Option<f64>,
 }
 
@@ -42,16 +42,16 @@ pub enum SpectrumAct {
     Adds,
     /// Multiplies the density of everything else.
     Filters,
-    /// Sets a stated coefficient free; its parameter is the whole coefficient.
+    /// Sets N, B or K of the claim free; its parameter is the whole coefficient.
     Frees(NoiseType),
 }
 
-/// An effect that changes the spectrum. Its fitted parameters are positive and fitted by their logarithms.
+/// An effect that changes the spectrum of the noise. Its parameters are positive and are fitted by their logarithms.
 pub trait Spectrum: Sync {
     /// How it acts.
     fn act(&self) -> SpectrumAct;
 
-    /// Density of a bin, (deg/h)²/Hz, or the factor of a filter, for fitted parameters. Unused for
+    /// Two-sided density of a bin, (deg/h)²/Hz, or the factor of a filter, for fitted parameters. Unused for
     /// [`SpectrumAct::Frees`].
     fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64;
 
@@ -60,8 +60,8 @@ pub trait Spectrum: Sync {
         bins.iter().map(|b| self.density(fitted, b)).collect()
     }
 
-    /// Samples at either end of a record that a filter of samples makes unlike noise that is even about its ends. They leak
-    /// into the modes that it leaves next to nothing, the same few samples into all of them.
+    /// Samples at either end of a record that a filter makes unlike noise that is even about the ends. They leak into the modes
+    /// that the filter leaves next to nothing, the same few samples into all of them.
     fn unlike_at_ends(&self, _fitted: &[f64], _dt_s: f64) -> usize {
         0
     }
@@ -81,18 +81,18 @@ pub trait Spectrum: Sync {
         true
     }
 
-    /// Whether fitted parameters are still what the effect is; a fit that ends elsewhere is none of it.
+    /// False where a fit ended at parameters that are another effect.
     fn plausible(&self, _fitted: &[f64]) -> bool {
         true
     }
 
-    /// Fitted parameters to begin from, several.
+    /// Parameters that a fit begins from, several.
     fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>>;
 
     /// Bounds of the fitted parameters.
     fn bounds(&self, context: &SpectralContext<'_>) -> Vec<Bounds>;
 
-    /// How many independent places a search looks at.
+    /// Independent points that the search looks at: the p-value is multiplied by their number.
     fn trials(&self, context: &SpectralContext<'_>) -> f64;
 
     /// The parameters in the order of [`super::Effect::params`]; NaN for one not determined.
@@ -109,7 +109,7 @@ pub trait Spectrum: Sync {
         None
     }
 
-    /// Where it lives, principal first, at most three. `excess` is the density of the bins without it and with it.
+    /// Where it shows, principal place first, at most three.
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place>;
 
     /// True for one of which a record can hold several, each with parameters of its own.

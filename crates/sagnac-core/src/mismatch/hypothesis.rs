@@ -1,4 +1,4 @@
-//! A hypothesis, the claim plus effects, and its fit to a scene: noise by Whittle, courses by generalised least squares,
+//! A hypothesis, the claim plus effects, and its fit to a record: noise by Whittle, courses by generalised least squares,
 //! in turns until neither moves.
 
 use super::noise_fit::{self, Noise, NoiseFit};
@@ -31,7 +31,7 @@ pub struct PartModes {
 }
 
 impl PartModes {
-    /// Modes of a course on a scene.
+    /// Modes of a mean model.
     pub fn of_shape(
         course: &dyn MeanModel,
         nonlinear_parameters: &[f64],
@@ -70,7 +70,7 @@ pub struct LeastSquares {
     pub prior: f64,
 }
 
-/// A fit of a hypothesis to a scene.
+/// A fit of a hypothesis to spectral data.
 #[derive(Debug, Clone)]
 pub struct Fit {
     /// Penalised log-likelihood.
@@ -111,7 +111,7 @@ pub fn columns<'a>(
     columns
 }
 
-/// Modes of a scene less the fixed parts.
+/// Modes of a record less the fixed parts.
 pub fn less_fixed<'a, 'b>(
     spectral: &'a SpectralData,
     parts: impl IntoIterator<Item = &'b PartModes>,
@@ -143,7 +143,7 @@ fn least_squares<'a>(
     (LeastSquares { coefficients, covariance, prior }, data)
 }
 
-/// Modes of what a fitted hypothesis leaves of the scene it was fitted to. Not kept with the fit, since many fits are
+/// Modes of what a fitted hypothesis leaves of the data it was fitted to. Not kept with the fit, since many fits are
 /// held at once and a long record has many modes.
 pub fn residual(spectral: &SpectralData, hypothesis: &Hypothesis, mean: &LeastSquares) -> Vec<f64> {
     let parts = part_modes(spectral, &hypothesis.courses);
@@ -155,7 +155,7 @@ pub fn residual(spectral: &SpectralData, hypothesis: &Hypothesis, mean: &LeastSq
     data
 }
 
-/// Modes of every course of a hypothesis on a scene.
+/// Modes of every course of a hypothesis.
 pub fn part_modes(spectral: &SpectralData, courses: &[CourseIn]) -> Vec<PartModes> {
     let one = |c: &CourseIn| {
         c.course().map(|x| PartModes::of_shape(x, &c.nonlinear_parameters, spectral)).unwrap_or_default()
@@ -163,7 +163,7 @@ pub fn part_modes(spectral: &SpectralData, courses: &[CourseIn]) -> Vec<PartMode
     courses.iter().map(one).collect()
 }
 
-/// As [`part_modes`] on a scene of averages. A fast course is worked out sample by sample and averaged then: that of averaged
+/// As [`part_modes`] on averages. A fast course is worked out sample by sample and averaged then: that of averaged
 /// columns is another one.
 pub fn part_modes_of_averages(
     spectral: &SpectralData,

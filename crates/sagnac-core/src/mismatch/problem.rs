@@ -1,4 +1,4 @@
-//! Recording and claim brought together: residual, scenes, and the claim's own fit.
+//! Recording and claim brought together: residual, spectral data, and the claim's own fit.
 
 use super::hypothesis::{Hypothesis, fit};
 use super::impute;
@@ -38,7 +38,7 @@ pub struct Problem {
     pub usable: Vec<bool>,
     /// Level of the noise that the claim states, of each sample over that of the record.
     pub level: Option<Vec<f64>>,
-    /// The lattice that the values lie on.
+    /// The grid that the values lie on.
     pub quantization_grid: Option<QuantizationGrid>,
     /// The filters, stated or found, for which the ends of the record were drawn.
     filters: Vec<SpectrumIn>,
@@ -296,7 +296,7 @@ fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
     ]
 }
 
-/// The scene at the sample rate, the ends drawn for some filters.
+/// The data at the sample rate, the ends drawn for some filters.
 fn full(drivers: &Arc<Drivers>, claim: &Claim, residual: &[f64], filters: &[SpectrumIn]) -> SpectralData {
     let whole = SpectralData::new(drivers.clone(), residual, &deviations(claim)).with_states(claim);
     if has_ends_aside(filters, drivers.dt_s) { whole.behind(filters) } else { whole }

@@ -1,4 +1,4 @@
-//! Whether the values of a recording lie on a lattice, and its step as an angle increment.
+//! Whether the values of a recording lie on a grid, and its step as an angle increment.
 
 use super::regular::Regular;
 use crate::numeric::decimal::multiples;
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// Values looked at.
 const LOOKED: usize = 4096;
 
-/// A lattice that values lie on.
+/// A grid that values lie on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuantizationGrid {
     /// Its step as the angle increment of a sample, arcsec.
@@ -19,10 +19,10 @@ pub struct QuantizationGrid {
 }
 
 impl QuantizationGrid {
-    /// Least variance of the rounding over that of the noise of a sample from which the lattice is more than digits.
+    /// Least variance of the rounding over that of the noise of a sample from which the grid is more than digits.
     const COARSE: f64 = 0.01;
 
-    /// Log-likelihood of so many values on the lattice over values that could be any which the file can write; nothing for a
+    /// Log-likelihood of so many values on the grid over values that could be any which the file can write; nothing for a
     /// lattice so fine beside white noise of some deviation that a simulation may leave it out.
     pub fn gain(&self, rows: usize, noise_arcsec: f64) -> f64 {
         let fine = self.increment_arcsec.powi(2) / 12.0 < QuantizationGrid::COARSE * noise_arcsec.powi(2);
@@ -30,7 +30,7 @@ impl QuantizationGrid {
     }
 }
 
-/// The lattice that the values lie on. `None` where there is none, or where it is no more than the last digit that the
+/// The grid that the values lie on. `None` where there is none, or where it is no more than the last digit that the
 /// file writes.
 pub fn of(regular: &Regular) -> Option<QuantizationGrid> {
     let values: Vec<f64> = regular
@@ -50,7 +50,7 @@ pub fn of(regular: &Regular) -> Option<QuantizationGrid> {
     // The smallest difference that is more than the rounding of the digits written.
     let rounding = largest * 1e-9;
     let tiny = steps.iter().copied().find(|d| *d > rounding)?;
-    // Several of the smallest differences agree on one step, or there is no lattice.
+    // Several of the smallest differences agree on one step, or there is no grid.
     let near: Vec<f64> = steps.iter().copied().filter(|d| *d > rounding && *d < 1.5 * tiny).collect();
     if near.len() < 3 {
         return None;

@@ -1,7 +1,7 @@
 //! A recording at one resolution, in cosine modes: what every fit works on.
 //!
 //! The residual of the claimed mean is transformed by the orthonormal DCT-II, in which white noise and random walk are
-//! diagonal exactly and flicker nearly; the coefficients are then independent with variance S(f_k)/Δt. A scene may be
+//! diagonal exactly and flicker nearly; the coefficients are then independent with variance S(f_k)/Δt. A record may be
 //! cut into blocks of equal length, each transformed by itself and about its own mean.
 
 use super::terms::SpectrumIn;
@@ -81,7 +81,7 @@ fn bins(samples: usize, dt_s: f64, zeros: &[f64]) -> Vec<ModeBin> {
 }
 
 /// Densities of the terms of a claim in a bin. At the sample rate they are what the claim states; averages of many
-/// samples show what means over their interval do. `averaged` is how many samples one of the scene holds.
+/// samples show what means over their interval do. `averaged` is how many samples one of the data holds.
 fn unit_densities(bin: &ModeBin, averaged: usize) -> [f64; 3] {
     let at = Bin {
         frequency_hz: bin.frequency_hz,
@@ -98,7 +98,7 @@ fn unit_densities(bin: &ModeBin, averaged: usize) -> [f64; 3] {
 }
 
 impl SpectralData {
-    /// The scene of a whole residual, deg/h, on the grid of the drivers. `deviations` are those of the nuisances with a
+    /// The data of a whole residual, deg/h, on the grid of the drivers. `deviations` are those of the nuisances with a
     /// column.
     pub fn new(
         drivers: impl Into<Arc<Drivers>>,
@@ -110,7 +110,7 @@ impl SpectralData {
         SpectralData::of_blocks(drivers, residual, deviations, vec![0], length)
     }
 
-    /// The scene of blocks of `length` samples.
+    /// The data of blocks of `length` samples.
     pub fn of_blocks(
         drivers: Arc<Drivers>,
         residual: &[f64],

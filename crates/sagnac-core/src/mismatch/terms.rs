@@ -7,7 +7,7 @@ use crate::effect::{Effect, MeanModel, Model, Spectrum};
 pub struct CourseIn {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// Its shape.
+    /// Its nonlinear parameters.
     pub nonlinear_parameters: Vec<f64>,
     /// Coefficients of its free columns, from the last fit.
     pub coefficients: Vec<f64>,

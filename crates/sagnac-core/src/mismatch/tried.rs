@@ -12,14 +12,14 @@ pub struct SpectralDataSet {
     pub full: SpectralData,
     /// Averages, for courses that they hold; `None` where the record is short enough as it is.
     pub slow: Option<SpectralData>,
-    /// Angle increment of a lattice that the values lie on, arcsec.
+    /// Angle increment of a grid that the values lie on, arcsec.
     pub grid_step_arcsec: Option<f64>,
     /// Rows of the recording.
     pub rows: usize,
 }
 
 impl SpectralDataSet {
-    /// The scene that a course of some pace is looked for on.
+    /// The data that a mean model of some resolution is fitted to.
     pub fn of(&self, resolution: Resolution) -> &SpectralData {
         match (resolution, &self.slow) {
             (Resolution::Averaged, Some(slow)) => slow,
@@ -27,7 +27,7 @@ impl SpectralDataSet {
         }
     }
 
-    /// Modes of courses on the scene that one of some pace is looked for on.
+    /// Modes of courses in the data that a model of some resolution is fitted to.
     pub fn part_modes(&self, resolution: Resolution, courses: &[CourseIn]) -> Vec<PartModes> {
         match (resolution, &self.slow) {
             (Resolution::Averaged, Some(slow)) => part_modes_of_averages(slow, &self.full, courses),
@@ -41,7 +41,7 @@ impl SpectralDataSet {
 pub struct Tried {
     /// The hypothesis, fitted.
     pub hypothesis: Hypothesis,
-    /// Its fit on the full scene.
+    /// Its fit on the full-rate data.
     pub fit: Fit,
     /// Parameters that it has beyond the claim.
     pub parameters: usize,
@@ -55,12 +55,12 @@ impl Tried {
         -2.0 * self.fit.log_likelihood + self.parameters as f64 * (rows as f64).ln()
     }
 
-    /// Modes of what the hypothesis leaves of the full scene.
+    /// Modes of what the hypothesis leaves of the full-rate data.
     pub fn residual(&self, spectra: &SpectralDataSet) -> Vec<f64> {
         residual(&spectra.full, &self.hypothesis, &self.fit.mean)
     }
 
-    /// Variance of each mode of the full scene, (deg/h)².
+    /// Variance of each mode of the full-rate data, (deg/h)².
     pub fn powers(&self, spectra: &SpectralDataSet) -> Vec<f64> {
         spectra.full.powers(&self.fit.densities)
     }

@@ -133,7 +133,7 @@ impl Spectrum for UnobservedDriver {
         None
     }
 
-    /// Its course is simulated from knots: see [`Effect::stated_course`].
+    /// Its course is simulated from knots: see `Effect::stated_course`.
     fn compose(&self, _fitted: &[f64], _dt_s: f64, _noise: &mut Composite) {}
 
     /// Times count from the first sample.

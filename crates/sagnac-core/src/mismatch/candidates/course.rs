@@ -38,7 +38,7 @@ impl<'a> Grounds<'a> {
     }
 }
 
-/// A hypothesis on a scene, ready for columns to be added to it.
+/// A hypothesis before spectral data, ready for columns to be added to it.
 pub(super) struct Ground<'a> {
     pub spectral: &'a SpectralData,
     before: &'a Tried,

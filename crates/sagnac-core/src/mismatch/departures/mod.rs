@@ -20,7 +20,7 @@ use departure::windows;
 use rand::{RngExt as _, SeedableRng as _};
 use statrs::distribution::{DiscreteCDF, Poisson};
 
-/// Seed of the draws that take values off a lattice: a report is a function of recording and claim alone.
+/// Seed of the draws that take values off a grid: a report is a function of recording and claim alone.
 const SEED: u64 = 0x5a67_6e61_6320_0006;
 
 /// A scan's best so far.
@@ -165,7 +165,7 @@ fn levels(spectral: &SpectralData, white: &White) -> Option<Departure> {
     scan.done("level", Domain::Time)
 }
 
-/// The whitened series with counts of a continuous law: values on a lattice are moved by an even draw over its step.
+/// The whitened series with counts of a continuous law: values on a grid are moved by an even draw over its step.
 /// `None` where the steps are too coarse for that.
 fn off_lattice(spectral: &SpectralData, white: &White, grid_step_arcsec: Option<f64>) -> Option<Vec<f64>> {
     const FINE: f64 = 0.1;

@@ -148,7 +148,7 @@ fn squares(flat: &FlatResidual<'_>) -> (Vec<f64>, f64) {
         }
         spent = RATES as f64 / (EFFICIENCY * n as f64);
     }
-    // Values on a lattice differ by whole steps even where nothing happens.
+    // Values on a grid differ by whole steps even where nothing happens.
     let least = 0.5 * flat.rounding_step;
     let guard = (LONGEST / 2).min(n / 40);
     let width = (n / 6).clamp(24, 4096);

@@ -258,7 +258,7 @@ pub(super) fn telegraph(background: &Background<'_>, rival_gain: &dyn Fn() -> f6
     let log_p = lengths.ln() + 1.5 * ((n / best.averaged) as f64).ln() - best.gain;
     let [chance, p_value] = [log_p, log_p.max(rival_gain - best.gain)].map(|p| p.min(0.0).exp().max(1e-300));
     let told = Telegraph { chance, p_value, ..ground.told(best, rival_gain) };
-    // Two neighbouring steps of a coarse lattice are two levels as well.
+    // Two neighbouring steps of a coarse grid are two levels as well.
     let step = background.grid_step_arcsec.map_or(0.0, |a| a / background.drivers.dt_s);
     let quantization_grid =
         step > FlatResidual::COARSE * ground.white.sqrt() && told.amplitude_deg_h < 1.5 * step;
