@@ -19,7 +19,12 @@ pub trait Samples: Sync {
 #[derive(Clone, Copy)]
 pub enum Detector {
     /// Finds rows that hold no value of their own, before anything is compared. They are set aside.
-    Invalid(&'static dyn RowDetector),
+    Invalid {
+        /// Id of the test that such rows fail; its name stands under `explain.test` of the locale tables.
+        test: &'static str,
+        /// The detector.
+        rows: &'static dyn RowDetector,
+    },
     /// Finds groups of samples that do not belong to the noise. They are set aside.
     Outliers(&'static dyn OutlierDetector),
     /// Finds what the level of the noise follows. The laws of all detectors of this class compete.
@@ -98,9 +103,6 @@ impl Rows<'_> {
 
 /// Finds an effect in the rows as they were recorded.
 pub trait RowDetector: Sync {
-    /// Id of the test of the recording that such rows fail.
-    fn test(&self) -> &'static str;
-
     /// The rows concerned, and the effect as they show it; `None` where there is none.
     fn find(&self, rows: &Rows<'_>) -> Option<RowsFound>;
 }

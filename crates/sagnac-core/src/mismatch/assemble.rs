@@ -1,6 +1,6 @@
 //! The result of an explanation, put together from its parts.
 
-use super::augmented::augmented;
+use super::augmented::{augmented, nuisances};
 use super::contribution;
 use super::departures::{self, Departure};
 use super::draw::{self, Drawn};
@@ -12,7 +12,6 @@ use super::finding::{
 use super::heldout::{Halves, HeldOut};
 use super::improvement;
 use super::named::{Found, Named};
-use super::nuisances::nuisances;
 use super::options::Options;
 use super::outcome::Outcome;
 use super::problem::Problem;

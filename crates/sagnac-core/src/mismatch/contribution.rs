@@ -114,8 +114,17 @@ pub fn drawn_course(best: &Tried, index: usize, problem: &Problem) -> Vec<Knot> 
     chunks().map(|(g, c)| Knot { at: middle(g, c.len()), value: mean(c) }).collect()
 }
 
-/// Root mean square of what a spectral effect added to the record, deg/h, and the standard deviation of it that the
-/// recording leaves open. 0 for one that takes away, or filters.
+/// What a spectral effect added to a record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AddedRms {
+    /// Its root mean square, deg/h; 0 for an effect that takes away, or filters.
+    pub rms_deg_h: f64,
+    /// Standard deviation of that, which the recording leaves open, deg/h.
+    pub deviation_deg_h: f64,
+}
+
+/// The best estimate of what a spectral effect with some fitted parameters added to the record of a residual (cosine modes,
+/// deg/h).
 ///
 /// A mode x of variance P holds a part of variance S: x S/P on average, with a variance of S (1 − S/P) about it.
 pub fn added_rms(
@@ -124,7 +133,7 @@ pub fn added_rms(
     fitted: &[f64],
     spectral: &SpectralData,
     residual: &[f64],
-) -> (f64, f64) {
+) -> AddedRms {
     let mut noise = noise.clone();
     let mut base = None;
     if let Some(part) = noise.spectra.get_mut(index) {
@@ -150,10 +159,10 @@ pub fn added_rms(
             variance += 2.0 * open * open + 4.0 * estimate * estimate * open;
         }
     }
-    let rms = (square / n).sqrt();
+    let rms_deg_h = (square / n).sqrt();
     // d√(q/n) = dq/(2n rms).
-    let deviation = if rms > 0.0 { variance.sqrt() / (2.0 * n * rms) } else { 0.0 };
-    (rms, deviation)
+    let deviation_deg_h = if rms_deg_h > 0.0 { variance.sqrt() / (2.0 * n * rms_deg_h) } else { 0.0 };
+    AddedRms { rms_deg_h, deviation_deg_h }
 }
 
 #[cfg(test)]
@@ -192,10 +201,10 @@ mod tests {
                 quantization_arcsec: 0.0,
                 spectra: vec![SpectrumIn { effect, fitted: vec![k], stated: false }],
             };
-            let (rms, deviation) = added_rms(&noise, 0, &[k], &spectral, &dct2(&series));
+            let added = added_rms(&noise, 0, &[k], &spectral, &dct2(&series));
             let mean = walk.iter().sum::<f64>() / n as f64;
             let truth = (walk.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / n as f64).sqrt();
-            held += i32::from((truth - rms).abs() < 1.96 * deviation);
+            held += i32::from((truth - added.rms_deg_h).abs() < 1.96 * added.deviation_deg_h);
         }
         // 190 of 200 on average, give or take 3.1.
         assert!((178..=199).contains(&held), "{held} of {runs}");

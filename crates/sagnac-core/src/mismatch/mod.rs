@@ -1,4 +1,21 @@
 //! The mismatch of a claimed simulation and a recording: located, named, modelled, and the fit shown to improve.
+//!
+//! [`explain`] compares a recording with a claim, [`explain_simulation`] with a simulated recording. The way through the
+//! files, each of which uses only those above it and `effect`:
+//!
+//! | step | files |
+//! |---|---|
+//! | rows on the grid of the claim, rounding, averages | `regular`, `quantization_grid`, `coarse` |
+//! | residual in cosine modes, missing samples imputed | `spectral_data`, `impute` |
+//! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `tried`, `problem` |
+//! | tests that name no physics | `departures` |
+//! | every effect tried as an addition | `nonlinear_search`, `candidates`, `filtered` |
+//! | the fewest effects that explain the recording | `select` |
+//! | effects on single samples, by their detectors | `flat`, `samples`, `jumps` |
+//! | parameters with intervals, what effects add, what they improve | `estimates`, `contribution`, `heldout`, `improvement` |
+//! | causes, equivalents, the augmented claim, figures | `single_cause`, `experiment`, `augmented`, `draw`, `figures`, `assemble` |
+//! | all of it in order | `engine` |
+//! | a claim from a simulated recording, and what that recording shows itself | `identify`, `witness`, `taken` |
 
 mod assemble;
 mod augmented;
@@ -23,7 +40,6 @@ pub mod jumps;
 mod named;
 pub mod noise_fit;
 mod nonlinear_search;
-mod nuisances;
 pub mod options;
 pub mod outcome;
 pub mod problem;

@@ -43,7 +43,7 @@ pub fn take_invalid(
 ) -> Vec<Departure> {
     let mut out = vec![];
     for (effect, detector, stated) in asked(claim, options) {
-        let Detector::Invalid(detector) = detector else { continue };
+        let Detector::Invalid { test, rows: detector } = detector else { continue };
         let Some(RowsFound { rows, detection }) = detector.find(&regular.rows()) else { continue };
         let count = regular.grid.present.iter().filter(|p| **p).count();
         let Detection { gain, parameters, p_value, .. } = detection;
@@ -53,7 +53,7 @@ pub fn take_invalid(
         }
         let Some(place) = detection.places.first().copied().filter(|_| !stated) else { continue };
         found.named.push(Named::detected(effect, &detection, delta_bic));
-        out.push(Departure { test: detector.test(), place, beside: None, ln_p: -gain });
+        out.push(Departure { test, place, beside: None, ln_p: -gain });
     }
     out
 }

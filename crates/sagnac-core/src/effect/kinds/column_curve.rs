@@ -1,13 +1,13 @@
 //! A bent dependence on a column whose bends have no kind of their own in the format of explanations.
 
-use crate::effect::shared::polynomial::{powers, sum};
+use crate::effect::shared::polynomial::{Scale, powers, sum};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::search::gain_of;
 use crate::effect::{
     Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
     list, number,
 };
-use crate::numeric::range::{Bounds, ends};
+use crate::numeric::range::Bounds;
 
 pub struct ColumnCurve;
 
@@ -57,11 +57,6 @@ fn meant(nonlinear_parameters: &[f64]) -> Option<(Domain, usize)> {
     Some((*DOMAINS.get(column.round() as usize)?, (order.round() as usize).clamp(2, HIGHEST)))
 }
 
-fn scale(values: &[f64]) -> (f64, f64) {
-    let Bounds { low, high } = ends(values);
-    (0.5 * (low + high), (0.5 * (high - low)).max(1e-12))
-}
-
 impl MeanModel for ColumnCurve {
     fn resolution(&self) -> Resolution {
         Resolution::FullRate
@@ -97,14 +92,14 @@ impl MeanModel for ColumnCurve {
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let free = meant(nonlinear_parameters)
             .and_then(|(domain, order)| Some((values(domain, drivers)?, order)))
-            .map_or_else(Vec::new, |(v, order)| powers(&v, scale(&v), order));
+            .map_or_else(Vec::new, |(v, order)| powers(&v, Scale::of(&v), order));
         Regressors { columns: free, ..Regressors::default() }
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         let scale =
-            meant(nonlinear_parameters).and_then(|(domain, _)| Some(scale(&values(domain, drivers)?)));
-        let (center, half) = scale.unwrap_or((f64::NAN, f64::NAN));
+            meant(nonlinear_parameters).and_then(|(domain, _)| Some(Scale::of(&values(domain, drivers)?)));
+        let Scale { center, half } = scale.unwrap_or(Scale { center: f64::NAN, half: f64::NAN });
         vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN), center, half]
     }
 
@@ -123,7 +118,7 @@ impl MeanModel for ColumnCurve {
         let order = coefficients.len().clamp(1, HIGHEST);
         let (domain, _) = meant(&[of(0)?, order as f64])?;
         let half = of(2).filter(|h| *h > 0.0)?;
-        Some(sum(coefficients, &powers(&values(domain, drivers)?, (of(1)?, half), order)))
+        Some(sum(coefficients, &powers(&values(domain, drivers)?, Scale { center: of(1)?, half }, order)))
     }
 
     fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

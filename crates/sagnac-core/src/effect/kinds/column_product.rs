@@ -1,7 +1,7 @@
 //! A contribution that goes with the product of two columns, or of one with the time. It has no kind of its own in the
 //! format of explanations.
 
-use crate::effect::shared::polynomial::sum;
+use crate::effect::shared::polynomial::{Scale, sum};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::search::gain_of;
 use crate::effect::{
@@ -81,28 +81,30 @@ fn pair(nonlinear_parameters: &[f64]) -> Option<(Factor, Factor)> {
 }
 
 /// Middle and half width of a factor; a rate is not centred, since nothing goes with it at rest.
-fn scale(factor: Factor, values: &[f64]) -> (f64, f64) {
+fn scale(factor: Factor, values: &[f64]) -> Scale {
     let Bounds { low, high } = ends(values);
     match factor {
-        Factor::Of(TableRate | OuterRate) => (0.0, low.abs().max(high.abs()).max(1e-12)),
-        _ => (0.5 * (low + high), (0.5 * (high - low)).max(1e-12)),
+        Factor::Of(TableRate | OuterRate) => {
+            Scale { center: 0.0, half: low.abs().max(high.abs()).max(1e-12) }
+        }
+        _ => Scale::of(values),
     }
 }
 
 /// u v, u and v.
 fn columns(
     (first, second): (Factor, Factor),
-    scales: [(f64, f64); 2],
+    scales: [Scale; 2],
     drivers: &Drivers,
 ) -> Option<[Vec<f64>; 3]> {
-    let scaled = |factor, (center, half): (f64, f64)| -> Option<Vec<f64>> {
-        Some(values(factor, drivers)?.into_iter().map(|v| (v - center) / half).collect())
+    let scaled = |factor, scale: Scale| -> Option<Vec<f64>> {
+        Some(values(factor, drivers)?.into_iter().map(|v| scale.scaled(v)).collect())
     };
     let (u, v) = (scaled(first, scales[0])?, scaled(second, scales[1])?);
     Some([u.iter().zip(&v).map(|(u, v)| u * v).collect(), u, v])
 }
 
-fn own_scales((first, second): (Factor, Factor), drivers: &Drivers) -> Option<[(f64, f64); 2]> {
+fn own_scales((first, second): (Factor, Factor), drivers: &Drivers) -> Option<[Scale; 2]> {
     Some([scale(first, &values(first, drivers)?), scale(second, &values(second, drivers)?)])
 }
 
@@ -138,8 +140,9 @@ impl MeanModel for ColumnProduct {
 
     fn parameters(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         let scales = pair(nonlinear_parameters).and_then(|p| own_scales(p, drivers));
-        let [(a, b), (c, d)] = scales.unwrap_or([(f64::NAN, f64::NAN); 2]);
-        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN), a, b, c, d]
+        let [first, second] = scales.unwrap_or([Scale { center: f64::NAN, half: f64::NAN }; 2]);
+        let pair = nonlinear_parameters.first().copied().unwrap_or(f64::NAN);
+        vec![pair, first.center, first.half, second.center, second.half]
     }
 
     fn lists(
@@ -153,7 +156,7 @@ impl MeanModel for ColumnProduct {
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let of = |i: usize| number(values, PARAMS[i].name);
-        let scales = [(of(1)?, of(2)?), (of(3)?, of(4)?)];
+        let scales = [Scale { center: of(1)?, half: of(2)? }, Scale { center: of(3)?, half: of(4)? }];
         let columns = columns(pair(&[of(0)?])?, scales, drivers)?;
         Some(sum(list(values, COEFFICIENTS), &columns))
     }

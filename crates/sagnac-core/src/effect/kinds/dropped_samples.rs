@@ -69,10 +69,6 @@ impl Samples for DroppedSamples {
 }
 
 impl RowDetector for DroppedSamples {
-    fn test(&self) -> &'static str {
-        "gaps"
-    }
-
     /// Every place of the grid that no row fills. Each counts as a parameter: which row it was is known.
     fn find(&self, rows: &Rows<'_>) -> Option<RowsFound> {
         let (first, last) = (rows.gaps.first()?, rows.gaps.last()?);

@@ -65,7 +65,7 @@ impl Samples for RepeatedSamples {
     }
 
     fn detector(&self) -> Detector {
-        Detector::Invalid(&RepeatedSamples)
+        Detector::Invalid { test: "repeats", rows: &RepeatedSamples }
     }
 }
 
@@ -165,10 +165,6 @@ fn spacing(rate: &[f64], present: &[bool], rounding: f64) -> Option<f64> {
 const LISTED: usize = 256;
 
 impl RowDetector for RepeatedSamples {
-    fn test(&self) -> &'static str {
-        "repeats"
-    }
-
     fn find(&self, rows: &Rows<'_>) -> Option<RowsFound> {
         let found = repeats(rows)?;
         let runs = found.runs();

@@ -1,6 +1,6 @@
 //! Static nonlinear dependence of the bias on temperature.
 
-use crate::effect::shared::polynomial::{powers, sum};
+use crate::effect::shared::polynomial::{Scale, powers, sum};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::search::gain_of;
 use crate::effect::{
@@ -26,9 +26,9 @@ describe! {
 }
 
 /// Middle and half width of the temperatures.
-fn scale(drivers: &Drivers) -> Option<(f64, f64)> {
+fn scale(drivers: &Drivers) -> Option<Scale> {
     let Bounds { low, high } = ends(drivers.temperature.as_ref()?);
-    (high > low).then_some((0.5 * (low + high), 0.5 * (high - low)))
+    (high > low).then_some(Scale { center: 0.5 * (low + high), half: 0.5 * (high - low) })
 }
 
 /// The order that a shape stands for.
@@ -73,8 +73,7 @@ impl MeanModel for TempPolynomial {
     }
 
     fn parameters(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        let (center, half) = scale(drivers).unwrap_or((f64::NAN, f64::NAN));
-        vec![center, half]
+        scale(drivers).map_or(vec![f64::NAN; 2], |s| vec![s.center, s.half])
     }
 
     fn lists(
@@ -93,7 +92,7 @@ impl MeanModel for TempPolynomial {
             return None;
         }
         let order = coefficients.len().min(12);
-        Some(sum(coefficients, &powers(drivers.temperature.as_ref()?, (center, half), order)))
+        Some(sum(coefficients, &powers(drivers.temperature.as_ref()?, Scale { center, half }, order)))
     }
 
     fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

@@ -141,7 +141,7 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
         let x = centred(values);
         gain_of(white, (1..=ORDER).map(|k| x.iter().map(|v| legendre(k, *v)).collect()))
     }?;
-    let (from, to) = extreme(white, values, low, high);
+    let Bounds { low: from, high: to } = extreme(white, values, low, high);
     Some(Departure { test, place: Place { domain, from, to }, beside: None, ln_p })
 }
 
@@ -155,7 +155,7 @@ fn legendre(order: usize, x: f64) -> f64 {
 }
 
 /// The tenth of the range of a column in which the weighted residual is farthest from zero.
-fn extreme(white: &White, values: &[f64], low: f64, high: f64) -> (f64, f64) {
+fn extreme(white: &White, values: &[f64], low: f64, high: f64) -> Bounds {
     const PARTS: usize = 10;
     let mut sums = [(0.0, 0.0); PARTS];
     for (e, v) in white.series.iter().zip(values) {
@@ -166,7 +166,7 @@ fn extreme(white: &White, values: &[f64], low: f64, high: f64) -> (f64, f64) {
     let z = |i: usize| if sums[i].1 > 0.0 { (sums[i].0 / f64::sqrt(sums[i].1)).abs() } else { 0.0 };
     let best = (0..PARTS).max_by(|a, b| z(*a).total_cmp(&z(*b))).unwrap_or(0);
     let step = (high - low) / PARTS as f64;
-    (low + best as f64 * step, low + (best + 1) as f64 * step)
+    Bounds::new(low + best as f64 * step, low + (best + 1) as f64 * step)
 }
 
 /// Whether the size of the whitened residual depends on a column.
@@ -225,7 +225,7 @@ mod tests {
             .map(|(i, v)| if (7.0..8.0).contains(v) { 1.0 } else { [-0.5, 0.5][i % 2] })
             .collect();
         let white = White { modes: vec![], series, roots: vec![] };
-        let (from, to) = extreme(&white, &values, 0.0, 10.0);
+        let Bounds { low: from, high: to } = extreme(&white, &values, 0.0, 10.0);
         assert!((from - 7.0).abs() < 1e-9 && (to - 8.0).abs() < 1e-9, "{from} {to}");
         assert_eq!(centred(&[0.0, 5.0, 10.0]), [-1.0, 0.0, 1.0]);
         assert_eq!(derivative(&[0.0, 1.0, 4.0]), [1.0, 2.0, 3.0]);

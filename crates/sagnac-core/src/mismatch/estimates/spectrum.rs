@@ -37,7 +37,7 @@ pub(super) fn of_spectrum(
     let residual = &best.residual(spectra);
     let all = |fitted: &[f64]| {
         let mut out = spectrum.parameters(fitted);
-        out.push(added_rms(noise, index, fitted, spectral, residual).0);
+        out.push(added_rms(noise, index, fitted, spectral, residual).rms_deg_h);
         out
     };
     let values = all(&part.fitted);
@@ -74,7 +74,7 @@ pub(super) fn of_spectrum(
             out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });
         }
     }
-    let chance = added_rms(noise, index, &part.fitted, spectral, residual).1;
+    let chance = added_rms(noise, index, &part.fitted, spectral, residual).deviation_deg_h;
     let (spread, last) = (values[values.len() - 1], deviation(values.len() - 1).hypot(chance));
     if spread > 0.0 && spread.is_finite() {
         let factor = (TWO_SIDED_95 * last / spread).min(30.0).exp();

@@ -13,6 +13,15 @@ pub struct Chain {
     pub change: [f64; 2],
 }
 
+/// Standard deviations of what is told of a chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deviations {
+    /// Of the distance of the levels.
+    pub apart: f64,
+    /// Of the logarithm of the mean dwell.
+    pub log_dwell: f64,
+}
+
 impl Chain {
     /// Standing probability of each level.
     fn standing(&self) -> [f64; 2] {
@@ -149,7 +158,7 @@ impl Chain {
 
     /// Standard deviations of the difference of the levels and of the logarithm of the mean dwell, from the curvature
     /// of the likelihood; `None` where it has no top there.
-    pub fn deviations(&self, values: &[f64]) -> Option<(f64, f64)> {
+    pub fn deviations(&self, values: &[f64]) -> Option<Deviations> {
         const P: usize = 5;
         let n = values.len() as f64;
         let changes = (n / self.dwell()).max(1.0);
@@ -191,7 +200,7 @@ impl Chain {
         let (a, b) = (slope(2), slope(3));
         let dwell =
             a * a * covariance[(2, 2)] + b * b * covariance[(3, 3)] + 2.0 * a * b * covariance[(2, 3)];
-        Some((size.max(0.0).sqrt(), dwell.max(0.0).sqrt()))
+        Some(Deviations { apart: size.max(0.0).sqrt(), log_dwell: dwell.max(0.0).sqrt() })
     }
 
     /// ln of the probability of the values, whatever the path.

@@ -4,7 +4,7 @@
 //! its paths, beside the slow noise of the hypothesis. A process with the same spectrum gains by its spectrum alone; only
 //! what the chain gains beyond that tells two levels from it.
 
-use super::chain::Chain;
+use super::chain::{Chain, Deviations};
 use super::path::Paths;
 use crate::effect::{Background, FlatResidual, averages};
 use crate::numeric::cosine::{dct2, inverse_dct2};
@@ -69,6 +69,14 @@ struct Ground<'a> {
     white: f64,
 }
 
+/// The size of a known path.
+struct Amplitude {
+    /// Between the levels, deg/h; negative where the second is the lower.
+    size: f64,
+    /// Its standard deviation, deg/h.
+    deviation: f64,
+}
+
 /// A path that was judged.
 struct Judged {
     path: Vec<bool>,
@@ -123,8 +131,8 @@ impl<'a> Ground<'a> {
         inverse_dct2(&modes)
     }
 
-    /// Amplitude of a known path, and its deviation.
-    fn amplitude(&self, path: &[bool]) -> (f64, f64) {
+    /// Amplitude of a known path beside the columns of the hypothesis.
+    fn amplitude(&self, path: &[bool]) -> Amplitude {
         let series: Vec<f64> = path.iter().map(|p| f64::from(u8::from(*p))).collect();
         let mut modes = dct2(&series);
         modes.iter_mut().take(1).for_each(|first| *first = 0.0);
@@ -135,7 +143,7 @@ impl<'a> Ground<'a> {
             before.with(&old, &[&modes], &self.background.modes, false, &self.background.powers).solve();
         let at = old.len();
         let variance = if covariance.nrows() > at { covariance[(at, at)] } else { 0.0 };
-        (c.get(at).copied().unwrap_or(0.0), variance.max(0.0).sqrt())
+        Amplitude { size: c.get(at).copied().unwrap_or(0.0), deviation: variance.max(0.0).sqrt() }
     }
 
     /// What a chain of averages of `m` is expected to add to each sample where `raised` is the probability of its second
@@ -193,7 +201,7 @@ impl<'a> Ground<'a> {
             // The background that is best beside what is expected of the levels: a turn of expectation and maximum. The
             // levels are those of the path beside any background: in turns, they would close in on them slowly.
             let (sharp, size) = if coloured {
-                let size = self.amplitude(&path).0;
+                let size = self.amplitude(&path).size;
                 let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
                 let sharp = sharp.of_path(&short, size, mean);
                 let known: Vec<f64> = short.iter().map(|p| f64::from(u8::from(*p))).collect();
@@ -272,7 +280,7 @@ impl Ground<'_> {
         let mut values = self.values(&best.background, best.averaged);
         // Background and levels in turns, each given the other, from the levels for a known path.
         let coloured = self.coloured();
-        let (known, deviation) = self.amplitude(&best.path);
+        let Amplitude { size: known, deviation } = self.amplitude(&best.path);
         let mut size = known.abs();
         let mut raised = best.chain.posterior(&values);
         for _ in 0..if coloured { SETTLING } else { 0 } {
@@ -293,7 +301,8 @@ impl Ground<'_> {
         let mut course = self.course(&best.chain, best.averaged, &raised, size);
         let mean = course.iter().sum::<f64>() / n as f64;
         course.iter_mut().for_each(|c| *c -= mean);
-        let (on_chain, log_dwell) = best.chain.deviations(&values).unwrap_or((deviation, 1.0));
+        let unknown = Deviations { apart: deviation, log_dwell: 1.0 };
+        let Deviations { apart: on_chain, log_dwell } = best.chain.deviations(&values).unwrap_or(unknown);
         // The path is uncertain for a known background, and the background for a known path.
         let in_white = self.white / (n as f64 * share * (1.0 - share)).max(1.0);
         let spread = on_chain.powi(2) + (deviation.powi(2) - in_white).max(0.0);
@@ -399,7 +408,7 @@ mod tests {
             grid_step_arcsec: None,
         };
         let ground = Ground::new(&background);
-        let (size, deviation) = ground.amplitude(&path);
+        let Amplitude { size, deviation } = ground.amplitude(&path);
         // ¼ over 100 · 100/200 samples' worth.
         assert!(
             (size - 3.0).abs() < 1e-6 && (deviation - 0.005f64.sqrt()).abs() < 1e-6,
