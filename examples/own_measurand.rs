@@ -3,31 +3,21 @@
 //! `cargo run --example own_measurand`
 
 use sagnac::Recording;
-use sagnac::estimate::{Estimate, Spread};
-use sagnac::measurand::{GyroEvidence, Measurand, Options};
+use sagnac::estimate::Spread;
+use sagnac::measurand::{Measurand, Options};
 
 /// Largest sample less smallest, deg/h. A property of this recording and not of the unit, hence without uncertainty.
-struct PeakToPeak;
-
-impl Measurand for PeakToPeak {
-    fn ids(&self) -> &'static [&'static str] {
-        &["peak_to_peak"]
-    }
-
-    fn evaluate(&self, _id: &str, gyro: &GyroEvidence, _options: &Options) -> Option<Estimate> {
+static PEAK_TO_PEAK: Measurand =
+    Measurand::at_rest("peak_to_peak", "deg/h", "largest less smallest sample", |m, gyro, _| {
         let range = gyro.digest.max - gyro.digest.min;
-        let estimate =
-            Estimate::measured("peak_to_peak", &gyro.channel, range, "deg/h", Spread::Unknown, "range");
-        range.is_finite().then_some(estimate)
-    }
-}
+        vec![m.measured(&gyro.channel, range, Spread::Unknown, "range")]
+    });
 
 /// Runs the example from the folder of the checkout.
 pub fn main() -> Result<(), sagnac::Error> {
     let recording = Recording::open("samples/unit-pass.csv")?;
     let noise = sagnac::noise::identify(&recording.rate("rate_deg_h")?)?;
-    let own = PeakToPeak.evaluate("peak_to_peak", noise.evidence(), &Options { remove_earth_rate: false });
-    if let Some(own) = own {
+    for own in PEAK_TO_PEAK.evaluate_gyro(noise.evidence(), &Options { remove_earth_rate: false }) {
         println!("{}: {:?} {}", own.id, own.value, own.unit);
     }
     Ok(())

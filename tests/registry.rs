@@ -6,7 +6,7 @@ mod support;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sagnac::ids::MEASURANDS;
+use sagnac::measurand::MEASURANDS;
 use serde_json::Value;
 use std::path::Path;
 use support::{altered, result, root, sagnac, shipped};

@@ -7,7 +7,7 @@ use super::section::{Entry, Section};
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::{syntax, values};
 use crate::i18n::{Arg, Lang, Note, lookup};
-use crate::ids::MeasurandId;
+use crate::measurand::Measurand;
 use crate::recording::Role;
 use sagnac_core::spelling::nearest;
 use std::collections::BTreeMap;
@@ -289,7 +289,7 @@ impl Reader<'_> {
         &mut self,
         key: &'static KeySpec,
         table: &DeTable<'_>,
-    ) -> Vec<(&'static MeasurandId, f64, Span)> {
+    ) -> Vec<(&'static Measurand, f64, Span)> {
         let mut found = vec![];
         for (name, value) in table.iter() {
             let Some(id) = self.measurand(name.get_ref(), &name.span()) else { continue };

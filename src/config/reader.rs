@@ -2,8 +2,8 @@
 
 use super::diagnostics::{Problems, SourceText, Span};
 use super::spec::{KeySpec, TableSpec};
-use crate::i18n::{Arg, Note};
-use crate::ids::{self, MeasurandId};
+use crate::i18n::Note;
+use crate::measurand::{self, Measurand};
 use sagnac_core::spelling::nearest;
 use toml::de::DeValue;
 
@@ -30,28 +30,21 @@ impl Reader<'_> {
         }
     }
 
-    /// Looks up a measurand, and says why when it cannot be used.
-    pub fn measurand(&mut self, name: &str, span: &Span) -> Option<&'static MeasurandId> {
-        match ids::find(name) {
-            Some(id) if id.available => return Some(id),
-            Some(id) => {
-                let message = Note::new("keyed.not_available").with("name", name);
-                let help =
-                    Note::new("keyed.help.belongs_to_test").with("test", Arg::key("test", id.test.id()));
-                self.error(span, message, Some(help));
-            }
-            None => {
-                let usable = || ids::MEASURANDS.iter().filter(|m| m.available).map(|m| m.id);
-                let help = match nearest(name, usable()) {
-                    Some(near) => meant(near),
-                    None => Note::new("keyed.help.measurands")
-                        .with("names", usable().collect::<Vec<_>>().join(", ")),
-                };
-                let message = Note::new("keyed.unknown_measurand").with("name", shorten(name));
-                self.error(span, message, Some(help));
-            }
+    /// Looks up a measurand; reports an unknown one.
+    pub fn measurand(&mut self, name: &str, span: &Span) -> Option<&'static Measurand> {
+        let found = measurand::find(name);
+        if found.is_none() {
+            let known = || measurand::MEASURANDS.iter().map(|m| m.id);
+            let help = match nearest(name, known()) {
+                Some(near) => meant(near),
+                None => {
+                    Note::new("keyed.help.measurands").with("names", known().collect::<Vec<_>>().join(", "))
+                }
+            };
+            let message = Note::new("keyed.unknown_measurand").with("name", shorten(name));
+            self.error(span, message, Some(help));
         }
-        None
+        found
     }
 
     /// Reports a value of the wrong type.

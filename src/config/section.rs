@@ -1,7 +1,7 @@
 //! Checked values of a table, by key.
 
 use super::diagnostics::Span;
-use crate::ids::MeasurandId;
+use crate::measurand::Measurand;
 use crate::recording::ColumnRef;
 use crate::units::Unit;
 use chrono::NaiveDate;
@@ -24,8 +24,8 @@ pub(crate) enum Entry {
     Column(ColumnRef),
     Taus(Taus),
     Allowance(Allowance),
-    Measurand(&'static MeasurandId),
-    Quantities(Vec<(&'static MeasurandId, f64, Span)>),
+    Measurand(&'static Measurand),
+    Quantities(Vec<(&'static Measurand, f64, Span)>),
     Table(Section),
     Tables(Vec<Section>),
 }
@@ -171,7 +171,7 @@ impl Section {
         }
     }
 
-    pub fn measurand(&self, key: &str) -> Option<&'static MeasurandId> {
+    pub fn measurand(&self, key: &str) -> Option<&'static Measurand> {
         match self.entry(key) {
             Some(Entry::Measurand(id)) => Some(id),
             _ => None,

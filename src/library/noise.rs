@@ -3,7 +3,7 @@
 use super::{Error, Rate};
 use crate::estimate::Estimate;
 use crate::i18n::Note;
-use crate::measurand::{self, GyroEvidence, Options};
+use crate::measurand::{self, GyroEvidence, Options, Test};
 use crate::noise::coarse;
 use crate::noise::composite::{Composite, Sampling};
 use crate::noise::curve_check;
@@ -140,9 +140,10 @@ impl Noise {
     }
 
     /// Any quantity of a gyro at rest by its id, for example `static_bias` or `russian_drift_100s` (see
-    /// [`crate::ids::MEASURANDS`]). `None` for an id that is not one of a gyro at rest.
+    /// [`crate::measurand::MEASURANDS`]). `None` for an id that is not one of a gyro at rest.
     pub fn measure(&self, id: &str) -> Option<Estimate> {
-        measurand::evaluate(id, &self.evidence, &Options { remove_earth_rate: false })
+        let known = measurand::find(id).filter(|m| m.test() == Test::Static)?;
+        known.evaluate_gyro(&self.evidence, &Options { remove_earth_rate: false }).into_iter().next()
     }
 
     /// Everything that one pass over the samples left behind: what an own [`measurand::Measurand`] is computed from.

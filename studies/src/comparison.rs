@@ -2,7 +2,7 @@
 
 use crate::study::{Asked, Case, Row, Study};
 use rayon::prelude::*;
-use sagnac::measurand::{GyroEvidence, Options, evaluate};
+use sagnac::measurand::{GyroEvidence, Options, find};
 use sagnac::noise::composite::{Bandwidth, Composite, Damped, Line, Sampling};
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
 use sagnac::noise::family::Estimator;
@@ -228,7 +228,7 @@ pub fn study(model: &Composite, hours: f64, tau0_s: f64, records: u64, seed: u64
         ]
         .map(|(id, truth)| {
             // A record that does not claim N has no ratio to it, and does not count as covered.
-            let interval = evaluate(id, &gyro, &options).expect("an estimate").interval95();
+            let interval = find(id).expect("a measurand").evaluate_gyro(&gyro, &options)[0].interval95();
             interval.is_some_and(|i| i.low <= truth && truth <= i.high)
         });
         (agreements, covered)

@@ -11,7 +11,7 @@ use sagnac::config::procedure::EffectiveLimits;
 use sagnac::config::procedure::limits::LimitSpec;
 use sagnac::estimate::{Limit, Rule, Verdict};
 use sagnac::ingest::Source;
-use sagnac::measurand::ids;
+use sagnac::measurand;
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::russian::predict;
 use sagnac::noise::simulate::{Setup, Simulator};
@@ -169,7 +169,7 @@ fn limits(truths: &[(&'static str, f64)]) -> EffectiveLimits {
     for (id, truth) in truths {
         limits.set.limits.push(LimitSpec {
             recorded_unit: None,
-            measurand: ids::find(id).expect("a measurand"),
+            measurand: measurand::find(id).expect("a measurand"),
             channel: None,
             limit: Limit {
                 min: None,

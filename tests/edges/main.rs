@@ -25,7 +25,7 @@ mod temperature;
 mod tilts;
 
 use case::Family;
-use sagnac::ids::MEASURANDS;
+use sagnac::measurand::MEASURANDS;
 
 /// Every family. One more: one file and one line.
 static FAMILIES: &[&Family] = &[

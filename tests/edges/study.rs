@@ -121,7 +121,7 @@ fn limits(truths: &[Truth]) -> String {
             continue;
         }
         written.push((truth.id, channel));
-        let unit = sagnac::ids::find(truth.id).map_or("", |m| m.unit);
+        let unit = sagnac::measurand::find(truth.id).map_or("", |m| m.unit);
         let key = match limit.key {
             LimitKey::Max => "max",
             LimitKey::Min => "min",

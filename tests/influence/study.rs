@@ -11,6 +11,7 @@ use sagnac::influence::comparison::{self, Beside, Comparison};
 use sagnac::influence::cut::FileSpan;
 use sagnac::influence::repeatability::{self, Repeatability};
 use sagnac::influence::{ComparisonTest, Influence, RepeatabilityTest, intervals, runs};
+use sagnac::measurand::{BIAS_REPEATABILITY, BIAS_REPEATABILITY_TREND, BIAS_SHIFT, ComparisonEvidence, find};
 use sagnac::rate_table::blocks::{Blocks, Collector};
 use sagnac::recording::{Channel, ColumnRef, Role, SampleBlock, Sink};
 use sagnac::units::Unit;
@@ -144,8 +145,8 @@ fn study(records: u64, seed: u64, scatters: &[f64], only: &str) -> Vec<(String, 
             let (mut deviation, mut trend) = (Count::default(), Count::default());
             let series: Vec<_> = (0..records).into_par_iter().map(|r| repeated(&s, seed + r)).collect();
             for found in series {
-                deviation.take(&found.estimate("bias_repeatability", "deg/h").unwrap(), between);
-                trend.take(&found.estimate("bias_repeatability_trend", "deg/h").unwrap(), 0.0);
+                deviation.take(&BIAS_REPEATABILITY.evaluate_runs(&found)[0], between);
+                trend.take(&BIAS_REPEATABILITY_TREND.evaluate_runs(&found)[0], 0.0);
             }
             out.push((format!("bias_repeatability {kind}"), deviation, between));
             out.push((format!("bias_repeatability_trend {kind} {between}"), trend, 0.0));
@@ -160,9 +161,11 @@ fn study(records: u64, seed: u64, scatters: &[f64], only: &str) -> Vec<(String, 
             let tests: Vec<_> =
                 (0..records).into_par_iter().map(|r| compared(&turns, seed + 10_000 + r)).collect();
             for found in tests {
-                unit.take(&found.estimates(id, "deg/h")[0], truth);
-                let (at, s) = (&found.estimates("bias_shift", "deg/h")[0], &found.shifts[0]);
-                shift.take(at, (turns.bias)(turns.per_unit, s.level));
+                let evidence = ComparisonEvidence { bias: &found, noise: &[] };
+                unit.take(&find(id).unwrap().evaluate_comparison(&evidence)[0], truth);
+                let level = found.shifts[0].level;
+                let at = &BIAS_SHIFT.evaluate_comparison(&evidence)[0];
+                shift.take(at, (turns.bias)(turns.per_unit, level));
             }
             out.push((format!("{id} {kind}"), unit, truth));
             out.push((format!("bias_shift {id} {kind}"), shift, f64::NAN));

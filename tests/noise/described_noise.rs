@@ -4,7 +4,7 @@ use sagnac::acceptance::run::figures::{allan_family, autocorrelation, residual, 
 use sagnac::estimate::{Estimate, Spread};
 use sagnac::figure::{Figure, Layer, Style};
 use sagnac::i18n::{Lang, Localize};
-use sagnac::measurand::{GyroEvidence, Options, evaluate};
+use sagnac::measurand::{GyroEvidence, Options, find};
 use sagnac::noise::composite::{Composite, Damped, Described, Line, Parameter, Sampling};
 use sagnac::noise::data::NoiseType;
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
@@ -119,7 +119,7 @@ fn the_strongest_process_is_the_value_and_the_others_stand_in_a_note() {
         ("quasi_periodic_frequency", 0.03),
         ("quasi_periodic_coherence_time", 400.0),
     ] {
-        let estimate = evaluate(id, &gyro, &OPTIONS).unwrap();
+        let estimate = find(id).unwrap().evaluate_gyro(&gyro, &OPTIONS).remove(0);
         assert_eq!((estimate.id, estimate.value), (id, Some(value)));
         let named = estimate.notes.iter().find(|n| n.id == "correlated.others");
         assert_eq!(named.is_some(), id.starts_with("markov"), "{id}");
@@ -132,7 +132,7 @@ fn the_strongest_process_is_the_value_and_the_others_stand_in_a_note() {
     without.identification.markov.clear();
     without.identification.quasi_periodic.clear();
     for id in ["markov_sigma", "quasi_periodic_frequency"] {
-        let none = evaluate(id, &without, &OPTIONS).unwrap();
+        let none = find(id).unwrap().evaluate_gyro(&without, &OPTIONS).remove(0);
         assert!(none.value.is_none() && none.upper_limit.is_none() && !none.notes.is_empty(), "{id}");
     }
 }

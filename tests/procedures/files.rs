@@ -12,7 +12,7 @@ use sagnac::config::procedure::{
 };
 use sagnac::estimate::Rule;
 use sagnac::i18n::{Lang, Localize};
-use sagnac::measurand::ids::Test;
+use sagnac::measurand::Test;
 use sagnac::recording::{ColumnRef, Role};
 use std::path::{Path, PathBuf};
 
@@ -57,12 +57,9 @@ fn the_static_procedure_says_what_its_file_says() {
     assert_eq!((site.latitude_deg, site.orientation_of("rate").elevation_deg), (55.98, 90.0));
     assert!((site.orientation_of("rate").elevation_uncertainty_deg - 30.0 / 3600.0).abs() < 1e-15);
     assert_eq!(p.analysis.taus, Taus::Octave);
-    let ids: Vec<_> = p.measurands.iter().map(|m| m.id.id).collect();
-    let all: Vec<_> = sagnac::measurand::ids::MEASURANDS
-        .iter()
-        .filter(|m| m.available && m.test == Test::Static)
-        .map(|m| m.id)
-        .collect();
+    let ids: Vec<_> = p.measurands.iter().map(|m| m.measurand.id).collect();
+    let all: Vec<_> =
+        sagnac::measurand::MEASURANDS.iter().filter(|m| m.test() == Test::Static).map(|m| m.id).collect();
     assert!(all.iter().all(|id| ids.contains(id)), "every measurand of this version is determined");
     assert_eq!(p.measurands[0].earth_rate, EarthRate::Remove);
     assert_eq!(p.clauses.len(), 14);
@@ -372,7 +369,7 @@ fn count_described(schema: &serde_json::Value, count: &mut usize) {
     if let Some(properties) = schema.get("properties").and_then(|p| p.as_object()) {
         for (name, value) in properties {
             let documented = value["description"].as_str().is_some_and(|d| d.len() > 8);
-            let measurand = sagnac::measurand::ids::find(name).is_some();
+            let measurand = sagnac::measurand::find(name).is_some();
             assert!(documented || measurand, "{name}");
             *count += usize::from(documented);
         }

@@ -14,7 +14,7 @@ use bench::{Bench, EARTH, Recorded, SmallRates, TwoAxes};
 use judged::{Count, told, truths};
 use rayon::prelude::*;
 use sagnac::estimate::Estimate;
-use sagnac::ids;
+use sagnac::measurand::{MISALIGNMENT_X, MISALIGNMENT_Y, TableEvidence, find, table_extras};
 use sagnac::rate_table::blocks::{Blocks, Collector};
 use sagnac::rate_table::{Setup, TableRun, alignment, scale_factor};
 use sagnac::recording::{Channel, ColumnRef, Role, SampleBlock, Sink};
@@ -178,13 +178,14 @@ fn study(bench: &Bench, runs: u64, first: u64) -> Vec<(&'static str, Count)> {
         let bench = Bench { seed, ..bench.clone() };
         let recorded = bench.record();
         let (run, setup) = on_bench(&bench, &recorded);
-        let found = scale_factor::evaluate(&run, 0, &setup, ("1", 1.0), &|_| true).expect("a line");
+        let found = scale_factor::evaluate(&run, 0, &setup, &table_extras(&|_| true)).expect("a line");
         let told = told(&bench, &run, &found);
         let truths = truths(&bench, &recorded, &found).into_iter().filter(|t| t.1.is_finite());
+        let line = Some(found);
+        let evidence = TableEvidence { line, ..TableEvidence::new(0, "rate", &setup, &run.steps) };
         truths
             .map(|(id, truth)| {
-                let unit = ids::find(id).unwrap().unit;
-                let estimate = found.estimate(id, unit, &setup, &run.steps).expect("an estimate");
+                let [estimate] = find(id).unwrap().evaluate_steps(&evidence).try_into().expect("an estimate");
                 (id, estimate, truth, told.get(id).copied())
             })
             .collect()
@@ -262,10 +263,12 @@ fn tilts(runs: u64, first: u64) -> [Count; 2] {
         let vertical = EARTH * bench.latitude.to_radians().sin();
         let found = alignment::evaluate(&run.steps, "rate", 0, vertical, 0.0);
         let gain = 1e3 * (1.0 + 1e-6 * bench.error_ppm);
-        for (i, (id, truth)) in
-            [("misalignment_x", bench.tilt.0), ("misalignment_y", bench.tilt.1)].into_iter().enumerate()
+        let alignment = Some(found);
+        let evidence = TableEvidence { alignment, ..TableEvidence::new(0, "rate", &setup, &run.steps) };
+        for (i, (m, truth)) in
+            [(&MISALIGNMENT_X, bench.tilt.0), (&MISALIGNMENT_Y, bench.tilt.1)].into_iter().enumerate()
         {
-            counts[i].take(&found.estimate(id, "mrad", &setup).unwrap(), gain * truth, None);
+            counts[i].take(&m.evaluate_steps(&evidence)[0], gain * truth, None);
         }
     }
     counts

@@ -5,9 +5,13 @@ use super::judged::Count;
 use super::{asked, blocks_of};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use sagnac::measurand::{
+    CROSS_AXIS, KnownInputEvidence, SCALE_FACTOR, SCALE_FACTOR_BIAS, SCALE_FACTOR_ERROR,
+};
 use sagnac::noise::static_bias::{Orientation, Uncertain, earth_rate};
-use sagnac::rate_table::known::{self, Input, Known};
+use sagnac::rate_table::known;
 use sagnac::rate_table::noise::Rows;
+use sagnac::rate_table::setup::{Input, Known};
 use sagnac::rate_table::turns;
 use sagnac::recording::Role;
 
@@ -73,9 +77,10 @@ fn in_positions(model: Noise, seed: u64) -> [Count; 2] {
     let inputs: Vec<(f64, f64)> = positions.iter().map(|(h, e)| expected((*h, OFF.0), (*e, OFF.1))).collect();
     let [told_bias, told_factor] = told(model, &inputs, EACH_S as f64);
     let mut counts = [Count::default(), Count::default()];
-    let error = found.estimate("scale_factor_error", "ppm").unwrap();
-    counts[0].take(&error, error_ppm, Some(1e6 * told_factor));
-    counts[1].take(&found.estimate("scale_factor_bias", "deg/h").unwrap(), bias + drift, Some(told_bias));
+    let evidence = KnownInputEvidence { positions: &[found], turns: None };
+    let error = &SCALE_FACTOR_ERROR.evaluate_known_input(&evidence)[0];
+    counts[0].take(error, error_ppm, Some(1e6 * told_factor));
+    counts[1].take(&SCALE_FACTOR_BIAS.evaluate_known_input(&evidence)[0], bias + drift, Some(told_bias));
     counts
 }
 
@@ -174,11 +179,12 @@ fn of_triad(triad: &Triad, seed: u64) -> [Count; 2] {
     let found = turns::turns(&blocks, &list, &stretches).expect("turns");
     let mut counts = [Count::default(), Count::default()];
     let place = |name: &str| channels.iter().position(|c| *c == name).expect("a channel");
-    for e in found.estimates("scale_factor", "1") {
+    let evidence = KnownInputEvidence { positions: &[], turns: Some(&found) };
+    for e in SCALE_FACTOR.evaluate_known_input(&evidence) {
         let k = place(&e.channel);
         counts[0].take(&e, MATRIX[k][k], None);
     }
-    for e in found.estimates("cross_axis", "1") {
+    for e in CROSS_AXIS.evaluate_known_input(&evidence) {
         let (output, axis) = e.channel.split_once("<-").expect("two axes");
         counts[1].take(&e, MATRIX[place(output)][place(axis)], None);
     }

@@ -8,12 +8,29 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
-use sagnac::estimate::normal_probability;
+use sagnac::estimate::{Estimate, normal_probability};
+use sagnac::measurand::{DEAD_ZONE, DEAD_ZONE_NOISE, Measurand, THRESHOLD, TableEvidence};
 use sagnac::rate_table::dead_zone::{self, DeadZone};
-use sagnac::rate_table::{Setup, scale_factor};
+use sagnac::rate_table::{Setup, TableRun, scale_factor};
 use sagnac::recording::Role;
 
-fn found(bench: &SmallRates, known: Option<f64>) -> DeadZone {
+/// A tested response, with the dead zone that was found in it.
+struct Tested {
+    run: TableRun,
+    setup: Setup,
+    zone: DeadZone,
+}
+
+impl Tested {
+    fn estimate(&self, m: &Measurand) -> Estimate {
+        let dead_zone = Some(self.zone.clone());
+        let evidence =
+            TableEvidence { dead_zone, ..TableEvidence::new(0, "rate", &self.setup, &self.run.steps) };
+        m.evaluate_steps(&evidence).remove(0)
+    }
+}
+
+fn found(bench: &SmallRates, known: Option<f64>) -> Tested {
     let r = bench.record();
     let setup = Setup {
         settling_s: 2.0,
@@ -30,8 +47,9 @@ fn found(bench: &SmallRates, known: Option<f64>) -> DeadZone {
         (Role::TableAngle, r.table_angle_arcsec),
     ];
     let run = run_of(&channels, 1.0 / bench.hz, &setup);
-    let line = scale_factor::evaluate(&run, 0, &setup, ("1", 1.0), &|_| false).expect("a line");
-    dead_zone::evaluate(&run.steps, 0, &line.response, "rate", &setup).expect("enough rates")
+    let line = scale_factor::evaluate(&run, 0, &setup, &[]).expect("a line");
+    let zone = dead_zone::evaluate(&run.steps, 0, &line.response, "rate", &setup).expect("enough rates");
+    Tested { run, setup, zone }
 }
 
 /// Half width, noise inside the loop and threshold of many tests.
@@ -40,7 +58,7 @@ fn counted(bench: &SmallRates, known: Option<f64>, runs: u64, first: u64) -> [Co
     let threshold = threshold_of(bench);
     let of = |seed: u64| {
         let zone = found(&SmallRates { seed, ..bench.clone() }, known);
-        ["dead_zone", "dead_zone_noise", "threshold"].map(|id| zone.estimate(id, "deg/h").unwrap())
+        [&DEAD_ZONE, &DEAD_ZONE_NOISE, &THRESHOLD].map(|m| zone.estimate(m))
     };
     for [width, noise, half] in (first..first + runs).into_par_iter().map(of).collect::<Vec<_>>() {
         counts[0].take(&width, bench.half_width, None);

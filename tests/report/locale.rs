@@ -3,7 +3,7 @@
 use crate::fixture;
 use sagnac::effect::{self, Domain, EFFECTS, find};
 use sagnac::i18n::{EffectText, Lang, effect_text, table};
-use sagnac::measurand::ids::MEASURANDS;
+use sagnac::measurand::MEASURANDS;
 use sagnac::report::render::TEMPLATES;
 use sagnac::report::{Renderer, render_html, render_markdown};
 use std::collections::BTreeSet;
@@ -64,7 +64,6 @@ const OPEN: &[&str] = &[
     "term",
     "unit",
     "convention",
-    "test",
     "table_doc",
     "option_value",
     "explain.test",

@@ -2,7 +2,7 @@
 
 use crate::chamber::{Chance, Leg, Noise, Unit, programme, record};
 use crate::tally::Tally;
-use crate::{first, found, runs};
+use crate::{first, found, over_temperature, runs};
 use rayon::prelude::*;
 use sagnac::estimate::Estimate;
 use std::collections::BTreeMap;
@@ -51,10 +51,8 @@ fn tally(
     let evaluated = |seed: u64| {
         let u = units(&mut Chance::new(seed));
         let f = found(&record(&u, start, legs, 20.0, 0.01, 7919 * seed + 1));
-        let rows: Vec<Estimate> = IDS
-            .iter()
-            .filter_map(|id| sagnac::measurand::over_temperature(id, "rate", &f).into_iter().next())
-            .collect();
+        let rows: Vec<Estimate> =
+            IDS.iter().filter_map(|id| over_temperature(id, &f).into_iter().next()).collect();
         let span = f.analysis.as_ref().unwrap().posterior.span;
         let (_, _, slope, _) = u.statistics(span.low, span.high);
         (u, slope, rows)

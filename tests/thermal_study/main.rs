@@ -14,15 +14,27 @@ use chamber::warm_up as switched_on;
 use chamber::{Chance, Leg, Noise, Recorded, Unit, programme, record};
 use rayon::prelude::*;
 use sagnac::estimate::{Estimate, normal_probability};
+use sagnac::measurand::{TURN_ON_TRANSIENT, WARM_UP_TIME, find};
 use sagnac::temperature::course::{Shape, Terms};
 use sagnac::temperature::findings::{Findings, findings, schedule};
 use sagnac::temperature::gls::Modes;
 use sagnac::temperature::read::of_distribution;
 use sagnac::temperature::start::Start;
 use sagnac::temperature::track::Track;
+use sagnac::temperature::warm_up::WarmUpFindings;
 use sagnac::temperature::{StartAsked, TemperatureTest, WarmUpTest, warm_up};
 use std::collections::BTreeMap;
 use tally::Tally;
+
+/// The rows of a measurand over temperature.
+fn over_temperature(id: &str, found: &Findings) -> Vec<Estimate> {
+    find(id).map_or_else(Vec::new, |m| m.evaluate_temperature("rate", found))
+}
+
+/// The rows of a warm-up.
+fn warm_up_rows(found: &WarmUpFindings) -> Vec<Estimate> {
+    [&TURN_ON_TRANSIENT, &WARM_UP_TIME].into_iter().flat_map(|m| m.evaluate_warm_up("rate", found)).collect()
+}
 
 fn asked() -> TemperatureTest {
     TemperatureTest {
@@ -155,7 +167,7 @@ fn study(rates: &[f64], dwell_s: f64, runs: u64, first: u64) -> BTreeMap<&'stati
             orders[a.order] += 1;
         }
         for id in IDS {
-            let rows = sagnac::measurand::over_temperature(id, "rate", &f);
+            let rows = over_temperature(id, &f);
             if id == "bias_loop_width" {
                 let a = f.analysis.as_ref().unwrap();
                 // At the place that the row names: 2 (D r − b'(T) τ r + h), the coil being where the sensor is.
@@ -210,7 +222,7 @@ fn warm_up_times_cover() {
     let (mut below, mut bounded) = (0, 0);
     for seed in first(200_001)..first(200_001) + runs() {
         let Some((truth, transient_truth, f)) = warm_up_of(seed) else { continue };
-        let rows = sagnac::measurand::warm_up(&f, "rate");
+        let rows = warm_up_rows(&f);
         time.add(rows.iter().find(|e| e.id == "warm_up_time"), truth, None);
         transient.add(rows.iter().find(|e| e.id == "turn_on_transient"), transient_truth, None);
         if let Some(limit) = rows.iter().find(|e| e.id == "warm_up_time").and_then(|e| e.upper_limit) {
@@ -322,7 +334,7 @@ fn sensitivity_at_one_rate_told_all_but_the_slow_noise() {
             u.noise.k *= stronger;
             let r = record(&u, -40.0, &legs, 10.0, 0.01, 7919 * seed + 1);
             let f = found(&r);
-            let own = sagnac::measurand::over_temperature("bias_temperature_sensitivity", "rate", &f);
+            let own = over_temperature("bias_temperature_sensitivity", &f);
             let own = own[0].interval95().and_then(|i| {
                 let truth = truth("bias_temperature_sensitivity", &u, &f);
                 let exact = told(&u, &f)?["bias_temperature_sensitivity"];
@@ -353,7 +365,7 @@ fn warm_up_intervals_hold_where_two_decays_are_nearly_one() {
     let (mut inside, seeds) = (0, [200_017, 200_031, 200_043, 200_051]);
     for seed in seeds {
         let (truth, _, found) = warm_up_of(seed).expect("a warm-up");
-        let rows = sagnac::measurand::warm_up(&found, "rate");
+        let rows = warm_up_rows(&found);
         let time = rows.iter().find(|e| e.id == "warm_up_time").unwrap().interval95().unwrap();
         inside += usize::from((time.low..=time.high).contains(&truth));
     }
@@ -377,7 +389,7 @@ fn a_few_intervals_hold() {
 fn rows_of(legs: &[Leg], start: f64) -> BTreeMap<&'static str, Estimate> {
     let u = unit(&mut Chance::new(5));
     let f = found(&record(&u, start, legs, 10.0, 0.01, 77));
-    let row = |id: &'static str| (id, sagnac::measurand::over_temperature(id, "rate", &f).swap_remove(0));
+    let row = |id: &'static str| (id, over_temperature(id, &f).swap_remove(0));
     IDS.map(row).into_iter().collect()
 }
 

@@ -1,7 +1,7 @@
 //! Units that drift on when a warm-up record ends.
 
 use crate::chamber::{Noise, warm_up as switched_on};
-use crate::{first, runs};
+use crate::{first, runs, warm_up_rows};
 use sagnac::temperature::start::Start;
 use sagnac::temperature::track::Track;
 use sagnac::temperature::warm_up::{WarmUpFindings, find};
@@ -20,7 +20,7 @@ fn found(decay: (f64, f64), length_s: f64, n: f64, seed: u64) -> WarmUpFindings 
 
 /// The row of the time, and whether it is bounded from below only.
 fn bounded(found: &WarmUpFindings) -> Option<f64> {
-    let rows = sagnac::measurand::warm_up(found, "rate");
+    let rows = warm_up_rows(found);
     let time = rows.iter().find(|e| e.id == "warm_up_time").unwrap();
     assert_eq!(time.value.is_none(), found.drifts_on() || found.too_short || time.upper_limit.is_some());
     time.lower_limit.map(|l| l.value)

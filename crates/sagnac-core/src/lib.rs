@@ -8,11 +8,11 @@
 //! | [`message`], [`render`] | messages as a key with arguments; a table that the caller brings turns them into text |
 //! | [`numeric`], [`units`] | numerical methods; units and their conversion |
 //! | [`estimate`] | an estimate with its confidence distribution, limits, decision rules, verdicts |
-//! | [`figure`], [`ids`] | plots as data; the ids and units of all measured quantities |
+//! | [`figure`] | plots as data |
 //! | [`recording`] | channels, their roles and units, and the blocks of samples that they deliver |
 //! | [`noise`] | a gyro at rest: Allan family, spectra, identification of noise terms, their simulation |
 //! | [`rate_table`], [`temperature`], [`influence`] | tests on a rate table, over temperature, under an influence |
-//! | [`measurand`] | measured quantities, one file each |
+//! | [`measurand`] | measured quantities of every kind of test: one registry, one file each |
 //! | [`effect`] | the catalogue of physical effects that a simulation can omit |
 //! | [`claim`], [`series`] | a simulation as its author states it; a recording held in memory |
 //! | [`mismatch`], [`simulate`] | why a recording departs from a claim; recordings made from a claim |
@@ -21,7 +21,6 @@ pub mod claim;
 pub mod effect;
 pub mod estimate;
 pub mod figure;
-pub mod ids;
 pub mod influence;
 pub mod measurand;
 pub mod message;

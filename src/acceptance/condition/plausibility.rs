@@ -32,7 +32,7 @@ pub(super) fn mean_shows_earth_rate(gyro: &GyroFact, facts: &Facts<'_>) -> Optio
 /// Whether the procedure states the bias with the Earth rate in it.
 pub(super) fn earth_rate_is_kept(facts: &Facts<'_>) -> bool {
     let mut measurands = facts.procedure.measurands.iter();
-    measurands.any(|m| m.id.id == "static_bias" && m.earth_rate == Removal::Keep)
+    measurands.any(|m| m.measurand.id == "static_bias" && m.earth_rate == Removal::Keep)
 }
 
 /// Least and greatest σ(τ)·√τ/60 over octaves, deg/sqrt(h).

@@ -5,7 +5,7 @@ use crate::config::procedure::model::{
     Analysis, ChannelSpec, Conditions, EarthRate, MeasurandSpec, Procedure, RecordingSpec, ReportSpec, Taus,
     UnitSpec,
 };
-use crate::measurand::ids::{MEASURANDS, Test};
+use crate::measurand::{MEASURANDS, Test};
 use crate::recording::Channel;
 
 /// A procedure that only analyses.
@@ -46,8 +46,13 @@ pub fn procedure(channels: Vec<Channel>, sample_rate_hz: Option<f64>, warm_up_s:
         comparison_test: None,
         measurands: MEASURANDS
             .iter()
-            .filter(|m| m.available && m.test == Test::Static && m.id != "earth_rate_component")
-            .map(|id| MeasurandSpec { id, channel: None, earth_rate: EarthRate::Keep, span: 0..0 })
+            .filter(|m| m.test() == Test::Static && !m.from_site)
+            .map(|measurand| MeasurandSpec {
+                measurand,
+                channel: None,
+                earth_rate: EarthRate::Keep,
+                span: 0..0,
+            })
             .collect(),
         limits: LimitSet::default(),
         clauses: vec![],

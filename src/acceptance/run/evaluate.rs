@@ -9,11 +9,10 @@ use crate::acceptance::condition::checks::CheckLog;
 use crate::acceptance::condition::stability_track::{StabilityFacts, StabilityKey};
 use crate::acceptance::condition::{Facts, WarmUpFact, judge_all};
 use crate::config::procedure::Procedure;
-use crate::config::procedure::model::{EarthRate, Taus};
-use crate::estimate::Estimate;
+use crate::config::procedure::model::Taus;
 use crate::i18n::{Arg, Note};
 use crate::ingest::{Plan, StreamReport};
-use crate::measurand::{Earth, GyroEvidence, Options, static_bias};
+use crate::measurand::{Earth, GyroEvidence, static_bias};
 use crate::noise::coarse;
 use crate::noise::composite::Sampling;
 use crate::noise::curve_check;
@@ -299,46 +298,16 @@ fn measure(request: &Request<'_>, found: &Found) -> Vec<crate::record::Measurand
             if spec.channel.as_ref().is_some_and(|c| *c != gyro.channel) {
                 continue;
             }
-            let options = Options { remove_earth_rate: spec.earth_rate == EarthRate::Remove };
-            for mut estimate in crate::measurand::evaluate_all(spec.id.id, gyro, &options) {
-                if found.at_rest() && gyro.motion.is_motion() {
-                    estimate = moving(estimate);
+            for mut estimate in spec.measurand.evaluate_gyro(gyro, &spec.options()) {
+                if spec.measurand.needs_stillness && found.at_rest() && gyro.motion.is_motion() {
+                    estimate = spec
+                        .measurand
+                        .not_identifiable(&estimate.channel, None, estimate.method)
+                        .note(Note::new("note.moving"));
                 }
                 rows.push(verdict::row(&estimate, request.limits, request.procedure));
             }
         }
     }
     rows
-}
-
-/// Quantities of noise at rest: a record that moves does not show them.
-const OF_REST: [&str; 19] = [
-    "angle_random_walk",
-    "angle_random_walk_white",
-    "bias_instability",
-    "bias_instability_minimum",
-    "bias_instability_minimum_scaled",
-    "rate_random_walk",
-    "rate_ramp",
-    "quantization",
-    "angle_random_walk_readout",
-    "rate_random_walk_readout",
-    "rate_ramp_readout",
-    "quantization_readout",
-    "markov_sigma",
-    "markov_correlation_time",
-    "quasi_periodic_amplitude",
-    "quasi_periodic_coherence_time",
-    "russian_drift_100s_predicted",
-    "ratio_russian_to_allan_bias",
-    "ratio_russian_to_allan_arw",
-];
-
-/// What is said in place of noise at rest.
-fn moving(estimate: Estimate) -> Estimate {
-    if !OF_REST.contains(&estimate.id) {
-        return estimate;
-    }
-    Estimate::not_identifiable(estimate.id, &estimate.channel, None, estimate.unit, estimate.method)
-        .note(Note::new("note.moving"))
 }

@@ -2,7 +2,7 @@
 //! recording: one pass into blocks, then stretches, means, rows, figures.
 
 use super::evaluate::Found;
-use super::influence_noise::{self, ChangeOfNoise};
+use super::influence_noise;
 use super::{
     Outcome, Request, RunError, drawn, figures, influence_acted, interval_means, settle, table, verdict,
 };
@@ -16,9 +16,11 @@ use crate::influence::intervals;
 use crate::influence::nuisance::{Following, Nuisance};
 use crate::influence::repeatability::{self, Repeatability};
 use crate::influence::{ComparisonTest, RepeatabilityTest, runs};
+use crate::measurand::{ANGLE_RANDOM_WALK_SHIFT, ComparisonEvidence, Measurand};
 use crate::rate_table::blocks::Collector;
 use crate::record::{ConditionRecord, Evidence, IntervalMeanRecord, OptionRecord};
 use crate::recording::{Channel, Role};
+use std::collections::BTreeMap;
 
 /// The files of a recording with their rows.
 fn files(found: &Found) -> Vec<FileSpan> {
@@ -39,7 +41,7 @@ fn earth(procedure: &Procedure, channel: &str) -> f64 {
 fn rows(
     request: &Request<'_>,
     channels: &[String],
-    of: &dyn Fn(usize, &'static str, &'static str) -> Vec<Estimate>,
+    of: &dyn Fn(usize, &Measurand) -> Vec<Estimate>,
 ) -> Vec<crate::record::MeasurandRecord> {
     let mut rows = Vec::new();
     for spec in &request.procedure.measurands {
@@ -47,7 +49,7 @@ fn rows(
             if spec.channel.as_ref().is_some_and(|c| c != channel) {
                 continue;
             }
-            let estimates = of(at, spec.id.id, spec.id.unit);
+            let estimates = of(at, spec.measurand);
             rows.extend(estimates.iter().map(|e| verdict::row(e, request.limits, request.procedure)));
         }
     }
@@ -90,8 +92,7 @@ pub(super) fn repeatability(
         .filter_map(|g| repeatability::evaluate(&blocks, &series, g, earth(procedure, &blocks.gyros[g])))
         .collect();
     let channels: Vec<String> = evaluated.iter().map(|e| e.channel.clone()).collect();
-    let rows =
-        rows(request, &channels, &|at, id, unit| evaluated[at].estimate(id, unit).into_iter().collect());
+    let rows = rows(request, &channels, &|at, measurand| measurand.evaluate_runs(&evaluated[at]));
     let conditions = vec![judge_runs(&RunFacts {
         found: series.list.len(),
         fewest: test.fewest,
@@ -185,18 +186,16 @@ pub(super) fn comparison(
         .collect();
     let acted = influence_acted::find(request, test, &found, &blocks, &series, &axes, progress)?;
     let procedure = request.procedure;
-    let noise: Vec<ChangeOfNoise> = if procedure.measures("angle_random_walk_shift", None) {
+    let noise = if procedure.measures(ANGLE_RANDOM_WALK_SHIFT.id, None) {
         influence_noise::find(request, &found, &blocks, &series, progress)?
     } else {
-        vec![]
+        BTreeMap::new()
     };
     let channels: Vec<String> = evaluated.iter().map(|e| e.channel.clone()).collect();
-    let rows = rows(request, &channels, &|at, id, unit| {
-        let own = evaluated[at].estimates(id, unit);
-        own.into_iter()
-            .chain(noise.iter().filter(|n| n.gyro == channels[at]).filter_map(|n| n.estimate(id, unit)))
-            .map(|e| acted.remark().into_iter().fold(e, Estimate::note))
-            .collect()
+    let rows = rows(request, &channels, &|at, measurand| {
+        let noise = noise.get(&channels[at]).map_or(&[][..], Vec::as_slice);
+        let estimates = measurand.evaluate_comparison(&ComparisonEvidence { bias: &evaluated[at], noise });
+        estimates.into_iter().map(|e| acted.remark().into_iter().fold(e, Estimate::note)).collect()
     });
     match evaluated.iter().find_map(|e| e.temperature.as_ref()) {
         Some(_) => found.checks.made("temperature_in_step", None, "influence_temperature"),

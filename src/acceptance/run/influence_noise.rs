@@ -3,13 +3,13 @@
 use super::evaluate::{self, Found};
 use super::reading;
 use super::{Request, RunError};
-use crate::estimate::{Estimate, Spread, normal_quantile};
-use crate::i18n::{Arg, Note};
-use crate::influence::comparison::level_name;
+use crate::estimate::normal_quantile;
+use crate::influence::comparison::{NoiseChange, level_name};
 use crate::influence::intervals::Intervals;
 use crate::noise::digest::{DigestPlan, RateAccumulator};
 use crate::rate_table::blocks::Blocks;
 use crate::recording::{SampleBlock, Sink};
+use std::collections::BTreeMap;
 
 /// N of one channel in one state.
 struct State {
@@ -17,34 +17,6 @@ struct State {
     level: Option<(String, f64)>,
     /// N with its standard uncertainty, deg/sqrt(h); `None` where it is not shown.
     n: Option<(f64, f64)>,
-}
-
-/// The change of N at one level.
-pub(super) struct ChangeOfNoise {
-    /// Gyro channel.
-    pub gyro: String,
-    channel: String,
-    without: Option<(f64, f64)>,
-    with: Option<(f64, f64)>,
-}
-
-impl ChangeOfNoise {
-    /// The estimate, where it is asked for.
-    pub(super) fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
-        if id != "angle_random_walk_shift" {
-            return None;
-        }
-        let method = "whittle";
-        let (Some(a), Some(b)) = (self.without, self.with) else {
-            let e = Estimate::not_identifiable(id, &self.channel, None, unit, method);
-            return Some(e.note(Note::new("compared.noise_not_shown")));
-        };
-        let spread = Spread::Normal { standard_uncertainty: a.1.hypot(b.1) };
-        let note = Note::new("compared.noise")
-            .with("without", Arg::figures(a.0, 4))
-            .with("with", Arg::figures(b.0, 4));
-        Some(Estimate::measured(id, &self.channel, b.0 - a.0, unit, spread, method).note(note))
-    }
 }
 
 /// Digests of the states of every gyro channel, collected while the recording goes by.
@@ -77,14 +49,14 @@ impl Sink for Collector {
     }
 }
 
-/// Identifies the noise of every state of every channel in a second pass over the recording.
+/// The changes of N by gyro channel: identifies the noise of every state in a second pass over the recording.
 pub(super) fn find(
     request: &Request<'_>,
     found: &Found,
     blocks: &Blocks,
     series: &Intervals,
     progress: &mut dyn FnMut(u64, u64),
-) -> Result<Vec<ChangeOfNoise>, RunError> {
+) -> Result<BTreeMap<String, Vec<NoiseChange>>, RunError> {
     let mut levels: Vec<Option<(String, f64)>> = vec![None];
     let mut spans = Vec::new();
     for interval in &series.list {
@@ -119,7 +91,7 @@ pub(super) fn find(
         .collect();
     let mut collector = Collector { spans, gyros, last: None };
     plan.stream(&mut [&mut collector], progress)?;
-    let mut changes = Vec::new();
+    let mut changes: BTreeMap<String, Vec<NoiseChange>> = BTreeMap::new();
     for (slot, digests) in collector.gyros {
         let step_deg_h = found.report.channels.get(slot).and_then(|c| c.values.quantization_step);
         let channel = found.channels.get(slot).map_or_else(String::new, |c| c.id.clone());
@@ -140,13 +112,8 @@ pub(super) fn find(
             let Some((axis, level)) = &state.level else { continue };
             let level = level_name(*level);
             let place = if axis.is_empty() { level } else { format!("{axis}:{level}") };
-            let channel_at = format!("{channel}@{place}");
-            changes.push(ChangeOfNoise {
-                gyro: channel.clone(),
-                channel: channel_at,
-                without,
-                with: state.n,
-            });
+            let change = NoiseChange { channel: format!("{channel}@{place}"), without, with: state.n };
+            changes.entry(channel.clone()).or_default().push(change);
         }
     }
     Ok(changes)

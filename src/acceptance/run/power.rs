@@ -6,8 +6,7 @@ use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::power::{PowerQuestion, TypicalNoise};
 use crate::estimate::Limit;
 use crate::i18n::{Arg, Note};
-use crate::measurand::GyroEvidence;
-use crate::noise::data::NoiseType;
+use crate::measurand::{GyroEvidence, Measurand, PowerModel};
 use crate::noise::expected::{Power, bias_power, decision_power, deviation_power};
 use crate::noise::model::NoiseModel;
 use crate::noise::static_bias::BiasUncertainty;
@@ -28,42 +27,33 @@ pub struct Situation {
 }
 
 /// Power of the limit on a measurand; `None` for measurands whose power is not a question of statistics here.
-pub fn of_limit(id: &str, limit: &Limit, situation: &Situation) -> Option<Power> {
+pub fn of_limit(measurand: &Measurand, limit: &Limit, situation: &Situation) -> Option<Power> {
     let max = limit.max.filter(|m| *m > 0.0)?;
     let s = situation;
     let samples = (s.duration_s / s.tau0_s).floor() as u64;
-    let term = match id {
-        "angle_random_walk" => Some(NoiseType::AngleRandomWalk),
-        "bias_instability" => Some(NoiseType::Flicker),
-        "rate_random_walk" => Some(NoiseType::RateRandomWalk),
-        "rate_ramp" => Some(NoiseType::RateRamp),
-        "quantization" => Some(NoiseType::Quantization),
-        _ => None,
-    };
-    if let Some(term) = term {
-        let background = s.background.with(term, 0.0);
-        return decision_power(term, max, &background, samples, s.tau0_s, limit.risk);
-    }
     let hours = s.duration_s / 3600.0;
-    let window_s = match id {
-        "russian_drift_100s" | "russian_drift_100s_3sigma" => 100.0,
-        "russian_sigma_10s" | "russian_arw_10s" => 10.0,
-        "static_bias" => {
+    match measurand.power? {
+        PowerModel::NoiseTerm(term) => {
+            let background = s.background.with(term, 0.0);
+            decision_power(term, max, &background, samples, s.tau0_s, limit.risk)
+        }
+        PowerModel::WindowMeans { window_s } => {
+            let mut model = s.background;
+            model.r = 0.0;
+            let edf = |h: f64| {
+                let n = (h * 3600.0 / window_s).floor() as u64;
+                edf_of_window_std(n, window_s, |t| model.mean_variance(t)).unwrap_or(1.0)
+            };
+            Some(deviation_power(edf, hours, limit.risk))
+        }
+        PowerModel::Mean => {
             let uncertainty = |h: f64| {
                 let others = [("earth_rate", s.earth_uncertainty_deg_h)];
                 BiasUncertainty::of_mean(&s.background.into(), h * 3600.0, None, &others).standard()
             };
-            return Some(bias_power(max, uncertainty, hours, limit.risk));
+            Some(bias_power(max, uncertainty, hours, limit.risk))
         }
-        _ => return None,
-    };
-    let mut model = s.background;
-    model.r = 0.0;
-    let edf = |h: f64| {
-        let n = (h * 3600.0 / window_s).floor() as u64;
-        edf_of_window_std(n, window_s, |t| model.mean_variance(t)).unwrap_or(1.0)
-    };
-    Some(deviation_power(edf, hours, limit.risk))
+    }
 }
 
 /// The power rows of a report, one for each limit and channel.
@@ -80,7 +70,7 @@ pub fn records(limits: &EffectiveLimits, gyros: &[GyroEvidence]) -> Vec<PowerRec
                 tau0_s: gyro.tau0_s,
                 earth_uncertainty_deg_h: gyro.earth.map_or(0.0, |e| e.uncertainty_deg_h),
             };
-            let Some(power) = of_limit(spec.measurand.id, &spec.limit, &situation) else { continue };
+            let Some(power) = of_limit(spec.measurand, &spec.limit, &situation) else { continue };
             let Some(limit) = spec.limit.max else { continue };
             rows.push(PowerRecord {
                 id: spec.measurand.id.to_owned(),
@@ -118,7 +108,7 @@ pub fn warning(question: &PowerQuestion) -> Option<(Note, Option<Note>)> {
         earth_uncertainty_deg_h: 0.0,
     };
     let limit = &question.limit;
-    let power = of_limit(limit.measurand.id, &limit.limit, &situation)?;
+    let power = of_limit(limit.measurand, &limit.limit, &situation)?;
     if power.is_enough() {
         return None;
     }

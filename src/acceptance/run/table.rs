@@ -3,24 +3,21 @@
 use super::evaluate::{self, Found};
 use super::pass::{Inside, Overview};
 use super::reading::{self, tidy};
-use super::table_others::Others;
-use super::{Outcome, Request, RunError, figures, settle, table_steps, verdict};
+use super::{Outcome, Request, RunError, figures, settle, table_evidence, table_steps, verdict};
 use crate::acceptance::condition::checks::CheckLog;
 use crate::acceptance::condition::table::{ChannelFact, Settling, TableFacts, judge_and_log, judge_scale};
 use crate::acceptance::condition::thermometer::{Thermometer, judge_scale_of_temperature};
 use crate::acceptance::condition::{Facts, judge_all};
 use crate::config::procedure::Procedure;
-use crate::config::procedure::scale_factor_unit::scale_factor_unit;
-use crate::estimate::Estimate;
 use crate::figure::Figure;
-use crate::i18n::{Arg, Note};
 use crate::ingest::Plan;
+use crate::measurand::{self, Stimulus, TableEvidence};
 use crate::noise::tau_grid::TauGrid;
 use crate::rate_table::blocks::{Blocks, Collector};
 use crate::rate_table::inner_axis::InnerAxis;
-use crate::rate_table::scale_factor::{self, ScaleFactor};
+use crate::rate_table::scale_factor::ScaleFactor;
 use crate::rate_table::settling::Unsettled;
-use crate::rate_table::{Setup, TableRun, combine, stamps};
+use crate::rate_table::{Setup, TableRun, stamps};
 use crate::record::{ConditionRecord, OptionRecord};
 use crate::recording::window::Windowed;
 use crate::recording::{Channel, Role};
@@ -35,91 +32,44 @@ pub(super) fn execute(
     if !setup.known.is_empty() {
         return super::table_known::finish(request, setup, found, &run.blocks);
     }
-    let wanted = |id: &str| procedure.measurands.iter().any(|m| m.id.id == id);
-    let evaluated: Vec<(usize, Option<ScaleFactor>)> = (0..run.blocks.gyros.len())
-        .map(|gyro| {
-            let unit = scale_factor_unit(procedure, &run.blocks.gyros[gyro]);
-            (gyro, scale_factor::evaluate(&run, gyro, setup, unit, &wanted))
-        })
-        .collect();
+    let evaluated = table_evidence::evaluate(procedure, &run, setup);
     let mut conditions = judge_and_log(&facts(request, &run, setup, &evaluated), &found.checks);
     if setup.known.is_empty() && wants_alignment(procedure) {
         // The input axis is square to the axis that is turned about: its output follows by the tilt only.
         conditions.retain(|c| c.id != "table_reached");
     }
-    let scales = evaluated.iter().filter_map(|(_, c)| c.as_ref());
+    let scales = evaluated.iter().filter_map(|c| c.line.as_ref());
     conditions.extend(scales.filter_map(|c| judge_scale(&c.channel, c.factor)));
-    if let Some(thermometer) = temperature(request, setup, &run, &wanted) {
+    if let Some(thermometer) = temperature(request, setup, &run) {
         found.checks.made("temperature_unit", Some(&thermometer.channel), "units");
         conditions.extend(judge_scale_of_temperature(&thermometer));
     }
     conditions.extend(usual_conditions(request, &found));
-    let others: Vec<Others> = evaluated
-        .iter()
-        .map(|(gyro, channel)| Others::evaluate(request, &run, setup, *gyro, channel.as_ref(), &wanted))
-        .collect();
     let mut rows = Vec::new();
     for spec in &procedure.measurands {
-        for (_, channel) in &evaluated {
-            let Some(channel) = channel else { continue };
-            if spec.channel.as_ref().is_some_and(|c| *c != channel.channel) {
-                continue;
-            }
-            let given = !setup.sine || !super::table_others::SINE_IDS.contains(&spec.id.id);
-            if given && let Some(estimate) = channel.estimate(spec.id.id, spec.id.unit, setup, &run.steps) {
-                let estimate = without_earth(procedure, channel, setup, estimate);
-                rows.push(verdict::row(&estimate, request.limits, procedure));
-            }
-        }
-        rows.extend(
-            others
-                .iter()
-                .flat_map(|o| o.estimate(spec, setup))
-                .map(|e| verdict::row(&e, request.limits, procedure)),
-        );
+        let asked = |c: &&TableEvidence<'_>| spec.channel.as_ref().is_none_or(|own| *own == c.channel);
+        let estimates = evaluated.iter().filter(asked).flat_map(|c| spec.measurand.evaluate_steps(c));
+        rows.extend(estimates.map(|e| verdict::row(&e, request.limits, procedure)));
     }
     let mut drawn = draw(request, &run, &evaluated);
     let shown = |id: &str| procedure.report.shows(id);
     if shown("dead_zone") {
         let several = evaluated.len() > 1;
-        let zones = others.iter().filter_map(|o| o.zone.as_ref());
+        let zones = evaluated.iter().filter_map(|c| c.dead_zone.as_ref());
         drawn.extend(zones.map(|z| figures::dead_zone::figure(z, several)));
     }
     let mut record = settle::record(request, &found, conditions, rows, vec![], &drawn);
     record.table_steps = evaluated
         .iter()
-        .filter_map(|(gyro, channel)| Some(table_steps::records(&run, channel.as_ref()?, *gyro)))
+        .filter_map(|c| Some(table_steps::records(&run, c.line.as_ref()?, c.gyro)))
         .flatten()
         .collect();
     let tables = vec![("table_steps.csv".to_owned(), table_steps::csv(&record.table_steps))];
     Ok(Outcome { record, figures: drawn, tables })
 }
 
-/// The bias of the line without the Earth rate along the axis, where the site tells it.
-fn without_earth(
-    procedure: &Procedure,
-    channel: &ScaleFactor,
-    setup: &Setup,
-    mut estimate: Estimate,
-) -> Estimate {
-    let Some(site) = procedure.site.as_ref().filter(|_| estimate.id == "scale_factor_bias") else {
-        return estimate;
-    };
-    let earth = site.earth_rate_along(&channel.channel);
-    let found = channel.output_without(earth.value);
-    let others = [channel.factor * earth.uncertainty, setup.rate_uncertainty * earth.value];
-    estimate.value = Some(found.value);
-    estimate.spread = combine::spread(&found, 1.0, &others);
-    estimate.note(Note::new("on_table.earth_removed").with("earth", Arg::figures(earth.value, 5)))
-}
-
 /// The thermometer of the test, where the procedure states no temperature that its readings are judged by.
-fn temperature(
-    request: &Request<'_>,
-    setup: &Setup,
-    run: &TableRun,
-    wanted: &dyn Fn(&str) -> bool,
-) -> Option<Thermometer> {
+fn temperature(request: &Request<'_>, setup: &Setup, run: &TableRun) -> Option<Thermometer> {
     let procedure = request.procedure;
     let is_it = |id: &str| setup.temperature.as_ref().is_none_or(|t| t == id);
     let spec =
@@ -132,7 +82,7 @@ fn temperature(
         channel: id.clone(),
         unit: spec.unit_in_file.clone(),
         mean_deg_c: sum / n,
-        counts: wanted("scale_factor_temperature_sensitivity"),
+        counts: procedure.measures(measurand::SCALE_FACTOR_TEMPERATURE_SENSITIVITY.id, None),
     })
 }
 
@@ -146,7 +96,7 @@ fn outer_levels(run: &TableRun) -> usize {
 }
 
 fn wants_alignment(procedure: &Procedure) -> bool {
-    procedure.measurands.iter().any(|m| crate::rate_table::alignment::IDS.contains(&m.id.id))
+    table_evidence::wants(procedure, Stimulus::OuterTurns)
 }
 
 /// The conditions that every test has.
@@ -233,7 +183,7 @@ fn facts(
     request: &Request<'_>,
     run: &TableRun,
     setup: &Setup,
-    evaluated: &[(usize, Option<ScaleFactor>)],
+    evaluated: &[TableEvidence<'_>],
 ) -> TableFacts {
     let (procedure, steps) = (request.procedure, &run.steps);
     let inner = InnerAxis::of(&run.blocks);
@@ -283,11 +233,11 @@ fn facts(
         inner_during_step: inner.during_step,
         channels: evaluated
             .iter()
-            .filter_map(|(gyro, channel)| {
-                let along_outer = || inner.output_per_rate.get(*gyro).copied().flatten();
-                let by_steps = || channel.as_ref().map(|c| (c.factor, c.factor_uncertainty()));
+            .filter_map(|c| {
+                let along_outer = || inner.output_per_rate.get(c.gyro).copied().flatten();
+                let by_steps = || c.line.as_ref().map(|l| (l.factor, l.factor_uncertainty()));
                 let factor = if about_outer { along_outer() } else { by_steps() };
-                channel_fact(request, run.blocks.gyros.get(*gyro)?, channel.as_ref(), factor)
+                channel_fact(request, &c.channel, c.line.as_ref(), factor)
             })
             .collect(),
     }
@@ -299,7 +249,6 @@ fn channel_fact(
     channel: Option<&ScaleFactor>,
     factor: Option<(f64, f64)>,
 ) -> Option<ChannelFact> {
-    const BIAS: &str = "scale_factor_bias";
     let spec = request.procedure.channel(id)?;
     let earth = request.procedure.site.as_ref().map(|site| site.earth_rate_along(id).value);
     let at_rest = channel.zip(earth).map(|(c, earth)| (c.bias - c.factor * earth, earth));
@@ -310,17 +259,23 @@ fn channel_fact(
         factor: factor.map(|f| f.0),
         standard: factor.map_or(0.0, |f| f.1),
         bias_and_earth: at_rest,
-        bias_limit: request.limits.limit(BIAS, id).and_then(|l| l.limit.largest_magnitude()),
+        bias_limit: request
+            .limits
+            .limit(measurand::SCALE_FACTOR_BIAS.id, id)
+            .and_then(|l| l.limit.largest_magnitude()),
     })
 }
 
-fn draw(request: &Request<'_>, run: &TableRun, evaluated: &[(usize, Option<ScaleFactor>)]) -> Vec<Figure> {
+fn draw(request: &Request<'_>, run: &TableRun, evaluated: &[TableEvidence<'_>]) -> Vec<Figure> {
     let wanted = |id: &str| request.procedure.report.shows(id);
     let several = evaluated.len() > 1;
     let mut drawn = Vec::new();
-    for channel in evaluated.iter().filter_map(|(_, c)| c.as_ref()) {
+    for channel in evaluated.iter().filter_map(|c| c.line.as_ref()) {
         if wanted("scale_factor_residual") {
-            let limit = request.limits.limit("scale_factor_nonlinearity", &channel.channel).map(|l| &l.limit);
+            let limit = request
+                .limits
+                .limit(measurand::SCALE_FACTOR_NONLINEARITY.id, &channel.channel)
+                .map(|l| &l.limit);
             drawn.push(figures::scale_factor::residuals(run, channel, limit, several));
         }
         if wanted("table_polar") {

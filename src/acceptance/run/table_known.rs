@@ -4,10 +4,11 @@ use super::evaluate::Found;
 use super::{Outcome, Request, RunError, settle, table, verdict};
 use crate::acceptance::condition::positions::{EarthFact, judge_earth};
 use crate::acceptance::condition::table::judge_scale;
+use crate::measurand::KnownInputEvidence;
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
-use crate::rate_table::Setup;
 use crate::rate_table::blocks::Blocks;
-use crate::rate_table::known::{self, Input, Positions};
+use crate::rate_table::known::{self, Positions};
+use crate::rate_table::setup::{Input, Known, Setup};
 use crate::rate_table::turns;
 
 pub(super) fn finish(
@@ -94,12 +95,11 @@ pub(super) fn finish(
         }
     }
     conditions.extend(table::usual_conditions(request, &found));
+    let evidence = KnownInputEvidence { positions: &positions, turns: turns.as_ref() };
     let mut rows = Vec::new();
     for spec in &procedure.measurands {
         let asked = |channel: &str| spec.channel.as_ref().is_none_or(|c| c == channel);
-        let of_positions = positions.iter().filter_map(|p| p.estimate(spec.id.id, spec.id.unit));
-        let of_turns = turns.iter().flat_map(|t| t.estimates(spec.id.id, spec.id.unit));
-        for estimate in of_positions.chain(of_turns) {
+        for estimate in spec.measurand.evaluate_known_input(&evidence) {
             if asked(estimate.channel.split("<-").next().unwrap_or_default()) {
                 rows.push(verdict::row(&estimate, request.limits, procedure));
             }
@@ -121,7 +121,7 @@ fn turned_instead(
     blocks: &Blocks,
     setup: &Setup,
     channel: &str,
-    evaluate: &dyn Fn(&[known::Known], usize) -> Option<Positions>,
+    evaluate: &dyn Fn(&[Known], usize) -> Option<Positions>,
 ) -> Option<(String, f64)> {
     let mut stated = setup.known.clone();
     for k in stated.iter_mut().filter(|k| matches!(k.input, Input::Position { .. })) {

@@ -7,7 +7,7 @@ use crate::config::procedure::obtainable;
 use crate::config::procedure::scale_factor_unit::scale_factor_unit;
 use crate::estimate::Estimate;
 use crate::i18n::Note;
-use crate::ids::{MeasurandId, Test};
+use crate::measurand::{Measurand, Test};
 use crate::record::{MeasurandRecord, RunKind};
 use crate::recording::Channel;
 
@@ -24,16 +24,16 @@ pub(super) fn complete(
     let procedure = request.procedure;
     for spec in &procedure.measurands {
         for channel in asked(request, spec, channels) {
-            let given = rows.iter().any(|r| r.id == spec.id.id && gyro_of(&r.channel) == channel);
+            let given = rows.iter().any(|r| r.id == spec.measurand.id && gyro_of(&r.channel) == channel);
             if !given {
-                let estimate = not_shown(procedure, spec.id, channel);
+                let estimate = not_shown(procedure, spec.measurand, channel);
                 rows.push(verdict::row(&estimate, request.limits, procedure));
             }
         }
     }
     let place = |row: &MeasurandRecord| {
         let of = |m: &MeasurandSpec| {
-            m.id.id == row.id && m.channel.as_deref().is_none_or(|c| c == gyro_of(&row.channel))
+            m.measurand.id == row.id && m.channel.as_deref().is_none_or(|c| c == gyro_of(&row.channel))
         };
         procedure.measurands.iter().position(of).unwrap_or(usize::MAX)
     };
@@ -47,7 +47,7 @@ fn asked<'a>(request: &'a Request<'_>, spec: &'a MeasurandSpec, channels: &'a [C
         return vec![own];
     }
     let mut list: Vec<&str> = channels.iter().filter(|c| c.role.is_gyro()).map(|c| c.id.as_str()).collect();
-    let limited = request.limits.set.limits.iter().filter(|l| l.measurand.id == spec.id.id);
+    let limited = request.limits.set.limits.iter().filter(|l| l.measurand.id == spec.measurand.id);
     for channel in limited.filter_map(|l| l.channel.as_deref()) {
         // A limits file may serve procedures with other channels.
         if request.procedure.channel(channel).is_some() && !list.contains(&channel) {
@@ -57,27 +57,26 @@ fn asked<'a>(request: &'a Request<'_>, spec: &'a MeasurandSpec, channels: &'a [C
     list
 }
 
-fn not_shown(procedure: &Procedure, measurand: &'static MeasurandId, channel: &str) -> Estimate {
-    let id = measurand.id;
+fn not_shown(procedure: &Procedure, measurand: &'static Measurand, channel: &str) -> Estimate {
     let unit = match measurand.unit {
         "" => scale_factor_unit(procedure, channel).0,
         unit => unit,
     };
-    let why = obtainable::why_not(procedure, id, channel)
+    let why = obtainable::why_not(procedure, measurand, channel)
         .unwrap_or_else(|| Note::new(general(procedure, measurand)));
-    Estimate::not_identifiable(id, channel, None, unit, "not_evaluated").note(why)
+    Estimate::not_identifiable(measurand.id, channel, None, unit, "not_evaluated").note(why)
 }
 
 /// What a test lacks where the evaluation of a channel gave nothing at all.
-fn general(procedure: &Procedure, measurand: &MeasurandId) -> &'static str {
-    match measurand.test {
+fn general(procedure: &Procedure, measurand: &Measurand) -> &'static str {
+    match measurand.test() {
         Test::RateTable => match &procedure.rate_table {
             Some(setup) if setup.known.is_empty() => "unshown.no_line",
             _ => "unshown.few_positions",
         },
-        Test::Influence if procedure.repeatability_test.is_some() => "unshown.few_runs",
-        Test::Influence => "unshown.no_intervals",
-        Test::Temperature => "unshown.no_course",
+        Test::Repeatability => "unshown.few_runs",
+        Test::Comparison => "unshown.no_intervals",
+        Test::Temperature | Test::WarmUp => "unshown.no_course",
         Test::Static => "unshown.nothing",
     }
 }
@@ -94,7 +93,7 @@ mod tests {
         let mut limits = EffectiveLimits::default();
         for (channel, max) in [(None, 1.0), (Some("rate"), 2.0), (Some("rate@20"), 3.0)] {
             limits.set.limits.push(LimitSpec {
-                measurand: crate::ids::find("angle_random_walk_at_temperature").unwrap(),
+                measurand: &crate::measurand::ANGLE_RANDOM_WALK_AT_TEMPERATURE,
                 channel: channel.map(str::to_owned),
                 limit: Limit {
                     min: None,

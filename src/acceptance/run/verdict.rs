@@ -13,7 +13,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
     let other = spec.and_then(|l| l.recorded_unit).filter(|unit| *unit != estimate.unit);
     let nothing = Estimate::not_identifiable(estimate.id, "", None, estimate.unit, "");
     // Of what can be negative and is not shown, no lower limit is known to be met.
-    let signed = crate::ids::find(estimate.id).is_some_and(|m| m.signed);
+    let signed = crate::measurand::find(estimate.id).is_some_and(|m| m.signed);
     let judgement = limit.map(|l| {
         let undecided = other.is_some() || estimate.disputed;
         let mut judged = judge(if undecided { &nothing } else { estimate }, l);

@@ -8,7 +8,7 @@ use crate::config::layout::tables::LAYOUT_FILE;
 use crate::config::manifest::tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
 use crate::i18n::{Lang, Localize};
-use crate::ids::MEASURANDS;
+use crate::measurand::MEASURANDS;
 use std::fmt::Write;
 
 /// Every key of a procedure file, as Markdown.
@@ -44,7 +44,7 @@ pub fn model_reference() -> String {
 /// Every measurand that may be asked for, as Markdown.
 pub fn measurand_reference() -> String {
     let mut out = String::from("| id | unit | what it is |\n|---|---|---|\n");
-    for m in MEASURANDS.iter().filter(|m| m.available) {
+    for m in MEASURANDS {
         let _ = writeln!(out, "| `{}` | {} | {} |", m.id, m.unit, m.doc);
     }
     out

@@ -2,7 +2,7 @@
 
 use super::diagnostics::Span;
 use crate::estimate::Limit;
-use crate::ids::MeasurandId;
+use crate::measurand::Measurand;
 use crate::record::ReferenceRecord;
 
 /// Limits, references and typical values of one file, in the units of the measurands.
@@ -22,7 +22,7 @@ pub struct LimitSet {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LimitSpec {
     /// Measurand judged.
-    pub measurand: &'static MeasurandId,
+    pub measurand: &'static Measurand,
     /// Channel judged; `None`: every one without a limit of its own.
     pub channel: Option<String>,
     /// The limit, in the unit of the measurand.
@@ -37,7 +37,7 @@ pub struct LimitSpec {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
     /// Measurand.
-    pub measurand: &'static MeasurandId,
+    pub measurand: &'static Measurand,
     /// Channel; `None`: every one.
     pub channel: Option<String>,
     /// Value and where it was published.
@@ -52,7 +52,7 @@ pub struct Reference {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
     /// Measurand.
-    pub measurand: &'static MeasurandId,
+    pub measurand: &'static Measurand,
     /// Value in its unit.
     pub value: f64,
     /// Where it is declared.

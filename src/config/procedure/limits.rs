@@ -10,7 +10,7 @@ use super::section::{Entry, Section};
 use super::slips;
 use crate::estimate::{Limit, Rule};
 use crate::i18n::Note;
-use crate::ids::MeasurandId;
+use crate::measurand::Measurand;
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
 
 impl Loaded<LimitsFile> {
@@ -188,13 +188,13 @@ pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut
 }
 
 /// A sentence about a measurand.
-fn about(key: &'static str, measurand: &MeasurandId) -> Note {
+fn about(key: &'static str, measurand: &Measurand) -> Note {
     Note::new(key).with("measurand", measurand.id)
 }
 
 /// The limit that a factor makes of a typical value: an upper one, or one on the magnitude of what can be negative.
 /// `None` when no unit could meet it or no number could hold it.
-fn by_factor(measurand: &MeasurandId, factor: f64, typical: f64) -> Option<Bounds> {
+fn by_factor(measurand: &Measurand, factor: f64, typical: f64) -> Option<Bounds> {
     let bound = factor * typical.abs();
     let usable = bound.is_finite() && bound > 0.0;
     usable.then_some(Bounds { min: measurand.signed.then_some(-bound), max: Some(bound) })
@@ -261,7 +261,7 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
 }
 
 /// Reports a limit without bounds, or with `max_abs` or `factor` beside other bounds.
-fn bounds_are_stated_once(section: &Section, measurand: &MeasurandId, reader: &mut Reader<'_>) -> Option<()> {
+fn bounds_are_stated_once(section: &Section, measurand: &Measurand, reader: &mut Reader<'_>) -> Option<()> {
     let states = |key: &str| section.entry(key).is_some();
     if !BOUNDS.iter().any(|key| states(key)) {
         let help = Some("check.help.limit_value".into());
@@ -278,7 +278,7 @@ fn bounds_are_stated_once(section: &Section, measurand: &MeasurandId, reader: &m
 }
 
 /// The bounds that are given as values.
-fn stated_bounds(section: &Section, measurand: &MeasurandId, reader: &mut Reader<'_>) -> Option<Bounds> {
+fn stated_bounds(section: &Section, measurand: &Measurand, reader: &mut Reader<'_>) -> Option<Bounds> {
     let Some(bound) = section.number("max_abs") else {
         return Some(Bounds { min: section.number("min"), max: section.number("max") });
     };
@@ -298,7 +298,7 @@ fn stated_bounds(section: &Section, measurand: &MeasurandId, reader: &mut Reader
 /// The bounds that a factor makes of the typical value.
 fn bounds_by_factor(
     section: &Section,
-    measurand: &MeasurandId,
+    measurand: &Measurand,
     factor: f64,
     reference: Option<&Reference>,
     reader: &mut Reader<'_>,
@@ -321,7 +321,7 @@ fn bounds_by_factor(
 /// Reports bounds that no value can meet.
 fn bounds_can_be_met(
     section: &Section,
-    measurand: &MeasurandId,
+    measurand: &Measurand,
     Bounds { min, max }: Bounds,
     reader: &mut Reader<'_>,
 ) -> Option<()> {

@@ -4,8 +4,8 @@ use super::diagnostics::{Problem, SourceText, Span};
 use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
-use crate::ids::MeasurandId;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
+use crate::measurand::Measurand;
 use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
 use crate::temperature::{TemperatureTest, WarmUpTest};
@@ -280,7 +280,7 @@ pub struct ExplainSpec {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasurandSpec {
     /// What.
-    pub id: &'static MeasurandId,
+    pub measurand: &'static Measurand,
     /// For which channel; `None`: every gyro channel.
     pub channel: Option<String>,
     /// What is done with the Earth rate (`static_bias`).
@@ -357,7 +357,7 @@ impl Procedure {
     /// True when the measurand is determined for the channel.
     pub fn measures(&self, measurand: &str, channel: Option<&str>) -> bool {
         self.measurands.iter().any(|m| {
-            m.id.id == measurand
+            m.measurand.id == measurand
                 && match (&m.channel, channel) {
                     (Some(own), Some(asked)) => own == asked,
                     _ => true,

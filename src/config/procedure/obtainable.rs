@@ -2,11 +2,10 @@
 
 use super::model::{MeasurandSpec, Procedure};
 use crate::i18n::Note;
-use crate::ids::Test;
+use crate::measurand::{Measurand, Stimulus, Test, TurnAxis};
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
-use crate::rate_table::Setup;
-use crate::rate_table::known::{self, Input, Positions};
-use crate::rate_table::{alignment, dead_zone};
+use crate::rate_table::known;
+use crate::rate_table::setup::{Input, Known, Setup};
 use crate::recording::Role;
 
 /// Why a measurand can be shown for none of the channels it is asked for; `None` where it can be for one.
@@ -15,47 +14,48 @@ pub fn never(procedure: &Procedure, spec: &MeasurandSpec) -> Option<Note> {
         Some(own) => vec![own],
         None => procedure.gyro_channels().map(|c| c.channel.id.as_str()).collect(),
     };
-    let mut reasons = channels.into_iter().map(|c| why_not(procedure, spec.id.id, c));
+    let mut reasons = channels.into_iter().map(|c| why_not(procedure, spec.measurand, c));
     let first = reasons.next()??;
     reasons.all(|r| r.is_some()).then_some(first)
 }
 
 /// Why a test on a table cannot show a measurand on a channel whatever is recorded; `None` where it can, or where that
 /// is not known before the recording is read.
-pub fn why_not(procedure: &Procedure, id: &str, channel: &str) -> Option<Note> {
+pub fn why_not(procedure: &Procedure, measurand: &Measurand, channel: &str) -> Option<Note> {
     let setup = procedure.rate_table.as_ref()?;
-    if crate::ids::find(id).is_none_or(|m| m.test != Test::RateTable) {
+    if measurand.test() != Test::RateTable {
         return None;
     }
     let key = if setup.known.is_empty() {
-        of_steps(procedure, setup, id)
+        of_steps(procedure, setup, measurand)
     } else {
-        of_known(procedure, setup, id, channel)
+        of_known(procedure, setup, measurand, channel)
     };
     key.map(Note::new)
 }
 
-fn of_steps(procedure: &Procedure, setup: &Setup, id: &str) -> Option<&'static str> {
+fn of_steps(procedure: &Procedure, setup: &Setup, measurand: &Measurand) -> Option<&'static str> {
     let has = |role: Role| procedure.channels.iter().any(|c| c.channel.role == role);
-    if id == "cross_axis" {
-        return Some("unshown.needs_turns");
-    }
-    if id == "sine_response" && !setup.sine {
-        return Some("unshown.needs_sine");
-    }
-    if alignment::IDS.contains(&id) {
-        return (!has(Role::OuterRate) || !has(Role::TableAngle)).then_some("unshown.needs_outer");
-    }
     let turned = has(Role::TableRate) || has(Role::TableAngle);
-    (!turned).then_some(if dead_zone::IDS.contains(&id) {
-        "unshown.needs_table_rates"
-    } else {
-        "unshown.needs_table"
-    })
+    match measurand.by_steps().map(|s| s.stimulus) {
+        None => Some("unshown.needs_turns"),
+        Some(Stimulus::OpenLoopRates) if !setup.sine => Some("unshown.needs_sine"),
+        Some(Stimulus::OuterTurns) => {
+            (!has(Role::OuterRate) || !has(Role::TableAngle)).then_some("unshown.needs_outer")
+        }
+        Some(Stimulus::SmallRates) => (!turned).then_some("unshown.needs_table_rates"),
+        Some(Stimulus::Rates | Stimulus::OpenLoopRates) => (!turned).then_some("unshown.needs_table"),
+    }
 }
 
-fn of_known(procedure: &Procedure, setup: &Setup, id: &str, channel: &str) -> Option<&'static str> {
-    let is_turn = |k: &&known::Known| matches!(k.input, Input::Turn { .. });
+fn of_known(
+    procedure: &Procedure,
+    setup: &Setup,
+    measurand: &Measurand,
+    channel: &str,
+) -> Option<&'static str> {
+    let Some(input) = measurand.by_known_input() else { return Some("unshown.needs_steps") };
+    let is_turn = |k: &&Known| matches!(k.input, Input::Turn { .. });
     let turned = |own: bool| {
         setup
             .known
@@ -63,20 +63,14 @@ fn of_known(procedure: &Procedure, setup: &Setup, id: &str, channel: &str) -> Op
             .filter(is_turn)
             .any(|k| k.channel.as_deref().is_some_and(|c| (c == channel) == own))
     };
-    let by_turns = match id {
-        "scale_factor" | "scale_factor_error" => turned(true),
-        "cross_axis" => turned(false),
-        _ => false,
-    };
-    let by_positions = Positions::IDS.contains(&id);
-    if by_turns || by_positions && earth_rates_differ(procedure, setup, channel) {
+    let by_turns = input.turns.is_some_and(|axis| turned(axis == TurnAxis::Own));
+    if by_turns || input.positions && earth_rates_differ(procedure, setup, channel) {
         return None;
     }
-    Some(match id {
-        "cross_axis" => "unshown.needs_turns",
-        "scale_factor" => "unshown.needs_own_turn",
-        _ if by_positions => "unshown.few_positions",
-        _ => "unshown.needs_steps",
+    Some(match input.turns {
+        _ if input.positions => "unshown.few_positions",
+        Some(TurnAxis::Own) => "unshown.needs_own_turn",
+        Some(TurnAxis::Other) | None => "unshown.needs_turns",
     })
 }
 

@@ -15,6 +15,7 @@ use super::tables::limits::LIMITS_FILE;
 use super::{channel, recording_options, validate};
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
+use crate::measurand::EARTH_RATE_OPTION;
 use crate::record::{ClauseRecord, WaiverRecord};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
 use sagnac_ingest::layout::LayoutFile;
@@ -305,12 +306,17 @@ fn started(section: &Section) -> Option<StartAsked> {
 }
 
 fn measurand(section: &Section) -> Option<MeasurandSpec> {
-    let earth_rate = match section.table("options").and_then(|o| o.word("earth_rate")) {
+    let earth_rate = match section.table("options").and_then(|o| o.word(EARTH_RATE_OPTION)) {
         Some("keep") => EarthRate::Keep,
         _ => EarthRate::Remove,
     };
-    let id = section.measurand("id")?;
-    Some(MeasurandSpec { id, channel: section.text("channel"), earth_rate, span: section.span.clone() })
+    let measurand = section.measurand("id")?;
+    Some(MeasurandSpec {
+        measurand,
+        channel: section.text("channel"),
+        earth_rate,
+        span: section.span.clone(),
+    })
 }
 
 pub(super) fn clause(section: &Section) -> ClauseRecord {

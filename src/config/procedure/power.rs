@@ -8,6 +8,7 @@ use super::diagnostics::{Problem, SourceText};
 use super::limits::{EffectiveLimits, LimitSpec, LimitsFile};
 use super::model::{Loaded, Procedure};
 use crate::i18n::Note;
+use crate::measurand;
 use std::ops::Range;
 
 /// Typical noise of a family, in inside units. `None`: not stated.
@@ -44,11 +45,11 @@ pub struct PowerQuestion {
 pub fn questions(procedure: &Procedure, effective: &EffectiveLimits) -> Vec<PowerQuestion> {
     let Some(duration_s) = procedure.conditions.minimum_duration_s else { return vec![] };
     let typical = TypicalNoise {
-        angle_random_walk: effective.expected("angle_random_walk"),
-        bias_instability: effective.expected("bias_instability"),
-        rate_random_walk: effective.expected("rate_random_walk"),
-        rate_ramp: effective.expected("rate_ramp"),
-        quantization: effective.expected("quantization"),
+        angle_random_walk: effective.expected(measurand::ANGLE_RANDOM_WALK.id),
+        bias_instability: effective.expected(measurand::BIAS_INSTABILITY.id),
+        rate_random_walk: effective.expected(measurand::RATE_RANDOM_WALK.id),
+        rate_ramp: effective.expected(measurand::RATE_RAMP.id),
+        quantization: effective.expected(measurand::QUANTIZATION.id),
     };
     let gyro: Vec<&str> = procedure.gyro_channels().map(|c| c.channel.id.as_str()).collect();
     let mut list = vec![];

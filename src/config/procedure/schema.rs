@@ -11,7 +11,7 @@ use crate::config::manifest::tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
 use crate::effect::EFFECTS;
 use crate::i18n::{EffectText, Lang, effect_text};
-use crate::ids::MEASURANDS;
+use crate::measurand::MEASURANDS;
 use serde_json::{Map, Value, json};
 
 /// The draft that schemas are written in.
@@ -158,7 +158,7 @@ fn value(kind: Kind) -> Value {
 }
 
 fn available() -> impl Iterator<Item = &'static str> {
-    MEASURANDS.iter().filter(|m| m.available).map(|m| m.id)
+    MEASURANDS.iter().map(|m| m.id)
 }
 
 fn number(range: Range) -> Value {

@@ -48,7 +48,7 @@ pub(super) fn of_set(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
             let other = set.limits.iter().find(|l| slow(l) && largest(l) < bound / FAST_DEG_H);
             let why = if let Some(other) = other {
                 Note::new("check.slip.other_limit").with("measurand", other.measurand.id)
-            } else if bound > IMPLAUSIBLE_DEG_H && is_drift(limit.measurand.id) {
+            } else if bound > IMPLAUSIBLE_DEG_H && limit.measurand.drift {
                 Note::new("check.slip.size")
             } else {
                 continue;
@@ -118,11 +118,6 @@ fn typical(set: &LimitSet, limit: &LimitSpec) -> Option<(f64, Span)> {
         references.map(|r| (r.record.value, r.span.clone())).chain(stated.map(|e| (e.value, e.span.clone())));
     // What can be negative may be near zero and tells no size.
     values.find(|(v, _)| *v != 0.0 && !limit.measurand.signed)
-}
-
-/// True of what is a drift and no mean.
-fn is_drift(id: &str) -> bool {
-    id.starts_with("bias_instability") || id.starts_with("russian_") || id.starts_with("bias_repeatability")
 }
 
 fn in_fast_unit(fast: &FastUnit, bound: f64, why: Note, source: &SourceText) -> Problem {

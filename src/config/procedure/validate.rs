@@ -5,7 +5,7 @@ use super::model::{ChannelSpec, EarthRate, MeasurandSpec, Procedure, Taus};
 use super::reader::{Reader, meant, shorten};
 use super::section::Section;
 use crate::i18n::Note;
-use crate::ids;
+use crate::measurand::{self, EARTH_RATE_OPTION, Options, Test};
 use crate::recording::{ColumnRef, Role};
 use sagnac_core::spelling::nearest;
 
@@ -46,7 +46,7 @@ pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceTex
     }
     for section in root.tables("measurand") {
         let Some(measurand) = section.measurand("id") else { continue };
-        let asked = procedure.measurands.iter().find(|m| m.id.id == measurand.id);
+        let asked = procedure.measurands.iter().find(|m| m.measurand.id == measurand.id);
         let Some(why) = asked.and_then(|spec| super::obtainable::never(procedure, spec)) else { continue };
         let message = Note::new("check.never_shown").with("id", measurand.id).with("why", why);
         found.push(source.warning(&section.span_of("id"), message));
@@ -244,15 +244,15 @@ fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'
     let moves = root.table("temperature_test").or(root.table("warm_up_test")).is_some();
     for section in root.tables("measurand") {
         let Some(measurand) = section.measurand("id") else { continue };
-        if moves && measurand.test == ids::Test::Static && measurand.id != "earth_rate_component" {
+        if moves && measurand.test() == Test::Static && !measurand.from_site {
             let message = Note::new("check_temperature.static").with("id", measurand.id);
             reader.error(&section.span_of("id"), message, None);
         }
-        if measurand.test != ids::Test::Temperature {
-            continue;
-        }
-        let warm_up = matches!(measurand.id, "warm_up_time" | "turn_on_transient");
-        let table = if warm_up { "warm_up_test" } else { "temperature_test" };
+        let table = match measurand.test() {
+            Test::Temperature => "temperature_test",
+            Test::WarmUp => "warm_up_test",
+            _ => continue,
+        };
         if root.table(table).is_none() {
             let message =
                 Note::new("check_temperature.needs_table").with("id", measurand.id).with("table", table);
@@ -314,12 +314,10 @@ fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             reader.error(&section.span_of("id"), message, Some("check.help.declared_twice".into()));
         }
         let options = section.table("options");
-        let removes = options.and_then(|o| o.word("earth_rate")) != Some("keep");
-        let needs_site = measurand.id == "earth_rate_component" || measurand.id == "static_bias" && removes;
-        if needs_site && !has_site {
+        let removes = options.and_then(|o| o.word(EARTH_RATE_OPTION)) != Some("keep");
+        if measurand.needs_site(&Options { remove_earth_rate: removes }) && !has_site {
             let message = Note::new("check.needs_site").with("id", measurand.id);
-            let help =
-                if measurand.id == "static_bias" { "check.help.site_or_keep" } else { "check.help.site" };
+            let help = if measurand.from_site { "check.help.site" } else { "check.help.site_or_keep" };
             reader.error(&section.span_of("id"), message, Some(help.into()));
         }
         for key in super::tables::MEASURAND_OPTIONS.keys {
@@ -364,8 +362,8 @@ fn waivers(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         if procedure.measures(&row, None) {
             continue;
         }
-        let measured = procedure.measurands.iter().map(|m| m.id.id);
-        let help = match (nearest(&row, measured), ids::find(&row)) {
+        let measured = procedure.measurands.iter().map(|m| m.measurand.id);
+        let help = match (nearest(&row, measured), measurand::find(&row)) {
             (Some(near), _) => meant(near),
             (None, Some(_)) => Note::new("check.help.waiver_not_measured"),
             // Anything else may be the id of a condition.
@@ -393,11 +391,13 @@ fn averaging_times(procedure: &Procedure, root: &Section, reader: &mut Reader<'_
 }
 
 impl MeasurandSpec {
+    /// The choices of the procedure for it.
+    pub fn options(&self) -> Options {
+        Options { remove_earth_rate: self.earth_rate == EarthRate::Remove }
+    }
+
     /// True when the Earth rate along the input axis is needed.
     pub fn needs_earth_rate(&self) -> bool {
-        match self.id.id {
-            "static_bias" => self.earth_rate == EarthRate::Remove,
-            id => id == "earth_rate_component",
-        }
+        self.measurand.needs_site(&self.options())
     }
 }

@@ -5,18 +5,14 @@ use super::gls;
 use super::intervals::Intervals;
 use super::nuisance::{Course, Following, Nuisance, following};
 use super::setup::ComparisonTest;
-use crate::estimate::{Estimate, chi_square_tail};
-use crate::message::{Arg, Note};
+use crate::estimate::chi_square_tail;
 use crate::numeric::reml::{Combination, Fit};
 use crate::rate_table::blocks::Blocks;
-use crate::rate_table::combine::spread;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Gain of twice the log-likelihood from which a scatter between intervals is taken for real: by chance it comes about in
 /// one test of ten.
 const TAKEN_FROM: f64 = 1.64;
-
-const METHOD: &str = "alternating_intervals";
 
 /// One interval of one channel.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +71,17 @@ pub struct Comparison {
     pub temperature: Option<Following>,
     /// How further recorded quantities go with the levels.
     pub others: Vec<Following>,
+}
+
+/// The change of N of one channel at one level, whose noise was identified in both states from their own samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseChange {
+    /// Channel with axis and level, as rows name it.
+    pub channel: String,
+    /// N without the influence with its standard uncertainty, deg/sqrt(h); `None` where it is not shown.
+    pub without: Option<(f64, f64)>,
+    /// The same at the level.
+    pub with: Option<(f64, f64)>,
 }
 
 /// What was recorded beside the output and the level.
@@ -328,7 +335,7 @@ pub fn level_name(level: f64) -> String {
 
 impl Comparison {
     /// The channel with an axis and a level, as rows name it.
-    fn place(&self, axis: &str, level: Option<f64>) -> String {
+    pub fn place(&self, axis: &str, level: Option<f64>) -> String {
         let level = level.map(level_name);
         let parts: Vec<String> =
             [Some(axis.to_owned()).filter(|a| !a.is_empty()), level].into_iter().flatten().collect();
@@ -341,7 +348,7 @@ impl Comparison {
     }
 
     /// Difference of temperature between the levels where it is more than allowed, degC.
-    fn too_warm(&self) -> Option<f64> {
+    pub fn too_warm(&self) -> Option<f64> {
         let difference = self.temperature.as_ref()?.difference();
         (difference.abs() > self.test.temperature_difference_deg_c).then_some(difference)
     }
@@ -357,81 +364,6 @@ impl Comparison {
     /// The quantities beside that go with the levels.
     pub fn disturbing(&self) -> impl Iterator<Item = &Following> {
         self.others.iter().filter(|o| self.disturbs(o))
-    }
-
-    /// The estimates of one id.
-    pub fn estimates(&self, id: &'static str, unit: &'static str) -> Vec<Estimate> {
-        let withheld = self.confounded();
-        let one = |place: String, c: &Combination, parts: &[f64]| {
-            let e = if withheld {
-                Estimate::not_identifiable(id, &place, None, unit, METHOD)
-            } else {
-                Estimate::measured(id, &place, c.value, unit, spread(c, 1.0, parts), METHOD)
-            };
-            self.remarked(e)
-        };
-        // What the temperature may do is at most this: a bound of a uniform law.
-        let warm = |degrees: Option<&f64>| {
-            let coefficient = self.test.temperature_coefficient.unwrap_or(0.0);
-            coefficient * degrees.map_or(0.0, |d| d.abs()) / 3f64.sqrt()
-        };
-        let warmed = |at: usize| self.temperature.as_ref().and_then(|t| t.per_drive.get(at));
-        let warmer = |at: usize| self.temperature.as_ref().and_then(|t| t.shifts.get(at));
-        if id == self.test.influence.sensitivity() {
-            let u = self.test.level_uncertainty * self.test.influence.degree();
-            let rows = self.axes.iter().zip(&self.per_unit).enumerate().map(|(at, (axis, c))| {
-                one(self.place(axis, None), c, &[u * c.value.abs(), warm(warmed(at))])
-            });
-            return rows.collect();
-        }
-        if id != "bias_shift" {
-            return vec![];
-        }
-        let rows = self
-            .shifts
-            .iter()
-            .enumerate()
-            .map(|(at, s)| one(self.place(&s.axis, Some(s.level)), &s.change, &[warm(warmer(at))]));
-        rows.collect()
-    }
-
-    fn remarked(&self, mut e: Estimate) -> Estimate {
-        let with = self.intervals.iter().filter(|i| !i.off).count();
-        let key = if self.drift { "compared.intervals" } else { "compared.intervals_no_drift" };
-        let without = self.intervals.len() - with;
-        e = e.note(Note::new(key).with("without", without).with("with", with));
-        if self.scatter {
-            e = e.note(Note::new("compared.scatter"));
-        }
-        if let Some(d) = self.too_warm() {
-            e = e.note(Note::new("compared.warmer").with("difference", Arg::figures(d.abs(), 2)));
-        } else if let Some(t) = self.temperature.as_ref().filter(|t| t.follows()) {
-            let difference = Arg::figures(t.difference().abs(), 2);
-            e = e.note(match self.test.temperature_coefficient {
-                Some(c) => Note::new("compared.allowed_for")
-                    .with("difference", difference)
-                    .with("coefficient", Arg::figures(c, 3)),
-                None => Note::new("compared.not_allowed_for").with("difference", difference),
-            });
-        }
-        for other in self.disturbing() {
-            e = e.note(other.note("compared.in_step"));
-        }
-        e
-    }
-}
-
-impl Following {
-    /// A sentence on it, with its numbers.
-    pub fn note(&self, key: &'static str) -> Note {
-        let unit = match self.what.unit {
-            "deg/h" => Arg::key("compared", "unit_rate"),
-            other => Arg::key("unit", other),
-        };
-        Note::new(key)
-            .with("channel", self.what.channel.clone())
-            .with("difference", Arg::figures(self.difference().abs(), 3))
-            .with("unit", unit)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Recorded quantities that go with the levels of an influence: what they do to the bias cannot be told from it.
 
 use crate::estimate::normal_two_sided;
+use crate::message::{Arg, Note};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -119,6 +120,20 @@ fn chance(plain: f64, full: f64, columns: usize, dof: usize) -> f64 {
     }
     let ratio = ((plain - full) / columns as f64) / (full / dof as f64);
     FisherSnedecor::new(columns as f64, dof as f64).map_or(1.0, |d| d.sf(ratio.max(0.0)))
+}
+
+impl Following {
+    /// A sentence on it, with its numbers.
+    pub fn note(&self, key: &'static str) -> Note {
+        let unit = match self.what.unit {
+            "deg/h" => Arg::key("compared", "unit_rate"),
+            other => Arg::key("unit", other),
+        };
+        Note::new(key)
+            .with("channel", self.what.channel.clone())
+            .with("difference", Arg::figures(self.difference().abs(), 3))
+            .with("unit", unit)
+    }
 }
 
 #[cfg(test)]

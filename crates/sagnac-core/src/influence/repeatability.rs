@@ -6,21 +6,10 @@ use super::gls;
 use super::range::{self, PossibleMeans, Range};
 use super::runs::Runs;
 use super::unsure;
-use crate::estimate::{Estimate, Spread, UpperLimit, chi_square_quantile};
-use crate::message::{Arg, Note};
+use crate::estimate::{Spread, chi_square_quantile};
 use crate::numeric::reml::Combination;
 use crate::rate_table::blocks::Blocks;
 use nalgebra::{DMatrix, DVector};
-
-/// Ids that are given here.
-pub const IDS: [&str; 4] = [
-    "bias_repeatability",
-    "bias_repeatability_peak_to_peak",
-    "bias_repeatability_trend",
-    "bias_repeatability_temperature",
-];
-
-const METHOD: &str = "means_of_runs";
 
 /// One run of one channel.
 #[derive(Debug, Clone, PartialEq)]
@@ -177,100 +166,9 @@ impl Sample for DVector<f64> {
     }
 }
 
-/// Correlation of temperature and order from which it is said that they went in step.
-const IN_STEP: f64 = 0.7;
-
 /// Factors on a standard deviation of so many runs between which it lies, 95 %.
 pub fn factors(runs: usize) -> (f64, f64) {
     let dof = runs.saturating_sub(1).max(1) as f64;
     let factor = |p: f64| (dof / chi_square_quantile(p, dof)).sqrt();
     (factor(0.975), factor(0.025))
-}
-
-impl Repeatability {
-    /// The estimate of one id; `None` for an id that is not given here.
-    pub fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
-        let n = self.runs.len();
-        let student = |c: &Combination| Spread::StudentT { standard_uncertainty: c.standard, dof: c.dof };
-        let none =
-            |key| Estimate::not_identifiable(id, &self.channel, None, unit, METHOD).note(Note::new(key));
-        let measured =
-            |c: &Combination| Estimate::measured(id, &self.channel, c.value, unit, student(c), METHOD);
-        Some(match id {
-            "bias_repeatability" => self.spread(id, unit),
-            "bias_repeatability_peak_to_peak" => self.peak_to_peak(id, unit),
-            "bias_repeatability_trend" => match &self.trend {
-                Some(t) => self.stepped(measured(t).note(Note::new("runs.trend").with("n", n))),
-                None if n >= 4 => self.stepped(none("runs.not_apart")),
-                None => none("runs.no_line"),
-            },
-            "bias_repeatability_temperature" => match &self.temperature {
-                Some(t) => self.stepped(
-                    measured(&t.slope).note(
-                        Note::new("runs.temperature")
-                            .with("percent", Arg::figures(100.0 * t.share, 2))
-                            .with("left", Arg::figures(t.left, 3))
-                            .with("range", Arg::figures(t.range, 2)),
-                    ),
-                ),
-                None if self.in_step.is_some() => self.stepped(none("runs.not_apart")),
-                None => none(if n < 4 { "runs.no_line" } else { "runs.no_temperature" }),
-            },
-            _ => return None,
-        })
-    }
-
-    /// Says how the temperature went with the order of the runs.
-    fn stepped(&self, e: Estimate) -> Estimate {
-        match self.in_step {
-            None => e.note(Note::new("runs.trend_alone")),
-            Some(r) if r.abs() >= IN_STEP => {
-                e.note(Note::new("runs.in_step").with("correlation", Arg::figures(r, 2)))
-            }
-            Some(_) => e,
-        }
-    }
-
-    fn peak_to_peak(&self, id: &'static str, unit: &'static str) -> Estimate {
-        let (value, spread) = (self.range.value, self.range.spread.clone());
-        let told = Note::new("runs.range")
-            .with("n", self.runs.len())
-            .with("plain", Arg::figures(self.range.plain, 3));
-        self.shown_or_bounded(id, unit, value, spread, told)
-    }
-
-    fn spread(&self, id: &'static str, unit: &'static str) -> Estimate {
-        let n = self.runs.len();
-        let (low, high) = factors(n);
-        let typical = (self.runs.iter().map(|r| r.bias.standard.powi(2)).sum::<f64>() / n as f64).sqrt();
-        let (value, spread) = self.deviation.clone();
-        let told = Note::new("runs.repeatability")
-            .with("n", n)
-            .with("low", Arg::figures(low, 2))
-            .with("high", Arg::figures(high, 3))
-            .with("plain", Arg::figures(self.plain, 3))
-            .with("noise", Arg::figures(typical, 2));
-        self.shown_or_bounded(id, unit, value, spread, told)
-    }
-
-    /// A value whose interval does not reach zero, or a bound.
-    fn shown_or_bounded(
-        &self,
-        id: &'static str,
-        unit: &'static str,
-        value: f64,
-        spread: Spread,
-        told: Note,
-    ) -> Estimate {
-        let shown = spread.bound(value, 0.025).is_some_and(|b| b > 0.0);
-        if shown {
-            return Estimate::measured(id, &self.channel, value, unit, spread, METHOD).note(told);
-        }
-        // The upper end of the interval: whether there is a lower one was decided by the same means, and a limit of one side
-        // would miss beside the misses of the intervals.
-        let limit = spread.bound(value, 0.975).map(|value| UpperLimit { value, coverage: 0.95 });
-        Estimate::not_identifiable(id, &self.channel, limit, unit, METHOD)
-            .note(told)
-            .note(Note::new("runs.not_shown"))
-    }
 }

@@ -68,15 +68,6 @@ impl Influence {
         }
     }
 
-    /// Measurand of the bias per unit.
-    pub fn sensitivity(self) -> &'static str {
-        match self {
-            Influence::MagneticField => "magnetic_sensitivity",
-            Influence::Supply => "supply_sensitivity",
-            Influence::Vibration => "vibration_sensitivity",
-        }
-    }
-
     /// Unit of its level.
     pub fn unit(self) -> &'static str {
         match self {

@@ -3,13 +3,34 @@
 //! The minimum is an extreme of a noisy curve. A record of angle random walk alone has one too, wherever it ends;
 //! so it is reported with its τ and its degrees of freedom and is no evidence of a floor by itself.
 
-use super::{GyroEvidence, Measurand, Options};
+use super::descriptor::Measurand;
+use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread};
 use crate::message::Note;
 use crate::noise::intervals::BoundedPoint;
 use crate::noise::residual::degrees_of_freedom;
 
-pub(super) struct AllanMinimum;
+/// The smallest Allan deviation.
+pub static BIAS_INSTABILITY_MINIMUM: Measurand = Measurand::at_rest(
+    "bias_instability_minimum",
+    "deg/h",
+    "minimum of the overlapping Allan deviation over octaves up to a fifth of the record",
+    |m, gyro, _| vec![minimum(m, gyro, 1.0)],
+)
+.needs_stillness()
+.drift();
+
+/// The smallest Allan deviation as B, if flicker makes it.
+pub static BIAS_INSTABILITY_MINIMUM_SCALED: Measurand = Measurand::at_rest(
+    "bias_instability_minimum_scaled",
+    "deg/h",
+    "that minimum divided by 0.664",
+    |m, gyro, _| vec![minimum(m, gyro, FLICKER_FLOOR)],
+)
+.needs_stillness()
+.drift();
+
+const METHOD: &str = "overlapping_allan";
 
 /// √(2 ln 2/π): the Allan deviation of flicker noise is this times B.
 pub const FLICKER_FLOOR: f64 = 0.664_282_470_3;
@@ -17,40 +38,23 @@ pub const FLICKER_FLOOR: f64 = 0.664_282_470_3;
 /// Largest averaging time read, as a share of the record (result contract).
 const LARGEST_SHARE: f64 = 0.2;
 
-impl Measurand for AllanMinimum {
-    fn ids(&self) -> &'static [&'static str] {
-        &["bias_instability_minimum", "bias_instability_minimum_scaled"]
-    }
-
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
-        let scaled = id == "bias_instability_minimum_scaled";
-        let (id, divisor) = if scaled {
-            ("bias_instability_minimum_scaled", FLICKER_FLOOR)
-        } else {
-            ("bias_instability_minimum", 1.0)
-        };
-        let readable = readable(gyro);
-        let Some(lowest) = lowest(gyro) else {
-            let none = Estimate::not_identifiable(id, &gyro.channel, None, "deg/h", "overlapping_allan");
-            return Some(none.note(Note::new("note.minimum_none")));
-        };
-        let tau_s = lowest.point.m as f64 * gyro.tau0_s;
-        let edf = minimum_edf(gyro, lowest);
-        let mut estimate = Estimate::measured(
-            id,
-            &gyro.channel,
-            lowest.point.deviation / divisor,
-            "deg/h",
-            Spread::ChiSquare { dof: edf },
-            "overlapping_allan",
-        )
+fn minimum(m: &Measurand, gyro: &GyroEvidence, divisor: f64) -> Estimate {
+    let readable = readable(gyro);
+    let Some(lowest) = lowest(gyro) else {
+        return m.not_identifiable(&gyro.channel, None, METHOD).note(Note::new("note.minimum_none"));
+    };
+    let tau_s = lowest.point.m as f64 * gyro.tau0_s;
+    let edf = minimum_edf(gyro, lowest);
+    let spread = Spread::ChiSquare { dof: edf };
+    let estimate = m
+        .measured(&gyro.channel, lowest.point.deviation / divisor, spread, METHOD)
         .note(Note::new("note.minimum_at").with("tau_s", tau_s).with("edf", edf));
-        if readable.last().is_some_and(|last| last.point.m == lowest.point.m) {
-            estimate = estimate.note(Note::new("note.minimum_at_end"));
-        } else if gyro.identification.bias_instability.value.is_none() {
-            estimate = estimate.note(Note::new("note.minimum_no_evidence"));
-        }
-        Some(estimate)
+    if readable.last().is_some_and(|last| last.point.m == lowest.point.m) {
+        estimate.note(Note::new("note.minimum_at_end"))
+    } else if gyro.identification.bias_instability.value.is_none() {
+        estimate.note(Note::new("note.minimum_no_evidence"))
+    } else {
+        estimate
     }
 }
 

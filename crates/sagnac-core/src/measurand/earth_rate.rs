@@ -1,24 +1,18 @@
 //! Earth rate along the input axis, from the site.
 
-use super::{GyroEvidence, Measurand, Options};
-use crate::estimate::{Estimate, Spread};
+use super::descriptor::Measurand;
+use crate::estimate::Spread;
 
-pub(super) struct EarthRateComponent;
-
-impl Measurand for EarthRateComponent {
-    fn ids(&self) -> &'static [&'static str] {
-        &["earth_rate_component"]
-    }
-
-    fn evaluate(&self, _: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
-        let earth = gyro.earth?;
-        Some(Estimate::measured(
-            "earth_rate_component",
-            &gyro.channel,
-            earth.rate_deg_h,
-            "deg/h",
-            Spread::Normal { standard_uncertainty: earth.uncertainty_deg_h },
-            "from_site",
-        ))
-    }
-}
+/// Earth rate along the input axis.
+pub static EARTH_RATE_COMPONENT: Measurand = Measurand::at_rest(
+    "earth_rate_component",
+    "deg/h",
+    "Earth rate along the input axis, from the site",
+    |m, gyro, _| {
+        let Some(earth) = gyro.earth else { return vec![] };
+        let spread = Spread::Normal { standard_uncertainty: earth.uncertainty_deg_h };
+        vec![m.measured(&gyro.channel, earth.rate_deg_h, spread, "from_site")]
+    },
+)
+.signed()
+.from_site();

@@ -1,5 +1,6 @@
-//! What one pass left behind about a gyro channel, with what was identified from it.
+//! What each kind of test leaves behind for its measurands.
 
+use crate::influence::comparison::{Comparison, NoiseChange};
 use crate::message::Note;
 use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::digest::RateDigest;
@@ -9,6 +10,14 @@ use crate::noise::lines::SpectralLine;
 use crate::noise::motion::Motion;
 use crate::noise::residual::GoodnessOfFit;
 use crate::noise::windows::WindowStatistics;
+use crate::rate_table::Setup;
+use crate::rate_table::alignment::Alignment;
+use crate::rate_table::dead_zone::DeadZone;
+use crate::rate_table::known::Positions;
+use crate::rate_table::scale_factor::ScaleFactor;
+use crate::rate_table::sine::Sine;
+use crate::rate_table::steps::Steps;
+use crate::rate_table::turns::Turns;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
 
@@ -21,7 +30,7 @@ pub struct Earth {
     pub uncertainty_deg_h: f64,
 }
 
-/// One gyro channel of a run.
+/// What one pass over a recording at rest left behind about a gyro channel, with what was identified from it.
 #[derive(Debug)]
 pub struct GyroEvidence {
     /// Channel id.
@@ -96,4 +105,71 @@ impl GyroEvidence {
     pub fn spectrum(&self) -> &WelchSpectrum {
         &self.digest.welch.spectrum
     }
+}
+
+/// What the steps of a rate table showed of one gyro channel.
+#[derive(Debug, Clone)]
+pub struct TableEvidence<'a> {
+    /// Position among the gyro channels of the recording.
+    pub gyro: usize,
+    /// Channel id.
+    pub channel: String,
+    /// How the test is evaluated.
+    pub setup: &'a Setup,
+    /// The steps.
+    pub steps: &'a Steps,
+    /// Unit of the scale factor as recorded, and output units in one deg/h of input at a scale factor of 1.
+    pub as_recorded: (&'static str, f64),
+    /// Earth rate along the axis, where the site is known.
+    pub earth: Option<Earth>,
+    /// The straight line through all rates; `None` where the steps give none.
+    pub line: Option<ScaleFactor>,
+    /// The sine of an open-loop unit; `None` where it was not asked for, or the response does not bend.
+    pub sine: Option<Sine>,
+    /// The response to rates near zero; `None` where it was not asked for, or there are too few rates.
+    pub dead_zone: Option<DeadZone>,
+    /// The direction of the input axis; `None` where it was not asked for.
+    pub alignment: Option<Alignment>,
+}
+
+impl<'a> TableEvidence<'a> {
+    /// The gyro channel of this number before any analysis, read in the units of the nominal scale factor.
+    pub fn new(gyro: usize, channel: &str, setup: &'a Setup, steps: &'a Steps) -> TableEvidence<'a> {
+        TableEvidence {
+            gyro,
+            channel: channel.to_owned(),
+            setup,
+            steps,
+            as_recorded: ("1", 1.0),
+            earth: None,
+            line: None,
+            sine: None,
+            dead_zone: None,
+            alignment: None,
+        }
+    }
+
+    /// Full scale, deg/h: as stated, or the largest rate of the test.
+    pub fn full_scale_deg_h(&self) -> f64 {
+        let highest = self.steps.list.iter().fold(0.0, |m: f64, s| m.max(s.rate.abs()));
+        self.setup.full_scale_deg_h.unwrap_or(highest)
+    }
+}
+
+/// What turns by known angles and positions against the Earth rate showed of all gyro channels.
+#[derive(Debug, Clone, Copy)]
+pub struct KnownInputEvidence<'a> {
+    /// Channels in positions against the Earth rate.
+    pub positions: &'a [Positions],
+    /// Turns by known angles; `None` without one.
+    pub turns: Option<&'a Turns>,
+}
+
+/// What a comparison without and with an influence showed of one gyro channel.
+#[derive(Debug, Clone, Copy)]
+pub struct ComparisonEvidence<'a> {
+    /// Change of the bias.
+    pub bias: &'a Comparison,
+    /// Change of N at every level; empty where it was not asked for.
+    pub noise: &'a [NoiseChange],
 }

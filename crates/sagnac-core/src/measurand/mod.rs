@@ -1,89 +1,167 @@
-//! Measured quantities: one file each kind. Adding one is one file and one line in [`MEASURANDS`].
+//! Measured quantities of every kind of test. Adding one is one file and one line in the registry below.
 //!
-//! A measurand is a pure function of what one pass over the recording left behind ([`GyroEvidence`]).
+//! A [`Measurand`] says what it is and has its evaluation: a pure function of what its kind of test leaves behind
+//! ([`evidence`]). Whoever singles one out names its constant.
 
 pub mod allan_minimum;
+mod angle_random_walk_shift;
+mod bias_repeatability;
 mod correlated_noise;
-pub mod earth_rate;
+mod cross_axis;
+mod dead_zone;
+mod descriptor;
+mod earth_rate;
 pub mod evidence;
+mod influence;
+mod misalignment;
 mod noise_terms;
 pub mod russian;
 pub mod russian_prediction;
+mod scale_factor;
+mod scale_factor_changes;
+mod scale_factor_shape;
+mod sine_response;
 mod slope_readout;
 mod spectral_line;
 pub mod static_bias;
+mod table_harmonics;
 mod temperature;
 mod warm_up;
 
-use crate::estimate::Estimate;
-pub use crate::ids;
-pub use evidence::{Earth, GyroEvidence};
-pub use temperature::over_temperature;
-pub use warm_up::warm_up;
+use crate::rate_table::model::Extra;
+pub use descriptor::{
+    EARTH_RATE_OPTION, Evaluation, Measurand, OfKnownInput, OfSteps, Options, PowerModel, Stimulus, Test,
+    TurnAxis,
+};
+pub use evidence::{ComparisonEvidence, Earth, GyroEvidence, KnownInputEvidence, TableEvidence};
 
-/// Choices a procedure makes for a measurand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Options {
-    /// Whether the Earth rate is taken out of the static bias.
-    pub remove_earth_rate: bool,
+macro_rules! registry {
+    ($($file:ident::$name:ident,)*) => {
+        $(pub use $file::$name;)*
+
+        /// Every measurand, in the order of reports.
+        pub static MEASURANDS: &[&Measurand] = &[$(&$file::$name,)*];
+    };
 }
 
-/// One kind of measured quantity.
-pub trait Measurand: Sync {
-    /// Ids it gives, as in [`ids::MEASURANDS`].
-    fn ids(&self) -> &'static [&'static str];
-
-    /// The quantity of one id on one channel; `None` when the channel has nothing to say about it.
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate>;
-
-    /// Every row of one id on one channel: more than one where a quantity is given by zone or by ramp.
-    fn evaluate_all(&self, id: &str, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
-        self.evaluate(id, gyro, options).into_iter().collect()
-    }
+registry! {
+    static_bias::STATIC_BIAS,
+    earth_rate::EARTH_RATE_COMPONENT,
+    noise_terms::ANGLE_RANDOM_WALK,
+    noise_terms::ANGLE_RANDOM_WALK_WHITE,
+    noise_terms::BIAS_INSTABILITY,
+    allan_minimum::BIAS_INSTABILITY_MINIMUM,
+    allan_minimum::BIAS_INSTABILITY_MINIMUM_SCALED,
+    noise_terms::RATE_RANDOM_WALK,
+    noise_terms::RATE_RAMP,
+    noise_terms::QUANTIZATION,
+    slope_readout::ANGLE_RANDOM_WALK_READOUT,
+    slope_readout::RATE_RANDOM_WALK_READOUT,
+    slope_readout::RATE_RAMP_READOUT,
+    slope_readout::QUANTIZATION_READOUT,
+    russian::RUSSIAN_DRIFT_100S,
+    russian::RUSSIAN_DRIFT_100S_3SIGMA,
+    russian::RUSSIAN_SIGMA_10S,
+    russian::RUSSIAN_ARW_10S,
+    spectral_line::LINE_FREQUENCY,
+    spectral_line::LINE_AMPLITUDE,
+    correlated_noise::MARKOV_SIGMA,
+    correlated_noise::MARKOV_CORRELATION_TIME,
+    correlated_noise::QUASI_PERIODIC_AMPLITUDE,
+    correlated_noise::QUASI_PERIODIC_FREQUENCY,
+    correlated_noise::QUASI_PERIODIC_COHERENCE_TIME,
+    russian_prediction::RUSSIAN_DRIFT_100S_PREDICTED,
+    russian_prediction::RATIO_RUSSIAN_TO_ALLAN_BIAS,
+    russian_prediction::RATIO_RUSSIAN_TO_ALLAN_ARW,
+    temperature::BIAS_TEMPERATURE_SENSITIVITY,
+    temperature::BIAS_TEMPERATURE_SENSITIVITY_MAX,
+    temperature::BIAS_TEMPERATURE_RATE_SENSITIVITY,
+    temperature::THERMAL_LAG,
+    temperature::THERMAL_HYSTERESIS,
+    temperature::BIAS_OVER_TEMPERATURE_PEAK_TO_PEAK,
+    temperature::BIAS_OVER_TEMPERATURE_RMS,
+    temperature::BIAS_OVER_TEMPERATURE_3SIGMA,
+    temperature::BIAS_LOOP_WIDTH,
+    temperature::BIAS_RESIDUAL_RMS,
+    temperature::RAMP_RATE,
+    warm_up::TURN_ON_TRANSIENT,
+    warm_up::WARM_UP_TIME,
+    temperature::ANGLE_RANDOM_WALK_AT_TEMPERATURE,
+    scale_factor::SCALE_FACTOR,
+    scale_factor::SCALE_FACTOR_ERROR,
+    scale_factor_shape::SCALE_FACTOR_NONLINEARITY,
+    scale_factor_shape::SCALE_FACTOR_NONLINEARITY_OF_RATE,
+    scale_factor::SCALE_FACTOR_BIAS,
+    scale_factor_shape::SCALE_FACTOR_RESIDUAL,
+    scale_factor_shape::SCALE_FACTOR_ODD,
+    scale_factor_shape::SCALE_FACTOR_EVEN,
+    scale_factor_shape::SCALE_FACTOR_ASYMMETRY,
+    scale_factor_changes::SCALE_FACTOR_REPEATABILITY,
+    scale_factor_changes::SCALE_FACTOR_HYSTERESIS,
+    scale_factor_changes::SCALE_FACTOR_TEMPERATURE_SENSITIVITY,
+    sine_response::SINE_RESPONSE,
+    misalignment::MISALIGNMENT_X,
+    misalignment::MISALIGNMENT_Y,
+    cross_axis::CROSS_AXIS,
+    dead_zone::DEAD_ZONE,
+    dead_zone::DEAD_ZONE_NOISE,
+    dead_zone::THRESHOLD,
+    dead_zone::RESOLUTION,
+    table_harmonics::TABLE_HARMONIC_1,
+    table_harmonics::TABLE_HARMONIC_2,
+    influence::MAGNETIC_SENSITIVITY,
+    influence::SUPPLY_SENSITIVITY,
+    influence::VIBRATION_SENSITIVITY,
+    influence::BIAS_SHIFT,
+    angle_random_walk_shift::ANGLE_RANDOM_WALK_SHIFT,
+    bias_repeatability::BIAS_REPEATABILITY,
+    bias_repeatability::BIAS_REPEATABILITY_PEAK_TO_PEAK,
+    bias_repeatability::BIAS_REPEATABILITY_TREND,
+    bias_repeatability::BIAS_REPEATABILITY_TEMPERATURE,
 }
 
-/// Every measurand of a gyro at rest.
-pub static MEASURANDS: &[&dyn Measurand] = &[
-    &static_bias::StaticBias,
-    &earth_rate::EarthRateComponent,
-    &noise_terms::NoiseTerms,
-    &allan_minimum::AllanMinimum,
-    &russian::Russian,
-    &russian_prediction::RussianPrediction,
-    &spectral_line::SpectralLine,
-    &correlated_noise::CorrelatedNoise,
-    &slope_readout::SlopeReadOut,
-    &temperature::OverTemperature,
-    &warm_up::WarmUp,
-];
-
-/// Evaluates a measurand by id.
-pub fn evaluate(id: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate> {
-    MEASURANDS.iter().find(|m| m.ids().contains(&id)).and_then(|m| m.evaluate(id, gyro, options))
+/// The measurand of an id.
+pub fn find(id: &str) -> Option<&'static Measurand> {
+    MEASURANDS.iter().copied().find(|m| m.id == id)
 }
 
-/// Every row of a measurand by id.
-pub fn evaluate_all(id: &str, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
-    let giver = MEASURANDS.iter().find(|m| m.ids().contains(&id));
-    giver.map_or_else(Vec::new, |m| m.evaluate_all(id, gyro, options))
+/// What the model of the response to a rate table has to hold beside the rate, for the measurands that are wanted.
+pub fn table_extras(wanted: &dyn Fn(&Measurand) -> bool) -> Vec<Extra> {
+    let steps = MEASURANDS.iter().filter(|m| wanted(m)).filter_map(|m| m.by_steps());
+    steps.flat_map(|s| s.extras).copied().collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::Unit;
 
     #[test]
-    fn every_available_id_has_exactly_one_measurand() {
-        for m in ids::MEASURANDS {
-            let givers = MEASURANDS.iter().filter(|g| g.ids().contains(&m.id)).count();
-            // What a rate table or an influence shows is determined from stretches, not from a gyro's evidence.
-            let here = m.available && !matches!(m.test, ids::Test::RateTable | ids::Test::Influence);
-            assert_eq!(givers, usize::from(here), "{}", m.id);
+    fn ids_are_unique_and_units_are_units() {
+        for (i, m) in MEASURANDS.iter().enumerate() {
+            assert!(m.unit.is_empty() || Unit::parse(m.unit).is_ok(), "{} {}", m.id, m.unit);
+            assert!(MEASURANDS[..i].iter().all(|other| other.id != m.id), "{}", m.id);
+            assert!(!m.doc.is_empty());
+            let on_table = m.test() == Test::RateTable;
+            assert_eq!(on_table, m.by_steps().is_some() || m.by_known_input().is_some(), "{}", m.id);
         }
-        for giver in MEASURANDS {
-            for id in giver.ids() {
-                assert!(ids::find(id).is_some(), "{id} is in no table");
-            }
+    }
+
+    #[test]
+    fn units_are_those_of_the_result_contract() {
+        for (id, unit) in [
+            ("static_bias", "deg/h"),
+            ("angle_random_walk", "deg/sqrt(h)"),
+            ("rate_random_walk", "deg/h/sqrt(h)"),
+            ("rate_ramp", "deg/h/h"),
+            ("quantization", "arcsec"),
+            ("russian_arw_10s", "deg/sqrt(h)"),
+            ("bias_temperature_rate_sensitivity", "deg/h/(degC/min)"),
+            ("scale_factor_temperature_sensitivity", "ppm/degC"),
+            ("vibration_sensitivity", "deg/h/g^2"),
+            ("line_frequency", "Hz"),
+        ] {
+            assert_eq!(find(id).unwrap().unit, unit);
         }
     }
 }

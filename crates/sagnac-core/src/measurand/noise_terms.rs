@@ -1,31 +1,58 @@
 //! N, B, K, R and Q of the joint fit (IEEE Std 952 Annex C).
 
-use super::{GyroEvidence, Measurand, Options};
-use crate::estimate::Estimate;
+use super::descriptor::{Measurand, PowerModel};
+use crate::noise::data::NoiseType;
 
-pub(super) struct NoiseTerms;
+/// N as it is read from the curve.
+pub static ANGLE_RANDOM_WALK: Measurand = Measurand::at_rest(
+    "angle_random_walk",
+    "deg/sqrt(h)",
+    "N of the joint noise fit: white noise with every process that is white where it is read",
+    |m, gyro, _| vec![m.named(gyro.identification.read_angle_random_walk())],
+)
+.power(PowerModel::NoiseTerm(NoiseType::AngleRandomWalk))
+.needs_stillness();
 
-/// Id of the white noise alone.
-const WHITE_PART: &str = "angle_random_walk_white";
+/// The part of N that is white noise.
+pub static ANGLE_RANDOM_WALK_WHITE: Measurand = Measurand::at_rest(
+    "angle_random_walk_white",
+    "deg/sqrt(h)",
+    "the part of N that is white noise at every averaging time",
+    |m, gyro, _| vec![m.named(&gyro.identification.angle_random_walk)],
+)
+.needs_stillness();
 
-impl Measurand for NoiseTerms {
-    fn ids(&self) -> &'static [&'static str] {
-        &[
-            "angle_random_walk",
-            WHITE_PART,
-            "bias_instability",
-            "rate_random_walk",
-            "rate_ramp",
-            "quantization",
-        ]
-    }
+/// B of the joint fit.
+pub static BIAS_INSTABILITY: Measurand = Measurand::at_rest(
+    "bias_instability",
+    "deg/h",
+    "flicker coefficient B of the joint noise fit",
+    |m, gyro, _| vec![m.named(&gyro.identification.bias_instability)],
+)
+.power(PowerModel::NoiseTerm(NoiseType::Flicker))
+.needs_stillness()
+.drift();
 
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
-        let found = &gyro.identification;
-        match id {
-            "angle_random_walk" => Some(found.read_angle_random_walk().clone()),
-            WHITE_PART => Some(Estimate { id: WHITE_PART, ..found.angle_random_walk.clone() }),
-            _ => found.estimates().into_iter().find(|e| e.id == id).cloned(),
-        }
-    }
-}
+/// K of the joint fit.
+pub static RATE_RANDOM_WALK: Measurand =
+    Measurand::at_rest("rate_random_walk", "deg/h/sqrt(h)", "K of the joint noise fit", |m, gyro, _| {
+        vec![m.named(&gyro.identification.rate_random_walk)]
+    })
+    .power(PowerModel::NoiseTerm(NoiseType::RateRandomWalk))
+    .needs_stillness();
+
+/// R of the joint fit.
+pub static RATE_RAMP: Measurand =
+    Measurand::at_rest("rate_ramp", "deg/h/h", "R of the joint noise fit", |m, gyro, _| {
+        vec![m.named(&gyro.identification.rate_ramp)]
+    })
+    .power(PowerModel::NoiseTerm(NoiseType::RateRamp))
+    .needs_stillness();
+
+/// Q of the joint fit.
+pub static QUANTIZATION: Measurand =
+    Measurand::at_rest("quantization", "arcsec", "Q of the joint noise fit", |m, gyro, _| {
+        vec![m.named(&gyro.identification.quantization)]
+    })
+    .power(PowerModel::NoiseTerm(NoiseType::Quantization))
+    .needs_stillness();

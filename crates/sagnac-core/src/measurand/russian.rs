@@ -1,55 +1,78 @@
 //! The values of Russian practice: standard deviations of 100-s and 10-s means, and the angle random walk from 10-s
 //! means. Definitions of the founding paper, made explicit: n − 1, mean removed only, remainder dropped.
 
-use super::{GyroEvidence, Measurand, Options};
+use super::descriptor::{Measurand, PowerModel};
+use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread};
 use crate::message::Note;
 use crate::noise::windows::{WindowStatistics, edf_of_window_std};
-
-pub(super) struct Russian;
 
 /// Window of the drift figure, s.
 pub const DRIFT_WINDOW_S: f64 = 100.0;
 /// Window of the angle-random-walk figure, s.
 pub const RANDOM_WALK_WINDOW_S: f64 = 10.0;
 
-impl Measurand for Russian {
-    fn ids(&self) -> &'static [&'static str] {
-        &["russian_drift_100s", "russian_drift_100s_3sigma", "russian_sigma_10s", "russian_arw_10s"]
-    }
+/// Drift of 100-s means, one sigma.
+pub static RUSSIAN_DRIFT_100S: Measurand = Measurand::at_rest(
+    "russian_drift_100s",
+    "deg/h",
+    "standard deviation of consecutive 100-s means, one sigma",
+    |m, gyro, _| vec![of_means(m, gyro, DRIFT_WINDOW_S, 1.0)],
+)
+.power(PowerModel::WindowMeans { window_s: DRIFT_WINDOW_S })
+.drift();
 
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
-        let (id, window_s, factor, unit) = match id {
-            "russian_drift_100s" => ("russian_drift_100s", DRIFT_WINDOW_S, 1.0, "deg/h"),
-            "russian_drift_100s_3sigma" => ("russian_drift_100s_3sigma", DRIFT_WINDOW_S, 3.0, "deg/h"),
-            "russian_sigma_10s" => ("russian_sigma_10s", RANDOM_WALK_WINDOW_S, 1.0, "deg/h"),
-            // White noise over τ has σ = 60 N/√τ, so N = σ10 √10/60: the bandwidth is that of the averaging.
-            "russian_arw_10s" => {
-                ("russian_arw_10s", RANDOM_WALK_WINDOW_S, 10f64.sqrt() / 60.0, "deg/sqrt(h)")
-            }
-            _ => return None,
-        };
-        let method = "standard_deviation_of_means";
-        let Some(windows) = gyro.windows(window_s) else {
-            let none = Estimate::not_identifiable(id, &gyro.channel, None, unit, method);
-            return Some(none.note(no_windows(gyro, window_s)));
-        };
-        let dof = degrees_of_freedom(gyro, windows);
-        let value = windows.standard_deviation * factor;
-        let mut estimate =
-            Estimate::measured(id, &gyro.channel, value, unit, Spread::ChiSquare { dof }, method).note(
-                Note::new("note.russian_windows")
-                    .with("n", windows.n)
-                    .with("window_s", window_s)
-                    .with("hours", windows.n as f64 * windows.exact_s(gyro.tau0_s) / 3600.0)
-                    .with("dof", dof),
-            );
-        let exact_s = windows.exact_s(gyro.tau0_s);
-        if (exact_s / window_s - 1.0).abs() > 1e-3 {
-            estimate = estimate.note(Note::new("note.russian_window_rounded").with("exact_s", exact_s));
-        }
-        Some(estimate)
+/// Drift of 100-s means, three sigma.
+pub static RUSSIAN_DRIFT_100S_3SIGMA: Measurand = Measurand::at_rest(
+    "russian_drift_100s_3sigma",
+    "deg/h",
+    "three times the standard deviation of consecutive 100-s means",
+    |m, gyro, _| vec![of_means(m, gyro, DRIFT_WINDOW_S, 3.0)],
+)
+.power(PowerModel::WindowMeans { window_s: DRIFT_WINDOW_S })
+.drift();
+
+/// Standard deviation of 10-s means.
+pub static RUSSIAN_SIGMA_10S: Measurand = Measurand::at_rest(
+    "russian_sigma_10s",
+    "deg/h",
+    "standard deviation of consecutive 10-s means",
+    |m, gyro, _| vec![of_means(m, gyro, RANDOM_WALK_WINDOW_S, 1.0)],
+)
+.power(PowerModel::WindowMeans { window_s: RANDOM_WALK_WINDOW_S })
+.drift();
+
+/// Angle random walk from 10-s means.
+pub static RUSSIAN_ARW_10S: Measurand = Measurand::at_rest(
+    "russian_arw_10s",
+    "deg/sqrt(h)",
+    "angle random walk from 10-s means: sqrt(10) sigma / 60",
+    // White noise over τ has σ = 60 N/√τ, so N = σ10 √10/60: the bandwidth is that of the averaging.
+    |m, gyro, _| vec![of_means(m, gyro, RANDOM_WALK_WINDOW_S, 10f64.sqrt() / 60.0)],
+)
+.power(PowerModel::WindowMeans { window_s: RANDOM_WALK_WINDOW_S })
+.drift();
+
+/// A factor times the standard deviation of the means of windows.
+fn of_means(m: &Measurand, gyro: &GyroEvidence, window_s: f64, factor: f64) -> Estimate {
+    let method = "standard_deviation_of_means";
+    let Some(windows) = gyro.windows(window_s) else {
+        return m.not_identifiable(&gyro.channel, None, method).note(no_windows(gyro, window_s));
+    };
+    let dof = degrees_of_freedom(gyro, windows);
+    let value = windows.standard_deviation * factor;
+    let exact_s = windows.exact_s(gyro.tau0_s);
+    let estimate = m.measured(&gyro.channel, value, Spread::ChiSquare { dof }, method).note(
+        Note::new("note.russian_windows")
+            .with("n", windows.n)
+            .with("window_s", window_s)
+            .with("hours", windows.n as f64 * exact_s / 3600.0)
+            .with("dof", dof),
+    );
+    if (exact_s / window_s - 1.0).abs() > 1e-3 {
+        return estimate.note(Note::new("note.russian_window_rounded").with("exact_s", exact_s));
     }
+    estimate
 }
 
 /// Why there are no windows of a length.

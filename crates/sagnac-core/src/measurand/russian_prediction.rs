@@ -1,8 +1,9 @@
 //! What the identified noise predicts for the Russian drift, and the ratios of Russian to Allan values.
 
 use super::allan_minimum::{lowest, minimum_edf};
+use super::descriptor::Measurand;
+use super::evidence::GyroEvidence;
 use super::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S, degrees_of_freedom, no_windows};
-use super::{GyroEvidence, Measurand, Options};
 use crate::estimate::{Estimate, Spread, chi_square_quantile, normal_probability};
 use crate::message::Note;
 use crate::noise::composite::{Composite, Part, Propagated};
@@ -10,7 +11,33 @@ use crate::noise::data::NoiseType;
 use crate::noise::prediction::{WindowPrediction, covariance_of, unseen_variance};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-pub(super) struct RussianPrediction;
+/// The drift of 100-s means that the noise model predicts.
+pub static RUSSIAN_DRIFT_100S_PREDICTED: Measurand = Measurand::at_rest(
+    "russian_drift_100s_predicted",
+    "deg/h",
+    "what the identified noise predicts for 100-s means",
+    |m, gyro, _| vec![drift_predicted(m, gyro)],
+)
+.needs_stillness()
+.drift();
+
+/// Drift of 100-s means over the smallest Allan deviation.
+pub static RATIO_RUSSIAN_TO_ALLAN_BIAS: Measurand = Measurand::at_rest(
+    "ratio_russian_to_allan_bias",
+    "1",
+    "Russian 100-s drift over the Allan minimum",
+    |m, gyro, _| vec![bias_ratio(m, gyro)],
+)
+.needs_stillness();
+
+/// Angle random walk of 10-s means over N.
+pub static RATIO_RUSSIAN_TO_ALLAN_ARW: Measurand = Measurand::at_rest(
+    "ratio_russian_to_allan_arw",
+    "1",
+    "Russian 10-s angle random walk over N",
+    |m, gyro, _| vec![random_walk_ratio(m, gyro)],
+)
+.needs_stillness();
 
 /// Least share of the variance of σ over 10 s that a ratio to N of the same record keeps.
 const LEAST_LEFT: f64 = 0.12;
@@ -18,21 +45,6 @@ const LEAST_LEFT: f64 = 0.12;
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 /// Normal score of the coverage of upper limits.
 const LIMIT_SCORE: f64 = 1.644_853_626_951_472_2;
-
-impl Measurand for RussianPrediction {
-    fn ids(&self) -> &'static [&'static str] {
-        &["russian_drift_100s_predicted", "ratio_russian_to_allan_bias", "ratio_russian_to_allan_arw"]
-    }
-
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
-        match id {
-            "russian_drift_100s_predicted" => Some(drift_predicted(gyro)),
-            "ratio_russian_to_allan_bias" => Some(bias_ratio(gyro)),
-            "ratio_russian_to_allan_arw" => Some(random_walk_ratio(gyro)),
-            _ => None,
-        }
-    }
-}
 
 /// Normal scores a spread is drawn through.
 fn scores() -> impl Iterator<Item = f64> {
@@ -76,10 +88,10 @@ pub fn predicted(gyro: &GyroEvidence, window_s: f64) -> Option<(WindowPrediction
     Some((p, spread))
 }
 
-fn drift_predicted(gyro: &GyroEvidence) -> Estimate {
-    let (id, method) = ("russian_drift_100s_predicted", "whittle");
+fn drift_predicted(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
+    let method = "whittle";
     let Some((p, spread)) = predicted(gyro, DRIFT_WINDOW_S) else {
-        let none = Estimate::not_identifiable(id, &gyro.channel, None, "deg/h", method);
+        let none = m.not_identifiable(&gyro.channel, None, method);
         let note = if gyro.windows(DRIFT_WINDOW_S).is_some() {
             Note::new("note.beyond_model").with("window_s", DRIFT_WINDOW_S)
         } else {
@@ -87,15 +99,15 @@ fn drift_predicted(gyro: &GyroEvidence) -> Estimate {
         };
         return none.note(note);
     };
-    Estimate::measured(id, &gyro.channel, p.sigma, "deg/h", spread, method)
+    m.measured(&gyro.channel, p.sigma, spread, method)
 }
 
 /// σ over 100 s over the smallest Allan deviation, as a ratio of two deviations with their degrees of freedom.
-fn bias_ratio(gyro: &GyroEvidence) -> Estimate {
-    let (id, method) = ("ratio_russian_to_allan_bias", "overlapping_allan");
+fn bias_ratio(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
+    let method = "overlapping_allan";
     let both = gyro.windows(DRIFT_WINDOW_S).filter(|w| w.standard_deviation > 0.0).zip(lowest(gyro));
     let Some((windows, minimum)) = both else {
-        let none = Estimate::not_identifiable(id, &gyro.channel, None, "1", method);
+        let none = m.not_identifiable(&gyro.channel, None, method);
         return none.note(Note::new("compare.note.lacks_a_side"));
     };
     let value = windows.standard_deviation / minimum.point.deviation;
@@ -104,12 +116,12 @@ fn bias_ratio(gyro: &GyroEvidence) -> Estimate {
         let at = |z: f64| (z, value / law.inverse_cdf(normal_probability(-z)).sqrt());
         Spread::Curve(scores().map(at).filter(|p| p.1.is_finite()).collect())
     });
-    Estimate::measured(id, &gyro.channel, value, "1", spread, method)
+    m.measured(&gyro.channel, value, spread, method)
 }
 
 /// The angle random walk from 10-s means over the fitted N. Both come from one record, so what they share cancels.
-fn random_walk_ratio(gyro: &GyroEvidence) -> Estimate {
-    let (id, method) = ("ratio_russian_to_allan_arw", "whittle");
+fn random_walk_ratio(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
+    let method = "whittle";
     let found = &gyro.identification;
     let windows = gyro.windows(RANDOM_WALK_WINDOW_S).filter(|w| w.standard_deviation > 0.0);
     let read = found.read_angle_random_walk();
@@ -134,8 +146,7 @@ fn random_walk_ratio(gyro: &GyroEvidence) -> Estimate {
         Some((value, Spread::ChiSquare { dof }))
     });
     match ratio {
-        Some((value, spread)) => Estimate::measured(id, &gyro.channel, value, "1", spread, method),
-        None => Estimate::not_identifiable(id, &gyro.channel, None, "1", method)
-            .note(Note::new("compare.note.lacks_a_side")),
+        Some((value, spread)) => m.measured(&gyro.channel, value, spread, method),
+        None => m.not_identifiable(&gyro.channel, None, method).note(Note::new("compare.note.lacks_a_side")),
     }
 }

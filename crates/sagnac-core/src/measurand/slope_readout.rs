@@ -1,79 +1,89 @@
 //! Read-outs of a log-log plot: N, K, Q and R from a line of their slope through σ(τ).
 
-use super::{GyroEvidence, Measurand, Options};
+use super::descriptor::Measurand;
+use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread, normal_probability};
 use crate::message::{Arg, Note};
 use crate::noise::data::NoiseType;
 use crate::noise::slope::{LARGEST_SHARE, SLOPE_TOLERANCE, SlopePoint, read, reading_time_s, slope};
 
-pub(super) struct SlopeReadOut;
+/// N from a line of slope -1/2.
+pub static ANGLE_RANDOM_WALK_READOUT: Measurand = Measurand::at_rest(
+    "angle_random_walk_readout",
+    "deg/sqrt(h)",
+    "N at 1 h on a line of slope -1/2 through the Allan deviation",
+    |m, gyro, _| vec![read_out(m, gyro, NoiseType::AngleRandomWalk)],
+)
+.needs_stillness();
+
+/// K from a line of slope +1/2.
+pub static RATE_RANDOM_WALK_READOUT: Measurand = Measurand::at_rest(
+    "rate_random_walk_readout",
+    "deg/h/sqrt(h)",
+    "K at 3 h on a line of slope +1/2 through the Allan deviation",
+    |m, gyro, _| vec![read_out(m, gyro, NoiseType::RateRandomWalk)],
+)
+.needs_stillness();
+
+/// R from a line of slope +1.
+pub static RATE_RAMP_READOUT: Measurand = Measurand::at_rest(
+    "rate_ramp_readout",
+    "deg/h/h",
+    "R at sqrt(2) h on a line of slope +1 through the Allan deviation",
+    |m, gyro, _| vec![read_out(m, gyro, NoiseType::RateRamp)],
+)
+.needs_stillness();
+
+/// Q from a line of slope -1.
+pub static QUANTIZATION_READOUT: Measurand = Measurand::at_rest(
+    "quantization_readout",
+    "arcsec",
+    "Q at sqrt(3) s on a line of slope -1 through the Allan deviation",
+    |m, gyro, _| vec![read_out(m, gyro, NoiseType::Quantization)],
+)
+.needs_stillness();
 
 const METHOD: &str = "slope_readout";
 
 /// Part of a reading that a term must make up for the reading to be taken as its own.
 const ALONE: f64 = 0.98;
 
-impl Measurand for SlopeReadOut {
-    fn ids(&self) -> &'static [&'static str] {
-        &[
-            "angle_random_walk_readout",
-            "rate_random_walk_readout",
-            "quantization_readout",
-            "rate_ramp_readout",
-        ]
-    }
-
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
-        let (id, term, unit) = match id {
-            "angle_random_walk_readout" => {
-                ("angle_random_walk_readout", NoiseType::AngleRandomWalk, "deg/sqrt(h)")
-            }
-            "rate_random_walk_readout" => {
-                ("rate_random_walk_readout", NoiseType::RateRandomWalk, "deg/h/sqrt(h)")
-            }
-            "quantization_readout" => ("quantization_readout", NoiseType::Quantization, "arcsec"),
-            "rate_ramp_readout" => ("rate_ramp_readout", NoiseType::RateRamp, "deg/h/h"),
-            _ => return None,
-        };
-        let samples = gyro.digest.samples as f64;
-        let points: Vec<SlopePoint> = gyro
-            .octaves
-            .iter()
-            .filter(|p| p.point.m as f64 <= LARGEST_SHARE * samples && p.point.deviation > 0.0 && p.edf > 0.0)
-            .map(|p| SlopePoint {
-                tau_s: p.point.m as f64 * gyro.tau0_s,
-                deviation: p.point.deviation,
-                edf: p.edf,
-            })
-            .collect();
-        let Some(found) = read(&points, term) else {
-            let none = Estimate::not_identifiable(id, &gyro.channel, None, unit, METHOD);
-            return Some(
-                none.note(
-                    Note::new("readout.no_slope")
-                        .with("slope", Arg::Stated(slope(term)))
-                        .with("tolerance", Arg::Stated(SLOPE_TOLERANCE)),
-                ),
-            );
-        };
-        let on_line: Vec<f64> = points.iter().map(|p| p.tau_s).collect();
-        let own = own_part(gyro, term, on_line.iter().filter(|t| (found.from_s..=found.to_s).contains(*t)));
-        let spread = reaching_down(Spread::ChiSquare { dof: found.dof }, found.value, own);
-        let estimate = Estimate::measured(id, &gyro.channel, found.value, unit, spread, METHOD).note(
-            Note::new("readout.line")
-                .with("slope", Arg::Stated(slope(term)))
-                .with("tolerance", Arg::Stated(SLOPE_TOLERANCE))
-                .with("n", found.points)
-                .with("from_s", found.from_s)
-                .with("to_s", found.to_s)
-                .with("at_s", reading_time_s(term)),
-        );
-        Some(if own < ALONE {
-            estimate.note(Note::new("readout.others").with("percent", Arg::figures(100.0 * (1.0 - own), 2)))
-        } else {
-            estimate
+fn read_out(m: &Measurand, gyro: &GyroEvidence, term: NoiseType) -> Estimate {
+    let samples = gyro.digest.samples as f64;
+    let points: Vec<SlopePoint> = gyro
+        .octaves
+        .iter()
+        .filter(|p| p.point.m as f64 <= LARGEST_SHARE * samples && p.point.deviation > 0.0 && p.edf > 0.0)
+        .map(|p| SlopePoint {
+            tau_s: p.point.m as f64 * gyro.tau0_s,
+            deviation: p.point.deviation,
+            edf: p.edf,
         })
+        .collect();
+    let Some(found) = read(&points, term) else {
+        return m.not_identifiable(&gyro.channel, None, METHOD).note(
+            Note::new("readout.no_slope")
+                .with("slope", Arg::Stated(slope(term)))
+                .with("tolerance", Arg::Stated(SLOPE_TOLERANCE)),
+        );
+    };
+    let on_line: Vec<f64> = points.iter().map(|p| p.tau_s).collect();
+    let own = own_part(gyro, term, on_line.iter().filter(|t| (found.from_s..=found.to_s).contains(*t)));
+    let spread = reaching_down(Spread::ChiSquare { dof: found.dof }, found.value, own);
+    let estimate = m.measured(&gyro.channel, found.value, spread, METHOD).note(
+        Note::new("readout.line")
+            .with("slope", Arg::Stated(slope(term)))
+            .with("tolerance", Arg::Stated(SLOPE_TOLERANCE))
+            .with("n", found.points)
+            .with("from_s", found.from_s)
+            .with("to_s", found.to_s)
+            .with("at_s", reading_time_s(term)),
+    );
+    if own < ALONE {
+        return estimate
+            .note(Note::new("readout.others").with("percent", Arg::figures(100.0 * (1.0 - own), 2)));
     }
+    estimate
 }
 
 /// Part of a reading that the term itself makes up by the fitted description, 0 to 1: a line read off the curve holds a

@@ -7,13 +7,34 @@
 //! the Cramér-Rao variance of a sinusoid in white noise for each segment, over the number of averages, with a factor
 //! for the interpolation between bins. Validated by simulation from 5 to 1000 times the floor.
 
-use super::{GyroEvidence, Measurand, Options};
+use super::descriptor::Measurand;
+use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread};
 use crate::message::Note;
-use crate::noise::lines::SpectralLine as Line;
+use crate::noise::lines::{Sinusoid, SpectralLine};
 use std::f64::consts::PI;
 
-pub(super) struct SpectralLine;
+/// Frequency of the strongest line.
+pub static LINE_FREQUENCY: Measurand =
+    Measurand::at_rest("line_frequency", "Hz", "frequency of the strongest spectral line", |m, gyro, _| {
+        vec![strongest(m, gyro, |line, averages| match fitted(line) {
+            Some(sinusoid) => (line.frequency_hz, sinusoid.frequency_deviation_hz, "sinusoid"),
+            None => (line.frequency_hz, frequency_uncertainty_hz(line, averages), "welch"),
+        })]
+    });
+
+/// Amplitude of the strongest line.
+pub static LINE_AMPLITUDE: Measurand = Measurand::at_rest(
+    "line_amplitude",
+    "deg/h",
+    "amplitude of the strongest spectral line",
+    |m, gyro, _| {
+        vec![strongest(m, gyro, |line, averages| match fitted(line) {
+            Some(sinusoid) => (line.amplitude_deg_h, sinusoid.amplitude_deviation_deg_h, "sinusoid"),
+            None => (line.amplitude_deg_h, amplitude_uncertainty(line, averages), "welch"),
+        })]
+    },
+);
 
 /// Variance of the interpolated frequency over that of an efficient estimate: for a strong line, and what is added for
 /// one unit of peak over floor.
@@ -21,41 +42,28 @@ const INTERPOLATION_LOSS: (f64, f64) = (1.1, 7.0);
 /// Noise power squared in the five bins of a Hann lobe, with their correlations, in units of one bin.
 const LOBE_NOISE: f64 = 9.0;
 
-impl Measurand for SpectralLine {
-    fn ids(&self) -> &'static [&'static str] {
-        &["line_frequency", "line_amplitude"]
-    }
-
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
-        let frequency = id == "line_frequency";
-        let (id, unit) = if frequency { ("line_frequency", "Hz") } else { ("line_amplitude", "deg/h") };
-        let strongest = gyro.lines.iter().max_by(|a, b| a.amplitude_deg_h.total_cmp(&b.amplitude_deg_h));
-        let Some(line) = strongest else {
-            let none = Estimate::not_identifiable(id, &gyro.channel, None, unit, "welch");
-            return Some(none.note(gyro.withheld_line.clone().unwrap_or(Note::new("note.no_line"))));
-        };
-        let averages = gyro.spectrum().effective_averages;
-        let value = if frequency { line.frequency_hz } else { line.amplitude_deg_h };
-        let (standard_uncertainty, method) = match (line.sinusoid.filter(|s| s.skirt_deg_h == 0.0), frequency)
-        {
-            (Some(fitted), true) => (fitted.frequency_deviation_hz, "sinusoid"),
-            (Some(fitted), false) => (fitted.amplitude_deviation_deg_h, "sinusoid"),
-            (None, true) => (frequency_uncertainty_hz(line, averages), "welch"),
-            (None, false) => (amplitude_uncertainty(line, averages), "welch"),
-        };
-        let estimate = Estimate::measured(
-            id,
-            &gyro.channel,
-            value,
-            unit,
-            Spread::Normal { standard_uncertainty },
-            method,
-        );
-        Some(estimate.note(Note::new("note.line").with("resolution_hz", line.resolution_hz)))
-    }
+/// The sinusoid that stands for a line, where it has no skirt.
+fn fitted(line: &SpectralLine) -> Option<Sinusoid> {
+    line.sinusoid.filter(|s| s.skirt_deg_h == 0.0)
 }
 
-fn amplitude_uncertainty(line: &Line, averages: f64) -> f64 {
+/// What `of` gives of the strongest line for the number of averages: a value, its standard uncertainty and the method.
+fn strongest(
+    m: &Measurand,
+    gyro: &GyroEvidence,
+    of: fn(&SpectralLine, f64) -> (f64, f64, &'static str),
+) -> Estimate {
+    let strongest = gyro.lines.iter().max_by(|a, b| a.amplitude_deg_h.total_cmp(&b.amplitude_deg_h));
+    let Some(line) = strongest else {
+        let why = gyro.withheld_line.clone().unwrap_or(Note::new("note.no_line"));
+        return m.not_identifiable(&gyro.channel, None, "welch").note(why);
+    };
+    let (value, standard_uncertainty, method) = of(line, gyro.spectrum().effective_averages);
+    m.measured(&gyro.channel, value, Spread::Normal { standard_uncertainty }, method)
+        .note(Note::new("note.line").with("resolution_hz", line.resolution_hz))
+}
+
+fn amplitude_uncertainty(line: &SpectralLine, averages: f64) -> f64 {
     let e = (line.excess - 1.0).max(1e-6);
     // The whole lobe holds 1.5 times the power of the peak when the line lies on a bin, more when it lies between two.
     let bins = line.frequency_hz / line.resolution_hz;
@@ -65,7 +73,7 @@ fn amplitude_uncertainty(line: &Line, averages: f64) -> f64 {
     0.5 * line.amplitude_deg_h * ((4.0 * lobe + LOBE_NOISE) / averages).sqrt() / lobe
 }
 
-fn frequency_uncertainty_hz(line: &Line, averages: f64) -> f64 {
+fn frequency_uncertainty_hz(line: &SpectralLine, averages: f64) -> f64 {
     // The peak of a Hann periodogram of L samples stands at A²L/(6S) over a two-sided floor S (per sample), and the
     // signal-to-noise ratio of a sample is A²/(2S); var f = 12/((2π)² snr L³) in cycles a sample.
     let e = (line.excess - 1.0).max(1e-6);

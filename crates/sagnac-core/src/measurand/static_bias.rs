@@ -3,14 +3,20 @@
 //! The uncertainty is that of a mean of correlated noise, not σ/√n: the noise terms that the record allows, claimed or
 //! not, and the Earth rate.
 
-use super::{GyroEvidence, Measurand, Options};
+use super::descriptor::{EARTH_RATE_OPTION, Measurand, Options, PowerModel};
+use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread};
 use crate::message::Note;
 use crate::noise::data::NoiseType;
 use crate::noise::model::TERMS;
 use crate::noise::static_bias::BiasUncertainty;
 
-pub(super) struct StaticBias;
+/// Mean rate at rest.
+pub static STATIC_BIAS: Measurand =
+    Measurand::at_rest("static_bias", "deg/h", "mean rate at rest, Earth rate removed", evaluate)
+        .options(&[EARTH_RATE_OPTION])
+        .power(PowerModel::Mean)
+        .signed();
 
 /// Uncertainty of the mean of a channel.
 pub fn uncertainty(gyro: &GyroEvidence, earth_removed: bool) -> BiasUncertainty {
@@ -52,34 +58,18 @@ fn degrees_of_freedom(gyro: &GyroEvidence, u: &BiasUncertainty) -> f64 {
     if variance > 0.0 { (2.0 * u.variance().powi(2) / variance).max(LEAST_DOF) } else { LEAST_DOF }
 }
 
-impl Measurand for StaticBias {
-    fn ids(&self) -> &'static [&'static str] {
-        &["static_bias"]
-    }
-
-    fn evaluate(&self, _: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate> {
-        let removed = gyro.earth.filter(|_| options.remove_earth_rate);
-        let value = gyro.digest.mean - removed.map_or(0.0, |e| e.rate_deg_h);
-        let u = uncertainty(gyro, removed.is_some());
-        let standard_uncertainty = u.standard();
-        let mut estimate = Estimate::measured(
-            "static_bias",
-            &gyro.channel,
-            value,
-            "deg/h",
-            Spread::StudentT { standard_uncertainty, dof: degrees_of_freedom(gyro, &u) },
-            "mean",
-        );
-        estimate = match removed {
-            Some(e) => estimate.note(Note::new("note.earth_rate_removed").with("rate", e.rate_deg_h)),
-            None => estimate.note(Note::new("note.earth_rate_kept")),
-        };
-        Some(
-            estimate.note(
-                Note::new("note.bias_uncertainty")
-                    .with("u", standard_uncertainty)
-                    .with("longest_h", 1.0 / (3600.0 * u.lowest_hz)),
-            ),
-        )
-    }
+fn evaluate(m: &Measurand, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
+    let removed = gyro.earth.filter(|_| options.remove_earth_rate);
+    let value = gyro.digest.mean - removed.map_or(0.0, |e| e.rate_deg_h);
+    let u = uncertainty(gyro, removed.is_some());
+    let standard_uncertainty = u.standard();
+    let spread = Spread::StudentT { standard_uncertainty, dof: degrees_of_freedom(gyro, &u) };
+    let earth = match removed {
+        Some(e) => Note::new("note.earth_rate_removed").with("rate", e.rate_deg_h),
+        None => Note::new("note.earth_rate_kept"),
+    };
+    let longest = Note::new("note.bias_uncertainty")
+        .with("u", standard_uncertainty)
+        .with("longest_h", 1.0 / (3600.0 * u.lowest_hz));
+    vec![m.measured(&gyro.channel, value, spread, "mean").note(earth).note(longest)]
 }

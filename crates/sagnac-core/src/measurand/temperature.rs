@@ -1,9 +1,8 @@
 //! Bias over temperature: how much, how steep, what the rate of temperature, the lag and the history add, and what the
 //! model leaves. Statistics over temperature give every temperature the same weight.
 
-use super::{GyroEvidence, Measurand, Options};
+use super::descriptor::Measurand;
 use crate::estimate::{Estimate, Spread, UpperLimit};
-use crate::ids;
 use crate::message::{Arg, Note};
 use crate::temperature::course::{legendre, legendre_slopes};
 use crate::temperature::findings::{Analysis, Findings};
@@ -12,22 +11,102 @@ use crate::temperature::read::{self, Reading};
 use crate::temperature::sampler::Draw;
 use nalgebra::DVector;
 
-pub(super) struct OverTemperature;
-
-const IDS: &[&str] = &[
+/// Slope of the bias over temperature.
+pub static BIAS_TEMPERATURE_SENSITIVITY: Measurand = Measurand::over_temperature(
     "bias_temperature_sensitivity",
+    "deg/h/degC",
+    "slope of bias over temperature",
+    |m, channel, found| Row { m, channel }.of(found, Row::mean_slope),
+)
+.signed();
+
+/// Steepest slope of the bias over temperature.
+pub static BIAS_TEMPERATURE_SENSITIVITY_MAX: Measurand = Measurand::over_temperature(
     "bias_temperature_sensitivity_max",
+    "deg/h/degC",
+    "steepest local slope",
+    |m, channel, found| Row { m, channel }.of(found, Row::steepest_slope),
+)
+.signed();
+
+/// Bias per rate of temperature.
+pub static BIAS_TEMPERATURE_RATE_SENSITIVITY: Measurand = Measurand::over_temperature(
     "bias_temperature_rate_sensitivity",
+    "deg/h/(degC/min)",
+    "bias per rate of temperature (Shupe)",
+    |m, channel, found| Row { m, channel }.of(found, Row::rate_sensitivity),
+)
+.signed();
+
+/// Delay between the temperature sensor and the coil.
+pub static THERMAL_LAG: Measurand = Measurand::over_temperature(
     "thermal_lag",
+    "s",
+    "delay between temperature sensor and coil",
+    |m, channel, found| Row { m, channel }.of(found, Row::lag),
+);
+
+/// What the history of the temperature adds.
+pub static THERMAL_HYSTERESIS: Measurand = Measurand::over_temperature(
     "thermal_hysteresis",
+    "deg/h",
+    "largest gap between the heating and the cooling branch that no rate of temperature explains",
+    |m, channel, found| Row { m, channel }.of(found, Row::hysteresis),
+)
+.signed();
+
+/// Range of the bias over temperature.
+pub static BIAS_OVER_TEMPERATURE_PEAK_TO_PEAK: Measurand = Measurand::over_temperature(
     "bias_over_temperature_peak_to_peak",
+    "deg/h",
+    "range of bias over temperature",
+    |m, channel, found| Row { m, channel }.of(found, |row, a| row.range(a, 1.0, peak_to_peak)),
+);
+
+/// Root mean square of the bias over temperature.
+pub static BIAS_OVER_TEMPERATURE_RMS: Measurand = Measurand::over_temperature(
     "bias_over_temperature_rms",
+    "deg/h",
+    "rms of bias about its mean over temperature (one sigma)",
+    |m, channel, found| Row { m, channel }.of(found, |row, a| row.range(a, 1.0, rms)),
+);
+
+/// Three times the root mean square of the bias over temperature.
+pub static BIAS_OVER_TEMPERATURE_3SIGMA: Measurand = Measurand::over_temperature(
     "bias_over_temperature_3sigma",
+    "deg/h",
+    "three times that rms",
+    |m, channel, found| Row { m, channel }.of(found, |row, a| row.range(a, 3.0, rms)),
+);
+
+/// Gap between heating and cooling.
+pub static BIAS_LOOP_WIDTH: Measurand = Measurand::over_temperature(
     "bias_loop_width",
+    "deg/h",
+    "largest gap between heating and cooling at the rate of the ramps, whatever its cause",
+    |m, channel, found| Row { m, channel }.of(found, Row::loop_width),
+)
+.signed();
+
+/// What the temperature model leaves.
+pub static BIAS_RESIDUAL_RMS: Measurand = Measurand::over_temperature(
     "bias_residual_rms",
-    "ramp_rate",
+    "deg/h",
+    "rms left after the temperature model",
+    |m, channel, found| Row { m, channel }.of(found, Row::residual),
+);
+
+/// Rate of every ramp.
+pub static RAMP_RATE: Measurand =
+    Measurand::over_temperature("ramp_rate", "degC/h", "rate of a temperature ramp", ramps).signed();
+
+/// N in every temperature zone.
+pub static ANGLE_RANDOM_WALK_AT_TEMPERATURE: Measurand = Measurand::over_temperature(
     "angle_random_walk_at_temperature",
-];
+    "deg/sqrt(h)",
+    "N in one temperature zone",
+    zones,
+);
 
 /// Name of the method of rows that come from the model over temperature.
 const METHOD: &str = "thermal_gls";
@@ -43,47 +122,15 @@ const UNBOUNDED: f64 = 0.9;
 /// Times its uncertainty without a lag that a coefficient's uncertainty is where lags add to it what is worth saying.
 const WIDENED: f64 = 1.5;
 
-impl Measurand for OverTemperature {
-    fn ids(&self) -> &'static [&'static str] {
-        IDS
-    }
-
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, options: &Options) -> Option<Estimate> {
-        self.evaluate_all(id, gyro, options).into_iter().next()
-    }
-
-    fn evaluate_all(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Vec<Estimate> {
-        gyro.over_temperature.as_ref().map_or_else(Vec::new, |f| over_temperature(id, &gyro.channel, f))
-    }
-}
-
-/// Every row of a measurand over temperature on a channel.
-pub fn over_temperature(id: &str, channel: &str, found: &Findings) -> Vec<Estimate> {
-    match id {
-        "ramp_rate" => ramps(channel, found),
-        "angle_random_walk_at_temperature" => zones(channel, found),
-        id => match (&found.analysis, ids::find(id)) {
-            (Some(analysis), Some(m)) => {
-                Row { id: m.id, unit: m.unit, channel }.of(analysis).into_iter().collect()
-            }
-            (None, Some(m)) => {
-                let none = Estimate::not_identifiable(m.id, channel, None, m.unit, METHOD);
-                vec![none.note(Note::new("thermal.no_course"))]
-            }
-            (_, None) => vec![],
-        },
-    }
-}
-
 /// One ramp a row, its channel named after the temperature channel and its place in the schedule.
-fn ramps(channel: &str, found: &Findings) -> Vec<Estimate> {
+fn ramps(m: &Measurand, channel: &str, found: &Findings) -> Vec<Estimate> {
     let Some(schedule) = &found.schedule else { return vec![] };
     let ramps = schedule.segments.iter().filter(|s| s.kind.is_ramp()).enumerate();
     ramps
         .map(|(i, s)| {
             let spread = Spread::Normal { standard_uncertainty: s.rate_uncertainty_deg_c_h };
             let name = format!("{channel}@ramp{}", i + 1);
-            Estimate::measured("ramp_rate", &name, s.rate_deg_c_h, "degC/h", spread, "theil_sen").note(
+            m.measured(&name, s.rate_deg_c_h, spread, "theil_sen").note(
                 Note::new("thermal.ramp")
                     .with("from_h", Arg::figures(s.from_s / 3600.0, 4))
                     .with("to_h", Arg::figures(s.to_s / 3600.0, 4)),
@@ -92,19 +139,19 @@ fn ramps(channel: &str, found: &Findings) -> Vec<Estimate> {
         .collect()
 }
 
-fn zones(channel: &str, found: &Findings) -> Vec<Estimate> {
-    let id = "angle_random_walk_at_temperature";
-    let unit = "deg/sqrt(h)";
+fn zones(m: &Measurand, channel: &str, found: &Findings) -> Vec<Estimate> {
+    const METHOD: &str = "second_differences";
     let one = |z: &crate::temperature::zones::Zone| {
         let name = format!("{channel}@{}", z.deg_c);
         match &z.n {
             Some(n) if z.by_slow_noise => {
                 let limit = n.spread.bound(n.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
-                Estimate::not_identifiable(id, &name, limit, unit, "second_differences")
+                m.not_identifiable(&name, limit, METHOD)
                     .note(Note::new("thermal.zone_slow").with("average_s", z.average_s))
             }
             Some(n) => {
-                let e = Estimate::measured(id, &name, n.value, unit, n.spread.clone(), "second_differences")
+                let e = m
+                    .measured(&name, n.value, n.spread.clone(), METHOD)
                     .note(Note::new("thermal.zone").with("average_s", z.average_s));
                 // A part that rounds to nothing is not worth a word.
                 if z.slow_share < 0.005 {
@@ -113,76 +160,65 @@ fn zones(channel: &str, found: &Findings) -> Vec<Estimate> {
                 let percent = Arg::figures(100.0 * z.slow_share, 2);
                 e.note(Note::new("thermal.zone_without_slow").with("percent", percent))
             }
-            None => Estimate::not_identifiable(id, &name, None, unit, "second_differences")
-                .note(Note::new("thermal.zone_empty")),
+            None => m.not_identifiable(&name, None, METHOD).note(Note::new("thermal.zone_empty")),
         }
     };
     found.zones.iter().map(one).collect()
 }
 
+/// A row of a measurand that comes from the model over temperature.
 struct Row<'a> {
-    id: &'static str,
-    unit: &'static str,
+    m: &'a Measurand,
     channel: &'a str,
 }
 
 impl Row<'_> {
-    fn of(&self, a: &Analysis) -> Option<Estimate> {
+    /// What `of` gives of the model, or why there is none.
+    fn of(&self, found: &Findings, of: fn(&Self, &Analysis) -> Estimate) -> Vec<Estimate> {
+        vec![match &found.analysis {
+            Some(analysis) => of(self, analysis),
+            None => self.none(None).note(Note::new("thermal.no_course")),
+        }]
+    }
+
+    fn mean_slope(&self, a: &Analysis) -> Estimate {
+        let p = &a.posterior;
+        let reading = read::linear(&p.draws, |d| {
+            // The line of least squares over temperature, weights even: the first Legendre coefficient alone.
+            let mut w = DVector::zeros(d.coefficients.len());
+            w[0] = 2.0 / (p.span.high - p.span.low);
+            w
+        });
+        self.measured(reading).note(self.model_note(a))
+    }
+
+    fn steepest_slope(&self, a: &Analysis) -> Estimate {
         let p = &a.posterior;
         let order = p.terms.order;
-        match self.id {
-            "bias_temperature_sensitivity" => {
-                let reading = read::linear(&p.draws, |d| {
-                    // The line of least squares over temperature, weights even: the first Legendre coefficient alone.
-                    let mut w = DVector::zeros(d.coefficients.len());
-                    w[0] = 2.0 / (p.span.high - p.span.low);
-                    w
-                });
-                Some(self.measured(reading).note(self.model_note(a)))
-            }
-            "bias_temperature_sensitivity_max" => {
-                let at = steepest(a);
-                let reading = read::bent(&p.draws, |d, c| {
-                    let slopes = grid().map(|x| slope(c, order, x, a));
-                    let largest = slopes.max_by(|x, y| x.abs().total_cmp(&y.abs())).unwrap_or(0.0);
-                    // The steepest place may change its side from draw to draw; its sign is that of the best fit.
-                    let _ = d;
-                    largest.abs()
-                });
-                let sign = slope(&p.best.fitted.solved.coefficients, order, at, a).signum();
-                let note =
-                    Note::new("thermal.steepest").with("deg_c", Arg::figures(p.span.temperature(at), 3));
-                Some(self.measured(reading.scaled(sign)).note(note))
-            }
-            "bias_over_temperature_peak_to_peak" => Some(self.range(a, 1.0, &|c| {
-                let values = grid().map(|x| value(c, order, x));
-                let (low, high) =
-                    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-                high - low
-            })),
-            "bias_over_temperature_rms" => Some(self.range(a, 1.0, &|c| rms(c, order))),
-            "bias_over_temperature_3sigma" => Some(self.range(a, 3.0, &|c| rms(c, order))),
-            "bias_loop_width" => self.loop_width(a),
-            "bias_temperature_rate_sensitivity" => self.rate_sensitivity(a),
-            "thermal_lag" => self.lag(a),
-            "thermal_hysteresis" => self.hysteresis(a),
-            "bias_residual_rms" => Some(self.residual(a)),
-            _ => None,
-        }
+        let at = steepest(a);
+        // The steepest place may change its side from draw to draw; its sign is that of the best fit.
+        let reading = read::bent(&p.draws, |_, c| {
+            let slopes = grid().map(|x| slope(c, order, x, a));
+            slopes.max_by(|x, y| x.abs().total_cmp(&y.abs())).unwrap_or(0.0).abs()
+        });
+        let sign = slope(&p.best.fitted.solved.coefficients, order, at, a).signum();
+        let note = Note::new("thermal.steepest").with("deg_c", Arg::figures(p.span.temperature(at), 3));
+        self.measured(reading.scaled(sign)).note(note)
     }
 
     fn measured(&self, r: Reading) -> Estimate {
-        Estimate::measured(self.id, self.channel, r.value, self.unit, r.spread, METHOD)
+        self.m.measured(self.channel, r.value, r.spread, METHOD)
     }
 
     fn none(&self, upper_limit: Option<UpperLimit>) -> Estimate {
-        Estimate::not_identifiable(self.id, self.channel, upper_limit, self.unit, METHOD)
+        self.m.not_identifiable(self.channel, upper_limit, METHOD)
     }
 
     /// A number that says how far from flat the curve is: near zero noise makes it, and only a bound can be given.
-    fn range(&self, a: &Analysis, times: f64, of: &dyn Fn(&DVector<f64>) -> f64) -> Estimate {
+    fn range(&self, a: &Analysis, times: f64, of: fn(&DVector<f64>, usize) -> f64) -> Estimate {
         let draws = &a.posterior.draws;
-        if read::by_chance(draws, of) > FLAT {
+        let of = |c: &DVector<f64>| of(c, a.posterior.terms.order);
+        if read::by_chance(draws, &of) > FLAT {
             let drawn = read::drawn(draws, |_, c| times * of(c));
             let limit =
                 drawn.spread.bound(drawn.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
@@ -209,9 +245,9 @@ impl Row<'_> {
         }
     }
 
-    fn loop_width(&self, a: &Analysis) -> Option<Estimate> {
+    fn loop_width(&self, a: &Analysis) -> Estimate {
         if !a.both_ways {
-            return Some(self.none(None).note(Note::new("thermal.one_way")));
+            return self.none(None).note(Note::new("thermal.one_way"));
         }
         let best = best_draw(a);
         let widest = inner_grid()
@@ -226,30 +262,30 @@ impl Row<'_> {
         let note = Note::new("thermal.loop")
             .with("deg_c", Arg::figures(a.posterior.span.temperature(widest), 3))
             .with("rate", Arg::figures(60.0 * a.ramp_deg_c_min, 3));
-        Some(self.measured(reading).note(note))
+        self.measured(reading).note(note)
     }
 
-    fn rate_sensitivity(&self, a: &Analysis) -> Option<Estimate> {
+    fn rate_sensitivity(&self, a: &Analysis) -> Estimate {
         if a.posterior.terms.rate_at().is_none() {
-            return Some(self.none(None).note(Note::new("thermal.one_way")));
+            return self.none(None).note(Note::new("thermal.one_way"));
         }
         if !a.parted {
-            return Some(self.none(None).note(inseparable(a)));
+            return self.none(None).note(inseparable(a));
         }
         if a.narrow() {
-            return Some(self.none(None).note(narrow(a)));
+            return self.none(None).note(narrow(a));
         }
-        Some(self.beside_a_lag(a, 1.0, |l| l.rate))
+        self.beside_a_lag(a, 1.0, |l| l.rate)
     }
 
-    fn hysteresis(&self, a: &Analysis) -> Option<Estimate> {
+    fn hysteresis(&self, a: &Analysis) -> Estimate {
         if a.posterior.terms.hysteresis_at().is_none() {
-            return Some(self.none(None).note(Note::new("thermal.one_way")));
+            return self.none(None).note(Note::new("thermal.one_way"));
         }
         if !a.parted {
-            return Some(self.none(None).note(inseparable(a)));
+            return self.none(None).note(inseparable(a));
         }
-        Some(self.beside_a_lag(a, 2.0, |l| l.hysteresis))
+        self.beside_a_lag(a, 2.0, |l| l.hysteresis)
     }
 
     /// A coefficient whose interval holds every lag that explains the record as well. Where no lag is shown, the value is
@@ -276,28 +312,30 @@ impl Row<'_> {
         )
     }
 
-    fn lag(&self, a: &Analysis) -> Option<Estimate> {
+    fn lag(&self, a: &Analysis) -> Estimate {
         if a.parted && a.narrow() {
-            return Some(self.none(None).note(narrow(a)));
+            return self.none(None).note(narrow(a));
         }
         let told = Lag::of(a);
         let limit = told.bounded.then_some(UpperLimit { value: told.upper_s, coverage: 0.95 });
         if !a.parted {
-            return Some(self.none(limit).note(inseparable(a)));
+            return self.none(limit).note(inseparable(a));
         }
         if !told.bounded {
             let longest = Arg::figures(told.longest_s / 60.0, 2);
-            return Some(self.none(None).note(Note::new("thermal.any_lag").with("lag", longest)));
+            return self.none(None).note(Note::new("thermal.any_lag").with("lag", longest));
         }
         if told.may_be_none {
-            return Some(self.none(limit).note(Note::new("thermal.no_lag")));
+            return self.none(limit).note(Note::new("thermal.no_lag"));
         }
-        Some(self.measured(told.reading).note(separation_note(a)))
+        self.measured(told.reading).note(separation_note(a))
     }
 
     fn residual(&self, a: &Analysis) -> Estimate {
         let spread = Spread::ChiSquare { dof: a.residual_dof };
-        let mut e = Estimate::measured(self.id, self.channel, a.residual_rms, self.unit, spread, METHOD)
+        let mut e = self
+            .m
+            .measured(self.channel, a.residual_rms, spread, METHOD)
             .note(Note::new("thermal.residual").with("average_s", Arg::figures(a.average_s, 4)));
         let order = a.order;
         if let Some(t) = a.orders.iter().find(|t| t.order == order) {
@@ -334,6 +372,13 @@ fn steepest(a: &Analysis) -> f64 {
     let c = &a.posterior.best.fitted.solved.coefficients;
     let order = a.posterior.terms.order;
     grid().max_by(|x, y| slope(c, order, *x, a).abs().total_cmp(&slope(c, order, *y, a).abs())).unwrap_or(0.0)
+}
+
+/// Highest less lowest value.
+fn peak_to_peak(c: &DVector<f64>, order: usize) -> f64 {
+    let values = grid().map(|x| value(c, order, x));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    high - low
 }
 
 /// Root of the mean square about the mean, each temperature with the same weight: Σ cₖ²/(2k + 1).

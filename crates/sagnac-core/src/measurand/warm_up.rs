@@ -1,47 +1,56 @@
 //! Warm-up: how far the bias is off at switching on, and how long until it stays within its band.
 
-use super::{GyroEvidence, Measurand, Options};
+use super::descriptor::Measurand;
 use crate::estimate::{Estimate, LowerLimit, UpperLimit};
 use crate::message::{Arg, Note};
 use crate::temperature::settled::STATEMENT_PROBABILITY;
 use crate::temperature::start::{Missing, Start};
 use crate::temperature::warm_up::WarmUpFindings;
 
-pub(super) struct WarmUp;
+/// Bias at switching on, less its final value.
+pub static TURN_ON_TRANSIENT: Measurand = Measurand::of_warm_up(
+    "turn_on_transient",
+    "deg/h",
+    "bias at switching on, less its final value",
+    |m, channel, found| {
+        let r = &found.transient;
+        let row = m.measured(channel, r.value, r.spread.clone(), METHOD).note(described(found));
+        vec![started(m, row, found, false)]
+    },
+)
+.signed();
+
+/// Time until the bias stays within its band.
+pub static WARM_UP_TIME: Measurand = Measurand::of_warm_up(
+    "warm_up_time",
+    "s",
+    "time after switching on until the bias stays in its band",
+    |m, channel, found| vec![started(m, time(m, found, channel), found, true)],
+);
 
 const METHOD: &str = "decays_gls";
 
-impl Measurand for WarmUp {
-    fn ids(&self) -> &'static [&'static str] {
-        &["turn_on_transient", "warm_up_time"]
-    }
-
-    fn evaluate(&self, id: &str, gyro: &GyroEvidence, _: &Options) -> Option<Estimate> {
-        warm_up(gyro.warm_up.as_ref()?, &gyro.channel).into_iter().find(|e| e.id == id)
-    }
+/// The decays that were fitted.
+fn described(found: &WarmUpFindings) -> Note {
+    let constants = found.time_constants_s.iter().map(|c| Arg::figures(c / 60.0, 3)).collect();
+    Note::new("thermal.transient").with("constants", Arg::Several(constants, "; ".into()))
 }
 
-/// Every row about the warm-up of a channel.
-pub fn warm_up(found: &WarmUpFindings, channel: &str) -> Vec<Estimate> {
-    let constants = found.time_constants_s.iter().map(|c| Arg::figures(c / 60.0, 3)).collect();
-    let described = Note::new("thermal.transient").with("constants", Arg::Several(constants, "; ".into()));
-    let r = &found.transient;
-    let spread = r.spread.clone();
-    let transient = Estimate::measured("turn_on_transient", channel, r.value, "deg/h", spread, METHOD);
-    let rows = [transient.note(described.clone()), time(found, channel, described)];
+/// A row with what is known of the moment of switching on. Only the time is at least what is seen from the first sample on.
+fn started(m: &Measurand, row: Estimate, found: &WarmUpFindings, is_time: bool) -> Estimate {
     match found.start {
-        Start::Shown(_) => rows.into(),
-        Start::Declared => rows.map(|row| row.note(Note::new("thermal_start.declared"))).into(),
-        Start::NotShown(why) => rows.map(|row| unknown(row, why)).into(),
+        Start::Shown(_) => row,
+        Start::Declared => row.note(Note::new("thermal_start.declared")),
+        Start::NotShown(why) => unknown(m, row, why, is_time),
     }
 }
 
 /// A row whose time counts from an unknown moment: it is at least what is seen from the first sample on.
-fn unknown(row: Estimate, why: Missing) -> Estimate {
+fn unknown(m: &Measurand, row: Estimate, why: Missing, is_time: bool) -> Estimate {
     let seen = row.value.and_then(|v| row.spread.bound(v, 1.0 - STATEMENT_PROBABILITY)).filter(|v| *v > 0.0);
     let least = row.lower_limit.or(seen.map(|value| LowerLimit { value, coverage: STATEMENT_PROBABILITY }));
-    let least = least.filter(|_| row.id == "warm_up_time");
-    let mut out = Estimate::not_identifiable(row.id, &row.channel, None, row.unit, METHOD).at_least(least);
+    let least = least.filter(|_| is_time);
+    let mut out = m.not_identifiable(&row.channel, None, METHOD).at_least(least);
     out.notes = row.notes;
     out.note(match why {
         Missing::NotAsked => Note::new("thermal_start.not_asked"),
@@ -55,8 +64,7 @@ fn unknown(row: Estimate, why: Missing) -> Estimate {
     })
 }
 
-fn time(found: &WarmUpFindings, channel: &str, described: Note) -> Estimate {
-    let id = "warm_up_time";
+fn time(m: &Measurand, found: &WarmUpFindings, channel: &str) -> Estimate {
     let r = &found.time;
     if found.too_short || found.drifts_on() {
         let hours = Arg::figures(found.length_s / 3600.0, 3);
@@ -69,12 +77,11 @@ fn time(found: &WarmUpFindings, channel: &str, described: Note) -> Estimate {
         };
         let least = found.settled.at_least_s;
         let limit = (least > 0.0).then_some(LowerLimit { value: least, coverage: STATEMENT_PROBABILITY });
-        return Estimate::not_identifiable(id, channel, None, "s", METHOD).at_least(limit).note(note);
+        return m.not_identifiable(channel, None, METHOD).at_least(limit).note(note);
     }
     if r.value <= 0.0 {
         let limit = r.spread.bound(r.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
-        return Estimate::not_identifiable(id, channel, limit, "s", METHOD)
-            .note(Note::new("thermal.warm_at_once"));
+        return m.not_identifiable(channel, limit, METHOD).note(Note::new("thermal.warm_at_once"));
     }
-    Estimate::measured(id, channel, r.value, "s", r.spread.clone(), METHOD).note(described)
+    m.measured(channel, r.value, r.spread.clone(), METHOD).note(described(found))
 }

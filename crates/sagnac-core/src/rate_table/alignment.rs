@@ -4,19 +4,13 @@
 //! direction in the plate is (cos β, −sin β, 0) at the inner angle β. With the input axis along (θ_y, −θ_x, 1), for small
 //! tilts θ_x and θ_y about the plate's axes, y = y₀ + K·Ω_in + K·Ω_out·(θ_y cos β + θ_x sin β).
 
-use super::Setup;
 use super::blocks::TURN_ARCSEC;
-use super::combine::spread;
 use super::design::stands_out;
 use super::noise::Rows;
 use super::steps::{Step, Steps};
-use crate::estimate::Estimate;
 use crate::message::Note;
 use crate::numeric::reml::{self, Combination};
 use nalgebra::{DMatrix, DVector};
-
-/// Ids that this evaluation gives.
-pub const IDS: &[&str] = &["misalignment_x", "misalignment_y"];
 
 /// Least share of the turning by which a tilt must show. Sines of readings about zero are noise and no inner angle.
 const LEAST_SHARE: f64 = 0.01;
@@ -105,26 +99,4 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64
     let of = |k: usize| at[k].map(|column| fit.coefficient(column));
     let tilt = |k: usize| of(k).ok_or_else(of_inner);
     Ok(Alignment { channel: channel.to_owned(), tilts: [tilt(0), tilt(1)], factor: of(2) })
-}
-
-impl Alignment {
-    /// The estimate of one id; `None` for an id that is not given here.
-    pub fn estimate(&self, id: &'static str, unit: &'static str, setup: &Setup) -> Option<Estimate> {
-        let which = IDS.iter().position(|known| *known == id)?;
-        let method = "outer_axis_turns";
-        Some(match &self.tilts[which] {
-            Ok(tilt) => {
-                let others = [1e3 * setup.rate_uncertainty * tilt.value.abs()];
-                Estimate::measured(
-                    id,
-                    &self.channel,
-                    1e3 * tilt.value,
-                    unit,
-                    spread(tilt, 1e3, &others),
-                    method,
-                )
-            }
-            Err(why) => Estimate::not_identifiable(id, &self.channel, None, unit, method).note(why.clone()),
-        })
-    }
 }

@@ -1,9 +1,10 @@
 //! The rows of a channel, what moves them beside the rate, and the kinds of noise they may have.
 
+use super::blocks::TURN_ARCSEC;
 use super::model::Extra;
 use super::noise::Rows;
+use super::setup::Setup;
 use super::steps::{Part, Steps};
-use super::{Setup, blocks::TURN_ARCSEC};
 use crate::numeric::reml::{self, Fit};
 use nalgebra::{DMatrix, DVector};
 

@@ -1,12 +1,10 @@
 //! Inputs that are known without a table, and positions against the Earth's rotation.
 
 use super::blocks::{Block, Blocks};
-use super::combine::spread;
 use super::design::slope_of;
 use super::model::TAKEN_FROM;
 use super::noise::Rows;
-use crate::estimate::{Estimate, Spread};
-use crate::message::Note;
+use super::setup::{Input, Known};
 use crate::numeric::reml::{self, Combination, Fit};
 use nalgebra::{DMatrix, DVector};
 
@@ -15,40 +13,6 @@ pub const LEAST_SPAN_DEG_H: f64 = 0.1;
 
 /// Parts that all stretches of a channel are cut into.
 const PARTS: usize = 200;
-
-/// A stretch of the recording with a known input.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Known {
-    /// Phase of a manifest that it is.
-    pub phase: Option<String>,
-    /// Start, s from the start of the recording.
-    pub from_s: Option<f64>,
-    /// End, s from the start of the recording.
-    pub to_s: Option<f64>,
-    /// Channel concerned; `None`: every gyro channel.
-    pub channel: Option<String>,
-    /// The input.
-    pub input: Input,
-}
-
-/// A known input. Uncertainties are standard uncertainties.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Input {
-    /// The axis points somewhere, at rest: heading and elevation with their uncertainties, deg.
-    Position {
-        /// Heading from true north, positive to the east, deg.
-        heading: (f64, f64),
-        /// Elevation above the horizon, deg.
-        elevation: (f64, f64),
-    },
-    /// The unit is turned about the axis of the channel by an angle, deg.
-    Turn {
-        /// Angle with its uncertainty, deg.
-        angle: (f64, f64),
-    },
-    /// The unit rests: its bias is taken from here.
-    Rest,
-}
 
 /// A stretch as it was found: blocks from the first to before the end.
 #[derive(Debug, Clone, PartialEq)]
@@ -243,30 +207,6 @@ pub fn positions(
 }
 
 impl Positions {
-    /// Ids that positions give.
-    pub const IDS: [&str; 2] = ["scale_factor_error", "scale_factor_bias"];
-
-    /// The estimate of one id; `None` for an id that is not given here.
-    pub fn estimate(&self, id: &'static str, unit: &'static str) -> Option<Estimate> {
-        // Outputs whose bias was turned with them tell neither of both.
-        let refused = self.turned_instead.is_some() || !self.turned_in_software().is_empty();
-        if refused && Positions::IDS.contains(&id) {
-            return Some(
-                Estimate::not_identifiable(id, &self.channel, None, unit, "earth_rate_positions")
-                    .note(Note::new("known.refused")),
-            );
-        }
-        let measured = |value: f64, spread: Spread| {
-            Estimate::measured(id, &self.channel, value, unit, spread, "earth_rate_positions")
-                .note(Note::new("known.positions").with("n", self.means.len()))
-        };
-        Some(match id {
-            "scale_factor_error" => measured((self.factor.value - 1.0) * 1e6, spread(&self.factor, 1e6, &[])),
-            "scale_factor_bias" => measured(self.bias.value, spread(&self.bias, 1.0, &[])),
-            _ => return None,
-        })
-    }
-
     /// True when the output follows the Earth's rotation as the positions have it, as nearly as the noise tells.
     pub fn follows(&self) -> bool {
         (self.factor.value - 1.0).abs() <= (4.0 * self.factor.standard).max(0.02)

@@ -1,7 +1,7 @@
 //! The response of one channel: a mean for every level of rate, and what else moves the output.
 
-use super::Setup;
 use super::design::Design;
+use super::setup::Setup;
 use super::steps::Steps;
 use crate::numeric::reml::{Combination, Fit};
 use nalgebra::{DMatrix, DVector};

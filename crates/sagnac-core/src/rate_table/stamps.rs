@@ -1,7 +1,7 @@
 //! What the angle of the table, from sample to sample, says of the unit of the stamps.
 
-use super::TableRun;
 use super::blocks::TURN_ARCSEC;
+use super::steps::TableRun;
 
 /// Rates, as shares of the largest, that tell.
 const TELLS: f64 = 0.05;

@@ -1,8 +1,8 @@
 //! Steps of constant rate: found from the channels of the table, cut after a change, trimmed to whole turns.
 
-use super::Setup;
 use super::blocks::{Block, Blocks, TURN_ARCSEC};
 use super::settling::{self, Unsettled};
+use super::setup::Setup;
 
 /// Parts of all steps together: correlated noise is handled as a matrix over them.
 const PARTS: usize = 260;
@@ -351,5 +351,22 @@ fn number_cycles(steps: &mut Steps) {
     steps.cycles = (n / period).max(1);
     for (i, step) in steps.list.iter_mut().enumerate() {
         step.cycle = (i / period).min(steps.cycles - 1);
+    }
+}
+
+/// A recording on a table, with what was found in it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TableRun {
+    /// The blocks.
+    pub blocks: Blocks,
+    /// The steps.
+    pub steps: Steps,
+}
+
+impl TableRun {
+    /// Finds the steps of a recording.
+    pub fn new(blocks: Blocks, setup: &Setup) -> TableRun {
+        let steps = find(&blocks, setup);
+        TableRun { blocks, steps }
     }
 }

@@ -4,11 +4,9 @@
 //! difference is that of a turn against the rests, with flicker and random walk as the rests show them.
 
 use super::blocks::Blocks;
-use super::combine::{evenly, spread};
-use super::known::{Input, Known, Stretch, cut, noise_components, solve};
+use super::known::{Stretch, cut, noise_components, solve};
 use super::noise::Rows;
-use crate::estimate::Estimate;
-use crate::message::{Arg, Note};
+use super::setup::{Input, Known};
 use crate::numeric::reml::{Combination, Fit};
 use crate::units::EARTH_RATE_DEG_H;
 use nalgebra::{DMatrix, DVector};
@@ -30,9 +28,9 @@ pub struct Turned {
     /// Output per input, with the noise.
     pub factor: Combination,
     /// Standard uncertainty from that of the angles.
-    by_angle: f64,
+    pub by_angle: f64,
     /// Most that the Earth's rotation across the axis adds to either side.
-    by_earth: f64,
+    pub by_earth: f64,
 }
 
 /// What the rests tell of a channel.
@@ -137,28 +135,4 @@ fn integral(blocks: &Blocks, s: &Stretch, channel: usize) -> (f64, f64, f64) {
     }
     let middle_s = middle / all.max(f64::MIN_POSITIVE);
     if used > 0.0 { (angle * all / used, all, middle_s) } else { (0.0, all, middle_s) }
-}
-
-impl Turns {
-    /// The estimates of one id.
-    pub fn estimates(&self, id: &'static str, unit: &'static str) -> Vec<Estimate> {
-        self.table
-            .iter()
-            .filter_map(|Turned { output, axis, factor: c, by_angle, by_earth }| {
-                let own = output == axis;
-                let (channel, value, factor) = match (id, own) {
-                    ("scale_factor", true) => (output.clone(), c.value, 1.0),
-                    ("scale_factor_error", true) => (output.clone(), 1e6 * (c.value - 1.0), 1e6),
-                    ("cross_axis", false) => (format!("{output}<-{axis}"), c.value, 1.0),
-                    _ => return None,
-                };
-                let spread = evenly(spread(c, factor, &[factor * by_angle]), value, factor * by_earth);
-                let mut e = Estimate::measured(id, &channel, value, unit, spread, "known_angles");
-                if id == "scale_factor" {
-                    e.unit = "1";
-                }
-                Some(e.note(Note::new("known.turns").with("axis", Arg::Text(axis.clone()))))
-            })
-            .collect()
-    }
 }

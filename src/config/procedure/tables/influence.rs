@@ -8,8 +8,8 @@ use crate::config::spec::{
     KeySpec, Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
 };
 use crate::i18n::Note;
-use crate::ids::Test;
 use crate::influence::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};
+use crate::measurand::{Evaluation, Measurand, Test};
 use crate::recording::Role;
 
 const PHASE: KeySpec =
@@ -260,12 +260,15 @@ pub(crate) fn comparison(root: &Section) -> Option<ComparisonTest> {
     })
 }
 
-/// The table that a measurand of an influence needs.
-fn table_of(id: &str) -> &'static str {
-    match Influence::ALL.into_iter().find(|i| i.sensitivity() == id) {
-        Some(influence) => influence.table(),
-        None if id.starts_with("bias_repeatability") => REPEATABILITY_TEST.name,
-        None => VIBRATION_TEST.name,
+/// The tables of which a measurand needs one, the likeliest first; `None` for one of other tests.
+fn tables_of(measurand: &Measurand) -> Option<Vec<&'static str>> {
+    match measurand.evaluation {
+        Evaluation::Repeatability(_) => Some(vec![REPEATABILITY_TEST.name]),
+        Evaluation::Comparison { influence: Some(influence), .. } => Some(vec![influence.table()]),
+        Evaluation::Comparison { influence: None, .. } => {
+            Some(vec![VIBRATION_TEST.name, MAGNETIC_TEST.name, SUPPLY_TEST.name])
+        }
+        _ => None,
     }
 }
 
@@ -284,22 +287,17 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
     for section in root.tables("measurand") {
         let Some(measurand) = section.measurand("id") else { continue };
         let at = section.span_of("id");
-        let shift = matches!(measurand.id, "bias_shift" | "angle_random_walk_shift");
-        let compares = Influence::ALL.into_iter().any(|i| root.table(i.table()).is_some());
-        match measurand.test {
-            Test::Influence if shift && compares => {}
-            Test::Influence if root.table(table_of(measurand.id)).is_some() => {}
-            Test::Influence => {
-                let message = Note::new("influence_check.no_table")
-                    .with("id", measurand.id)
-                    .with("table", table_of(measurand.id));
+        if let Some(tables) = tables_of(measurand) {
+            if let Some(likeliest) = tables.first()
+                && tables.iter().all(|t| root.table(t).is_none())
+            {
+                let message =
+                    Note::new("influence_check.no_table").with("id", measurand.id).with("table", *likeliest);
                 reader.error(&at, message, None);
             }
-            Test::Static if own.is_some() && measurand.id != "earth_rate_component" => {
-                let message = Note::new("influence_check.static").with("id", measurand.id);
-                reader.error(&at, message, None);
-            }
-            _ => {}
+        } else if own.is_some() && measurand.test() == Test::Static && !measurand.from_site {
+            let message = Note::new("influence_check.static").with("id", measurand.id);
+            reader.error(&at, message, None);
         }
     }
     for name in tests {

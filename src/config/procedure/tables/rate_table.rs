@@ -7,9 +7,8 @@ use crate::config::spec::{
     Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
 };
 use crate::i18n::Note;
-use crate::ids::Test;
-use crate::rate_table::Setup;
-use crate::rate_table::known::{Input, Known};
+use crate::measurand::Test;
+use crate::rate_table::setup::{Input, Known, Setup};
 use crate::recording::Role;
 
 pub(crate) static RATE_TABLE: TableSpec = TableSpec {
@@ -258,7 +257,7 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
     for section in root.tables("measurand") {
         let Some(measurand) = section.measurand("id") else { continue };
         let at = section.span_of("id");
-        match (&procedure.rate_table, measurand.test) {
+        match (&procedure.rate_table, measurand.test()) {
             (None, Test::RateTable) => {
                 let message = Note::new("rate_table_check.no_table").with("id", measurand.id);
                 reader.error(&at, message, Some("rate_table_check.help.no_table".into()));

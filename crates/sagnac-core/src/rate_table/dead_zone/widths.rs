@@ -1,9 +1,12 @@
 //! Half widths by their likelihood: value, curve and bound.
 
 use super::points::{Left, Points};
+use super::rounded;
 use super::shape::{Kind, Shape};
-use super::{WIDTHS, rounded};
 use crate::estimate::normal_quantile;
+
+/// Half widths tried, up to a part of half the range of the rates.
+const WIDTHS: usize = 160;
 
 /// Normal score up to which a stretch that is all as likely spreads, and that of its ends: at a risk of a tenth or less a
 /// bound is its end.

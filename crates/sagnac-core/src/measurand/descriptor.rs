@@ -1,0 +1,435 @@
+//! What a measured quantity is: its id and unit, the test that gives it, what it needs, and how it is evaluated.
+
+use super::evidence::{ComparisonEvidence, GyroEvidence, KnownInputEvidence, TableEvidence};
+use crate::estimate::{Estimate, Spread, UpperLimit};
+use crate::influence::Influence;
+use crate::influence::repeatability::Repeatability;
+use crate::noise::data::NoiseType;
+use crate::rate_table::model::Extra;
+use crate::temperature::findings::Findings;
+use crate::temperature::warm_up::WarmUpFindings;
+use std::fmt;
+
+/// Option of a procedure: `keep` or `remove` the Earth rate.
+pub const EARTH_RATE_OPTION: &str = "earth_rate";
+
+/// Choices a procedure makes for a measurand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Whether the Earth rate is taken out of the static bias.
+    pub remove_earth_rate: bool,
+}
+
+/// The kind of test that gives a measurand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Test {
+    /// Rate at rest at constant temperature.
+    Static,
+    /// Rate at rest over temperature.
+    Temperature,
+    /// Rate at rest from switching on.
+    WarmUp,
+    /// Rate about the input axis given by a table, by known turns or by positions against the Earth rate.
+    RateTable,
+    /// Rate at rest over switching off and on.
+    Repeatability,
+    /// Rate at rest without and with an influence other than temperature.
+    Comparison,
+}
+
+/// The evaluation of a measurand: a pure function of the evidence that its kind of test leaves.
+///
+/// A function gives one row, or several where a quantity is given by zone, ramp, axis or level, or none where the channel
+/// has nothing to say about it.
+#[derive(Clone, Copy)]
+pub enum Evaluation {
+    /// From a gyro at rest.
+    Static(fn(&Measurand, &GyroEvidence, &Options) -> Vec<Estimate>),
+    /// From what a test over temperature showed of a channel.
+    Temperature(fn(&Measurand, &str, &Findings) -> Vec<Estimate>),
+    /// From what the warm-up of a channel showed.
+    WarmUp(fn(&Measurand, &str, &WarmUpFindings) -> Vec<Estimate>),
+    /// From steps of a rate table, or from known turns and positions, or from both.
+    RateTable {
+        /// From steps; `None`: steps do not show it.
+        steps: Option<OfSteps>,
+        /// From inputs that are known without a table; `None`: they do not show it.
+        known: Option<OfKnownInput>,
+    },
+    /// From a series of switchings-on.
+    Repeatability(fn(&Measurand, &Repeatability) -> Vec<Estimate>),
+    /// From a comparison without and with an influence.
+    Comparison {
+        /// The influence that shows it; `None`: any.
+        influence: Option<Influence>,
+        /// The evaluation.
+        evaluate: fn(&Measurand, &ComparisonEvidence<'_>) -> Vec<Estimate>,
+    },
+}
+
+/// How steps of a rate table show a measurand.
+#[derive(Clone, Copy)]
+pub struct OfSteps {
+    /// What the table has to do.
+    pub stimulus: Stimulus,
+    /// What the model of the response has to hold beside the rate.
+    pub extras: &'static [Extra],
+    /// The evaluation.
+    pub evaluate: fn(&Measurand, &TableEvidence<'_>) -> Vec<Estimate>,
+}
+
+/// What a rate table has to do to show a measurand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stimulus {
+    /// Rates about the input axis.
+    Rates,
+    /// Rates about the input axis of an open-loop unit, whose response is a sine.
+    OpenLoopRates,
+    /// Rates near zero.
+    SmallRates,
+    /// Turns about the outer axis, which is square to the input axis.
+    OuterTurns,
+}
+
+/// How turns by known angles and positions against the Earth rate show a measurand.
+#[derive(Clone, Copy)]
+pub struct OfKnownInput {
+    /// True where positions against the Earth rate show it.
+    pub positions: bool,
+    /// Axis of the turns that show it; `None`: turns do not show it.
+    pub turns: Option<TurnAxis>,
+    /// The evaluation.
+    pub evaluate: fn(&Measurand, &KnownInputEvidence<'_>) -> Vec<Estimate>,
+}
+
+/// The axis of a turn by a known angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TurnAxis {
+    /// The input axis of the channel itself.
+    Own,
+    /// The input axis of another channel.
+    Other,
+}
+
+/// What decides whether a record is long enough to judge a limit on a measurand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PowerModel {
+    /// The information on a coefficient of the noise model.
+    NoiseTerm(NoiseType),
+    /// The degrees of freedom of a standard deviation of window means.
+    WindowMeans {
+        /// Length of the windows, s.
+        window_s: f64,
+    },
+    /// The uncertainty of the mean of the record.
+    Mean,
+}
+
+/// A measured quantity. `measurand.<id>` is its name in the locale tables.
+#[derive(Clone, Copy)]
+pub struct Measurand {
+    /// Id in procedures, limits and results; part of the contract of `result.json`.
+    pub id: &'static str,
+    /// Unit in results; limits and references are converted to it. Empty: as recorded.
+    pub unit: &'static str,
+    /// What it is, in one line.
+    pub doc: &'static str,
+    /// True when it can be negative, so that a limit on its magnitude makes sense.
+    pub signed: bool,
+    /// Options that a procedure may set for it.
+    pub options: &'static [&'static str],
+    /// True when it follows from the site alone, whatever was recorded.
+    pub from_site: bool,
+    /// True when only a unit that stands still shows it: motion would be taken for noise.
+    pub needs_stillness: bool,
+    /// True for a drift or an instability, which no working gyro has as large as a rate.
+    pub drift: bool,
+    /// What decides whether a record can judge a limit on it; `None`: not a question of statistics.
+    pub power: Option<PowerModel>,
+    /// How it is evaluated.
+    pub evaluation: Evaluation,
+}
+
+impl PartialEq for Measurand {
+    fn eq(&self, other: &Measurand) -> bool {
+        self.id == other.id
+    }
+}
+
+impl Eq for Measurand {}
+
+impl fmt::Debug for Measurand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Measurand({})", self.id)
+    }
+}
+
+impl Measurand {
+    const fn new(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluation: Evaluation,
+    ) -> Measurand {
+        Measurand {
+            id,
+            unit,
+            doc,
+            signed: false,
+            options: &[],
+            from_site: false,
+            needs_stillness: false,
+            drift: false,
+            power: None,
+            evaluation,
+        }
+    }
+
+    /// A measurand of a gyro at rest.
+    pub const fn at_rest(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &GyroEvidence, &Options) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::Static(evaluate))
+    }
+
+    /// A measurand of a test over temperature.
+    pub const fn over_temperature(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &str, &Findings) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::Temperature(evaluate))
+    }
+
+    /// A measurand of the warm-up.
+    pub const fn of_warm_up(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &str, &WarmUpFindings) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::WarmUp(evaluate))
+    }
+
+    /// A measurand of steps of a rate table.
+    pub const fn of_steps(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        stimulus: Stimulus,
+        evaluate: fn(&Measurand, &TableEvidence<'_>) -> Vec<Estimate>,
+    ) -> Measurand {
+        let steps = Some(OfSteps { stimulus, extras: &[], evaluate });
+        Measurand::new(id, unit, doc, Evaluation::RateTable { steps, known: None })
+    }
+
+    /// A measurand that turns by known angles or positions alone show.
+    pub const fn of_known_input(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        known: OfKnownInput,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::RateTable { steps: None, known: Some(known) })
+    }
+
+    /// A measurand of a series of switchings-on.
+    pub const fn of_runs(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &Repeatability) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::Repeatability(evaluate))
+    }
+
+    /// A measurand of a comparison without and with an influence; of any influence where `influence` is `None`.
+    pub const fn of_influence(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        influence: Option<Influence>,
+        evaluate: fn(&Measurand, &ComparisonEvidence<'_>) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::Comparison { influence, evaluate })
+    }
+
+    /// It can be negative.
+    #[must_use]
+    pub const fn signed(mut self) -> Measurand {
+        self.signed = true;
+        self
+    }
+
+    /// A procedure may set these options for it.
+    #[must_use]
+    pub const fn options(mut self, options: &'static [&'static str]) -> Measurand {
+        self.options = options;
+        self
+    }
+
+    /// It follows from the site alone.
+    #[must_use]
+    pub const fn from_site(mut self) -> Measurand {
+        self.from_site = true;
+        self
+    }
+
+    /// Only a unit that stands still shows it.
+    #[must_use]
+    pub const fn needs_stillness(mut self) -> Measurand {
+        self.needs_stillness = true;
+        self
+    }
+
+    /// It is a drift or an instability.
+    #[must_use]
+    pub const fn drift(mut self) -> Measurand {
+        self.drift = true;
+        self
+    }
+
+    /// The power of a limit on it is that of this model.
+    #[must_use]
+    pub const fn power(mut self, model: PowerModel) -> Measurand {
+        self.power = Some(model);
+        self
+    }
+
+    /// The model of the response to a table holds these beside the rate.
+    #[must_use]
+    pub const fn extras(mut self, extras: &'static [Extra]) -> Measurand {
+        if let Evaluation::RateTable { steps: Some(steps), .. } = &mut self.evaluation {
+            steps.extras = extras;
+        }
+        self
+    }
+
+    /// Turns by known angles or positions show it too.
+    #[must_use]
+    pub const fn or_known_input(mut self, input: OfKnownInput) -> Measurand {
+        if let Evaluation::RateTable { known, .. } = &mut self.evaluation {
+            *known = Some(input);
+        }
+        self
+    }
+
+    /// The kind of test that gives it.
+    pub fn test(&self) -> Test {
+        match self.evaluation {
+            Evaluation::Static(_) => Test::Static,
+            Evaluation::Temperature(_) => Test::Temperature,
+            Evaluation::WarmUp(_) => Test::WarmUp,
+            Evaluation::RateTable { .. } => Test::RateTable,
+            Evaluation::Repeatability(_) => Test::Repeatability,
+            Evaluation::Comparison { .. } => Test::Comparison,
+        }
+    }
+
+    /// How steps of a rate table show it; `None` where they do not.
+    pub fn by_steps(&self) -> Option<OfSteps> {
+        match self.evaluation {
+            Evaluation::RateTable { steps, .. } => steps,
+            _ => None,
+        }
+    }
+
+    /// How turns by known angles and positions show it; `None` where they do not.
+    pub fn by_known_input(&self) -> Option<OfKnownInput> {
+        match self.evaluation {
+            Evaluation::RateTable { known, .. } => known,
+            _ => None,
+        }
+    }
+
+    /// True when the Earth rate along the input axis is needed.
+    pub fn needs_site(&self, options: &Options) -> bool {
+        self.from_site || options.remove_earth_rate && self.options.contains(&EARTH_RATE_OPTION)
+    }
+
+    /// Its rows on a gyro channel at rest, over temperature or from switching on; none for a measurand of other tests.
+    pub fn evaluate_gyro(&self, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::Static(evaluate) => evaluate(self, gyro, options),
+            Evaluation::Temperature(_) => {
+                let found = gyro.over_temperature.as_ref();
+                found.map_or_else(Vec::new, |found| self.evaluate_temperature(&gyro.channel, found))
+            }
+            Evaluation::WarmUp(_) => {
+                let found = gyro.warm_up.as_ref();
+                found.map_or_else(Vec::new, |found| self.evaluate_warm_up(&gyro.channel, found))
+            }
+            _ => vec![],
+        }
+    }
+
+    /// Its rows on a gyro channel over temperature; none for a measurand of other tests.
+    pub fn evaluate_temperature(&self, channel: &str, found: &Findings) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::Temperature(evaluate) => evaluate(self, channel, found),
+            _ => vec![],
+        }
+    }
+
+    /// Its rows on a gyro channel from switching on; none for a measurand of other tests.
+    pub fn evaluate_warm_up(&self, channel: &str, found: &WarmUpFindings) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::WarmUp(evaluate) => evaluate(self, channel, found),
+            _ => vec![],
+        }
+    }
+
+    /// Its rows on a gyro channel from steps of a rate table; none where they do not show it.
+    pub fn evaluate_steps(&self, channel: &TableEvidence<'_>) -> Vec<Estimate> {
+        self.by_steps().map_or_else(Vec::new, |steps| (steps.evaluate)(self, channel))
+    }
+
+    /// Its rows on all gyro channels from turns by known angles and positions; none where they do not show it.
+    pub fn evaluate_known_input(&self, known: &KnownInputEvidence<'_>) -> Vec<Estimate> {
+        self.by_known_input().map_or_else(Vec::new, |input| (input.evaluate)(self, known))
+    }
+
+    /// Its rows on a gyro channel from a series of switchings-on; none for a measurand of other tests.
+    pub fn evaluate_runs(&self, runs: &Repeatability) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::Repeatability(evaluate) => evaluate(self, runs),
+            _ => vec![],
+        }
+    }
+
+    /// Its rows on a gyro channel without and with an influence; none for a measurand of another influence or test.
+    pub fn evaluate_comparison(&self, compared: &ComparisonEvidence<'_>) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::Comparison { influence, evaluate }
+                if influence.is_none_or(|i| i == compared.bias.test.influence) =>
+            {
+                evaluate(self, compared)
+            }
+            _ => vec![],
+        }
+    }
+
+    /// An estimate of it with its confidence distribution, in its unit.
+    pub fn measured(&self, channel: &str, value: f64, spread: Spread, method: &'static str) -> Estimate {
+        Estimate::measured(self.id, channel, value, self.unit, spread, method)
+    }
+
+    /// A row that says that the record does not show it, with what it is at most (`None`: nothing can be said).
+    pub fn not_identifiable(
+        &self,
+        channel: &str,
+        upper_limit: Option<UpperLimit>,
+        method: &'static str,
+    ) -> Estimate {
+        Estimate::not_identifiable(self.id, channel, upper_limit, self.unit, method)
+    }
+
+    /// An estimate that was made under another name, as one of this measurand.
+    pub fn named(&self, estimate: &Estimate) -> Estimate {
+        Estimate { id: self.id, unit: self.unit, ..estimate.clone() }
+    }
+}
