@@ -183,9 +183,11 @@ fn table(said: &[String]) -> String {
     let unchanged = said.iter().filter(|s| *s == "unchanged").count();
     let unnamed = said.iter().filter(|s| s.starts_with("not named")).count();
     let mut out = format!(
-        "# Bad-data drill\n\nWritten by `SAGNAC_WRITE_DRILL=1 cargo test --release --test drill`. {} corruptions of {} \
-         samples: {} caught by name, {unchanged} that change neither a verdict nor, within its interval, a value, \
-         {unnamed} that no diagnostic names and the limits fail.\n\n| corruption | {} |\n|---|{}\n",
+        "# Bad-data drill\n\nEach of the {} corruptions below was applied to {} sample recordings. A cell gives the message that \
+         reports the corruption.\n\n| outcome | runs |\n|---|--:|\n| reported by name | {} |\n| unchanged: the verdict is the \
+         same, and each value stays within its interval | {unchanged} |\n| not named: no message names the corruption, but the \
+         unit fails its limits | {unnamed} |\n\nWritten by `SAGNAC_WRITE_DRILL=1 cargo test --release --test drill`.\n\n\
+         | corruption | {} |\n|---|{}\n",
         CASES.len(),
         SAMPLES.len(),
         said.len() - unchanged - unnamed,
