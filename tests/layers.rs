@@ -1,6 +1,8 @@
 //! Modules depend downwards only: the table is the architecture, a module that reaches up fails here. Documents name what
 //! there is.
 
+use sagnac_studies::pages::GENERATED;
+use sagnac_studies::{STUDIES, index};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -132,6 +134,24 @@ fn every_module_stands_on_a_floor_and_looks_down_only() {
 /// The documents, and the folder that each target of cargo has its file in.
 const DOCUMENTS: &[&str] = &["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "samples/README.md", "docs"];
 const TARGETS: &[(&str, &str)] = &[("--test ", "tests"), ("--bench ", "benches"), ("--example ", "examples")];
+
+#[test]
+fn the_summary_of_validation_has_what_every_page_misses() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation");
+    let summary = fs::read_to_string(folder.join("README.md")).unwrap();
+    let pages = index::read_pages(&folder).unwrap();
+    for (name, page) in &pages {
+        let written_by_a_study = page.contains(GENERATED);
+        assert!(
+            written_by_a_study || summary.contains(&format!("]({name})")),
+            "{name} is not in the summary"
+        );
+        let study = STUDIES.iter().any(|s| name.strip_suffix(".md") == Some(s.id));
+        assert!(written_by_a_study || !study, "{name} is kept by hand and has the name of a study");
+    }
+    let expected = index::with_misses(&summary, &pages).unwrap();
+    assert!(summary == expected, "`cargo xtask validate --index` writes it anew");
+}
 
 #[test]
 fn documents_name_tests_that_there_are() {

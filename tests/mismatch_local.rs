@@ -1,5 +1,5 @@
 //! Bursts, levels of noise and telegraph signals: nothing is claimed of noise that is as claimed, and what was put in is
-//! found. Numbers of the full study are in docs/VALIDATION.md; `cargo test --release --test mismatch_local -- --ignored`
+//! found. Numbers of the full study are in docs/validation/explanation.md; `cargo test --release --test mismatch_local -- --ignored`
 //! repeats it.
 
 mod local_support;

@@ -5,6 +5,7 @@
 
 pub mod comparison;
 pub mod goodness_of_fit;
+pub mod index;
 pub mod pages;
 pub mod results;
 pub mod study;

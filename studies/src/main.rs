@@ -1,21 +1,22 @@
 //! Runs studies and writes `docs/validation/`; started by `cargo xtask validate`.
 
-use sagnac_studies::STUDIES;
-use sagnac_studies::pages;
 use sagnac_studies::results::{CaseResult, Results, code_commit};
 use sagnac_studies::study::Study;
+use sagnac_studies::{STUDIES, index, pages};
 use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-const USAGE: &str = "usage: cargo xtask validate [STUDY]... [--records N] [--seed N] [--list]
+const USAGE: &str = "usage: cargo xtask validate [STUDY]... [--records N] [--seed N] [--list] [--index]
 
-Runs Monte Carlo studies and writes docs/validation/. Without a name: all of them.
+Runs Monte Carlo studies and writes their pages in docs/validation/, generated.md with all of one build, and the misses of
+all pages into README.md there. Pages kept by hand are never overwritten. Without a name: all studies.
 A study that was interrupted goes on after its last finished case, as long as the code is the same.
 --records  records of each case (default: that of the study)
 --seed     first seed (default: 1)
 --list     names the studies
+--index    runs nothing; writes the misses of all pages into README.md
 ";
 
 struct Options {
@@ -34,6 +35,10 @@ fn main() -> ExitCode {
         STUDIES.iter().for_each(|s| println!("{:<20} {}", s.id, s.title));
         return ExitCode::SUCCESS;
     }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("docs").join("validation");
+    if arguments.iter().any(|a| a == "--index") {
+        return exit_code(index::update(&folder));
+    }
     let options = match parse(&arguments) {
         Ok(options) => options,
         Err(message) => {
@@ -41,7 +46,11 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    match validate(&options) {
+    exit_code(validate(&options, &folder))
+}
+
+fn exit_code(done: io::Result<()>) -> ExitCode {
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("failed to validate: {error}");
@@ -74,10 +83,9 @@ fn parse(arguments: &[String]) -> Result<Options, String> {
     Ok(options)
 }
 
-fn validate(options: &Options) -> io::Result<()> {
+fn validate(options: &Options, folder: &Path) -> io::Result<()> {
     let root =
         Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or_else(|| io::Error::other("no root folder"))?;
-    let folder = root.join("docs/validation");
     let commit = code_commit(root)?;
     for study in &options.studies {
         let records = options.records.unwrap_or(study.records);
@@ -88,11 +96,22 @@ fn validate(options: &Options) -> io::Result<()> {
         // Results of changed code that no commit holds cannot be told from those of other changes.
         let kept = Results::read(&partial)?.filter(|r| r.commit == commit && !commit.ends_with('+'));
         let results = run(study, kept.unwrap_or(fresh), &partial)?;
+        write_page(&folder.join(format!("{}.md", study.id)), &pages::study_page(study, &results))?;
         results.write(&path)?;
-        std::fs::write(folder.join(format!("{}.md", study.id)), pages::study_page(study, &results))?;
-        write_summary(&folder, &commit)?;
+        write_summary(folder, &commit)?;
     }
     Ok(())
+}
+
+/// Writes a page of a study, never over one that is kept by hand.
+fn write_page(path: &Path, page: &str) -> io::Result<()> {
+    match std::fs::read_to_string(path) {
+        Ok(old) if !old.contains(pages::GENERATED) => {
+            Err(io::Error::other(format!("{} is kept by hand", path.display())))
+        }
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
+        _ => std::fs::write(path, page),
+    }
 }
 
 /// Runs the cases that have no result yet; keeps each as it finishes.
@@ -119,5 +138,6 @@ fn write_summary(folder: &Path, commit: &str) -> io::Result<()> {
     for study in STUDIES {
         all.extend(Results::read(&folder.join(format!("{}.json", study.id)))?);
     }
-    std::fs::write(folder.join("README.md"), pages::summary(STUDIES, &all, commit))
+    write_page(&folder.join("generated.md"), &pages::summary(STUDIES, &all, commit))?;
+    index::update(folder)
 }

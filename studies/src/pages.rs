@@ -1,4 +1,4 @@
-//! Pages of `docs/validation/` from results: what misses first.
+//! Pages of `docs/validation/` that studies write: what misses first. Pages kept by hand stand beside them.
 
 use crate::results::Results;
 use crate::study::{Row, Study, Verdict};
@@ -42,7 +42,7 @@ pub fn study_page(study: &Study, results: &Results) -> String {
 ///
 /// It holds what one build gave, `commit`; studies without results of it are named at the end.
 pub fn summary(studies: &[&Study], results: &[Results], commit: &str) -> String {
-    let mut page = format!("# Validation\n\n{GENERATED}\n\n{INTRODUCTION}\n\n## What misses\n\n");
+    let mut page = format!("# Studies of one build\n\n{GENERATED}\n\n{INTRODUCTION}\n\n## Misses\n\n");
     let measured_now: Vec<(&Study, &Results)> = studies
         .iter()
         .filter_map(|s| Some((*s, results.iter().find(|r| r.study == s.id && r.commit == commit)?)))
@@ -72,7 +72,7 @@ fn misses(measured_now: &[(&Study, &Results)]) -> String {
             for row in case.rows.iter().filter(|r| r.verdict == Verdict::Misses) {
                 let _ = writeln!(
                     text,
-                    "| [{}]({}.md) | {} | {} | {} | {} | {} | {} |",
+                    "| [{}]({}.md) | {}, {}: {} | {} | {} | {} |",
                     study.title,
                     study.id,
                     case.name,
@@ -86,11 +86,10 @@ fn misses(measured_now: &[(&Study, &Results)]) -> String {
         }
     }
     if text.is_empty() {
-        return "No line misses in the studies below.\n".to_owned();
+        let none = if measured_now.is_empty() { "No study was run." } else { "No line misses." };
+        return format!("{none}\n");
     }
-    format!(
-        "| study | case | quantity | claim | asked | measured | Monte Carlo 95 % |\n|---|---|---|---|---|--:|---|\n{text}"
-    )
+    format!("| study | claim | asked | measured | Monte Carlo 95 % |\n|---|---|---|--:|---|\n{text}")
 }
 
 /// A line for each claim of a study, in the order in which they appear.
@@ -135,12 +134,13 @@ fn interval(row: &Row) -> String {
     row.interval.map_or_else(|| "–".to_owned(), |[low, high]| format!("{low:.3} to {high:.3}"))
 }
 
-const GENERATED: &str = "<!-- Written by `cargo xtask validate`; edits are lost. -->";
+/// Stands on every page that a study writes; a page without it is kept by hand and never overwritten.
+pub const GENERATED: &str = "<!-- Written by `cargo xtask validate`; edits are lost. -->";
 
 const INTRODUCTION: &str = "Monte Carlo studies of simulated units whose truth is known. *Misses*: the whole 95 % interval of \
 the Monte Carlo lies outside what is asked. *Unresolved*: the number lies outside, but so few records do not decide. Every \
-number here comes from one build; a command run again gives the same numbers. What earlier builds measured stands in \
-[VALIDATION.md](../VALIDATION.md).";
+number here comes from one build; a command run again gives the same numbers. What earlier builds measured stands on the \
+pages of the [summary](README.md).";
 
 #[cfg(test)]
 mod tests {
@@ -169,7 +169,7 @@ mod tests {
         assert!(page.find("| case | b |").unwrap() < page.find("| case | a |").unwrap(), "{page}");
         let summary = summary(&[&STUDY, &OTHER], &[results()], "abc");
         let (misses, all) = summary.split_once("## Every claim").unwrap();
-        assert!(misses.contains("| b |") && !misses.contains("| a |"), "{misses}");
+        assert!(misses.contains("| case, b: ") && !misses.contains("case, a: "), "{misses}");
         assert!(all.contains("| 0.800 | 2 | 1 | 0 | **misses** |"), "{all}");
         assert!(all.contains("- Other: `cargo xtask validate other`"), "{all}");
     }

@@ -4,7 +4,7 @@
 //! Each family of measurands is one file with its cases and a generator of its own, which imports nothing from the
 //! analysis. A case draws a recording, the procedure and the truth; the program tests it as a user would, and
 //! `result.json` is set against the truth. A short study of every case runs with the tests. The table in
-//! `docs/VALIDATION.md` is written by
+//! `docs/validation/edges.md` is written by
 //!
 //! ```sh
 //! cargo test --release --test edges -- --ignored --nocapture

@@ -9,8 +9,8 @@ use std::process::{Command, ExitCode};
 
 const USAGE: &str = "usage: cargo xtask COMMAND
 
-validate [STUDY]... [--records N] [--seed N] [--list]
-    Run Monte Carlo studies and write docs/validation/.
+validate [STUDY]... [--records N] [--seed N] [--list] [--index]
+    Run Monte Carlo studies and write their pages in docs/validation/.
 same-results OLD NEW [--only TEXT]
     Run every shipped sample with two binaries and compare their result.json: numbers to the last digit.
 features [CARGO OPTION]...
