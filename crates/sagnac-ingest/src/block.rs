@@ -1,6 +1,6 @@
 //! Rows of a file in blocks: what a reader delivers.
 
-/// Why a field is no finite number.
+/// Why a field of a file is not a finite number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldFaultKind {
     /// Empty, null, NaN, infinite, or beyond 1e60 in magnitude.
@@ -9,44 +9,44 @@ pub enum FieldFaultKind {
     Unparsable,
 }
 
-/// A field that is no finite number; it is NaN in the block.
+/// A field that is not a finite number; its value in the block is NaN.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldFault {
-    /// Which of the wanted columns.
+    /// Position among the requested columns.
     pub slot: usize,
     /// Row in the file, counted from 1 without header lines.
     pub row: u64,
-    /// Line of the text and character in it, counted from 1; 0 for formats without lines.
+    /// Line of the text, counted from 1; 0 for formats without lines.
     pub line: u64,
     /// Character in the line, counted from 1; 0 for formats without lines.
     pub character: u64,
     /// Kind.
     pub kind: FieldFaultKind,
-    /// The text found.
+    /// The field as it is written in the file, shortened.
     pub text: String,
 }
 
 /// At most this many faults of a kind are located in a block, for each column; all are counted.
 pub(crate) const LOCATED_PER_BLOCK: u64 = 100;
 
-/// Some rows of the wanted columns.
+/// Consecutive rows of the requested columns.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Block {
     /// Which file of the recording, counted from 0.
     pub part: usize,
-    /// Row of the first, counted from 1; in a recording of several files rows count on.
+    /// Number of the first row, counted from 1 over all files of the recording.
     pub first_row: u64,
     /// Line of the text that the block starts on, counted from 1.
     pub(crate) first_line: u64,
     /// Number of lines of text.
     pub(crate) lines: u64,
-    /// One vector for each wanted column, all of one length; NaN where there is no finite number.
+    /// One vector of equal length per requested column; NaN where a field is not a finite number.
     pub columns: Vec<Vec<f64>>,
-    /// Fields that are no finite numbers, the first of each kind and column.
+    /// The first such fields of each kind and column, with their places.
     pub faults: Vec<FieldFault>,
-    /// All non-finite fields, by wanted column.
+    /// Number of non-finite fields per requested column.
     pub non_finite: Vec<u64>,
-    /// All unparsable fields, by wanted column.
+    /// Number of unparsable fields per requested column.
     pub unparsable: Vec<u64>,
     /// Bytes of the file read so far.
     pub bytes_done: u64,
@@ -87,13 +87,13 @@ impl Block {
     }
 }
 
-/// What is known of a file when it was read to the end.
+/// Hash and size of a file that was read to its end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileFacts {
     /// SHA-256 of the bytes of the file, hexadecimal; empty for a recording in memory.
     pub sha256: String,
     /// Size of the file, bytes.
     pub bytes: u64,
-    /// Rows.
+    /// Number of rows.
     pub rows: u64,
 }

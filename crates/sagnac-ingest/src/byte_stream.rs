@@ -1,4 +1,4 @@
-//! The bytes of a file: unpacked where they are packed, hashed and counted as they pass.
+//! The bytes of a file: decompressed where needed, hashed and counted while they are read.
 
 use super::error::{IngestError, IngestErrorKind};
 use crate::io_reason;
@@ -8,10 +8,10 @@ use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::Path;
 
-/// How a file is packed.
+/// How a file is compressed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Packing {
-    /// As it is.
+    /// Not compressed.
     Plain,
     /// gzip, RFC 1952.
     Gzip,
@@ -20,7 +20,7 @@ pub enum Packing {
 }
 
 impl Packing {
-    /// Recognises the packing by the first bytes of a file.
+    /// Recognises the compression by the first bytes of a file.
     pub fn of(head: &[u8]) -> Packing {
         match head {
             [0x1f, 0x8b, ..] => Packing::Gzip,
@@ -29,7 +29,7 @@ impl Packing {
         }
     }
 
-    /// The id shown by `inspect`.
+    /// Identifier in results: `plain`, `gzip` or `zstd`.
     pub fn id(self) -> &'static str {
         match self {
             Packing::Plain => "plain",
@@ -78,7 +78,7 @@ impl Inner {
     }
 }
 
-/// The unpacked bytes of a file, in order.
+/// Reads the decompressed bytes of a file in order.
 pub struct ByteStream {
     path: std::path::PathBuf,
     inner: Inner,
@@ -87,7 +87,7 @@ pub struct ByteStream {
     unpacked: u64,
 }
 
-/// What is known when every byte has passed.
+/// Hash and size of a file, known once all bytes were read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Digested {
     /// SHA-256 of the bytes of the file, hexadecimal.
@@ -97,7 +97,7 @@ pub struct Digested {
 }
 
 impl ByteStream {
-    /// Opens a file that is packed as told.
+    /// Opens a file with the given compression.
     ///
     /// # Errors
     /// [`IngestErrorKind::Io`] when it cannot be opened, [`IngestErrorKind::Damaged`] when the packing is broken.
@@ -117,7 +117,7 @@ impl ByteStream {
         Ok(ByteStream { path: path.to_owned(), inner, size, unpacked: 0 })
     }
 
-    /// Fills the buffer as far as the file goes; returns the bytes put in, 0 at the end.
+    /// Fills the buffer; returns the number of bytes, which is less than its length only at the end of the file.
     ///
     /// # Errors
     /// As [`ByteStream::open`], and [`IngestErrorKind::Bomb`].
@@ -173,7 +173,7 @@ impl ByteStream {
     }
 }
 
-/// Hashes a whole file.
+/// Computes the SHA-256 of a file as it stands, compressed or not.
 ///
 /// # Errors
 /// As [`ByteStream::open`] and [`ByteStream::finish`].

@@ -4,26 +4,26 @@ use crate::column_inference::{InferredColumn, infer};
 use sagnac_core::message::Note;
 use sagnac_core::recording::Role;
 
-/// A column of a file.
+/// A column as the format describes it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     /// Name in the header, or `column_1`, `column_2` ... where there is none.
     pub name: String,
-    /// True when the format can give numbers for it. A text file says so of every column.
+    /// True if the format can deliver numbers for the column. Always true for text files.
     pub numeric: bool,
-    /// Type in the file, in the format's words, for example `DOUBLE`; `text` for text files.
+    /// Storage type as the format names it, for example `DOUBLE`; `text` for text files.
     pub storage: String,
     /// Unit the format itself declares, for example `ms` for a Parquet time stamp.
     pub unit: Option<String>,
-    /// Seconds from 1970 to the zero of the values, when the reader turned stamps with a date into seconds; the unit is
-    /// `s` then.
+    /// Time that the values count from, in seconds since 1970-01-01T00:00:00Z, where stamps with a date were converted to
+    /// seconds; the unit is then `s`.
     pub epoch_s: Option<f64>,
-    /// Period after which the stamps start again, s: 86400 for clock time, 604800 for seconds of a week.
+    /// Period after which time stamps start again from zero, s: 86400 for time of day, 604800 for seconds of the week.
     pub rollover_s: Option<f64>,
 }
 
 impl Column {
-    /// What the column may be: from what the reader knows of it, else from its name.
+    /// The most likely role and unit: from the type of the column where that is decisive, otherwise from its name.
     pub fn inferred(&self) -> InferredColumn {
         let mut inferred = infer(&self.name, self.unit.as_deref());
         let dates = self.storage == DATES;

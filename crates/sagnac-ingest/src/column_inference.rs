@@ -4,16 +4,16 @@ use sagnac_core::message::{Arg, Note};
 use sagnac_core::recording::Role;
 use sagnac_core::units::Unit;
 
-/// What the name of a column, and the unit that the file states, tell of it.
+/// Role and unit of a column, inferred from its name and from the unit that the file states.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InferredColumn {
     /// Role.
     pub role: Role,
     /// Unit of the numbers in the file.
     pub unit: Unit,
-    /// False when the name does not tell the unit and the usual one was taken.
+    /// False if neither name nor file states the unit, and the usual unit of the role was assumed.
     pub unit_is_named: bool,
-    /// Why.
+    /// Why role and unit were chosen.
     pub reason: Note,
 }
 
@@ -93,7 +93,7 @@ const UNIT_WORDS: &[(&[&str], &str)] = &[
 /// What a dimension of a unit says of a column, with the words for it.
 const RATE: &str = "deg/h";
 
-/// Infers role and unit of a column; `declared_unit`: what the file format itself says of the unit.
+/// Infers role and unit of a column. `declared_unit` is the unit that the format itself states, if any.
 pub fn infer(name: &str, declared_unit: Option<&str>) -> InferredColumn {
     let (stem, bracketed) = split_brackets(name);
     let words = words(&stem);

@@ -5,7 +5,7 @@ use sagnac_core::visible::steers;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// What went wrong, for programs.
+/// The kind of the error, for programs that handle kinds differently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IngestErrorKind {
     /// The file cannot be opened or read.
@@ -45,7 +45,7 @@ struct Details {
     hint: Option<Note>,
 }
 
-/// A recording that could not be read.
+/// Why a recording could not be read: a diagnostic with its place, the text found there and advice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IngestError(Box<Details>);
 
@@ -89,7 +89,7 @@ impl IngestError {
         self
     }
 
-    /// What went wrong, for programs.
+    /// The kind of the error, for programs that handle kinds differently.
     pub fn kind(&self) -> IngestErrorKind {
         self.0.kind
     }

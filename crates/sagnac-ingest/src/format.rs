@@ -9,46 +9,46 @@ use sagnac_core::message::Note;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-/// Takes blocks in order; may stop the reading.
+/// Receives blocks in order; `Break` stops the reading.
 pub type OnBlock<'a> = dyn FnMut(&mut Block) -> ControlFlow<()> + 'a;
 
-/// An opened file that can be read.
+/// Reads the columns of an opened file.
 pub trait Table: Send + Sync {
-    /// Reads the wanted columns (positions from 0, each at most once) from the start; every row is delivered once, in
-    /// order, in blocks of bounded size. `None` when the consumer stopped the reading.
+    /// Reads the requested columns (positions from 0, each at most once) from the start. Every row is delivered once, in
+    /// order, in blocks of bounded size. Returns `None` if the consumer stopped the reading.
     ///
     /// # Errors
-    /// Whatever keeps the file from being read to its end.
+    /// [`IngestError`] if the file cannot be read to its end.
     fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError>;
 }
 
-/// A file of which the first bytes have been looked at.
+/// A file whose format is to be found, with its first bytes.
 pub struct Candidate {
     /// Path.
     pub path: PathBuf,
     /// Size, bytes.
     pub bytes: u64,
-    /// How it is packed.
+    /// How it is compressed.
     pub packing: Packing,
-    /// The first unpacked bytes, at most 256 KiB.
+    /// Its first bytes, decompressed, at most 256 KiB.
     pub head: Vec<u8>,
-    /// True when `head` is the whole content.
+    /// True if `head` is the whole content.
     pub head_is_all: bool,
-    /// What the user decided about the file.
+    /// How the user wants it to be read.
     pub options: ReadOptions,
 }
 
-/// What a format says of a file.
+/// What a format tells about a file that it opened.
 pub struct Opened {
     /// Columns.
     pub columns: Vec<Column>,
     /// Rows, when the format knows or can estimate them cheaply.
     pub rows_estimate: Option<u64>,
-    /// What shows that the end of the file is missing.
+    /// Evidence that the end of the file is missing, one note each.
     pub cut_off: Vec<Note>,
-    /// What was decided about the file and why.
+    /// Decisions made in opening the file, with their reasons.
     pub notes: Vec<Note>,
-    /// What the file says of itself, key and value as written: a bounded number of bounded length.
+    /// Metadata of the file, key and value as written: at most 64 entries of at most 200 characters.
     pub metadata: Vec<(String, String)>,
     /// Sample rate that the file states, Hz.
     pub stated_sample_rate_hz: Option<f64>,
@@ -60,15 +60,15 @@ pub struct Opened {
 pub trait Format: Sync {
     /// Id, for example `csv`.
     fn id(&self) -> &'static str;
-    /// True when the first bytes are of this format.
+    /// True if the first bytes are of this format.
     fn recognises(&self, file: &Candidate) -> bool;
-    /// True when a file may be opened as of this format because its user says so; opening then says what is wrong.
+    /// True if the file may be opened because the user states this format; opening then reports what is wrong.
     fn may_be(&self, file: &Candidate) -> bool {
         self.recognises(file)
     }
     /// Opens a file that was recognised.
     ///
     /// # Errors
-    /// Says what is wrong with the file.
+    /// [`IngestError`] if the file is damaged, empty, or of a variant that is not read.
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError>;
 }

@@ -26,7 +26,7 @@ struct Part {
     stated_sha256: Option<String>,
 }
 
-/// A file to be joined.
+/// One file of a recording of several.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PartSpec {
     /// Path.
@@ -37,10 +37,11 @@ pub struct PartSpec {
     pub phase: Option<String>,
 }
 
-/// Opens files that follow each other as one recording.
+/// Opens files that follow each other as one recording. `name` stands for the whole in diagnostics; `contiguous`: each
+/// file continues the one before without a gap.
 ///
 /// # Errors
-/// What [`open_with`] says of one of them; columns that differ; a file that is there twice.
+/// The error of [`open_with`] for one of them; columns that differ; a file that is listed twice.
 pub fn open(
     name: &Path,
     specs: &[PartSpec],

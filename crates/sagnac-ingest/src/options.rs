@@ -3,7 +3,7 @@
 use crate::layout::LayoutFile;
 use sagnac_core::recording::ColumnRef;
 
-/// Decisions about a file that were made for it; what is `None` is found from the file, and the finding is told.
+/// How a file is to be read. Whatever is `None` is detected, and a note of the recording says what was detected.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReadOptions {
     /// Id of the format, one of [`super::FORMATS`].

@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf, is_separator};
 /// Most entries of folders that are looked at.
 const MAX_ENTRIES: usize = 1 << 20;
 
-/// Why a pattern gives no list of files.
+/// Why a file name pattern cannot be expanded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PatternError {
     /// It is no pattern.
@@ -19,7 +19,7 @@ pub enum PatternError {
 }
 
 impl PatternError {
-    /// In words of the tables: the keys of the sentence about what is no pattern and about what is too wide.
+    /// The error as a note, under the given keys for an invalid pattern and for one that matches too much.
     pub fn note(&self, bad: &'static str, wide: &'static str) -> Note {
         match self {
             PatternError::Bad(reason) => Note::new(bad).with("reason", *reason),
@@ -43,7 +43,7 @@ fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?', '['])
 }
 
-/// The ordinary files that a pattern matches, in no order, at most `most` and one more. `folder` is where it starts.
+/// The regular files that a pattern matches below `folder`, unsorted; the search ends once there are more than `most`.
 pub fn files(folder: &Path, pattern: &str, most: usize) -> Result<Vec<PathBuf>, PatternError> {
     Pattern::new(pattern).map_err(|e| PatternError::Bad(e.msg))?;
     let (mut base, mut pieces) = (folder.to_owned(), Vec::new());
@@ -139,7 +139,7 @@ impl Walk {
     }
 }
 
-/// A key that sorts numbers in names by their value.
+/// A sort key by which `part2` comes before `part10`.
 pub fn natural(name: &str) -> Vec<(String, u128, String)> {
     let mut key = Vec::new();
     // Without what follows the first dot of the name, so that part.csv comes before part1.csv.

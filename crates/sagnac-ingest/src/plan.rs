@@ -13,7 +13,7 @@ use std::path::Path;
 /// Rows from which the clock is found.
 const PROBED: usize = 65_536;
 
-/// Where the time base comes from.
+/// How the times of the samples are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeBaseSpec {
     /// The declared sample rate, Hz; needed where there are no stamps.
@@ -37,7 +37,7 @@ impl Default for TimeBaseSpec {
     }
 }
 
-/// A recording that is ready to be read: columns found, units checked, clock known.
+/// A recording that is ready to be streamed: columns found, units checked, clock known.
 pub struct Plan<'a> {
     pub(super) source: &'a Source,
     pub(super) channels: &'a [Channel],
@@ -64,7 +64,7 @@ pub struct Plan<'a> {
 /// Finds the columns of the channels, checks their units and finds the clock from the first rows.
 ///
 /// # Errors
-/// A column that is not there, a unit that does not fit the role, no time base, or what [`Source::read`] says.
+/// A missing column, a unit that does not fit the role, no usable time base, or an error of [`Source::read`].
 pub fn prepare<'a>(
     source: &'a Source,
     channels: &'a [Channel],
@@ -324,7 +324,7 @@ impl Plan<'_> {
         self.channels.iter().any(|c| matches!(c.role, Role::AngleIncrement | Role::AccumulatedAngle))
     }
 
-    /// Says after which angle a channel starts again, in the unit of its numbers.
+    /// Sets the angle after which an accumulated angle starts again, in the unit of the channel.
     pub fn set_angle_period(&mut self, channel: &str, period: f64) {
         let slot = self.channels.iter().position(|c| c.id == channel && c.role == Role::AccumulatedAngle);
         if let Some(place) = slot.and_then(|s| self.angle_periods.get_mut(s)) {
@@ -332,7 +332,7 @@ impl Plan<'_> {
         }
     }
 
-    /// Says where the recording may pause.
+    /// Sets where the recording may pause without that being a gap.
     pub fn set_pauses(&mut self, pauses: Pauses) {
         self.pauses = pauses;
     }

@@ -61,15 +61,15 @@ pub struct PartFacts {
 /// Opens a recording; the format is found by its content.
 ///
 /// # Errors
-/// A directory, an unreadable, empty or damaged file, an unknown kind of file, a file without rows.
+/// A folder, an unreadable, empty or damaged file, an unknown format, a format that is not compiled in.
 pub fn open(path: &Path) -> Result<Source, IngestError> {
     open_with(path, &ReadOptions::default())
 }
 
-/// Opens a recording as its user says.
+/// Opens a recording with options.
 ///
 /// # Errors
-/// As [`open`], and where what was said does not fit the file.
+/// As [`open`], and options that do not fit the file.
 pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestError> {
     let metadata = std::fs::metadata(path).map_err(|e| io_error(path, &e))?;
     if metadata.is_dir() {
@@ -207,17 +207,17 @@ impl Source {
         self.opened.rows_estimate
     }
 
-    /// What was decided about the file and why.
+    /// Decisions made in opening the file, with their reasons.
     pub fn notes(&self) -> &[Note] {
         &self.opened.notes
     }
 
-    /// What shows that the end of a file is missing, one sentence a file.
+    /// Evidence that the end of a file is missing, one note per file.
     pub fn cut_off(&self) -> &[Note] {
         &self.opened.cut_off
     }
 
-    /// What the file says of itself, key and value as written.
+    /// Metadata of the file, key and value as written.
     pub fn metadata(&self) -> &[(String, String)] {
         &self.opened.metadata
     }
@@ -304,12 +304,12 @@ impl Source {
         }
     }
 
-    /// Reads wanted columns (positions from 0; one may be wanted twice) in blocks, in order. `None` when the consumer
-    /// stopped the reading.
+    /// Reads the requested columns (positions from 0, repetition allowed) in blocks, in order. Returns `None` if the
+    /// consumer stopped the reading.
     ///
     /// # Errors
-    /// Whatever keeps the file from being read to its end; [`IngestErrorKind::NotNumeric`] when more than half of the
-    /// first 1000 fields of a wanted column are no numbers.
+    /// [`IngestError`] if the file cannot be read to its end; [`IngestErrorKind::NotNumeric`] if more than half of the first
+    /// 1000 fields of a requested column are not numbers.
     pub fn read(
         &self,
         wanted: &[usize],
@@ -318,7 +318,7 @@ impl Source {
         self.read_parts(wanted, on_block, &mut |_, _| {})
     }
 
-    /// As [`Source::read`]; tells what each file of a recording of several was, once it is read.
+    /// As [`Source::read`]; `on_part` receives hash and size of each file of a recording of several once it was read.
     ///
     /// # Errors
     /// As [`Source::read`], for each of the files.

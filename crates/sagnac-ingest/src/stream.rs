@@ -11,7 +11,7 @@ use sagnac_core::recording::{Channel, Role, Sink};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// A channel after the whole recording was read.
+/// A channel of a recording that was streamed to its end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelFacts {
     /// Id of the channel.
@@ -22,13 +22,13 @@ pub struct ChannelFacts {
     pub role: Role,
     /// Unit in the file.
     pub unit: String,
-    /// Unit inside.
+    /// Unit in which it is analysed.
     pub unit_inside: String,
-    /// What the values are like, in the unit inside.
+    /// Statistics of the values, in that unit.
     pub values: ValueFacts,
 }
 
-/// What is known of one file when a recording was read to its end.
+/// One file of a recording that was streamed to its end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FileReport {
     /// The file.
@@ -47,7 +47,7 @@ pub struct FileReport {
     pub duration_s: f64,
 }
 
-/// What is known when a recording was read to its end.
+/// What is known of a recording that was streamed to its end: hash, faults, time base, channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StreamReport {
     /// Hash, size and rows of the file.
@@ -56,21 +56,21 @@ pub struct StreamReport {
     pub integrity: Integrity,
     /// Interval found from the first rows, or declared, s; angle increments are divided by it.
     pub tau0_nominal_s: f64,
-    /// Mean interval over the unbroken stretches, s; the nominal one without stamps.
+    /// Mean sample interval between gaps, s; the nominal one without stamps.
     pub tau0_measured_s: f64,
     /// Standard deviation of the stamps about a locally uniform clock, s.
     pub jitter_s: Option<f64>,
     /// First stamp, s; 0 without stamps.
     pub first_stamp_s: f64,
-    /// Last stamp, s, on a scale that goes on where the clock was set back.
+    /// Last stamp, s, on a scale without the jumps of a clock that was set.
     pub last_stamp_s: f64,
     /// Last stamp minus first stamp plus one interval, s.
     pub duration_s: f64,
     /// Start of the recording, RFC 3339, where the stamps are known to count from 1970.
     pub start: Option<String>,
-    /// Standard uncertainty of the interval from the scatter of the stamps, drift: where stamps were fitted.
+    /// The interval measured by regression of the stamps, with its uncertainty and drift, where there are stamps.
     pub clock: Option<Measured>,
-    /// What must be known of the time base.
+    /// Remarks on the time base, for the report.
     pub notes: Vec<Note>,
     /// Times at which samples go on after a pause of the test, s from the start of the recording.
     pub pauses_end_s: Vec<f64>,
@@ -78,17 +78,18 @@ pub struct StreamReport {
     pub files: Vec<FileReport>,
     /// Rows of the recording.
     pub rows: u64,
-    /// Rows that were passed on.
+    /// Rows that were passed on to the sinks; the others have no usable stamp.
     pub rows_used: u64,
     /// Channels, in the order given.
     pub channels: Vec<ChannelFacts>,
 }
 
 impl Plan<'_> {
-    /// Reads the recording to its end. Every sink gets every sample block; `progress` is told bytes read and bytes in all.
+    /// Reads the recording to its end. Every sink receives every block of samples; `progress` receives the bytes read so
+    /// far and in all.
     ///
     /// # Errors
-    /// What [`Source::read`] says, or a recording in which no row is usable.
+    /// Errors of [`Source::read`], and a recording without a usable row.
     pub fn stream(
         &self,
         sinks: &mut [&mut dyn Sink],
@@ -201,7 +202,7 @@ impl RowClock<'_> {
         }
     }
 
-    /// What must be known of the time base.
+    /// Remarks on the time base, for the report.
     fn notes(&self, nominal: f64, measured: f64, rollovers: u64) -> Vec<Note> {
         let clock = self.plan.clock;
         let mut notes = Vec::new();
@@ -271,7 +272,7 @@ impl RowClock<'_> {
     }
 }
 
-/// Gives a fault its file and the row in it, where the recording is of several.
+/// Replaces the row of a fault by its file and the row in that file, for a recording of several files.
 pub fn locate(files: &[FileReport], fault: &mut Fault) {
     if files.len() < 2 || fault.file.is_some() {
         return;
@@ -282,10 +283,10 @@ pub fn locate(files: &[FileReport], fault: &mut Fault) {
     }
 }
 
-/// [`prepare`] and [`Plan::stream`] in one.
+/// Calls [`prepare`] and [`Plan::stream`].
 ///
 /// # Errors
-/// As both.
+/// Those of both.
 pub fn stream(
     source: &Source,
     channels: &[Channel],
@@ -296,10 +297,10 @@ pub fn stream(
     prepare(source, channels, spec)?.stream(sinks, progress)
 }
 
-/// [`super::open`] and [`stream`] in one.
+/// Calls [`super::open`] and [`stream()`].
 ///
 /// # Errors
-/// As both.
+/// Those of both.
 pub fn stream_path(
     path: &Path,
     channels: &[Channel],

@@ -3,7 +3,7 @@
 use sagnac_core::message::Note;
 use std::io::{Error, ErrorKind};
 
-/// Why the operating system refused, as a note. A reason that the tables do not know is shown as the system says it.
+/// The reason of an error of the operating system as a note; a reason without a translation is quoted as it is.
 pub fn io_reason(error: &Error) -> Note {
     let key = match error.kind() {
         ErrorKind::NotFound => "system.not_found",

@@ -68,7 +68,7 @@ struct Batch {
     last: StampedRow,
 }
 
-/// Which row of a batch is compared with the uniform clock by which stamp.
+/// The row of a batch, and its stamp, that follow the sample clock most closely.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnchorRow {
     /// The first one by its own stamp: coarse stamps.
@@ -110,7 +110,7 @@ pub struct Uniform {
     pub anchor: AnchorRow,
     /// Mean number of rows in a batch.
     pub rows: f64,
-    /// Largest less least departure of the stamps from it, s.
+    /// Range of the deviations of the stamps from it, s.
     pub spread_s: f64,
     /// Where samples are missing, by rows from 0.
     pub losses: Vec<Loss>,

@@ -7,7 +7,7 @@ use super::tracker::SET_BACK_AFTER;
 /// Times that stamps and counter may differ about one step before it is told, in intervals.
 const DISAGREEMENT: f64 = 1.5;
 
-/// What a counter means for its row.
+/// What the value of a sample counter means for its row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CounterStep {
     /// The row follows the one before.

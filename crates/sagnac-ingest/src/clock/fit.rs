@@ -50,7 +50,7 @@ impl Sums {
     }
 }
 
-/// What a fit found.
+/// Sample interval measured by regression of the stamps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
     /// Mean sample interval, s.

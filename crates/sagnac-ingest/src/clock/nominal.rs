@@ -6,7 +6,7 @@ use super::buffered::{AnchorRow, PAUSE, Uniform};
 /// any recording holds.
 pub(super) const MAX_GAP_SAMPLES: f64 = 1e8;
 
-/// Why the stamps cannot serve as a time base.
+/// Why time stamps cannot be used as a time base.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ClockError {
     /// Fewer than two usable stamps.
@@ -41,7 +41,7 @@ pub enum ClockError {
     },
 }
 
-/// How the stamps stand to the samples.
+/// How the time stamps relate to the times of the samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cadence {
     /// Each stamp tells the time of its row well enough to be compared with the one before.
@@ -72,15 +72,15 @@ pub enum Cadence {
 /// The nominal clock of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
-    /// Nominal sample interval.
+    /// Nominal sample interval, s.
     pub interval_s: f64,
-    /// Step of the stamps when they are rounded to a power of ten, else 0.
+    /// Resolution of the stamps where they are rounded to a power of ten, s; otherwise 0.
     pub resolution_s: f64,
-    /// Longest step between stamps that is no gap.
+    /// Longest step between stamps that is not a gap, s.
     pub gap_limit_s: f64,
-    /// How the stamps stand to the samples.
+    /// How the time stamps relate to the times of the samples.
     pub cadence: Cadence,
-    /// The other interval that the stamps allow, where they allow two: every n-th sample lost, or a slower clock with
+    /// A second interval, s, that explains the stamps as well: every n-th sample may be lost, or a slower clock may have
     /// rounded stamps.
     pub ambiguous_with_s: Option<f64>,
     /// Departure of the first stamp from the mean course of the clock.

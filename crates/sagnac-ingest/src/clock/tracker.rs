@@ -14,7 +14,7 @@ const COUNTED_GAP: f64 = 1000.0;
 /// Stamps over which the mean course of an uneven clock is taken.
 const MEMORY: f64 = 64.0;
 
-/// What a stamp means for its row.
+/// What a time stamp means for its row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The row follows the one before.

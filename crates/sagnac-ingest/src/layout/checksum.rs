@@ -24,16 +24,16 @@ pub struct Checksum {
     pub word: &'static str,
     /// First byte of the checksum.
     pub at: usize,
-    /// First byte that it is made of.
+    /// First byte that the checksum covers.
     pub from: usize,
-    /// The byte before which that ends.
+    /// End of the bytes that it covers, exclusive.
     pub to: usize,
     /// Order of its bytes.
     pub order: ByteOrder,
 }
 
 impl Sum {
-    /// The kind of a word of layouts.
+    /// The kind of checksum by its name in a layout.
     pub fn of(word: &str) -> Option<Sum> {
         Some(match word {
             "sum8" => Sum::Sum8,
@@ -72,7 +72,7 @@ impl Sum {
 }
 
 impl Checksum {
-    /// The checksum made of a record and the one that stands in it, where they differ.
+    /// The computed and the stored checksum of a record if they differ.
     pub fn differs(&self, record: &[u8]) -> Option<(u32, u32)> {
         let stands = record.get(self.at..self.at + self.sum.bytes()).unwrap_or_default();
         let push = |all: u32, b: &u8| (all << 8) | u32::from(*b);

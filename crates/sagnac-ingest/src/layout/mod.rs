@@ -18,7 +18,7 @@ pub const MAX_RECORD_BYTES: usize = 1 << 18;
 /// Most columns of a recording. Arrays that seem to have more are no recordings.
 pub const MAX_COLUMNS: usize = 4096;
 
-/// A layout by its file, and what was read from it. Whoever opens a recording has read it before.
+/// A layout file. It must have been read before a recording is opened by it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayoutFile {
     /// The file.

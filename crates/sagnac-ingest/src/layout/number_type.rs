@@ -65,7 +65,7 @@ impl NumberType {
 pub struct Ticks {
     /// Ticks at the zero of the values.
     pub zero: i64,
-    /// Length of a tick, s, as a ratio: the one or the other is 1, so that nothing is rounded twice.
+    /// Length of a tick, s, as numerator and denominator, one of which is 1, so that nothing is rounded twice.
     pub tick_s: (f64, f64),
 }
 
@@ -78,7 +78,7 @@ pub struct Field {
     pub kind: NumberType,
     /// Order of the bytes.
     pub order: ByteOrder,
-    /// Bits that are kept of a whole number, and how far they are shifted down.
+    /// Mask of the bits that are kept of a whole number, and the shift to the right that follows.
     pub bits: Option<(u64, u32)>,
     /// Ticks of a clock.
     pub ticks: Option<Ticks>,

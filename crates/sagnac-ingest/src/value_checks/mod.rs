@@ -33,7 +33,7 @@ const CONSTANT_AFTER: u64 = 1000;
 /// Largest step of the quantization grid, in standard deviations, at which straight lines between samples can be told.
 const FINE: f64 = 1e-2;
 
-/// Fewest samples of a gyro channel from which a fault of its values can be seen.
+/// Minimum number of samples of a gyro channel for a kind of fault to be detectable.
 pub fn min_samples_for(fault: &str) -> u64 {
     match fault {
         "outliers" => outliers::MIN_SAMPLES as u64,
@@ -44,14 +44,14 @@ pub fn min_samples_for(fault: &str) -> u64 {
     }
 }
 
-/// What the values of a channel are like.
+/// Count, range, mean and quantization step of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ValueFacts {
     /// Samples with a finite value.
     pub count: u64,
     /// Samples without.
     pub non_finite: u64,
-    /// Smallest value, unit as inside; NaN when there is none.
+    /// Smallest value, in the unit of the analysis; NaN without a finite value.
     pub min: f64,
     /// Largest value.
     pub max: f64,
@@ -61,7 +61,7 @@ pub struct ValueFacts {
     pub quantization_step: Option<f64>,
 }
 
-/// Faults of the values of all channels.
+/// Number of faulty samples of all gyro channels, by kind of fault.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ValueFaults {
     /// Samples far outside the noise about them.
@@ -174,7 +174,7 @@ impl ChannelChecks {
     }
 }
 
-/// The checks of all channels: a sink.
+/// Checks the values of all channels while they are streamed.
 #[derive(Debug, Clone)]
 pub struct ValueChecks {
     channels: Vec<ChannelChecks>,
@@ -209,7 +209,7 @@ impl ValueChecks {
         ValueChecks { channels, interval_s }
     }
 
-    /// Counts the faults, adds them to the list, and tells what each channel is like.
+    /// Counts the faults, adds them to the log, and returns the statistics of every channel.
     pub fn finish(mut self, log: &mut FaultLog) -> (Vec<ValueFacts>, ValueFaults) {
         let mut faults = ValueFaults::default();
         for channel in &mut self.channels {

@@ -4,7 +4,7 @@ use crate::faults::FaultLog;
 use sagnac_core::message::{Arg, Note};
 use sagnac_core::recording::{Channel, Role, SampleBlock};
 
-/// Bounds of a quantity, in the unit inside.
+/// Physical bounds of a quantity, in the unit of the analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
     /// Smallest value that is possible.
@@ -24,7 +24,7 @@ pub struct MaxChange {
     pub hourly: f64,
 }
 
-/// The bounds of a role, with their reasons; `None` where nothing is known of the quantity.
+/// The bounds of a role; `None` where nothing is known of the quantity.
 pub fn bound(role: Role) -> Option<Bound> {
     let within = |low: f64, high: f64| Some(Bound { low, high, change: None });
     let no_more = |largest: f64| within(-largest, largest);
