@@ -45,7 +45,7 @@ fn the_explain_example_runs_and_names_the_step() {
     explain_example::main().unwrap();
     let recording = Model::load("samples/model-step.toml").unwrap().simulate(7).unwrap();
     let why = sagnac::explain(&recording, &Model::load("samples/model-static.toml").unwrap()).unwrap();
-    assert_eq!(why.verdict(), "mismatch");
+    assert_eq!(why.verdict().id(), "mismatch");
     assert_eq!(why.effects()[0].kind, "bias_step");
     assert!(why.augmented().to_toml().contains("bias_step"));
     let folder = tempfile::tempdir().unwrap();

@@ -10,6 +10,7 @@ use crate::config::model;
 use crate::effect::{Column, EFFECTS, find};
 use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
 use crate::ingest::{ReadOptions, files_read};
+use crate::mismatch::finding::MismatchVerdict;
 use crate::mismatch::{self, Options};
 use crate::output::Kind;
 use crate::report::explain::{Context, ExplainView};
@@ -127,9 +128,9 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let results = Results::Explanation(Box::new(ExplanationResults::new(&outcome, context)));
     let folder = write(&results, folder, EXPORTERS, &renderer, lang)?;
     place::print(&format!("{}{}\n", view.summary(), place::shown(&folder.join("report.html"))));
-    Ok(match outcome.explanation.verdict.as_str() {
-        "consistent" => exit::PASS,
-        "mismatch" => exit::FAIL,
+    Ok(match outcome.explanation.verdict {
+        MismatchVerdict::Consistent => exit::PASS,
+        MismatchVerdict::Mismatch => exit::FAIL,
         _ => exit::INDETERMINATE,
     })
 }

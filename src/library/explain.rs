@@ -94,9 +94,9 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// `consistent`, `mismatch` (an effect accounts for it) or `unknown-mismatch` (none does).
-    pub fn verdict(&self) -> &str {
-        &self.outcome.explanation.verdict
+    /// What the comparison comes to.
+    pub fn verdict(&self) -> explanation::MismatchVerdict {
+        self.outcome.explanation.verdict
     }
 
     /// The effects found, the principal one first.

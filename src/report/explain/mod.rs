@@ -16,7 +16,7 @@ use super::view::{Field, FigureView, Words};
 use crate::figure::Figure;
 use crate::i18n::{Lang, Note};
 use crate::record::ExplainedRecord;
-use crate::record::explanation::Explanation;
+use crate::record::explanation::{Explanation, MismatchVerdict};
 use serde::{Deserialize, Serialize};
 
 /// What `explain.json` holds.
@@ -121,17 +121,17 @@ impl ExplainView {
     /// Builds the view.
     pub fn new(all: &Explanation, figures: &[Figure], context: &Context, lang: Lang) -> ExplainView {
         let words = Words { lang };
-        let (verdict_class, verdict_word) = match all.verdict.as_str() {
-            "consistent" => ("pass", words.t("explain.verdict.consistent")),
-            "mismatch" => ("indeterminate", words.t("explain.verdict.mismatch")),
-            _ => ("fail", words.t("explain.verdict.unknown")),
+        let (verdict_class, verdict_word) = match all.verdict {
+            MismatchVerdict::Consistent => ("pass", words.t("explain.verdict.consistent")),
+            MismatchVerdict::Mismatch => ("indeterminate", words.t("explain.verdict.mismatch")),
+            MismatchVerdict::UnknownMismatch => ("fail", words.t("explain.verdict.unknown")),
         };
         let generator = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
         let title = if all.case.is_empty() { context.recording.clone() } else { all.case.clone() };
         let effects = all.effects.iter().enumerate();
         let footer = [date_time(&context.explained_at), generator.clone()];
         ExplainView {
-            verdict: all.verdict.clone(),
+            verdict: all.verdict.id().to_owned(),
             verdict_class,
             verdict_word,
             title,

@@ -3,7 +3,7 @@
 use super::print::{chance, place, title, value};
 use crate::effect::find;
 use crate::i18n::{EffectText, effect_text, fill};
-use crate::mismatch::finding::{Explanation, Finding};
+use crate::mismatch::finding::{Explanation, Finding, MismatchVerdict};
 use crate::report::number::{count, digits, duration, percent};
 use crate::report::view::Words;
 
@@ -116,7 +116,7 @@ pub fn verdict(explanation: &Explanation, words: Words) -> Vec<String> {
         let alpha = digits(explanation.alpha, 1, words.lang);
         let (rows, length) = (count(r.rows as u64, words.lang), duration(r.duration_s(), words.lang));
         let given = [("rows", rows.as_str()), ("length", &length), ("p", &p), ("alpha", &alpha)];
-        let key = match explanation.verdict == "consistent" {
+        let key = match explanation.verdict == MismatchVerdict::Consistent {
             true if explanation.family_p_value < explanation.alpha => "explain.sentence.consistent_faint",
             true => "explain.sentence.consistent",
             false => "explain.sentence.unlocated",

@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use sagnac::mismatch::finding::{
-    Candidate, Experiment, Explanation, Finding, Fit, FitFigures, NuisanceValue, ParameterValue, PlaceRecord,
-    RecordingFacts, Test,
+    Candidate, Experiment, Explanation, Finding, Fit, FitFigures, MismatchVerdict, NuisanceValue,
+    ParameterValue, PlaceRecord, RecordingFacts, Test,
 };
 use std::collections::BTreeMap;
 
@@ -112,7 +112,7 @@ pub fn consistent() -> Explanation {
     Explanation {
         format: "explain/1".into(),
         case: "case-000".into(),
-        verdict: "consistent".into(),
+        verdict: MismatchVerdict::Consistent,
         effects: vec![],
         fit: Fit { heldout_tau_s: 10.0, baseline: fit.clone(), augmented: fit },
         family_p_value: 0.432,
@@ -160,7 +160,7 @@ pub fn explained(effects: Vec<Finding>) -> Explanation {
         p_value,
     };
     Explanation {
-        verdict: "mismatch".into(),
+        verdict: MismatchVerdict::Mismatch,
         candidates: vec![
             candidate(&chosen, 212.4, 1e-40),
             candidate("excess_rrw", 96.2, 3e-22),
@@ -232,7 +232,7 @@ pub fn unknown() -> Explanation {
     finding.heldout_gain = None;
     let baseline = consistent().fit;
     Explanation {
-        verdict: "unknown-mismatch".into(),
+        verdict: MismatchVerdict::UnknownMismatch,
         fit: baseline,
         family_p_value: 3.1e-9,
         family_p_value_after: 3.1e-9,

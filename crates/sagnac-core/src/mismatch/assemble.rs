@@ -7,7 +7,8 @@ use super::draw::{self, Drawn};
 use super::estimates;
 use super::experiment;
 use super::finding::{
-    Candidate, Explanation, Finding, Fit, FitFigures, ParameterValue, PlaceRecord, RecordingFacts, Test,
+    Candidate, Explanation, Finding, Fit, FitFigures, MismatchVerdict, ParameterValue, PlaceRecord,
+    RecordingFacts, Test,
 };
 use super::heldout::{Halves, HeldOut};
 use super::improvement;
@@ -95,7 +96,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let explanation = Explanation {
         format: "explain/1".to_owned(),
         case: problem.claim.case.clone(),
-        verdict: verdict(&findings).to_owned(),
+        verdict: verdict(&findings),
         effects: findings,
         fit: Fit {
             heldout_tau_s: halves.bin_s(),
@@ -163,13 +164,13 @@ fn causes(named: &[Named], problem: &Problem, after: &[Departure], options: &Opt
     out
 }
 
-fn verdict(causes: &[Finding]) -> &'static str {
+fn verdict(causes: &[Finding]) -> MismatchVerdict {
     if causes.iter().any(|f| f.kind == UNKNOWN) {
-        "unknown-mismatch"
+        MismatchVerdict::UnknownMismatch
     } else if causes.is_empty() {
-        "consistent"
+        MismatchVerdict::Consistent
     } else {
-        "mismatch"
+        MismatchVerdict::Mismatch
     }
 }
 

@@ -11,8 +11,8 @@ pub struct Explanation {
     pub format: String,
     /// The case that the claim names.
     pub case: String,
-    /// `consistent`, `mismatch` or `unknown-mismatch`.
-    pub verdict: String,
+    /// What it comes to.
+    pub verdict: MismatchVerdict,
     /// One entry a cause, the principal first.
     pub effects: Vec<Finding>,
     /// Baseline against augmented.
@@ -33,6 +33,30 @@ pub struct Explanation {
     pub recording: RecordingFacts,
     /// Experiments that would decide between equivalents, as keys of words.
     pub experiments: Vec<Experiment>,
+}
+
+/// What the comparison of a recording with a claim comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum MismatchVerdict {
+    /// The recording is an ordinary draw of the claim.
+    Consistent,
+    /// Effects of the catalogue account for the difference.
+    Mismatch,
+    /// Some of the difference no effect accounts for.
+    UnknownMismatch,
+}
+
+impl MismatchVerdict {
+    /// Its id in files: `consistent`, `mismatch`, `unknown-mismatch`.
+    pub fn id(self) -> &'static str {
+        match self {
+            MismatchVerdict::Consistent => "consistent",
+            MismatchVerdict::Mismatch => "mismatch",
+            MismatchVerdict::UnknownMismatch => "unknown-mismatch",
+        }
+    }
 }
 
 /// One cause.

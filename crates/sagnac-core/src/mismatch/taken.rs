@@ -2,7 +2,7 @@
 //! difference.
 
 use super::engine::explain;
-use super::finding::Explanation;
+use super::finding::{Explanation, MismatchVerdict};
 use super::identify::identify;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
@@ -66,7 +66,7 @@ pub fn explain_simulation(
     let mut left: Vec<Stated> = vec![];
     for round in 0..=ROUNDS {
         left.clear();
-        if outcome.explanation.verdict == "consistent" {
+        if outcome.explanation.verdict == MismatchVerdict::Consistent {
             break;
         }
         let mut own: Option<Explanation> = None;
@@ -99,7 +99,7 @@ pub fn explain_simulation(
         take(&mut claim, both, &outcome.augmented);
         outcome = explain(recording.clone(), &claim, options, progress)?;
     }
-    if outcome.explanation.verdict != "consistent" && left.is_empty() {
+    if outcome.explanation.verdict != MismatchVerdict::Consistent && left.is_empty() {
         unnamed(&mut outcome, &claim, &witness, least);
     }
     Ok(Taken { outcome, claim, same, shared })
@@ -184,7 +184,7 @@ fn unnamed(outcome: &mut Outcome, claim: &Claim, witness: &Witness<'_>, least: f
 /// Makes of an explanation one that finds nothing.
 fn agree(outcome: &mut Outcome, chance: f64) {
     let all = &mut outcome.explanation;
-    all.verdict = "consistent".to_owned();
+    all.verdict = MismatchVerdict::Consistent;
     all.effects.clear();
     all.experiments.clear();
     all.fit.augmented = all.fit.baseline.clone();
