@@ -3,7 +3,7 @@
 use super::finding::Experiment;
 use super::hypothesis::{PartModes, columns, kept};
 use super::noise_fit;
-use super::nonlinear_search::{first_steps, refine};
+use super::nonlinear_search::LocalSearch;
 use super::select::{Chosen, ENOUGH, Slot};
 use super::terms::CourseIn;
 use super::tried::{Candidate, SpectralDataSet, Tried};
@@ -111,9 +111,8 @@ fn distance(
         }
         Normal::new(&columns(&nuisances, [&rival]), &data, &powers).solve().2
     };
-    let bounds = course.bounds(&spectral.drivers);
-    let steps = first_steps(course, &spectral.drivers);
-    let (_, nearest) = refine(&other.nonlinear_parameters, &bounds, &steps, EVALUATIONS, |s| -left(s));
+    let local = LocalSearch::of(course, &spectral.drivers);
+    let (_, nearest) = local.refine(&other.nonlinear_parameters, EVALUATIONS, |s| -left(s));
     Some((-nearest).max(0.0))
 }
 

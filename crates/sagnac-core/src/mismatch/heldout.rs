@@ -3,7 +3,7 @@
 
 use super::hypothesis::{Hypothesis, LeastSquares, PartModes, columns, fit, kept, less_fixed, part_modes};
 use super::noise_fit::whittle;
-use super::nonlinear_search::{first_steps, refine};
+use super::nonlinear_search::LocalSearch;
 use super::problem::Problem;
 use super::spectral_data::SpectralData;
 use super::tried::Tried;
@@ -118,7 +118,6 @@ fn refine_shapes(hypothesis: &mut Hypothesis, spectral: &SpectralData) {
         if hypothesis.courses[i].nonlinear_parameters.is_empty() {
             continue;
         }
-        let bounds = course.bounds(&spectral.drivers);
         let others = part_modes(spectral, &hypothesis.courses);
         let nuisances = kept(spectral, &hypothesis.courses);
         let gain = |nonlinear_parameters: &[f64]| {
@@ -127,13 +126,10 @@ fn refine_shapes(hypothesis: &mut Hypothesis, spectral: &SpectralData) {
             let data = less_fixed(spectral, parts());
             -0.5 * Normal::new(&columns(&nuisances, parts()), &data, &powers).solve().2
         };
-        let (nonlinear_parameters, _) = refine(
-            &hypothesis.courses[i].nonlinear_parameters,
-            &bounds,
-            &first_steps(course, &spectral.drivers),
-            40,
-            gain,
-        );
+        const EVALUATIONS: usize = 40;
+        let start = &hypothesis.courses[i].nonlinear_parameters;
+        let local = LocalSearch::of(course, &spectral.drivers);
+        let (nonlinear_parameters, _) = local.refine(start, EVALUATIONS, gain);
         hypothesis.courses[i].nonlinear_parameters = nonlinear_parameters;
     }
 }

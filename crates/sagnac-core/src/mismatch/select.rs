@@ -4,7 +4,7 @@
 use super::candidates::all;
 use super::hypothesis::{Hypothesis, fit};
 use super::noise_fit::{Noise, base_index};
-use super::nonlinear_search::free_numbers;
+use super::nonlinear_search::LocalSearch;
 use super::options::Options;
 use super::terms::CourseIn;
 use super::terms::SpectrumIn;
@@ -94,7 +94,7 @@ fn course_parameters(course: &CourseIn, spectra: &SpectralDataSet) -> usize {
     let Some(c) = course.course() else { return 0 };
     let spectral = spectra.of(c.resolution());
     let parts = c.regressors(&course.nonlinear_parameters, &spectral.drivers);
-    let nonlinear_parameters = free_numbers(c, &c.bounds(&spectral.drivers));
+    let nonlinear_parameters = LocalSearch::of(c, &spectral.drivers).free();
     parts.columns.len() + parts.nuisance.len() + nonlinear_parameters
 }
 

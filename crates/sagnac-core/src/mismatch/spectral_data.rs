@@ -310,6 +310,8 @@ fn edge(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
 
     #[test]
     fn bins_hold_every_mode_once_and_narrow_towards_zeros_of_a_filter() {
@@ -345,8 +347,9 @@ mod tests {
 
     #[test]
     fn a_line_in_sensor_noise_is_kept_and_the_noise_is_not() {
-        let noise = |i: usize| ((i * i * 31 + 7 * i) % 211) as f64 / 211.0 - 0.5;
-        let values: Vec<f64> = (0..4000).map(|i| 20.0 + 0.01 * i as f64 + 0.5 * noise(i)).collect();
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(5);
+        let mut noise = || -> f64 { StandardNormal.sample(&mut rng) };
+        let values: Vec<f64> = (0..4000).map(|i| 20.0 + 0.01 * i as f64 + 0.5 * noise()).collect();
         let smooth = smoothed(&values);
         let off = |v: &[f64]| {
             let square: f64 = v.iter().enumerate().map(|(i, x)| (x - 20.0 - 0.01 * i as f64).powi(2)).sum();

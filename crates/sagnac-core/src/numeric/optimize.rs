@@ -10,6 +10,7 @@
 //! A likelihood brings its derivatives and the scale of its variables; the loop around them, a few lines with a stopping
 //! rule that was calibrated for it, stays with it.
 
+use super::range::Bounds;
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 
@@ -160,6 +161,87 @@ pub fn golden_section_maximum(low: f64, high: f64, times: usize, of: impl Fn(f64
     0.5 * (a + b)
 }
 
+/// Pattern search for a maximum (Hooke and Jeeves 1961): steps up and down along each coordinate, the top of the parabola
+/// through three points where neither gains, and ever smaller steps, until steps to either side lose less than `flat` or
+/// the `evaluations` are used up. Gives the point reached and its value.
+///
+/// A coordinate with positive bounds that are more than a factor of 20 apart is searched on a logarithmic scale. `first` has
+/// the first steps, on that scale; `None`, or none: by the bounds; 0: the coordinate stays.
+pub fn pattern_search(
+    start: &[f64],
+    bounds: &[Bounds],
+    first: &[Option<f64>],
+    (evaluations, flat): (usize, f64),
+    gain: impl Fn(&[f64]) -> f64,
+) -> (Vec<f64>, f64) {
+    let logarithmic: Vec<bool> = bounds.iter().map(|b| b.low > 0.0 && b.high / b.low > 20.0).collect();
+    let to = |i: usize, x: f64| if logarithmic[i] { x.max(1e-300).ln() } else { x };
+    let from = |i: usize, u: f64| if logarithmic[i] { u.exp() } else { u };
+    let mut at = start.to_vec();
+    for (x, bounds) in at.iter_mut().zip(bounds) {
+        *x = bounds.clamp(*x);
+    }
+    let mut best = gain(&at);
+    let mut used = 1;
+    let mut steps: Vec<f64> = (0..at.len())
+        .map(|i| {
+            let width = to(i, bounds[i].high) - to(i, bounds[i].low);
+            if let Some(Some(step)) = first.get(i) {
+                return step.min(width);
+            }
+            if logarithmic[i] { 0.35f64.min(width) } else { (0.01 * width).max(0.0) }
+        })
+        .collect();
+    let finest: Vec<f64> = steps.iter().map(|s| s * 1e-5).collect();
+    while used < evaluations && steps.iter().zip(&finest).any(|(s, f)| *s > *f) {
+        let (mut moved, mut is_flat) = (false, true);
+        for i in 0..at.len() {
+            if steps[i] <= 0.0 {
+                continue;
+            }
+            let here = to(i, at[i]);
+            let mut sides = [f64::NEG_INFINITY; 2];
+            for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
+                let mut next = at.clone();
+                next[i] = bounds[i].clamp(from(i, here + sign * steps[i]));
+                if next[i] == at[i] {
+                    continue;
+                }
+                let got = gain(&next);
+                used += 1;
+                sides[side] = got;
+                is_flat &= best - got < flat;
+                if got > best {
+                    (best, at) = (got, next);
+                    moved = true;
+                    break;
+                }
+            }
+            if !moved && sides.iter().all(|s| s.is_finite()) {
+                // Three points around the best: the top of their parabola.
+                let curve = sides[0] + sides[1] - 2.0 * best;
+                if curve < 0.0 {
+                    let mut next = at.clone();
+                    let shift = 0.5 * steps[i] * (sides[1] - sides[0]) / curve;
+                    next[i] = bounds[i].clamp(from(i, here + shift));
+                    let got = gain(&next);
+                    used += 1;
+                    if got > best {
+                        (best, at) = (got, next);
+                    }
+                }
+            }
+        }
+        if !moved && is_flat {
+            break;
+        }
+        if !moved {
+            steps.iter_mut().for_each(|s| *s *= 0.3);
+        }
+    }
+    (at, best)
+}
+
 /// The x ≥ 0 that minimises ½xᵀHx − bᵀx, with x = 0 where not `free`: every active set is tried and the best feasible
 /// one kept, so that the answer is exact. For a few unknowns only: 2^N sets.
 pub fn nonnegative_quadratic<const N: usize>(h: &[[f64; N]; N], b: &[f64; N], free: &[bool; N]) -> [f64; N] {
@@ -249,6 +331,23 @@ pub fn bounded_quadratic(h: &DMatrix<f64>, g: &DVector<f64>, lower: &[f64]) -> D
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_top_of_a_hill_is_reached_within_its_bounds() {
+        let bounds = [Bounds::new(0.1, 1000.0), Bounds::new(-1.0, 1.0)];
+        let hill = |x: &[f64]| -50.0 * ((x[0] / 30.0).ln().powi(2) + (x[1] - 0.4).powi(2));
+        let (at, gain) = pattern_search(&[5.0, -0.5], &bounds, &[], (400, 1e-4), hill);
+        assert!(
+            (at[0] / 30.0 - 1.0).abs() < 2e-3 && (at[1] - 0.4).abs() < 2e-3 && gain > -1e-3,
+            "{at:?} {gain}"
+        );
+        // A top outside is left for the end that is nearest; a number whose first step is 0 stays.
+        let (at, _) =
+            pattern_search(&[0.0, 0.7], &[Bounds::new(-1.0, 1.0); 2], &[None, Some(0.0)], (400, 1e-4), |x| {
+                x[0] - x[1]
+            });
+        assert!((at[0] - 1.0).abs() < 1e-6 && at[1] == 0.7, "{at:?}");
+    }
 
     #[test]
     fn the_span_that_is_left_holds_the_root() {

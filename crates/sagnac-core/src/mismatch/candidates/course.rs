@@ -3,13 +3,12 @@
 use crate::effect::{Effect, MeanModel, Resolution, SearchContext, plausible};
 use crate::mismatch::hypothesis::{Hypothesis, PartModes, columns, fit, kept, less_fixed};
 use crate::mismatch::noise_fit::Noise;
-use crate::mismatch::nonlinear_search::{first_steps, free_numbers, refine};
+use crate::mismatch::nonlinear_search::LocalSearch;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::CourseIn;
 use crate::mismatch::tried::{Candidate, SpectralDataSet, Tried, own_odds, rated};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
-use crate::numeric::range::Bounds;
 use std::borrow::Cow;
 
 /// Gain of a fit over that of its shapes, the noise held, from which the noise stood for the course.
@@ -116,6 +115,12 @@ impl<'a> ShapeSearch<'a> {
     }
 }
 
+/// A shape improved by a local search, with its gain.
+fn refined(start: &[f64], local: &LocalSearch, search: &ShapeSearch<'_>) -> (Vec<f64>, f64) {
+    const EVALUATIONS: usize = 60;
+    local.refine(start, EVALUATIONS, |x| search.gain(x))
+}
+
 /// The best of the shapes that a course begins from, the noise held, each improved by a local search, with its gain.
 fn best_shape(starts: &[Vec<f64>], local: &LocalSearch, search: &ShapeSearch<'_>) -> Option<(Vec<f64>, f64)> {
     let mut rough: Vec<(Vec<f64>, f64)> = starts.iter().map(|s| (s.clone(), search.gain(s))).collect();
@@ -123,22 +128,9 @@ fn best_shape(starts: &[Vec<f64>], local: &LocalSearch, search: &ShapeSearch<'_>
     let leader = rough.first()?.1;
     let promising = rough.into_iter().filter(|(_, g)| *g > 0.7 * leader).take(2);
     promising
-        .map(|(s, g)| if s.is_empty() { (s, g) } else { local.refine(&s, search) })
+        .map(|(s, g)| if s.is_empty() { (s, g) } else { refined(&s, local, search) })
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .filter(|(_, gain)| !gain.is_nan() && *gain >= 0.5)
-}
-
-/// Where and in which steps a shape is improved.
-struct LocalSearch {
-    bounds: Vec<Bounds>,
-    steps: Vec<Option<f64>>,
-}
-
-impl LocalSearch {
-    fn refine(&self, start: &[f64], search: &ShapeSearch<'_>) -> (Vec<f64>, f64) {
-        const EVALUATIONS: usize = 60;
-        refine(start, &self.bounds, &self.steps, EVALUATIONS, |x| search.gain(x))
-    }
 }
 
 /// A hypothesis with one more course, and another noise.
@@ -173,10 +165,10 @@ pub(super) fn try_course(
     if repeated && starts.points.iter().all(Vec::is_empty) {
         return None;
     }
-    let local = LocalSearch { bounds: course.bounds(drivers), steps: first_steps(course, drivers) };
+    let local = LocalSearch::of(course, drivers);
     let (shape, gain) = best_shape(&starts.points, &local, &ShapeSearch::new(course, ground))?;
     let parts = course.regressors(&shape, drivers);
-    let added = parts.columns.len() + parts.nuisance.len() + free_numbers(course, &local.bounds);
+    let added = parts.columns.len() + parts.nuisance.len() + local.free();
     let mut hypothesis = with_course(&before.hypothesis, effect, &shape, &before.hypothesis.noise);
     // The noise, fitted anew, can give at most about as much again.
     let worth = 4.0 * gain - added as f64 * (spectra.rows as f64).ln();
@@ -189,7 +181,7 @@ pub(super) fn try_course(
             ..before.clone()
         };
         let ground = Ground::new(&quieter, ground.spectral, ground.parts.clone());
-        let (shape, _) = local.refine(&shape, &ShapeSearch::new(course, &ground));
+        let (shape, _) = refined(&shape, &local, &ShapeSearch::new(course, &ground));
         let mut again = with_course(&before.hypothesis, effect, &shape, noise);
         let better = fit(&mut again, &spectra.full);
         if better.log_likelihood > fitted.log_likelihood {
