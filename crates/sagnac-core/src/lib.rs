@@ -3,19 +3,33 @@
 //! Samples go in; estimates with their confidence distribution come out. The crate opens no file, reads no clock and
 //! writes no sentence: file formats are in `sagnac-ingest`, procedures, reports and languages in `sagnac`.
 //!
+//! | you have | you want | go to |
+//! |---|---|---|
+//! | samples at rest | σ(τ) | [`noise::allan::allan_deviation`], [`noise::allan::AllanAccumulator`] |
+//! | | an averaged spectrum | [`noise::welch::WelchAccumulator`] |
+//! | | N, B, K, R, Q and other terms with intervals | [`noise::digest::RateAccumulator`], then [`noise::spectral_record::SpectralRecord`] |
+//! | an evidence by frequency | the same | [`noise::identification::identify`] |
+//! | a noise model | a record that has it | [`noise::simulate::Simulator`] |
+//! | an estimate and a limit | a verdict with its risk | [`estimate::judge`] |
+//! | a claim and a recording | why they differ | [`mismatch`] |
+//!
+//! Modules, from the ground up; each uses those above it only:
+//!
 //! | module | what it has |
 //! |---|---|
-//! | [`message`], [`render`] | messages as a key with arguments; a table that the caller brings turns them into text |
+//! | [`message`], [`render`], [`visible`], [`spelling`] | messages as a key with arguments; a table that the caller brings turns them into text |
 //! | [`numeric`], [`units`] | numerical methods; units and their conversion |
 //! | [`estimate`] | an estimate with its confidence distribution, limits, decision rules, verdicts |
 //! | [`figure`] | plots as data |
 //! | [`recording`] | channels, their roles and units, and the blocks of samples that they deliver |
 //! | [`noise`] | a gyro at rest: Allan family, spectra, identification of noise terms, their simulation |
 //! | [`rate_table`], [`temperature`], [`influence`] | tests on a rate table, over temperature, under an influence |
-//! | [`measurand`] | measured quantities of every kind of test: one registry, one file each |
 //! | [`effect`] | the catalogue of physical effects that a simulation can omit |
 //! | [`claim`], [`series`] | a simulation as its author states it; a recording held in memory |
 //! | [`mismatch`], [`simulate`] | why a recording departs from a claim; recordings made from a claim |
+//! | [`measurand`] | measured quantities of every kind of test: one registry, one file each |
+//!
+//! Nothing here panics on any input: what cannot be computed is `None`, an error, or an estimate without a value.
 
 pub mod claim;
 pub mod effect;

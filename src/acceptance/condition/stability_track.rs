@@ -1,7 +1,7 @@
 //! One pass over a channel that must stay within a band, such as the temperature of the unit or its supply: smoothed
 //! extremes, the share outside the band, and the steepest trend.
 
-use crate::numeric::compensated::Compensated;
+use crate::numeric::sums::Compensated;
 use std::collections::VecDeque;
 
 /// Length of the windows in which the trend of the temperature is measured, s.

@@ -3,8 +3,8 @@
 use super::descriptor::Measurand;
 use crate::estimate::{Estimate, LowerLimit, UpperLimit};
 use crate::message::{Arg, Note};
-use crate::temperature::settled::STATEMENT_PROBABILITY;
 use crate::temperature::start::{Missing, Start};
+use crate::temperature::warm_up::STATEMENT_PROBABILITY;
 use crate::temperature::warm_up::WarmUpFindings;
 
 /// Bias at switching on, less its final value.

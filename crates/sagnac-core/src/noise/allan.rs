@@ -64,6 +64,28 @@ impl DeviationSet {
     }
 }
 
+/// The overlapping Allan deviation of an unbroken record at octaves of the sample interval, ascending in averaging time.
+///
+/// `rate_deg_h` are finite samples taken every `tau0_s` seconds. Each point has its averaging factor `m` (τ = m·`tau0_s`),
+/// the number of terms and the deviation in the unit of the samples. Empty for fewer than two samples.
+///
+/// ```
+/// // Samples that alternate between −1 and 1: neighbours differ by 2, so that σ(τ0) = √(4/2), and means of two are all 0.
+/// let rate: Vec<f64> = (0..8).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+/// let points = sagnac_core::noise::allan::allan_deviation(&rate, 0.1);
+///
+/// assert_eq!(points.iter().map(|p| p.m).collect::<Vec<_>>(), [1, 2, 4]);
+/// assert!((points[0].deviation - 2f64.sqrt()).abs() < 1e-12);
+/// assert!(points[1].deviation < 1e-12);
+/// assert_eq!((points[0].terms, points[1].terms), (7, 5));
+/// ```
+pub fn allan_deviation(rate_deg_h: &[f64], tau0_s: f64) -> Vec<DeviationPoint> {
+    let plan = AllanPlan { tau0_s, grid: TauGrid::Octave, exact: true, estimators: vec![Estimator::Allan] };
+    let mut accumulator = AllanAccumulator::new(plan);
+    accumulator.push(rate_deg_h, 0, false);
+    accumulator.finish().curves.pop().map_or_else(Vec::new, |curve| curve.points)
+}
+
 #[derive(Debug, Clone)]
 enum Store {
     Kept { phases: Vec<f64>, starts: Vec<usize> },

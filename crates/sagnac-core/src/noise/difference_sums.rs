@@ -158,3 +158,45 @@ fn total(parts: impl Iterator<Item = f64>) -> f64 {
     parts.for_each(|p| sum.add(p));
     sum.value()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_of_a_short_phase_by_hand() {
+        let x = [0.0, 1.0, 4.0, 9.0, 17.0, 25.0];
+        // Second differences at lag 1: 2, 2, 3, 0; at lag 2: (17 − 2·4 + 0) = 9 and (25 − 2·9 + 1) = 8.
+        assert_eq!(ending_from(&x, 1, 2, 0), (17.0, 4));
+        assert_eq!(ending_from(&x, 2, 2, 0), (145.0, 2));
+        // Third differences at lag 1: 0, 1, −3.
+        assert_eq!(ending_from(&x, 1, 3, 0), (10.0, 3));
+        // Terms that end in the last two points.
+        assert_eq!(ending_from(&x, 1, 2, 4), (9.0, 2));
+        assert_eq!(ending_from(&x, 3, 2, 0), (0.0, 0));
+        assert_eq!(all_overlapping(&x, &[1, 2], 2), [17.0, 145.0]);
+        // Window sums of two neighbouring differences at lag 2: 9 + 8.
+        assert_eq!(all_modified(&x, &[1, 2]), [17.0, 289.0]);
+    }
+
+    #[test]
+    fn lanes_and_remainders_add_to_the_plain_sum() {
+        let x: Vec<f64> = (0..5003u32).map(|i| f64::from(i.wrapping_mul(2_654_435_761) >> 20)).collect();
+        let plain = |lag: usize| -> f64 {
+            (0..x.len() - 2 * lag).map(|i| (x[i + 2 * lag] - 2.0 * x[i + lag] + x[i]).powi(2)).sum()
+        };
+        for lag in [1, 7, 64, 2317] {
+            let sum = all_overlapping(&x, &[lag as u64], 2)[0];
+            assert!(plain(lag) > 0.0 && (sum / plain(lag) - 1.0).abs() < 1e-12, "{lag}");
+        }
+    }
+
+    #[test]
+    fn odd_reflection_continues_a_straight_line() {
+        let line: Vec<f64> = (0..50).map(|i| 3.0 * f64::from(i) - 7.0).collect();
+        assert!(with_reflection(&line, 9, 0.0).abs() < 1e-20);
+        assert!(with_reflection(&line, 25, 0.0).is_nan());
+        // One raised point, m = 2. Left: the phase before is −1, (0 − 1) − (1 + 1) = −3. Right: (0 − 0) − (0 − 1) = 1.
+        assert!((with_reflection(&[0.0, 1.0, 0.0, 0.0, 0.0], 2, 0.0) - 10.0).abs() < 1e-15);
+    }
+}

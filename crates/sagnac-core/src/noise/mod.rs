@@ -1,4 +1,23 @@
 //! Noise of a gyro at rest: Allan family, spectra, autocorrelation, identification, simulation. Knows no procedure.
+//!
+//! Rates are in deg/h, times in s, densities in (deg/h)²/Hz. A *stretch* is an unbroken run of samples; a *segment* is that of
+//! the averaged periodogram; a *block* is a mean on the sample grid.
+//!
+//! From samples to terms:
+//!
+//! | step | modules |
+//! |---|---|
+//! | one pass over the samples | [`digest`], made of [`allan`], [`welch`], [`block_series`], [`windows`], [`histogram`], [`envelope`]; [`part`]: passes that are merged |
+//! | lines found and taken out | [`lines`], [`sinusoids`], [`coherence`] |
+//! | powers by frequency with what each term is expected to give | [`evidence`] |
+//! | terms with intervals or limits | [`identification`]; [`spectral_record`] does lines, evidence and terms together |
+//! | what the curve of the same record says | [`curve_check`], [`slope`], [`whole`] |
+//! | whether the model describes the record | [`residual`] |
+//!
+//! Models and their closed forms: [`model`] (N, B, K, R, Q), [`composite`] (every term), [`data`] (kinds of noise, points
+//! and series). Uncertainty of deviations: [`edf`], [`intervals`], [`stretches`]. What a record can show before it is made:
+//! [`expected`], [`identifiable`], [`null_ratio`]. Other quantities: [`russian`], [`prediction`], [`static_bias`],
+//! [`autocorrelation`]. Fitness of the record: [`motion`], [`coarse`]. Records with known noise: [`simulate`].
 
 pub mod allan;
 pub mod autocorrelation;

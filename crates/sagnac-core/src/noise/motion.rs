@@ -217,3 +217,54 @@ impl Quietest {
         self.least.map(f64::sqrt)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scatter_of_a_ramp_and_of_alternating_values() {
+        // 0 … 4: variance 2.5, steps of 1 that count 4/(n − 1).
+        let ramp = scatter(&[0.0, 1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert!((ramp.deviation - 2.5f64.sqrt()).abs() < 1e-15);
+        assert!((ramp.of_steps - 0.5f64.sqrt()).abs() < 1e-15);
+        assert_eq!(scatter(&[1.0, 2.0]), None);
+    }
+
+    #[test]
+    fn the_quietest_window_leaves_out_a_turn_and_an_output_that_stands() {
+        let mut quietest = Quietest::new(1.0);
+        let alternating = |size: f64| (0..32).map(move |i| if i % 2 == 0 { size } else { -size });
+        quietest.push(&alternating(5.0).collect::<Vec<_>>(), false);
+        quietest.push(&[7.0; 32], true);
+        quietest.push(&alternating(2.0).collect::<Vec<_>>(), true);
+        // Σ = 32·4 over n − 1 = 31.
+        let expected = (128.0f64 / 31.0).sqrt();
+        assert!((quietest.finish().unwrap() - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_turn_of_one_axis_carries_the_others() {
+        let rest = Motion::Rest { scatter_deg_h: 1.0, beyond_noise: 1.0 };
+        let moved = Motion::Moved { scatter_deg_h: 1e4, farthest_deg_h: 1e5 };
+        let (mut a, mut b) = (rest, moved);
+        together(vec![&mut a, &mut b]);
+        assert_eq!((a, b), (Motion::Carried, moved));
+        let (mut a, mut b) = (rest, rest);
+        together(vec![&mut a, &mut b]);
+        assert_eq!((a, b), (rest, rest));
+    }
+
+    #[test]
+    fn a_record_that_is_turned_is_told_from_one_at_rest() {
+        let record = |turned: f64| BlockSeries {
+            block_len: 1,
+            mean: (0..1000).map(|i| f64::from(i % 3) + if i > 500 { turned } else { 0.0 }).collect(),
+            count: vec![1; 1000],
+            ..BlockSeries::default()
+        };
+        assert!(motion(&record(0.0), 1.0, Some(1.0), 0.0).is_rest());
+        assert!(motion(&record(1e5), 1.0, Some(1.0), 0.0).is_motion());
+        assert_eq!(motion(&BlockSeries::default(), 1.0, None, 0.0), Motion::Unknown);
+    }
+}

@@ -1,6 +1,6 @@
 //! From rate to phase: running sums that keep their digits.
 
-pub(crate) use crate::numeric::compensated::{Compensated, two_sum};
+pub(crate) use crate::numeric::sums::{Compensated, two_sum};
 
 /// Samples in one step of the phase.
 pub(crate) const BLOCK: usize = 4096;

@@ -31,6 +31,24 @@ pub struct WelchResult {
 /// The segment length is the largest power of two that fits 16 times into the record, at most 65536 and at least 64,
 /// and not so long that gaps leave less than half of the samples in stretches of a segment or more. It is chosen after
 /// 2^20 samples or at the end, whichever is first; until then samples are kept.
+///
+/// ```
+/// use sagnac_core::noise::welch::WelchAccumulator;
+///
+/// // A sinusoid of amplitude 2 deg/h on bin 20 of segments of 256 samples: its variance is 2.
+/// let turn = std::f64::consts::TAU * 20.0 / 256.0;
+/// let rate: Vec<f64> = (0..1024).map(|i| 2.0 * (turn * f64::from(i)).cos()).collect();
+/// let mut welch = WelchAccumulator::with_segment(256);
+/// for (k, block) in rate.chunks(100).enumerate() {
+///     welch.push(block, k > 0);
+/// }
+/// let spectrum = welch.finish().spectrum;
+///
+/// assert_eq!(spectrum.segments, 13);
+/// // The density is two-sided, in units of the sample interval.
+/// let variance = 2.0 * spectrum.density[1..128].iter().sum::<f64>() / 256.0;
+/// assert!((variance - 2.0).abs() < 1e-9);
+/// ```
 #[derive(Clone)]
 pub struct WelchAccumulator {
     head: Head,

@@ -1,4 +1,7 @@
 //! Orthonormal discrete cosine transform of type II.
+//!
+//! Not by `rustdct`: it differs in the last digit of about half of the coefficients (by 6·10⁻¹⁵ at most, of values of
+//! order 1), from which every result follows, and its gain of time is below what a run shows.
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,14 +1,23 @@
 //! Numerical tools that know no gyro.
+//!
+//! | module | what it has |
+//! |---|---|
+//! | [`cosine`] | discrete cosine transforms, and the modes of a sinusoid |
+//! | [`optimize`] | bisection, golden sections, step rules of Newton ascents, bounded quadratics |
+//! | [`least_squares`] | weighted least squares with priors |
+//! | [`order`] | medians |
+//! | [`reml`] | linear models with variance components, by restricted maximum likelihood |
+//! | [`special`] | special functions |
+//! | [`sums`] | compensated and running sums |
+//! | [`range`], [`decimal`] | magnitudes that figures are right for; decimals of a number |
 
-pub mod compensated;
+pub(crate) mod cholesky;
 pub mod cosine;
 pub mod decimal;
-pub(crate) mod inverse;
 pub mod least_squares;
-pub(crate) mod log_determinant;
 pub mod optimize;
 pub mod order;
 pub mod range;
 pub mod reml;
 pub mod special;
-pub(crate) mod sums;
+pub mod sums;

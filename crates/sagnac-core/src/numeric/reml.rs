@@ -4,8 +4,8 @@
 //! (Gilmour, Thompson and Cullis 1995); β follows by generalised least squares. A linear combination of β is Student's
 //! with the degrees of freedom of Satterthwaite (Giesbrecht and Burns 1985).
 
-use super::inverse::inverse;
-use super::log_determinant::log_determinant;
+use super::cholesky::inverse;
+use super::cholesky::log_determinant;
 use super::optimize::Damping;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::ControlFlow;

@@ -37,3 +37,32 @@ pub fn smooth(values: &[f64]) -> Vec<f64> {
     }
     inverse_dct2(&modes).into_iter().enumerate().map(|(i, v)| v + line(i)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slow_sine_comes_out_of_white_noise() {
+        let n = 4096;
+        let mut state = 1u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let clean: Vec<f64> = (0..n).map(|i| 20.0 + (6.0 * i as f64 / n as f64).sin()).collect();
+        let noisy: Vec<f64> = clean.iter().map(|v| v + 0.5 * uniform()).collect();
+        let rms = |of: &[f64]| {
+            let sum: f64 = of.iter().zip(&clean).map(|(a, b)| (a - b).powi(2)).sum();
+            (sum / n as f64).sqrt()
+        };
+        // Uniform numbers of width 0.5 have a deviation of 0.144.
+        assert!((rms(&noisy) - 0.144).abs() < 0.01 && rms(&smooth(&noisy)) < 0.03);
+    }
+
+    #[test]
+    fn short_and_steady_columns_stay_as_they_are() {
+        assert_eq!(smooth(&[1.0, 5.0, 2.0]), [1.0, 5.0, 2.0]);
+        assert_eq!(smooth(&[3.0; 100]), [3.0; 100]);
+    }
+}

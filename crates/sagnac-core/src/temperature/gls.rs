@@ -7,8 +7,8 @@
 
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_mode_variance;
+use crate::numeric::cholesky::log_determinant;
 use crate::numeric::cosine::dct2;
-use crate::numeric::log_determinant::log_determinant;
 use crate::numeric::optimize::Damping;
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;

@@ -9,8 +9,8 @@
 use super::course::{Course, Span, Terms};
 use super::gls::{Modes, Solved};
 use super::posterior;
+use crate::numeric::cholesky::log_determinant;
 use crate::numeric::cosine::inverse_dct2;
-use crate::numeric::log_determinant::log_determinant;
 use crate::recording::window::TimeSpan;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;

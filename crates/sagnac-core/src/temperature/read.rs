@@ -172,3 +172,30 @@ pub fn deviation(draws: &[Draw], weights: &DVector<f64>) -> f64 {
     let outer = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / n;
     (inner + outer).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_of_a_normal_distribution_are_its_quantiles() {
+        let reading = of_distribution(|x| normal_probability((x - 3.0) / 2.0), (-20.0, 30.0));
+        assert!((reading.value - 3.0).abs() < 1e-9);
+        let bound = reading.spread.bound(reading.value, 0.975).unwrap_or(f64::NAN);
+        assert!((bound - (3.0 + 2.0 * 1.959_964)).abs() < 1e-3, "{bound}");
+    }
+
+    #[test]
+    fn readings_of_values_are_their_order() {
+        let reading = from_values((0..=1000).map(f64::from).chain([f64::NAN]).collect());
+        assert_eq!(reading.value, 500.0);
+        assert!(from_values(vec![]).value.is_nan());
+    }
+
+    #[test]
+    fn the_factor_of_a_covariance_gives_it_back() {
+        let covariance = DMatrix::from_row_slice(3, 3, &[4.0, 2.0, 0.0, 2.0, 5.0, 0.0, 0.0, 0.0, 0.0]);
+        let factor = factor(&covariance);
+        assert!((&factor * factor.transpose() - covariance).norm() < 1e-14);
+    }
+}

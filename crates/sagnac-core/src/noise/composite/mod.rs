@@ -4,12 +4,10 @@
 mod bandwidth;
 pub mod damped;
 mod described;
-mod windowed;
 
 pub use bandwidth::{Bandwidth, averaged_white_mode};
-pub use damped::{Damped, Modes, Sampling};
+pub use damped::{Damped, Modes, Sampling, Windowed};
 pub use described::{Described, Parameter, Propagated};
-pub use windowed::Windowed;
 
 use super::data::NoiseType;
 use super::model::{NoiseModel, TERMS, unit_allan_variance, unit_density, unit_mean_variance};

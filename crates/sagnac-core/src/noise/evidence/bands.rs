@@ -189,3 +189,42 @@ pub(super) fn bands_of(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
     }
     bands
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bin(index: u32, alone: bool) -> FineBin {
+        let frequency_hz = 0.001 * f64::from(index);
+        let power = f64::from(index);
+        FineBin { frequency_hz, power, dof: 1.0, cross: 0.0, ramp: 0.0, piece: 0, index, alone }
+    }
+
+    #[test]
+    fn bands_hold_all_degrees_of_freedom_and_the_mean_power() {
+        let fine: Vec<FineBin> = (1..=2000).map(|k| bin(k, k <= 10)).collect();
+        let bands = bands_of(&fine, &[]);
+        assert!(bands.iter().take(10).all(|b| b.low_hz == b.high_hz));
+        assert_eq!(bands.iter().map(|b| b.dof).sum::<f64>(), 2000.0);
+        let total: f64 = bands.iter().map(|b| b.dof * b.power).sum();
+        assert!((total / 2_001_000.0 - 1.0).abs() < 1e-12);
+        for band in bands.iter().filter(|b| b.dof > 1.0) {
+            assert!(
+                band.high_hz - band.low_hz <= RELATIVE_WIDTH * 0.5 * (band.low_hz + band.high_hz) + 1e-12
+            );
+        }
+    }
+
+    #[test]
+    fn bands_are_narrow_where_a_resonance_must_be_resolved() {
+        let zone = Zone { centre_hz: 1.0, half_width_hz: 0.005 };
+        let fine: Vec<FineBin> = (1..=2000).map(|k| bin(k, false)).collect();
+        let widest = |from: f64, to: f64| {
+            let bands = bands_of(&fine, &[zone]);
+            let inside = bands.iter().filter(|b| b.low_hz > from && b.high_hz < to);
+            inside.map(|b| b.high_hz - b.low_hz).fold(0.0, f64::max)
+        };
+        // A fifth of the half width at the centre; 4 % of the frequency far away.
+        assert!(widest(0.995, 1.005) < 0.0021 && widest(1.6, 2.0) > 0.05);
+    }
+}

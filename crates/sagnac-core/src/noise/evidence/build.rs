@@ -1,13 +1,16 @@
 //! Turns block means and an averaged periodogram into an evidence.
 
 use super::bands::{FineBin, Piece, bands_of};
-use super::series::{MIN_STRETCH, Series};
 use super::spectrum::Evidence;
 use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::model::{NoiseModel, TERMS};
 use crate::numeric::cosine::dct2;
 use std::sync::Arc;
 
+/// Blocks with less than this share of their samples count as empty.
+const MIN_FILLING: f64 = 0.125;
+/// Shortest stretch of blocks that is transformed on its own.
+const MIN_STRETCH: usize = 16;
 /// Modes that keep a band of their own.
 const SINGLE_MODES: usize = 64;
 /// Most coarse blocks when a record has gaps.
@@ -48,6 +51,87 @@ fn ramp_modes(blocks: usize, tau_s: f64) -> Vec<f64> {
         .collect()
 }
 
+/// Block means with counts, at one averaging time.
+struct Series {
+    tau_s: f64,
+    /// Means less the first one.
+    mean: Vec<f64>,
+    count: Vec<f64>,
+    full: f64,
+}
+
+impl Series {
+    fn new(blocks: &BlockSeries, tau0_s: f64) -> Series {
+        let full = blocks.block_len.max(1) as f64;
+        let usable = |m: f64, c: u32| m.is_finite() && c > 0 && f64::from(c) >= MIN_FILLING * full;
+        let pairs: Vec<(f64, f64)> = blocks
+            .about_first()
+            .into_iter()
+            .zip(&blocks.count)
+            .map(|(m, &c)| if usable(m, c) { (m, f64::from(c)) } else { (0.0, 0.0) })
+            .collect();
+        Series {
+            tau_s: full * tau0_s,
+            mean: pairs.iter().map(|p| p.0).collect(),
+            count: pairs.iter().map(|p| p.1).collect(),
+            full,
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.mean.len()
+    }
+
+    fn samples(&self) -> f64 {
+        self.count.iter().sum()
+    }
+
+    /// Without empty blocks at the two ends; `None` when too little is left.
+    fn trimmed(mut self) -> Option<Series> {
+        let first = self.count.iter().position(|c| *c > 0.0)?;
+        let last = self.count.iter().rposition(|c| *c > 0.0)?;
+        self.mean = self.mean.get(first..=last)?.to_vec();
+        self.count = self.count.get(first..=last)?.to_vec();
+        (self.len() >= MIN_STRETCH).then_some(self)
+    }
+
+    fn is_whole(&self) -> bool {
+        self.count.iter().all(|c| *c > 0.0)
+    }
+
+    /// Means over `factor` blocks; a rest at the end is left out.
+    fn merged(&self, factor: usize) -> Series {
+        let full = self.full * factor as f64;
+        let pairs = self.mean.chunks_exact(factor).zip(self.count.chunks_exact(factor)).map(|(m, c)| {
+            let count: f64 = c.iter().sum();
+            let sum: f64 = m.iter().zip(c).map(|(m, c)| m * c).sum();
+            if count >= MIN_FILLING * full { (sum / count, count) } else { (0.0, 0.0) }
+        });
+        let (mean, count) = pairs.unzip();
+        Series { tau_s: self.tau_s * factor as f64, mean, count, full }
+    }
+
+    /// Ranges of blocks without an empty one, at least [`MIN_STRETCH`] long.
+    fn stretches(&self) -> Vec<std::ops::Range<usize>> {
+        let mut out = vec![];
+        let mut start = None;
+        for i in 0..=self.len() {
+            match (self.count.get(i).is_some_and(|c| *c > 0.0), start) {
+                (true, None) => start = Some(i),
+                (false, Some(s)) => {
+                    if i - s >= MIN_STRETCH {
+                        out.push(s..i);
+                    }
+                    start = None;
+                }
+                _ => {}
+            }
+        }
+        out
+    }
+}
+
+/// Collects modes and bins.
 struct Builder<'a> {
     evidence: Evidence,
     masks: &'a [Mask],

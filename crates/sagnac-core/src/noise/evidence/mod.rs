@@ -8,7 +8,6 @@
 
 mod bands;
 mod build;
-mod series;
 mod spectrum;
 
 pub use bands::{Band, FineBin, Zone};

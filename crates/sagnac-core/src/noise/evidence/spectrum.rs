@@ -107,3 +107,21 @@ impl Evidence {
         nearest.map_or(f64::INFINITY, |p| p.step_hz)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::model::NoiseModel;
+
+    #[test]
+    fn white_noise_has_one_level_in_every_band() {
+        let evidence = Evidence::expected(&NoiseModel { n: 0.01, ..NoiseModel::default() }, 10_000, 1.0);
+        // Two-sided: N² in (deg/h)²/Hz is 3600 N².
+        assert!(evidence.bands.iter().all(|b| (b.power / (3600.0 * 1e-4) - 1.0).abs() < 1e-12));
+        assert!((evidence.power_near(0.1) / 0.36 - 1.0).abs() < 1e-12);
+        // All modes but the mean.
+        assert_eq!(evidence.dof(), 9_999.0);
+        let half = evidence.up_to(0.25);
+        assert!((half.dof() / 5_000.0 - 1.0).abs() < 0.05 && half.bands.iter().all(|b| b.high_hz <= 0.25));
+    }
+}

@@ -276,3 +276,42 @@ pub fn toggled(structure: &Structure, term: usize, present: bool) -> Structure {
 pub fn position(term: NoiseType) -> usize {
     TERMS.iter().position(|t| *t == term).unwrap_or(0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn evidence(model: &NoiseModel) -> Evidence {
+        Evidence::expected(model, 36_000, 1.0)
+    }
+
+    #[test]
+    fn the_maximum_on_expected_powers_is_the_model() {
+        let model = NoiseModel { n: 0.002, b: 0.004, k: 0.01, r: 0.02, q: 0.3 };
+        let likelihood = Likelihood::new(&evidence(&model)).unwrap();
+        let fitted = likelihood.maximise(&[true; 5], Some((RAMP, model.r)), None).unwrap().model();
+        for term in TERMS {
+            let ratio = fitted.coefficient(term) / model.coefficient(term);
+            assert!((ratio - 1.0).abs() < 1e-3, "{term:?} {ratio}");
+        }
+    }
+
+    #[test]
+    fn white_noise_is_known_to_one_over_the_root_of_twice_its_samples() {
+        let model = NoiseModel { n: 0.002, ..NoiseModel::default() };
+        let likelihood = Likelihood::new(&evidence(&model)).unwrap();
+        let bound = likelihood.covariance_bound(&model, &[true, false, false, false, false]);
+        let relative = bound[0][0].sqrt() / model.n;
+        assert!((relative * (2.0 * 36_000f64).sqrt() - 1.0).abs() < 1e-3, "{relative}");
+        // A ramp against it: σ² = 12·3600² N²·3600/T³ for a straight line in white noise.
+        let ramp = likelihood.covariance_bound(&model, &[true, false, false, false, true])[RAMP][RAMP];
+        let expected = 12.0 * 3600f64.powi(3) * model.n * model.n / 36_000f64.powi(3);
+        assert!((ramp / expected - 1.0).abs() < 1e-2, "{ramp} {expected}");
+    }
+
+    #[test]
+    fn too_few_bands_or_no_power_have_no_likelihood() {
+        assert!(Likelihood::new(&Evidence::default()).is_none());
+        assert!(Likelihood::new(&evidence(&NoiseModel::default())).is_none());
+    }
+}

@@ -189,3 +189,43 @@ pub fn wider(value: f64, a: &Spread, b: &Spread) -> Spread {
     }
     Spread::Curve(points)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_of_a_parabola_is_a_straight_line() {
+        let (value, sigma) = (5.0, 0.3);
+        let trace = Trace { first_step: 0.4 * sigma, spacing: 0.4, max_points: 60 };
+        let rise = |x: f64, _: &mut ()| ((x - value) / sigma).powi(2);
+        let Spread::Curve(points) = trace_curve(value, trace, (), |at, step| at + step, rise) else {
+            panic!("a curve");
+        };
+        assert!(points.first().is_some_and(|p| p.0 <= -4.0) && points.last().is_some_and(|p| p.0 >= 4.0));
+        for (z, x) in points {
+            assert!((z - (x - value) / sigma).abs() < 1e-12, "{z} {x}");
+        }
+    }
+
+    #[test]
+    fn the_curve_ends_at_a_boundary() {
+        let trace = Trace { first_step: 0.5, spacing: 0.5, max_points: 60 };
+        let next = |at: f64, step: f64| (at + step).max(0.0);
+        let spread = trace_curve(1.0, trace, (), next, |x, _| (x - 1.0).powi(2));
+        let Spread::Curve(points) = spread else { panic!("a curve") };
+        assert_eq!(points.first(), Some(&(-1.0, 0.0)));
+    }
+
+    #[test]
+    fn the_wider_of_two_curves_on_each_side() {
+        let line = |below: f64, above: f64| {
+            Spread::Curve(
+                (-4..=4).map(f64::from).map(|z| (z, z * if z < 0.0 { below } else { above })).collect(),
+            )
+        };
+        let Spread::Curve(points) = wider(0.0, &line(1.0, 2.0), &line(3.0, 0.5)) else { panic!("a curve") };
+        let at = |z: f64| points.iter().find(|p| p.0 == z).map_or(f64::NAN, |p| p.1);
+        assert!((at(-2.0) + 6.0).abs() < 1e-6 && (at(2.0) - 4.0).abs() < 1e-6 && at(0.0) == 0.0);
+    }
+}

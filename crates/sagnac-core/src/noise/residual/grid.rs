@@ -146,3 +146,39 @@ impl Grid {
             .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::composite::Parameter;
+    use crate::noise::data::NoiseType;
+    use crate::noise::model::NoiseModel;
+
+    fn white() -> Described {
+        Described {
+            model: NoiseModel { n: 0.002, ..NoiseModel::default() }.into(),
+            parameters: vec![Parameter::Coefficient(NoiseType::AngleRandomWalk)],
+            covariance: vec![vec![1e-10]],
+        }
+    }
+
+    #[test]
+    fn white_noise_has_two_degrees_of_freedom_a_sample_pair() {
+        let grid = Grid::new(&white(), 10_000.0, 1.0);
+        // One degree of freedom a mode: 2·T·(Nyquist frequency) but for half a mode.
+        assert!((grid.dof.iter().sum::<f64>() - 9_999.5).abs() < 1e-6);
+        // d ln S / d ln N = 2, so that the information of ln N is 2 n.
+        assert!(grid.gradient[0].iter().all(|g| (g - 2.0).abs() < 1e-5));
+        assert!((grid.information()[(0, 0)] / (2.0 * 9_999.5) - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn shares_of_an_allan_variance_lie_about_its_frequency() {
+        let grid = Grid::new(&white(), 10_000.0, 1.0);
+        let shares = grid.allan_shares(64.0, 1.0);
+        assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        let mean: f64 = shares.iter().zip(grid.edges.windows(2)).map(|(s, e)| s * (e[0] + e[1]) / 2.0).sum();
+        // The weight sin⁴(πfτ)/(πfτ)² is largest near 0.37/τ and has a heavy tail.
+        assert!(mean > 0.3 / 64.0 && mean < 2.0 / 64.0, "{mean}");
+    }
+}

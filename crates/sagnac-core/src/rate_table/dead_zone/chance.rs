@@ -6,8 +6,8 @@
 
 use super::about::Means;
 use super::points::{Points, Ratios};
-use crate::numeric::inverse::inverse;
-use crate::numeric::log_determinant::log_determinant;
+use crate::numeric::cholesky::inverse;
+use crate::numeric::cholesky::log_determinant;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};

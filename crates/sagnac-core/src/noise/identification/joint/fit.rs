@@ -352,3 +352,24 @@ impl<'a> Joint<'a> {
         (moved.reported(variable) - point.reported(variable)) / DERIVATIVE_STEP
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::linear_fit::Likelihood;
+    use super::*;
+    use crate::noise::model::NoiseModel;
+
+    #[test]
+    fn without_further_parts_it_ends_where_the_linear_fit_ends() {
+        let model = NoiseModel { n: 0.002, b: 0.004, k: 0.01, ..NoiseModel::default() };
+        let evidence = Evidence::expected(&model, 36_000, 1.0);
+        let joint = Joint::new(&evidence, Sampling::Averaging).unwrap();
+        let point = joint.best(&Shape::default(), false);
+        let linear = Likelihood::new(&evidence).unwrap();
+        let other = linear.maximise(&[true, true, true, true, false], None, None).unwrap();
+        assert!((point.deviance - other.deviance).abs() < 1e-2, "{} {}", point.deviance, other.deviance);
+        for (a, b) in [(point.terms().n, model.n), (point.terms().b, model.b), (point.terms().k, model.k)] {
+            assert!((a / b - 1.0).abs() < 1e-2, "{a} {b}");
+        }
+    }
+}

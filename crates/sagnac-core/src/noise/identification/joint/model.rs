@@ -198,3 +198,34 @@ pub struct Extras {
     /// Resonances that the bands must resolve.
     pub zones: Vec<Zone>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variables_are_the_parameters_of_the_composite() {
+        let shape = Shape { filter: Some(Bandwidth::FirstOrder { time_constant_s: 0.3 }), damped: vec![] };
+        let shape = shape.with(ProcessKind::QuasiPeriodic, 0.1, 50.0).with(ProcessKind::Markov, 0.0, 20.0);
+        let mut point =
+            JointPoint { variance: vec![4.0, 0.0, 0.0, 0.0, 9.0, 16.0], shape, ramp: -1.0, deviance: 0.0 };
+        let model = point.composite(Sampling::Averaging);
+        for variable in [
+            Variable::Variance(0),
+            Variable::Variance(4),
+            Variable::Variance(5),
+            Variable::FilterTime,
+            Variable::DecayTime(0),
+            Variable::DecayTime(1),
+            Variable::Frequency(0),
+            Variable::Ramp,
+        ] {
+            let parameter = point.parameter(variable).unwrap();
+            assert_eq!(model.value(parameter), point.reported(variable), "{variable:?}");
+            let changed = 1.5 * point.reported(variable);
+            point.set_reported(variable, changed);
+            assert_eq!(point.reported(variable), changed, "{variable:?}");
+        }
+        assert_eq!((model.markov[0].rms_deg_h, model.quasi_periodic[0].rms_deg_h), (4.0, 3.0));
+    }
+}

@@ -1,5 +1,4 @@
-//! The inverse of a positive definite matrix from its Cholesky factor, in blocks: products of blocks run many times faster
-//! than one substitution a column.
+//! What follows from a Cholesky factor: the inverse and the logarithm of the determinant.
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
@@ -36,9 +35,15 @@ fn triangle(l: &DMatrix<f64>) -> DMatrix<f64> {
     out
 }
 
+/// ln det V of V = LLᵀ.
+pub fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
+    2.0 * factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::DMatrix;
 
     #[test]
     fn times_the_matrix_it_is_the_identity() {
@@ -50,5 +55,12 @@ mod tests {
             assert!(off < 1e-10, "{n}: {off}");
             assert!((&found - found.transpose()).amax() < 1e-12);
         }
+    }
+
+    #[test]
+    fn it_is_that_of_the_determinant() {
+        let v = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 3.0]);
+        let factor = Cholesky::new(v).unwrap();
+        assert!((log_determinant(&factor) - 11f64.ln()).abs() < 1e-12);
     }
 }
