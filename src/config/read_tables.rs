@@ -2,7 +2,7 @@
 //! at once, each with its place.
 
 use super::diagnostics::{Problem, Problems, SourceText, Span};
-use super::reader::{Reader, example, meant, shorten};
+use super::reader::{Reader, Value, example, meant, shorten};
 use super::section::{Entry, Section};
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::{syntax, values};
@@ -129,7 +129,8 @@ impl Reader<'_> {
                 section.entries.insert(described.name, (Entry::Flag(true), key.span()));
                 continue;
             }
-            let entry = self.value(described, value.get_ref(), &value.span(), &key.span());
+            let entry =
+                self.value(Value { key: described, toml: value.get_ref(), span: &value.span() }, &key.span());
             // A key that is there but wrong must not be reported as missing too.
             let entry = entry.unwrap_or(Entry::Flag(false));
             section
@@ -138,8 +139,13 @@ impl Reader<'_> {
         }
         self.missing_keys(spec, &mut section, &meant);
         for (described, by, value) in dependent {
-            let entry = dependent_unit(&section, by)
-                .and_then(|unit| values::quantity_by(self, described, &unit, value.get_ref(), &value.span()));
+            let entry = dependent_unit(&section, by).and_then(|unit| {
+                values::quantity_by(
+                    self,
+                    Value { key: described, toml: value.get_ref(), span: &value.span() },
+                    &unit,
+                )
+            });
             let entry = entry.unwrap_or(Entry::Flag(false));
             section.entries.insert(described.name, (entry, value.span()));
         }
@@ -167,7 +173,9 @@ impl Reader<'_> {
                 }
                 Need::Default(text) => {
                     let Ok(value) = DeValue::parse(text) else { continue };
-                    if let Some(entry) = self.value(key, value.get_ref(), &section.span, &section.span) {
+                    if let Some(entry) =
+                        self.value(Value { key, toml: value.get_ref(), span: &section.span }, &section.span)
+                    {
                         section.entries.insert(key.name, (entry, section.span.clone()));
                     }
                 }
@@ -220,37 +228,25 @@ impl Reader<'_> {
         }
     }
 
-    fn value(
-        &mut self,
-        key: &'static KeySpec,
-        value: &DeValue<'_>,
-        span: &Span,
-        key_span: &Span,
-    ) -> Option<Entry> {
-        match key.kind {
-            Kind::Table(spec) => match value {
+    fn value(&mut self, value: Value<'_>, key_span: &Span) -> Option<Entry> {
+        match value.key.kind {
+            Kind::Table(spec) => match value.toml {
                 DeValue::Table(table) => Some(Entry::Table(self.table(spec, table, key_span))),
-                _ => self.wrong(key, value, span),
+                _ => self.wrong(value),
             },
-            Kind::Tables(spec) | Kind::TableOrTables(spec) => self.tables(key, spec, value, span, key_span),
-            Kind::QuantityMap => match value {
-                DeValue::Table(table) => Some(Entry::Quantities(self.quantities(key, table))),
-                _ => self.wrong(key, value, span),
+            Kind::Tables(spec) | Kind::TableOrTables(spec) => self.tables(spec, value, key_span),
+            Kind::QuantityMap => match value.toml {
+                DeValue::Table(table) => Some(Entry::Quantities(self.quantities(value.key, table))),
+                _ => self.wrong(value),
             },
-            _ => values::scalar(self, key, value, span),
+            _ => values::scalar(self, value),
         }
     }
 
     /// Reads a list of tables, or one table where that is allowed.
-    fn tables(
-        &mut self,
-        key: &'static KeySpec,
-        spec: &'static TableSpec,
-        value: &DeValue<'_>,
-        span: &Span,
-        key_span: &Span,
-    ) -> Option<Entry> {
-        match value {
+    fn tables(&mut self, spec: &'static TableSpec, value: Value<'_>, key_span: &Span) -> Option<Entry> {
+        let Value { key, toml, span } = value;
+        match toml {
             DeValue::Table(table) if matches!(key.kind, Kind::TableOrTables(_)) => {
                 Some(Entry::Table(self.table(spec, table, key_span)))
             }
@@ -275,13 +271,13 @@ impl Reader<'_> {
                             sections.push(self.table(spec, table, &first_line(self.source, &start)));
                         }
                         other => {
-                            let _: Option<Entry> = self.wrong(key, other, &item.span());
+                            let _: Option<Entry> = self.wrong(value.with(other, &item.span()));
                         }
                     }
                 }
                 Some(Entry::Tables(sections))
             }
-            _ => self.wrong(key, value, span),
+            _ => self.wrong(value),
         }
     }
 
@@ -293,7 +289,8 @@ impl Reader<'_> {
         let mut found = vec![];
         for (name, value) in table.iter() {
             let Some(id) = self.measurand(name.get_ref(), &name.span()) else { continue };
-            let read = values::quantity_by(self, key, id.unit, value.get_ref(), &value.span());
+            let read =
+                values::quantity_by(self, Value { key, toml: value.get_ref(), span: &value.span() }, id.unit);
             if let Some(Entry::Number(number) | Entry::AsRecorded(number, _)) = read {
                 found.push((id, number, name.span()));
             }

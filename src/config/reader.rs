@@ -10,6 +10,22 @@ use toml::de::DeValue;
 /// Errors after which the reader stops looking for more.
 const MAX_ERRORS: usize = 200;
 
+/// A value as it stands in the file, with the description of its key.
+#[derive(Clone, Copy)]
+pub(crate) struct Value<'a> {
+    pub key: &'static KeySpec,
+    pub toml: &'a DeValue<'a>,
+    /// Where it stands.
+    pub span: &'a Span,
+}
+
+impl<'a> Value<'a> {
+    /// A value inside this one, such as an item of a list.
+    pub fn with(self, toml: &'a DeValue<'a>, span: &'a Span) -> Value<'a> {
+        Value { toml, span, ..self }
+    }
+}
+
 /// One file while it is read.
 pub(crate) struct Reader<'s> {
     /// Its text.
@@ -48,11 +64,12 @@ impl Reader<'_> {
     }
 
     /// Reports a value of the wrong type.
-    pub fn wrong<T>(&mut self, key: &KeySpec, value: &DeValue<'_>, span: &Span) -> Option<T> {
+    pub fn wrong<T>(&mut self, value: Value<'_>) -> Option<T> {
+        let Value { key, toml, span } = value;
         let message = Note::new("keyed.wrong")
             .with("key", key.name)
             .with("wanted", key.kind.describe())
-            .with("given", Note::new(type_name(value)));
+            .with("given", Note::new(type_name(toml)));
         let help = if key.example.is_empty() {
             key.kind.table().map(|t| Note::new("keyed.help.write_table").with("table", t.name))
         } else {

@@ -2,7 +2,7 @@
 
 use super::diagnostics::Span;
 use super::quantity::{self, QuantityError};
-use super::reader::{Reader, for_example, shorten};
+use super::reader::{Reader, Value, for_example, shorten};
 use super::section::{Allowance, Entry, Given, Named, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
 use crate::i18n::Note;
@@ -25,83 +25,80 @@ const MAX_NUMBERS: usize = 100_000;
 const MAX_NAMES: usize = 100;
 
 /// Reads a value that is no table.
-pub(crate) fn scalar(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<Entry> {
-    match key.kind {
-        Kind::Text => text(reader, key, value, span).map(Entry::Text),
-        Kind::Format(_) => text(reader, key, value, span).map(Entry::Text),
-        Kind::Id => id(reader, key, value, span).map(Entry::Text),
-        Kind::Flag => match value {
+pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry> {
+    match value.key.kind {
+        Kind::Text => text(reader, value).map(Entry::Text),
+        Kind::Format(_) => text(reader, value).map(Entry::Text),
+        Kind::Id => id(reader, value).map(Entry::Text),
+        Kind::Flag => match value.toml {
             DeValue::Boolean(flag) => Some(Entry::Flag(*flag)),
-            _ => reader.wrong(key, value, span),
+            _ => reader.wrong(value),
         },
         Kind::Number(range) => {
-            let Some(given) = number(value) else { return reader.wrong(key, value, span) };
-            in_range(reader, key, given, range, "", span).then_some(Entry::Number(given))
+            let Some(given) = number(value.toml) else { return reader.wrong(value) };
+            in_range(reader, value, given, range, "").then_some(Entry::Number(given))
         }
-        Kind::Numbers(range) => numbers(reader, key, range, value, span).map(Entry::Numbers),
-        Kind::Values => named(reader, key, value, span).map(Entry::Values),
-        Kind::Remark => match value {
+        Kind::Numbers(range) => numbers(reader, value, range).map(Entry::Numbers),
+        Kind::Values => named(reader, value).map(Entry::Values),
+        Kind::Remark => match value.toml {
             DeValue::String(given) if given.trim().is_empty() => Some(Entry::Text(String::new())),
-            _ => text(reader, key, value, span).map(Entry::Text),
+            _ => text(reader, value).map(Entry::Text),
         },
-        Kind::Date => date(reader, key, value, span).map(Entry::Date),
-        Kind::Choice(words) => word(reader, key, words, value, span).map(Entry::Word),
+        Kind::Date => date(reader, value).map(Entry::Date),
+        Kind::Choice(words) => word(reader, value, words).map(Entry::Word),
         Kind::Choices(words) => {
-            let DeValue::Array(items) = value else { return reader.wrong(key, value, span) };
-            let found =
-                items.iter().filter_map(|v| word(reader, key, words, v.get_ref(), &v.span())).collect();
+            let DeValue::Array(items) = value.toml else { return reader.wrong(value) };
+            let found = items
+                .iter()
+                .filter_map(|v| word(reader, value.with(v.get_ref(), &v.span()), words))
+                .collect();
             Some(Entry::Words(found))
         }
         Kind::Quantity { unit, difference, range } => {
-            quantity_in(reader, key, unit, difference, range, value, span).map(Entry::Number)
+            quantity_in(reader, value, unit, difference, range).map(Entry::Number)
         }
-        Kind::UnitText => unit(reader, key, value, span).map(Entry::Unit),
-        Kind::Column => column(reader, key, value, span).map(Entry::Column),
-        Kind::Taus => taus(reader, key, value, span).map(Entry::Taus),
-        Kind::Allowance => allowance(reader, key, value, span).map(Entry::Allowance),
+        Kind::UnitText => unit(reader, value).map(Entry::Unit),
+        Kind::Column => column(reader, value).map(Entry::Column),
+        Kind::Taus => taus(reader, value).map(Entry::Taus),
+        Kind::Allowance => allowance(reader, value).map(Entry::Allowance),
         Kind::Measurand => {
-            let name = text(reader, key, value, span)?;
-            reader.measurand(&name, &inside_quotes(reader, &name, span)).map(Entry::Measurand)
+            let name = text(reader, value)?;
+            reader.measurand(&name, &inside_quotes(reader, &name, value.span)).map(Entry::Measurand)
         }
         Kind::QuantityBy(_)
         | Kind::QuantityMap
         | Kind::Table(_)
         | Kind::Tables(_)
-        | Kind::TableOrTables(_) => reader.wrong(key, value, span),
+        | Kind::TableOrTables(_) => reader.wrong(value),
     }
 }
 
-fn text(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<String> {
-    let DeValue::String(text) = value else { return reader.wrong(key, value, span) };
+fn text(reader: &mut Reader<'_>, value: Value<'_>) -> Option<String> {
+    let DeValue::String(text) = value.toml else { return reader.wrong(value) };
     if text.trim().is_empty() {
-        let message = Note::new("keyed.empty").with("key", key.name);
-        reader.error(span, message, Some("keyed.help.fill_in".into()));
+        let message = Note::new("keyed.empty").with("key", value.key.name);
+        reader.error(value.span, message, Some("keyed.help.fill_in".into()));
         return None;
     }
     if text.chars().count() > MAX_TEXT_CHARACTERS
         || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t')
     {
-        let message = Note::new("keyed.no_text").with("key", key.name);
+        let message = Note::new("keyed.no_text").with("key", value.key.name);
         let help = Note::new("keyed.help.text").with("most", MAX_TEXT_CHARACTERS);
-        reader.error(span, message, Some(help));
+        reader.error(value.span, message, Some(help));
         return None;
     }
     Some(text.trim().to_owned())
 }
 
-fn id(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<String> {
-    let given = text(reader, key, value, span)?;
+fn id(reader: &mut Reader<'_>, value: Value<'_>) -> Option<String> {
+    let given = text(reader, value)?;
     let plain = given.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
     if plain && given.len() <= 64 && given.starts_with(|c: char| c.is_ascii_alphanumeric()) {
         return Some(given);
     }
-    let message = Note::new("keyed.no_name").with("given", shorten(&given)).with("key", key.name);
-    reader.error(span, message, Some("keyed.help.name".into()));
+    let message = Note::new("keyed.no_name").with("given", shorten(&given)).with("key", value.key.name);
+    reader.error(value.span, message, Some("keyed.help.name".into()));
     None
 }
 
@@ -125,25 +122,14 @@ fn list(value: &DeValue<'_>) -> Option<Vec<f64>> {
     }
 }
 
-fn numbers(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    range: Range,
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<Vec<f64>> {
-    let Some(found) = list(value) else { return reader.wrong(key, value, span) };
-    found.iter().all(|v| in_range(reader, key, *v, range, "", span)).then_some(found)
+fn numbers(reader: &mut Reader<'_>, value: Value<'_>, range: Range) -> Option<Vec<f64>> {
+    let Some(found) = list(value.toml) else { return reader.wrong(value) };
+    found.iter().all(|v| in_range(reader, value, *v, range, "")).then_some(found)
 }
 
 /// A table of names with numbers or lists of numbers. What the names mean is not known here.
-fn named(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<Vec<Named>> {
-    let DeValue::Table(table) = value else { return reader.wrong(key, value, span) };
+fn named(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Vec<Named>> {
+    let DeValue::Table(table) = value.toml else { return reader.wrong(value) };
     let mut found = vec![];
     for (name, value) in table.iter().take(MAX_NAMES) {
         let given = match number(value.get_ref()) {
@@ -160,52 +146,34 @@ fn named(
     Some(found)
 }
 
-fn in_range(
-    reader: &mut Reader<'_>,
-    key: &KeySpec,
-    value: f64,
-    range: Range,
-    unit: &str,
-    span: &Span,
-) -> bool {
-    let fits = range.holds(value);
+fn in_range(reader: &mut Reader<'_>, value: Value<'_>, number: f64, range: Range, unit: &str) -> bool {
+    let fits = range.holds(number);
     if !fits {
         let message =
-            Note::new("keyed.out_of_range").with("key", key.name).with("range", range.describe(unit));
-        reader.error(span, message, Some(for_example(key)));
+            Note::new("keyed.out_of_range").with("key", value.key.name).with("range", range.describe(unit));
+        reader.error(value.span, message, Some(for_example(value.key)));
     }
     fits
 }
 
-fn date(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<NaiveDate> {
-    let parsed = match value {
+fn date(reader: &mut Reader<'_>, value: Value<'_>) -> Option<NaiveDate> {
+    let parsed = match value.toml {
         DeValue::Datetime(stamp) if stamp.time.is_none() && stamp.offset.is_none() => stamp
             .date
             .and_then(|d| NaiveDate::from_ymd_opt(i32::from(d.year), u32::from(d.month), u32::from(d.day))),
         DeValue::String(text) => NaiveDate::parse_from_str(text.trim(), "%Y-%m-%d").ok(),
         DeValue::Datetime(_) => None,
-        _ => return reader.wrong(key, value, span),
+        _ => return reader.wrong(value),
     };
     if parsed.is_none() {
-        let message = Note::new("keyed.no_date").with("key", key.name);
-        reader.error(span, message, Some(Note::new("keyed.help.date").with("key", key.name)));
+        let message = Note::new("keyed.no_date").with("key", value.key.name);
+        reader.error(value.span, message, Some(Note::new("keyed.help.date").with("key", value.key.name)));
     }
     parsed
 }
 
-fn word(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    words: &'static [Word],
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<&'static str> {
-    let DeValue::String(given) = value else { return reader.wrong(key, value, span) };
+fn word(reader: &mut Reader<'_>, value: Value<'_>, words: &'static [Word]) -> Option<&'static str> {
+    let DeValue::String(given) = value.toml else { return reader.wrong(value) };
     if let Some((known, _)) = words.iter().find(|(known, _)| known == given) {
         return Some(known);
     }
@@ -216,120 +184,106 @@ fn word(
             Note::new("keyed.help.one_of").with("values", all.join(", "))
         }
     };
-    let at = inside_quotes(reader, given, span);
-    reader.error(&at, no_value(given, key), Some(help));
+    let at = inside_quotes(reader, given, value.span);
+    reader.error(&at, no_value(given, value.key), Some(help));
     None
 }
 
-fn unit(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<Unit> {
-    let given = text(reader, key, value, span)?;
+fn unit(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Unit> {
+    let given = text(reader, value)?;
     match Unit::parse(&given) {
         Ok(unit) => Some(unit),
         Err(e) => {
-            let at = inside_quotes(reader, &given, span);
+            let at = inside_quotes(reader, &given, value.span);
             reader.error(&at, e.note(), Some("keyed.help.units".into()));
             None
         }
     }
 }
 
-fn column(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<ColumnRef> {
-    match value {
-        DeValue::String(_) => text(reader, key, value, span).map(ColumnRef::Name),
-        DeValue::Integer(_) => match number(value) {
+fn column(reader: &mut Reader<'_>, value: Value<'_>) -> Option<ColumnRef> {
+    match value.toml {
+        DeValue::String(_) => text(reader, value).map(ColumnRef::Name),
+        DeValue::Integer(_) => match number(value.toml) {
             Some(position) if (1.0..=100_000.0).contains(&position) => {
                 Some(ColumnRef::Position(position as usize))
             }
             _ => {
-                reader.error(span, "keyed.counted_from_1", None);
+                reader.error(value.span, "keyed.counted_from_1", None);
                 None
             }
         },
-        _ => reader.wrong(key, value, span),
+        _ => reader.wrong(value),
     }
 }
 
-fn allowance(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<Allowance> {
-    match value {
-        DeValue::Integer(_) => match number(value) {
+fn allowance(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Allowance> {
+    match value.toml {
+        DeValue::Integer(_) => match number(value.toml) {
             Some(count) if count >= 0.0 => Some(Allowance::Count(count as u64)),
             _ => {
-                reader.error(span, Note::new("keyed.no_count").with("key", key.name), None);
+                reader.error(value.span, Note::new("keyed.no_count").with("key", value.key.name), None);
                 None
             }
         },
-        DeValue::String(_) => {
-            quantity_in(reader, key, "1", false, Range::SHARE, value, span).map(Allowance::Share)
-        }
-        _ => reader.wrong(key, value, span),
+        DeValue::String(_) => quantity_in(reader, value, "1", false, Range::SHARE).map(Allowance::Share),
+        _ => reader.wrong(value),
     }
 }
 
-fn taus(reader: &mut Reader<'_>, key: &'static KeySpec, value: &DeValue<'_>, span: &Span) -> Option<Taus> {
-    match value {
+fn taus(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Taus> {
+    match value.toml {
         DeValue::String(name) => match name.as_ref() {
             "octave" => Some(Taus::Octave),
             "decade" => Some(Taus::Decade),
             "all" => Some(Taus::All),
             other => {
-                let at = inside_quotes(reader, other, span);
-                reader.error(&at, no_value(other, key), Some(key.kind.describe()));
+                let at = inside_quotes(reader, other, value.span);
+                reader.error(&at, no_value(other, value.key), Some(value.key.kind.describe()));
                 None
             }
         },
         DeValue::Array(items) if !items.is_empty() && items.len() <= MAX_TAUS => {
             let list: Vec<f64> = items
                 .iter()
-                .filter_map(|v| quantity_in(reader, key, "s", false, Range::POSITIVE, v.get_ref(), &v.span()))
+                .filter_map(|v| {
+                    quantity_in(reader, value.with(v.get_ref(), &v.span()), "s", false, Range::POSITIVE)
+                })
                 .collect();
             Some(Taus::List(list))
         }
-        _ => reader.wrong(key, value, span),
+        _ => reader.wrong(value),
     }
 }
 
 fn quantity_in(
     reader: &mut Reader<'_>,
-    key: &'static KeySpec,
+    value: Value<'_>,
     unit: &str,
     difference: bool,
     range: Range,
-    value: &DeValue<'_>,
-    span: &Span,
 ) -> Option<f64> {
-    let number = quantity_text(reader, key, unit, difference, value, span)?;
-    in_range(reader, key, number, range, unit, span).then_some(number)
+    let number = quantity_text(reader, value, unit, difference)?;
+    in_range(reader, value, number, range, unit).then_some(number)
 }
 
 /// Reads a quantity whose unit follows from elsewhere.
-pub(crate) fn quantity_by(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    unit: &str,
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<Entry> {
+pub(crate) fn quantity_by(reader: &mut Reader<'_>, value: Value<'_>, unit: &str) -> Option<Entry> {
     if !unit.is_empty() {
-        return quantity_text(reader, key, unit, false, value, span).map(Entry::Number);
+        return quantity_text(reader, value, unit, false).map(Entry::Number);
     }
-    let DeValue::String(text) = value else {
-        reader.error(span, Note::new("keyed.no_unit").with("name", key.name), Some(as_recorded_help()));
+    let DeValue::String(text) = value.toml else {
+        reader.error(
+            value.span,
+            Note::new("keyed.no_unit").with("name", value.key.name),
+            Some(as_recorded_help()),
+        );
         return None;
     };
     match quantity::parse_as_recorded(text) {
         Ok((number, unit)) => Some(Entry::AsRecorded(number, unit)),
         Err(QuantityError { message, help, .. }) => {
-            let at = inside_quotes(reader, text, span);
+            let at = inside_quotes(reader, text, value.span);
             reader.error(&at, message, Some(help.unwrap_or_else(as_recorded_help)));
             None
         }
@@ -341,32 +295,28 @@ fn as_recorded_help() -> Note {
     Note::new("keyed_more.help.as_recorded").with("units", quantity::AS_RECORDED.join(", "))
 }
 
-fn quantity_text(
-    reader: &mut Reader<'_>,
-    key: &'static KeySpec,
-    unit: &str,
-    difference: bool,
-    value: &DeValue<'_>,
-    span: &Span,
-) -> Option<f64> {
-    let bare = matches!(key.kind, Kind::QuantityBy(_) | Kind::QuantityMap);
-    match value {
+fn quantity_text(reader: &mut Reader<'_>, value: Value<'_>, unit: &str, difference: bool) -> Option<f64> {
+    let bare = matches!(value.key.kind, Kind::QuantityBy(_) | Kind::QuantityMap);
+    match value.toml {
         DeValue::String(text) => match quantity::parse(text, unit, difference, bare) {
             Ok(number) => Some(number),
             Err(QuantityError { span: part, message, help }) => {
-                let inner = inside_quotes(reader, text, span);
-                let at =
-                    if inner == *span { inner } else { inner.start + part.start..inner.start + part.end };
-                reader.error(&at, message, Some(help.unwrap_or_else(|| quantity_help(key, unit))));
+                let inner = inside_quotes(reader, text, value.span);
+                let at = if inner == *value.span {
+                    inner
+                } else {
+                    inner.start + part.start..inner.start + part.end
+                };
+                reader.error(&at, message, Some(help.unwrap_or_else(|| quantity_help(value.key, unit))));
                 None
             }
         },
         DeValue::Integer(_) | DeValue::Float(_) => {
-            let message = Note::new("keyed.no_unit").with("name", key.name);
-            reader.error(span, message, Some(quantity_help(key, unit)));
+            let message = Note::new("keyed.no_unit").with("name", value.key.name);
+            reader.error(value.span, message, Some(quantity_help(value.key, unit)));
             None
         }
-        _ => reader.wrong(key, value, span),
+        _ => reader.wrong(value),
     }
 }
 

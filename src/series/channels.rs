@@ -1,11 +1,12 @@
 //! Selects the columns of a recording that are read: by the names of the contract first, else as names and units tell.
 
-use super::{ReadFrom, SeriesError, SeriesOptions};
+use super::options::{SeriesError, SeriesOptions};
 use crate::effect::Column;
 use crate::i18n::Note;
 use crate::ingest::Source;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::{Affine, Unit};
+use sagnac_core::series::ReadFrom;
 
 /// The channels that are read, and what each is.
 pub(super) struct SeriesChannels {

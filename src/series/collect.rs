@@ -1,10 +1,11 @@
 //! Reads a recording into memory.
 
 use super::channels::{SeriesChannels, select_channels};
-use super::{Faults, Series, SeriesError, SeriesOptions};
+use super::options::{SeriesError, SeriesOptions};
 use crate::effect::Column;
 use crate::ingest::{Source, TimeBaseSpec, open_recording, prepare};
 use crate::recording::{SampleBlock, Sink};
+use sagnac_core::series::{Faults, Series};
 use std::path::PathBuf;
 
 /// Reads a recording: a file of any kind that is read, several in sequence, a pattern, or a manifest.
