@@ -1,6 +1,7 @@
 //! The methods appendix: every formula a report rests on, with its source. Words are in the locale tables under
 //! `methods.<id>`; formulas are the same in every language.
 
+use crate::measurand::{self, MEASURANDS, Measurand};
 use crate::record::RunRecord;
 
 /// One entry of the appendix.
@@ -15,8 +16,8 @@ pub struct Method {
     applies: fn(&RunRecord) -> bool,
 }
 
-fn measures(record: &RunRecord, ids: &[&str]) -> bool {
-    record.measurands.iter().any(|m| ids.contains(&m.id.as_str()))
+fn measures(record: &RunRecord, measurands: &[&Measurand]) -> bool {
+    record.measurands.iter().any(|row| measurands.iter().any(|m| m.id == row.id))
 }
 
 fn measured_by(record: &RunRecord, method: &str) -> bool {
@@ -28,12 +29,26 @@ fn noise(record: &RunRecord) -> bool {
         || record.figures.iter().any(|f| f.id.starts_with("sigma_tau"))
         || measures(
             record,
-            &["angle_random_walk", "bias_instability", "bias_instability_minimum", "rate_random_walk"],
+            &[
+                &measurand::ANGLE_RANDOM_WALK,
+                &measurand::BIAS_INSTABILITY,
+                &measurand::BIAS_INSTABILITY_MINIMUM,
+                &measurand::RATE_RANDOM_WALK,
+            ],
         )
 }
 
 fn russian(record: &RunRecord) -> bool {
-    record.measurands.iter().any(|m| m.id.starts_with("russian_"))
+    measures(
+        record,
+        &[
+            &measurand::RUSSIAN_DRIFT_100S,
+            &measurand::RUSSIAN_DRIFT_100S_3SIGMA,
+            &measurand::RUSSIAN_SIGMA_10S,
+            &measurand::RUSSIAN_ARW_10S,
+            &measurand::RUSSIAN_DRIFT_100S_PREDICTED,
+        ],
+    )
 }
 
 fn limited(record: &RunRecord) -> bool {
@@ -44,8 +59,8 @@ fn fitted_by(record: &RunRecord, name: &str) -> bool {
     record.noise_models.iter().any(|m| m.method == name) || record.measurands.iter().any(|m| m.method == name)
 }
 
-/// All entries, in the order of the report.
-pub const METHODS: &[Method] = &[
+/// The entries that several measurands share, in the order of the report.
+const METHODS: &[Method] = &[
     Method {
         id: "runs",
         formulas: &["m = (x'V⁻¹x)⁻¹·x'V⁻¹y;  Q(σ²) = d'(Z(σ²I + C)Z')⁻¹d;  d = Zm"],
@@ -84,7 +99,7 @@ pub const METHODS: &[Method] = &[
             "D = (x − δ)·Φ((x − δ)/σ) + (x + δ)·Φ(−(x + δ)/σ) + σ·[φ((x − δ)/σ) − φ((x + δ)/σ)]",
         ],
         source: "IEEE Std 952, 12.10; IEEE Std 647",
-        applies: |r| measures(r, &["dead_zone", "threshold"]),
+        applies: |r| measures(r, &[&measurand::DEAD_ZONE, &measurand::THRESHOLD]),
     },
     Method {
         id: "table_sine",
@@ -102,7 +117,12 @@ pub const METHODS: &[Method] = &[
         id: "table_largest",
         formulas: &["P(max |s·δⱼ + eⱼ| ≤ max |δⱼ|) = 1/2"],
         source: "JCGM 101:2008",
-        applies: |r| measures(r, &["scale_factor_nonlinearity", "scale_factor_nonlinearity_of_rate"]),
+        applies: |r| {
+            measures(
+                r,
+                &[&measurand::SCALE_FACTOR_NONLINEARITY, &measurand::SCALE_FACTOR_NONLINEARITY_OF_RATE],
+            )
+        },
     },
     Method {
         id: "allan",
@@ -156,7 +176,16 @@ pub const METHODS: &[Method] = &[
         id: "bias_instability",
         formulas: &["σ_BI = √(2 ln 2/π)·B = 0.664·B"],
         source: "IEEE Std 952, Annex C",
-        applies: |r| r.measurands.iter().any(|m| m.id.starts_with("bias_instability")),
+        applies: |r| {
+            measures(
+                r,
+                &[
+                    &measurand::BIAS_INSTABILITY,
+                    &measurand::BIAS_INSTABILITY_MINIMUM,
+                    &measurand::BIAS_INSTABILITY_MINIMUM_SCALED,
+                ],
+            )
+        },
     },
     Method {
         id: "not_identifiable",
@@ -174,13 +203,13 @@ pub const METHODS: &[Method] = &[
         id: "russian_arw",
         formulas: &["N₁₀ = σ₁₀·√10 / 60"],
         source: "",
-        applies: |r| measures(r, &["russian_arw_10s"]),
+        applies: |r| measures(r, &[&measurand::RUSSIAN_ARW_10S]),
     },
     Method {
         id: "russian_prediction",
         formulas: &["E[s²] = 2Q²(n + 1)/(nτ²) + N²/τ + (B²/π)·n·ln n/(n − 1) + K²τn/6 + R²τ²n(n + 1)/12"],
         source: "Barnes 1969 (bias function B₁)",
-        applies: |r| measures(r, &["russian_drift_100s_predicted"]),
+        applies: |r| measures(r, &[&measurand::RUSSIAN_DRIFT_100S_PREDICTED]),
     },
     Method {
         id: "bias",
@@ -189,13 +218,13 @@ pub const METHODS: &[Method] = &[
             "u²(D) = N²/T + (B²/π)·[(1 − cos b)/b² + (sin b)/b − Ci(b)] + K²T/3 + 2Q²/T² + u²(Ω_IA),  b = 2πf_L·T",
         ],
         source: "IEEE Std 952, 12.11; JCGM 100:2008",
-        applies: |r| measures(r, &["static_bias"]),
+        applies: |r| measures(r, &[&measurand::STATIC_BIAS]),
     },
     Method {
         id: "earth_rate",
         formulas: &["Ω_IA = Ω_E·(cos φ·cos E·cos A + sin φ·sin E)"],
         source: "",
-        applies: |r| measures(r, &["static_bias", "earth_rate_component"]),
+        applies: |r| measures(r, &[&measurand::STATIC_BIAS, &measurand::EARTH_RATE_COMPONENT]),
     },
     Method {
         id: "spectrum",
@@ -210,7 +239,7 @@ pub const METHODS: &[Method] = &[
         applies: |r| {
             !r.lines.is_empty()
                 || r.figures.iter().any(|f| f.id.starts_with("spectrum"))
-                || measures(r, &["line_frequency", "line_amplitude"])
+                || measures(r, &[&measurand::LINE_FREQUENCY, &measurand::LINE_AMPLITUDE])
         },
     },
     Method {
@@ -227,14 +256,18 @@ pub const METHODS: &[Method] = &[
         id: "thermal_noise",
         formulas: &["N² = τ·Σ (ȳᵢ₊₂ − 2ȳᵢ₊₁ + ȳᵢ)² / (6n),  ν = n/1.944"],
         source: "IEEE Std 952, Annex C",
-        applies: |r| measures(r, &["angle_random_walk_at_temperature"]),
+        applies: |r| measures(r, &[&measurand::ANGLE_RANDOM_WALK_AT_TEMPERATURE]),
     },
     Method {
         id: "warm_up",
         formulas: &["b(t) = b∞ + Σⱼ Aⱼ·exp(−t/tⱼ) + ν(t)"],
         source: "IEEE Std 952, 12.5, 12.6",
-        applies: |r| measures(r, &["warm_up_time", "turn_on_transient"]),
+        applies: |r| measures(r, &[&measurand::WARM_UP_TIME, &measurand::TURN_ON_TRANSIENT]),
     },
+];
+
+/// What every decision rests on, behind the entries of what was measured.
+const DECISIONS: &[Method] = &[
     Method {
         id: "guard_band",
         formulas: &["A = TL − z(1 − r)·u", "A = TL·√(χ²(r; ν) / ν)"],
@@ -252,9 +285,24 @@ pub const METHODS: &[Method] = &[
     Method { id: "rounding", formulas: &[], source: "JCGM 100:2008, 7.2.6", applies: |_| true },
 ];
 
+/// The entry of a measurand that has formulas of its own.
+fn own(measurand: &Measurand) -> Option<Method> {
+    let Measurand { id, formulas, source, .. } = *measurand;
+    (!formulas.is_empty()).then_some(Method { id, formulas, source, applies: |_| true })
+}
+
+/// Every entry: of what is measured, those that several measurands share first, and of decisions.
+pub fn all() -> impl Iterator<Item = Method> {
+    let own = MEASURANDS.iter().filter_map(|m| own(m));
+    METHODS.iter().copied().chain(own).chain(DECISIONS.iter().copied())
+}
+
 /// The entries that a record calls for.
-pub fn applicable(record: &RunRecord) -> impl Iterator<Item = &'static Method> {
-    METHODS.iter().filter(|m| (m.applies)(record))
+pub fn applicable(record: &RunRecord) -> impl Iterator<Item = Method> {
+    let own = MEASURANDS.iter().filter(|m| measures(record, &[m])).filter_map(|m| own(m));
+    let applies = |m: &&Method| (m.applies)(record);
+    let shared = METHODS.iter().filter(applies).copied();
+    shared.chain(own).chain(DECISIONS.iter().filter(applies).copied())
 }
 
 #[cfg(test)]
@@ -264,10 +312,19 @@ mod tests {
 
     #[test]
     fn every_method_has_its_words() {
-        for method in METHODS {
+        for method in all() {
             for part in ["title", "text"] {
                 let key = format!("methods.{}.{part}", method.id);
                 assert!(lookup(Lang::En, &key).is_some(), "{key}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_measurand_has_its_name_in_every_language() {
+        for m in MEASURANDS {
+            for lang in [Lang::En, Lang::Ru] {
+                assert!(lookup(lang, &format!("measurand.{}", m.id)).is_some(), "{} {lang:?}", m.id);
             }
         }
     }

@@ -158,8 +158,7 @@ fn no_key_is_idle() {
             });
             // Built from the ids of the methods and of the figures.
             let built = (prefix == "methods"
-                && sagnac::report::methods::METHODS
-                    .iter()
+                && sagnac::report::methods::all()
                     .any(|m| id == format!("{}.title", m.id) || id == format!("{}.text", m.id)))
                 || (key.starts_with("figure.") && words.contains(key.as_str()))
                 || key.strip_prefix("figure.legend.").is_some_and(|term| words.contains(term))

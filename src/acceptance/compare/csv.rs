@@ -2,6 +2,7 @@
 
 use super::published::Checked;
 use super::{Comparison, Unit};
+use crate::measurand;
 use crate::output::quoted;
 use std::fmt::Write;
 
@@ -41,7 +42,7 @@ fn units(units: &[Unit]) -> String {
         let null = |i: usize| number(minimum.and_then(|m| m.null_ratio?.get(i).copied()));
         let count = |n: Option<u64>| n.map(|n| n.to_string()).unwrap_or_default();
         let share = w100.and_then(|w| w.shares.first());
-        let b = unit.quantity("bias_instability");
+        let b = unit.quantity(measurand::BIAS_INSTABILITY.id);
         let floor = detail.and_then(|d| d.floor.as_ref());
         let row = [
             quoted(&unit.name),
@@ -50,19 +51,19 @@ fn units(units: &[Unit]) -> String {
             number(unit.length_s),
             count(w100.map(|w| w.n)),
             quoted(detail.map(|d| d.detrend.as_str()).unwrap_or_default()),
-            value("russian_drift_100s"),
-            low("russian_drift_100s"),
-            high("russian_drift_100s"),
-            value("russian_drift_100s_3sigma"),
-            value("bias_instability_minimum"),
-            low("bias_instability_minimum"),
-            high("bias_instability_minimum"),
+            value(measurand::RUSSIAN_DRIFT_100S.id),
+            low(measurand::RUSSIAN_DRIFT_100S.id),
+            high(measurand::RUSSIAN_DRIFT_100S.id),
+            value(measurand::RUSSIAN_DRIFT_100S_3SIGMA.id),
+            value(measurand::BIAS_INSTABILITY_MINIMUM.id),
+            low(measurand::BIAS_INSTABILITY_MINIMUM.id),
+            high(measurand::BIAS_INSTABILITY_MINIMUM.id),
             number(minimum.map(|m| m.tau_s)),
             number(minimum.map(|m| m.largest_tau_s)),
-            value("bias_instability_minimum_scaled"),
-            value("bias_instability"),
-            low("bias_instability"),
-            high("bias_instability"),
+            value(measurand::BIAS_INSTABILITY_MINIMUM_SCALED.id),
+            value(measurand::BIAS_INSTABILITY.id),
+            low(measurand::BIAS_INSTABILITY.id),
+            high(measurand::BIAS_INSTABILITY.id),
             number(b.filter(|b| b.value.is_none()).and_then(|b| Some(b.upper_limit?.value))),
             number(rule("d").and_then(|r| r.value)),
             number(rule("a").and_then(|r| r.ratio)),
@@ -73,17 +74,17 @@ fn units(units: &[Unit]) -> String {
             null(0),
             null(1),
             null(2),
-            value("russian_sigma_10s"),
+            value(measurand::RUSSIAN_SIGMA_10S.id),
             count(w10.map(|w| w.n)),
-            value("russian_arw_10s"),
-            low("russian_arw_10s"),
-            high("russian_arw_10s"),
-            value("angle_random_walk"),
-            low("angle_random_walk"),
-            high("angle_random_walk"),
-            value("ratio_russian_to_allan_arw"),
-            low("ratio_russian_to_allan_arw"),
-            high("ratio_russian_to_allan_arw"),
+            value(measurand::RUSSIAN_ARW_10S.id),
+            low(measurand::RUSSIAN_ARW_10S.id),
+            high(measurand::RUSSIAN_ARW_10S.id),
+            value(measurand::ANGLE_RANDOM_WALK.id),
+            low(measurand::ANGLE_RANDOM_WALK.id),
+            high(measurand::ANGLE_RANDOM_WALK.id),
+            value(measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id),
+            low(measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id),
+            high(measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id),
             number(w100.and_then(|w| w.predicted)),
             number(w100.and_then(|w| Some(w.predicted_interval?.low))),
             number(w100.and_then(|w| Some(w.predicted_interval?.high))),

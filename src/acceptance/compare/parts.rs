@@ -1,6 +1,7 @@
 //! The parts of a model by name.
 
 use crate::i18n::{Arg, Note};
+use crate::measurand;
 use crate::record::{ModelRecord, ShareRecord};
 
 /// The name of a part of a model, by its id.
@@ -46,7 +47,7 @@ pub(super) fn grouped(shares: &[ShareRecord]) -> Vec<(&'static str, f64)> {
 /// The name of one part, with its frequency where it has one.
 pub fn part_name(share: &ShareRecord, model: &ModelRecord) -> Note {
     let centre = || {
-        let id = "quasi_periodic_frequency";
+        let id = measurand::QUASI_PERIODIC_FREQUENCY.id;
         Some(model.parameters.iter().find(|p| p.id == id && p.index == share.index)?.value)
     };
     let frequency = match share.part.as_str() {

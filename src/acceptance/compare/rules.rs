@@ -2,6 +2,7 @@
 
 use super::unit::{Quantity, Unit};
 use crate::estimate::{Interval, UpperLimit};
+use crate::measurand;
 use serde::Serialize;
 
 /// √(2 ln 2/π): the Allan floor of flicker noise is this times B.
@@ -9,10 +10,10 @@ const FLOOR: f64 = 0.664_282_470_3;
 
 /// The rules: letter, id of the measurand it is read from, factor on it.
 pub const RULES: [(&str, &str, f64); 4] = [
-    ("a", "bias_instability_minimum", 1.0),
-    ("b", "bias_instability_minimum_scaled", 1.0),
-    ("c", "bias_instability", 1.0),
-    ("d", "bias_instability", FLOOR),
+    ("a", measurand::BIAS_INSTABILITY_MINIMUM.id, 1.0),
+    ("b", measurand::BIAS_INSTABILITY_MINIMUM_SCALED.id, 1.0),
+    ("c", measurand::BIAS_INSTABILITY.id, 1.0),
+    ("d", measurand::BIAS_INSTABILITY.id, FLOOR),
 ];
 
 /// Bias instability by one rule.
@@ -36,13 +37,14 @@ pub struct RuleRow {
 
 /// The rows of a unit; a rule whose measurand the result lacks has no row.
 pub(super) fn rules(unit: &Unit) -> Vec<RuleRow> {
-    let drift = unit.quantity("russian_drift_100s");
+    let drift = unit.quantity(measurand::RUSSIAN_DRIFT_100S.id);
     RULES
         .into_iter()
         .filter_map(|(rule, id, factor)| {
             let q = unit.quantity(id)?;
             let scaled = |i: Interval| Interval { low: i.low * factor, high: i.high * factor, ..i };
-            let of_minimum = unit.quantity("ratio_russian_to_allan_bias").and_then(|r| r.interval);
+            let of_minimum =
+                unit.quantity(measurand::RATIO_RUSSIAN_TO_ALLAN_BIAS.id).and_then(|r| r.interval);
             let sigma = drift.and_then(|d| d.value);
             let value = q.value.map(|v| v * factor);
             let limit = q.upper_limit.map(|u| UpperLimit { value: u.value * factor, ..u });

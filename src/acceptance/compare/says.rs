@@ -3,6 +3,8 @@
 use super::parts::grouped;
 use super::unit::{Origin, Unit};
 use crate::i18n::{Arg, Note};
+use crate::measurand;
+use crate::noise::data::NoiseType;
 use crate::record::{ComparisonRecord, WindowRecord};
 
 /// Smallest share that is named.
@@ -20,9 +22,6 @@ const MARKOV_ALIKE: &str = "slow_alike.markov";
 
 /// The window of the drift, s.
 const WINDOW_S: f64 = 100.0;
-
-/// Angle random walk, as a part of a model.
-const WHITE: &str = "angle_random_walk";
 
 /// The window of a length.
 fn window(detail: &ComparisonRecord, window_s: f64) -> Option<&WindowRecord> {
@@ -109,7 +108,7 @@ fn by_chance(detail: &ComparisonRecord) -> Option<Note> {
 /// Share of angle random walk in σ100 as predicted; `None` without a prediction.
 fn white_share(detail: &ComparisonRecord) -> Option<f64> {
     let shares = &window(detail, WINDOW_S).filter(|w| w.predicted.is_some())?.shares;
-    Some(shares.iter().find(|s| s.part == WHITE).map_or(0.0, |s| s.share))
+    Some(shares.iter().find(|s| s.part == NoiseType::AngleRandomWalk.id()).map_or(0.0, |s| s.share))
 }
 
 fn null(detail: &ComparisonRecord) -> Option<Note> {
@@ -139,7 +138,7 @@ fn null(detail: &ComparisonRecord) -> Option<Note> {
 
 fn floor(unit: &Unit, detail: &ComparisonRecord) -> Option<Note> {
     let f = detail.floor.as_ref()?;
-    let notes = unit.quantity("bias_instability").map_or(&[][..], |q| &q.notes);
+    let notes = unit.quantity(measurand::BIAS_INSTABILITY.id).map_or(&[][..], |q| &q.notes);
     let markov = notes.iter().any(|n| n.id == MARKOV_ALIKE);
     let key = match (f.is_limit, f.identifiable_h) {
         (false, Some(_)) if markov => "compare.says.floor_or_markov",
@@ -180,7 +179,7 @@ fn time(seconds: f64) -> Note {
 /// What could not be compared.
 pub(super) fn missing(unit: &Unit) -> Vec<Note> {
     let mut out = vec![];
-    let drift = unit.quantity("russian_drift_100s");
+    let drift = unit.quantity(measurand::RUSSIAN_DRIFT_100S.id);
     if drift.and_then(|d| d.value) == Some(0.0) {
         return vec![Note::new("compare.missing.constant")];
     }
@@ -203,7 +202,9 @@ pub(super) fn missing(unit: &Unit) -> Vec<Note> {
         (None, Some(_), Origin::Result) => out.push(Note::new("compare.missing.detail")),
         (None, Some(_), Origin::Recording) => out.push(Note::new("compare.missing.model")),
     }
-    if unit.detail.is_some() && unit.quantity("russian_arw_10s").is_some_and(|q| q.value.is_none()) {
+    if unit.detail.is_some()
+        && unit.quantity(measurand::RUSSIAN_ARW_10S.id).is_some_and(|q| q.value.is_none())
+    {
         out.push(Note::new("compare.missing.ten"));
     }
     if drift.is_none() {

@@ -5,6 +5,7 @@ use super::rules::{RuleRow, rules};
 use super::says;
 use crate::estimate::{Interval, UpperLimit};
 use crate::i18n::{Arg, Note};
+use crate::measurand;
 use crate::record::ComparisonRecord;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -102,18 +103,18 @@ pub struct Unit {
 
 /// The quantities that a comparison takes from a result.
 const COMPARED: &[&str] = &[
-    "russian_drift_100s",
-    "russian_drift_100s_3sigma",
-    "russian_sigma_10s",
-    "russian_arw_10s",
-    "russian_drift_100s_predicted",
-    "bias_instability_minimum",
-    "bias_instability_minimum_scaled",
-    "bias_instability",
-    "angle_random_walk",
-    "rate_random_walk",
-    "ratio_russian_to_allan_bias",
-    "ratio_russian_to_allan_arw",
+    measurand::RUSSIAN_DRIFT_100S.id,
+    measurand::RUSSIAN_DRIFT_100S_3SIGMA.id,
+    measurand::RUSSIAN_SIGMA_10S.id,
+    measurand::RUSSIAN_ARW_10S.id,
+    measurand::RUSSIAN_DRIFT_100S_PREDICTED.id,
+    measurand::BIAS_INSTABILITY_MINIMUM.id,
+    measurand::BIAS_INSTABILITY_MINIMUM_SCALED.id,
+    measurand::BIAS_INSTABILITY.id,
+    measurand::ANGLE_RANDOM_WALK.id,
+    measurand::RATE_RANDOM_WALK.id,
+    measurand::RATIO_RUSSIAN_TO_ALLAN_BIAS.id,
+    measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id,
 ];
 
 /// Why a result cannot be compared.

@@ -20,6 +20,7 @@ use super::plausibility::{
 use super::stability_track::StabilityKey;
 use super::unit_slip::{self, UnitSlip};
 use crate::i18n::Note;
+use crate::measurand;
 use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
 use crate::record::{ConditionRecord, ConditionStatus};
 
@@ -114,7 +115,7 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
 /// warm-up.
 fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let moves = gyro.moves_deg_h?;
-    let ids = ["bias_over_temperature_peak_to_peak", "turn_on_transient"];
+    let ids = [measurand::BIAS_OVER_TEMPERATURE_PEAK_TO_PEAK.id, measurand::TURN_ON_TRANSIENT.id];
     let limits = ids.iter().filter_map(|id| facts.limits.limit(id, &gyro.channel)?.limit.largest_magnitude());
     let bound = TYPICAL_BIAS_FACTOR * limits.fold(moves, f64::max);
     if earth_rate_is_kept(facts) || earth.abs() < LEAST_DEG_H {

@@ -10,6 +10,7 @@ use super::facts::{Condition, Facts, GyroFact, id_of, record};
 use super::plausibility::{NOISE_RATIO_LIMIT, mean_shows_earth_rate, white_noise_range};
 use super::unit_slip;
 use crate::i18n::{Arg, Note};
+use crate::measurand;
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::Role;
 
@@ -20,7 +21,8 @@ const EXPLAINED: f64 = 3.0;
 
 impl Condition for NoiseLevel {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
-        let Some(typical) = facts.limits.expected("angle_random_walk").filter(|n| *n > 0.0) else {
+        let Some(typical) = facts.limits.expected(measurand::ANGLE_RANDOM_WALK.id).filter(|n| *n > 0.0)
+        else {
             facts.checks.not_made("noise_level", None, "check_list.no_typical_noise");
             return vec![];
         };

@@ -3,6 +3,7 @@
 
 use super::facts::{Facts, GyroFact};
 use crate::config::procedure::model::EarthRate as Removal;
+use crate::measurand;
 
 /// How many times the bound of the bias the Earth rate must be.
 pub(super) const MIN_EARTH_TO_BIAS: f64 = 5.0;
@@ -16,8 +17,11 @@ pub(super) fn largest_plausible_bias(gyro: &GyroFact, facts: &Facts<'_>) -> Opti
     if earth_rate_is_kept(facts) {
         return None;
     }
-    let bound = facts.limits.limit("static_bias", &gyro.channel).and_then(|l| l.limit.largest_magnitude());
-    let typical = || facts.limits.expected("static_bias").map(|e| TYPICAL_BIAS_FACTOR * e.abs());
+    let bound = facts
+        .limits
+        .limit(measurand::STATIC_BIAS.id, &gyro.channel)
+        .and_then(|l| l.limit.largest_magnitude());
+    let typical = || facts.limits.expected(measurand::STATIC_BIAS.id).map(|e| TYPICAL_BIAS_FACTOR * e.abs());
     bound.or_else(typical).filter(|b| *b > 0.0)
 }
 
@@ -32,7 +36,7 @@ pub(super) fn mean_shows_earth_rate(gyro: &GyroFact, facts: &Facts<'_>) -> Optio
 /// Whether the procedure states the bias with the Earth rate in it.
 pub(super) fn earth_rate_is_kept(facts: &Facts<'_>) -> bool {
     let mut measurands = facts.procedure.measurands.iter();
-    measurands.any(|m| m.measurand.id == "static_bias" && m.earth_rate == Removal::Keep)
+    measurands.any(|m| m.measurand.id == measurand::STATIC_BIAS.id && m.earth_rate == Removal::Keep)
 }
 
 /// Least and greatest σ(τ)·√τ/60 over octaves, deg/sqrt(h).
@@ -49,7 +53,7 @@ pub(super) fn white_noise_range(gyro: &GyroFact) -> Option<(f64, f64)> {
 
 /// Whether the noise would be far from that of the family if the values were multiplied by a factor.
 pub(super) fn noise_is_implausible(gyro: &GyroFact, factor: f64, facts: &Facts<'_>) -> bool {
-    let typical = facts.limits.expected("angle_random_walk").filter(|n| *n > 0.0);
+    let typical = facts.limits.expected(measurand::ANGLE_RANDOM_WALK.id).filter(|n| *n > 0.0);
     typical.zip(white_noise_range(gyro)).is_some_and(|(typical, (low, high))| {
         let factor = factor.abs();
         low * factor > NOISE_RATIO_LIMIT * typical || high * factor * NOISE_RATIO_LIMIT < typical

@@ -3,7 +3,7 @@
 use crate::estimate::chi_square_quantile;
 use crate::measurand::allan_minimum::{FLICKER_FLOOR, lowest, readable};
 use crate::measurand::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S};
-use crate::measurand::{GyroEvidence, russian_prediction};
+use crate::measurand::{self, GyroEvidence, russian_prediction};
 use crate::noise::composite::{Composite, Parameter, Part};
 use crate::noise::data::NoiseType;
 use crate::noise::identifiable::hours_until_identifiable_among;
@@ -165,20 +165,27 @@ fn model(gyro: &GyroEvidence) -> ModelRecord {
 }
 
 fn parameter(p: Parameter, model: &Composite) -> ParameterRecord {
-    let (id, index, unit) = match p {
-        Parameter::Coefficient(NoiseType::AngleRandomWalk) => ("angle_random_walk", 0, "deg/sqrt(h)"),
-        Parameter::Coefficient(NoiseType::Flicker) => ("bias_instability", 0, "deg/h"),
-        Parameter::Coefficient(NoiseType::RateRandomWalk) => ("rate_random_walk", 0, "deg/h/sqrt(h)"),
-        Parameter::Coefficient(NoiseType::Quantization) => ("quantization", 0, "arcsec"),
-        Parameter::Coefficient(NoiseType::RateRamp) => ("rate_ramp", 0, "deg/h/h"),
-        Parameter::MarkovSigma(i) => ("markov_sigma", i, "deg/h"),
-        Parameter::MarkovTime(i) => ("markov_correlation_time", i, "s"),
-        Parameter::QuasiPeriodicRms(i) => ("quasi_periodic_amplitude", i, "deg/h"),
-        Parameter::QuasiPeriodicFrequency(i) => ("quasi_periodic_frequency", i, "Hz"),
+    let (quantity, index) = match p {
+        Parameter::Coefficient(NoiseType::AngleRandomWalk) => (&measurand::ANGLE_RANDOM_WALK, 0),
+        Parameter::Coefficient(NoiseType::Flicker) => (&measurand::BIAS_INSTABILITY, 0),
+        Parameter::Coefficient(NoiseType::RateRandomWalk) => (&measurand::RATE_RANDOM_WALK, 0),
+        Parameter::Coefficient(NoiseType::Quantization) => (&measurand::QUANTIZATION, 0),
+        Parameter::Coefficient(NoiseType::RateRamp) => (&measurand::RATE_RAMP, 0),
+        Parameter::MarkovSigma(i) => (&measurand::MARKOV_SIGMA, i),
+        Parameter::MarkovTime(i) => (&measurand::MARKOV_CORRELATION_TIME, i),
+        Parameter::QuasiPeriodicRms(i) => (&measurand::QUASI_PERIODIC_AMPLITUDE, i),
+        Parameter::QuasiPeriodicFrequency(i) => (&measurand::QUASI_PERIODIC_FREQUENCY, i),
         // The coherence time of the contract is that of the line: the decay time of the autocovariance.
-        Parameter::QuasiPeriodicTime(i) => ("quasi_periodic_coherence_time", i, "s"),
-        Parameter::FilterTime => ("filter_time", 0, "s"),
-        Parameter::LineAmplitude(i) => ("line_amplitude", i, "deg/h"),
+        Parameter::QuasiPeriodicTime(i) => (&measurand::QUASI_PERIODIC_COHERENCE_TIME, i),
+        Parameter::LineAmplitude(i) => (&measurand::LINE_AMPLITUDE, i),
+        Parameter::FilterTime => {
+            return ParameterRecord {
+                id: "filter_time".into(),
+                index: 0,
+                value: model.value(p),
+                unit: "s".into(),
+            };
+        }
     };
-    ParameterRecord { id: id.into(), index, value: model.value(p), unit: unit.into() }
+    ParameterRecord { id: quantity.id.into(), index, value: model.value(p), unit: quantity.unit.into() }
 }

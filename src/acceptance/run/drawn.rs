@@ -4,6 +4,7 @@ use super::evaluate::Found;
 use super::{Request, figures};
 use crate::config::procedure::Procedure;
 use crate::figure::Figure;
+use crate::measurand;
 use crate::measurand::GyroEvidence;
 use crate::recording::{Channel, Role};
 
@@ -21,8 +22,8 @@ pub(super) fn draw(request: &Request<'_>, found: &Found) -> Vec<Figure> {
             let limit = |id: &str| request.limits.limit(id, &gyro.channel).map(|l| &l.limit);
             drawn.push(figures::sigma_tau::figure(
                 gyro,
-                limit("russian_drift_100s"),
-                limit("bias_instability_minimum"),
+                limit(measurand::RUSSIAN_DRIFT_100S.id),
+                limit(measurand::BIAS_INSTABILITY_MINIMUM.id),
             ));
         }
         let optional = [

@@ -2,6 +2,7 @@
 
 use crate::acceptance::compare::{Origin, Quantity, Unit, part_name};
 use crate::estimate::{Interval, UpperLimit};
+use crate::measurand;
 use crate::record::{ModelRecord, ShareRecord, WindowRecord};
 use crate::report::number::{Rounding, bound, digits, duration, limit, limit_digits, percent};
 use crate::report::view::{FigureView, Words};
@@ -189,7 +190,7 @@ impl UnitView {
         } else {
             (agreement, agreement_class)
         };
-        let arw_ratio = unit.quantity("ratio_russian_to_allan_arw");
+        let arw_ratio = unit.quantity(measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id);
         UnitView {
             label: unit.label(),
             path: unit.path.clone(),
@@ -200,9 +201,9 @@ impl UnitView {
             length: unit.length_s.map(|t| duration(t, lang)).unwrap_or_default(),
             n: count(w100.map(|w| w.n)),
             n10: count(w10.map(|w| w.n)),
-            sigma100: of("russian_drift_100s"),
-            sigma3: of("russian_drift_100s_3sigma"),
-            sigma10: of("russian_sigma_10s"),
+            sigma100: of(measurand::RUSSIAN_DRIFT_100S.id),
+            sigma3: of(measurand::RUSSIAN_DRIFT_100S_3SIGMA.id),
+            sigma10: of(measurand::RUSSIAN_SIGMA_10S.id),
             rules: rules.collect(),
             minimum_at: minimum
                 .map(|m| {
@@ -210,8 +211,8 @@ impl UnitView {
                     words.with("compare.minimum_at", &[("tau", &tau), ("largest", &largest)])
                 })
                 .unwrap_or_default(),
-            arw: of("russian_arw_10s"),
-            n_allan: of("angle_random_walk"),
+            arw: of(measurand::RUSSIAN_ARW_10S.id),
+            n_allan: of(measurand::ANGLE_RANDOM_WALK.id),
             arw_ratio: quantity(arw_ratio, words),
             arw_inverse: arw_ratio
                 .and_then(|q| q.value)

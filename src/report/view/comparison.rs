@@ -1,6 +1,7 @@
 //! Russian and Allan values of the same record, side by side, each with its convention.
 
 use super::{Words, rows};
+use crate::measurand;
 use crate::record::{MeasurandRecord, RunRecord};
 use crate::report::number::{bound, limit_digits};
 use serde::Serialize;
@@ -42,19 +43,20 @@ pub struct Side {
 
 /// What stands beside what.
 const PAIRS: &[(&str, &str)] = &[
-    ("russian_drift_100s", "bias_instability"),
-    ("russian_drift_100s_3sigma", "bias_instability_minimum"),
-    ("russian_drift_100s_predicted", "bias_instability_minimum_scaled"),
-    ("russian_arw_10s", "angle_random_walk"),
-    ("russian_sigma_10s", ""),
+    (measurand::RUSSIAN_DRIFT_100S.id, measurand::BIAS_INSTABILITY.id),
+    (measurand::RUSSIAN_DRIFT_100S_3SIGMA.id, measurand::BIAS_INSTABILITY_MINIMUM.id),
+    (measurand::RUSSIAN_DRIFT_100S_PREDICTED.id, measurand::BIAS_INSTABILITY_MINIMUM_SCALED.id),
+    (measurand::RUSSIAN_ARW_10S.id, measurand::ANGLE_RANDOM_WALK.id),
+    (measurand::RUSSIAN_SIGMA_10S.id, ""),
 ];
 
-const RATIOS: &[&str] = &["ratio_russian_to_allan_bias", "ratio_russian_to_allan_arw"];
+const RATIOS: &[&str] =
+    &[measurand::RATIO_RUSSIAN_TO_ALLAN_BIAS.id, measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id];
 
 /// The comparisons, one for each channel that has a Russian value.
 pub fn comparisons(record: &RunRecord, words: Words) -> Vec<Comparison> {
     let mut channels: Vec<&str> = vec![];
-    for m in record.measurands.iter().filter(|m| m.id.starts_with("russian_")) {
+    for m in record.measurands.iter().filter(|m| PAIRS.iter().any(|(russian, _)| *russian == m.id)) {
         if !channels.contains(&m.channel.as_str()) {
             channels.push(&m.channel);
         }

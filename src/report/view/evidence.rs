@@ -7,6 +7,7 @@ use super::deviations::{self, Deviations};
 use super::faults::Faults;
 use super::goodness::{self, Goodness};
 use super::{Field, Words};
+use crate::measurand;
 use crate::record::{ConditionStatus, LineRecord, MeasurandRecord, NoiseModelRecord, RunRecord};
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use serde::Serialize;
@@ -350,13 +351,14 @@ const SAME: f64 = 5e-3;
 fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model {
     let lang = words.lang;
     let coefficients = [
-        ("N", "angle_random_walk", m.angle_random_walk, "deg/sqrt(h)"),
-        ("B", "bias_instability", m.bias_instability, "deg/h"),
-        ("K", "rate_random_walk", m.rate_random_walk, "deg/h/sqrt(h)"),
-        ("R", "rate_ramp", m.rate_ramp, "deg/h/h"),
-        ("Q", "quantization", m.quantization, "arcsec"),
+        ("N", &measurand::ANGLE_RANDOM_WALK, m.angle_random_walk),
+        ("B", &measurand::BIAS_INSTABILITY, m.bias_instability),
+        ("K", &measurand::RATE_RANDOM_WALK, m.rate_random_walk),
+        ("R", &measurand::RATE_RAMP, m.rate_ramp),
+        ("Q", &measurand::QUANTIZATION, m.quantization),
     ]
-    .map(|(symbol, id, value, unit)| {
+    .map(|(symbol, term, value)| {
+        let (id, unit) = (term.id, term.unit);
         // Its row has the interval, when it speaks of the same value: the fit that is drawn was polished once more.
         let row = rows.iter().find(|r| {
             r.id == id

@@ -146,6 +146,11 @@ pub struct Measurand {
     pub drift: bool,
     /// What decides whether a record can judge a limit on it; `None`: not a question of statistics.
     pub power: Option<PowerModel>,
+    /// Formulas of its own, one a line, for the appendix of a report; `methods.<id>.title` and `.text` are their words. Empty
+    /// where an entry that several measurands share explains it.
+    pub formulas: &'static [&'static str],
+    /// Where the formulas come from.
+    pub source: &'static str,
     /// How it is evaluated.
     pub evaluation: Evaluation,
 }
@@ -181,6 +186,8 @@ impl Measurand {
             needs_stillness: false,
             drift: false,
             power: None,
+            formulas: &[],
+            source: "",
             evaluation,
         }
     }
@@ -297,6 +304,14 @@ impl Measurand {
     #[must_use]
     pub const fn power(mut self, model: PowerModel) -> Measurand {
         self.power = Some(model);
+        self
+    }
+
+    /// Formulas of its own, with a point as the decimal mark and no units, and their source.
+    #[must_use]
+    pub const fn formulas(mut self, formulas: &'static [&'static str], source: &'static str) -> Measurand {
+        self.formulas = formulas;
+        self.source = source;
         self
     }
 
