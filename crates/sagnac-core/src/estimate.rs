@@ -148,7 +148,7 @@ fn interpolate(points: &[(f64, f64)], x: f64) -> Option<f64> {
     Some(if b.0 > a.0 { a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0) } else { a.1 })
 }
 
-/// One measured quantity.
+/// One quantity of one channel: its value with a confidence distribution, or limits where the record cannot show it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
     /// Id of the measurand, for example `angle_random_walk`.
@@ -224,21 +224,21 @@ impl Estimate {
         }
     }
 
-    /// Adds a note.
+    /// The estimate with a note added.
     #[must_use]
     pub fn note(mut self, note: Note) -> Self {
         self.notes.push(note);
         self
     }
 
-    /// Adds where the likelihood of a quantity that the record cannot show is largest.
+    /// The estimate with the value of greatest likelihood added, for a quantity that the record cannot show.
     #[must_use]
     pub fn most_likely(mut self, value: Option<f64>) -> Self {
         self.most_likely = value.filter(|v| v.is_finite());
         self
     }
 
-    /// Adds what a quantity that the record cannot show is at least.
+    /// The estimate with a lower limit added, for a quantity that the record cannot show.
     #[must_use]
     pub fn at_least(mut self, limit: Option<LowerLimit>) -> Self {
         self.lower_limit = limit;

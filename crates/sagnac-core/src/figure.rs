@@ -17,7 +17,7 @@ pub enum Scale {
     Polar,
 }
 
-/// One axis.
+/// One axis: label, unit, scale and range.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Key of the label in the locale tables, for example `axis.averaging_time`.

@@ -14,7 +14,7 @@ pub enum Rule {
     GuardBand,
 }
 
-/// What a unit must satisfy.
+/// A limit on one quantity of a unit, with its decision rule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
     /// Lowest value allowed, in the unit of the estimate.
@@ -69,10 +69,10 @@ impl Verdict {
     }
 }
 
-/// A limit applied to an estimate.
+/// The outcome of comparing an estimate with a limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
-    /// What was decided.
+    /// The verdict.
     pub verdict: Verdict,
     /// The largest measured value that would be accepted under `max`.
     pub acceptance_max: Option<f64>,
@@ -84,7 +84,7 @@ pub struct Judgement {
     pub margin: Option<f64>,
 }
 
-/// Decides one row.
+/// Compares an estimate with a limit under the decision rule of the limit.
 ///
 /// A quantity that the record cannot show passes when its upper bound is inside the limit, fails when its lower bound is
 /// beyond an upper limit, and is otherwise indeterminate; a lower limit cannot be shown by it.

@@ -13,7 +13,7 @@ pub fn chi_square_tail(value: f64, dof: f64) -> f64 {
     ln_chi_square_tail(value, dof).exp().clamp(MIN_PROBABILITY, 1.0)
 }
 
-/// Its natural logarithm, without a floor.
+/// Natural logarithm of [`chi_square_tail`], without a floor.
 pub fn ln_chi_square_tail(value: f64, dof: f64) -> f64 {
     if value.is_nan() || value <= 0.0 || dof <= 0.0 {
         return 0.0;
@@ -65,7 +65,7 @@ pub fn chi_square_two_sided(value: f64, dof: f64) -> f64 {
     ln_chi_square_two_sided(value, dof).exp().clamp(MIN_PROBABILITY, 1.0)
 }
 
-/// Its natural logarithm, without a floor.
+/// Natural logarithm of [`chi_square_two_sided`], without a floor.
 pub fn ln_chi_square_two_sided(value: f64, dof: f64) -> f64 {
     if dof < 1e4 {
         let nearer = ln_chi_square_tail(value, dof).min(ln_chi_square_below(value, dof));
@@ -81,7 +81,7 @@ pub fn normal_two_sided(z: f64) -> f64 {
     ln_normal_two_sided(z).exp().clamp(MIN_PROBABILITY, 1.0)
 }
 
-/// Its natural logarithm, without a floor.
+/// Natural logarithm of [`normal_two_sided`], without a floor.
 pub fn ln_normal_two_sided(z: f64) -> f64 {
     let exact = 2.0 * Normal::standard().sf(z.abs());
     if exact > SMALL { exact.min(1.0).ln() } else { ln_chi_square_tail(z * z, 1.0) }

@@ -197,7 +197,7 @@ impl Row<'_> {
         let order = p.terms.order;
         let at = steepest(a);
         // The steepest place may change its side from draw to draw; its sign is that of the best fit.
-        let reading = read::bent(&p.draws, |_, c| {
+        let reading = read::nonlinear(&p.draws, |_, c| {
             let slopes = grid().map(|x| slope(c, order, x, a));
             slopes.max_by(|x, y| x.abs().total_cmp(&y.abs())).unwrap_or(0.0).abs()
         });
@@ -219,12 +219,12 @@ impl Row<'_> {
         let draws = &a.posterior.draws;
         let of = |c: &DVector<f64>| of(c, a.posterior.terms.order);
         if read::by_chance(draws, &of) > FLAT {
-            let drawn = read::drawn(draws, |_, c| times * of(c));
+            let drawn = read::of_draws(draws, |_, c| times * of(c));
             let limit =
                 drawn.spread.bound(drawn.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
             return self.none(limit).note(Note::new("thermal_flat.curve")).note(self.span_note(a));
         }
-        let reading = positive(read::bent(draws, |_, c| of(c))).scaled(times);
+        let reading = positive(read::nonlinear(draws, |_, c| of(c))).scaled(times);
         self.measured(reading).note(self.span_note(a))
     }
 
@@ -258,7 +258,7 @@ impl Row<'_> {
             })
             .unwrap_or(0.0);
         // At the place where the best fit is widest: a maximum over places would grow with the noise.
-        let reading = read::bent(&a.posterior.draws, |d, c| gap(d, c, widest, a));
+        let reading = read::nonlinear(&a.posterior.draws, |d, c| gap(d, c, widest, a));
         let note = Note::new("thermal.loop")
             .with("deg_c", Arg::figures(a.posterior.span.temperature(widest), 3))
             .with("rate", Arg::figures(60.0 * a.ramp_deg_c_min, 3));
@@ -469,7 +469,7 @@ fn narrow(a: &Analysis) -> Note {
 /// What can be said in place of terms that the schedule does not tell apart: the half gap at the middle of the range,
 /// and the ramps that would tell.
 fn inseparable(a: &Analysis) -> Note {
-    let half = read::bent(&a.posterior.draws, |d, c| 0.5 * gap(d, c, 0.0, a));
+    let half = read::nonlinear(&a.posterior.draws, |d, c| 0.5 * gap(d, c, 0.0, a));
     let r = 60.0 * a.ramp_deg_c_min;
     let other = if r > 12.0 { r / 3.0 } else { 3.0 * r };
     Note::new("thermal.inseparable")

@@ -15,13 +15,13 @@ use super::stretches::StretchLengths;
 use super::strided::{PhaseShift, StridedSums};
 use super::tau_grid::TauGrid;
 
-/// Samples up to which every phase is kept without being asked for.
+/// Longest record, in samples, of which every phase is kept (8 bytes each) unless the plan asks for all.
 pub const MAX_KEPT_SAMPLES: u64 = 4_000_000;
 
 /// Largest factor at which white angle noise makes a strided record sum every term.
 const MAX_DENSE_FACTOR: u64 = 1 << 16;
 
-/// What is to be computed.
+/// What an [`AllanAccumulator`] computes: which deviations at which averaging times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllanPlan {
     /// Sample interval, s.
@@ -46,7 +46,7 @@ pub struct DeviationCurve {
     pub stretches: StretchLengths,
 }
 
-/// All curves of one channel.
+/// The σ(τ) curves of one channel, one for each deviation of the plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeviationSet {
     /// Sample interval, s.
@@ -92,7 +92,8 @@ enum Store {
     Strided(Box<StridedSums>),
 }
 
-/// Streaming Allan family of one channel.
+/// Streaming Allan family of one channel: push samples in blocks of any size, then [`AllanAccumulator::finish`]. Keeps 8 bytes
+/// a sample up to [`MAX_KEPT_SAMPLES`], a few MB beyond.
 #[derive(Debug, Clone)]
 pub struct AllanAccumulator {
     plan: AllanPlan,
@@ -138,7 +139,7 @@ impl AllanAccumulator {
         part
     }
 
-    /// Up to which factor strided sums take every term; `None` while every phase is kept.
+    /// Averaging factor up to which strided sums take every term; `None` while every phase is kept.
     pub fn dense_below(&self) -> Option<u64> {
         match &self.store {
             Store::Kept { .. } => None,

@@ -13,7 +13,8 @@ const WINDOW_BINS: f64 = 8.0;
 /// Excess, in standard deviations of noise, that is needed to tell.
 const MIN_SCORE: f64 = 6.0;
 
-/// True unless the power of the peak is spread over more of the spectrum than a line spreads.
+/// True for a line that keeps its phase over the record: its power lies within the few modes that a sinusoid fills. False where
+/// it is spread over more of them, as that of a disturbance that decays; true where the evidence cannot tell.
 pub fn is_coherent(evidence: &Evidence, line: &SpectralLine) -> bool {
     let near = |bin: &&FineBin, reach: f64| (bin.frequency_hz - line.frequency_hz).abs() <= reach;
     let reach_hz = WINDOW_BINS * line.resolution_hz;

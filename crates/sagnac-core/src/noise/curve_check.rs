@@ -118,7 +118,10 @@ fn unclaimed(curve: &Curve, described: &Described, term: NoiseType, tau0_s: f64)
     })
 }
 
-/// Marks N, B and K where the curve contradicts them.
+/// Sets N, B and K against the Allan curve of the same record. Where the 95 % intervals of fit and curve exclude each other,
+/// the estimate is marked as disputed and gets a note with both values; its value stays.
+///
+/// `octaves` are the overlapping Allan deviations at octaves of `tau0_s`, of a record of `samples` samples.
 pub fn contest(found: &mut Identification, octaves: &[BoundedPoint], tau0_s: f64, samples: u64) {
     let curve = Curve::of(octaves, tau0_s, samples, found.highest_hz);
     let described = found.described.clone();

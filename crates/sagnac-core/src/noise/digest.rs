@@ -20,7 +20,7 @@ const SLICE: usize = 8192;
 /// Largest rate that can be used, deg/h: the largest number of a file in rad/s, rounded up.
 const MAX_RATE_DEG_H: f64 = 1e6 * range::LARGEST;
 
-/// What a digest of a rate channel is to hold.
+/// What a digest of a rate channel holds: averaging times, deviations and window lengths.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DigestPlan {
     /// Sample interval, s.
@@ -97,7 +97,8 @@ pub struct RateDigest {
     pub quietest_deg_h: Option<f64>,
 }
 
-/// Streaming digest of one rate channel.
+/// Streaming digest of one rate channel: push samples in blocks of any size, then [`RateAccumulator::finish`]. Digests of
+/// neighbouring parts of a recording are joined by [`RateAccumulator::merged`].
 #[derive(Debug, Clone)]
 pub struct RateAccumulator {
     tau0_s: f64,

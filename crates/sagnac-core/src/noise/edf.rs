@@ -70,7 +70,7 @@ fn total_edf(record_over_tau: f64, noise: NoiseType) -> f64 {
     (b * record_over_tau - c).max(1.0)
 }
 
-/// Factor by which the total variance is too small: E[TOTVAR] / AVAR = 1 − a·τ/T (SP 1065 section 5.2.11).
+/// Factor by which the total variance is too small: E\[TOTVAR\] / AVAR = 1 − a·τ/T (SP 1065 section 5.2.11).
 pub fn total_bias(record_over_tau: f64, noise: NoiseType) -> f64 {
     let a = match noise {
         NoiseType::Quantization | NoiseType::AngleRandomWalk => 0.0,

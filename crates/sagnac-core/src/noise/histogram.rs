@@ -12,7 +12,7 @@ const HALF_RANGE: f64 = 8.0;
 /// Fourth powers beyond are summed in other units: many of them would leave the range of a double.
 const MAX_POWER: f64 = 1e150;
 
-/// Histogram with moments. Values in deg/h.
+/// Histogram with moments of the deviations from block means, deg/h.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Histogram {
     /// Robust standard deviation of the first block, deg/h: the bins are an eighth of it wide. 0 where it is flat.
@@ -39,7 +39,7 @@ pub struct Histogram {
     pub excess_kurtosis: f64,
 }
 
-/// Streaming histogram.
+/// Streaming histogram of the deviations of samples from the means of blocks of 1024.
 #[derive(Debug, Clone, Default)]
 pub struct HistogramAccumulator {
     head: Head,

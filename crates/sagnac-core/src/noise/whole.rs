@@ -23,7 +23,8 @@ const CHANCE: f64 = 1e-3;
 /// Least degrees of freedom of what a part is set against.
 const LEAST_EDF: f64 = 3.0;
 
-/// What a record holds at most.
+/// Bounds that a record as a whole sets on the size of each part of a model: its range, its Allan variances and the scatter
+/// of its window means. A part that one of them excludes was fitted to something else.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Whole {
     half_range: f64,

@@ -1,6 +1,6 @@
 //! Linear models with correlated noise whose variance components are not known: y = Xβ + e, cov e = V₀ + Σ θₖ Vₖ with θₖ ≥ 0.
 //!
-//! The variance components are those of the restricted likelihood (Patterson and Thompson 1971), climbed by average information
+//! The variance components maximise the restricted likelihood (Patterson and Thompson 1971), by average information
 //! (Gilmour, Thompson and Cullis 1995); β follows by generalised least squares. A linear combination of β is Student's
 //! with the degrees of freedom of Satterthwaite (Giesbrecht and Burns 1985).
 
@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 /// Steps of the ascent.
 const STEPS: usize = 60;
 
-/// A fitted model.
+/// A linear model fitted by restricted maximum likelihood.
 #[derive(Debug, Clone)]
 pub struct Fit {
     /// Coefficients, one a column of X.
@@ -34,7 +34,7 @@ pub struct Fit {
     strength_covariance: DMatrix<f64>,
 }
 
-/// A linear combination of coefficients.
+/// A linear combination of coefficients with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Combination {
     /// Value.
@@ -84,7 +84,7 @@ impl Fit {
         self
     }
 
-    /// One coefficient.
+    /// One coefficient with its uncertainty.
     pub fn coefficient(&self, at: usize) -> Combination {
         let mut weights = DVector::zeros(self.coefficients.len());
         if let Some(w) = weights.get_mut(at) {

@@ -2,11 +2,11 @@
 
 use crate::message::Note;
 
-/// What can be examined where any row was read.
+/// Ids of the faults that can be examined wherever rows are read.
 pub const OF_ROWS: &[&str] = &["non_finite", "unparsable", "implausible", "cut_off"];
-/// What stamps or a counter tell.
+/// Ids of the faults that time stamps or a counter show.
 pub const OF_STAMPS: &[&str] = &["gaps", "missing_samples", "duplicate_timestamps", "backward_timestamps"];
-/// What the values of a gyro tell.
+/// Ids of the faults that the values of a gyro show.
 pub const OF_VALUES: &[&str] = &["outliers", "saturated", "stuck", "repeated"];
 
 /// Faults of the recording, counted; the first of each kind listed with row and time.
@@ -53,18 +53,18 @@ pub struct Integrity {
 }
 
 impl Integrity {
-    /// True where it was looked for a fault.
+    /// True where the recording was examined for this kind of fault.
     pub fn has_examined(&self, id: &str) -> bool {
         self.examined.iter().any(|e| e == id)
     }
 
-    /// Every count as examined.
+    /// The ids of all kinds of faults.
     pub fn all_examined() -> Vec<String> {
         [OF_ROWS, OF_STAMPS, OF_VALUES].concat().into_iter().map(str::to_owned).collect()
     }
 }
 
-/// One fault.
+/// One fault with its place in the recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
     /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`,

@@ -8,7 +8,9 @@ const NEIGHBOURS: usize = 4;
 /// Power over the floor from which it is no chance: white noise exceeds it in 4 of 100,000 modes.
 const DISTINCT: f64 = 4.0;
 
-/// Modes by their power against the white floor of the sensor, which the upper half of them shows: each is kept by the
+/// A column without the white noise of its sensor, as far as the spectrum tells them apart.
+///
+/// Modes are judged by their power against the white floor of the sensor, which the upper half of them shows: each is kept by the
 /// share of it that is above the floor. A quantised or slow sensor without a white floor is left as it is.
 pub fn smooth(values: &[f64]) -> Vec<f64> {
     let n = values.len();

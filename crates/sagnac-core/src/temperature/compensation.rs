@@ -10,7 +10,7 @@ use std::fmt::Write;
 /// Points of the table.
 const POINTS: usize = 25;
 
-/// A compensation table.
+/// A compensation table: the bias of a gyro over temperature, as numbers that firmware can use.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Compensation {
     /// Version of the format.
@@ -34,7 +34,7 @@ pub struct Compensation {
     pub lag_s: f64,
     /// Half of the gap of the hysteresis, deg/h: what no temperature compensates.
     pub hysteresis_deg_h: f64,
-    /// What is left, rms, deg/h.
+    /// Rms of the bias that the table leaves, deg/h.
     pub residual_rms_deg_h: f64,
     /// Temperatures of the table, degC.
     pub temperature_deg_c: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Compensation {
 }
 
 impl Compensation {
-    /// The table of a model.
+    /// The compensation table of a fitted model.
     pub fn of(a: &Analysis, channel: &str, serial: Option<&str>) -> Compensation {
         let p = &a.posterior;
         let c = &p.best.fitted.solved.coefficients;
@@ -70,7 +70,7 @@ impl Compensation {
         }
     }
 
-    /// As a header in C.
+    /// The table as the text of a C header.
     pub fn header(&self) -> String {
         let name: String = self
             .channel

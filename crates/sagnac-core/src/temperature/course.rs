@@ -1,6 +1,6 @@
 //! The temperature of the coil from that of the sensor, and the regressors that follow from it.
 
-/// A record as block means on a grid without holes.
+/// Rate and temperature of a recording as block means on a grid without holes: what the model is fitted to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
     /// Length of a block, s.
@@ -15,7 +15,7 @@ pub struct Course {
     pub bridged: f64,
 }
 
-/// What a regressor is not linear in.
+/// The nonlinear parameters of the model: lag of the coil and play of the hysteresis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// Time constant of the coil behind the sensor, s.
@@ -25,7 +25,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// From numbers drawn: the lag, and the play where it is among them.
+    /// From a drawn vector of nonlinear parameters: the lag, then the play where there is one.
     pub fn of(numbers: &[f64], play_deg_c: f64) -> Shape {
         Shape {
             lag_s: numbers.first().copied().unwrap_or(0.0),
@@ -34,7 +34,7 @@ impl Shape {
     }
 }
 
-/// Which terms a model has.
+/// Which terms a model of the bias over temperature has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Terms {
     /// Order of the polynomial in temperature.
@@ -203,7 +203,7 @@ impl Course {
         Span { low, high }
     }
 
-    /// The same in blocks of `factor` times the length; a rest is left out.
+    /// Means over `factor` blocks; a rest that does not fill one is left out.
     pub fn merged(&self, factor: usize) -> Course {
         let mean = |v: &[f64]| -> Vec<f64> {
             v.chunks_exact(factor.max(1)).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect()

@@ -23,7 +23,7 @@ const MIN_WEIGHT: f64 = 0.03;
 /// Temperatures, degC, that a record must cover to say anything over temperature.
 pub const MIN_SPAN_DEG_C: f64 = 2.0;
 
-/// The schedule that was run.
+/// The schedule of temperature that was run: its segments and the range it reached.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     /// Segments in order.
@@ -40,7 +40,7 @@ pub struct Schedule {
     pub missing: f64,
 }
 
-/// The model of a channel with what is left.
+/// The model of the bias of one channel over temperature, and the residual.
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// Block means.
@@ -76,7 +76,7 @@ pub struct Analysis {
     pub parted: bool,
 }
 
-/// Everything about one channel.
+/// Everything found about one channel over temperature.
 #[derive(Debug, Clone)]
 pub struct Findings {
     /// What was asked.
@@ -291,7 +291,7 @@ fn folds(segments: &[Segment]) -> Vec<TimeSpan> {
 }
 
 impl Findings {
-    /// Of a recording without the temperature that is asked for.
+    /// Empty findings, of a recording that lacks the temperature channel asked for.
     pub fn nothing(test: &TemperatureTest) -> Findings {
         Findings { test: test.clone(), schedule: None, analysis: None, zones: vec![] }
     }

@@ -24,7 +24,7 @@ pub struct Modes {
     units: Vec<[f64; 3]>,
 }
 
-/// What a fit of the mean leaves, for given noise.
+/// Generalised least-squares solution for given noise.
 #[derive(Debug, Clone)]
 pub struct Solved {
     /// Coefficients of the regressors.
@@ -37,7 +37,7 @@ pub struct Solved {
     pub powers: Vec<f64>,
 }
 
-/// Noise that was fitted beside the mean.
+/// N, B and K by restricted maximum likelihood, with the least-squares solution at them.
 #[derive(Debug, Clone)]
 pub struct Fitted {
     /// N, B, K.
@@ -97,7 +97,7 @@ impl Modes {
         [at(1), at(2)]
     }
 
-    /// The mean for given noise; `None` when the regressors are collinear.
+    /// Coefficients of the regressors for given N, B and K; `None` when the regressors are collinear.
     pub fn solve(&self, data: &[f64], columns: &[Vec<f64>], noise: &[f64; 3]) -> Option<Solved> {
         let powers = self.powers(noise);
         let p = columns.len();

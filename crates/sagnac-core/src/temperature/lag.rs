@@ -39,7 +39,7 @@ const BETWEEN: usize = 4;
 /// A coefficient at one lag: mean and standard deviation.
 pub type Coefficient = (f64, f64);
 
-/// What one state says at one lag.
+/// Log-likelihood and coefficients of one posterior draw at one lag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtLag {
     /// Lag, s.
@@ -52,7 +52,7 @@ pub struct AtLag {
     pub hysteresis: Option<Coefficient>,
 }
 
-/// The table of one state, by ascending lag.
+/// The profile of one posterior draw: its likelihood and coefficients by ascending lag.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Weight of the model that the state belongs to.

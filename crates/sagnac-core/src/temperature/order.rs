@@ -15,12 +15,12 @@ use crate::recording::window::TimeSpan;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
-/// Highest order tried.
+/// Highest degree of the polynomial that is tried.
 pub const MAX_ORDER: usize = 6;
 /// Blocks of the record for this purpose at most.
 const BLOCKS: usize = 480;
 
-/// One order and how it predicts what it was not fitted to.
+/// One degree of the polynomial with its score in cross-validation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
     /// Order.

@@ -9,14 +9,14 @@ use super::lag::{self, AtLag, Profile};
 use super::sampler::{self, Draw, Range};
 use nalgebra::{DMatrix, DVector};
 
-/// The model with its draws.
+/// A fitted model with draws from its posterior distribution.
 #[derive(Debug, Clone)]
 pub struct Posterior {
     /// Terms.
     pub terms: Terms,
     /// Temperatures of the polynomial.
     pub span: Span,
-    /// The best fit.
+    /// The fit of maximum likelihood.
     pub best: Best,
     /// States, equally weighted.
     pub draws: Vec<Draw>,

@@ -1,4 +1,4 @@
-//! Numbers and their spreads from the draws of a model.
+//! Values with their spreads, read from the posterior draws of a model.
 
 use super::sampler::{Draw, normal};
 use crate::estimate::{Spread, normal_probability};
@@ -30,7 +30,7 @@ impl Reading {
         0.5 * (bound(0.841_344_7) - bound(0.158_655_3))
     }
 
-    /// The same times a factor.
+    /// The reading multiplied by a factor, its spread included.
     pub fn scaled(&self, factor: f64) -> Reading {
         let spread = match &self.spread {
             Spread::Curve(points) if factor >= 0.0 => {
@@ -79,7 +79,7 @@ pub fn of_distribution(below: impl Fn(f64) -> f64, (low, high): (f64, f64)) -> R
 
 /// A number that is not linear in the coefficients. The value at drawn coefficients is turned about the value at their
 /// mean, which takes the bias of a maximum or a square out to first order.
-pub fn bent(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading {
+pub fn nonlinear(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x6265_6e74);
     let mut values = Vec::with_capacity(draws.len() * DRAWS_PER_STATE);
     for draw in draws {
@@ -96,7 +96,7 @@ pub fn bent(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading
 }
 
 /// A number of state and coefficients as it is drawn, for what has no bias to be taken out, such as a time.
-pub fn drawn(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading {
+pub fn of_draws(draws: &[Draw], of: impl Fn(&Draw, &DVector<f64>) -> f64) -> Reading {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x6472_6177);
     let mut values = Vec::with_capacity(draws.len() * DRAWS_PER_STATE);
     for draw in draws {

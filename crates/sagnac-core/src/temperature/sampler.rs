@@ -15,7 +15,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// hold too often with 1, those at two too seldom with 1.5.
 const PRIOR_EXPONENT: f64 = 1.25;
 
-/// Range of a number of the shape.
+/// Allowed range and first step of one nonlinear parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Lowest.
@@ -28,7 +28,7 @@ pub struct Range {
     pub step: f64,
 }
 
-/// A draw.
+/// One draw from the posterior distribution.
 #[derive(Debug, Clone)]
 pub struct Draw {
     /// Numbers of the shape.
@@ -41,10 +41,10 @@ pub struct Draw {
     pub covariance: DMatrix<f64>,
 }
 
-/// A model: modes of its regressors at a shape.
+/// A model: the cosine modes of its regressors as a function of the nonlinear parameters.
 pub type Columns<'a> = &'a dyn Fn(&[f64]) -> Vec<Vec<f64>>;
 
-/// Density of the coefficients at a shape.
+/// Prior density of the coefficients at given nonlinear parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Coefficients {
     /// Flat: regressors keep their meaning over all shapes.
@@ -54,7 +54,8 @@ pub enum Coefficients {
     Scaled,
 }
 
-/// Draws from a start, `sweeps` of them.
+/// Draws noise and nonlinear parameters by Metropolis steps from a start, the coefficients integrated out: `sweeps` draws
+/// after a third as many that are thrown away. Empty where the start cannot be solved.
 pub fn sample(
     modes: &Modes,
     data: &[f64],

@@ -26,7 +26,7 @@ pub struct Separation {
     pub condition: f64,
 }
 
-/// Inflations at the best fit.
+/// Variance inflations of rate, lag and hysteresis at the best fit; `None` where a regressor is zero.
 pub fn separation(course: &Course, terms: &Terms, span: &Span, best: &Best) -> Option<Separation> {
     let modes = Modes::new(course.len(), course.block_s);
     let columns = course.columns(terms, &best.shape, span);

@@ -98,7 +98,7 @@ fn switched_on(supply: &[f64]) -> Option<usize> {
 }
 
 impl Means {
-    /// The same from a time on, s from the start of the recording, which becomes the zero of times.
+    /// The start counted from a later time, s from the start of the recording, which becomes the zero of times.
     pub fn since(&self, from_s: f64) -> Means {
         let skip = ((from_s - self.first_s) / self.block_s).round().max(0.0) as usize;
         let values = self.values.iter().map(|v| v.get(skip..).unwrap_or_default().to_vec()).collect();

@@ -128,7 +128,7 @@ pub enum StartAsked {
 }
 
 impl StartAsked {
-    /// The channel that is to show it.
+    /// The channel that is to show when the unit was switched on.
     pub fn channel(&self) -> Option<&str> {
         match self {
             StartAsked::Supply { channel } | StartAsked::Temperature { channel, .. } => Some(channel),

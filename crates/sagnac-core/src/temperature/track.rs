@@ -27,7 +27,7 @@ pub struct Means {
 }
 
 impl Track {
-    /// For so many channels at a sample interval. Blocks are of one second or one sample, whichever is longer.
+    /// Collects `channels` channels sampled every `tau0_s` seconds. Blocks are of one second or one sample, whichever is longer.
     pub fn new(channels: usize, tau0_s: f64) -> Track {
         let samples = ((1.0 / tau0_s).round() as u64).max(1);
         Track { tau0_s, samples, base: 0, started: false, channels: vec![vec![]; channels] }
@@ -101,7 +101,7 @@ impl Track {
 }
 
 impl Means {
-    /// The same in blocks of `factor` times the length; a rest that does not fill a block is left out.
+    /// Means over `factor` blocks; a rest that does not fill one is left out.
     pub fn merged(&self, factor: usize) -> Means {
         let mean = |c: &[f64]| {
             let known = c.iter().filter(|v| v.is_finite());

@@ -22,7 +22,7 @@ use nalgebra::DVector;
 const MAX_TIME_SHARE: (f64, f64) = (0.35, 1.0);
 /// Sweeps over what is not known.
 const SETTLED_SWEEPS: usize = 500;
-/// Probability of both statements.
+/// Coverage of the one-sided limits on what a transient has still to go.
 pub const STATEMENT_PROBABILITY: f64 = 0.95;
 /// Times at which a transient is looked at.
 const TRANSIENT_TIMES: usize = 400;
@@ -33,7 +33,7 @@ const MIN_LOG_RATIO: f64 = 0.4;
 /// Sweeps over what is not known.
 const SWEEPS: usize = 500;
 
-/// What was found.
+/// The warm-up time of a record, with the transient behind it.
 #[derive(Debug, Clone)]
 pub struct WarmUpFindings {
     /// What was asked.
@@ -125,8 +125,8 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest, start: Start) -> Opti
         }
         0.5 * (a + b)
     };
-    let time = read::drawn(&draws, until);
-    let transient = read::drawn(&draws, |d, c| at(d, c, 0.0));
+    let time = read::of_draws(&draws, until);
+    let transient = read::of_draws(&draws, |d, c| at(d, c, 0.0));
     let best_columns = columns(&times, &shape);
     let c = &fitted.solved.coefficients;
     let raw: Vec<f64> =
@@ -197,7 +197,7 @@ fn best(
     Some(two.map_or((one.1, one_fit), |(fit, t)| (t, fit)))
 }
 
-/// What the end of a record says of the transient.
+/// Whether the transient had ended with the record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settled {
     /// Distance from where the decays lead, at the end of the record, deg/h.
@@ -230,9 +230,9 @@ pub fn settled(
     let off = |draw: &Draw, c: &DVector<f64>, t: f64| -> f64 {
         draw.shape.iter().zip(c.iter()).map(|(k, a)| a * (-t / k).exp()).sum::<f64>().abs()
     };
-    let remaining = read::drawn(&draws, |d, c| off(d, c, length_s));
+    let remaining = read::of_draws(&draws, |d, c| off(d, c, length_s));
     let time = |i: usize| length_s * i as f64 / TRANSIENT_TIMES as f64;
-    let inside_from = read::drawn(&draws, |d, c| {
+    let inside_from = read::of_draws(&draws, |d, c| {
         (0..=TRANSIENT_TIMES).rev().find(|i| off(d, c, time(*i)) > band_deg_h).map_or(0.0, time)
     });
     Some(Settled {

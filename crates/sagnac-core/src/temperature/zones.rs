@@ -24,7 +24,7 @@ const MAX_LOG_DEVIATION: f64 = 0.5;
 /// Lags of second differences that are counted as correlated.
 const LAGS: usize = 12;
 
-/// The noise in one zone.
+/// White noise in one zone of temperature.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Zone {
     /// Middle of the zone, degC.

@@ -213,7 +213,7 @@ impl Composite {
         }
     }
 
-    /// The same output with one term alone.
+    /// A copy with one of N, B, K, R and Q alone, sampled and filtered as before.
     pub fn alone(&self, term: NoiseType) -> Composite {
         Composite {
             terms: NoiseModel::default().with(term, self.terms.coefficient(term)),
@@ -223,7 +223,7 @@ impl Composite {
         }
     }
 
-    /// Without its ramp, which is no noise.
+    /// A copy without the ramp, which is no noise.
     #[must_use]
     pub fn without_ramp(&self) -> Composite {
         let mut out = self.clone();

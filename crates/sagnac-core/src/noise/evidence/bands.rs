@@ -79,13 +79,13 @@ impl Band {
         (self.power - 2.0 * r * self.cross + r * r * self.ramp).max(0.0)
     }
 
-    /// Its middle on a logarithmic scale, Hz.
+    /// The middle of the band on a logarithmic scale, Hz.
     pub fn centre_hz(&self) -> f64 {
         (self.low_hz * self.high_hz).sqrt()
     }
 }
 
-/// One mode or bin.
+/// One cosine mode of block means, or one bin of the averaged periodogram.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FineBin {
     /// Frequency, Hz.

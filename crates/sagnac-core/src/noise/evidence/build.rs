@@ -28,7 +28,7 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// Whether a mode of means over `tau_s` is left out, or a bin of a periodogram: the line, folded back about multiples
+    /// True where a mode of means over `tau_s`, or a bin of a periodogram (`windowed`), is left out: the line, folded back about multiples
     /// of 1/τ, lies near.
     pub fn hides(&self, frequency_hz: f64, step_hz: f64, tau_s: f64, windowed: bool) -> bool {
         let turns = self.frequency_hz * tau_s;

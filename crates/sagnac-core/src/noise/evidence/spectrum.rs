@@ -4,7 +4,8 @@ use super::bands::{Band, FineBin, Piece, Zone, bands_of};
 use crate::noise::model::Spectral;
 use std::sync::Arc;
 
-/// The evidence of one rate channel.
+/// The spectral evidence of one rate channel: mean powers in bands of frequency, with what is needed for the expected power
+/// of any term in them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Evidence {
     /// Sample interval, s.
@@ -65,7 +66,7 @@ impl Evidence {
         &self.fine
     }
 
-    /// The same evidence with bands that resolve the zones.
+    /// A copy whose bands are narrow enough to resolve the resonances in `zones`.
     pub fn resolving(&self, zones: &[Zone]) -> Evidence {
         if zones.is_empty() || self.fine.is_empty() {
             return self.clone();

@@ -71,7 +71,7 @@ pub fn needed_preference(term: NoiseType, relative_sigma: f64) -> f64 {
     }
 }
 
-/// A set that was chosen.
+/// The set of slow terms that was chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlowChoice {
     /// The set.
@@ -86,7 +86,7 @@ impl SlowPrices {
         self.choose_among(deviance, |_| true)
     }
 
-    /// The same among some of the sets.
+    /// As [`SlowPrices::choose`], among the sets for which `allowed` is true.
     pub fn choose_among(
         &self,
         deviance: &[f64; SETS],
@@ -125,7 +125,7 @@ impl SlowPrices {
     }
 }
 
-/// True when a set contains_term a term of [`crate::noise::model::TERMS`] by position.
+/// True when a set contains a term, given by its position in [`crate::noise::model::TERMS`].
 pub fn contains_term(set: SlowSet, term: usize) -> bool {
     match term {
         1 => set & B != 0,

@@ -18,7 +18,7 @@ pub struct WhitenedBand {
     pub dof: f64,
 }
 
-/// Result of the goodness-of-fit test.
+/// Result of the test of fit of a model to band powers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Misfit {
     /// Mean square of the normal scores of the test bands, corrected for fitted coefficients: 1 when the model fits.
@@ -34,7 +34,7 @@ pub struct Misfit {
 }
 
 impl Misfit {
-    /// Nothing to test.
+    /// The result where there is nothing to test: no misfit, probability 1.
     pub fn none() -> Misfit {
         Misfit {
             per_dof: 0.0,

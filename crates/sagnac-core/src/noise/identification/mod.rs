@@ -39,6 +39,7 @@ mod result;
 mod standard;
 mod structures;
 
+pub use claims::SlowPrices;
 pub use entrance::{complete, describe, identify};
 pub use joint::Plateau;
 pub use misfit::Misfit;

@@ -8,7 +8,7 @@ use crate::noise::composite::{Composite, Described};
 use crate::noise::data::NoiseType;
 use crate::noise::model::NoiseModel;
 
-/// What was found about the noise of one channel.
+/// The identified noise of one channel: claimed terms with intervals or upper limits, the models they make, and their fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identification {
     /// Channel.
@@ -22,19 +22,19 @@ pub struct Identification {
     pub supported: NoiseModel,
     /// The maximum with every term allowed.
     pub full: NoiseModel,
-    /// Terms claimed, in the order of [`TERMS`].
+    /// Terms claimed, in the order of [`TERMS`](crate::noise::model::TERMS).
     pub claimed: Vec<NoiseType>,
     /// True when low-frequency noise is present that could be flicker, random walk or a ramp, so that no single one
     /// of them is claimed.
     pub ambiguous: bool,
-    /// 2 Δ ln L of each of [`TERMS`] against the best model without it.
+    /// 2 Δ ln L of each of [`TERMS`](crate::noise::model::TERMS) against the best model without it.
     pub likelihood_ratios: [f64; 5],
     /// N of the white noise alone with its interval, or its upper limit.
     pub angle_random_walk: Estimate,
     /// The level that is read as angle random walk where a process is white there beside the white noise
     /// ([`super::Plateau`]); `None`: it is that of the white noise.
     pub white_plateau: Option<Estimate>,
-    /// Where it is read.
+    /// Averaging times that this level is read at.
     pub plateau: Option<Plateau>,
     /// B of the 1/f law with its interval, or its upper limit. The Allan floor is 0.664 B.
     pub bias_instability: Estimate,
@@ -44,7 +44,7 @@ pub struct Identification {
     pub rate_ramp: Estimate,
     /// Q with its interval, or its upper limit.
     pub quantization: Estimate,
-    /// Covariance of the coefficients of `supported`, order of [`TERMS`]; zeros for absent terms.
+    /// Covariance of the coefficients of `supported`, order of [`TERMS`](crate::noise::model::TERMS); zeros for absent terms.
     pub covariance: [[f64; 5]; 5],
     /// How well `supported` fits.
     pub misfit: Misfit,
@@ -86,7 +86,7 @@ pub struct QuasiPeriodicFound {
     pub coherence_time: Estimate,
 }
 
-/// Id, unit in the order of [`TERMS`].
+/// Id, unit in the order of [`TERMS`](crate::noise::model::TERMS).
 pub(in crate::noise) const IDS: [(&str, &str); 5] = [
     ("angle_random_walk", "deg/sqrt(h)"),
     ("bias_instability", "deg/h"),
@@ -145,7 +145,7 @@ impl Identification {
         out
     }
 
-    /// The estimates in the order of [`TERMS`]: N, B, K, Q, R.
+    /// The estimates in the order of [`TERMS`](crate::noise::model::TERMS): N, B, K, Q, R.
     pub(in crate::noise) fn estimates_mut_by_term(&mut self) -> [&mut Estimate; 5] {
         [
             &mut self.angle_random_walk,

@@ -52,6 +52,6 @@ pub struct Judged {
     pub statistic: f64,
     /// Probability of a larger one anywhere in this view if the model is right.
     pub p_value: f64,
-    /// Where it is.
+    /// Place and size of that departure.
     pub departure: Departure,
 }

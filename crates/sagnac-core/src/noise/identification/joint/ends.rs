@@ -1,4 +1,4 @@
-//! The evidence that a filter leaves to be usable_evidence.
+//! The part of an evidence that is usable behind a moving average.
 
 use super::model::Extras;
 use crate::noise::composite::{Bandwidth, averaged_white_mode};
