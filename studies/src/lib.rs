@@ -3,6 +3,7 @@
 //! A study is one module with a [`study::Study`], and one line in [`STUDIES`]. `cargo xtask validate` runs them and writes
 //! `docs/validation/`. Short versions with fixed seeds run with `cargo test`; they use the same functions.
 
+pub mod allan_intervals;
 pub mod comparison;
 pub mod goodness_of_fit;
 pub mod index;
@@ -15,6 +16,7 @@ use study::Study;
 
 /// Every study, in the order of the summary.
 pub static STUDIES: &[&Study] = &[
+    &allan_intervals::STUDY,
     &whole_runs::INTERVALS,
     &whole_runs::LINES,
     &goodness_of_fit::STUDY,

@@ -134,10 +134,4 @@ mod tests {
     fn intervals_cover_what_they_say() {
         assert_coverage(1500, 0.05);
     }
-
-    #[test]
-    #[ignore = "long study"]
-    fn intervals_cover_what_they_say_in_twenty_thousand_records() {
-        assert_coverage(20_000, 0.03);
-    }
 }
