@@ -43,7 +43,8 @@ fn standard_output(folder: &Path, command: &str) -> String {
         .output()
         .unwrap();
     assert_eq!(String::from_utf8_lossy(&done.stderr), "", "{command}");
-    String::from_utf8(done.stdout).unwrap()
+    // Numbers and units are kept together by spaces of their own.
+    String::from_utf8(done.stdout).unwrap().replace(['\u{a0}', '\u{202f}', '\u{2009}'], " ")
 }
 
 #[test]

@@ -13,6 +13,7 @@ use std::process::Command;
 const LATIN: &[&str] = &[
     // Symbols of formulas.
     "c",
+    "cargo",
     "k",
     "w",
     "dT",

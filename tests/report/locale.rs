@@ -74,7 +74,7 @@ const OPEN: &[&str] = &[
 const HELP: &str = "help";
 
 /// Dotted names in the sources that only look like keys: tables of procedures.
-const NO_KEYS: &[&str] = &["measurand.options", "explain.test", "explain.view"];
+const NO_KEYS: &[&str] = &["measurand.options", "explain.test", "explain.view", "unit.rec"];
 
 fn sources(folder: &Path, out: &mut Vec<String>) {
     for entry in std::fs::read_dir(folder).unwrap() {

@@ -48,6 +48,11 @@ const LITERALS: &[(&str, &str, &str)] = &[
         "the column holds no numbers",
         "a fault of the decoder, quoted as it says it",
     ),
+    (
+        "crates/sagnac-core/src/noise/part.rs",
+        "the later part continues a stretch",
+        "a mistake of a program that merges parts, not of a user",
+    ),
     ("src/report/svg/mod.rs", "system-ui", "names of fonts"),
     (
         "src/record/message.rs",
