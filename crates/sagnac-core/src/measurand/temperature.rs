@@ -218,7 +218,7 @@ impl Row<'_> {
     fn range(&self, a: &Analysis, times: f64, of: fn(&DVector<f64>, usize) -> f64) -> Estimate {
         let draws = &a.posterior.draws;
         let of = |c: &DVector<f64>| of(c, a.posterior.terms.order);
-        if read::by_chance(draws, &of) > FLAT {
+        if read::by_chance(draws, of) > FLAT {
             let drawn = read::of_draws(draws, |_, c| times * of(c));
             let limit =
                 drawn.spread.bound(drawn.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });

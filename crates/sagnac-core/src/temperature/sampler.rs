@@ -219,7 +219,7 @@ mod tests {
         let y: Vec<f64> = slope.iter().map(|s| 2.0 * s + 0.1 * normal(&mut rng)).collect();
         let (data, column) = (modes.of(&y), modes.of(&slope));
         let columns = |_: &[f64]| vec![column.clone()];
-        let fitted = modes.fit(&data, &[column.clone()], None).unwrap();
+        let fitted = modes.fit(&data, std::slice::from_ref(&column), None).unwrap();
         let draws = sample(&modes, &data, (&columns, Coefficients::Flat), &[], (&[], &fitted), 200);
         assert_eq!(draws.len(), 200);
         let mean = draws.iter().map(|d| d.coefficients[0]).sum::<f64>() / 200.0;
