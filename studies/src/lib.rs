@@ -5,6 +5,7 @@
 
 pub mod allan_intervals;
 pub mod comparison;
+pub mod false_lines;
 pub mod goodness_of_fit;
 pub mod index;
 pub mod pages;
@@ -19,6 +20,7 @@ pub static STUDIES: &[&Study] = &[
     &allan_intervals::STUDY,
     &whole_runs::INTERVALS,
     &whole_runs::LINES,
+    &false_lines::STUDY,
     &goodness_of_fit::STUDY,
     &comparison::STUDY,
     &comparison::PUBLISHED,
