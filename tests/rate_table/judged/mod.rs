@@ -3,7 +3,7 @@
 use crate::bench::{Bench, EARTH, Recorded};
 use nalgebra::{DMatrix, DVector};
 use sagnac::estimate::Estimate;
-use sagnac::rate_table::model::Extra;
+use sagnac::rate_table::design::Extra;
 use sagnac::rate_table::noise::Rows;
 use sagnac::rate_table::{TableRun, scale_factor};
 use std::collections::BTreeMap;

@@ -121,15 +121,8 @@ pub fn evaluate(
         columns.extend(extra.iter().cloned());
         (DMatrix::from_columns(&columns), own)
     };
-    let by_axis: Vec<DVector<f64>> = (0..found.axes.len())
-        .map(|a| {
-            let drive = |l: f64| test.influence.drive(l) - test.influence.drive(found.reference);
-            DVector::from_fn(n, |i, _| {
-                let interval = cut.of[i];
-                if states.is_off(interval) { 0.0 } else { drive(found.list[interval].levels[a]) }
-            })
-        })
-        .collect();
+    let drive = |level: f64| test.influence.drive(level) - test.influence.drive(found.reference);
+    let by_axis = drives_by_axis(found, &states, &cut, &drive);
     let used: Vec<usize> = (0..by_axis.len()).filter(|a| by_axis[*a].norm() > 0.0).collect();
     let sizes: Vec<f64> = used.iter().map(|a| by_axis[*a].amax()).collect();
     let scaled: Vec<DVector<f64>> = used.iter().zip(&sizes).map(|(a, s)| &by_axis[*a] / *s).collect();
@@ -142,22 +135,15 @@ pub fn evaluate(
         .collect();
     let (x, first) = base(&indicators);
     let (each, _) = solve(&cut, &states, &x)?;
-    let shifts: Vec<Shift> = states
-        .list
-        .iter()
-        .enumerate()
-        .map(|(k, (a, level))| Shift {
-            axis: found.axes[*a].clone(),
-            level: *level,
-            change: each.coefficient(first + k),
-        })
-        .collect();
+    let shift = |(k, (a, level)): (usize, &(usize, f64))| Shift {
+        axis: found.axes[*a].clone(),
+        level: *level,
+        change: each.coefficient(first + k),
+    };
+    let shifts: Vec<Shift> = states.list.iter().enumerate().map(shift).collect();
     let drives: Vec<Vec<f64>> = used
         .iter()
-        .map(|u| {
-            let drive = |l: f64| test.influence.drive(l) - test.influence.drive(found.reference);
-            states.list.iter().map(|(a, l)| if a == u { drive(*l) } else { 0.0 }).collect()
-        })
+        .map(|u| states.list.iter().map(|(a, l)| if a == u { drive(*l) } else { 0.0 }).collect())
         .collect();
     let course = |values: &[f64], what: &Nuisance| {
         let time = drift.then_some(&time);
@@ -179,6 +165,20 @@ pub fn evaluate(
         others,
         test: test.clone(),
     })
+}
+
+/// The drive of every row along each axis: 0 without the influence.
+fn drives_by_axis(
+    found: &Intervals,
+    states: &States,
+    cut: &Cut,
+    drive: &dyn Fn(f64) -> f64,
+) -> Vec<DVector<f64>> {
+    let of_row = |axis: usize, interval: usize| {
+        if states.is_off(interval) { 0.0 } else { drive(found.list[interval].levels[axis]) }
+    };
+    let of_axis = |axis| DVector::from_fn(cut.rows.len(), |i, _| of_row(axis, cut.of[i]));
+    (0..found.axes.len()).map(of_axis).collect()
 }
 
 fn scale(c: &Combination, factor: f64) -> Combination {

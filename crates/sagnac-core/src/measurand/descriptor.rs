@@ -5,7 +5,7 @@ use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::influence::Influence;
 use crate::influence::repeatability::Repeatability;
 use crate::noise::data::NoiseType;
-use crate::rate_table::model::Extra;
+use crate::rate_table::design::Extra;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
 use std::fmt;

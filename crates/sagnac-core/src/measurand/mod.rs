@@ -28,7 +28,7 @@ mod table_harmonics;
 mod temperature;
 mod warm_up;
 
-use crate::rate_table::model::Extra;
+use crate::rate_table::design::Extra;
 pub use descriptor::{
     EARTH_RATE_OPTION, Evaluation, Measurand, OfKnownInput, OfSteps, Options, PowerModel, Stimulus, Test,
     TurnAxis,

@@ -7,8 +7,8 @@ use super::sine_response;
 use crate::estimate::{Estimate, Spread};
 use crate::message::{Arg, Note};
 use crate::rate_table::combine::spread;
+use crate::rate_table::design::Extra;
 use crate::rate_table::design::slope_of;
-use crate::rate_table::model::Extra;
 use crate::rate_table::scale_factor::{METHOD, ScaleFactor};
 use crate::rate_table::steps::Steps;
 

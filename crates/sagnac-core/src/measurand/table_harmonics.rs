@@ -6,7 +6,7 @@ use crate::estimate::{Estimate, UpperLimit};
 use crate::message::{Arg, Note};
 use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
-use crate::rate_table::model::Extra;
+use crate::rate_table::design::Extra;
 use crate::rate_table::scale_factor::ScaleFactor;
 
 /// Error once per revolution.

@@ -1,12 +1,26 @@
 //! The rows of a channel, what moves them beside the rate, and the kinds of noise they may have.
 
 use super::blocks::TURN_ARCSEC;
-use super::model::Extra;
 use super::noise::Rows;
 use super::setup::Setup;
 use super::steps::{Part, Steps};
 use crate::numeric::reml::{self, Fit};
 use nalgebra::{DMatrix, DVector};
+
+/// What moves the output beside the rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extra {
+    /// Half the difference between rates reached from below and from above, deg/h.
+    Approach,
+    /// Change of the scale factor with temperature, 1e-6/degC.
+    ScaleOverTemperature,
+    /// Change of the bias with temperature, deg/h/degC.
+    BiasOverTemperature,
+    /// cos ψ of the table angle, deg/h.
+    Cosine(u8),
+    /// sin ψ of the table angle, deg/h.
+    Sine(u8),
+}
 
 /// A kind of noise: its name, and the covariance of the rows that it makes at a strength of one.
 type Kind = (&'static str, DMatrix<f64>);
@@ -77,19 +91,16 @@ impl Design {
         let of_levels: Vec<DVector<f64>> = (0..count)
             .map(|l| DVector::from_fn(n, |i, _| if level_of[i] == l { 1.0 } else { 0.0 }))
             .collect();
+        let of_rows = |value: &dyn Fn(usize) -> f64| DVector::from_fn(n, |i, _| value(i));
         let mut columns = of_levels.clone();
         let (mut extras, mut hidden) = (Vec::new(), Vec::new());
         for extra in wanted {
             let column = match extra {
-                Extra::Approach => {
-                    Some(DVector::from_fn(n, |i, _| f64::from(steps.list[rows[i].0].approach)))
-                }
+                Extra::Approach => Some(of_rows(&|i| f64::from(steps.list[rows[i].0].approach))),
                 Extra::ScaleOverTemperature if known => {
-                    Some(DVector::from_fn(n, |i, _| (temperatures[i] - temperature) * slope * rate[i] * 1e-6))
+                    Some(of_rows(&|i| (temperatures[i] - temperature) * slope * rate[i] * 1e-6))
                 }
-                Extra::BiasOverTemperature if known => {
-                    Some(DVector::from_fn(n, |i, _| temperatures[i] - temperature))
-                }
+                Extra::BiasOverTemperature if known => Some(of_rows(&|i| temperatures[i] - temperature)),
                 Extra::Cosine(order) => harmonic(&rows, *order, true),
                 Extra::Sine(order) => harmonic(&rows, *order, false),
                 _ => None,
@@ -107,23 +118,7 @@ impl Design {
             length_s: rows.iter().map(|(_, p)| p.length_s).collect(),
             step: rows.iter().map(|(s, _)| *s).collect(),
         };
-        let visited_again = steps.list.len() > steps.levels.len();
-        let divided = steps.list.iter().any(|s| s.parts.len() > 1);
-        let mut quick = vec![("white", grid.white())];
-        // One row a step: a reading at the ends cannot be told from what is white.
-        if divided {
-            quick.push(("angle", grid.angle()));
-        }
-        let mut further: Vec<Kind> = Vec::new();
-        if visited_again && divided {
-            further.push(("step", grid.shared(&grid.step)));
-        }
-        if steps.cycles >= 2 {
-            let cycle: Vec<usize> = rows.iter().map(|(s, _)| steps.list[*s].cycle).collect();
-            let full = rate.iter().fold(0.0, |m: f64, r| m.max(r.abs())).max(1e-12);
-            let alike = |i, j| if cycle[i] == cycle[j] { rate[i] * rate[j] / (full * full) } else { 0.0 };
-            further.push(("cycle", DMatrix::from_fn(n, n, alike)));
-        }
+        let (quick, further) = kinds(steps, &rows, &rate, &grid);
         let scatter = left.variance().max(f64::MIN_POSITIVE);
         let read = slope * setup.angle_uncertainty_arcsec;
         let readings = if setup.by_angle { grid.angle() * (read * read) } else { DMatrix::zeros(n, n) };
@@ -167,6 +162,28 @@ impl Design {
         }
         Some((fit, names))
     }
+}
+
+/// The noise of the rate itself and of readings, and what may differ between steps and between cycles.
+fn kinds(steps: &Steps, rows: &[(usize, &Part)], rate: &[f64], grid: &Rows) -> (Vec<Kind>, Vec<Kind>) {
+    let visited_again = steps.list.len() > steps.levels.len();
+    let divided = steps.list.iter().any(|s| s.parts.len() > 1);
+    let mut quick = vec![("white", grid.white())];
+    // One row a step: a reading at the ends cannot be told from what is white.
+    if divided {
+        quick.push(("angle", grid.angle()));
+    }
+    let mut further: Vec<Kind> = Vec::new();
+    if visited_again && divided {
+        further.push(("step", grid.shared(&grid.step)));
+    }
+    if steps.cycles >= 2 {
+        let cycle: Vec<usize> = rows.iter().map(|(s, _)| steps.list[*s].cycle).collect();
+        let full = rate.iter().fold(0.0, |m: f64, r| m.max(r.abs())).max(1e-12);
+        let alike = |i, j| if cycle[i] == cycle[j] { rate[i] * rate[j] / (full * full) } else { 0.0 };
+        further.push(("cycle", DMatrix::from_fn(rows.len(), rows.len(), alike)));
+    }
+    (quick, further)
 }
 
 /// Least squares through the middle of both: the slope that residuals are taken about. `None` without two rates.

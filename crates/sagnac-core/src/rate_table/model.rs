@@ -1,6 +1,6 @@
 //! The response of one channel: a mean for every level of rate, and what else moves the output.
 
-use super::design::Design;
+use super::design::{Design, Extra};
 use super::setup::Setup;
 use super::steps::Steps;
 use crate::numeric::reml::{Combination, Fit};
@@ -9,21 +9,6 @@ use nalgebra::{DMatrix, DVector};
 /// Gain of twice the log-likelihood from which a kind of noise that is not always there is taken for real: by chance it
 /// comes about in one test of ten.
 pub(super) const TAKEN_FROM: f64 = 1.64;
-
-/// What moves the output beside the rate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extra {
-    /// Half the difference between rates reached from below and from above, deg/h.
-    Approach,
-    /// Change of the scale factor with temperature, 1e-6/degC.
-    ScaleOverTemperature,
-    /// Change of the bias with temperature, deg/h/degC.
-    BiasOverTemperature,
-    /// cos ψ of the table angle, deg/h.
-    Cosine(u8),
-    /// sin ψ of the table angle, deg/h.
-    Sine(u8),
-}
 
 /// The fitted response of a channel.
 #[derive(Debug, Clone)]

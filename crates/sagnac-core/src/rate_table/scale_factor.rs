@@ -3,8 +3,9 @@
 //! The line is that of least squares through the means of the levels, each with the same weight. K is output per input;
 //! outputs are read with the nominal scale factor of the procedure, so that K = 1 is a unit that is just as stated.
 
+use super::design::Extra;
 use super::largest::{Largest, largest};
-use super::model::{self, Extra, Response};
+use super::model::{self, Response};
 use super::setup::Setup;
 use super::steps::{Steps, TableRun};
 use crate::numeric::reml::Combination;

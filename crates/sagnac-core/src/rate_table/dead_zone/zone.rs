@@ -101,24 +101,9 @@ pub fn evaluate(
     let unexplained = Some(explained.fold(0.0, f64::max)).filter(|p| *p < FITS_FROM);
     let alike: Vec<&Form> = forms.iter().filter(|f| f.chance >= FITS_FROM || unexplained.is_some()).collect();
     let best = alike.first().map_or(forms.first()?.left, |f| f.left);
-    let (curve, threshold) = match (with_noise, &closer) {
-        (Some(r), _) => (r.half_width.clone(), r.threshold.clone()),
-        _ => {
-            let curves: Vec<_> = alike.iter().map(|f| widths.curve(f.number)).collect();
-            let thresholds: Vec<_> =
-                alike.iter().zip(&curves).map(|(f, c)| f.threshold(c, closer.as_ref())).collect();
-            (covering(&curves), covering(&thresholds))
-        }
-    };
+    let (curve, threshold) = curves(&widths, &alike, closer.as_ref(), with_noise);
     let Left { mut shape, centre, slope, offset, .. } = with_noise.map_or(best, |r| r.best);
-    // Noise far beyond the half width makes a line of any zone: that form is never told from a slope, and does not count.
-    let open = if with_noise.is_some() {
-        None
-    } else if shown {
-        alike.iter().filter(|f| f.number != WITH_NOISE).find_map(|f| widths.open(f.number))
-    } else {
-        (0..WITH_NOISE).find_map(|form| widths.open(form))
-    };
+    let open = if with_noise.is_some() { None } else { open(&widths, &alike, shown) };
     let value = Some(median(&curve)).filter(|_| shown && unexplained.is_none() && open.is_none());
     shape.half_width = value.unwrap_or(0.0);
     let follows = with_noise.and_then(follows);
@@ -152,6 +137,35 @@ pub fn evaluate(
         points: of_points,
     })
 }
+
+/// The curves of half width and threshold, (normal score, value) ascending: those of a zone with noise inside the loop where
+/// that is shown, else covering all forms that fit alike.
+fn curves(
+    widths: &Widths,
+    alike: &[&Form],
+    closer: Option<&Rounded>,
+    with_noise: Option<&Rounded>,
+) -> (Curve, Curve) {
+    if let Some(r) = with_noise {
+        return (r.half_width.clone(), r.threshold.clone());
+    }
+    let curves: Vec<Curve> = alike.iter().map(|f| widths.curve(f.number)).collect();
+    let thresholds: Vec<Curve> = alike.iter().zip(&curves).map(|(f, c)| f.threshold(c, closer)).collect();
+    (covering(&curves), covering(&thresholds))
+}
+
+/// Largest half width tried, deg/h, where the zone may be wider. Noise far beyond the half width makes a line of any zone:
+/// that form is never told from a slope, and does not count.
+fn open(widths: &Widths, alike: &[&Form], shown: bool) -> Option<f64> {
+    if shown {
+        alike.iter().filter(|f| f.number != WITH_NOISE).find_map(|f| widths.open(f.number))
+    } else {
+        (0..WITH_NOISE).find_map(|form| widths.open(form))
+    }
+}
+
+/// Pairs of (normal score, value), ascending.
+type Curve = Vec<(f64, f64)>;
 
 /// A form that explains the means nearly as well as the best one.
 struct Form {
