@@ -102,3 +102,20 @@ pub fn list<'a>(values: &'a Values, name: &str) -> &'a [f64] {
         _ => &[],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_lists_are_told_apart() {
+        let values = Values::from([
+            ("size".to_owned(), Value::Number(2.0)),
+            ("times".to_owned(), Value::List(vec![1.0, 3.0])),
+        ]);
+        assert_eq!((number(&values, "size"), number(&values, "times")), (Some(2.0), None));
+        assert_eq!((list(&values, "times"), list(&values, "size")), (&[1.0, 3.0][..], &[][..]));
+        let count = Param::reported("missing_rows", "", 1.0, 1e7).count(10.0);
+        assert!(count.whole && count.count == Some(10.0) && !count.instant && count.reported);
+    }
+}

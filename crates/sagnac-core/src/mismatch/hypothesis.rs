@@ -232,3 +232,45 @@ fn turn(hypothesis: &mut Hypothesis, spectral: &SpectralData, parts: &[PartModes
     let densities = hypothesis.noise.densities(spectral);
     Fit { log_likelihood: noise.log_likelihood + mean.prior, noise, mean, densities, observed }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::effect::{Drivers, find};
+
+    #[test]
+    fn a_ramp_in_known_noise_is_fitted_with_its_slope_and_its_deviation() {
+        let n = 2000;
+        let drivers = Drivers { dt_s: 3.6, samples: n, averaged: 1, ..Drivers::default() };
+        // Two hours; 0.3 deg/h/h.
+        let hours = |i: usize| (i as f64 * 3.6 - 3600.0) / 3600.0;
+        let residual: Vec<f64> = (0..n).map(|i| 0.3 * hours(i)).collect();
+        let spectral = SpectralData::new(drivers, &residual, &[]);
+        // N = √3.6/60 deg/√h is a deviation of 1 deg/h a sample of 3.6 s, and no parameter.
+        let base = [1.0 / 60.0 * 3.6f64.sqrt(), 0.0, 0.0];
+        let noise = Noise {
+            base,
+            claimed: base,
+            deviation: [0.0; 3],
+            bound: [0.0; 3],
+            freed: [false; 3],
+            quantization_arcsec: 0.0,
+            spectra: vec![],
+        };
+        let ramp = CourseIn {
+            effect: find("rate_ramp").unwrap(),
+            nonlinear_parameters: vec![],
+            coefficients: vec![],
+        };
+        let mut hypothesis = Hypothesis { noise, courses: vec![ramp] };
+        let fitted = fit(&mut hypothesis, &spectral);
+        assert!((hypothesis.courses[0].coefficients[0] - 0.3).abs() < 1e-6);
+        // 1 over Σ (t − mean)²: n · (2 h)²/12.
+        let variance = 12.0 / (4.0 * n as f64);
+        assert!((fitted.mean.covariance[(0, 0)] / variance - 1.0).abs() < 1e-3, "{}", fitted.mean.covariance);
+        let left = super::residual(&spectral, &hypothesis, &fitted.mean);
+        assert!(left.iter().all(|x| x.abs() < 1e-5));
+        assert_eq!(fitted.raised(2.0).log_likelihood, fitted.log_likelihood + 2.0);
+    }
+}

@@ -338,3 +338,61 @@ pub(super) fn drivers(regular: &Regular, claim: &Claim) -> Drivers {
         claim: claim.mean,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::effect::{ClaimedMean, Value, find};
+
+    #[test]
+    fn a_stated_level_is_scaled_to_a_mean_square_of_one() {
+        let claim = ClaimedMean { bias_deg_h: 4.0, ..ClaimedMean::default() };
+        let drivers = Drivers { dt_s: 1.0, samples: 3, claim, ..Drivers::default() };
+        let values = Values::from([
+            ("knots_time_s".to_owned(), Value::List(vec![0.0, 2.0])),
+            ("knots_ratio".to_owned(), Value::List(vec![1.0, 3.0])),
+        ]);
+        let effect = find("noise_variance_time").unwrap();
+        let claim = Claim { effects: vec![Stated { effect, values }], ..empty_claim() };
+        let (level, rms) = level(&claim, &drivers).unwrap();
+        // Levels 1, 2, 3: a mean square of 14/3.
+        let root = (14.0f64 / 3.0).sqrt();
+        assert!((rms - root).abs() < 1e-9);
+        for (got, expected) in level.iter().zip([1.0, 2.0, 3.0]) {
+            assert!((got - expected / root).abs() < 1e-9, "{level:?}");
+        }
+        assert!(super::level(&empty_claim(), &drivers).is_none());
+    }
+
+    fn empty_claim() -> Claim {
+        Claim {
+            case: String::new(),
+            description: String::new(),
+            sample_rate_hz: 1.0,
+            columns: None,
+            noise: NoiseModel::default(),
+            quantization_lsb_arcsec: 0.0,
+            mean: ClaimedMean::default(),
+            uncertainty: crate::claim::Uncertainty::default(),
+            effects: vec![],
+        }
+    }
+
+    #[test]
+    fn long_records_are_looked_at_in_at_most_so_many_averages() {
+        let (m, n) = slow_grid(100_000);
+        assert!(m == 9 && n <= 100_000 / 9 && n > 11_080, "{m} {n}");
+    }
+
+    #[test]
+    fn filters_alike_but_for_a_little_need_no_new_draw() {
+        let filter = |hz: f64| SpectrumIn {
+            effect: find("bandwidth_filter").unwrap(),
+            fitted: vec![hz, 1.0],
+            stated: false,
+        };
+        assert!(alike(&[filter(10.0)], &[filter(10.2)]) && !alike(&[filter(10.0)], &[filter(10.4)]));
+        assert!(alike(&[], &[]) && !alike(&[], &[filter(1.0)]));
+    }
+}

@@ -108,3 +108,46 @@ pub(super) fn rated(
 pub(super) fn own_odds(effect: &dyn Effect) -> f64 {
     if effect.in_format() { 0.0 } else { -3.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::effect::{Drivers, find};
+    use crate::mismatch::hypothesis::{LeastSquares, fit};
+    use crate::mismatch::noise_fit::Noise;
+
+    fn tried(log_likelihood: f64, parameters: usize, odds: f64) -> Tried {
+        let drivers = Drivers { dt_s: 1.0, samples: 64, averaged: 1, ..Drivers::default() };
+        let spectral = SpectralData::new(drivers, &[0.0; 64], &[]);
+        let base = [1.0, 0.0, 0.0];
+        let noise = Noise {
+            base,
+            claimed: base,
+            deviation: [0.0; 3],
+            bound: [0.0; 3],
+            freed: [false; 3],
+            quantization_arcsec: 0.0,
+            spectra: vec![],
+        };
+        let mut hypothesis = Hypothesis { noise, courses: vec![] };
+        let mut fit = fit(&mut hypothesis, &spectral);
+        fit.log_likelihood = log_likelihood;
+        assert!(matches!(&fit.mean, LeastSquares { coefficients, .. } if coefficients.is_empty()));
+        Tried { hypothesis, fit, parameters, odds }
+    }
+
+    #[test]
+    fn an_addition_pays_the_logarithm_of_the_rows_for_each_parameter() {
+        let (before, after) = (tried(-100.0, 1, 0.0), tried(-80.0, 3, -3.0));
+        let one = rated(find("line").unwrap(), after, &before, 50.0, 1000);
+        assert_eq!((one.gain, one.parameters), (20.0, 2));
+        // 2 · 20 − 2 ln 1000.
+        assert!((one.delta_bic - (40.0 - 2.0 * 1000f64.ln())).abs() < 1e-9);
+        // χ² of 40 with two degrees of freedom is e⁻²⁰, for each of 50 looks.
+        assert!((one.p_value / (50.0 * (-20f64).exp()) - 1.0).abs() < 1e-9, "{}", one.p_value);
+        // Odds of e⁻³ cost 6 of the rank.
+        assert!((one.tried.rank(1000) - one.tried.bic(1000) - 6.0).abs() < 1e-9);
+        assert_eq!((own_odds(find("line").unwrap()), own_odds(find("drifting_line").unwrap())), (0.0, -3.0));
+    }
+}

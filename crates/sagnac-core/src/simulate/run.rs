@@ -296,3 +296,34 @@ impl Rows {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_lost_are_lost_in_every_column() {
+        let rows = Rows {
+            time_s: vec![0.0, 1.0, 2.0],
+            rate_deg_h: vec![5.0, 6.0, 7.0],
+            columns: BTreeMap::from([(Column::Supply, vec![27.0, 28.0, 29.0])]),
+        };
+        let kept = rows.clone().kept(&[true, false, true]);
+        assert_eq!((kept.time_s, kept.rate_deg_h), (vec![0.0, 2.0], vec![5.0, 7.0]));
+        assert_eq!(kept.columns[&Column::Supply], [27.0, 29.0]);
+        assert_eq!(rows.clone().kept(&[true; 3]), rows);
+    }
+
+    #[test]
+    fn another_rate_keeps_the_rows_of_the_recording() {
+        let series = Series {
+            time_s: vec![10.0, 11.0, 13.0],
+            rate_deg_h: vec![0.0; 3],
+            index: vec![0, 1, 3],
+            sample_interval_s: 1.0,
+            ..Series::default()
+        };
+        let rows = like(&series, &[1.0, 2.0, 3.0, 4.0], &[true, false, true, true]);
+        assert_eq!((rows.time_s, rows.rate_deg_h), (vec![10.0, 13.0], vec![1.0, 4.0]));
+    }
+}

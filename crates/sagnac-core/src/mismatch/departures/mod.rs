@@ -250,3 +250,75 @@ pub fn family(departures: &[Departure]) -> f64 {
     let smallest = departures.iter().map(Departure::p_value).fold(1.0, f64::min);
     (smallest * departures.len().max(1) as f64).min(1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::effect::Drivers;
+    use crate::numeric::cosine::dct2;
+
+    fn white(series: Vec<f64>) -> White {
+        White { modes: dct2(&series), roots: vec![1.0; series.len()], series }
+    }
+
+    fn spectral(n: usize) -> SpectralData {
+        let drivers = Drivers { dt_s: 0.5, samples: n, averaged: 1, ..Drivers::default() };
+        SpectralData::new(drivers, &vec![0.0; n], &[])
+    }
+
+    #[test]
+    fn a_line_has_the_power_of_a_quarter_of_its_square_a_sample() {
+        let n = 1024;
+        let series: Vec<f64> =
+            (0..n).map(|i| 0.8 * (std::f64::consts::TAU * 0.125 * f64::from(i)).cos()).collect();
+        let white = white(series);
+        let powers = periodogram(&white).unwrap();
+        // a² n/4 at cell 2 n f.
+        assert!((powers[256] - 0.16 * 1024.0).abs() < 1e-6, "{}", powers[256]);
+        let found = lines(&spectral(1024), &powers).unwrap();
+        assert!(found.place.from < 0.25 && found.place.to > 0.25, "{found:?}");
+        assert!((found.ln_p - ((0.8 * 1024f64).ln() - powers[256])).abs() < 1e-9);
+    }
+
+    #[test]
+    fn values_too_large_or_too_seldom_are_told() {
+        let n = 4000;
+        // Quantiles of a normal law in a scattered order: as many in each tail as expected.
+        let order = |i: usize| (i * 1597) % n;
+        let normal = |i: usize| crate::estimate::normal_quantile((order(i) as f64 + 0.5) / n as f64);
+        let even: Vec<f64> = (0..n).map(normal).collect();
+        let (spectral, usable) = (spectral(n), vec![true; n]);
+        assert!(tails(&spectral, &even, &usable).unwrap().p_value() > 0.5);
+        let mut far = even.clone();
+        far[1700] = 9.0;
+        let found = tails(&spectral, &far, &usable).unwrap();
+        assert!(found.p_value() < 1e-12 && found.place.to == 850.0, "{found:?}");
+        // Set aside, it tells of nothing.
+        let mut without = usable.clone();
+        without[1700] = false;
+        assert!(tails(&spectral, &far, &without).unwrap().p_value() > 0.5);
+        // A law that ends at two deviations has too few beyond.
+        let short: Vec<f64> = even.iter().map(|e| e.clamp(-1.9, 1.9)).collect();
+        assert!(tails(&spectral, &short, &usable).unwrap().p_value() < 1e-12);
+    }
+
+    #[test]
+    fn a_level_that_stays_is_found_where_it_is() {
+        let n = 1024;
+        let series: Vec<f64> = (0..n).map(|i| if (256..512).contains(&i) { 1.0 } else { 0.0 }).collect();
+        let found = levels(&spectral(n), &white(series)).unwrap();
+        // 256 ones are 16 deviations.
+        assert_eq!((found.place.from, found.place.to), (128.0, 256.0));
+        let trials = found.ln_p - ln_normal_two_sided(16.0);
+        assert!((trials.exp() - 2037.0).abs() < 20.0, "{}", trials.exp());
+    }
+
+    #[test]
+    fn the_smallest_of_several_probabilities_is_multiplied_by_their_number() {
+        let place = Place { domain: Domain::Time, from: 0.0, to: 1.0 };
+        let of = |p: f64| Departure { test: "level", place, beside: None, ln_p: p.ln() };
+        assert!((family(&[of(0.5), of(0.01), of(0.2)]) - 0.03).abs() < 1e-12);
+        assert_eq!(family(&[of(0.5), of(0.9)]), 1.0);
+    }
+}

@@ -133,3 +133,27 @@ fn propagate(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn deviations_of_products_and_sums_follow_from_those_of_their_parts() {
+        // A nonlinear 3 ± 0.1 and a coefficient 4 ± 0.2, independent: 12 ± √(0.4² + 0.6²), 7 ± √0.05.
+        let covariance = DMatrix::from_row_slice(2, 2, &[0.01, 0.0, 0.0, 0.04]);
+        let both = |a: &[f64], b: &[f64]| vec![a[0] * b[0], a[0] + b[0]];
+        let deviations = propagate(&[3.0], &[4.0], &covariance, both);
+        assert!((deviations[0] - 0.52f64.sqrt()).abs() < 1e-9, "{deviations:?}");
+        assert!((deviations[1] - 0.05f64.sqrt()).abs() < 1e-9, "{deviations:?}");
+        // With a correlation of −1 the sum is known to the difference.
+        let opposed = DMatrix::from_row_slice(2, 2, &[0.01, -0.02, -0.02, 0.04]);
+        assert!((propagate(&[3.0], &[4.0], &opposed, both)[1] - 0.1).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_rms_of_a_course_is_about_its_mean() {
+        assert_eq!(rms(&[5.0, 9.0, 5.0, 9.0]), 2.0);
+        assert_eq!(rms(&[]), 0.0);
+    }
+}
