@@ -1,7 +1,7 @@
 //! Speed of the parts of a run on a million samples: `cargo bench --bench throughput`. Nothing here passes or fails.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use sagnac::acceptance::run::{Request, analysis, execute};
+use sagnac::acceptance::{Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::ingest::{Source, open};
 use sagnac::noise::allan::{AllanAccumulator, AllanPlan};

@@ -1,7 +1,7 @@
 //! What the fuzz targets share: files made of the input, an eye on memory, an analysis in memory.
 
 use peak_alloc::PeakAlloc;
-use sagnac::acceptance::run::{Outcome, Request, analysis, execute};
+use sagnac::acceptance::{Outcome, Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::figure::Figure;
 use sagnac::ingest::{ReadOptions, Source, open, open_with};

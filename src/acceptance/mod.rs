@@ -1,6 +1,47 @@
-//! A procedure applied to a recording: conditions, the run, and what is done with its record.
+//! A procedure applied to a recording, and what is done with its record.
+//!
+//! | module | what it does |
+//! |---|---|
+//! | `pipeline` | the way from a recording to its record: collect, judge, measure, record |
+//! | `kinds` | what each kind of test adds to that way; one file or folder a kind, one list |
+//! | `condition` | whether the test was done as required; one condition a file |
+//! | `figures` | plots as data |
+//! | `phases`, `explained` | several procedures as one test; a recording against the model of its family |
+//! | `compare`, `inspect` | results side by side; what a file holds and which tests it can support |
 
+pub mod analysis;
+mod build_record;
 pub mod compare;
 pub mod condition;
+pub mod explained;
+pub mod figures;
 pub mod inspect;
-pub mod run;
+mod interval_means;
+mod kinds;
+mod missing_rows;
+pub mod phases;
+mod pipeline;
+pub mod power;
+mod reading;
+mod request;
+mod sinks;
+mod test_kind;
+mod verdict;
+
+pub use request::{Outcome, Request, RunError, Table, session};
+
+use crate::record::RunRecord;
+
+/// Runs a procedure on a recording. `progress` is told bytes read and bytes in all.
+///
+/// # Errors
+/// [`RunError`] when there is nothing to evaluate. Everything else, a missing serial number included, is a verdict.
+pub fn execute(request: &Request<'_>, progress: &mut dyn FnMut(u64, u64)) -> Result<Outcome, RunError> {
+    kinds::of_request(request).run(request, progress)
+}
+
+/// The record of a run whose recording could not be evaluated: the verdict is `error` and the reason is in the record, so
+/// that no earlier report survives a failed run.
+pub fn failed(request: &Request<'_>, error: &RunError) -> RunRecord {
+    build_record::failed(request, kinds::of_request(request).checks(), error)
+}

@@ -6,7 +6,7 @@ use super::inputs::Inputs;
 use super::options::{GridArgs, renderer};
 use super::place;
 use super::read::ReadArgs;
-use crate::acceptance::run::{Request, analysis};
+use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::model::Procedure;
 use crate::i18n::{Lang, Localize, Note};

@@ -1,7 +1,7 @@
 //! `sagnac check`: procedures and limits without data.
 
 use super::{exit, place};
-use crate::acceptance::run::power::warning;
+use crate::acceptance::power::warning;
 use crate::config::diagnostics::Problem;
 use crate::config::procedure::check::{Checked, check, check_report_with};
 use crate::config::procedure::power::{questions, warnings};

@@ -10,7 +10,7 @@ use crate::acceptance::compare::published::checked;
 use crate::acceptance::compare::{
     Comparison, Origin, Unit, not_compared, tell_apart, tell_repeated, units_of,
 };
-use crate::acceptance::run::{Request, analysis};
+use crate::acceptance::{Request, analysis};
 use crate::config::procedure::limits::LimitSpec;
 use crate::config::procedure::{EffectiveLimits, load_limits};
 use crate::i18n::{Lang, Localize, Note};

@@ -3,7 +3,7 @@
 use super::inputs;
 use super::progress::{Progress, Watch};
 use super::{exit, place};
-use crate::acceptance::run::{Outcome, Request, RunError, execute, explained, failed};
+use crate::acceptance::{Outcome, Request, RunError, execute, explained, failed};
 use crate::config::model::Claim;
 use crate::i18n::{Lang, Localize, Note, lookup};
 use crate::output::StagedFolder;

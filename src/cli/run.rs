@@ -4,7 +4,7 @@ use super::finish::{Against, report_failure, run_and_finish};
 use super::inputs::{Inputs, serial};
 use super::options::{GridArgs, renderer};
 use super::place;
-use crate::acceptance::run::{Request, explained};
+use crate::acceptance::{Request, explained};
 use crate::config::procedure::phases::is_phased;
 use crate::config::procedure::{effective, load, load_limits};
 use crate::i18n::Lang;

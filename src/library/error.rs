@@ -1,6 +1,6 @@
 //! The one error of the library.
 
-use crate::acceptance::run::RunError;
+use crate::acceptance::RunError;
 use crate::config::diagnostics::Problems;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{IngestError, RecordingError};

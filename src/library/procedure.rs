@@ -1,7 +1,7 @@
 //! A test procedure, run on a recording.
 
 use super::{Error, Recording, files};
-use crate::acceptance::run::{Outcome, Request, execute};
+use crate::acceptance::{Outcome, Request, execute};
 use crate::config::model;
 use crate::config::procedure::{self, EffectiveLimits, LimitsFile, Loaded, Problem, effective};
 use crate::estimate::Verdict;

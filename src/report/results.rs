@@ -3,8 +3,8 @@
 use super::Document;
 use super::explain::{Context, ExplainFile};
 use super::export::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
+use crate::acceptance::Outcome;
 use crate::acceptance::compare::{Comparison, csv, figures};
-use crate::acceptance::run::Outcome;
 use crate::config::model;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Note};

@@ -6,7 +6,7 @@ use crate::study::{Asked, Case, Row, Study};
 use rayon::prelude::*;
 
 use realfft::RealFftPlanner;
-use sagnac::acceptance::run::{Request, analysis, execute};
+use sagnac::acceptance::{Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::config::procedure::limits::LimitSpec;
 use sagnac::estimate::{Limit, Rule, Verdict};

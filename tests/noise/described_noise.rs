@@ -1,6 +1,6 @@
 //! A description with Markov noise, quasi-periodic disturbances and lines through measurands and figures.
 
-use sagnac::acceptance::run::figures::{allan_family, autocorrelation, residual, sigma_tau, spectrum};
+use sagnac::acceptance::figures::{allan_family, autocorrelation, residual, sigma_tau, spectrum};
 use sagnac::estimate::{Estimate, Spread};
 use sagnac::figure::{Figure, Layer, Style};
 use sagnac::i18n::{Lang, Localize};

@@ -1,6 +1,6 @@
 //! A recording tested by the library under a procedure and the limits of the samples.
 
-use sagnac::acceptance::run::{Request, RunError, execute};
+use sagnac::acceptance::{Request, RunError, execute};
 use sagnac::config::procedure::{Loaded, Procedure, effective, load_limits};
 use sagnac::record::{RunRecord, UnitUnderTest};
 use std::path::Path;

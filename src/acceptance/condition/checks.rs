@@ -1,76 +1,39 @@
-//! Which checks were made. The checks tell it themselves where they run; what a kind of test could check and nobody told
-//! of is listed as not made.
+//! Which checks were made. A check notes it itself where it runs; what a kind of test could check and nothing noted is
+//! listed as not made.
 //!
-//! One more check: one line in [`CHECKS`], its name `check_name.<id>` in the tables, and a call of [`CheckLog::made`] or
-//! [`CheckLog::not_made`] where it runs.
+//! One more check: one line in [`CHECKS`], its name `check_name.<id>` in the tables, the kinds of test that could make it
+//! (`checks` of each, or [`OF_EVERY_TEST`]), and a call of [`CheckLog::made`] or [`CheckLog::not_made`] where it runs.
 
-use crate::config::procedure::Procedure;
 use crate::i18n::Note;
 use crate::record::{CheckRecord, CheckStatus};
 use std::sync::Mutex;
 
-/// A kind of test.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// At rest at constant conditions.
-    Static,
-    /// At rest over temperature.
-    Temperature,
-    /// From switching on.
-    WarmUp,
-    /// Steps of a rate table.
-    RateTable,
-    /// Positions and turns by known angles.
-    Positions,
-    /// Without and with an influence.
-    Influence,
-    /// Switching off and on.
-    Repeatability,
-}
-
-impl Kind {
-    /// The kind of test that a procedure describes.
-    pub fn of(procedure: &Procedure) -> Kind {
-        match &procedure.rate_table {
-            Some(setup) if setup.known.is_empty() => Kind::RateTable,
-            Some(_) => Kind::Positions,
-            None if procedure.repeatability_test.is_some() => Kind::Repeatability,
-            None if procedure.comparison_test.is_some() => Kind::Influence,
-            None if procedure.temperature_test.is_some() => Kind::Temperature,
-            None if procedure.warm_up_test.is_some() => Kind::WarmUp,
-            None => Kind::Static,
-        }
-    }
-}
-
-use Kind::{Influence, Positions, RateTable, Repeatability, Static, Temperature, WarmUp};
-
-const ALL: &[Kind] = &[Static, Temperature, WarmUp, RateTable, Positions, Influence, Repeatability];
-const AT_REST: &[Kind] = &[Static, Temperature, WarmUp, Influence, Repeatability];
-
-/// What each kind of test could check from what it is given.
-#[rustfmt::skip]
-const CHECKS: &[(&str, &[Kind])] = &[
-    ("earth_rate", AT_REST),
-    ("earth_sign", &[RateTable]),
-    ("earth_in_positions", &[Positions]),
-    ("table_response", &[RateTable]),
-    ("table_reached", &[RateTable]),
-    ("table_agreement", &[RateTable]),
-    ("column_units", ALL),
-    ("noise_level", AT_REST),
-    ("temperature_unit", ALL),
-    ("clock", ALL),
-    ("clock_by_turns", &[RateTable]),
-    ("warm_up", &[Static]),
-    ("temperature_in_step", &[Influence]),
-    ("full_scale", ALL),
-    ("plausible", ALL),
-    ("distribution", AT_REST),
-    ("serial_number", ALL),
+/// Every check, in the order of the report.
+pub const CHECKS: &[&str] = &[
+    "earth_rate",
+    "earth_sign",
+    "earth_in_positions",
+    "table_response",
+    "table_reached",
+    "table_agreement",
+    "column_units",
+    "noise_level",
+    "temperature_unit",
+    "clock",
+    "clock_by_turns",
+    "warm_up",
+    "temperature_in_step",
+    "full_scale",
+    "plausible",
+    "distribution",
+    "serial_number",
 ];
 
-/// What checks tell of themselves while a recording is judged.
+/// Checks that every kind of test could make from what it is given.
+pub const OF_EVERY_TEST: &[&str] =
+    &["column_units", "temperature_unit", "clock", "full_scale", "plausible", "serial_number"];
+
+/// What the checks note of themselves while a recording is judged.
 #[derive(Debug, Default)]
 pub struct CheckLog(Mutex<Vec<CheckRecord>>);
 
@@ -106,12 +69,12 @@ impl CheckLog {
         }
     }
 
-    /// Every check of a kind of test in the order of the table: as told, or not made. What was made once on a channel
-    /// was made.
-    pub fn settle(&self, kind: Kind) -> Vec<CheckRecord> {
+    /// Every check of a kind of test in the order of [`CHECKS`]: as noted, or not made. What was made once on a channel
+    /// was made. `own` are the checks that the kind of test adds to those of every test.
+    pub fn records(&self, own: &[&str]) -> Vec<CheckRecord> {
         let told = self.0.lock().map(|list| list.clone()).unwrap_or_default();
         let mut all: Vec<CheckRecord> = Vec::new();
-        for id in known(kind) {
+        for id in possible(own) {
             let before = all.len();
             for record in told.iter().filter(|r| r.id == id) {
                 match all.iter_mut().skip(before).find(|r| r.channel == record.channel) {
@@ -134,12 +97,12 @@ impl CheckLog {
 }
 
 /// The checks of a run that read nothing.
-pub fn none_made(kind: Kind) -> Vec<CheckRecord> {
-    known(kind).map(|id| unmade(id, Note::new("check_list.not_read"))).collect()
+pub fn none_made(own: &[&str]) -> Vec<CheckRecord> {
+    possible(own).map(|id| unmade(id, Note::new("check_list.not_read"))).collect()
 }
 
-fn known(kind: Kind) -> impl Iterator<Item = &'static str> {
-    CHECKS.iter().filter(move |(_, kinds)| kinds.contains(&kind)).map(|(id, _)| *id)
+fn possible(own: &[&str]) -> impl Iterator<Item = &'static str> {
+    CHECKS.iter().copied().filter(move |id| OF_EVERY_TEST.contains(id) || own.contains(id))
 }
 
 fn unmade(id: &str, reason: Note) -> CheckRecord {
@@ -165,7 +128,7 @@ mod tests {
         log.made("earth_rate", Some("x"), "earth_rate");
         log.not_made("earth_rate", Some("y"), "check_list.no_site");
         log.made("table_response", None, "table_response");
-        let all = log.settle(Kind::Static);
+        let all = log.records(&["earth_rate", "distribution"]);
         let of = |id: &str| all.iter().filter(|r| r.id == id).map(|r| r.status).collect::<Vec<_>>();
         assert_eq!(of("earth_rate"), [CheckStatus::Made, CheckStatus::NotMade]);
         assert_eq!(of("distribution"), [CheckStatus::NotMade]);
@@ -174,9 +137,8 @@ mod tests {
     }
 
     #[test]
-    fn every_check_has_a_name_and_a_kind() {
-        for (id, kinds) in CHECKS {
-            assert!(!kinds.is_empty());
+    fn every_check_has_a_name() {
+        for id in CHECKS {
             for lang in [Lang::En, Lang::Ru] {
                 assert!(lookup(lang, &format!("check_name.{id}")).is_some(), "{id}");
             }

@@ -7,15 +7,15 @@ use crate::record::{ConditionRecord, ConditionStatus};
 pub(super) struct Clock;
 
 /// Recordings are shorter.
-const LONGEST_S: f64 = 366.0 * 86_400.0;
+const MAX_DURATION_S: f64 = 366.0 * 86_400.0;
 /// Gyros are sampled more slowly.
-const FASTEST_HZ: f64 = 1e6;
+const MAX_RATE_HZ: f64 = 1e6;
 /// Rms scatter of the stamps, in intervals, from which they are not those of a uniform clock.
-const UNEVEN: f64 = 0.15;
+const MAX_STAMP_SCATTER: f64 = 0.15;
 /// Relative difference from a round rate below which it is met.
-const MET: f64 = 1e-3;
+const RATE_TOLERANCE: f64 = 1e-3;
 /// Relative difference up to which a round rate is the one that was meant.
-const NEAR: f64 = 0.06;
+const RATE_SLIP_TOLERANCE: f64 = 0.06;
 
 impl Condition for Clock {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
@@ -25,14 +25,14 @@ impl Condition for Clock {
         }
         facts.checks.made("clock", None, "clock");
         let rate_hz = 1.0 / facts.sample_interval_s;
-        let note = if facts.duration_s > LONGEST_S {
+        let note = if facts.duration_s > MAX_DURATION_S {
             Note::new("clock.too_long")
                 .with("years", facts.duration_s / (365.25 * 86_400.0))
                 .with("hz", rate_hz)
-        } else if rate_hz > FASTEST_HZ {
+        } else if rate_hz > MAX_RATE_HZ {
             Note::new("clock.too_fast").with("hz", rate_hz)
         } else if let Some(jitter_s) =
-            facts.integrity.timestamp_jitter_s.filter(|j| *j > UNEVEN * facts.sample_interval_s)
+            facts.integrity.timestamp_jitter_s.filter(|j| *j > MAX_STAMP_SCATTER * facts.sample_interval_s)
         {
             Note::new("clock.uneven")
                 .with("jitter_s", jitter_s)
@@ -66,7 +66,7 @@ fn round_near(rate_hz: f64) -> Option<f64> {
             two * 10f64.powf((v / two).log10().round())
         })
     };
-    let met = |round: f64| (rate_hz / round - 1.0).abs() <= MET;
+    let met = |round: f64| (rate_hz / round - 1.0).abs() <= RATE_TOLERANCE;
     if met(two_digits(rate_hz)) || met(1.0 / two_digits(1.0 / rate_hz)) || powers(rate_hz).any(met) {
         return None;
     }
@@ -74,7 +74,7 @@ fn round_near(rate_hz: f64) -> Option<f64> {
     let scale = 10f64.powf(rate_hz.log10().floor());
     let usual = [1.0, 2.0, 4.0, 5.0, 8.0, 10.0].map(|d| d * scale);
     let off = |r: &f64| (rate_hz / r - 1.0).abs();
-    usual.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|r| off(r) <= NEAR)
+    usual.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|r| off(r) <= RATE_SLIP_TOLERANCE)
 }
 
 #[cfg(test)]

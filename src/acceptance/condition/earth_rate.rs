@@ -27,16 +27,16 @@ use crate::record::{ConditionRecord, ConditionStatus};
 pub(super) struct EarthRate;
 
 /// Least Earth rate along the axis that a unit is told by where nothing is known of the bias, deg/h.
-const LEAST_DEG_H: f64 = 1.0;
+const MIN_EARTH_RATE_DEG_H: f64 = 1.0;
 /// Share of the Earth rate within which an exchange of unit brings the mean then.
-const USUAL: f64 = 0.125;
+const EXCHANGE_TOLERANCE: f64 = 0.125;
 impl Condition for EarthRate {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
-        facts.gyros.iter().filter_map(|g| one(g, facts)).collect()
+        facts.gyros.iter().filter_map(|g| of_gyro(g, facts)).collect()
     }
 }
 
-fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
+fn of_gyro(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
     match why_not(gyro, facts) {
         Some(reason) => facts.checks.not_made("earth_rate", Some(&gyro.channel), reason),
         None => facts.checks.made("earth_rate", Some(&gyro.channel), "earth_rate"),
@@ -53,7 +53,7 @@ fn one(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
         (false, false) => (ConditionStatus::Invalid, "earth_rate.mistake"),
     };
     let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
-    Some(told(gyro, earth, (status, key, mistakes), required, facts))
+    Some(comparison(gyro, earth, (status, key, mistakes), required, facts))
 }
 
 /// Why sign, axis and unit cannot be told by the Earth rate.
@@ -68,7 +68,7 @@ fn why_not(gyro: &GyroFact, facts: &Facts<'_>) -> Option<&'static str> {
 }
 
 /// The record of a mean beside the Earth rate, with the mistakes that explain their difference.
-fn told(
+fn comparison(
     gyro: &GyroFact,
     earth: f64,
     (status, key, mistakes): (ConditionStatus, &'static str, Vec<Note>),
@@ -92,15 +92,15 @@ fn told(
 fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let moved = facts.procedure.rate_table.is_some();
     let shown = |rate: f64, share: f64| (rate - earth).abs() <= share * earth.abs();
-    if moved || earth.abs() < LEAST_DEG_H || shown(gyro.mean_deg_h, 0.5) {
+    if moved || earth.abs() < MIN_EARTH_RATE_DEG_H || shown(gyro.mean_deg_h, 0.5) {
         return None;
     }
     let declared = &facts.procedure.channel(&gyro.channel)?.unit_in_file;
     let usual = unit_slip::rate_factors(declared).into_iter().filter(|m| m.usual);
     let fits = |m: &UnitSlip| {
         let slack = 3.0 * m.factor.abs() * gyro.mean_uncertainty_deg_h;
-        slack <= USUAL * earth.abs()
-            && shown(gyro.mean_deg_h * m.factor, USUAL)
+        slack <= EXCHANGE_TOLERANCE * earth.abs()
+            && shown(gyro.mean_deg_h * m.factor, EXCHANGE_TOLERANCE)
             && !noise_is_implausible(gyro, m.factor, facts)
     };
     let found: Vec<Note> = usual.filter(fits).map(|m| m.note).collect();
@@ -108,7 +108,7 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
         return None;
     }
     let required = Note::new("earth_rate.required_alone").with("earth", earth);
-    Some(told(gyro, earth, (ConditionStatus::Invalid, "earth_rate.mistake", found), required, facts))
+    Some(comparison(gyro, earth, (ConditionStatus::Invalid, "earth_rate.mistake", found), required, facts))
 }
 
 /// A reversed sign, or an Earth rate taken out before, told by how little the bias moves in a test over temperature or of the
@@ -118,14 +118,14 @@ fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Conditi
     let ids = [measurand::BIAS_OVER_TEMPERATURE_PEAK_TO_PEAK.id, measurand::TURN_ON_TRANSIENT.id];
     let limits = ids.iter().filter_map(|id| facts.limits.limit(id, &gyro.channel)?.limit.largest_magnitude());
     let bound = TYPICAL_BIAS_FACTOR * limits.fold(moves, f64::max);
-    if earth_rate_is_kept(facts) || earth.abs() < LEAST_DEG_H {
+    if earth_rate_is_kept(facts) || earth.abs() < MIN_EARTH_RATE_DEG_H {
         return None;
     }
     let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
     let u = 3.0 * gyro.mean_uncertainty_deg_h;
     if earth.abs() < MIN_EARTH_TO_BIAS * (bound + u) {
         let status = (ConditionStatus::Remark, "earth_rate.not_judged", vec![]);
-        return Some(told(gyro, earth, status, required, facts));
+        return Some(comparison(gyro, earth, status, required, facts));
     }
     let near = |value: f64| (gyro.mean_deg_h - value).abs() <= bound + u;
     let found = if near(-earth) {
@@ -136,7 +136,7 @@ fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Conditi
         return None;
     };
     let status = (ConditionStatus::Invalid, "earth_rate.mistake", vec![found]);
-    Some(told(gyro, earth, status, required, facts))
+    Some(comparison(gyro, earth, status, required, facts))
 }
 
 /// The single mistakes that bring the mean into agreement.

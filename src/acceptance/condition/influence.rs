@@ -176,14 +176,14 @@ pub struct ComparedFacts<'a> {
 }
 
 /// Probability below which levels are said to be off the line.
-const OFF_THE_LINE: f64 = 0.01;
+const MIN_LINE_PROBABILITY: f64 = 0.01;
 
 /// Judges a comparison.
 pub fn judge_compared(facts: &ComparedFacts<'_>) -> Vec<ConditionRecord> {
     let mut all = vec![intervals(facts), acted(facts), temperature(facts)];
     all.extend(facts.others.iter().map(|o| beside(o, facts)));
     if let Some(p) = facts.line {
-        let (status, key) = match (p < OFF_THE_LINE, facts.squared) {
+        let (status, key) = match (p < MIN_LINE_PROBABILITY, facts.squared) {
             (false, _) => (ConditionStatus::Ok, "compared.on_line"),
             (true, false) => (ConditionStatus::Remark, "compared.off_line"),
             (true, true) => (ConditionStatus::Remark, "compared.off_square"),

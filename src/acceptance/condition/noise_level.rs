@@ -17,7 +17,7 @@ use crate::recording::Role;
 pub(super) struct NoiseLevel;
 
 /// Factor within which a mistake explains the ratio.
-const EXPLAINED: f64 = 3.0;
+const SLIP_FACTOR: f64 = 3.0;
 
 impl Condition for NoiseLevel {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
@@ -26,11 +26,11 @@ impl Condition for NoiseLevel {
             facts.checks.not_made("noise_level", None, "check_list.no_typical_noise");
             return vec![];
         };
-        facts.gyros.iter().filter_map(|g| one(g, typical, facts)).collect()
+        facts.gyros.iter().filter_map(|g| of_gyro(g, typical, facts)).collect()
     }
 }
 
-fn one(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+fn of_gyro(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let levels = white_noise_range(gyro);
     match levels {
         Some(_) => facts.checks.made("noise_level", Some(&gyro.channel), "noise_level"),
@@ -85,6 +85,6 @@ fn explain(gyro: &GyroFact, ratio: f64, facts: &Facts<'_>) -> Vec<Note> {
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let nearest = found.first().map_or(f64::INFINITY, |f| f.0);
-    found.retain(|f| f.0 <= EXPLAINED.ln() && f.0 <= nearest + 1.2f64.ln());
+    found.retain(|f| f.0 <= SLIP_FACTOR.ln() && f.0 <= nearest + 1.2f64.ln());
     found.into_iter().take(3).map(|f| f.1).collect()
 }

@@ -7,17 +7,17 @@ use crate::record::{ConditionRecord, ConditionStatus};
 pub(super) struct Output;
 
 /// Step of the output in units of the noise of a sample from which it adds 2 % to the variance.
-const COARSE: f64 = 0.5;
+const COARSE_STEP: f64 = 0.5;
 /// Scatter of neighbouring samples over that of white noise below which the output is smoothed.
-const SMOOTH: f64 = 0.5;
+const SMOOTHED_SCATTER: f64 = 0.5;
 
 impl Condition for Output {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
-        facts.gyros.iter().flat_map(one).collect()
+        facts.gyros.iter().flat_map(of_gyro).collect()
     }
 }
 
-fn one(gyro: &GyroFact) -> Vec<ConditionRecord> {
+fn of_gyro(gyro: &GyroFact) -> Vec<ConditionRecord> {
     let Some(&(_, sample)) = gyro.deviations.first().filter(|(tau, d)| *tau <= 1.5 * gyro.tau0_s && *d > 0.0)
     else {
         return vec![];
@@ -28,7 +28,7 @@ fn one(gyro: &GyroFact) -> Vec<ConditionRecord> {
         let id = format!("output.{}", gyro.channel);
         found.push(record(id, ConditionStatus::Remark, &[("sample_deg_h", sample)], Some(required), note));
     };
-    if let Some(step) = gyro.quantization_step_deg_h.filter(|q| *q > COARSE * sample) {
+    if let Some(step) = gyro.quantization_step_deg_h.filter(|q| *q > COARSE_STEP * sample) {
         remark(
             Note::new("output.coarse")
                 .with("channel", gyro.channel.clone())
@@ -38,7 +38,7 @@ fn one(gyro: &GyroFact) -> Vec<ConditionRecord> {
     }
     if let Some(n) = gyro.angle_random_walk {
         let white = 60.0 * n / gyro.tau0_s.sqrt();
-        if sample < SMOOTH * white {
+        if sample < SMOOTHED_SCATTER * white {
             remark(
                 Note::new("output.smoothed")
                     .with("channel", gyro.channel.clone())

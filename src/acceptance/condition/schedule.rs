@@ -11,9 +11,9 @@ use crate::temperature::{SegmentKind, TemperatureTest};
 pub(super) struct Schedule;
 
 /// Share of blocks without a temperature that is still borne.
-const MISSING: f64 = 0.02;
+const MAX_MISSING_SHARE: f64 = 0.02;
 /// Time from the end of the last ramp to the end of the recording within which a ramp counts as cut, s.
-const CUT_S: f64 = 120.0;
+const CUT_WITHIN_S: f64 = 120.0;
 
 impl Condition for Schedule {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
@@ -32,7 +32,7 @@ impl Condition for Schedule {
             )]
         };
         let Some(run) = facts.schedule else { return invalid("temperature_course", "schedule.missing") };
-        if run.missing > MISSING {
+        if run.missing > MAX_MISSING_SHARE {
             let percent = Arg::figures(100.0 * run.missing, 3);
             let note = Note::new("schedule.holes").with("channel", channel).with("percent", percent);
             return vec![record("temperature_course", ConditionStatus::Invalid, &[], None, note)];
@@ -69,8 +69,9 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
         .with("tolerance", Arg::Stated(test.end_tolerance_deg_c))
         .with("ramps", test.ramps_each_way);
     let last = run.segments.last();
-    let cut =
-        last.filter(|s| s.kind.is_ramp() && facts.duration_s - s.to_s < CUT_S.max(0.005 * facts.duration_s));
+    let cut = last.filter(|s| {
+        s.kind.is_ramp() && facts.duration_s - s.to_s < CUT_WITHIN_S.max(0.005 * facts.duration_s)
+    });
     let aborted = cut.filter(|s| left(s, test) > test.end_tolerance_deg_c);
     let turned: Vec<&Segment> = turned_back(run, test).collect();
     // A ramp that broke off or turned back is none of those asked for.

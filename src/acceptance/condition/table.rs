@@ -76,23 +76,23 @@ pub struct ChannelFact {
 }
 
 /// Factors that a unit may have, a dead zone or a bent response included; mistakes of unit lie beyond.
-const FOLLOWS: std::ops::RangeInclusive<f64> = 0.3..=2.0;
+const ACCEPTED_FACTORS: std::ops::RangeInclusive<f64> = 0.3..=2.0;
 
 /// Degrees in a radian.
-const RADIAN: f64 = 180.0 / std::f64::consts::PI;
+const DEG_PER_RAD: f64 = 180.0 / std::f64::consts::PI;
 /// Times full scale from which the value stated for it, or the unit of the table, is wrong.
-const BEYOND: f64 = 3.0;
+const MAX_RATE_TO_FULL_SCALE: f64 = 3.0;
 /// Rate of the inner axis beside that of the outer one from which it does not rest: a misalignment of 0.3 mrad.
-const RESTS: f64 = 3e-4;
+const MAX_INNER_RATE_RATIO: f64 = 3e-4;
 /// Share of the Earth rate within which a bias is twice that of the other sign.
-const TWICE: f64 = 0.05;
+const SIGN_TOLERANCE: f64 = 0.05;
 /// Least Earth rate along the axis by which that is told, deg/h.
-const LEAST_EARTH: f64 = 3.0;
+const MIN_EARTH_RATE_DEG_H: f64 = 3.0;
 
 /// Share of the tolerance of the rate by which steps may be off on average where the settling is a little short.
-const OFF: f64 = 0.1;
+const MAX_SETTLING_ERROR: f64 = 0.1;
 /// Relative difference within which a time is that of another unit.
-const OF_UNIT: f64 = 0.05;
+const TIME_SLIP_TOLERANCE: f64 = 0.05;
 
 /// Judges a test on a table, and notes which checks were made.
 pub fn judge_and_log(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionRecord> {
@@ -116,7 +116,7 @@ pub fn judge_and_log(facts: &TableFacts, checks: &CheckLog) -> Vec<ConditionReco
         let reason = match c.bias_and_earth {
             None => "check_list.no_site",
             Some(_) if facts.about_outer => "check_list.other_axis",
-            Some((_, earth)) if earth.abs() < LEAST_EARTH => "check_list.small_earth_rate",
+            Some((_, earth)) if earth.abs() < MIN_EARTH_RATE_DEG_H => "check_list.small_earth_rate",
             Some(_) => {
                 checks.made("earth_sign", Some(&c.channel), "table_earth_rate");
                 continue;
@@ -142,10 +142,10 @@ pub fn judge(facts: &TableFacts) -> Vec<ConditionRecord> {
         all.extend(agreement(facts));
     }
     all.extend(settling);
-    all.extend(still(facts));
+    all.extend(inner_axis_still(facts));
     // A channel of which nothing is asked may lie across the axis that turns.
     let asked = || facts.channels.iter().filter(|c| c.asked);
-    all.extend(asked().filter_map(|c| follows(c, facts)));
+    all.extend(asked().filter_map(|c| response(c, facts)));
     all.extend(asked().filter_map(|c| earth_sign(c, facts)));
     all
 }
@@ -156,9 +156,9 @@ fn id_of(id: &str, channel: &ChannelFact, facts: &TableFacts) -> String {
 }
 
 /// Whether the inner axis rested while the outer one turned.
-fn still(facts: &TableFacts) -> Option<ConditionRecord> {
+fn inner_axis_still(facts: &TableFacts) -> Option<ConditionRecord> {
     let (inner, outer) = facts.inner_during_step.filter(|_| facts.about_outer)?;
-    let moves = (inner / outer).abs() > RESTS;
+    let moves = (inner / outer).abs() > MAX_INNER_RATE_RATIO;
     let (status, key) = if moves {
         (ConditionStatus::Invalid, "on_table.inner_moves")
     } else {
@@ -174,8 +174,8 @@ fn still(facts: &TableFacts) -> Option<ConditionRecord> {
 /// A bias that is the Earth rate taken out with the wrong sign, twice.
 fn earth_sign(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
     let (bias, earth) =
-        channel.bias_and_earth.filter(|(_, e)| !facts.about_outer && e.abs() >= LEAST_EARTH)?;
-    let within = channel.bias_limit.unwrap_or(0.0).clamp(TWICE * earth.abs(), 0.5 * earth.abs());
+        channel.bias_and_earth.filter(|(_, e)| !facts.about_outer && e.abs() >= MIN_EARTH_RATE_DEG_H)?;
+    let within = channel.bias_limit.unwrap_or(0.0).clamp(SIGN_TOLERANCE * earth.abs(), 0.5 * earth.abs());
     if (bias + 2.0 * earth).abs() > within {
         return None;
     }
@@ -230,7 +230,7 @@ fn reached(facts: &TableFacts) -> Option<ConditionRecord> {
     let worst = if worst.is_finite() { worst } else { 0.0 };
     let (status, key) = if worst < least {
         (ConditionStatus::Invalid, "on_table.not_reached")
-    } else if sides.iter().any(|s| *s > BEYOND * full) {
+    } else if sides.iter().any(|s| *s > MAX_RATE_TO_FULL_SCALE * full) {
         (ConditionStatus::Invalid, "on_table.beyond")
     } else if one_side {
         (ConditionStatus::Remark, "on_table.one_side")
@@ -256,7 +256,7 @@ fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
         "on_table.agrees"
     } else if (factor + 1.0).abs() <= facts.tolerance {
         "on_table.angle_reversed"
-    } else if (factor * RADIAN - 1.0).abs() <= facts.tolerance.max(0.01) {
+    } else if (factor * DEG_PER_RAD - 1.0).abs() <= facts.tolerance.max(0.01) {
         "on_table.angle_in_radians"
     } else if factor.abs() < 0.98 {
         "on_table.fell_short"
@@ -275,7 +275,7 @@ fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
 
 /// Whether the output follows the table: its factor is near 1, and otherwise what is wrong. Where the input axis is square to
 /// the axis that turns, nothing but a turn of the inner axis tells.
-fn follows(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
+fn response(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
     let id = id_of("table_response", channel, facts);
     let required = Some(Note::new("on_table.required.response"));
     let Some(factor) = channel.factor else {
@@ -283,16 +283,16 @@ fn follows(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord>
         return (!facts.about_outer).then(|| record(id, ConditionStatus::Invalid, &[], required, note));
     };
     let observed = [("factor", factor)];
-    if FOLLOWS.contains(&factor) {
+    if ACCEPTED_FACTORS.contains(&factor) {
         let note = Note::new("on_table.follows").with("factor", Arg::figures(factor, 5));
         return Some(record(id, ConditionStatus::Ok, &observed, required, note));
     }
-    let note = does_not_follow(channel, factor, facts);
+    let note = response_error(channel, factor, facts);
     Some(record(id, ConditionStatus::Invalid, &observed, required, note))
 }
 
 /// What is wrong with an output that does not follow the table.
-fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> Note {
+fn response_error(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> Note {
     let shown = Arg::figures(factor, 4);
     let mistakes = unit_slip::rate_factors(&channel.unit);
     let mistaken = |why: Note| {
@@ -300,14 +300,13 @@ fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> No
     };
     // An exchange of unit leaves next to nothing of the output, which is known well all the same.
     let resolved = factor.abs() > 10.0 * channel.standard;
-    let exchanged = |m: &&UnitSlip| m.usual && FOLLOWS.contains(&(m.factor * factor));
+    let exchanged = |m: &&UnitSlip| m.usual && ACCEPTED_FACTORS.contains(&(m.factor * factor));
     if let Some(exchange) = mistakes.iter().find(exchanged).filter(|_| resolved) {
         return mistaken(exchange.note.clone());
     }
-    let other = facts
-        .channels
-        .iter()
-        .find(|c| c.channel != channel.channel && c.factor.is_some_and(|f| FOLLOWS.contains(&f.abs())));
+    let other = facts.channels.iter().find(|c| {
+        c.channel != channel.channel && c.factor.is_some_and(|f| ACCEPTED_FACTORS.contains(&f.abs()))
+    });
     if factor.abs() < 0.1 && factor.abs() < 20.0 * channel.standard.max(0.005) {
         return match other {
             Some(other) if facts.channels.len() > 2 => Note::new("table_motion.one_axis")
@@ -321,7 +320,7 @@ fn does_not_follow(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> No
             None => Note::new("on_table.does_not_follow").with("factor", shown),
         };
     }
-    if FOLLOWS.contains(&-factor) {
+    if ACCEPTED_FACTORS.contains(&-factor) {
         return Note::new("on_table.reversed").with("factor", shown);
     }
     let off = |m: &UnitSlip| (m.factor * factor.abs()).ln().abs();
@@ -338,8 +337,11 @@ fn settling(facts: &TableFacts) -> Option<ConditionRecord> {
     if s.steps == 0 {
         return None;
     }
-    let status =
-        if s.off > OFF * facts.tolerance { ConditionStatus::Invalid } else { ConditionStatus::Remark };
+    let status = if s.off > MAX_SETTLING_ERROR * facts.tolerance {
+        ConditionStatus::Invalid
+    } else {
+        ConditionStatus::Remark
+    };
     let note = Note::new("table_motion.settling_short")
         .with("steps", s.steps)
         .with("of", facts.steps)
@@ -352,8 +354,9 @@ fn settling(facts: &TableFacts) -> Option<ConditionRecord> {
 /// Stamps of a unit that the angle and the rate of the table contradict; `None` where they do not.
 fn stamps(facts: &TableFacts) -> Option<ConditionRecord> {
     let factor = facts.time_factor.filter(|f| *f > 0.0)?;
-    let mistake =
-        unit_slip::time_factors().into_iter().find(|m| (factor / m.factor - 1.0).abs() < OF_UNIT)?;
+    let mistake = unit_slip::time_factors()
+        .into_iter()
+        .find(|m| (factor / m.factor - 1.0).abs() < TIME_SLIP_TOLERANCE)?;
     let note = Note::new("table_motion.stamps").with("mistake", Arg::from(mistake.note));
     let required = Note::new("table_motion.required.stamps");
     Some(record("table_stamps", ConditionStatus::Invalid, &[("factor", factor)], Some(required), note))
@@ -361,14 +364,14 @@ fn stamps(facts: &TableFacts) -> Option<ConditionRecord> {
 
 /// Largest scale factor, output per input in the declared units, of a unit that works: the worst MEMS gyro is off by
 /// some per cent, and a wrong unit by a factor of 57 or 3600.
-const LARGEST_SCALE: f64 = 5.0;
+const MAX_SCALE_FACTOR: f64 = 5.0;
 
 /// Judges whether a scale factor is possible; nothing where it is. One that is too small is a fault of the unit.
 pub fn judge_scale(channel: &str, factor: f64) -> Option<ConditionRecord> {
-    if factor.abs() <= LARGEST_SCALE {
+    if factor.abs() <= MAX_SCALE_FACTOR {
         return None;
     }
-    let high = || Arg::Stated(LARGEST_SCALE);
+    let high = || Arg::Stated(MAX_SCALE_FACTOR);
     let note = Note::new("plausible.scale").with("channel", Arg::Text(channel.to_owned()));
     let note = note.with("value", Arg::figures(factor, 5)).with("high", high());
     let required = Note::new("plausible.scale_required").with("high", high());

@@ -8,9 +8,9 @@ use crate::record::{ConditionRecord, ConditionStatus};
 pub(super) struct Tails;
 
 /// Excess kurtosis of Gaussian noise clipped beyond three standard deviations is −0.16, and its N 1.5 % too small.
-const SHORT: f64 = -0.1;
+const MIN_EXCESS_KURTOSIS: f64 = -0.1;
 /// Standard errors that it must lie below zero by.
-const CLEAR: f64 = 8.0;
+const MIN_STANDARD_ERRORS: f64 = 8.0;
 
 impl Condition for Tails {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
@@ -21,7 +21,9 @@ impl Condition for Tails {
             };
             facts.checks.made("distribution", Some(&gyro.channel), "tails");
             let error = (24.0 / shape.samples as f64).sqrt();
-            if shape.excess_kurtosis > (SHORT - shape.explained).min(-CLEAR * error - shape.explained) {
+            if shape.excess_kurtosis
+                > (MIN_EXCESS_KURTOSIS - shape.explained).min(-MIN_STANDARD_ERRORS * error - shape.explained)
+            {
                 return None;
             }
             let note = Note::new("tails.short")

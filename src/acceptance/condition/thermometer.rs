@@ -6,13 +6,13 @@ use crate::record::{ConditionRecord, ConditionStatus};
 use crate::units::Unit;
 
 /// Temperatures of rooms with tables in them, degC.
-const ROOM: std::ops::RangeInclusive<f64> = 5.0..=45.0;
+const ROOM_DEG_C: std::ops::RangeInclusive<f64> = 5.0..=45.0;
 
 /// Temperatures that a unit is tested at, degC: beyond, the readings are none.
-const POSSIBLE: std::ops::RangeInclusive<f64> = -100.0..=200.0;
+const UNIT_DEG_C: std::ops::RangeInclusive<f64> = -100.0..=200.0;
 
 /// Units of temperatures.
-const UNITS: [&str; 3] = ["degC", "K", "degF"];
+const TEMPERATURE_UNITS: [&str; 3] = ["degC", "K", "degF"];
 
 /// A thermometer with what it read.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,19 +31,19 @@ pub struct Thermometer {
 /// possible.
 pub fn judge_scale_of_temperature(t: &Thermometer) -> Option<ConditionRecord> {
     let (inside, own) = (Unit::parse("degC").ok()?, Unit::parse(&t.unit).ok()?);
-    if ROOM.contains(&t.mean_deg_c) {
+    if ROOM_DEG_C.contains(&t.mean_deg_c) {
         return None;
     }
     let as_read = inside.convert(t.mean_deg_c, &own).ok()?;
-    let of_room = UNITS.iter().filter(|u| **u != own.text()).find_map(|u| {
+    let of_room = TEMPERATURE_UNITS.iter().filter(|u| **u != own.text()).find_map(|u| {
         let meant = Unit::parse(u).ok()?.convert(as_read, &inside).ok()?;
-        ROOM.contains(&meant).then_some((*u, meant))
+        ROOM_DEG_C.contains(&meant).then_some((*u, meant))
     });
     let note = match of_room {
         Some((unit, meant)) => {
             Note::new("units.thermometer").with("unit", unit).with("meant", Arg::figures(meant, 3))
         }
-        None if !POSSIBLE.contains(&t.mean_deg_c) => Note::new("units.thermometer_impossible"),
+        None if !UNIT_DEG_C.contains(&t.mean_deg_c) => Note::new("units.thermometer_impossible"),
         None => return None,
     };
     let note = note

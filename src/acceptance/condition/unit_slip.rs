@@ -15,13 +15,13 @@ pub(super) struct UnitSlip {
 }
 
 /// Units that outputs of gyros are written in.
-const UNITS: &[&str] = &[
+const RATE_UNITS: &[&str] = &[
     "deg/s", "deg/h", "rad/s", "mrad/s", "urad/s", "nrad/s", "deg/min", "rad/h", "mdeg/s", "mdeg/h",
     "arcsec/h", "arcmin/h", "deg", "rad", "mrad", "urad", "mdeg", "arcsec", "arcmin", "marcsec",
 ];
 
 /// Units that rates are mostly written in.
-const USUAL: [&str; 3] = ["deg/s", "deg/h", "rad/s"];
+const COMMON_RATE_UNITS: [&str; 3] = ["deg/s", "deg/h", "rad/s"];
 
 /// The slips that a channel declared in a unit can have.
 pub(super) fn rate_factors(declared: &str) -> Vec<UnitSlip> {
@@ -33,7 +33,7 @@ pub(super) fn rate_factors(declared: &str) -> Vec<UnitSlip> {
             list.push(UnitSlip { factor, usual, note });
         }
     };
-    let factors: Vec<(&str, f64)> = UNITS
+    let factors: Vec<(&str, f64)> = RATE_UNITS
         .iter()
         .filter_map(|u| Some((*u, Unit::parse(u).ok()?)))
         .filter_map(|(name, u)| Some((name, u.factor_to(&own).ok()?)))
@@ -44,7 +44,7 @@ pub(super) fn rate_factors(declared: &str) -> Vec<UnitSlip> {
         let key = if shifted { "mistake.unit_or_shift" } else { "mistake.unit" };
         add(
             *factor,
-            !shifted && USUAL.contains(name),
+            !shifted && COMMON_RATE_UNITS.contains(name),
             Note::new(key)
                 .with("unit", *name)
                 .with("declared", declared)

@@ -7,7 +7,7 @@ use crate::record::{ConditionRecord, ConditionStatus};
 pub(super) struct WarmUp;
 
 /// Standard deviations from which a transient counts as seen.
-const SEEN: f64 = 4.0;
+const MIN_SIGNIFICANCE: f64 = 4.0;
 
 impl Condition for WarmUp {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
@@ -21,7 +21,7 @@ impl Condition for WarmUp {
             // A transient matters when it moves the mean by more than a third of the uncertainty of the mean.
             let shift = fact.residual_deg_h * fact.time_constant_s / facts.usable_s.max(fact.time_constant_s);
             let matters = shift.abs() > fact.bias_uncertainty_deg_h / 3.0;
-            let seen = fact.significance > SEEN && matters;
+            let seen = fact.significance > MIN_SIGNIFICANCE && matters;
             let (status, key) = if seen {
                 (ConditionStatus::Remark, "note.condition.warm_up_short")
             } else {

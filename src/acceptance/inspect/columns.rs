@@ -7,7 +7,7 @@ use crate::units::Unit;
 use std::ops::ControlFlow;
 
 /// Rows that are looked at before a column is judged.
-const LOOKED_AT: u64 = 1000;
+const PROBED_ROWS: u64 = 1000;
 
 /// What a column holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -90,7 +90,7 @@ fn look(source: &Source, index: usize) -> Result<Content, IngestError> {
             let first = block.faults.iter().find(|f| f.kind == FieldFaultKind::Unparsable);
             sample = first.map(|f| f.text.clone());
         }
-        if rows >= LOOKED_AT && numbers + texts > 0 {
+        if rows >= PROBED_ROWS && numbers + texts > 0 {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())

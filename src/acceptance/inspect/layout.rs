@@ -3,12 +3,12 @@
 use crate::i18n::{Arg, Lang, Localize, Note, visible};
 
 /// Width of a line, characters.
-const WIDTH: usize = 96;
+const LINE_WIDTH: usize = 96;
 /// Width of the column of labels, characters, the space behind it included.
-const LABEL: usize = 19;
+const LABEL_WIDTH: usize = 19;
 
 /// A label that is left blank: the row belongs to the one above.
-pub(super) const SAME: &str = "";
+pub(super) const CONTINUED: &str = "";
 
 /// The words of a key.
 pub(super) fn word(key: &'static str) -> Arg {
@@ -50,7 +50,7 @@ impl Page {
     pub fn row(&mut self, label: impl Into<Arg>, text: impl Into<Arg>) {
         let (label, text) = (label.into().say(self.lang), text.into().say(self.lang));
         let mut line = format!("  {label}");
-        pad(&mut line, LABEL);
+        pad(&mut line, LABEL_WIDTH);
         // A label that fills its column still stands apart from the text.
         if !line.ends_with(' ') {
             line.push(' ');
@@ -58,11 +58,11 @@ impl Page {
         let mut empty = true;
         for piece in text.split_whitespace() {
             let length = line.chars().count();
-            if !empty && length + 1 + piece.chars().count() > WIDTH {
+            if !empty && length + 1 + piece.chars().count() > LINE_WIDTH {
                 self.out.push_str(line.trim_end());
                 self.out.push('\n');
                 line.clear();
-                pad(&mut line, LABEL);
+                pad(&mut line, LABEL_WIDTH);
                 empty = true;
             }
             if !empty {

@@ -1,11 +1,11 @@
 //! `sagnac inspect`: what a recording holds and which tests it can support, in plain text.
 //!
-//! Columns are told apart first (`columns`), the recording is read once (`gather`), every judgement is made from
-//! what was gathered (`judge`, `support`), and the words are laid out last (`show`).
+//! Columns are told apart first (`columns`), the recording is read once (`collect`), every judgement is made from
+//! what was collected (`clock_check`, `support`), and the words are laid out last (`show`).
 
+mod clock_check;
+mod collect;
 mod columns;
-mod gather;
-mod judge;
 mod layout;
 mod quantity;
 mod show;
@@ -13,7 +13,7 @@ mod show_gyro;
 mod support;
 mod tracks;
 
-use crate::acceptance::run::RunError;
+use crate::acceptance::request::RunError;
 use crate::i18n::Lang;
 use crate::ingest::Source;
 use std::path::Path;
@@ -42,8 +42,8 @@ pub fn inspect_source(
     lang: Lang,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<String, RunError> {
-    let seen = gather::gather(source, sample_rate_hz, progress)?;
-    Ok(show::text(source, &seen, lang))
+    let found = collect::collect(source, sample_rate_hz, progress)?;
+    Ok(show::text(source, &found, lang))
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The words: file, columns, time base, faults.
 
+use super::collect::{Inspection, TimeBase};
 use super::columns::{Content, Listed};
-use super::gather::{Seen, TimeBase};
-use super::layout::{Page, SAME, word};
+use super::layout::{CONTINUED, Page, word};
 use super::quantity::{count, plain, time};
 use super::{show_gyro, support};
 use crate::i18n::{Arg, Lang, Localize, Note, decimal};
@@ -12,23 +12,23 @@ use crate::recording::clock::Measured;
 use crate::units::Unit;
 
 /// Faults listed one by one.
-const LISTED: usize = 3;
+const MAX_LISTED: usize = 3;
 
 /// Everything that was found, in words.
-pub(super) fn text(source: &Source, seen: &Seen, lang: Lang) -> String {
+pub(super) fn text(source: &Source, found: &Inspection, lang: Lang) -> String {
     let mut page = Page::new(lang);
     page.title(&source.path().display().to_string());
-    file(&mut page, source, seen);
-    columns(&mut page, seen);
-    time_base(&mut page, seen);
-    faults(&mut page, seen);
-    show_gyro::gyros(&mut page, seen);
-    show_gyro::others(&mut page, seen);
-    support::statements(&mut page, seen);
+    file(&mut page, source, found);
+    columns(&mut page, found);
+    time_base(&mut page, found);
+    faults(&mut page, found);
+    show_gyro::gyros(&mut page, found);
+    show_gyro::others(&mut page, found);
+    support::statements(&mut page, found);
     page.finish()
 }
 
-fn file(page: &mut Page, source: &Source, seen: &Seen) {
+fn file(page: &mut Page, source: &Source, found: &Inspection) {
     page.heading(word("inspect.file"));
     let key = match source.packing() {
         Packing::Plain => "inspect.format_plain",
@@ -36,41 +36,41 @@ fn file(page: &mut Page, source: &Source, seen: &Seen) {
     };
     let format = Note::new(key).with("format", source.format()).with("packing", source.packing().id());
     page.row(word("inspect.format"), format);
-    page.row(word("inspect.rows"), count(seen.report.rows));
-    if seen.report.files.len() > 1 {
-        joined(page, seen);
+    page.row(word("inspect.rows"), count(found.report.rows));
+    if found.report.files.len() > 1 {
+        joined(page, found);
     }
-    if seen.report.facts.bytes > 0 && seen.report.files.len() < 2 {
-        let size = Note::new("inspect.bytes").with("bytes", count(seen.report.facts.bytes));
+    if found.report.facts.bytes > 0 && found.report.files.len() < 2 {
+        let size = Note::new("inspect.bytes").with("bytes", count(found.report.facts.bytes));
         page.row(word("inspect.size"), size);
-        page.row("SHA-256", seen.report.facts.sha256.as_str());
+        page.row("SHA-256", found.report.facts.sha256.as_str());
     }
     for (i, note) in source.notes().iter().enumerate() {
-        page.row(if i == 0 { word("inspect.reader") } else { SAME.into() }, note.clone());
+        page.row(if i == 0 { word("inspect.reader") } else { CONTINUED.into() }, note.clone());
     }
     for (i, (key, value)) in source.metadata().iter().enumerate() {
-        let label = if i == 0 { word("inspect.stated.label") } else { SAME.into() };
+        let label = if i == 0 { word("inspect.stated.label") } else { CONTINUED.into() };
         page.row(label, format!("{key}: {value}"));
     }
     for serial in source.stated_serials() {
-        page.row(SAME, Note::new("inspect.stated.serial").with("serial", serial));
+        page.row(CONTINUED, Note::new("inspect.stated.serial").with("serial", serial));
     }
 }
 
 /// The files of a recording of several.
-fn joined(page: &mut Page, seen: &Seen) {
-    for file in &seen.report.files {
+fn joined(page: &mut Page, found: &Inspection) {
+    for file in &found.report.files {
         let note = Note::new("time_base.file")
             .with("file", file.path.display().to_string())
             .with("rows", count(file.facts.rows))
             .with("start", file.start.clone().unwrap_or_else(|| "-".to_owned()))
-            .with("length", if seen.time.is_known() { time(file.duration_s) } else { "-".into() })
+            .with("length", if found.time.is_known() { time(file.duration_s) } else { "-".into() })
             .with("sha256", file.facts.sha256.as_str());
         page.row(word("time_base.joined"), note);
     }
 }
 
-fn columns(page: &mut Page, seen: &Seen) {
+fn columns(page: &mut Page, found: &Inspection) {
     page.heading(word("inspect.columns"));
     let lang = page.lang();
     let header = [
@@ -84,10 +84,10 @@ fn columns(page: &mut Page, seen: &Seen) {
     ];
     let mut rows = vec![header.map(|w| w.say(lang)).to_vec()];
     let mut remarks = Vec::new();
-    for (place, column) in seen.listed.iter().enumerate() {
-        let slot = seen.places.iter().position(|p| *p == place);
-        let facts = slot.and_then(|s| seen.report.channels.get(s));
-        rows.push(row(column, facts, seen.report.tau0_nominal_s, lang));
+    for (place, column) in found.listed.iter().enumerate() {
+        let slot = found.places.iter().position(|p| *p == place);
+        let facts = slot.and_then(|s| found.report.channels.get(s));
+        rows.push(row(column, facts, found.report.tau0_nominal_s, lang));
         remarks.extend(remark(column, facts));
     }
     page.table(&rows, 3);
@@ -174,100 +174,102 @@ fn remark(column: &Listed, facts: Option<&ChannelFacts>) -> Option<Note> {
     guessed.then(|| Note::new("inspect.unit_guessed").with("reason", column.guess.reason.clone()))
 }
 
-fn time_base(page: &mut Page, seen: &Seen) {
+fn time_base(page: &mut Page, found: &Inspection) {
     page.heading(word("inspect.time_base"));
-    let report = &seen.report;
-    match &seen.time {
-        TimeBase::Rows(why) | TimeBase::Declared(_, why) => {
-            if let Some(why) = why {
-                page.row(
-                    word("inspect.source"),
-                    Note::new("inspect.stamps_unusable").with("why", why.clone()),
-                );
-            }
+    let report = &found.report;
+    let source = |page: &mut Page, note: Note| page.row(word("inspect.source"), note);
+    match &found.time {
+        TimeBase::Rows(Some(why)) | TimeBase::Declared(_, Some(why)) => {
+            source(page, Note::new("inspect.stamps_unusable").with("why", why.clone()));
         }
+        TimeBase::Rows(None) | TimeBase::Declared(_, None) => {}
         TimeBase::Stamps(name) => {
-            let key = if name.to_lowercase().contains("nominal") {
-                "inspect.stamps_nominal"
-            } else {
-                "inspect.stamps"
-            };
-            page.row(word("inspect.source"), Note::new(key).with("column", name.as_str()));
+            let nominal = name.to_lowercase().contains("nominal");
+            let key = if nominal { "inspect.stamps_nominal" } else { "inspect.stamps" };
+            source(page, Note::new(key).with("column", name.as_str()));
         }
     }
-    match &seen.time {
-        TimeBase::Rows(_) => {
-            let note = Note::new("inspect.rows_counted").with("rows", count(report.rows));
-            page.row(word("inspect.rate"), note);
-            return;
-        }
-        TimeBase::Declared(hz, _) => {
-            let note = Note::new("inspect.declared").with("rate", plain(*hz, 6));
-            page.row(word("inspect.source"), note);
-        }
-        TimeBase::Stamps(_) => {}
+    if let TimeBase::Rows(_) = &found.time {
+        let note = Note::new("inspect.rows_counted").with("rows", count(report.rows));
+        page.row(word("inspect.rate"), note);
+        return;
+    }
+    if let TimeBase::Declared(hz, _) = &found.time {
+        source(page, Note::new("inspect.declared").with("rate", plain(*hz, 6)));
     }
     let rate = Note::new("inspect.rate_is")
-        .with("rate", plain(1.0 / seen.tau0_s, 6))
-        .with("interval", interval(seen.tau0_s));
+        .with("rate", plain(1.0 / found.tau0_s, 6))
+        .with("interval", interval(found.tau0_s));
     page.row(word("inspect.rate"), rate);
-    if let (TimeBase::Stamps(_), Some(given)) = (&seen.time, seen.declared_hz) {
-        let off = (given * seen.tau0_s - 1.0) * 100.0;
-        let note = Note::new("inspect.rate_given").with("given", plain(given, 6)).with("off", plain(off, 2));
-        page.row(SAME, note);
-    }
-    if let (TimeBase::Stamps(_), Some(clock)) = (&seen.time, &report.clock) {
-        clock_facts(page, clock);
-    }
-    if let TimeBase::Stamps(_) = &seen.time {
-        for note in &report.notes {
-            page.row(SAME, note.clone());
-        }
+    let stamped = matches!(found.time, TimeBase::Stamps(_));
+    if stamped {
+        rate_of_stamps(page, found);
     }
     page.row(word("inspect.length"), time(report.duration_s));
-    if let TimeBase::Stamps(_) = seen.time {
-        if let Some(start) = &report.start {
-            page.row(word("inspect.start"), start.as_str());
-        } else {
-            let start = decimals(report.first_stamp_s, 3);
-            page.row(word("inspect.start"), Note::new("inspect.start_at").with("s", start));
-        }
-        if let Some(jitter) = report.jitter_s {
-            let note = if jitter > 1e-6 * seen.tau0_s {
-                Note::new("inspect.jitter_is")
-                    .with("jitter", time(jitter))
-                    .with("percent", plain(100.0 * jitter / seen.tau0_s, 2))
-            } else {
-                Note::new("inspect.jitter_none")
-            };
-            page.row(word("inspect.jitter"), note);
-        }
-        let i = &report.integrity;
-        let note = match (i.gaps, i.duplicate_timestamps, i.backward_timestamps) {
-            (0, 0, 0) => Note::new("inspect.unbroken"),
-            (gaps, duplicate, backward) => Note::new("inspect.broken")
-                .with("gaps", gaps)
-                .with("missing", i.missing_samples)
-                .with("duplicate", duplicate)
-                .with("backward", backward),
-        };
-        page.row(word("inspect.breaks"), note);
-        list(page, seen, &["gap", "duplicate_timestamp", "backward_timestamp", "rollover"]);
+    if stamped {
+        stamps(page, found);
     }
+}
+
+/// What must be known of a rate that is measured from stamps.
+fn rate_of_stamps(page: &mut Page, found: &Inspection) {
+    if let Some(given) = found.declared_hz {
+        let off = (given * found.tau0_s - 1.0) * 100.0;
+        let note = Note::new("inspect.rate_given").with("given", plain(given, 6)).with("off", plain(off, 2));
+        page.row(CONTINUED, note);
+    }
+    if let Some(clock) = &found.report.clock {
+        clock_facts(page, clock);
+    }
+    for note in &found.report.notes {
+        page.row(CONTINUED, note.clone());
+    }
+}
+
+/// Where the stamps start, how they scatter and where they break.
+fn stamps(page: &mut Page, found: &Inspection) {
+    let report = &found.report;
+    if let Some(start) = &report.start {
+        page.row(word("inspect.start"), start.as_str());
+    } else {
+        let start = decimals(report.first_stamp_s, 3);
+        page.row(word("inspect.start"), Note::new("inspect.start_at").with("s", start));
+    }
+    if let Some(jitter) = report.jitter_s {
+        let note = if jitter > 1e-6 * found.tau0_s {
+            Note::new("inspect.jitter_is")
+                .with("jitter", time(jitter))
+                .with("percent", plain(100.0 * jitter / found.tau0_s, 2))
+        } else {
+            Note::new("inspect.jitter_none")
+        };
+        page.row(word("inspect.jitter"), note);
+    }
+    let i = &report.integrity;
+    let note = match (i.gaps, i.duplicate_timestamps, i.backward_timestamps) {
+        (0, 0, 0) => Note::new("inspect.unbroken"),
+        (gaps, duplicate, backward) => Note::new("inspect.broken")
+            .with("gaps", gaps)
+            .with("missing", i.missing_samples)
+            .with("duplicate", duplicate)
+            .with("backward", backward),
+    };
+    page.row(word("inspect.breaks"), note);
+    list(page, found, &["gap", "duplicate_timestamp", "backward_timestamp", "rollover"]);
 }
 
 /// How well the stamps tell the rate, and whether it drifts.
 fn clock_facts(page: &mut Page, clock: &Measured) {
     let ppm = clock.uncertainty_s / clock.interval_s * 1e6;
     if ppm > 0.001 {
-        page.row(SAME, Note::new("time_base.uncertainty").with("ppm", plain(ppm, 2)));
+        page.row(CONTINUED, Note::new("time_base.uncertainty").with("ppm", plain(ppm, 2)));
     }
     if let (Some(drift), Some(sigma)) = (clock.drift, clock.drift_uncertainty)
         && drift.abs() > 4.0 * sigma
         && drift.abs() > 1e-7
     {
         let note = Note::new("time_base.drift").with("ppm", plain(drift * 1e6, 2));
-        page.row(SAME, note.with("sigma", plain(sigma * 1e6, 2)));
+        page.row(CONTINUED, note.with("sigma", plain(sigma * 1e6, 2)));
     }
 }
 
@@ -282,9 +284,9 @@ fn decimals(value: f64, count: usize) -> Arg {
     Arg::decimals(value, count)
 }
 
-fn faults(page: &mut Page, seen: &Seen) {
+fn faults(page: &mut Page, found: &Inspection) {
     page.heading(word("inspect.faults"));
-    let i = &seen.report.integrity;
+    let i = &found.report.integrity;
     let kinds = [
         (word("fault.non_finite"), i.non_finite, "inspect.non_finite"),
         (word("fault.unparsable"), i.unparsable, "inspect.unparsable"),
@@ -295,7 +297,7 @@ fn faults(page: &mut Page, seen: &Seen) {
         (word("fault.implausible"), i.implausible, "plausible.inspect"),
         (word("fault.cut_off"), i.cut_off, "plausible.inspect_cut_off"),
     ];
-    let gyros = seen.channels.iter().any(|c| c.role.is_gyro());
+    let gyros = found.channels.iter().any(|c| c.role.is_gyro());
     if kinds.iter().all(|(_, n, _)| *n == 0) {
         let key = if gyros { "inspect.no_fault" } else { "inspect.no_fault_plain" };
         page.row(word("inspect.values"), Note::new(key));
@@ -306,16 +308,16 @@ fn faults(page: &mut Page, seen: &Seen) {
     }
     list(
         page,
-        seen,
+        found,
         &["non_finite", "unparsable", "outlier", "saturated", "stuck", "repeated", "implausible", "cut_off"],
     );
 }
 
 /// The first faults of some kinds, where they are.
-fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
-    let all = seen.report.integrity.faults.iter().filter(|f| kinds.contains(&f.kind.as_str()));
-    let timed = seen.time.is_known();
-    for fault in all.take(LISTED) {
+fn list(page: &mut Page, found: &Inspection, kinds: &[&str]) {
+    let all = found.report.integrity.faults.iter().filter(|f| kinds.contains(&f.kind.as_str()));
+    let timed = found.time.is_known();
+    for fault in all.take(MAX_LISTED) {
         let place = match fault.time_s.filter(|_| timed) {
             Some(t) => Note::new("inspect.fault_at_time").with("row", fault.row).with("time", decimals(t, 6)),
             None => Note::new("inspect.fault_at").with("row", fault.row),
@@ -332,6 +334,6 @@ fn list(page: &mut Page, seen: &Seen, kinds: &[&str]) {
                 .with("row", row.with("place", place).with("what", what)),
             None => row.with("place", place).with("what", what),
         };
-        page.row(SAME, row);
+        page.row(CONTINUED, row);
     }
 }

@@ -1,7 +1,7 @@
 //! The words: what each gyro channel shows, and the temperatures and table channels beside it.
 
-use super::gather::{Driven, Gyro, Seen};
-use super::layout::{Page, SAME, word};
+use super::collect::{DrivenChannel, Gyro, Inspection};
+use super::layout::{CONTINUED, Page, word};
 use super::quantity::{plain, rate, rates, time};
 use crate::i18n::{Arg, Note};
 use crate::noise::family::Estimator;
@@ -10,16 +10,17 @@ use crate::noise::motion::Motion;
 use crate::recording::Role;
 
 /// Lines named for a channel.
-const LINES: usize = 3;
+const MAX_LINES: usize = 3;
 
 /// Every gyro channel; a statement of its own where there is none.
-pub(super) fn gyros(page: &mut Page, seen: &Seen) {
-    let channels = || seen.channels.iter().filter(|c| c.role.is_gyro());
+pub(super) fn gyros(page: &mut Page, found: &Inspection) {
+    let channels = || found.channels.iter().filter(|c| c.role.is_gyro());
     if channels().next().is_none() {
         page.heading(word("inspect.gyro"));
-        let key = if seen.listed.iter().any(|c| c.counts_of_a_gyro()) {
+        let key = if found.listed.iter().any(|c| c.counts_of_a_gyro()) {
             "inspect.gyro_only_counts"
-        } else if !seen.time.is_known() && seen.listed.iter().any(|c| c.guess.role == Role::AngleIncrement) {
+        } else if !found.time.is_known() && found.listed.iter().any(|c| c.guess.role == Role::AngleIncrement)
+        {
             "inspect.gyro_needs_rate"
         } else {
             "inspect.gyro_none"
@@ -27,17 +28,17 @@ pub(super) fn gyros(page: &mut Page, seen: &Seen) {
         page.row(word("inspect.found"), Note::new(key));
         return;
     }
-    if seen.gyros.is_empty() {
+    if found.gyros.is_empty() {
         page.heading(word("inspect.gyro"));
         page.row(word("inspect.found"), Note::new("inspect.gyro_needs_rate"));
     }
-    for gyro in &seen.gyros {
+    for gyro in &found.gyros {
         page.heading(Note::new("inspect.gyro_channel").with("name", gyro.name.as_str()));
-        one(page, seen, gyro);
+        one(page, found, gyro);
     }
 }
 
-fn one(page: &mut Page, seen: &Seen, gyro: &Gyro) {
+fn one(page: &mut Page, found: &Inspection, gyro: &Gyro) {
     if gyro.digest.samples < 2 {
         page.row(word("inspect.found"), Note::new("inspect.gyro_no_value"));
         return;
@@ -50,18 +51,18 @@ fn one(page: &mut Page, seen: &Seen, gyro: &Gyro) {
     let still = !gyro.motion.is_motion();
     page.row(word("inspect.mean"), Note::new(key).with("mean", rate(gyro.digest.mean)));
     if mean_taken_out(gyro) {
-        page.row(SAME, Note::new("inspect.mean_taken_out"));
+        page.row(CONTINUED, Note::new("inspect.mean_taken_out"));
     }
     page.row(word("inspect.motion"), motion(gyro));
     if still {
-        let note = if described(gyro) { noise(seen, gyro) } else { allan(seen, gyro) };
+        let note = if described(gyro) { noise(found, gyro) } else { allan(found, gyro) };
         page.row(word("inspect.noise"), note);
     } else if let Some(quiet) = gyro.quietest_deg_h {
         let note = Note::new("inspect.noise_quietest").with("sigma", rate(quiet));
         page.row(word("inspect.noise"), note);
     }
     let sample_noise = if still { sample_deviation(gyro) } else { gyro.quietest_deg_h.unwrap_or(0.0) };
-    let step = seen.report.channels.get(gyro.slot).and_then(|c| c.values.quantization_step);
+    let step = found.report.channels.get(gyro.slot).and_then(|c| c.values.quantization_step);
     if let Some(step) = step.filter(|s| *s > 1e-3 * sample_noise) {
         let note = Note::new("inspect.step_is").with("step", rate(step));
         let mut told = vec![Arg::from(note)];
@@ -113,30 +114,30 @@ fn motion(gyro: &Gyro) -> Note {
 }
 
 /// Misfit from which the terms of the noise model say nothing.
-const NO_MODEL: f64 = 3.0;
+const MAX_MISFIT: f64 = 3.0;
 
 /// True where the noise model describes the spectrum well enough for its terms to mean something.
 pub(super) fn described(gyro: &Gyro) -> bool {
-    gyro.identification.misfit.per_dof < NO_MODEL
+    gyro.identification.misfit.per_dof < MAX_MISFIT
 }
 
 /// What the Allan deviation reads where no model holds: at one sample, 1, 10 and 100 s, as far as T/5.
-fn allan(seen: &Seen, gyro: &Gyro) -> Note {
+fn allan(found: &Inspection, gyro: &Gyro) -> Note {
     let deviations = &gyro.digest.deviations;
-    let longest_s = deviations.stretches.longest() as f64 * seen.tau0_s / 5.0;
+    let longest_s = deviations.stretches.longest() as f64 * found.tau0_s / 5.0;
     let points = deviations.curve(Estimator::Allan).map(|c| c.points.as_slice()).unwrap_or_default();
     let mut shown: Vec<Arg> = Vec::new();
     let mut last = 0;
-    for tau_s in [seen.tau0_s, 1.0, 10.0, 100.0] {
-        let off = |m: u64| (m as f64 * seen.tau0_s / tau_s).ln().abs();
+    for tau_s in [found.tau0_s, 1.0, 10.0, 100.0] {
+        let off = |m: u64| (m as f64 * found.tau0_s / tau_s).ln().abs();
         let nearest = points.iter().min_by(|a, b| off(a.m).total_cmp(&off(b.m)));
-        let Some(p) = nearest.filter(|p| p.m > last && p.m as f64 * seen.tau0_s <= longest_s) else {
+        let Some(p) = nearest.filter(|p| p.m > last && p.m as f64 * found.tau0_s <= longest_s) else {
             continue;
         };
         last = p.m;
         let note = Note::new("inspect.allan_at")
             .with("sigma", rate(p.deviation))
-            .with("tau", time(p.m as f64 * seen.tau0_s));
+            .with("tau", time(p.m as f64 * found.tau0_s));
         shown.push(note.into());
     }
     Note::new("inspect.noise_undescribed")
@@ -144,9 +145,9 @@ fn allan(seen: &Seen, gyro: &Gyro) -> Note {
         .with("points", if shown.is_empty() { "-".into() } else { Arg::Several(shown, ", ".into()) })
 }
 
-fn noise(seen: &Seen, gyro: &Gyro) -> Note {
+fn noise(found: &Inspection, gyro: &Gyro) -> Note {
     let estimate = gyro.identification.read_angle_random_walk();
-    let length = time(gyro.digest.samples as f64 * seen.tau0_s);
+    let length = time(gyro.digest.samples as f64 * found.tau0_s);
     match (estimate.value, estimate.interval95(), &estimate.upper_limit) {
         (Some(n), Some(interval), _) => Note::new("inspect.noise_is")
             .with("n", plain(n, 3))
@@ -186,9 +187,9 @@ fn lines(gyro: &Gyro) -> Arg {
                 .with("excess", plain(l.excess, 2)),
         )
     };
-    let mut shown: Vec<Arg> = all.iter().take(LINES).map(at).collect();
-    if all.len() > LINES {
-        shown.push(Note::new("inspect.lines_more").with("n", all.len() - LINES).into());
+    let mut shown: Vec<Arg> = all.iter().take(MAX_LINES).map(at).collect();
+    if all.len() > MAX_LINES {
+        shown.push(Note::new("inspect.lines_more").with("n", all.len() - MAX_LINES).into());
     }
     let shown = Arg::Several(shown, "; ".into());
     if gyro.motion.is_motion() {
@@ -199,12 +200,12 @@ fn lines(gyro: &Gyro) -> Arg {
 }
 
 /// Temperatures and table channels.
-pub(super) fn others(page: &mut Page, seen: &Seen) {
-    if seen.temperatures.is_empty() && seen.driven.is_empty() {
+pub(super) fn others(page: &mut Page, found: &Inspection) {
+    if found.temperatures.is_empty() && found.driven.is_empty() {
         return;
     }
     page.heading(word("inspect.others"));
-    for t in &seen.temperatures {
+    for t in &found.temperatures {
         let (up, down) = t.runs;
         let range = Note::new("inspect.temperature_is")
             .with("name", t.name.as_str())
@@ -216,17 +217,17 @@ pub(super) fn others(page: &mut Page, seen: &Seen) {
             let rate = plain(steepest.abs(), 3);
             told.push(Note::new("inspect.temperature_rate").with("rate", rate).into());
         }
-        if t.range() >= 1.0 && seen.time.is_known() {
+        if t.range() >= 1.0 && found.time.is_known() {
             let runs = Note::new("inspect.temperature_runs");
             told.push(runs.with("up", u64::from(up)).with("down", u64::from(down)).into());
         }
         told.push(".".into());
         page.row(word("inspect.temperature"), Arg::Several(told, "".into()));
     }
-    for d in &seen.driven {
+    for d in &found.driven {
         page.row(word("inspect.table"), driven(d));
     }
-    for f in &seen.followers {
+    for f in &found.correlated {
         let per_deg_s = f.slope * 3600.0;
         let (slope, unit) = if f.unit == "deg/h" {
             (f.slope, word("amount.unit_deg_s"))
@@ -238,11 +239,11 @@ pub(super) fn others(page: &mut Page, seen: &Seen) {
             .with("correlation", Arg::figures(f.correlation, 6))
             .with("slope", plain(slope, 5))
             .with("unit", unit);
-        page.row(SAME, note);
+        page.row(CONTINUED, note);
     }
 }
 
-fn driven(d: &Driven) -> Arg {
+fn driven(d: &DrivenChannel) -> Arg {
     let (low, high, unit) = if d.role == Role::TableAngle {
         (plain(d.facts.min / 3600.0, 5), plain(d.facts.max / 3600.0, 5), word("amount.unit_deg"))
     } else {

@@ -1,8 +1,8 @@
 //! What a recording can support, each statement with its reason. Nothing is promised that the data cannot give.
 
-use super::gather::{Driven, Gyro, Seen, Temperature};
-use super::judge::{ClockRemark, clock_remark, earth, is_mains};
-use super::layout::{Page, SAME, word};
+use super::clock_check::{ClockRemark, clock_remark, earth, is_mains};
+use super::collect::{DrivenChannel, Gyro, Inspection, Temperature};
+use super::layout::{CONTINUED, Page, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
 use super::show_gyro::{described, strongest};
 use crate::i18n::Note;
@@ -12,64 +12,64 @@ use crate::noise::motion::Motion;
 use crate::recording::Role;
 
 /// Usable time that the programme for random drift asks for, s.
-const STATIC_S: f64 = 36_000.0;
+const STATIC_TEST_S: f64 = 36_000.0;
 /// Range of temperature from which a bias can be fitted against it with profit, degC.
-const TEMPERATURE_RANGE_DEG_C: f64 = 10.0;
+const MIN_TEMPERATURE_RANGE_DEG_C: f64 = 10.0;
 /// Levels of a table rate that a straight line with a judgement of its linearity needs.
-const LEVELS: usize = 5;
+const MIN_LEVELS: usize = 5;
 /// Lines of a channel that are held against the mains.
-const STRONGEST: usize = 3;
+const MAX_MAINS_LINES: usize = 3;
 
 /// The last section.
-pub(super) fn statements(page: &mut Page, seen: &Seen) {
+pub(super) fn statements(page: &mut Page, found: &Inspection) {
     page.heading(word("inspect.support"));
-    let gyro = seen.channels.iter().any(|c| c.role.is_gyro());
-    let counts = seen.listed.iter().any(|c| c.counts_of_a_gyro());
+    let gyro = found.channels.iter().any(|c| c.role.is_gyro());
+    let counts = found.listed.iter().any(|c| c.counts_of_a_gyro());
     if !gyro && !counts {
         page.row(word("inspect.tests"), Note::new("inspect.no_gyro_no_test"));
         return;
     }
-    assumed(page, seen);
-    page.row(word("inspect.static_test"), static_test(seen));
-    averaging(page, seen);
-    flicker(page, seen);
-    page.row(word("inspect.temperature_test"), temperature(seen));
-    page.row(word("inspect.scale_factor"), scale_factor(seen));
-    known_angle(page, seen);
-    clock(page, seen);
-    earth_rate(page, seen);
+    assumed(page, found);
+    page.row(word("inspect.static_test"), static_test(found));
+    averaging(page, found);
+    flicker(page, found);
+    page.row(word("inspect.temperature_test"), temperature(found));
+    page.row(word("inspect.scale_factor"), scale_factor(found));
+    known_angle(page, found);
+    clock(page, found);
+    earth_rate(page, found);
 }
 
 /// Units that were assumed carry through everything.
-fn assumed(page: &mut Page, seen: &Seen) {
+fn assumed(page: &mut Page, found: &Inspection) {
     let of = |c: &&super::columns::Listed| c.guess.role.is_gyro() && !c.guess.unit_is_named;
-    let list = names(seen.listed.iter().filter(of).map(|c| c.name.as_str()));
+    let list = names(found.listed.iter().filter(of).map(|c| c.name.as_str()));
     if !list.is_empty() {
         page.row(word("inspect.unit"), Note::new("inspect.unit_assumed").with("columns", list));
     }
 }
 
-fn usable_s(seen: &Seen, gyro: &Gyro) -> f64 {
-    gyro.digest.samples as f64 * seen.tau0_s
+fn usable_s(found: &Inspection, gyro: &Gyro) -> f64 {
+    gyro.digest.samples as f64 * found.tau0_s
 }
 
-fn table_moves(seen: &Seen) -> Option<&Driven> {
-    let moving = |d: &&Driven| d.role != Role::TableAngle && d.facts.max - d.facts.min > 360.0;
-    seen.driven.iter().find(moving)
+fn table_moves(found: &Inspection) -> Option<&DrivenChannel> {
+    let moving = |d: &&DrivenChannel| d.role != Role::TableAngle && d.facts.max - d.facts.min > 360.0;
+    found.driven.iter().find(moving)
 }
 
-fn static_test(seen: &Seen) -> Note {
-    if let Some(table) = table_moves(seen) {
+fn static_test(found: &Inspection) -> Note {
+    if let Some(table) = table_moves(found) {
         return Note::new("inspect.static_table").with("name", table.name.as_str());
     }
-    if !seen.time.is_known() {
+    if !found.time.is_known() {
         return Note::new("inspect.static_no_time");
     }
-    if seen.gyros.is_empty() {
+    if found.gyros.is_empty() {
         return Note::new("inspect.static_counts");
     }
     let of = |wanted: fn(&Motion) -> bool| {
-        names(seen.gyros.iter().filter(|g| wanted(&g.motion)).map(|g| g.name.as_str()))
+        names(found.gyros.iter().filter(|g| wanted(&g.motion)).map(|g| g.name.as_str()))
     };
     let moved = of(|m| matches!(m, Motion::Moved { .. }));
     if !moved.is_empty() {
@@ -79,24 +79,26 @@ fn static_test(seen: &Seen) -> Note {
     if !slow.is_empty() {
         return Note::new("inspect.static_slow").with("channels", slow);
     }
-    if seen.gyros.iter().any(|g| g.motion == Motion::Unknown) {
+    if found.gyros.iter().any(|g| g.motion == Motion::Unknown) {
         return Note::new("inspect.static_too_few");
     }
-    let length = seen.gyros.iter().map(|g| usable_s(seen, g)).fold(f64::INFINITY, f64::min);
-    let key = if length >= STATIC_S { "inspect.static_yes" } else { "inspect.static_short" };
+    let length = found.gyros.iter().map(|g| usable_s(found, g)).fold(f64::INFINITY, f64::min);
+    let key = if length >= STATIC_TEST_S { "inspect.static_yes" } else { "inspect.static_short" };
     Note::new(key).with("length", time(length))
 }
 
 /// Channels that stood still, with enough samples for their noise.
-fn resting(seen: &Seen) -> impl Iterator<Item = &Gyro> {
-    let still = table_moves(seen).is_none();
-    seen.gyros.iter().filter(move |g| still && g.motion.is_rest() && g.digest.samples >= 64)
+fn resting(found: &Inspection) -> impl Iterator<Item = &Gyro> {
+    let still = table_moves(found).is_none();
+    found.gyros.iter().filter(move |g| still && g.motion.is_rest() && g.digest.samples >= 64)
 }
 
-fn averaging(page: &mut Page, seen: &Seen) {
-    let Some(shortest) = resting(seen).min_by(|a, b| a.digest.samples.cmp(&b.digest.samples)) else { return };
+fn averaging(page: &mut Page, found: &Inspection) {
+    let Some(shortest) = resting(found).min_by(|a, b| a.digest.samples.cmp(&b.digest.samples)) else {
+        return;
+    };
     let stretches = &shortest.digest.deviations.stretches;
-    let longest_s = stretches.longest() as f64 * seen.tau0_s;
+    let longest_s = stretches.longest() as f64 * found.tau0_s;
     let label = word("inspect.averaging");
     let note = Note::new("inspect.averaging_is")
         .with("floor", time_both(longest_s / 10.0))
@@ -106,7 +108,7 @@ fn averaging(page: &mut Page, seen: &Seen) {
         let note = Note::new("inspect.averaging_broken")
             .with("n", count(stretches.count()))
             .with("longest", time(longest_s));
-        page.row(SAME, note);
+        page.row(CONTINUED, note);
     }
 }
 
@@ -115,19 +117,19 @@ fn of_channel(gyro: &Gyro, statement: Note) -> Note {
     Note::new("inspect.of_column").with("column", gyro.name.as_str()).with("what", statement)
 }
 
-fn flicker(page: &mut Page, seen: &Seen) {
+fn flicker(page: &mut Page, found: &Inspection) {
     let mut label = word("inspect.flicker");
-    for gyro in resting(seen) {
+    for gyro in resting(found) {
         if !described(gyro) {
             let note = Note::new("inspect.flicker_undescribed");
-            page.row(std::mem::replace(&mut label, SAME.into()), of_channel(gyro, note));
+            page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
             continue;
         }
-        let found = &gyro.identification.bias_instability;
+        let estimate = &gyro.identification.bias_instability;
         let background = gyro.identification.supported.with(NoiseType::Flicker, 0.0);
         let smallest =
-            expected_upper_limit(NoiseType::Flicker, &background, gyro.digest.samples, seen.tau0_s);
-        let note = match (smallest, found.value) {
+            expected_upper_limit(NoiseType::Flicker, &background, gyro.digest.samples, found.tau0_s);
+        let note = match (smallest, estimate.value) {
             (Some(smallest), Some(b)) => {
                 Note::new("inspect.flicker_found").with("b", plain(b, 3)).with("smallest", plain(smallest, 2))
             }
@@ -136,12 +138,12 @@ fn flicker(page: &mut Page, seen: &Seen) {
             }
             (None, _) => Note::new("inspect.flicker_unknown"),
         };
-        page.row(std::mem::replace(&mut label, SAME.into()), of_channel(gyro, note));
+        page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
     }
 }
 
-fn temperature(seen: &Seen) -> Note {
-    let widest = seen.temperatures.iter().max_by(|a, b| a.range().total_cmp(&b.range()));
+fn temperature(found: &Inspection) -> Note {
+    let widest = found.temperatures.iter().max_by(|a, b| a.range().total_cmp(&b.range()));
     let Some(widest) = widest else { return Note::new("inspect.temperature_none") };
     let about = |key| {
         Note::new(key)
@@ -153,11 +155,11 @@ fn temperature(seen: &Seen) -> Note {
     let Temperature { runs: (up, down), .. } = *widest;
     if widest.range() < 1.0 {
         about("inspect.temperature_constant")
-    } else if widest.range() < TEMPERATURE_RANGE_DEG_C {
+    } else if widest.range() < MIN_TEMPERATURE_RANGE_DEG_C {
         about("inspect.temperature_narrow")
-    } else if !seen.time.is_known() {
+    } else if !found.time.is_known() {
         about("inspect.temperature_untimed")
-    } else if table_moves(seen).is_some() || seen.gyros.iter().any(|g| g.motion.is_motion()) {
+    } else if table_moves(found).is_some() || found.gyros.iter().any(|g| g.motion.is_motion()) {
         about("inspect.temperature_moving")
     } else if up > 0 && down > 0 {
         about("inspect.temperature_both")
@@ -166,8 +168,8 @@ fn temperature(seen: &Seen) -> Note {
     }
 }
 
-fn scale_factor(seen: &Seen) -> Note {
-    let Some(table) = seen.driven.iter().find(|d| d.role == Role::TableRate) else {
+fn scale_factor(found: &Inspection) -> Note {
+    let Some(table) = found.driven.iter().find(|d| d.role == Role::TableRate) else {
         return Note::new("inspect.scale_no_table");
     };
     let facts = &table.facts;
@@ -186,7 +188,7 @@ fn scale_factor(seen: &Seen) -> Note {
     if facts.levels.is_empty() {
         return about("inspect.scale_sweeps");
     }
-    if facts.levels.len() < LEVELS {
+    if facts.levels.len() < MIN_LEVELS {
         return about("inspect.scale_few");
     }
     if facts.min < 0.0 && facts.max > 0.0 {
@@ -197,18 +199,18 @@ fn scale_factor(seen: &Seen) -> Note {
 }
 
 /// Largest angle that a unit is turned by without a table, deg: a hundred turns.
-const LARGEST_TURN_DEG: f64 = 36_000.0;
+const MAX_TURN_DEG: f64 = 36_000.0;
 
-fn known_angle(page: &mut Page, seen: &Seen) {
+fn known_angle(page: &mut Page, found: &Inspection) {
     // Numbers that no sensor shows sum up to no angle.
-    if seen.report.integrity.implausible > 0 {
+    if found.report.integrity.implausible > 0 {
         return;
     }
     let moved = |g: &&Gyro| matches!(g.motion, Motion::Moved { .. });
     let swing = |g: &Gyro| g.angle.max_deg - g.angle.min_deg;
-    let most = seen.gyros.iter().filter(moved).max_by(|a, b| swing(a).total_cmp(&swing(b)));
+    let most = found.gyros.iter().filter(moved).max_by(|a, b| swing(a).total_cmp(&swing(b)));
     // Nor does an output that sums up to more than anyone turns a unit by without a table.
-    let Some(most) = most.filter(|g| table_moves(seen).is_none() && swing(g) <= LARGEST_TURN_DEG) else {
+    let Some(most) = most.filter(|g| table_moves(found).is_none() && swing(g) <= MAX_TURN_DEG) else {
         return;
     };
     let note = Note::new("inspect.known_angle_is")
@@ -218,14 +220,14 @@ fn known_angle(page: &mut Page, seen: &Seen) {
 }
 
 /// The strongest remark on the clock, with every channel that bears it out.
-fn clock(page: &mut Page, seen: &Seen) {
+fn clock(page: &mut Page, found: &Inspection) {
     // Frequency, excess and channel of each line that says something.
     let mut remarks: Vec<(ClockRemark, f64, f64, String)> = Vec::new();
     // A line where mains is shows the clock to be right, whatever else stands near another mains frequency.
-    let right = seen.gyros.iter().flat_map(|g| &g.lines).any(is_mains);
-    for gyro in &seen.gyros {
-        for line in strongest(gyro).into_iter().take(STRONGEST) {
-            let remark = clock_remark(line, seen.tau0_s)
+    let right = found.gyros.iter().flat_map(|g| &g.lines).any(is_mains);
+    for gyro in &found.gyros {
+        for line in strongest(gyro).into_iter().take(MAX_MAINS_LINES) {
+            let remark = clock_remark(line, found.tau0_s)
                 .filter(|remark| !right || matches!(remark, ClockRemark::AtNyquist { .. }));
             if let Some(remark) = remark {
                 remarks.push((remark, line.frequency_hz, line.excess, gyro.name.clone()));
@@ -245,8 +247,8 @@ fn clock(page: &mut Page, seen: &Seen) {
         let mut unique: Vec<&str> = channels.collect();
         unique.sort_unstable();
         unique.dedup();
-        let note = clock_note(remark, seen.tau0_s).with("channels", names(unique.into_iter()));
-        page.row(std::mem::replace(&mut label, SAME.into()), note);
+        let note = clock_note(remark, found.tau0_s).with("channels", names(unique.into_iter()));
+        page.row(std::mem::replace(&mut label, CONTINUED.into()), note);
     }
 }
 
@@ -267,11 +269,11 @@ fn clock_note(remark: &ClockRemark, tau0_s: f64) -> Note {
     }
 }
 
-fn earth_rate(page: &mut Page, seen: &Seen) {
-    if !seen.gyros.iter().all(|g| g.motion.is_rest()) {
+fn earth_rate(page: &mut Page, found: &Inspection) {
+    if !found.gyros.iter().all(|g| g.motion.is_rest()) {
         return;
     }
-    let means: Vec<f64> = seen.gyros.iter().map(|g| g.digest.mean).collect();
+    let means: Vec<f64> = found.gyros.iter().map(|g| g.digest.mean).collect();
     if let Some(length) = earth(&means) {
         page.row(word("inspect.earth"), Note::new("inspect.earth_is").with("length", plain(length, 4)));
     }

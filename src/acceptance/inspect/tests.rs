@@ -1,8 +1,8 @@
 //! Judgements on simulated recordings, and of the small statistics behind them.
 
+use super::clock_check::{ClockRemark, clock_remark, earth};
 use super::inspect_source;
-use super::judge::{ClockRemark, clock_remark, earth};
-use super::tracks::{Follow, Levels, runs};
+use super::tracks::{LevelFinder, LinearFit, runs};
 use crate::ingest::Source;
 use crate::noise::block_series::BlockSeriesAccumulator;
 use crate::noise::lines::SpectralLine;
@@ -255,7 +255,7 @@ fn a_table_held_at_levels_supports_the_scale_factor() {
 #[test]
 fn levels_are_told_from_a_sweep() {
     let facts = |values: Vec<f64>| {
-        let mut levels = Levels::default();
+        let mut levels = LevelFinder::default();
         values.chunks(1000).for_each(|c| levels.push(c));
         levels.finish(false).unwrap().levels.len()
     };
@@ -265,7 +265,7 @@ fn levels_are_told_from_a_sweep() {
     let sweep = (0..20_000).map(|i| 100.0 * (f64::from(i) * 1e-2).sin()).collect();
     assert_eq!(facts(sweep), 0);
     assert_eq!(facts(vec![3.0; 50]), 1);
-    assert_eq!(Levels::default().finish(true), None);
+    assert_eq!(LevelFinder::default().finish(true), None);
 }
 
 #[test]
@@ -346,7 +346,7 @@ fn small_statistics_follow_their_definitions() {
     assert!(
         (s.deviation - (4.0f64 / 3.0).sqrt()).abs() < 1e-12 && (s.of_steps - 2.0f64.sqrt()).abs() < 1e-12
     );
-    let mut follow = Follow::default();
+    let mut follow = LinearFit::default();
     follow.push(&[1.0, 2.0, f64::NAN, 3.0], &[5.0, 3.0, 0.0, 1.0]);
     assert_eq!(follow.finish(), Some((-1.0, -2.0)));
     let mut quietest = Quietest::new(1.0);

@@ -19,37 +19,37 @@ impl Angle {
 }
 
 /// Values that are kept of a track at most, evenly over the record.
-const KEPT: usize = 1 << 16;
+const MAX_KEPT: usize = 1 << 16;
 
 /// The values that a driven quantity (a table rate) was held at.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Levels {
+pub(super) struct LevelFinder {
     /// Value and distance from the one before it in the record.
     kept: Vec<(f64, f64)>,
     stride: u64,
-    seen: u64,
+    found: u64,
     before: Option<f64>,
 }
 
 /// What a driven quantity did.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct LevelFacts {
+pub(super) struct HeldLevels {
     pub min: f64,
     pub max: f64,
     /// Levels at which it was held, ascending; empty when it was held for less than half of the record.
     pub levels: Vec<f64>,
 }
 
-impl Levels {
+impl LevelFinder {
     pub fn push(&mut self, values: &[f64]) {
         self.stride = self.stride.max(1);
         for &v in values.iter().filter(|v| v.is_finite()) {
-            if self.seen.is_multiple_of(self.stride) {
+            if self.found.is_multiple_of(self.stride) {
                 self.kept.push((v, self.before.map_or(0.0, |b| (v - b).abs())));
             }
-            self.seen += 1;
+            self.found += 1;
             self.before = Some(v);
-            if self.kept.len() > KEPT {
+            if self.kept.len() > MAX_KEPT {
                 let mut index = 0;
                 self.kept.retain(|_| {
                     index += 1;
@@ -62,7 +62,7 @@ impl Levels {
 
     /// `every_row_counts`: each row is a step of its own, as in a table of means; else only rows at which the value
     /// hardly changes belong to a level.
-    pub fn finish(&self, every_row_counts: bool) -> Option<LevelFacts> {
+    pub fn finish(&self, every_row_counts: bool) -> Option<HeldLevels> {
         let min = self.kept.iter().map(|k| k.0).reduce(f64::min)?;
         let max = self.kept.iter().map(|k| k.0).reduce(f64::max)?;
         let range = max - min;
@@ -79,13 +79,13 @@ impl Levels {
                 levels.push(group.iter().sum::<f64>() / group.len() as f64);
             }
         }
-        Some(LevelFacts { min, max, levels })
+        Some(HeldLevels { min, max, levels })
     }
 }
 
 /// Correlation and straight line of a column against a driven quantity.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Follow {
+pub(super) struct LinearFit {
     origin: Option<(f64, f64)>,
     n: f64,
     x: f64,
@@ -95,7 +95,7 @@ pub(super) struct Follow {
     yy: f64,
 }
 
-impl Follow {
+impl LinearFit {
     pub fn push(&mut self, driver: &[f64], column: &[f64]) {
         for (&x, &y) in driver.iter().zip(column).filter(|(x, y)| x.is_finite() && y.is_finite()) {
             let origin = *self.origin.get_or_insert((x, y));

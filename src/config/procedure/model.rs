@@ -30,7 +30,7 @@ pub struct Loaded<T> {
 }
 
 /// What is recorded, under which conditions, what is determined from it, by which limits it is judged.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Procedure {
     /// Id, for example `static-bias`.
     pub id: String,
@@ -265,6 +265,13 @@ pub struct Analysis {
     pub line_false_alarm: f64,
 }
 
+impl Default for Analysis {
+    /// Octaves, a false line in one of a hundred recordings.
+    fn default() -> Analysis {
+        Analysis { taus: Taus::Octave, exact: false, line_false_alarm: 0.01 }
+    }
+}
+
 /// The recording against a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExplainSpec {
@@ -308,6 +315,13 @@ pub struct ReportSpec {
     pub figures: Option<Vec<&'static str>>,
     /// Whether published values stand beside the measured ones.
     pub show_reference: bool,
+}
+
+impl Default for ReportSpec {
+    /// Every figure, and published values.
+    fn default() -> ReportSpec {
+        ReportSpec { title: None, figures: None, show_reference: true }
+    }
 }
 
 impl ReportSpec {

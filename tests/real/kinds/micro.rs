@@ -3,7 +3,7 @@
 use super::{analyse, assert_digits, curve, table, value};
 use crate::support::real::set;
 use crate::support::{result, sagnac};
-use sagnac::acceptance::run::Outcome;
+use sagnac::acceptance::Outcome;
 use std::path::Path;
 
 const ADIS_AXES: [&str; 3] = ["rate_x_deg_s", "rate_y_deg_s", "rate_z_deg_s"];

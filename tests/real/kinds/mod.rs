@@ -6,7 +6,7 @@ mod laser;
 mod micro;
 mod micro_temperature;
 
-use sagnac::acceptance::run::{Outcome, Request, analysis, execute};
+use sagnac::acceptance::{Outcome, Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::ingest::{Source, open};
 use sagnac::noise::tau_grid::TauGrid;

@@ -155,3 +155,11 @@ pub trait Sink {
     /// Takes the next sample block.
     fn push(&mut self, block: &SampleBlock<'_>);
 }
+
+/// Two sinks that take the same blocks.
+impl<A: Sink, B: Sink> Sink for (A, B) {
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        self.0.push(block);
+        self.1.push(block);
+    }
+}

@@ -1,0 +1,173 @@
+//! The run record: what every kind of test writes into it.
+
+use super::condition::checks::none_made;
+use super::condition::evidence;
+use super::reading::tidy;
+use super::request::{Request, RunError, session};
+use super::test_kind::Reading;
+use super::verdict;
+use crate::estimate::Verdict;
+use crate::figure::Figure;
+use crate::i18n::Note;
+use crate::record::{
+    ClauseRecord, ColumnRecord, ConditionRecord, FigureRecord, Integrity, MeasurandRecord, OptionRecord,
+    Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
+};
+use std::path::Path;
+
+/// The record of a run, with the verdict of the whole. `own_checks` are those that the kind of test adds.
+pub(super) fn build_record(
+    reading: &Reading<'_>,
+    own_checks: &[&str],
+    mut conditions: Vec<ConditionRecord>,
+    rows: Vec<MeasurandRecord>,
+    figures: &[Figure],
+    options: Vec<(&'static str, String)>,
+) -> RunRecord {
+    let request = reading.request;
+    let errors = errors(request);
+    evidence::complete(&mut conditions, reading.has_stamps());
+    let judged = verdict::whole(&rows, &conditions, &errors);
+    let (verdict, summary) = verdict::with_idle_limits(judged, request.limits.idle.as_ref());
+    let use_stamps = ("recording.use_stamps", request.use_stamps.to_string());
+    let option = |(name, value): (&str, String)| OptionRecord { name: name.to_owned(), value };
+    RunRecord {
+        verdict,
+        summary: summary.into_iter().map(Into::into).collect(),
+        recording: recording(reading),
+        conditions,
+        checks: if request.is_run() { reading.checks.records(own_checks) } else { vec![] },
+        integrity: reading.report.integrity.clone().into(),
+        window: reading.window.clone(),
+        measurands: rows,
+        options: options.into_iter().chain([use_stamps]).map(option).collect(),
+        figures: figures
+            .iter()
+            .map(|f| FigureRecord { id: f.id.clone(), file: format!("figures/{}.svg", f.id) })
+            .collect(),
+        errors: errors.into_iter().map(Into::into).collect(),
+        ..blank(request)
+    }
+}
+
+/// The record of a run whose recording could not be evaluated.
+pub(super) fn failed(request: &Request<'_>, own_checks: &[&str], error: &RunError) -> RunRecord {
+    let mut errors = errors(request);
+    errors.push(Note::new("error.not_evaluated").with("reason", error.note()));
+    RunRecord {
+        verdict: Verdict::Error,
+        summary: errors.clone().into_iter().map(Into::into).collect(),
+        recording: request.source.files().into_iter().map(unread).collect(),
+        checks: if request.is_run() { none_made(own_checks) } else { vec![] },
+        clauses: clauses(&request.procedure.clauses, "not_done"),
+        errors: errors.into_iter().map(Into::into).collect(),
+        ..blank(request)
+    }
+}
+
+/// Clauses of a test that was not carried out as a whole.
+pub(super) fn clauses(declared: &[ClauseRecord], here: &str) -> Vec<ClauseRecord> {
+    let of = |c: &ClauseRecord| {
+        let status = if c.status == "here" { here.to_owned() } else { c.status.clone() };
+        ClauseRecord { status, ..c.clone() }
+    };
+    declared.iter().map(of).collect()
+}
+
+fn errors(request: &Request<'_>) -> Vec<Note> {
+    let serial = request.unit.serial.as_deref().map(str::trim).filter(|s| !s.is_empty());
+    if request.procedure.unit_under_test.serial_required && request.is_run() && serial.is_none() {
+        return vec![Note::new("error.serial_missing")];
+    }
+    vec![]
+}
+
+/// The record with what is known before the recording is read.
+fn blank(request: &Request<'_>) -> RunRecord {
+    let procedure = request.procedure;
+    let today = request.now.date_naive();
+    let serial = request.unit.serial.as_deref();
+    RunRecord {
+        format: RESULT_FORMAT.to_owned(),
+        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        kind: request.kind,
+        procedure: request.procedure_record.clone(),
+        unit_under_test: request.unit.clone(),
+        session: session(request),
+        recording: vec![],
+        verdict: Verdict::None,
+        summary: vec![],
+        conditions: vec![],
+        checks: vec![],
+        integrity: Integrity::default(),
+        window: Window::default(),
+        measurands: vec![],
+        lines: vec![],
+        noise_models: vec![],
+        goodness_of_fit: vec![],
+        deviations: vec![],
+        table_steps: vec![],
+        interval_means: vec![],
+        phases: vec![],
+        comparison: vec![],
+        explained: None,
+        power: vec![],
+        instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
+        waivers: procedure.waivers_for(serial),
+        clauses: procedure.clauses.clone(),
+        options: vec![],
+        figures: vec![],
+        errors: vec![],
+    }
+}
+
+/// A file of a recording that was not evaluated.
+fn unread(path: &Path) -> RecordingFile {
+    RecordingFile {
+        path: path.display().to_string(),
+        sha256: crate::ingest::byte_stream::digest(path).map(|d| d.sha256).unwrap_or_default(),
+        bytes: std::fs::metadata(path).map_or(0, |m| m.len()),
+        samples: 0,
+        sample_interval_s: 0.0,
+        sample_interval_uncertainty_s: None,
+        clock_drift_ppm: None,
+        phase: None,
+        start: None,
+        duration_s: 0.0,
+        columns: vec![],
+    }
+}
+
+/// The files of the recording.
+fn recording(reading: &Reading<'_>) -> Vec<RecordingFile> {
+    let report = &reading.report;
+    let several = report.files.len() > 1;
+    let columns: Vec<ColumnRecord> = report
+        .channels
+        .iter()
+        .map(|c| ColumnRecord {
+            name: c.column.clone(),
+            channel: c.id.clone(),
+            role: c.role.id().to_owned(),
+            unit: c.unit.clone(),
+        })
+        .collect();
+    let used = |m: Option<f64>| m.filter(|_| reading.request.use_stamps).filter(|v| v.is_finite());
+    report
+        .files
+        .iter()
+        .map(|f| RecordingFile {
+            path: f.path.display().to_string(),
+            sha256: f.facts.sha256.clone(),
+            bytes: f.facts.bytes,
+            samples: f.facts.rows,
+            sample_interval_s: if several { tidy(f.sample_interval_s) } else { reading.tau0_s },
+            sample_interval_uncertainty_s: used(report.clock.map(|c| c.uncertainty_s)),
+            clock_drift_ppm: used(report.clock.and_then(|c| c.drift)).map(|d| d * 1e6),
+            phase: f.phase.clone(),
+            start: f.start.clone(),
+            duration_s: f.duration_s,
+            columns: columns.clone(),
+        })
+        .collect()
+}

@@ -1,0 +1,18 @@
+//! Figures as data, one a file.
+
+pub mod allan_family;
+pub mod autocorrelation;
+pub mod bias_of_runs;
+pub mod dead_zone;
+mod draw;
+pub mod histogram;
+pub mod influence;
+mod parts;
+pub mod polar;
+pub mod positions;
+pub mod residual;
+pub mod scale_factor;
+pub mod sigma_tau;
+pub mod spectrum;
+pub mod thermal;
+pub mod time_series;

@@ -1,0 +1,204 @@
+//! The bias without and with an influence: a magnetic field, another supply voltage, vibration.
+
+mod acted;
+mod noise;
+
+use crate::acceptance::condition::influence::{Acted, ComparedFacts, judge_compared};
+use crate::acceptance::request::{Request, Table};
+use crate::acceptance::test_kind::{Evidence, Progress, Reading, Run, TestKind, TestOption};
+use crate::acceptance::{figures, interval_means};
+use crate::config::procedure::Procedure;
+use crate::config::procedure::model::MeasurandSpec;
+use crate::estimate::Estimate;
+use crate::figure::Figure;
+use crate::influence::ComparisonTest;
+use crate::influence::comparison::{self, Beside, Comparison, NoiseChange};
+use crate::influence::intervals::{self, Intervals};
+use crate::influence::nuisance::{Following, Nuisance};
+use crate::ingest::Pauses;
+use crate::measurand::{ANGLE_RANDOM_WALK_SHIFT, ComparisonEvidence};
+use crate::rate_table::blocks::Collector;
+use crate::record::{ConditionRecord, RunRecord};
+use crate::recording::{Channel, Role};
+use std::collections::BTreeMap;
+
+/// A comparison without and with an influence.
+pub struct UnderInfluence {
+    test: ComparisonTest,
+}
+
+/// What the recording shows.
+pub struct InfluenceEvidence {
+    test: ComparisonTest,
+    series: Intervals,
+    channels: Vec<Comparison>,
+    /// Whether the influence acted as stated.
+    acted: Acted,
+    /// How the angle random walk changed, where that is asked for.
+    noise: BTreeMap<String, Vec<NoiseChange>>,
+}
+
+impl TestKind for UnderInfluence {
+    type Collector = Collector;
+    type Evidence = InfluenceEvidence;
+    const CHECKS: &'static [&'static str] =
+        &["earth_rate", "noise_level", "temperature_in_step", "distribution"];
+    const MISSING: &'static str = "unshown.no_intervals";
+
+    fn of(procedure: &Procedure) -> Option<UnderInfluence> {
+        Some(UnderInfluence { test: procedure.comparison_test.clone()? })
+    }
+
+    fn options(&self, _: &Request<'_>) -> Vec<TestOption> {
+        vec![
+            ("influence.settling", format!("{} s", self.test.settling_s)),
+            ("influence.minimum", format!("{} s", self.test.minimum_interval_s)),
+            ("influence.reference", self.test.reference.to_string()),
+        ]
+    }
+
+    fn pauses(&self) -> Pauses {
+        Pauses { between_files: true, from_s: None }
+    }
+
+    fn collector(&self, _: &Request<'_>, channels: &[Channel], interval_s: f64) -> Run<Collector> {
+        let slots = |of: &dyn Fn(&Channel) -> bool| {
+            channels.iter().enumerate().filter(|(_, c)| of(c)).map(|(slot, _)| slot).collect::<Vec<usize>>()
+        };
+        // The channels of the level come first.
+        let mut kept = slots(&|c| self.is_level(c));
+        kept.extend(slots(&|c| may_disturb(c, &self.test)));
+        Ok(Collector::new(channels, interval_s, self.test.temperature.as_deref()).beside(kept))
+    }
+
+    fn evaluate(
+        self,
+        reading: &Reading<'_>,
+        collected: Collector,
+        progress: Progress<'_>,
+    ) -> Run<InfluenceEvidence> {
+        let test = &self.test;
+        let blocks = collected.finish(reading.report.tau0_measured_s);
+        let axes: Vec<String> =
+            reading.channels.iter().filter(|c| self.is_level(c)).map(|c| c.id.clone()).collect();
+        let series = intervals::find(&blocks, test, &axes, &reading.file_spans());
+        let context = context(&reading.channels, test, axes.len());
+        let channels = (0..blocks.gyros.len())
+            .filter_map(|g| comparison::evaluate(&blocks, &series, test, &context, g))
+            .collect();
+        let acted = acted::find(reading, test, &blocks, &series, &axes, progress)?;
+        let noise = match reading.procedure().measures(ANGLE_RANDOM_WALK_SHIFT.id, None) {
+            true => noise::find(reading, &blocks, &series, progress)?,
+            false => BTreeMap::new(),
+        };
+        Ok(InfluenceEvidence { test: self.test, series, channels, acted, noise })
+    }
+}
+
+impl Evidence for InfluenceEvidence {
+    fn conditions(&self, reading: &Reading<'_>) -> Vec<ConditionRecord> {
+        let InfluenceEvidence { test, series, channels, acted, .. } = self;
+        let temperature = channels.iter().find_map(|c| c.temperature.as_ref());
+        match temperature {
+            Some(_) => reading.checks.made("temperature_in_step", None, "influence_temperature"),
+            None => reading.checks.not_made("temperature_in_step", None, "check_list.no_temperature"),
+        }
+        judge_compared(&ComparedFacts {
+            found: series.list.len(),
+            with: series.with(),
+            alternations: series.alternations(),
+            asked: test.alternations,
+            too_short: series.too_short,
+            missing: series.missing,
+            minimum_interval_s: test.minimum_interval_s,
+            recorded: test.intervals.is_empty(),
+            level_unit: test.influence.unit(),
+            table: test.influence.table(),
+            acted: *acted,
+            temperature,
+            others: most_disturbing(channels),
+            allowed_deg_c: test.temperature_difference_deg_c,
+            line: channels.iter().filter_map(|c| c.line).reduce(f64::min),
+            squared: test.influence.degree() > 1.0,
+        })
+    }
+
+    fn estimates(&self, _: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate> {
+        let of = |c: &Comparison| {
+            let noise = self.noise.get(&c.channel).map_or(&[][..], Vec::as_slice);
+            spec.measurand.evaluate_comparison(&ComparisonEvidence { bias: c, noise })
+        };
+        let remarked = |e: Estimate| self.acted.remark().into_iter().fold(e, Estimate::note);
+        self.channels.iter().flat_map(of).map(remarked).collect()
+    }
+
+    fn figures(&self, reading: &Reading<'_>) -> Vec<Figure> {
+        let wanted = reading.procedure().report.shows("influence");
+        let several = self.channels.len() > 1;
+        let of_intervals = self.channels.iter().filter(|_| wanted);
+        of_intervals
+            .map(|c| figures::influence::figure(c, several))
+            .chain(figures::time_series::of_every_gyro(reading))
+            .collect()
+    }
+
+    fn complete(&self, _: &Reading<'_>, record: &mut RunRecord) -> Vec<Table> {
+        let of = |c: &Comparison| interval_means::of_intervals(c, self.acted.evidence());
+        interval_means::complete(record, self.channels.iter().flat_map(of).collect())
+    }
+}
+
+impl UnderInfluence {
+    /// True for a channel that tells the level of the influence.
+    fn is_level(&self, channel: &Channel) -> bool {
+        channel.role == self.test.influence.role()
+    }
+}
+
+/// True for a channel whose quantity may change the bias beside the influence. The temperature of the unit is judged by itself.
+fn may_disturb(c: &Channel, test: &ComparisonTest) -> bool {
+    let role = matches!(
+        c.role,
+        Role::Temperature
+            | Role::Supply
+            | Role::MagneticField
+            | Role::Vibration
+            | Role::TableRate
+            | Role::OuterRate
+    );
+    role && c.role != test.influence.role()
+}
+
+/// What was recorded besides output and level. In the blocks the channels of the level come first.
+fn context(channels: &[Channel], test: &ComparisonTest, levels: usize) -> Beside {
+    let nuisance = |c: &Channel| Nuisance {
+        channel: c.id.clone(),
+        unit: c.role.internal_unit().unwrap_or("1"),
+        temperature: c.role == Role::Temperature,
+    };
+    let others: Vec<&Channel> = channels.iter().filter(|c| may_disturb(c, test)).collect();
+    let warm = || others.iter().filter(|c| c.role == Role::Temperature);
+    let own = warm().find(|c| Some(&c.id) == test.temperature.as_ref()).or_else(|| warm().next());
+    Beside {
+        temperature: own.map(|c| nuisance(c)),
+        others: others
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| own.is_none_or(|o| o.id != c.id))
+            .map(|(at, c)| (levels + at, nuisance(c)))
+            .collect(),
+    }
+}
+
+/// The further quantities, each from the gyro channel whose intervals show it most.
+fn most_disturbing(evaluated: &[Comparison]) -> Vec<&Following> {
+    let mut most: Vec<&Following> = vec![];
+    for found in evaluated.iter().flat_map(|e| &e.others) {
+        match most.iter_mut().find(|m| m.what.channel == found.what.channel) {
+            Some(known) if found.by_chance < known.by_chance => *known = found,
+            Some(_) => {}
+            None => most.push(found),
+        }
+    }
+    most
+}

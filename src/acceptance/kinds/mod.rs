@@ -1,0 +1,58 @@
+//! The kinds of test, each a file or a folder. A new kind is one file that implements
+//! [`TestKind`](super::test_kind::TestKind) and one line in [`KINDS`].
+
+pub(super) mod at_rest;
+mod influence;
+mod positions;
+mod rate_table;
+mod repeatability;
+mod temperature;
+
+use super::pipeline::Test;
+use super::request::Request;
+use super::test_kind::TestKind;
+use crate::config::procedure::Procedure;
+
+/// Every kind of test. A procedure is of the first kind that finds what it needs in it.
+const KINDS: &[fn(&Procedure) -> Option<Box<dyn Test>>] = &[
+    kind::<rate_table::RateTable>,
+    kind::<positions::InPositions>,
+    kind::<repeatability::Repeated>,
+    kind::<influence::UnderInfluence>,
+    kind::<temperature::OverTemperature>,
+    kind::<at_rest::AtRest>,
+];
+
+fn kind<K: TestKind + 'static>(procedure: &Procedure) -> Option<Box<dyn Test>> {
+    K::of(procedure).map(|k| Box::new(k) as Box<dyn Test>)
+}
+
+/// The test that a procedure describes.
+pub(super) fn of_procedure(procedure: &Procedure) -> Box<dyn Test> {
+    KINDS.iter().find_map(|kind| kind(procedure)).unwrap_or_else(|| Box::new(at_rest::AtRest))
+}
+
+/// The test of a request: an analysis is one at rest.
+pub(super) fn of_request(request: &Request<'_>) -> Box<dyn Test> {
+    if request.is_run() { of_procedure(request.procedure) } else { Box::new(at_rest::AtRest) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::acceptance::condition::checks::{CHECKS, OF_EVERY_TEST};
+    use std::path::Path;
+
+    #[test]
+    fn every_check_belongs_to_a_kind_of_test_and_stands_in_the_list() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("procedures");
+        let mut claimed: Vec<&str> = OF_EVERY_TEST.to_vec();
+        for file in std::fs::read_dir(folder).unwrap().flatten() {
+            if let Ok(procedure) = crate::config::procedure::load(&file.path()) {
+                claimed.extend(of_procedure(&procedure.value).checks());
+            }
+        }
+        assert!(claimed.iter().all(|id| CHECKS.contains(id)), "{claimed:?}");
+        assert!(CHECKS.iter().all(|id| claimed.contains(id)), "{claimed:?}");
+    }
+}

@@ -1,0 +1,168 @@
+//! Steps of a rate table: the response of every channel to the rates of the table, one linear model over short block means.
+
+mod evidence;
+mod facts;
+mod steps;
+
+use crate::acceptance::condition::table::{judge_and_log, judge_scale};
+use crate::acceptance::condition::thermometer::judge_scale_of_temperature;
+use crate::acceptance::figures;
+use crate::acceptance::request::{Request, Table};
+use crate::acceptance::test_kind::{Evidence, Progress, Reading, Run, TestKind, TestOption};
+use crate::config::procedure::Procedure;
+use crate::config::procedure::model::MeasurandSpec;
+use crate::estimate::Estimate;
+use crate::figure::Figure;
+use crate::ingest::Pauses;
+use crate::measurand::{self, Stimulus, TableEvidence};
+use crate::rate_table::blocks::Collector;
+use crate::rate_table::dead_zone::DeadZone;
+use crate::rate_table::scale_factor::ScaleFactor;
+use crate::rate_table::{Setup, TableRun};
+use crate::record::{ConditionRecord, RunRecord};
+use crate::recording::Channel;
+
+/// A test whose rates are found in the recording of the table.
+pub struct RateTable {
+    setup: Setup,
+}
+
+/// What the recording shows.
+pub struct StepEvidence {
+    setup: Setup,
+    run: TableRun,
+    channels: Vec<TableChannel>,
+    /// The estimates of every measurand of the procedure, in its order.
+    estimates: Vec<Vec<Estimate>>,
+}
+
+/// What one gyro channel shows.
+struct TableChannel {
+    /// Position among the gyro channels.
+    gyro: usize,
+    /// The line of output over rate; `None` where none could be drawn.
+    line: Option<ScaleFactor>,
+    /// The response to rates near zero, where it is asked for.
+    dead_zone: Option<DeadZone>,
+}
+
+impl StepEvidence {
+    fn lines(&self) -> impl Iterator<Item = &ScaleFactor> {
+        self.channels.iter().filter_map(|c| c.line.as_ref())
+    }
+}
+
+impl TestKind for RateTable {
+    type Collector = Collector;
+    type Evidence = StepEvidence;
+    const CHECKS: &'static [&'static str] =
+        &["earth_sign", "table_response", "table_reached", "table_agreement", "clock_by_turns"];
+    const MISSING: &'static str = "unshown.no_line";
+
+    fn of(procedure: &Procedure) -> Option<RateTable> {
+        let setup = procedure.rate_table.clone().filter(|s| s.known.is_empty())?;
+        Some(RateTable { setup })
+    }
+
+    fn options(&self, request: &Request<'_>) -> Vec<TestOption> {
+        table_options(request.procedure, &self.setup)
+    }
+
+    fn pauses(&self) -> Pauses {
+        Pauses { between_files: true, from_s: None }
+    }
+
+    fn collector(&self, _: &Request<'_>, channels: &[Channel], interval_s: f64) -> Run<Collector> {
+        Ok(Collector::new(channels, interval_s, self.setup.temperature.as_deref()))
+    }
+
+    fn evaluate(self, reading: &Reading<'_>, collected: Collector, _: Progress<'_>) -> Run<StepEvidence> {
+        let (procedure, setup) = (reading.procedure(), self.setup);
+        let run = TableRun::new(collected.finish(reading.report.tau0_measured_s), &setup);
+        let found = evidence::evaluate(procedure, &run, &setup);
+        let of = |m: &MeasurandSpec| found.iter().flat_map(|c| m.measurand.evaluate_steps(c)).collect();
+        let estimates = procedure.measurands.iter().map(of).collect();
+        let channel =
+            |c: TableEvidence<'_>| TableChannel { gyro: c.gyro, line: c.line, dead_zone: c.dead_zone };
+        let channels = found.into_iter().map(channel).collect();
+        Ok(StepEvidence { setup, run, channels, estimates })
+    }
+}
+
+impl Evidence for StepEvidence {
+    fn conditions(&self, reading: &Reading<'_>) -> Vec<ConditionRecord> {
+        let procedure = reading.procedure();
+        let lines: Vec<_> = self.channels.iter().map(|c| (c.gyro, c.line.as_ref())).collect();
+        // Where the input axis is square to the axis that is turned about, that is the other one.
+        let about_outer = wants_alignment(procedure);
+        let facts = facts::table_facts(reading.request, &self.setup, &self.run, &lines, about_outer);
+        let mut conditions = judge_and_log(&facts, &reading.checks);
+        if about_outer {
+            // The output follows by the tilt only.
+            conditions.retain(|c| c.id != "table_reached");
+        }
+        conditions.extend(self.lines().filter_map(|c| judge_scale(&c.channel, c.factor)));
+        if let Some(thermometer) = facts::thermometer(procedure, &self.setup, &self.run) {
+            reading.checks.made("temperature_unit", Some(&thermometer.channel), "units");
+            conditions.extend(judge_scale_of_temperature(&thermometer));
+        }
+        conditions
+    }
+
+    fn estimates(&self, reading: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate> {
+        let mut specs = reading.procedure().measurands.iter();
+        let at = specs.position(|m| std::ptr::eq(m, spec));
+        at.and_then(|at| self.estimates.get(at)).cloned().unwrap_or_default()
+    }
+
+    fn figures(&self, reading: &Reading<'_>) -> Vec<Figure> {
+        let request = reading.request;
+        let wanted = |id: &str| request.procedure.report.shows(id);
+        let several = self.channels.len() > 1;
+        let mut list = Vec::new();
+        for line in self.lines() {
+            if wanted("scale_factor_residual") {
+                let limit = request
+                    .limits
+                    .limit(measurand::SCALE_FACTOR_NONLINEARITY.id, &line.channel)
+                    .map(|l| &l.limit);
+                list.push(figures::scale_factor::residuals(&self.run, line, limit, several));
+            }
+            if wanted("table_polar") {
+                list.extend(figures::polar::figure(&self.run, line, several));
+            }
+            if wanted("table_steps") {
+                list.push(figures::scale_factor::over_time(&self.run, line, several));
+            }
+        }
+        if wanted("dead_zone") {
+            let zones = self.channels.iter().filter_map(|c| c.dead_zone.as_ref());
+            list.extend(zones.map(|z| figures::dead_zone::figure(z, several)));
+        }
+        list
+    }
+
+    fn complete(&self, _: &Reading<'_>, record: &mut RunRecord) -> Vec<Table> {
+        let of = |c: &TableChannel| Some(steps::records(&self.run, c.line.as_ref()?, c.gyro));
+        record.table_steps = self.channels.iter().filter_map(of).flatten().collect();
+        vec![("table_steps.csv".to_owned(), steps::csv(&record.table_steps))]
+    }
+}
+
+/// True when the direction of the input axis is asked for.
+fn wants_alignment(procedure: &Procedure) -> bool {
+    evidence::wants(procedure, Stimulus::OuterTurns)
+}
+
+/// The options of a test on a table, known positions and turns included.
+pub fn table_options(procedure: &Procedure, setup: &Setup) -> Vec<TestOption> {
+    let by_rows = setup.rows_are_steps.then(|| ("rate_table.rows_are_steps", "true".to_owned()));
+    let usual = [
+        ("rate_table.by_angle", setup.by_angle.to_string()),
+        ("rate_table.whole_turns", setup.whole_turns.to_string()),
+        ("rate_table.settling", format!("{} s", setup.settling_s)),
+        ("rate_table.minimum_step", format!("{} s", setup.minimum_step_s)),
+        ("conditions.warm_up", format!("{} s", procedure.conditions.warm_up_s)),
+    ];
+    by_rows.into_iter().chain(usual).collect()
+}

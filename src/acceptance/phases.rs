@@ -1,0 +1,202 @@
+//! The results of the phases of a test as one.
+
+use super::build_record::clauses;
+use super::condition::checks::none_made;
+use super::kinds;
+use super::request::Outcome;
+use crate::config::procedure::phases::{Phase, Phased};
+use crate::estimate::Verdict;
+use crate::figure::Figure;
+use crate::i18n::{Arg, Note};
+use crate::record::{
+    CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunKind, RunRecord,
+    Session, UnitUnderTest, Window,
+};
+
+/// A phase that was run, or why it was not.
+pub struct Done<'a> {
+    /// The phase.
+    pub phase: &'a Phase,
+    /// What came of it; `None` when no file of the recording belongs to it.
+    pub outcome: Option<Outcome>,
+}
+
+/// The folder of a phase beside the result of the whole.
+pub fn folder(phase: &Phase) -> String {
+    format!("phases/{}", phase.id)
+}
+
+/// One record that covers all phases. Its conditions and measurands are those of all of them, each with its phase.
+pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session: Session) -> RunRecord {
+    let phases: Vec<PhaseRecord> = done.iter().map(of).collect();
+    let worst = phases.iter().map(|p| p.verdict).max().unwrap_or(Verdict::None);
+    let serial = unit.serial.as_deref().map(str::trim).filter(|s| !s.is_empty());
+    let errors: Vec<Note> = if phased.serial_required && serial.is_none() {
+        vec![Note::new("error.serial_missing")]
+    } else {
+        vec![]
+    };
+    let of_phase = |p: &PhaseRecord| {
+        let verdict = Arg::key("verdict", p.verdict.id());
+        match failure(p) {
+            Some(why) => Note::new("phases.failed").with("verdict", verdict).with("why", why.clone()),
+            None => Note::new("phases.verdict").with("verdict", verdict),
+        }
+        .with("title", p.title.as_str())
+    };
+    let declared = Note::new("summary.influence_declared");
+    let said = phases.iter().any(|p| p.summary.iter().any(|s| **s == declared)).then_some(declared);
+    let summary =
+        errors.iter().cloned().chain(phases.iter().map(of_phase)).chain(said).map(Into::into).collect();
+    let records: Vec<&RunRecord> =
+        done.iter().filter_map(|d| d.outcome.as_ref()).map(|o| &o.record).collect();
+    let mut instruments = Vec::new();
+    for instrument in records.iter().flat_map(|r| &r.instruments) {
+        if !instruments.contains(instrument) {
+            instruments.push(instrument.clone());
+        }
+    }
+    let evaluated = records.iter().filter(|r| r.recording.iter().any(|f| f.samples > 0)).count();
+    let clauses = match evaluated {
+        0 => clauses(&phased.clauses, "not_done"),
+        n if n < done.len() => clauses(&phased.clauses, "partly"),
+        _ => phased.clauses.clone(),
+    };
+    RunRecord {
+        format: RESULT_FORMAT.to_owned(),
+        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        kind: RunKind::Run,
+        procedure: Some(phased.identity.clone()),
+        unit_under_test: unit,
+        session,
+        recording: phases.iter().flat_map(|p| p.recording.clone()).collect(),
+        verdict: if errors.is_empty() { worst } else { Verdict::Error },
+        summary,
+        conditions: phases.iter().flat_map(|p| p.conditions.clone()).collect(),
+        checks: checks(done),
+        integrity: together(&records),
+        window: Window {
+            from_s: 0.0,
+            to_s: records.iter().map(|r| r.window.to_s - r.window.from_s).sum(),
+            usable_s: records.iter().map(|r| r.window.usable_s).sum(),
+            excluded: vec![],
+        },
+        measurands: phases.iter().flat_map(|p| p.measurands.clone()).collect(),
+        lines: vec![],
+        noise_models: vec![],
+        goodness_of_fit: vec![],
+        deviations: vec![],
+        table_steps: vec![],
+        interval_means: vec![],
+        comparison: vec![],
+        explained: None,
+        power: vec![],
+        instruments,
+        waivers: records.iter().flat_map(|r| r.waivers.clone()).collect(),
+        clauses,
+        options: vec![],
+        figures: phases.iter().flat_map(|p| p.figures.clone()).collect(),
+        phases,
+        errors: errors.into_iter().map(Into::into).collect(),
+    }
+}
+
+/// The checks of all phases, each with its phase.
+fn checks(done: &[Done<'_>]) -> Vec<CheckRecord> {
+    let of = |d: &Done<'_>| {
+        let id = d.phase.id.clone();
+        let own = d.outcome.as_ref().map(|o| o.record.checks.clone());
+        let own = own.unwrap_or_else(|| none_made(kinds::of_procedure(&d.phase.procedure.value).checks()));
+        own.into_iter().map(move |c| CheckRecord { phase: Some(id.clone()), ..c })
+    };
+    done.iter().flat_map(of).collect()
+}
+
+/// Why a phase could not be carried out; `None` of one that was.
+pub fn failure(phase: &PhaseRecord) -> Option<&Message> {
+    phase.summary.first().filter(|_| phase.verdict == Verdict::Error)
+}
+
+fn of(done: &Done<'_>) -> PhaseRecord {
+    let phase = done.phase;
+    let Some(outcome) = &done.outcome else {
+        return PhaseRecord {
+            id: phase.id.clone(),
+            title: phase.title.clone(),
+            folder: None,
+            procedure: Some(phase.procedure.record(phase.limits.as_ref())),
+            recording: vec![],
+            verdict: Verdict::Error,
+            summary: vec![Note::new("phases.not_recorded").with("id", phase.id.as_str()).into()],
+            conditions: vec![],
+            integrity: Integrity::default(),
+            measurands: vec![],
+            figures: vec![],
+        };
+    };
+    let r = &outcome.record;
+    let own = || Some(phase.id.clone());
+    PhaseRecord {
+        id: phase.id.clone(),
+        title: phase.title.clone(),
+        folder: Some(folder(phase)),
+        procedure: r.procedure.clone(),
+        recording: r
+            .recording
+            .iter()
+            .map(|f| {
+                let sub = f.phase.as_ref().map(|s| format!("{}.{s}", phase.id));
+                crate::record::RecordingFile { phase: sub.or_else(own), ..f.clone() }
+            })
+            .collect(),
+        verdict: r.verdict,
+        summary: r.summary.clone(),
+        conditions: r
+            .conditions
+            .iter()
+            .map(|c| crate::record::ConditionRecord { phase: own(), ..c.clone() })
+            .collect(),
+        integrity: r.integrity.clone(),
+        measurands: r
+            .measurands
+            .iter()
+            .map(|m| crate::record::MeasurandRecord { phase: own(), ..m.clone() })
+            .collect(),
+        figures: figures(&phase.id, Some(outcome))
+            .iter()
+            .map(|f| FigureRecord { id: f.id.clone(), file: format!("figures/{}.svg", f.id) })
+            .collect(),
+    }
+}
+
+/// The figures of a phase under names that no other phase has.
+pub fn figures(phase: &str, outcome: Option<&Outcome>) -> Vec<Figure> {
+    let of = |f: &Figure| Figure { id: format!("{phase}-{}", f.id), ..f.clone() };
+    outcome.map(|o| o.figures.iter().map(of).collect()).unwrap_or_default()
+}
+
+/// Faults of all phases.
+fn together(records: &[&RunRecord]) -> Integrity {
+    let sum = |of: fn(&Integrity) -> u64| records.iter().map(|r| of(&r.integrity)).sum();
+    Integrity {
+        gaps: sum(|i| i.gaps),
+        missing_samples: sum(|i| i.missing_samples),
+        duplicate_timestamps: sum(|i| i.duplicate_timestamps),
+        backward_timestamps: sum(|i| i.backward_timestamps),
+        non_finite: sum(|i| i.non_finite),
+        unparsable: sum(|i| i.unparsable),
+        outliers: sum(|i| i.outliers),
+        saturated: sum(|i| i.saturated),
+        stuck: sum(|i| i.stuck),
+        repeated: sum(|i| i.repeated),
+        implausible: sum(|i| i.implausible),
+        cut_off: sum(|i| i.cut_off),
+        // Examined in the whole is what was examined in each part.
+        examined: Integrity::all_examined()
+            .into_iter()
+            .filter(|id| !records.is_empty() && records.iter().all(|r| r.integrity.has_examined(id)))
+            .collect(),
+        faults: records.iter().flat_map(|r| r.integrity.faults.clone()).collect(),
+        ..Integrity::default()
+    }
+}

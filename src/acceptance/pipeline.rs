@@ -1,0 +1,166 @@
+//! The way from a recording to its record, the same for every kind of test: collect, judge, measure, record.
+
+use super::build_record::build_record;
+use super::condition::checks::CheckLog;
+use super::condition::{ColumnFact, Facts, judge_all};
+use super::missing_rows;
+use super::reading::{self, tidy};
+use super::request::{Outcome, Request};
+use super::sinks::{Overview, StabilitySink};
+use super::test_kind::{Evidence, Progress, Reading, Run, TestKind};
+use super::verdict;
+use crate::config::procedure::limits::gyro_of;
+use crate::ingest::Plan;
+use crate::record::{ConditionRecord, ConditionStatus, MeasurandRecord, Window};
+use crate::recording::Channel;
+use crate::recording::window::Windowed;
+
+/// A test of any kind, ready to run.
+pub(super) trait Test {
+    /// Ids of the checks that the test could make, apart from those of every test.
+    fn checks(&self) -> &'static [&'static str];
+
+    /// Runs it.
+    ///
+    /// # Errors
+    /// There is nothing to evaluate.
+    fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome>;
+}
+
+impl<K: TestKind> Test for K {
+    fn checks(&self) -> &'static [&'static str] {
+        K::CHECKS
+    }
+
+    fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome> {
+        let options = self.options(request);
+        let (reading, evidence) = collect(*self, request, progress)?;
+        let conditions = judge(&reading, &evidence);
+        let rows = measure(&reading, &evidence, K::MISSING);
+        let figures = evidence.figures(&reading);
+        let mut record = build_record(&reading, K::CHECKS, conditions, rows, &figures, options);
+        let tables = evidence.complete(&reading, &mut record);
+        Ok(Outcome { record, figures, tables })
+    }
+}
+
+/// Reads the recording once, and makes evidence of what was collected.
+fn collect<'r, K: TestKind>(
+    kind: K,
+    request: &'r Request<'r>,
+    progress: Progress<'_>,
+) -> Run<(Reading<'r>, K::Evidence)> {
+    let procedure = request.procedure;
+    let channels = reading::channels(procedure, request.source);
+    let pauses = kind.pauses();
+    let mut plan = reading::plan(request, &channels, pauses)?;
+    let nominal_s = plan.clock().interval_s;
+    let mut read = |plan: &Plan<'_>| -> Run<_> {
+        let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
+        let stability = StabilitySink::new(procedure, &channels, tidy(nominal_s), plan.start_s());
+        let inside = (stability, kind.collector(request, &channels, nominal_s)?);
+        let mut windowed = Windowed::new(inside, reading::window(procedure), plan.start_s(), nominal_s);
+        let report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
+        Ok(((overview, windowed), report))
+    };
+    let ((overview, windowed), report) = reading::read_at_measured_interval(&mut plan, &mut read)?;
+    let start_s = plan.start_s();
+    let ((stability, collected), mut window) = windowed.finish();
+    reading::name_pauses(&mut window, &report);
+    let mut reading = Reading {
+        request,
+        channels,
+        pauses,
+        start_s,
+        tau0_s: tidy(report.tau0_measured_s),
+        report,
+        window,
+        stability: stability.finish(),
+        envelopes: overview.finish(),
+        checks: CheckLog::default(),
+    };
+    let evidence = kind.evaluate(&reading, collected, progress)?;
+    reading::settle_integrity(&mut reading.report, &overview, reading.tau0_s, evidence.noise_deg_h());
+    Ok((reading, evidence))
+}
+
+/// Judges the conditions: those of the kind of test, then those of every test.
+fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord> {
+    let request = reading.request;
+    let mut conditions = evidence.conditions(reading);
+    let rest = evidence.rest_facts(reading);
+    // Without a procedure the unit comes from the name of the column, or from a user who knows better.
+    let (columns, stated_serials) =
+        if request.is_run() { (columns(reading), request.source.stated_serials()) } else { (vec![], vec![]) };
+    conditions.extend(judge_all(&Facts {
+        procedure: request.procedure,
+        integrity: &reading.report.integrity,
+        rows: reading.report.rows,
+        sample_interval_s: reading.tau0_s,
+        clock_notes: &reading.report.notes,
+        has_stamps: reading.has_stamps(),
+        usable_s: reading.window.usable_s,
+        longest_gap_s: longest_gap_s(&reading.window),
+        stability: &reading.stability,
+        warm_up: &rest.warm_up,
+        gyros: &rest.gyros,
+        limits: request.limits,
+        columns: &columns,
+        duration_s: reading.report.duration_s,
+        stated_serials: &stated_serials,
+        serial: request.unit.serial.as_deref(),
+        schedule: rest.schedule,
+        today: request.now.date_naive(),
+        checks: &reading.checks,
+    }));
+    if !request.is_run() {
+        // An analysis asks nothing of a recording and judges no unit.
+        for c in conditions.iter_mut().filter(|c| c.status == ConditionStatus::Invalid) {
+            c.status = ConditionStatus::Remark;
+        }
+    }
+    conditions
+}
+
+/// Estimates every measurand of the procedure, and sets each estimate against its limit. `missing` is the key of the reason
+/// for one without an estimate.
+fn measure(reading: &Reading<'_>, evidence: &dyn Evidence, missing: &'static str) -> Vec<MeasurandRecord> {
+    let request = reading.request;
+    let mut rows = Vec::new();
+    for spec in &request.procedure.measurands {
+        let asked = |channel: &str| spec.channel.as_deref().is_none_or(|c| c == gyro_of(channel));
+        let estimates = evidence.estimates(reading, spec);
+        rows.extend(
+            estimates
+                .iter()
+                .filter(|e| asked(&e.channel))
+                .map(|e| verdict::row(e, request.limits, request.procedure)),
+        );
+    }
+    // An analysis shows what the recording has; nobody asked for one value by name.
+    if request.is_run() { missing_rows::complete(request, &reading.channels, missing, rows) } else { rows }
+}
+
+/// The longest gap in what was evaluated, s.
+fn longest_gap_s(window: &Window) -> f64 {
+    let gaps = window.excluded.iter().filter(|s| s.reason == "gap");
+    gaps.map(|s| s.to_s - s.from_s).fold(0.0, f64::max)
+}
+
+/// The columns that the channels were read from.
+fn columns(reading: &Reading<'_>) -> Vec<ColumnFact> {
+    let source = reading.request.source;
+    let column = |channel: &Channel| {
+        let place = source.resolve(&channel.column).ok()?;
+        let column = source.columns().get(place)?;
+        // Of stamps that a reader turned into seconds, the name may still say what they were.
+        let converted = column.epoch_s.is_some() || column.rollover_s.is_some();
+        let fact = || ColumnFact {
+            channel: channel.id.clone(),
+            name: column.name.clone(),
+            unit: column.unit.clone(),
+        };
+        (!converted).then(fact)
+    };
+    reading.channels.iter().filter_map(column).collect()
+}

@@ -1,0 +1,146 @@
+//! What every kind of test collects while the recording goes by: channels that must stay within a band, the envelope of
+//! what is drawn over time, samples at declared rails.
+
+use super::condition::stability_track::{Band, StabilityFacts, StabilityKey, StabilityTrack};
+use crate::config::procedure::Procedure;
+use crate::i18n::Note;
+use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
+use crate::recording::integrity::Fault;
+use crate::recording::{Channel, Role, SampleBlock, Sink};
+use std::collections::BTreeMap;
+
+/// The channels that must stay within a band, inside the evaluated window.
+pub(super) struct StabilitySink {
+    /// Condition, position among the channels, statistics.
+    tracks: Vec<(StabilityKey, usize, StabilityTrack)>,
+    start_s: f64,
+}
+
+impl StabilitySink {
+    /// Prepares for the conditions of a procedure. `start_s` is the stamp of the first row.
+    pub fn new(procedure: &Procedure, channels: &[Channel], tau0_s: f64, start_s: f64) -> StabilitySink {
+        let conditions = &procedure.conditions;
+        let temperatures = conditions.temperatures.iter().enumerate().map(|(i, c)| {
+            let band = Band::about(c.nominal_deg_c, c.tolerance_deg_c);
+            (StabilityKey::temperature(i), &c.channel, StabilityTrack::new(c.smoothing_s, tau0_s, Some(band)))
+        });
+        let supplies = conditions.supplies.iter().enumerate().map(|(i, c)| {
+            let band = Band::about(c.nominal_v, c.tolerance_v);
+            (StabilityKey::supply(i), &c.channel, StabilityTrack::new(0.0, tau0_s, Some(band)))
+        });
+        let slot_of = |id: &str| channels.iter().position(|c| c.id == id);
+        let tracks = temperatures
+            .chain(supplies)
+            .filter_map(|(key, channel, track)| Some((key, slot_of(channel)?, track)))
+            .collect();
+        StabilitySink { tracks, start_s }
+    }
+
+    /// The statistics, by condition.
+    pub fn finish(self) -> BTreeMap<StabilityKey, StabilityFacts> {
+        self.tracks.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?))).collect()
+    }
+}
+
+impl Sink for StabilitySink {
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        for (_, slot, track) in &mut self.tracks {
+            if let Some(values) = block.values.get(*slot) {
+                track.push(values, block.time_s - self.start_s, block.continues);
+            }
+        }
+    }
+}
+
+/// The whole recording for the plot over time, what is left out of the evaluation included; and the samples at the
+/// rails that the procedure declares.
+pub(super) struct Overview {
+    channels: Vec<(usize, EnvelopeAccumulator)>,
+    rails: Vec<Rails>,
+}
+
+/// Declared rails of a channel and the samples at them.
+struct Rails {
+    slot: usize,
+    channel: String,
+    low: f64,
+    high: f64,
+    count: u64,
+    first: Option<(u64, f64)>,
+}
+
+impl Overview {
+    /// Prepares for the channels that are drawn.
+    pub fn new(procedure: &Procedure, channels: &[Channel], tau0_s: f64) -> Overview {
+        let drawn = |r: Role| r.is_gyro() || matches!(r, Role::Temperature | Role::Supply);
+        Overview {
+            channels: channels
+                .iter()
+                .enumerate()
+                .filter(|(_, c)| drawn(c.role))
+                .map(|(slot, _)| (slot, EnvelopeAccumulator::new()))
+                .collect(),
+            rails: channels
+                .iter()
+                .enumerate()
+                .filter_map(|(slot, c)| {
+                    let spec = procedure.channel(&c.id)?;
+                    // What is inside is the rate; an angle has no rails.
+                    let angle = c.role == Role::AccumulatedAngle;
+                    if angle || spec.rail_low.is_none() && spec.rail_high.is_none() {
+                        return None;
+                    }
+                    // Rails of increments are stated as angles; inside, increments are rates.
+                    let factor = if c.role == Role::AngleIncrement { 1.0 / tau0_s } else { 1.0 };
+                    let low = spec.rail_low.map_or(f64::NEG_INFINITY, |v| v * factor);
+                    let high = spec.rail_high.map_or(f64::INFINITY, |v| v * factor);
+                    Some(Rails { slot, channel: c.id.clone(), low, high, count: 0, first: None })
+                })
+                .collect(),
+        }
+    }
+
+    /// Samples at declared rails: one fault a channel.
+    pub fn saturated(&self) -> Vec<Fault> {
+        self.rails
+            .iter()
+            .filter_map(|r| {
+                let (row, time_s) = r.first?;
+                let note = Note::new("fault_note.declared_rails").with("count", r.count);
+                Some(Fault {
+                    kind: "saturated".into(),
+                    channel: Some(r.channel.clone()),
+                    time_s: Some(time_s),
+                    file: None,
+                    row,
+                    count: r.count,
+                    message: note,
+                })
+            })
+            .collect()
+    }
+
+    /// The envelopes by position of the channel.
+    pub fn finish(&self) -> BTreeMap<usize, Envelope> {
+        self.channels.iter().map(|(slot, e)| (*slot, e.finish())).collect()
+    }
+}
+
+impl Sink for Overview {
+    fn push(&mut self, block: &SampleBlock<'_>) {
+        for (slot, envelope) in &mut self.channels {
+            if let Some(values) = block.values.get(*slot) {
+                envelope.push(values, block.first_index);
+            }
+        }
+        for r in &mut self.rails {
+            let Some(values) = block.values.get(r.slot) else { continue };
+            for (i, v) in values.iter().enumerate() {
+                if *v <= r.low || *v >= r.high {
+                    r.count += 1;
+                    r.first.get_or_insert((block.first_row + i as u64, block.time_s));
+                }
+            }
+        }
+    }
+}
