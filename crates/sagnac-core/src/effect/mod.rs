@@ -7,7 +7,7 @@
 //! | file | what it has |
 //! |---|---|
 //! | `model` | [`Effect`], what every effect says of itself; [`Model`], the three classes |
-//! | `mean`, `spectral`, `detector` | what an effect of each class implements |
+//! | `mean`, `spectral`; `Samples` in `model` | what an effect of each class implements |
 //! | `param`, `domain`, `drivers` | parameters and their values; where an effect shows; the recorded columns |
 //! | `shared` | physics and searches that several effects use |
 //! | `kinds` | one file an effect, and [`EFFECTS`], the list of them |
@@ -15,7 +15,6 @@
 #[macro_use]
 mod macros;
 
-mod detector;
 mod domain;
 mod drivers;
 mod kinds;
@@ -25,14 +24,14 @@ mod param;
 mod shared;
 mod spectral;
 
-pub use detector::{
-    Background, Detection, Detector, FlatResidual, JumpDetector, Jumps, Knot, Law, Level, LevelDetector,
-    LevelLaw, OutlierDetector, Outliers, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,
-};
 pub use domain::{Domain, Place};
 pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature, averages};
 pub use kinds::{EFFECTS, find, parameter};
 pub use mean::{MeanModel, Nuisance, Regressors, Resolution, SearchContext, Starts};
+pub use model::{
+    Background, Detection, Detector, FlatResidual, JumpDetector, Jumps, Knot, Law, Level, LevelDetector,
+    LevelLaw, OutlierDetector, Outliers, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,
+};
 pub use model::{Effect, Family, Model, StatedByCourse, UNKNOWN, plausible, stateable};
 pub use param::{Param, Value, Values, list, number};
 pub use shared::low_pass::LowPass;
