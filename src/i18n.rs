@@ -18,15 +18,17 @@ pub use system::io_reason;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-static ENGLISH: LazyLock<BTreeMap<String, String>> =
-    LazyLock::new(|| flatten(include_str!("../templates/locale/en.toml")));
+/// Dotted key to text with `{argument}` places.
+type Table = BTreeMap<String, String>;
 
-static RUSSIAN: LazyLock<BTreeMap<String, String>> =
-    LazyLock::new(|| flatten(include_str!("../templates/locale/ru.toml")));
+static TABLES: LazyLock<Vec<(Lang, Table)>> =
+    LazyLock::new(|| Lang::ALL.iter().map(|lang| (*lang, flatten(lang.source()))).collect());
+
+static EMPTY: Table = Table::new();
 
 /// Turns the nested tables of a locale file into dotted keys.
-fn flatten(source: &str) -> BTreeMap<String, String> {
-    fn walk(prefix: &str, table: &toml::Table, out: &mut BTreeMap<String, String>) {
+fn flatten(source: &str) -> Table {
+    fn walk(prefix: &str, table: &toml::Table, out: &mut Table) {
         for (key, value) in table {
             let path = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
             match value {
@@ -38,7 +40,7 @@ fn flatten(source: &str) -> BTreeMap<String, String> {
             }
         }
     }
-    let mut out = BTreeMap::new();
+    let mut out = Table::new();
     if let Ok(table) = source.parse::<toml::Table>() {
         walk("", &table, &mut out);
     }
@@ -47,10 +49,7 @@ fn flatten(source: &str) -> BTreeMap<String, String> {
 
 /// The table of a language: dotted key → text with `{argument}` places.
 pub fn table(lang: Lang) -> &'static BTreeMap<String, String> {
-    match lang {
-        Lang::En => &ENGLISH,
-        Lang::Ru => &RUSSIAN,
-    }
+    TABLES.iter().find(|(of, _)| *of == lang).map_or(&EMPTY, |(_, table)| table)
 }
 
 /// The text of a key, in English where the table of the language lacks it; `None` when no table has it.

@@ -121,11 +121,23 @@ fn points(name: &'static str, n: u64, m: u64) -> Note {
 
 /// Runs every oracle.
 pub fn run() -> SelfTest {
-    const SP1065: &str = "selftest.from.sp1065";
     let mut checks = Vec::new();
     let mut add = |name: Note, source: &'static str, published: f64, computed: f64, tolerance: f64| {
         checks.push(Check { name, source: Note::new(source), published, computed, tolerance });
     };
+    deviations(&mut add);
+    noise(&mut add);
+    decisions(&mut add);
+    rates(&mut add);
+    SelfTest { checks }
+}
+
+/// Takes a check: name, source, published value, computed value, tolerance.
+type Add<'a> = &'a mut dyn FnMut(Note, &'static str, f64, f64, f64);
+
+/// Deviations of the data sets of NIST SP 1065.
+fn deviations(add: Add<'_>) {
+    const SP1065: &str = "selftest.from.sp1065";
     let thousand = thousand();
     let family = [
         (Estimator::Allan, "selftest.allan", [91.22945, 85.95287], [2.922319e-1, 9.159953e-2, 3.241343e-2]),
@@ -151,60 +163,46 @@ pub fn run() -> SelfTest {
             add(points(name, 1000, m), SP1065, value, deviation(&thousand, m, estimator), 3e-7);
         }
     }
+}
+
+/// Window means and the Allan floor of noise models.
+fn noise(add: Add<'_>) {
     let white = NoiseModel { n: 1.0, ..NoiseModel::default() };
     for (n, published) in [(36, 11.4), (100, 18.3), (360, 29.5), (864, 38.8)] {
         let flicker = NoiseModel { b: 1.0, ..NoiseModel::default() };
         let edf = edf_of_window_std(n, 100.0, |t| flicker.mean_variance(t)).unwrap_or(f64::NAN);
         add(Note::new("selftest.degrees").with("n", n), "selftest.from.quadratic_form", published, edf, 5e-3);
     }
-    add(
-        Note::new("selftest.sigma_100"),
-        "selftest.from.closed_form",
-        6.0,
-        white.mean_variance(100.0).sqrt(),
-        1e-12,
-    );
-    add(
-        Note::new("selftest.flicker_floor"),
-        "selftest.from.ieee_952",
-        0.6642824703,
-        unit_allan_variance(NoiseType::Flicker, 1.0).sqrt(),
-        1e-10,
-    );
-    add(
-        Note::new("selftest.chi_square"),
-        "selftest.from.sematech",
-        20.483,
-        chi_square_quantile(0.975, 10.0),
-        3e-5,
-    );
+    let sigma_100 = white.mean_variance(100.0).sqrt();
+    add(Note::new("selftest.sigma_100"), "selftest.from.closed_form", 6.0, sigma_100, 1e-12);
+    let floor = unit_allan_variance(NoiseType::Flicker, 1.0).sqrt();
+    add(Note::new("selftest.flicker_floor"), "selftest.from.ieee_952", 0.6642824703, floor, 1e-10);
+}
+
+/// Quantiles and guard bands.
+fn decisions(add: Add<'_>) {
+    let chi_square = chi_square_quantile(0.975, 10.0);
+    add(Note::new("selftest.chi_square"), "selftest.from.sematech", 20.483, chi_square, 3e-5);
     add(Note::new("selftest.normal"), "selftest.from.iso_14253", 1.645, normal_quantile(0.95), 1e-4);
     let guard = Spread::Normal { standard_uncertainty: 1.0 }.bound(0.0, 0.95).unwrap_or(f64::NAN);
     add(Note::new("selftest.guard_band"), "selftest.from.iso_14253", 1.645, guard, 1e-4);
+}
+
+/// Earth rate and units of rate.
+fn rates(add: Add<'_>) {
     let exact = |value| Uncertain { value, uncertainty: 0.0 };
     let vertical =
         Orientation { latitude_deg: exact(56.0), heading_deg: exact(0.0), elevation_deg: exact(90.0) };
     let north = Orientation { elevation_deg: exact(0.0), ..vertical };
-    add(
-        Note::new("selftest.earth_vertical"),
-        "selftest.from.geometry",
-        12.47,
-        earth_rate(&vertical).value,
-        5e-4,
-    );
+    let upward = earth_rate(&vertical).value;
+    add(Note::new("selftest.earth_vertical"), "selftest.from.geometry", 12.47, upward, 5e-4);
     add(Note::new("selftest.earth_north"), "selftest.from.geometry", 8.41, earth_rate(&north).value, 6e-4);
     let factor = |a: &str, b: &str| {
         Unit::parse(a).and_then(|a| Unit::parse(b).and_then(|b| a.factor_to(&b))).unwrap_or(f64::NAN)
     };
-    add(
-        Note::new("selftest.rad_s"),
-        "selftest.from.definition",
-        206_264.806_247_096_36,
-        factor("rad/s", "deg/h"),
-        1e-14,
-    );
+    let rad_s = factor("rad/s", "deg/h");
+    add(Note::new("selftest.rad_s"), "selftest.from.definition", 206_264.806_247_096_36, rad_s, 1e-14);
     add(Note::new("selftest.arcsec_s"), "selftest.from.definition", 1.0, factor("arcsec/s", "deg/h"), 1e-15);
-    SelfTest { checks }
 }
 
 #[cfg(test)]

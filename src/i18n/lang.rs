@@ -22,6 +22,14 @@ impl Lang {
         }
     }
 
+    /// Its table as text.
+    pub(super) fn source(self) -> &'static str {
+        match self {
+            Lang::En => include_str!("../../templates/locale/en.toml"),
+            Lang::Ru => include_str!("../../templates/locale/ru.toml"),
+        }
+    }
+
     /// The language of a code such as `ru`; `None` for any other.
     pub fn from_code(code: &str) -> Option<Lang> {
         Lang::ALL.iter().copied().find(|l| l.code() == code)
