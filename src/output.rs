@@ -8,116 +8,28 @@
 
 mod csv;
 mod earlier;
+mod error;
 mod file;
+mod kind;
 mod partial;
 
 pub use csv::quoted;
+pub use error::OutputError;
 pub use file::StagedFile;
+pub use kind::Kind;
 pub use partial::abandon_all;
 
-use crate::i18n::{Arg, Lang, Localize, Note, io_reason};
+use crate::i18n::Note;
 use earlier::Earlier;
+use error::io;
 use partial::Partial;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-/// Why an output folder could not be written.
-#[derive(Debug)]
-pub enum OutputError {
-    /// The operating system refused.
-    Io {
-        /// What failed: a key of the locale tables.
-        action: &'static str,
-        /// On which path.
-        path: PathBuf,
-        /// The system's reason.
-        source: std::io::Error,
-    },
-    /// Something that is no earlier result stands in the way.
-    InTheWay {
-        /// Where.
-        path: PathBuf,
-        /// What is the matter with it.
-        why: Note,
-    },
-    /// The target is `..`, the root or the like.
-    NoName(PathBuf),
-    /// A file that no result folder holds.
-    Unforeseen(String),
-    /// A result of other inputs stands there, and nobody asked to replace it.
-    Other {
-        /// Where.
-        path: PathBuf,
-        /// What it is.
-        what: Note,
-        /// The inputs that differ.
-        differ: Vec<String>,
-    },
-    /// A file that is read lies where the result would go.
-    InputInside {
-        /// The folder.
-        path: PathBuf,
-        /// The file.
-        input: PathBuf,
-    },
-    /// The record cannot be written as JSON.
-    Unwritable(String),
-}
-
-impl OutputError {
-    /// What is wrong, as a note.
-    pub fn note(&self) -> Note {
-        let at = |path: &Path| path.display().to_string();
-        match self {
-            OutputError::Io { action, path, source } => {
-                Note::new(*action).with("path", at(path)).with("reason", io_reason(source))
-            }
-            OutputError::InTheWay { path, why } => {
-                Note::new("output_error.in_the_way").with("path", at(path)).with("why", why.clone())
-            }
-            OutputError::NoName(path) => Note::new("output_error.no_name").with("path", at(path)),
-            OutputError::Unforeseen(name) => Note::new("output_error.unforeseen").with("name", name.as_str()),
-            OutputError::Other { path, what, differ } => {
-                let differ = differ.iter().map(|d| Arg::Key(format!("output_error.input.{d}"))).collect();
-                Note::new("output_error.other")
-                    .with("path", at(path))
-                    .with("what", what.clone())
-                    .with("differ", Arg::Several(differ, ", ".into()))
-            }
-            OutputError::InputInside { path, input } => {
-                Note::new("output_error.input_inside").with("path", at(path)).with("input", at(input))
-            }
-            OutputError::Unwritable(reason) => Note::new("system.other").with("reason", reason.as_str()),
-        }
-    }
-}
-
-impl fmt::Display for OutputError {
-    /// In English.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.note().say(Lang::En))
-    }
-}
-
-impl std::error::Error for OutputError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            OutputError::Io { source, .. } => Some(source),
-            _ => None,
-        }
-    }
-}
-
-fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> OutputError + use<> {
-    let path = path.to_owned();
-    move |source| OutputError::Io { action, path, source }
-}
 
 /// Attempts to put a folder in place while other runs put theirs there.
 const ATTEMPTS: usize = 100;
@@ -157,64 +69,6 @@ pub struct Listed<T> {
     /// Every file of the folder, this one among them. Nothing else in it is ever removed by the program.
     #[schemars(default)]
     files: Vec<String>,
-}
-
-/// What a folder holds; one kind never takes the place of another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// The result of a run or an analysis.
-    Result,
-    /// A comparison.
-    Comparison,
-    /// The explanation of a mismatch.
-    Explanation,
-}
-
-impl Kind {
-    /// Every kind.
-    pub const ALL: [Kind; 3] = [Kind::Result, Kind::Comparison, Kind::Explanation];
-
-    /// The JSON file that a folder of this kind holds, and by which it is known.
-    pub fn record_file(self) -> &'static str {
-        match self {
-            Kind::Result => "result.json",
-            Kind::Comparison => "comparison.json",
-            Kind::Explanation => "explain.json",
-        }
-    }
-
-    /// How that file begins, without spaces.
-    fn start(self) -> &'static str {
-        match self {
-            Kind::Result => "{\"format\":\"result/",
-            Kind::Comparison => "{\"format\":\"comparison/",
-            Kind::Explanation => "{\"format\":\"explain/",
-        }
-    }
-
-    /// True for the name of a table, or of another file that is data for other programs.
-    pub fn is_table(self, name: &str) -> bool {
-        match self {
-            Kind::Result => {
-                (name.starts_with("sigma_tau") && name.ends_with(".csv"))
-                    || matches!(name, "table_steps.csv" | "interval_means.csv")
-                    || (name.starts_with("compensation")
-                        && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
-            }
-            Kind::Comparison => name == "comparison.csv",
-            Kind::Explanation => matches!(name, "correction.csv" | "augmented.toml"),
-        }
-    }
-
-    /// True for a name that stands in a folder of this kind.
-    fn owns(self, name: &str) -> bool {
-        let page = match self {
-            Kind::Result => matches!(name, "report.html" | "report.md" | "explain" | "phases"),
-            Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
-            Kind::Explanation => matches!(name, "report.html" | "report.md"),
-        };
-        page || name == "figures" || name == self.record_file() || self.is_table(name)
-    }
 }
 
 impl StagedFolder {

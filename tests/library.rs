@@ -2,6 +2,7 @@
 
 use sagnac::estimate::Verdict;
 use sagnac::export::{Csv, Html, Json, Markdown, Svg};
+use sagnac::mismatch::finding::MismatchVerdict;
 use sagnac::{Lang, Model, Procedure, Rate, Recording, RunResult, UnitUnderTest};
 use std::fs;
 use std::path::Path;
@@ -45,7 +46,7 @@ fn the_explain_example_runs_and_names_the_step() {
     explain_example::main().unwrap();
     let recording = Model::load("samples/model-step.toml").unwrap().simulate(7).unwrap();
     let why = sagnac::explain(&recording, &Model::load("samples/model-static.toml").unwrap()).unwrap();
-    assert_eq!(why.verdict().id(), "mismatch");
+    assert_eq!(why.verdict(), MismatchVerdict::Mismatch);
     assert_eq!(why.effects()[0].kind, "bias_step");
     assert!(why.augmented().to_toml().contains("bias_step"));
     let folder = tempfile::tempdir().unwrap();

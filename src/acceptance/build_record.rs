@@ -148,7 +148,7 @@ fn recording(reading: &Reading<'_>) -> Vec<RecordingFile> {
         .map(|c| ColumnRecord {
             name: c.column.clone(),
             channel: c.id.clone(),
-            role: c.role.id().to_owned(),
+            role: c.role,
             unit: c.unit.clone(),
         })
         .collect();

@@ -6,9 +6,9 @@ use super::inputs::Inputs;
 use super::options::renderer;
 use super::read::ReadArgs;
 use super::{exit, place};
-use crate::acceptance::compare::published::checked;
+use crate::acceptance::compare::published_checks::checked;
 use crate::acceptance::compare::{
-    Comparison, Origin, Unit, not_compared, tell_apart, tell_repeated, units_of,
+    Comparison, Origin, Unit, mark_repeated, name_apart, not_compared, units_of,
 };
 use crate::acceptance::{Request, analysis};
 use crate::config::procedure::limits::LimitSpec;
@@ -16,14 +16,13 @@ use crate::config::procedure::{EffectiveLimits, load_limits};
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
-use crate::record::{RunKind, UnitUnderTest, read};
+use crate::record::{RunKind, RunRecord, UnitUnderTest, read};
 use crate::recording::Role;
 use crate::report::compare::{CompareView, table};
 use crate::report::export::EXPORTERS;
 use crate::report::{Renderer, Results};
 use chrono::{DateTime, SecondsFormat, Utc};
 use clap::Args;
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -98,8 +97,8 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
             units.extend(read_units(args, &path, &limits, now, lang)?);
         }
     }
-    tell_apart(&mut units);
-    tell_repeated(&mut units);
+    name_apart(&mut units);
+    mark_repeated(&mut units);
     finish(Comparison::of_units(units, stamp), folder, &renderer, lang)
 }
 
@@ -126,18 +125,16 @@ fn read_units(
     let say = |note: Note| place::error(&note, lang);
     let shown = path.display().to_string();
     let mut otherwise = vec![];
-    let (value, name, origin) = match result_file(path) {
+    let (record, name, origin) = match result_file(path) {
         Some(file) => {
-            let bytes = read::bytes(&file).map_err(|e| say(e.note(&file)))?;
-            let value: Value =
-                serde_json::from_slice(&bytes).map_err(|e| say(read::ReadError::NotJson(e).note(&file)))?;
+            let record = read::open(&file).map_err(|e| say(e.note(&file)))?;
             // A result is named after its folder, for every one is called the same.
             let by = if file.file_name().is_some_and(|n| n == "result.json") {
                 file.parent().filter(|p| p.file_name().is_some()).map_or_else(|| stem(&file), stem)
             } else {
                 stem(&file)
             };
-            (value, by, Origin::Result)
+            (record, by, Origin::Result)
         }
         None if path.is_dir() => {
             return Err(say(Note::new("result_error.no_result_in").with("path", shown)));
@@ -145,10 +142,10 @@ fn read_units(
         None => {
             let analysed = analysed(args, path, limits, now, lang)?;
             otherwise = analysed.otherwise;
-            (analysed.result, analysed.name, Origin::Recording)
+            (analysed.record, analysed.name, Origin::Recording)
         }
     };
-    let mut units = units_of(&value, &shown, &name, origin).map_err(|e| say(e.0))?;
+    let mut units = units_of(&record, &shown, &name, origin).map_err(say)?;
     if origin == Origin::Recording {
         for unit in &mut units {
             let of_unit = |l: &&LimitSpec| l.channel.as_ref().is_none_or(|c| *c == unit.channel);
@@ -178,7 +175,7 @@ fn result_file(path: &Path) -> Option<PathBuf> {
 /// A recording that was analysed.
 struct Analysed {
     /// The result, as `analyze` makes it.
-    result: Value,
+    record: RunRecord,
     /// Name of the unit.
     name: String,
     /// Columns that were read in another unit than their names state.
@@ -219,9 +216,7 @@ fn analysed(
         exact: false,
     };
     let outcome = with_progress(&request, &Note::new("cli.reading").say(lang)).map_err(|e| say(e.note()))?;
-    let result = serde_json::to_value(&outcome.record)
-        .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
-    Ok(Analysed { result, name: stem(path), otherwise })
+    Ok(Analysed { record: outcome.record, name: stem(path), otherwise })
 }
 
 /// Writes the folder and prints the table.

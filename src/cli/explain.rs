@@ -131,7 +131,7 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     Ok(match outcome.explanation.verdict {
         MismatchVerdict::Consistent => exit::PASS,
         MismatchVerdict::Mismatch => exit::FAIL,
-        _ => exit::INDETERMINATE,
+        MismatchVerdict::UnknownMismatch => exit::INDETERMINATE,
     })
 }
 

@@ -22,7 +22,9 @@ mod schema;
 mod selftest;
 mod simulate;
 
-use crate::i18n::visible;
+use crate::config::procedure::phases::is_phased;
+use crate::i18n::{Lang, visible};
+use clap::builder::PossibleValuesParser;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -37,7 +39,7 @@ use std::process::ExitCode;
 )]
 struct Cli {
     /// Language of reports and messages [default: from the locale, else en]
-    #[arg(long, global = true, value_name = "LANG", value_parser = ["en", "ru"])]
+    #[arg(long, global = true, value_name = "LANG", value_parser = PossibleValuesParser::new(Lang::ALL.iter().map(|l| l.code())))]
     lang: Option<String>,
     #[command(subcommand)]
     verb: Verb,
@@ -114,6 +116,7 @@ pub fn main() -> ExitCode {
         }
     };
     let done = match cli.verb {
+        Verb::Run(args) if is_phased(&args.procedure) => run_phases::main(&args, lang),
         Verb::Run(args) => run::main(&args, lang),
         Verb::Check(args) => check::main(&args, lang),
         Verb::Inspect(args) => inspect::main(&args, lang),

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// Result: a result.json or explain.json, or the folder that holds one
+    /// Result: a result.json, explain.json or comparison.json, or the folder that holds one
     result: PathBuf,
     /// Forms to write, separated by commas; result.json is always written [default: all]
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = formats())]

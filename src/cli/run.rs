@@ -5,7 +5,6 @@ use super::inputs::{Inputs, serial};
 use super::options::{GridArgs, renderer};
 use super::place;
 use crate::acceptance::{Request, explained};
-use crate::config::procedure::phases::is_phased;
 use crate::config::procedure::{effective, load, load_limits};
 use crate::i18n::Lang;
 use crate::ingest::{RecordingError, Source, open_recording};
@@ -48,9 +47,6 @@ pub struct RunArgs {
 }
 
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
-    if is_phased(&args.procedure) {
-        return super::run_phases::main(args, lang);
-    }
     let grid = args.grid.grid(lang)?;
     // Both files are read before either complains, so that all problems are seen at once.
     let procedure = load(&args.procedure);

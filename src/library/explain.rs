@@ -5,7 +5,7 @@ use crate::claim::Claim;
 use crate::config::model::{self, ModelFile, Profile, SimulationPlan};
 use crate::i18n::{Lang, Note};
 use crate::mismatch::{self, Options, Outcome};
-use crate::record::explanation;
+use crate::record::explanation::{self, MismatchVerdict};
 use crate::report::explain::{Context, ExplainView};
 use crate::report::export::Exporter;
 use crate::report::{Document, ExplanationResults};
@@ -94,8 +94,8 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// What the comparison comes to.
-    pub fn verdict(&self) -> explanation::MismatchVerdict {
+    /// Whether the model explains the recording.
+    pub fn verdict(&self) -> MismatchVerdict {
         self.outcome.explanation.verdict
     }
 

@@ -1,6 +1,7 @@
 //! What stands where a result is to go.
 
-use super::{Kind, OutputError, io};
+use super::error::{OutputError, io};
+use super::kind::Kind;
 use crate::i18n::{Arg, Note};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};

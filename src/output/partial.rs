@@ -4,7 +4,7 @@
 //! holds the boot of the machine that made it: on a shared disk, where a lock of another machine need not be seen, only
 //! age tells.
 
-use super::Kind;
+use super::kind::Kind;
 use std::fs::{self, File, TryLockError};
 use std::ops::Deref;
 use std::path::{Path, PathBuf};

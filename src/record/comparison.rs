@@ -2,6 +2,7 @@
 //! recordings.
 
 use crate::estimate::Interval;
+pub use crate::noise::prediction::Agreement;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -47,8 +48,8 @@ pub struct WindowRecord {
     pub ratio: Option<f64>,
     /// Its 95 % interval.
     pub ratio_interval: Option<Interval>,
-    /// `consistent`, `missing_low_frequency_term` (observed above) or `data_mismatch` (observed below).
-    pub agreement: Option<String>,
+    /// Whether observed and predicted agree within the interval of their ratio.
+    pub agreement: Option<Agreement>,
     /// What each part of the model has in E\[s²\], the largest first.
     pub shares: Vec<ShareRecord>,
 }
@@ -136,8 +137,30 @@ pub struct ModelRecord {
     /// Probability of a larger one if the model is right.
     #[serde(default)]
     pub misfit_probability: Option<f64>,
-    /// Coherent lines: (amplitude in deg/h, frequency in Hz).
-    pub lines: Vec<(f64, f64)>,
+    /// Coherent lines.
+    pub lines: Vec<CoherentLine>,
+}
+
+/// A coherent line of a model; in JSON a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(from = "(f64, f64)", into = "(f64, f64)")]
+pub struct CoherentLine {
+    /// Amplitude, deg/h.
+    pub amplitude_deg_h: f64,
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+}
+
+impl From<(f64, f64)> for CoherentLine {
+    fn from((amplitude_deg_h, frequency_hz): (f64, f64)) -> CoherentLine {
+        CoherentLine { amplitude_deg_h, frequency_hz }
+    }
+}
+
+impl From<CoherentLine> for (f64, f64) {
+    fn from(line: CoherentLine) -> (f64, f64) {
+        (line.amplitude_deg_h, line.frequency_hz)
+    }
 }
 
 /// One parameter.

@@ -1,6 +1,7 @@
 //! How well a noise model fits its record.
 
 use super::Message;
+use crate::noise::residual::View;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct GoodnessOfFitRecord {
     /// Channel.
     pub channel: String,
-    /// `frequency`, `lag`, `averaging_time`, `amplitude`.
-    pub view: String,
+    /// View of the residual.
+    pub view: View,
     /// Largest departure as a normal score; the excess kurtosis for `amplitude`.
     pub statistic: f64,
     /// Probability of a larger departure anywhere in this view if the model is right.

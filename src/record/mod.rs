@@ -23,8 +23,8 @@ mod table_step;
 pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
 pub use check::{CheckRecord, CheckStatus};
 pub use comparison::{
-    ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord, OctavesRecord, ParameterRecord,
-    ShareRecord, WindowRecord,
+    Agreement, CoherentLine, ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord,
+    OctavesRecord, ParameterRecord, ShareRecord, WindowRecord,
 };
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;
@@ -38,6 +38,7 @@ pub use phase::PhaseRecord;
 pub use table_step::TableStepRecord;
 
 use crate::estimate::{Interval, Judgement, LowerLimit, Rule, UpperLimit, Verdict};
+use crate::noise::data::NoiseType;
 pub use sagnac_core::mismatch::finding as explanation;
 pub use sagnac_core::recording::window::{ExcludedSpan, Window};
 use schemars::JsonSchema;
@@ -99,7 +100,8 @@ pub struct RunRecord {
     pub table_steps: Vec<TableStepRecord>,
     /// Runs of a series of switching off and on, or intervals without and with an influence, per channel.
     pub interval_means: Vec<IntervalMeanRecord>,
-    /// Russian against Allan values, per channel long enough for it.
+    /// Russian against Allan values, per channel long enough for it; absent in earlier results.
+    #[serde(default)]
     pub comparison: Vec<ComparisonRecord>,
     /// What this test can decide: power of each limit.
     pub power: Vec<PowerRecord>,
@@ -256,7 +258,7 @@ pub struct NoiseModelRecord {
     /// Method of the fit.
     pub method: String,
     /// Terms in the model that were claimed.
-    pub terms: Vec<String>,
+    pub terms: Vec<NoiseType>,
     /// Angle random walk, deg/sqrt(h).
     pub angle_random_walk: f64,
     /// Flicker coefficient B, deg/h.
@@ -325,6 +327,27 @@ impl LimitRecord {
             acceptance_min: judgement.acceptance_min,
             acceptance_max: judgement.acceptance_max,
             source: limit.source.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::effect::Domain;
+    use crate::noise::model::TERMS;
+    use crate::noise::prediction::Agreement;
+    use crate::noise::residual::View;
+    use crate::recording::Role;
+
+    #[test]
+    fn enums_are_written_by_their_ids() {
+        let is = |written: serde_json::Value, id: &str| assert_eq!(written, id);
+        Domain::ALL.iter().for_each(|d| is(serde_json::to_value(d).unwrap(), d.id()));
+        View::ALL.iter().for_each(|v| is(serde_json::to_value(v).unwrap(), v.id()));
+        Role::ALL.iter().for_each(|r| is(serde_json::to_value(r).unwrap(), r.id()));
+        TERMS.iter().for_each(|t| is(serde_json::to_value(t).unwrap(), t.id()));
+        for a in [Agreement::Consistent, Agreement::Above, Agreement::Below] {
+            is(serde_json::to_value(a).unwrap(), a.id());
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a run rests on: program, procedure, unit, session and the files read.
 
+use crate::recording::Role;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -113,8 +114,8 @@ pub struct ColumnRecord {
     pub name: String,
     /// Channel id used in this result, for example `rate`.
     pub channel: String,
-    /// Role, for example `temperature`.
-    pub role: String,
+    /// What it was taken for.
+    pub role: Role,
     /// Unit in the file.
     pub unit: String,
 }

@@ -81,6 +81,14 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
     if bytes.len() > MAX_BYTES { Err(ReadError::TooLarge) } else { Ok(bytes) }
 }
 
+/// The record in a `result.json`.
+///
+/// # Errors
+/// [`ReadError::Io`], and as [`from_slice`].
+pub fn open(path: &Path) -> Result<RunRecord, ReadError> {
+    from_slice(&bytes(path)?)
+}
+
 /// The record that the bytes of a `result.json` hold.
 ///
 /// # Errors

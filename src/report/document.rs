@@ -2,16 +2,17 @@
 
 use super::compare::CompareView;
 use super::explain::{ExplainFile, ExplainView};
-use super::results::ExplanationResults;
+use super::render::{run_context, view_context};
+use super::results::{ExplanationResults, Results};
 use super::view::{PhasePart, View};
 use crate::acceptance::Outcome;
 use crate::acceptance::compare::Comparison;
 use crate::acceptance::phases::figures as phase_figures;
 use crate::figure::Figure;
-use crate::i18n::{Lang, table};
+use crate::i18n::Lang;
 use crate::output::Kind;
 use crate::record::RunRecord;
-use minijinja::value::{Serde, Value};
+use minijinja::value::Value;
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -140,19 +141,29 @@ impl<'a> Document<'a> {
     }
 }
 
-/// What a template of a run sees.
-pub(super) fn run_context(view: &View, record: &RunRecord, lang: Lang) -> Value {
-    minijinja::context! {
-        v => Value::from(Serde(view)),
-        run => Value::from(Serde(record)),
-        locale => Value::from(Serde(table(lang))),
+impl Results {
+    /// The document of the whole.
+    pub fn whole(&self, lang: Lang) -> Document<'_> {
+        match self {
+            Results::Run(results) if results.outcome.record.phases.is_empty() => {
+                Document::of_run(&results.outcome, lang)
+            }
+            Results::Run(results) => Document::of_phases(&results.outcome.record, &results.phases, lang),
+            Results::Explanation(results) => Document::of_explanation(results, lang),
+            Results::Comparison(comparison, figures, tables) => {
+                Document::of_comparison(comparison, figures, tables, lang)
+            }
+        }
     }
-}
 
-/// What any other template sees.
-pub(super) fn view_context(view: &impl Serialize, lang: Lang) -> Value {
-    minijinja::context! {
-        v => Value::from(Serde(view)),
-        locale => Value::from(Serde(table(lang))),
+    /// The documents that stand in folders below that of the whole, each with its folder, such as `phases/static`.
+    pub fn parts(&self, lang: Lang) -> Vec<(String, Document<'_>)> {
+        let Results::Run(results) = self else { return vec![] };
+        let phases = results.outcome.record.phases.iter().zip(&results.phases);
+        let phases = phases.filter_map(|(phase, o)| phase.folder.clone().zip(o.as_ref()));
+        let explanation = results.explanation.as_ref().map(|e| ("explain".to_owned(), e));
+        let phases = phases.map(|(folder, o)| (folder, Document::of_run(o, lang)));
+        let explanation = explanation.map(|(folder, e)| (folder, Document::of_explanation(e, lang)));
+        phases.chain(explanation).collect()
     }
 }

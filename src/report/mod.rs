@@ -7,12 +7,14 @@ pub mod compare;
 mod document;
 pub mod explain;
 pub mod export;
+mod figure_file;
 pub mod methods;
 pub mod number;
 mod prose;
 pub mod render;
 mod results;
 pub mod svg;
+mod translator;
 pub mod unit;
 pub mod view;
 

@@ -1,6 +1,7 @@
 //! Numbers as a report shows them: rounded by their uncertainty, with a true minus sign and powers of ten, in the
 //! decimal mark of the language. Values are rounded for the eye only; decisions were made on the unrounded ones.
 
+use super::unit::superscript;
 use crate::i18n::{Lang, lookup, significant};
 
 /// Shown where there is nothing to show.
@@ -26,18 +27,6 @@ pub fn typographic(ascii: &str, lang: Lang) -> String {
         out.push_str(&superscript(exponent));
     }
     out
-}
-
-/// A whole number in superscript figures.
-pub fn superscript(ascii: &str) -> String {
-    const FIGURES: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    ascii
-        .chars()
-        .filter_map(|c| match c {
-            '-' => Some('⁻'),
-            c => c.to_digit(10).and_then(|d| FIGURES.get(d as usize).copied()),
-        })
-        .collect()
 }
 
 /// A number with a count of significant digits.

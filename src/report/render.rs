@@ -1,13 +1,13 @@
 //! Templates: the built-in ones, each of which a file of the same name in a folder of the user's replaces.
 
-use super::document::{run_context, view_context};
 use super::number;
 use super::prose::{self, prose};
-use super::view::{View, Words};
+use super::translator::Translator;
+use super::view::View;
 use crate::figure::Figure;
-use crate::i18n::{Lang, Localize, Note, io_reason, lookup};
+use crate::i18n::{Lang, Localize, Note, io_reason, lookup, table};
 use crate::record::RunRecord;
-use minijinja::value::{Kwargs, Value};
+use minijinja::value::{Kwargs, Serde, Value};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -186,7 +186,7 @@ impl Renderer {
             };
             out.write_str(&escaped).map_err(minijinja::Error::from)
         });
-        let words = Words { lang };
+        let words = Translator { lang };
         env.add_function("t", move |key: String, args: Kwargs| -> Result<String, minijinja::Error> {
             let mut given: Vec<(String, String)> = vec![];
             for name in args.args() {
@@ -245,6 +245,23 @@ impl Renderer {
     }
 }
 
+/// What a template of a run sees.
+pub(super) fn run_context(view: &View, record: &RunRecord, lang: Lang) -> Value {
+    minijinja::context! {
+        v => Value::from(Serde(view)),
+        run => Value::from(Serde(record)),
+        locale => Value::from(Serde(table(lang))),
+    }
+}
+
+/// What any other template sees.
+pub(super) fn view_context(view: &impl serde::Serialize, lang: Lang) -> Value {
+    minijinja::context! {
+        v => Value::from(Serde(view)),
+        locale => Value::from(Serde(table(lang))),
+    }
+}
+
 /// Renders the HTML report: one file that needs no other.
 ///
 /// # Errors
@@ -280,7 +297,7 @@ fn wrong(error: &minijinja::Error, name: &str) -> ReportError {
 }
 
 /// A note of the serialised record in words.
-fn say(note: &Value, words: Words) -> String {
+fn say(note: &Value, words: Translator) -> String {
     let part = |name: &str| note.get_attr(name).ok().filter(|v| !v.is_undefined());
     let id = part("id").map(|v| v.to_string()).unwrap_or_default();
     let Some(pattern) = lookup(words.lang, &id) else {

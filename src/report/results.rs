@@ -1,13 +1,12 @@
 //! Everything that a run or an explanation gives, in memory or read back from its folder.
 
-use super::Document;
 use super::explain::{Context, ExplainFile};
-use super::export::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
+use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
 use crate::acceptance::Outcome;
-use crate::acceptance::compare::{Comparison, csv, figures};
+use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, csv, figures};
 use crate::config::model;
 use crate::figure::Figure;
-use crate::i18n::{Lang, Note};
+use crate::i18n::Note;
 use crate::mismatch;
 use crate::output::Kind;
 use crate::record::explanation::Explanation;
@@ -109,31 +108,6 @@ impl Results {
             Results::Comparison(..) => None,
         }
     }
-
-    /// The document of the whole.
-    pub fn whole(&self, lang: Lang) -> Document<'_> {
-        match self {
-            Results::Run(results) if results.outcome.record.phases.is_empty() => {
-                Document::of_run(&results.outcome, lang)
-            }
-            Results::Run(results) => Document::of_phases(&results.outcome.record, &results.phases, lang),
-            Results::Explanation(results) => Document::of_explanation(results, lang),
-            Results::Comparison(comparison, figures, tables) => {
-                Document::of_comparison(comparison, figures, tables, lang)
-            }
-        }
-    }
-
-    /// The documents that stand in folders below that of the whole, each with its folder, such as `phases/static`.
-    pub fn parts(&self, lang: Lang) -> Vec<(String, Document<'_>)> {
-        let Results::Run(results) = self else { return vec![] };
-        let phases = results.outcome.record.phases.iter().zip(&results.phases);
-        let phases = phases.filter_map(|(phase, o)| phase.folder.clone().zip(o.as_ref()));
-        let explanation = results.explanation.as_ref().map(|e| ("explain".to_owned(), e));
-        let phases = phases.map(|(folder, o)| (folder, Document::of_run(o, lang)));
-        let explanation = explanation.map(|(folder, e)| (folder, Document::of_explanation(e, lang)));
-        phases.chain(explanation).collect()
-    }
 }
 
 /// Results read back from their folder.
@@ -170,6 +144,9 @@ impl StoredResults {
         let mut from = Folder { path: folder, files: listing.files, missing: vec![] };
         let results = match format.split('/').next() {
             Some("explain") => Results::Explanation(Box::new(from.explanation("", &bytes).map_err(wrong)?)),
+            Some("comparison") => {
+                Results::of_comparison(read::of_format(&bytes, COMPARISON_FORMAT).map_err(wrong)?)
+            }
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
         };
         Ok(StoredResults { results, inputs: listing.inputs, missing: from.missing })
@@ -214,8 +191,7 @@ impl Folder {
         // A result leads to no place outside its folder.
         let inside = Path::new(folder).components().all(|c| matches!(c, Component::Normal(_)));
         let path = self.path.join(folder).join(Kind::Result.record_file());
-        let record =
-            if inside { read::bytes(&path).and_then(|b| read::from_slice(&b)) } else { return None };
+        let record = if inside { read::open(&path) } else { return None };
         match record {
             Ok(record) => Some(self.outcome(record, &format!("{folder}/"))),
             Err(e) => {

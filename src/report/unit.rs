@@ -26,7 +26,7 @@ pub fn pretty(unit: &str, lang: Lang) -> String {
         } else if let Some(tail) = rest.strip_prefix('^') {
             let end = tail.find(|c: char| !(c.is_ascii_digit() || c == '-')).unwrap_or(tail.len());
             let (power, tail) = tail.split_at(end);
-            let raised = super::number::superscript(power);
+            let raised = superscript(power);
             out.push_str(if raised.is_empty() { "^" } else { &raised });
             rest = tail;
         } else {
@@ -35,6 +35,18 @@ pub fn pretty(unit: &str, lang: Lang) -> String {
         }
     }
     out
+}
+
+/// A whole number in superscript figures.
+pub fn superscript(ascii: &str) -> String {
+    const FIGURES: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    ascii
+        .chars()
+        .filter_map(|c| match c {
+            '-' => Some('⁻'),
+            c => c.to_digit(10).and_then(|d| FIGURES.get(d as usize).copied()),
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -88,6 +88,24 @@ fn an_explanation_comes_out_the_same_alone_and_in_a_run() {
 }
 
 #[test]
+fn comparisons_come_out_the_same() {
+    for what in [sample("indeterminate"), "--published".to_owned()] {
+        let dir = tempdir().unwrap();
+        let said = sagnac(dir.path(), &["compare", &what, "--lang", "en", "--out", "o"]);
+        assert_eq!(said.code, 0, "{said:?}");
+        let render = |from: &str, lang: &str, to: &str| {
+            let said = sagnac(dir.path(), &["report", from, "--lang", lang, "--out", to]);
+            assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+        };
+        render("o", "ru", "ru");
+        render("ru", "en", "back");
+        assert_eq!(differences(&dir.path().join("o"), &dir.path().join("back")), [""; 0]);
+        let page = fs::read_to_string(dir.path().join("ru/comparison.md")).unwrap();
+        assert!(page.contains(if what == "--published" { "ОИУС" } else { "σ100" }), "{page}");
+    }
+}
+
+#[test]
 fn forms_are_chosen_and_what_is_missing_is_said() {
     let dir = tempdir().unwrap();
     let at = |name: &str| dir.path().join(name);

@@ -50,7 +50,7 @@ fn every_kind_is_said_with_its_parameters() {
     for lang in Lang::ALL {
         for (kind, parameters) in fixture::KINDS {
             let all = fixture::explained(vec![fixture::of_kind(kind)]);
-            let said = &view(&all, *lang).says[0];
+            let said = &view(&all, *lang).summary[0];
             assert!(!said.contains(['{', '}']) && !said.contains("explain."), "{kind}: {said}");
             assert!(!said.contains(kind) || !kind.contains('_'), "{kind} has no words: {said}");
             // Of each kind the sentence gives at least one number, and every parameter has a name.
@@ -69,7 +69,7 @@ fn a_parameter_that_could_not_be_estimated_is_not_invented() {
         let mut finding = fixture::of_kind(kind);
         finding.parameters.clear();
         for lang in Lang::ALL {
-            let said = view(&fixture::explained(vec![finding.clone()]), *lang).says.join(" ");
+            let said = view(&fixture::explained(vec![finding.clone()]), *lang).summary.join(" ");
             assert!(!said.contains(['{', '}']) && !said.contains("NaN"), "{kind}: {said}");
             if find(kind).is_some() {
                 assert!(said.contains(effect_text(kind, EffectText::Title, *lang)), "{kind}: {said}");

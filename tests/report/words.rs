@@ -62,7 +62,7 @@ fn every_id_of_a_run_has_words() {
         keys.extend(r.integrity.faults.iter().map(|f| format!("fault.{}", f.kind)));
         keys.extend(r.window.excluded.iter().map(|e| format!("excluded.{}", e.reason)));
         keys.extend(r.clauses.iter().map(|c| format!("clause.{}", c.status)));
-        keys.extend(r.recording.iter().flat_map(|f| &f.columns).map(|c| format!("role.{}", c.role)));
+        keys.extend(r.recording.iter().flat_map(|f| &f.columns).map(|c| format!("role.{}", c.role.id())));
         keys.extend(r.summary.iter().chain(&r.errors).map(|n| n.id.to_string()));
         keys.extend(r.power.iter().map(|p| p.message.id.to_string()));
         assert!(keys.len() > 30, "{sample} shows {} ids only", keys.len());

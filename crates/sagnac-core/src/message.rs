@@ -75,6 +75,16 @@ impl Arg {
 }
 
 impl Arg {
+    /// The number of an argument that is one.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Arg::Number(v) | Arg::Stated(v) => Some(*v),
+            Arg::Decimals { value, .. } | Arg::Figures { value, .. } => Some(*value),
+            Arg::Count(n) => Some(*n as f64),
+            _ => None,
+        }
+    }
+
     fn plain(&self) -> String {
         match self {
             Arg::Number(v) | Arg::Stated(v) => v.to_string(),

@@ -16,9 +16,9 @@ pub(crate) enum Real {
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub(crate) enum Infinite {
-    #[serde(rename = "infinity")]
+    #[serde(rename = "∞")]
     Positive,
-    #[serde(rename = "-infinity")]
+    #[serde(rename = "-∞")]
     Negative,
 }
 

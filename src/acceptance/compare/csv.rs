@@ -1,7 +1,7 @@
 //! `comparison.csv`: one row a unit, plain numbers, empty where there is none.
 
 use super::published::Checked;
-use super::{Comparison, Unit};
+use super::{Comparison, ReadOutRule, Unit};
 use crate::measurand;
 use crate::output::quoted;
 use std::fmt::Write;
@@ -38,7 +38,7 @@ fn units(units: &[Unit]) -> String {
         let minimum = detail.and_then(|d| d.minimum.as_ref());
         let window = |s: f64| detail.and_then(|d| d.windows.iter().find(|w| w.window_s == s));
         let (w100, w10) = (window(100.0), window(10.0));
-        let rule = |r: &str| unit.rules.iter().find(|row| row.rule == r);
+        let rule = |r: ReadOutRule| unit.rules.iter().find(|row| row.rule == r);
         let null = |i: usize| number(minimum.and_then(|m| m.null_ratio?.get(i).copied()));
         let count = |n: Option<u64>| n.map(|n| n.to_string()).unwrap_or_default();
         let share = w100.and_then(|w| w.shares.first());
@@ -65,12 +65,12 @@ fn units(units: &[Unit]) -> String {
             low(measurand::BIAS_INSTABILITY.id),
             high(measurand::BIAS_INSTABILITY.id),
             number(b.filter(|b| b.value.is_none()).and_then(|b| Some(b.upper_limit?.value))),
-            number(rule("d").and_then(|r| r.value)),
-            number(rule("a").and_then(|r| r.ratio)),
-            number(rule("a").and_then(|r| Some(r.ratio_interval?.low))),
-            number(rule("a").and_then(|r| Some(r.ratio_interval?.high))),
-            number(rule("a").and_then(|r| r.inverse)),
-            number(rule("c").filter(|r| r.value.is_some()).and_then(|r| r.ratio)),
+            number(rule(ReadOutRule::FittedFloor).and_then(|r| r.value)),
+            number(rule(ReadOutRule::Minimum).and_then(|r| r.ratio)),
+            number(rule(ReadOutRule::Minimum).and_then(|r| Some(r.ratio_interval?.low))),
+            number(rule(ReadOutRule::Minimum).and_then(|r| Some(r.ratio_interval?.high))),
+            number(rule(ReadOutRule::Minimum).and_then(|r| r.inverse)),
+            number(rule(ReadOutRule::FittedB).filter(|r| r.value.is_some()).and_then(|r| r.ratio)),
             null(0),
             null(1),
             null(2),
@@ -91,7 +91,7 @@ fn units(units: &[Unit]) -> String {
             number(w100.and_then(|w| w.ratio)),
             number(w100.and_then(|w| Some(w.ratio_interval?.low))),
             number(w100.and_then(|w| Some(w.ratio_interval?.high))),
-            w100.and_then(|w| w.agreement.clone()).unwrap_or_default(),
+            w100.and_then(|w| w.agreement).map_or_else(String::new, |a| a.id().to_owned()),
             share.map(|s| s.part.clone()).unwrap_or_default(),
             number(share.map(|s| s.share)),
             number(floor.map(|f| f.crossover_s)),

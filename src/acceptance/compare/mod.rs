@@ -6,28 +6,29 @@
 pub mod csv;
 mod faults;
 pub mod figures;
+mod of_result;
 mod parts;
 pub mod published;
-mod published_checks;
+pub mod published_checks;
 mod rules;
-mod says;
+mod summary;
 mod unit;
 
+pub use of_result::{mark_repeated, name_apart, not_compared, units_of};
 pub use parts::{part_key, part_name};
-pub use rules::{RULES, RuleRow};
-pub use unit::{Origin, Quantity, Unit, UnitError, not_compared, tell_apart, tell_repeated, units_of};
+pub use unit::{Origin, Quantity, ReadOutRule, RuleRow, Unit};
 
 use crate::record::Program;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Version of `comparison.json`.
 pub const COMPARISON_FORMAT: &str = "comparison/1";
 
 /// A whole comparison: of units, or of the published tables.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Always `comparison/1`.
-    pub format: &'static str,
+    pub format: String,
     /// The program that wrote this.
     pub program: Program,
     /// When it was made, RFC 3339, UTC.
@@ -51,7 +52,7 @@ impl Comparison {
 
     fn empty(compared_at: String) -> Comparison {
         Comparison {
-            format: COMPARISON_FORMAT,
+            format: COMPARISON_FORMAT.to_owned(),
             program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
             compared_at,
             units: vec![],

@@ -51,7 +51,7 @@ pub fn part_name(share: &ShareRecord, model: &ModelRecord) -> Note {
         Some(model.parameters.iter().find(|p| p.id == id && p.index == share.index)?.value)
     };
     let frequency = match share.part.as_str() {
-        "line" => model.lines.get(share.index).map(|l| l.1),
+        "line" => model.lines.get(share.index).map(|l| l.frequency_hz),
         "quasi_periodic" => centre(),
         _ => None,
     };
@@ -66,6 +66,7 @@ pub fn part_name(share: &ShareRecord, model: &ModelRecord) -> Note {
 mod tests {
     use super::*;
     use crate::i18n::{Lang, Localize};
+    use crate::record::CoherentLine;
 
     fn share(part: &str, index: usize, share: f64) -> ShareRecord {
         ShareRecord { part: part.into(), index, share, deviation_deg_h: 0.0 }
@@ -78,7 +79,10 @@ mod tests {
         assert_eq!(kinds[0].0, "compare.more.lines");
         assert!((kinds[0].1 - 0.6).abs() < 1e-12);
         assert_eq!(kinds[1], ("compare.part.angle_random_walk", 0.4));
-        let model = ModelRecord { lines: vec![(1.0, 2.5), (2.0, 7.25)], ..ModelRecord::default() };
+        let model = ModelRecord {
+            lines: [(1.0, 2.5), (2.0, 7.25)].map(CoherentLine::from).to_vec(),
+            ..ModelRecord::default()
+        };
         assert_eq!(part_name(&shares[1], &model).say(Lang::En), "a spectral line at 7.25 Hz");
         assert_eq!(part_name(&shares[0], &model).say(Lang::En), "angle random walk");
     }

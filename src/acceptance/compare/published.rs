@@ -1,11 +1,7 @@
 //! The published tables of Russian and Allan figures, kept as they were printed.
 
-use super::published_checks;
 use crate::i18n::Note;
 use serde::{Deserialize, Serialize};
-
-/// The tables as data.
-const TABLES: &str = include_str!("published.toml");
 
 /// A number as it was printed, with the half unit of its last digit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,9 +18,24 @@ impl Printed {
         Some(Printed { value, half: 0.5 * 10f64.powi(-(decimals as i32)) })
     }
 
-    /// The least and the most that was rounded to these digits.
-    pub fn range(self) -> (f64, f64) {
-        (self.value - self.half, self.value + self.half)
+    /// What was rounded to these digits.
+    pub fn range(self) -> Range {
+        Range { low: self.value - self.half, high: self.value + self.half }
+    }
+}
+
+/// The least and the most that a number can be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Range {
+    pub low: f64,
+    pub high: f64,
+}
+
+impl Range {
+    /// True where both have numbers in common, and not only an end.
+    pub fn overlaps(self, other: Range) -> bool {
+        let slack = 1e-9 * self.high.abs().max(other.high.abs());
+        self.low < other.high - slack && other.low < self.high - slack
     }
 }
 
@@ -78,7 +89,7 @@ pub struct Row2 {
 }
 
 /// A row of Table 2 with what follows from it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CheckedRow {
     /// Device.
     pub device: String,
@@ -111,14 +122,14 @@ pub struct CheckedRow {
     /// σ10 over σ100, σ10 from the Russian angle random walk.
     pub sigma10_over_sigma100: f64,
     /// What does not follow, or is worth knowing.
-    #[serde(serialize_with = "crate::record::message::notes::serialize")]
+    #[serde(with = "crate::record::message::notes")]
     pub remarks: Vec<Note>,
     /// True when something does not follow.
     pub flagged: bool,
 }
 
 /// What angle random walk alone would give for the ratio of Table 2.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NullRow {
     /// Record length over the largest averaging time.
     pub length_over_tau_max: f64,
@@ -127,7 +138,7 @@ pub struct NullRow {
 }
 
 /// The tables with their checks.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Checked {
     /// Where the tables are printed.
     pub source: String,
@@ -140,11 +151,6 @@ pub struct Checked {
     /// What angle random walk alone gives.
     pub null: Vec<NullRow>,
     /// Remarks on the whole.
-    #[serde(serialize_with = "crate::record::message::notes::serialize")]
+    #[serde(with = "crate::record::message::notes")]
     pub remarks: Vec<Note>,
-}
-
-/// Checks the published tables; `None` only if the tables in the program cannot be read, which a test excludes.
-pub fn checked() -> Option<Checked> {
-    published_checks::check(&toml::from_str::<Tables>(TABLES).ok()?)
 }

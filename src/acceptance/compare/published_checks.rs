@@ -3,7 +3,7 @@
 //! A printed number follows when some values that round to the printed ones give one that rounds to it. Against N a
 //! printed σ has its sampling error as well: that of the least record length the paper names.
 
-use super::published::{Checked, CheckedRow, NullRow, Printed, Row2, Tables};
+use super::published::{Checked, CheckedRow, NullRow, Printed, Range, Row2, Tables};
 use crate::estimate::chi_square_quantile;
 use crate::i18n::{Arg, Note};
 use crate::noise::data::NoiseType;
@@ -40,24 +40,29 @@ impl Row {
     }
 }
 
-/// The quotients of all values that round to two printed ones: least and most.
-fn quotients(above: Printed, below: Printed) -> (f64, f64) {
-    let ((a0, a1), (b0, b1)) = (above.range(), below.range());
-    (a0 / b1, a1 / b0)
-}
-
-fn overlap(a: (f64, f64), b: (f64, f64)) -> bool {
-    let slack = 1e-9 * a.1.abs().max(b.1.abs());
-    a.0 < b.1 - slack && b.0 < a.1 - slack
+/// The quotients of all values that round to two printed ones.
+fn quotients(above: Printed, below: Printed) -> Range {
+    let (above, below) = (above.range(), below.range());
+    Range { low: above.low / below.high, high: above.high / below.low }
 }
 
 /// The 95 % range of an observed standard deviation over its expectation, for n − 1 degrees of freedom.
-fn sampling(windows: f64) -> (f64, f64) {
+fn sampling(windows: f64) -> Range {
     let dof = windows - 1.0;
-    ((chi_square_quantile(0.025, dof) / dof).sqrt(), (chi_square_quantile(0.975, dof) / dof).sqrt())
+    let at = |p| (chi_square_quantile(p, dof) / dof).sqrt();
+    Range { low: at(0.025), high: at(0.975) }
 }
 
-pub(super) fn check(tables: &Tables) -> Option<Checked> {
+/// The tables as data.
+const TABLES: &str = include_str!("published.toml");
+
+/// Checks the published tables; `None` only if the tables in the program cannot be read, which a test excludes.
+pub fn checked() -> Option<Checked> {
+    let tables: Tables = toml::from_str(TABLES).ok()?;
+    check(&tables)
+}
+
+fn check(tables: &Tables) -> Option<Checked> {
     let rows = tables.table2.iter().map(|r| row(r, tables)).collect::<Option<Vec<CheckedRow>>>()?;
     let length_s = 3600.0 * tables.least_record_h;
     let null = [10.0, 8.0, 5.0, 3.0, 2.0]
@@ -78,97 +83,117 @@ pub(super) fn check(tables: &Tables) -> Option<Checked> {
     })
 }
 
+/// Remarks on a row, and whether one of them says that something does not follow.
+#[derive(Default)]
+struct Remarks {
+    notes: Vec<Note>,
+    flagged: bool,
+}
+
+impl Remarks {
+    fn flag(&mut self, note: Note) {
+        self.flagged = true;
+        self.notes.push(note);
+    }
+}
+
+/// A factor of which three digits are told.
+fn factor(v: f64) -> Arg {
+    Arg::figures(v, 3)
+}
+
 fn row(printed: &Row2, tables: &Tables) -> Option<CheckedRow> {
     let r = Row::of(printed)?;
     let before = tables.table1.iter().find(|t| t.device == printed.in_table1);
     let n_table1 = before.and_then(|t| Printed::of(&t.n));
     let b_table1 = before.and_then(|t| Printed::of(&t.bias_instability));
-    let factor = |v: f64| Arg::figures(v, 3);
-    let mut remarks = vec![];
-    let mut flagged = false;
-    let mut say = |flag: bool, note: Note| {
-        flagged |= flag;
-        remarks.push(note);
-    };
-
-    let ratio = r.sigma100.value / r.bias.value;
-    let follows = overlap(quotients(r.sigma100, r.bias), r.bias_ratio.range())
-        && overlap(quotients(r.bias, r.sigma100), r.bias_inverse.range());
-    if !follows {
-        let note = Note::new("compare.published.bias_ratio_wrong")
-            .with("printed", Arg::Stated(r.bias_ratio.value))
-            .with("computed", factor(ratio));
-        say(true, note);
-    }
-    let arw_ratio = r.arw.value / r.n.value;
-    let follows = overlap(quotients(r.arw, r.n), r.arw_ratio.range())
-        && overlap(quotients(r.n, r.arw), r.arw_inverse.range());
-    if !follows {
-        let note = Note::new("compare.published.arw_ratio_wrong")
-            .with("printed", Arg::Stated(r.arw_ratio.value))
-            .with("computed", factor(arw_ratio));
-        say(true, note);
-    }
-    if let Some(first) = n_table1.filter(|first| first.value != r.n.value) {
-        let rounding = overlap(first.range(), r.n.range());
-        let key =
-            if rounding { "compare.published.n_differs_by_rounding" } else { "compare.published.n_differs" };
-        let note = Note::new(key)
-            .with("first", Arg::Stated(first.value))
-            .with("second", Arg::Stated(r.n.value))
-            .with("factor", factor((first.value / r.n.value).max(r.n.value / first.value)));
-        say(!rounding, note);
-    }
-    if let Some(first) = b_table1.filter(|first| first.value != r.bias.value) {
-        let note = Note::new("compare.published.b_differs")
-            .with("first", Arg::Stated(first.value))
-            .with("second", Arg::Stated(r.bias.value));
-        say(true, note);
-    }
-
-    let (low, high) = sampling(36.0 * tables.least_record_h);
+    let mut remarks = Remarks::default();
+    ratios(&r, &mut remarks);
+    against_table1(&r, n_table1, b_table1, &mut remarks);
+    let steep = against_white_noise(&r, tables, &mut remarks);
     let six_n = 6.0 * r.n.value;
-    let over_six_n = r.sigma100.value / six_n;
-    let (least, most) = quotients(r.sigma100, Printed { value: six_n, half: 6.0 * r.n.half });
-    let note = |key: &'static str| Note::new(key).with("ratio", factor(over_six_n)).with("six_n", six_n);
-    if most < low {
-        say(true, note("compare.published.below_six_n"));
-    } else if least > high {
-        say(true, note("compare.published.above_six_n"));
-    } else {
-        say(false, note("compare.published.is_six_n"));
-    }
-
-    // σ10 as the paper's own formula gives it back.
-    let per_arw = 1.0 / angle_random_walk_from_10s(1.0);
-    let steep = per_arw * r.arw.value / r.sigma100.value;
-    let (least_steep, _) =
-        quotients(Printed { value: per_arw * r.arw.value, half: per_arw * r.arw.half }, r.sigma100);
-    if least_steep > WHITE / low {
-        let note = Note::new("compare.published.excess_at_10_s")
-            .with("ratio", factor(steep))
-            .with("white", factor(WHITE));
-        say(true, note);
-    }
     Some(CheckedRow {
         device: printed.device.clone(),
         printed: printed.clone(),
         sigma100: r.sigma100.value,
         bias_instability: r.bias.value,
         ratio_printed: r.bias_ratio.value,
-        ratio,
+        ratio: r.sigma100.value / r.bias.value,
         arw_russian: r.arw.value,
         n: r.n.value,
         n_table1: n_table1.map(|p| p.value),
         arw_ratio_printed: r.arw_ratio.value,
-        arw_ratio,
+        arw_ratio: r.arw.value / r.n.value,
         six_n,
-        over_six_n,
+        over_six_n: r.sigma100.value / six_n,
         crossover_h: (r.n.value / r.bias.value).powi(2),
         sigma10_over_sigma100: steep,
-        remarks,
-        flagged,
+        remarks: remarks.notes,
+        flagged: remarks.flagged,
     })
+}
+
+/// Whether the printed ratios follow from what they are the ratios of.
+fn ratios(r: &Row, remarks: &mut Remarks) {
+    let mut check = |key, above: Printed, below: Printed, ratio: Printed, inverse: Printed| {
+        let follows = quotients(above, below).overlaps(ratio.range())
+            && quotients(below, above).overlaps(inverse.range());
+        if !follows {
+            let note = Note::new(key).with("printed", Arg::Stated(ratio.value));
+            remarks.flag(note.with("computed", factor(above.value / below.value)));
+        }
+    };
+    check("compare.published.bias_ratio_wrong", r.sigma100, r.bias, r.bias_ratio, r.bias_inverse);
+    check("compare.published.arw_ratio_wrong", r.arw, r.n, r.arw_ratio, r.arw_inverse);
+}
+
+/// Whether N and B are those of the same device in Table 1.
+fn against_table1(r: &Row, n: Option<Printed>, b: Option<Printed>, remarks: &mut Remarks) {
+    if let Some(first) = n.filter(|first| first.value != r.n.value) {
+        let note = |key: &'static str| {
+            Note::new(key)
+                .with("first", Arg::Stated(first.value))
+                .with("second", Arg::Stated(r.n.value))
+                .with("factor", factor((first.value / r.n.value).max(r.n.value / first.value)))
+        };
+        if first.range().overlaps(r.n.range()) {
+            remarks.notes.push(note("compare.published.n_differs_by_rounding"));
+        } else {
+            remarks.flag(note("compare.published.n_differs"));
+        }
+    }
+    if let Some(first) = b.filter(|first| first.value != r.bias.value) {
+        let note = Note::new("compare.published.b_differs")
+            .with("first", Arg::Stated(first.value))
+            .with("second", Arg::Stated(r.bias.value));
+        remarks.flag(note);
+    }
+}
+
+/// Whether σ over 100 s, and its fall from 10 s, are those of N alone; gives σ10/σ100.
+fn against_white_noise(r: &Row, tables: &Tables, remarks: &mut Remarks) -> f64 {
+    let sampling = sampling(36.0 * tables.least_record_h);
+    let six_n = 6.0 * r.n.value;
+    let over = quotients(r.sigma100, Printed { value: six_n, half: 6.0 * r.n.half });
+    let note = |key: &'static str| {
+        Note::new(key).with("ratio", factor(r.sigma100.value / six_n)).with("six_n", six_n)
+    };
+    if over.high < sampling.low {
+        remarks.flag(note("compare.published.below_six_n"));
+    } else if over.low > sampling.high {
+        remarks.flag(note("compare.published.above_six_n"));
+    } else {
+        remarks.notes.push(note("compare.published.is_six_n"));
+    }
+    // σ10 as the paper's own formula gives it back.
+    let per_arw = 1.0 / angle_random_walk_from_10s(1.0);
+    let steep = per_arw * r.arw.value / r.sigma100.value;
+    let sigma10 = Printed { value: per_arw * r.arw.value, half: per_arw * r.arw.half };
+    if quotients(sigma10, r.sigma100).low > WHITE / sampling.low {
+        let note = Note::new("compare.published.excess_at_10_s");
+        remarks.flag(note.with("ratio", factor(steep)).with("white", factor(WHITE)));
+    }
+    steep
 }
 
 /// Slope of the Allan deviation of a term in decades per decade.
@@ -225,7 +250,6 @@ fn remarks(tables: &Tables, rows: &[CheckedRow], null: &[NullRow]) -> Vec<Note> 
 
 #[cfg(test)]
 mod tests {
-    use super::super::published::checked;
     use super::*;
     use crate::i18n::{Lang, Localize};
 

@@ -1,39 +1,19 @@
 //! Allan bias instability under each read-out rule, with the ratio of the Russian drift to it.
 
-use super::unit::{Quantity, Unit};
+use super::unit::{Quantity, ReadOutRule, RuleRow, Unit};
 use crate::estimate::{Interval, UpperLimit};
 use crate::measurand;
-use serde::Serialize;
 
 /// √(2 ln 2/π): the Allan floor of flicker noise is this times B.
 const FLOOR: f64 = 0.664_282_470_3;
 
-/// The rules: letter, id of the measurand it is read from, factor on it.
-pub const RULES: [(&str, &str, f64); 4] = [
-    ("a", measurand::BIAS_INSTABILITY_MINIMUM.id, 1.0),
-    ("b", measurand::BIAS_INSTABILITY_MINIMUM_SCALED.id, 1.0),
-    ("c", measurand::BIAS_INSTABILITY.id, 1.0),
-    ("d", measurand::BIAS_INSTABILITY.id, FLOOR),
+/// The rules: the measurand each is read from, and the factor on it.
+const RULES: [(ReadOutRule, &str, f64); 4] = [
+    (ReadOutRule::Minimum, measurand::BIAS_INSTABILITY_MINIMUM.id, 1.0),
+    (ReadOutRule::ScaledMinimum, measurand::BIAS_INSTABILITY_MINIMUM_SCALED.id, 1.0),
+    (ReadOutRule::FittedB, measurand::BIAS_INSTABILITY.id, 1.0),
+    (ReadOutRule::FittedFloor, measurand::BIAS_INSTABILITY.id, FLOOR),
 ];
-
-/// Bias instability by one rule.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RuleRow {
-    /// `a` raw minimum, `b` minimum/0.664, `c` fitted B, `d` 0.664·B.
-    pub rule: &'static str,
-    /// Value, deg/h.
-    pub value: Option<f64>,
-    /// 95 % interval, deg/h.
-    pub interval: Option<Interval>,
-    /// Bound where there is no value, deg/h.
-    pub upper_limit: Option<UpperLimit>,
-    /// σ of 100-s means over it; where only a bound is known, the least that the ratio can be.
-    pub ratio: Option<f64>,
-    /// 95 % interval of the ratio.
-    pub ratio_interval: Option<Interval>,
-    /// The ratio the other way, as the founding paper prints it first.
-    pub inverse: Option<f64>,
-}
 
 /// The rows of a unit; a rule whose measurand the result lacks has no row.
 pub(super) fn rules(unit: &Unit) -> Vec<RuleRow> {
@@ -50,8 +30,10 @@ pub(super) fn rules(unit: &Unit) -> Vec<RuleRow> {
             let limit = q.upper_limit.map(|u| UpperLimit { value: u.value * factor, ..u });
             let ratio = sigma.zip(value.or(limit.map(|l| l.value))).map(|(s, v)| s / v);
             let ratio_interval = match rule {
-                "a" => of_minimum,
-                "b" => of_minimum.map(|i| Interval { low: i.low * FLOOR, high: i.high * FLOOR, ..i }),
+                ReadOutRule::Minimum => of_minimum,
+                ReadOutRule::ScaledMinimum => {
+                    of_minimum.map(|i| Interval { low: i.low * FLOOR, high: i.high * FLOOR, ..i })
+                }
                 _ => drift.and_then(|d| quotient(d, q, 1.0 / factor)),
             };
             Some(RuleRow {

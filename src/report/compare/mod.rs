@@ -9,8 +9,8 @@ pub use terminal::table;
 pub use unit::{Cell, LimitView, RuleCell, ShareView, UnitView};
 
 use super::number::date_time;
-use super::svg;
-use super::view::{FigureView, Words, caption};
+use super::translator::Translator;
+use super::view::FigureView;
 use crate::acceptance::compare::Comparison;
 use crate::figure::Figure;
 use crate::i18n::Lang;
@@ -36,10 +36,10 @@ pub struct CompareView {
 impl CompareView {
     /// Builds the view.
     pub fn new(comparison: &Comparison, figures: &[Figure], lang: Lang) -> CompareView {
-        let words = Words { lang };
+        let words = Translator { lang };
         let drawn = |id: &str| {
             let at = figures.iter().position(|f| f.id == id)?;
-            figures.get(at).map(|f| figure(f, at + 1, words))
+            figures.get(at).map(|f| FigureView::of(f, at + 1, words))
         };
         let generator = format!("{} {}", comparison.program.name, comparison.program.version);
         CompareView {
@@ -55,17 +55,5 @@ impl CompareView {
             footer: format!("{} · {generator}", date_time(&comparison.compared_at)),
             generator,
         }
-    }
-}
-
-pub(super) fn figure(figure: &Figure, number: usize, words: Words) -> FigureView {
-    let title = words.t(&figure.title);
-    FigureView {
-        id: figure.id.clone(),
-        number,
-        title: if figure.channel.is_empty() { title } else { format!("{title} · {}", figure.channel) },
-        caption: caption(figure, words),
-        svg: svg::render(figure, words.lang),
-        href: format!("figures/{}.svg", figure.id),
     }
 }

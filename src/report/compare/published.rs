@@ -1,9 +1,9 @@
 //! The published tables, printed.
 
 use crate::acceptance::compare::published::{Checked, CheckedRow, Row1};
-use crate::i18n::{Lang, decimal};
+use crate::i18n::{Lang, decimal, lookup};
 use crate::report::number::{digits, limit};
-use crate::report::view::Words;
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// The tables with their checks.
@@ -58,7 +58,7 @@ pub struct RowView {
 
 impl PublishedView {
     /// Prints the tables.
-    pub(super) fn new(checked: &Checked, words: Words) -> PublishedView {
+    pub(super) fn new(checked: &Checked, words: Translator) -> PublishedView {
         let lang = words.lang;
         let first = |r: &Row1| {
             [
@@ -86,7 +86,7 @@ impl PublishedView {
 }
 
 /// Lengths as printed, their units in the language of the report.
-fn lengths(printed: &str, words: Words) -> String {
+fn lengths(printed: &str, words: Translator) -> String {
     let named = |text: String, unit: &str, key: &str| {
         text.replace(&format!(" {unit}"), &format!(" {}", words.t(key)))
     };
@@ -97,19 +97,18 @@ fn lengths(printed: &str, words: Words) -> String {
 /// The name of a device: Russian ones have Latin letters in the data alone.
 fn device(name: &str, lang: Lang) -> String {
     let spelt = [
-        ("OIUS", "ОИУС"),
-        ("TIUS", "ТИУС"),
-        ("BChE", "БЧЭ"),
-        ("Optolink", "Оптолинк"),
-        ("Fizoptika", "Физоптика"),
+        ("OIUS", "compare.device.oius"),
+        ("TIUS", "compare.device.tius"),
+        ("BChE", "compare.device.bche"),
+        ("Optolink", "compare.device.optolink"),
+        ("Fizoptika", "compare.device.fizoptika"),
     ];
-    match lang {
-        Lang::En => name.to_owned(),
-        Lang::Ru => spelt.iter().fold(name.to_owned(), |name, (latin, own)| name.replace(latin, own)),
-    }
+    spelt.iter().fold(name.to_owned(), |name, (latin, key)| {
+        lookup(lang, key).map_or_else(|| name.clone(), |own| name.replace(latin, own))
+    })
 }
 
-fn row(r: &CheckedRow, words: Words) -> RowView {
+fn row(r: &CheckedRow, words: Translator) -> RowView {
     let printed = |text: &str| decimal(text, words.lang);
     let p = &r.printed;
     let computed = |v: f64| digits(v, 3, words.lang);

@@ -1,116 +1,103 @@
 //! The short table of the terminal.
 
-use super::CompareView;
+use super::published::RowView;
+use super::{CompareView, PublishedView, UnitView};
 use crate::i18n::{Lang, lookup, visible};
 
-/// The table of a comparison, columns in line.
+/// A table: its head and its rows.
+type Cells = (Vec<&'static str>, Vec<Vec<String>>);
+
+/// The table of a comparison, columns in line, with what is said of each unit below it.
 pub fn table(view: &CompareView, lang: Lang) -> String {
     let t = |key: &str| lookup(lang, key).unwrap_or(key).to_owned();
-    let (head, rows): (Vec<String>, Vec<Vec<String>>) = match &view.published {
-        Some(p) => (
-            [
-                "compare.column.unit",
-                "compare.column.sigma100",
-                "compare.column.bias_instability",
-                "compare.column.printed",
-                "compare.column.computed",
-                "compare.column.arw",
-                "compare.column.n_allan",
-                "compare.column.over_six_n",
-                "compare.column.steep",
-            ]
-            .map(t)
-            .to_vec(),
-            p.rows
-                .iter()
-                .map(|r| {
-                    let ratio = if r.flagged { format!("{} !", r.device) } else { r.device.clone() };
-                    vec![
-                        ratio,
-                        r.sigma100.clone(),
-                        r.bias_instability.clone(),
-                        r.ratio_printed.clone(),
-                        r.ratio.clone(),
-                        r.arw_russian.clone(),
-                        r.n.clone(),
-                        r.over_six_n.clone(),
-                        r.steep.clone(),
-                    ]
-                })
-                .collect(),
-        ),
-        None => (
-            [
-                "compare.column.unit",
-                "compare.column.length",
-                "compare.column.n",
-                "compare.column.sigma100",
-                "compare.column.minimum",
-                "compare.column.ratio",
-                "compare.column.null",
-                "compare.column.arw",
-                "compare.column.n_allan",
-                "compare.column.ratio",
-                "compare.column.over",
-                "compare.column.verdict",
-            ]
-            .map(t)
-            .to_vec(),
-            view.units
-                .iter()
-                .map(|u| {
-                    let minimum = u.rules.first();
-                    vec![
-                        u.label.clone(),
-                        u.length.clone(),
-                        u.n.clone(),
-                        u.sigma100.value.clone(),
-                        minimum.map(|r| r.figure.value.clone()).unwrap_or_default(),
-                        minimum.map(|r| r.ratio.value.clone()).unwrap_or_default(),
-                        u.null.clone(),
-                        u.arw.value.clone(),
-                        u.n_allan.value.clone(),
-                        u.arw_ratio.value.clone(),
-                        u.over.value.clone(),
-                        u.agreement.clone(),
-                    ]
-                })
-                .collect(),
-        ),
-    };
+    let (head, rows) = view.published.as_ref().map_or_else(|| of_units(view), of_published);
+    let head: Vec<String> = head.into_iter().map(|column| t(&format!("compare.column.{column}"))).collect();
     let one_line = |cell: &String| visible(cell).into_owned();
     let rows: Vec<Vec<String>> = rows.iter().map(|r| r.iter().map(one_line).collect()).collect();
     let mut out = aligned(&head, &rows);
     out.push_str(&format!("{}\n", t("compare.more.units")));
-    if view.published.as_ref().is_some_and(|p| p.rows.iter().any(|r| r.flagged)) {
-        out.push_str(&format!("{}\n", t("compare.more.flagged")));
-    }
-    out.push('\n');
     if let Some(p) = &view.published {
-        for row in p.rows.iter().filter(|r| r.flagged) {
-            for remark in &row.remarks {
-                out.push_str(&format!("{}: {}\n", visible(&row.device), visible(remark)));
-            }
+        let flagged = p.rows.iter().filter(|r| r.flagged);
+        let remarks: Vec<(&String, &String)> =
+            flagged.flat_map(|r| r.remarks.iter().map(move |remark| (&r.device, remark))).collect();
+        let head =
+            if remarks.is_empty() { String::new() } else { format!("{}\n", t("compare.more.flagged")) };
+        out.push_str(&format!("{head}\n"));
+        for (device, remark) in remarks {
+            out.push_str(&format!("{}: {}\n", visible(device), visible(remark)));
         }
         p.remarks.iter().for_each(|r| out.push_str(&format!("{r}\n")));
-    } else {
-        for unit in &view.units {
-            for sentence in unit.says.iter().chain(&unit.missing) {
-                out.push_str(&format!("{}: {}\n", visible(&unit.label), visible(sentence)));
-            }
-        }
-        for l in &view.limits {
-            out.push_str(&format!(
-                "{}: {} {} ({}): {}\n",
-                visible(&l.unit),
-                l.quantity,
-                l.value,
-                l.limit,
-                l.verdict_word
-            ));
+        return out;
+    }
+    out.push('\n');
+    for unit in &view.units {
+        for sentence in unit.summary.iter().chain(&unit.missing) {
+            out.push_str(&format!("{}: {}\n", visible(&unit.label), visible(sentence)));
         }
     }
+    for l in &view.limits {
+        let (unit, verdict) = (visible(&l.unit), &l.verdict_word);
+        out.push_str(&format!("{unit}: {} {} ({}): {verdict}\n", l.quantity, l.value, l.limit));
+    }
     out
+}
+
+fn of_published(published: &PublishedView) -> Cells {
+    let head = vec![
+        "unit",
+        "sigma100",
+        "bias_instability",
+        "printed",
+        "computed",
+        "arw",
+        "n_allan",
+        "over_six_n",
+        "steep",
+    ];
+    let row = |r: &RowView| {
+        let device = if r.flagged { format!("{} !", r.device) } else { r.device.clone() };
+        let cells = [
+            &device,
+            &r.sigma100,
+            &r.bias_instability,
+            &r.ratio_printed,
+            &r.ratio,
+            &r.arw_russian,
+            &r.n,
+            &r.over_six_n,
+            &r.steep,
+        ];
+        cells.map(String::clone).to_vec()
+    };
+    (head, published.rows.iter().map(row).collect())
+}
+
+fn of_units(view: &CompareView) -> Cells {
+    let head = vec![
+        "unit", "length", "n", "sigma100", "minimum", "ratio", "null", "arw", "n_allan", "ratio", "over",
+        "verdict",
+    ];
+    let row = |u: &UnitView| {
+        let minimum = u.rules.first();
+        let (figure, ratio) =
+            minimum.map(|r| (r.figure.value.clone(), r.ratio.value.clone())).unwrap_or_default();
+        let cells = [
+            &u.label,
+            &u.length,
+            &u.n,
+            &u.sigma100.value,
+            &figure,
+            &ratio,
+            &u.null,
+            &u.arw.value,
+            &u.n_allan.value,
+            &u.arw_ratio.value,
+            &u.over.value,
+            &u.agreement,
+        ];
+        cells.map(String::clone).to_vec()
+    };
+    (head, view.units.iter().map(row).collect())
 }
 
 /// Columns as wide as their widest entry, the first to the left, numbers to the right.

@@ -1,11 +1,12 @@
 //! One unit of a comparison, printed.
 
-use crate::acceptance::compare::{Origin, Quantity, Unit, part_name};
-use crate::estimate::{Interval, UpperLimit};
+use crate::acceptance::compare::{Origin, Quantity, RuleRow, Unit, part_name};
+use crate::estimate::{Interval, UpperLimit, Verdict};
 use crate::measurand;
-use crate::record::{ModelRecord, ShareRecord, WindowRecord};
+use crate::record::{Agreement, ModelRecord, ShareRecord, WindowRecord};
 use crate::report::number::{Rounding, bound, digits, duration, limit, limit_digits, percent};
-use crate::report::view::{FigureView, Words};
+use crate::report::translator::Translator;
+use crate::report::view::FigureView;
 use serde::Serialize;
 
 /// A value and its interval, printed; empty where there is none.
@@ -53,7 +54,7 @@ pub struct LimitView {
     /// The limit.
     pub limit: String,
     /// Id of the verdict.
-    pub verdict: String,
+    pub verdict: Verdict,
     /// The verdict in words.
     pub verdict_word: String,
     /// File the limit stands in.
@@ -107,20 +108,25 @@ pub struct UnitView {
     pub null_median: String,
     /// Parts of the prediction.
     pub shares: Vec<ShareView>,
-    /// What it all says.
-    pub says: Vec<String>,
+    /// The findings in sentences.
+    pub summary: Vec<String>,
     /// What could not be compared.
     pub missing: Vec<String>,
     /// The octave identity.
     pub figure: Option<FigureView>,
 }
 
-fn between(i: Interval, rounding: Rounding, words: Words) -> String {
+fn between(i: Interval, rounding: Rounding, words: Translator) -> String {
     let show = |v: f64| rounding.show(v, words.lang);
     words.with("report.interval", &[("low", &show(i.low)), ("high", &show(i.high))])
 }
 
-fn cell(value: Option<f64>, interval: Option<Interval>, upper: Option<UpperLimit>, words: Words) -> Cell {
+fn cell(
+    value: Option<f64>,
+    interval: Option<Interval>,
+    upper: Option<UpperLimit>,
+    words: Translator,
+) -> Cell {
     match (value, upper) {
         (Some(v), _) => {
             let rounding = Rounding::of(v, interval.map(|i| (i.low, i.high)));
@@ -141,19 +147,48 @@ fn cell(value: Option<f64>, interval: Option<Interval>, upper: Option<UpperLimit
     }
 }
 
-fn quantity(q: Option<&Quantity>, words: Words) -> Cell {
+fn quantity(q: Option<&Quantity>, words: Translator) -> Cell {
     q.map_or_else(Cell::default, |q| cell(q.value, q.interval, q.upper_limit, words))
 }
 
 /// Smallest share that has a row of its own.
 const LEAST_SHOWN: f64 = 0.001;
 
-const RULE_NAMES: [(&str, &str); 4] =
-    [("a", "compare.rule.a"), ("b", "compare.rule.b"), ("c", "compare.rule.c"), ("d", "compare.rule.d")];
+/// Bias instability by one rule, printed.
+fn rule_cell(row: &RuleRow, words: Translator) -> RuleCell {
+    let mut ratio = cell(row.ratio, row.ratio_interval, None, words);
+    if row.ratio_interval.is_none() {
+        ratio.value = row.ratio.map(|r| digits(r, 3, words.lang)).unwrap_or_default();
+    }
+    if row.value.is_none() && !ratio.value.is_empty() {
+        ratio.value = format!("≥\u{202f}{}", ratio.value);
+    }
+    RuleCell {
+        name: words.t(&format!("compare.rule.{}", row.rule.id())),
+        figure: cell(row.value, row.interval, row.upper_limit, words),
+        ratio,
+        inverse: row.inverse.map(|v| digits(v, 3, words.lang)).unwrap_or_default(),
+    }
+}
+
+/// The verdict on the prediction in words, with its class for colours.
+fn agreement(unit: &Unit, window: Option<&WindowRecord>, words: Translator) -> (String, &'static str) {
+    let (verdict, class) = match window.and_then(|w| w.agreement) {
+        Some(Agreement::Consistent) => (words.t("compare.agreement.consistent"), "ok"),
+        Some(Agreement::Above) => (words.t("compare.agreement.above"), "remark"),
+        Some(Agreement::Below) => (words.t("compare.agreement.below"), "remark"),
+        None => return (String::new(), "none"),
+    };
+    if unit.indicative {
+        (words.with("compare.more.indicative", &[("verdict", &verdict)]), "remark")
+    } else {
+        (verdict, class)
+    }
+}
 
 impl UnitView {
     /// Prints a unit.
-    pub(super) fn new(unit: &Unit, figure: Option<FigureView>, words: Words) -> UnitView {
+    pub(super) fn new(unit: &Unit, figure: Option<FigureView>, words: Translator) -> UnitView {
         let lang = words.lang;
         let of = |id: &str| quantity(unit.quantity(id), words);
         let detail = unit.detail.as_ref();
@@ -163,33 +198,7 @@ impl UnitView {
         let count = |n: Option<u64>| n.map(|n| crate::report::number::count(n, lang)).unwrap_or_default();
         let null = minimum.and_then(|m| m.null_ratio);
         let three = |v: f64| limit_digits(v, 3, lang);
-        let rules = RULE_NAMES.iter().filter_map(|(rule, name)| {
-            let row = unit.rules.iter().find(|r| r.rule == *rule)?;
-            let mut ratio = cell(row.ratio, row.ratio_interval, None, words);
-            if row.ratio_interval.is_none() {
-                ratio.value = row.ratio.map(|r| digits(r, 3, lang)).unwrap_or_default();
-            }
-            if row.value.is_none() && !ratio.value.is_empty() {
-                ratio.value = format!("≥\u{202f}{}", ratio.value);
-            }
-            Some(RuleCell {
-                name: words.t(name),
-                figure: cell(row.value, row.interval, row.upper_limit, words),
-                ratio,
-                inverse: row.inverse.map(|v| digits(v, 3, lang)).unwrap_or_default(),
-            })
-        });
-        let (agreement, agreement_class) = match w100.and_then(|w| w.agreement.as_deref()) {
-            Some("consistent") => (words.t("compare.agreement.consistent"), "ok"),
-            Some("missing_low_frequency_term") => (words.t("compare.agreement.above"), "remark"),
-            Some(_) => (words.t("compare.agreement.below"), "remark"),
-            None => (String::new(), "none"),
-        };
-        let (agreement, agreement_class) = if unit.indicative && !agreement.is_empty() {
-            (words.with("compare.more.indicative", &[("verdict", &agreement)]), "remark")
-        } else {
-            (agreement, agreement_class)
-        };
+        let (agreement, agreement_class) = agreement(unit, w100, words);
         let arw_ratio = unit.quantity(measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id);
         UnitView {
             label: unit.label(),
@@ -204,7 +213,7 @@ impl UnitView {
             sigma100: of(measurand::RUSSIAN_DRIFT_100S.id),
             sigma3: of(measurand::RUSSIAN_DRIFT_100S_3SIGMA.id),
             sigma10: of(measurand::RUSSIAN_SIGMA_10S.id),
-            rules: rules.collect(),
+            rules: unit.rules.iter().map(|row| rule_cell(row, words)).collect(),
             minimum_at: minimum
                 .map(|m| {
                     let (tau, largest) = (three(m.tau_s), three(m.largest_tau_s));
@@ -230,7 +239,7 @@ impl UnitView {
                 .unwrap_or_default(),
             null_median: null.map(|n| digits(n[1], 2, lang)).unwrap_or_default(),
             shares: detail.zip(w100).map(|(d, w)| shares(w, &d.model, words)).unwrap_or_default(),
-            says: unit.says.iter().map(|n| words.say(n)).collect(),
+            summary: unit.summary.iter().map(|n| words.say(n)).collect(),
             missing: unit.missing.iter().map(|n| words.say(n)).collect(),
             figure,
         }
@@ -238,7 +247,7 @@ impl UnitView {
 }
 
 /// The parts of a prediction that are worth a row; the small ones stand together in the last.
-fn shares(window: &WindowRecord, model: &ModelRecord, words: Words) -> Vec<ShareView> {
+fn shares(window: &WindowRecord, model: &ModelRecord, words: Translator) -> Vec<ShareView> {
     let (shown, small): (Vec<&ShareRecord>, Vec<&ShareRecord>) =
         window.shares.iter().partition(|s| s.share >= LEAST_SHOWN);
     let row = |part: String, share: f64, alone: f64| ShareView {
@@ -257,7 +266,7 @@ fn shares(window: &WindowRecord, model: &ModelRecord, words: Words) -> Vec<Share
 }
 
 /// The limits of a unit, each with the figure that it names.
-pub(super) fn limits(unit: &Unit, words: Words) -> Vec<LimitView> {
+pub(super) fn limits(unit: &Unit, words: Translator) -> Vec<LimitView> {
     unit.quantities
         .iter()
         .filter_map(|q| {
@@ -277,8 +286,8 @@ pub(super) fn limits(unit: &Unit, words: Words) -> Vec<LimitView> {
                 quantity: words.name("measurand", &q.id),
                 value: words.quantity(&value, &q.unit),
                 limit: words.quantity(&text, &l.unit),
-                verdict: q.verdict.clone(),
-                verdict_word: words.name("verdict", &q.verdict),
+                verdict: q.verdict,
+                verdict_word: words.name("verdict", q.verdict.id()),
                 source: l.source.clone(),
             })
         })

@@ -6,7 +6,7 @@ use crate::effect::find;
 use crate::i18n::{EffectText, effect_text};
 use crate::mismatch::finding::{Explanation, Finding};
 use crate::report::number::{limit_digits, percent};
-use crate::report::view::Words;
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// A parameter of a cause.
@@ -86,7 +86,7 @@ pub struct EffectView {
 
 impl EffectView {
     /// Prints a cause.
-    pub(super) fn new(number: usize, f: &Finding, all: &Explanation, words: Words) -> EffectView {
+    pub(super) fn new(number: usize, f: &Finding, all: &Explanation, words: Translator) -> EffectView {
         let text = |part| effect_text(f.effect_id(), part, words.lang).to_owned();
         let parameters = parameters(f, all, words);
         EffectView {
@@ -124,7 +124,7 @@ pub fn capital(text: &str) -> String {
 }
 
 /// Parameters in the order of the catalogue, the size of the contribution last.
-fn parameters(f: &Finding, all: &Explanation, words: Words) -> Vec<ParameterRow> {
+fn parameters(f: &Finding, all: &Explanation, words: Translator) -> Vec<ParameterRow> {
     let order: Vec<&str> =
         find(f.effect_id()).map(|e| e.params().iter().map(|p| p.name).collect()).unwrap_or_default();
     let place = |name: &str| match order.iter().position(|p| *p == name) {
@@ -149,7 +149,7 @@ fn parameters(f: &Finding, all: &Explanation, words: Words) -> Vec<ParameterRow>
     given.iter().map(row).collect()
 }
 
-fn equivalent(kind: &str, chosen: &str, all: &Explanation, words: Words) -> EquivalentView {
+fn equivalent(kind: &str, chosen: &str, all: &Explanation, words: Translator) -> EquivalentView {
     let text = |part| effect_text(kind, part, words.lang).to_owned();
     let experiment = all.experiments.iter().find(|e| e.kind == chosen && e.against == kind);
     let times = experiment.and_then(|e| e.times_longer).filter(|t| t.is_finite());
@@ -197,7 +197,7 @@ pub struct StatedRow {
 }
 
 /// Prints the values that a claim states.
-pub fn stated_rows(all: &Explanation, words: Words) -> Vec<StatedRow> {
+pub fn stated_rows(all: &Explanation, words: Translator) -> Vec<StatedRow> {
     let shown = |v: f64| limit_digits(v, 4, words.lang);
     all.nuisances
         .iter()

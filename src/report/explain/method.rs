@@ -1,12 +1,12 @@
 //! How an explanation is found: words and formulas.
 
-use crate::report::view::Words;
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// One paragraph of the method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MethodView {
-    /// Words.
+    /// Translator.
     pub text: String,
     /// Formulas.
     pub formulas: Vec<String>,
@@ -43,7 +43,7 @@ const METHODS: &[Method] = &[
 ];
 
 /// All paragraphs.
-pub(super) fn all(words: Words) -> Vec<MethodView> {
+pub(super) fn all(words: Translator) -> Vec<MethodView> {
     METHODS
         .iter()
         .map(|m| MethodView {

@@ -10,9 +10,9 @@ pub use effect::{EffectView, EquivalentView, ParameterRow, StatedRow};
 pub use method::MethodView;
 pub use tables::{CandidateRow, FitRow, TestRow};
 
-use super::compare::figure;
 use super::number::{count, date_time, digits, duration};
-use super::view::{Field, FigureView, Words};
+use super::translator::{Field, Translator};
+use super::view::FigureView;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Note};
 use crate::record::ExplainedRecord;
@@ -62,8 +62,8 @@ pub struct FileView {
 /// Everything that an explanation shows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExplainView {
-    /// Id of the verdict.
-    pub verdict: String,
+    /// The verdict.
+    pub verdict: MismatchVerdict,
     /// Class of the verdict, for colours.
     pub verdict_class: &'static str,
     /// The verdict in a word.
@@ -71,7 +71,7 @@ pub struct ExplainView {
     /// Case and description.
     pub title: String,
     /// The verdict in sentences.
-    pub says: Vec<String>,
+    pub summary: Vec<String>,
     /// Recording and claim.
     pub identity: Vec<Field>,
     /// What must be known of the recording.
@@ -88,8 +88,8 @@ pub struct ExplainView {
     pub effects: Vec<EffectView>,
     /// The fit before and after.
     pub fit: Vec<FitRow>,
-    /// What the fit says, in a sentence.
-    pub fit_says: String,
+    /// What adding the effects does to the fit, in a sentence.
+    pub fit_summary: String,
     /// True when nothing was added.
     pub unchanged: bool,
     /// What the claim states.
@@ -109,7 +109,7 @@ pub struct ExplainView {
 /// What a report says of a recording that was set against the model of its family: the verdict in a word and in
 /// sentences, or why there is none.
 pub fn explained_summary(explained: &ExplainedRecord, lang: Lang) -> Vec<String> {
-    let words = Words { lang };
+    let words = Translator { lang };
     match (&explained.explanation, &explained.error) {
         (Some(all), _) => sentence::verdict(all, words),
         (None, Some(error)) => vec![words.with("explain.not_compared", &[("reason", &words.say(error))])],
@@ -120,7 +120,7 @@ pub fn explained_summary(explained: &ExplainedRecord, lang: Lang) -> Vec<String>
 impl ExplainView {
     /// Builds the view.
     pub fn new(all: &Explanation, figures: &[Figure], context: &Context, lang: Lang) -> ExplainView {
-        let words = Words { lang };
+        let words = Translator { lang };
         let (verdict_class, verdict_word) = match all.verdict {
             MismatchVerdict::Consistent => ("pass", words.t("explain.verdict.consistent")),
             MismatchVerdict::Mismatch => ("indeterminate", words.t("explain.verdict.mismatch")),
@@ -131,11 +131,11 @@ impl ExplainView {
         let effects = all.effects.iter().enumerate();
         let footer = [date_time(&context.explained_at), generator.clone()];
         ExplainView {
-            verdict: all.verdict.id().to_owned(),
+            verdict: all.verdict,
             verdict_class,
             verdict_word,
             title,
-            says: sentence::verdict(all, words),
+            summary: sentence::verdict(all, words),
             identity: identity(all, context, words),
             remarks: context.notes.iter().map(|n| words.say(n)).collect(),
             family: [all.family_p_value, all.family_p_value_after].map(|p| print::chance(p, words)),
@@ -144,11 +144,11 @@ impl ExplainView {
             candidates: tables::candidates(all, words),
             effects: effects.map(|(i, f)| EffectView::new(i + 1, f, all, words)).collect(),
             fit: tables::fit(all, words),
-            fit_says: tables::fit_says(all, words),
+            fit_summary: tables::fit_summary(all, words),
             unchanged: all.effects.iter().all(|f| f.is_unnamed()),
             stated: effect::stated_rows(all, words),
             methods: method::all(words),
-            figures: figures.iter().enumerate().map(|(i, f)| figure(f, i + 1, words)).collect(),
+            figures: figures.iter().enumerate().map(|(i, f)| FigureView::of(f, i + 1, words)).collect(),
             files: files(context, words),
             footer: footer.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" · "),
             generator,
@@ -158,17 +158,17 @@ impl ExplainView {
     /// The outcome in a few lines for the terminal.
     pub fn summary(&self) -> String {
         let mut out = format!("{}\n", self.verdict_word.to_uppercase());
-        for sentence in &self.says {
+        for sentence in &self.summary {
             out.push_str(&format!("  {sentence}\n"));
         }
-        if !self.fit_says.is_empty() && !self.unchanged {
-            out.push_str(&format!("  {}\n", self.fit_says));
+        if !self.fit_summary.is_empty() && !self.unchanged {
+            out.push_str(&format!("  {}\n", self.fit_summary));
         }
         out
     }
 }
 
-fn identity(all: &Explanation, context: &Context, words: Words) -> Vec<Field> {
+fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<Field> {
     let r = &all.recording;
     let mut out = vec![];
     let mut put = |key: &str, value: String| {
@@ -192,7 +192,7 @@ fn identity(all: &Explanation, context: &Context, words: Words) -> Vec<Field> {
     out
 }
 
-fn files(context: &Context, words: Words) -> Vec<FileView> {
+fn files(context: &Context, words: Translator) -> Vec<FileView> {
     let mut names = vec![("explain.json", "explain.wrote.for_programs")];
     if context.correction {
         names.push(("correction.csv", "explain.wrote.correction"));

@@ -4,7 +4,7 @@ use crate::effect::{self, Domain, find};
 use crate::i18n::{EffectText, effect_text, lookup};
 use crate::mismatch::finding::{ParameterValue, PlaceRecord};
 use crate::report::number::{Rounding, digits, limit_digits, typographic};
-use crate::report::view::Words;
+use crate::report::translator::Translator;
 
 /// Ratio of the sides of an interval from which it is printed by its ends.
 const LOPSIDED: f64 = 1.5;
@@ -14,7 +14,7 @@ const LARGE: f64 = 1e9;
 const WHOLE: f64 = 0.97;
 
 /// Title of a kind.
-pub fn title(kind: &str, words: Words) -> String {
+pub fn title(kind: &str, words: Translator) -> String {
     match find(kind) {
         Some(effect) => effect_text(effect.kind(), EffectText::Title, words.lang).to_owned(),
         None if kind == "unknown" => words.t("explain.unknown_cause"),
@@ -23,25 +23,25 @@ pub fn title(kind: &str, words: Words) -> String {
 }
 
 /// Name of a parameter; as the file has it where the tables lack it.
-pub fn parameter(name: &str, words: Words) -> String {
+pub fn parameter(name: &str, words: Translator) -> String {
     lookup(words.lang, &format!("parameter.{name}")).unwrap_or(name).to_owned()
 }
 
 /// Name of a value that the claim states.
-pub fn stated(name: &str, words: Words) -> String {
+pub fn stated(name: &str, words: Translator) -> String {
     let last = name.rsplit('.').next().unwrap_or(name);
     let text = lookup(words.lang, &format!("stated.{last}"));
     text.map_or_else(|| parameter(last, words), str::to_owned)
 }
 
 /// Name of a test.
-pub fn test(id: &str, words: Words) -> String {
+pub fn test(id: &str, words: Translator) -> String {
     words.name("explain.test", id)
 }
 
 /// Name of a view.
-pub fn view(domain: &str, words: Words) -> String {
-    words.name("explain.view", domain)
+pub fn view(domain: Domain, words: Translator) -> String {
+    words.name("explain.view", domain.id())
 }
 
 /// A parameter, printed in parts.
@@ -56,7 +56,7 @@ pub struct Printed {
 }
 
 /// Prints a parameter, rounded by its interval.
-pub fn value(name: &str, p: &ParameterValue, words: Words) -> Printed {
+pub fn value(name: &str, p: &ParameterValue, words: Translator) -> Printed {
     let lang = words.lang;
     let [low, high] = p.ci95;
     let usable = low.is_finite() && high.is_finite() && high > low;
@@ -85,13 +85,13 @@ pub fn value(name: &str, p: &ParameterValue, words: Words) -> Printed {
     Printed { value: shown, interval, whole }
 }
 
-fn between(low: &str, high: &str, words: Words) -> String {
+fn between(low: &str, high: &str, words: Translator) -> String {
     words.with("report.interval", &[("low", low), ("high", high)])
 }
 
 /// The ends of a place with their unit.
-pub fn ends(place: &PlaceRecord, words: Words) -> String {
-    let unit = Domain::of_id(&place.domain).map_or("", Domain::unit);
+pub fn ends(place: &PlaceRecord, words: Translator) -> String {
+    let unit = place.domain.unit();
     let (from, to) = (place.from, place.to);
     let text = if from == to {
         limit_digits(from, 6, words.lang)
@@ -114,20 +114,15 @@ pub fn ends(place: &PlaceRecord, words: Words) -> String {
 }
 
 /// Where a mismatch shows, as a phrase.
-pub fn place(place: &PlaceRecord, length_s: f64, words: Words) -> String {
-    if place.domain == "time" && place.to - place.from >= WHOLE * length_s && length_s > 0.0 {
+pub fn place(place: &PlaceRecord, length_s: f64, words: Translator) -> String {
+    if place.domain == Domain::Time && place.to - place.from >= WHOLE * length_s && length_s > 0.0 {
         return words.t("explain.where.whole");
     }
-    match Domain::of_id(&place.domain) {
-        Some(domain) => {
-            words.with(&format!("explain.where.{}", domain.id()), &[("place", &ends(place, words))])
-        }
-        None => format!("{} {}", place.domain, ends(place, words)),
-    }
+    words.with(&format!("explain.where.{}", place.domain.id()), &[("place", &ends(place, words))])
 }
 
 /// A probability under chance: two digits, with a power of ten below a thousandth, and a bound where it is nil.
-pub fn chance(p: f64, words: Words) -> String {
+pub fn chance(p: f64, words: Translator) -> String {
     if !p.is_finite() {
         return crate::report::number::NOTHING.to_owned();
     }
@@ -138,7 +133,7 @@ pub fn chance(p: f64, words: Words) -> String {
 }
 
 /// A difference of log-likelihoods or BICs: one decimal, with its sign.
-pub fn difference(v: f64, words: Words) -> String {
+pub fn difference(v: f64, words: Translator) -> String {
     if !v.is_finite() {
         return crate::report::number::NOTHING.to_owned();
     }
@@ -152,7 +147,7 @@ pub fn difference(v: f64, words: Words) -> String {
 }
 
 /// A log-likelihood or BIC: one decimal.
-pub fn plain(v: f64, words: Words) -> String {
+pub fn plain(v: f64, words: Translator) -> String {
     if v.abs() < LARGE { typographic(&format!("{v:.1}"), words.lang) } else { digits(v, 3, words.lang) }
 }
 
@@ -161,7 +156,7 @@ mod tests {
     use super::*;
     use crate::i18n::Lang;
 
-    const EN: Words = Words { lang: Lang::En };
+    const EN: Translator = Translator { lang: Lang::En };
 
     fn given(value: f64, low: f64, high: f64, unit: &str) -> ParameterValue {
         ParameterValue { value, unit: unit.into(), ci95: [low, high] }
@@ -182,14 +177,13 @@ mod tests {
 
     #[test]
     fn places_keep_the_digits_that_tell_their_ends() {
-        let at =
-            |domain: &str, from: f64, to: f64| ends(&PlaceRecord { domain: domain.into(), from, to }, EN);
-        assert_eq!(at("frequency", 0.4118, 0.4124), "0.41180 … 0.41240\u{202f}Hz");
-        assert_eq!(at("frequency", 1.234e-4, 5.0), "1.23×10⁻⁴ … 5\u{202f}Hz");
-        assert_eq!(at("frequency", 0.0, 5.6e-5), "0 … 5.60×10⁻⁵\u{202f}Hz");
-        assert_eq!(at("temperature", -12.0, 41.0), "−12 … 41\u{202f}°C");
-        assert_eq!(at("time", 5100.0, 5300.0), "5100 … 5300\u{202f}s");
-        let whole = PlaceRecord { domain: "time".into(), from: 0.0, to: 35_999.0 };
+        let at = |domain: Domain, from: f64, to: f64| ends(&PlaceRecord { domain, from, to }, EN);
+        assert_eq!(at(Domain::Frequency, 0.4118, 0.4124), "0.41180 … 0.41240\u{202f}Hz");
+        assert_eq!(at(Domain::Frequency, 1.234e-4, 5.0), "1.23×10⁻⁴ … 5\u{202f}Hz");
+        assert_eq!(at(Domain::Frequency, 0.0, 5.6e-5), "0 … 5.60×10⁻⁵\u{202f}Hz");
+        assert_eq!(at(Domain::Temperature, -12.0, 41.0), "−12 … 41\u{202f}°C");
+        assert_eq!(at(Domain::Time, 5100.0, 5300.0), "5100 … 5300\u{202f}s");
+        let whole = PlaceRecord { domain: Domain::Time, from: 0.0, to: 35_999.0 };
         assert_eq!(place(&whole, 36_000.0, EN), EN.t("explain.where.whole"));
     }
 

@@ -5,10 +5,10 @@ use crate::effect::find;
 use crate::i18n::{EffectText, effect_text, fill};
 use crate::mismatch::finding::{Explanation, Finding, MismatchVerdict};
 use crate::report::number::{count, digits, duration, percent};
-use crate::report::view::Words;
+use crate::report::translator::Translator;
 
 /// What one finding adds to the claim, or corrects in it, as a phrase.
-pub fn phrase(finding: &Finding, explanation: &Explanation, words: Words) -> String {
+pub fn phrase(finding: &Finding, explanation: &Explanation, words: Translator) -> String {
     let kind = finding.effect_id();
     let pattern = effect_text(kind, EffectText::Phrase, words.lang);
     if pattern.is_empty() {
@@ -39,7 +39,7 @@ fn corrected(kind: &str) -> Option<&'static str> {
 }
 
 /// A claimed value as it was stated, but for the dust of arithmetic.
-fn digits_of(v: f64, words: Words) -> String {
+fn digits_of(v: f64, words: Translator) -> String {
     crate::report::number::limit_digits(v, 6, words.lang)
 }
 
@@ -49,7 +49,7 @@ fn places(pattern: &str) -> impl Iterator<Item = &str> {
 }
 
 /// The sentences on one finding: what it is, where it shows, what it cannot be told from.
-pub fn finding(finding: &Finding, explanation: &Explanation, words: Words) -> Vec<String> {
+pub fn finding(finding: &Finding, explanation: &Explanation, words: Translator) -> Vec<String> {
     let shown: Vec<String> =
         finding.places.iter().map(|p| place(p, explanation.recording.length_s, words)).collect();
     let shown = shown.join(&words.t("explain.and"));
@@ -78,7 +78,7 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Words) -> Ve
 }
 
 /// What remains when everything found has been added.
-fn rest(all: &Explanation, words: Words) -> Vec<String> {
+fn rest(all: &Explanation, words: Translator) -> Vec<String> {
     let named: Vec<&Finding> = all.effects.iter().filter(|f| !f.is_unnamed()).collect();
     let after = all.family_p_value_after;
     let p = chance(after, words);
@@ -109,7 +109,7 @@ fn rest(all: &Explanation, words: Words) -> Vec<String> {
 }
 
 /// The verdict, a sentence after the other.
-pub fn verdict(explanation: &Explanation, words: Words) -> Vec<String> {
+pub fn verdict(explanation: &Explanation, words: Translator) -> Vec<String> {
     let p = chance(explanation.family_p_value, words);
     if explanation.effects.is_empty() {
         let r = &explanation.recording;

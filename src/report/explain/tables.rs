@@ -4,7 +4,7 @@ use super::effect::capital;
 use super::print::{chance, difference, ends, plain, test, title, view};
 use crate::mismatch::finding::{Explanation, FitFigures, PlaceRecord};
 use crate::report::number::digits;
-use crate::report::view::Words;
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// A test of one view.
@@ -27,16 +27,16 @@ pub struct TestRow {
 }
 
 /// The tests, the most significant first.
-pub(super) fn tests(all: &Explanation, words: Words) -> Vec<TestRow> {
+pub(super) fn tests(all: &Explanation, words: Translator) -> Vec<TestRow> {
     let mut sorted: Vec<_> = all.tests.iter().collect();
     sorted.sort_by(|a, b| a.p_before.total_cmp(&b.p_before));
     sorted
         .into_iter()
         .map(|t| {
-            let place = PlaceRecord { domain: t.domain.clone(), from: t.from, to: t.to };
+            let place = PlaceRecord { domain: t.domain, from: t.from, to: t.to };
             TestRow {
                 name: test(&t.id, words),
-                view: view(&t.domain, words),
+                view: view(t.domain, words),
                 place: ends(&place, words),
                 before: chance(t.p_before, words),
                 after: chance(t.p_after, words),
@@ -67,7 +67,7 @@ pub struct CandidateRow {
 }
 
 /// Candidates in their order.
-pub(super) fn candidates(all: &Explanation, words: Words) -> Vec<CandidateRow> {
+pub(super) fn candidates(all: &Explanation, words: Translator) -> Vec<CandidateRow> {
     all.candidates
         .iter()
         .map(|c| {
@@ -105,7 +105,7 @@ pub struct FitRow {
 }
 
 /// The fit before and after.
-pub(super) fn fit(all: &Explanation, words: Words) -> Vec<FitRow> {
+pub(super) fn fit(all: &Explanation, words: Translator) -> Vec<FitRow> {
     let (a, b) = (&all.fit.baseline, &all.fit.augmented);
     let row = |key: &str, of: fn(&FitFigures) -> f64| FitRow {
         name: words.t(key),
@@ -135,7 +135,7 @@ pub(super) fn fit(all: &Explanation, words: Words) -> Vec<FitRow> {
 }
 
 /// The change of a size in percent of what it was.
-fn relative(before: f64, after: f64, words: Words) -> String {
+fn relative(before: f64, after: f64, words: Translator) -> String {
     let change = 100.0 * (after / before - 1.0);
     if change.is_finite() { format!("{}\u{202f}%", difference(change, words)) } else { String::new() }
 }
@@ -143,8 +143,8 @@ fn relative(before: f64, after: f64, words: Words) -> String {
 /// Change of log-likelihood that is worth calling one.
 const NOTICEABLE: f64 = 0.5;
 
-/// What the fit says.
-pub(super) fn fit_says(all: &Explanation, words: Words) -> String {
+/// What adding the effects does to the fit, in a sentence.
+pub(super) fn fit_summary(all: &Explanation, words: Translator) -> String {
     if all.effects.iter().all(|f| f.is_unnamed()) {
         return words.t("explain.fit.unchanged");
     }

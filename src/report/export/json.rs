@@ -1,25 +1,8 @@
 //! JSON: the record, and the data of the figures beside it.
 
 use super::{ExportedFile, Exporter};
-use crate::figure::Figure;
+use crate::report::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
 use crate::report::{Document, Renderer, ReportError};
-use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
-
-/// File with the data of the figures, relative to the folder of a result.
-pub const FIGURES_FILE: &str = "figures/data.json";
-
-/// Version of [`FIGURES_FILE`].
-pub const FIGURES_FORMAT: &str = "figures/1";
-
-/// The data of the figures, from which they are drawn anew.
-#[derive(Debug, Serialize, Deserialize)]
-pub struct FigureFile<'a> {
-    /// Always `figures/1`.
-    pub format: Cow<'a, str>,
-    /// The figures, in the order of the report.
-    pub figures: Cow<'a, [Figure]>,
-}
 
 /// The record, such as `result.json`, with every number to the last digit; the data of its figures in
 /// [`FIGURES_FILE`].

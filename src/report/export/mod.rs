@@ -10,7 +10,7 @@ mod svg;
 pub use csv::Csv;
 pub use exporter::{ExportedFile, Exporter};
 pub use html::Html;
-pub use json::{FIGURES_FILE, FIGURES_FORMAT, FigureFile, Json};
+pub use json::Json;
 pub use markdown::Markdown;
 pub use svg::Svg;
 

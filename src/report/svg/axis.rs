@@ -3,8 +3,8 @@
 use super::write::{FONT, width};
 use crate::figure::Scale;
 use crate::i18n::{Lang, lookup};
-use crate::report::number::{limit_digits, superscript, typographic};
-use crate::report::unit;
+use crate::report::number::{limit_digits, typographic};
+use crate::report::unit::{self, superscript};
 
 /// Largest magnitude an axis reaches; differences of such values are still finite.
 const HUGE: f64 = 1e300;

@@ -30,45 +30,8 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     let say = |key: &str| lookup(lang, key).unwrap_or(key).to_owned();
     let id: String =
         figure.id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
-    let panels: Vec<&Panel> = figure.panels.iter().collect();
-    let height_of_plot = match panels.len() {
-        0 | 1 if panels.iter().any(|p| p.x.scale == Scale::Polar) => 480.0,
-        0 | 1 => 330.0,
-        2 => 212.0,
-        _ => 150.0,
-    };
-
-    let ordinates: Vec<Ruled> = panels
-        .iter()
-        .map(|p| {
-            let data = layer::extent(&[p], p.y.scale, true);
-            Ruled::new(&p.y, data, Direction::Up, height_of_plot, lang)
-        })
-        .collect();
-    let widest = ordinates
-        .iter()
-        .flat_map(|r| &r.ticks)
-        .filter_map(|t| t.label.as_ref())
-        .map(|l| width(l, FONT))
-        .fold(20.0, f64::max);
-    let left = (widest + 32.0).min(160.0);
-    let across = WIDTH - left - RIGHT;
-    let abscissas: Vec<Ruled> = panels
-        .iter()
-        .zip(&ordinates)
-        .map(|(p, y)| {
-            if p.x.scale == Scale::Polar {
-                // A unit is as long across as up.
-                let (low, high) = y.range();
-                let half = 0.5 * (high - low) * across / height_of_plot;
-                let axis = Axis { range: Some((-half, half)), ..p.x.clone() };
-                return Ruled::new(&axis, None, Direction::Across, across, lang);
-            }
-            let same: Vec<&Panel> = panels.iter().copied().filter(|q| q.x == p.x).collect();
-            Ruled::new(&p.x, layer::extent(&same, p.x.scale, false), Direction::Across, across, lang)
-        })
-        .collect();
-    let legends: Vec<Legend> = panels.iter().map(|p| Legend::new(p, across, say)).collect();
+    let layout = Layout::new(figure, lang);
+    let legends: Vec<Legend> = figure.panels.iter().map(|p| Legend::new(p, layout.width, say)).collect();
 
     let mut body = String::new();
     let mut title = say(&figure.title);
@@ -80,36 +43,84 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
 
     let mut top = TITLE;
     let mut description = vec![];
-    for (i, (((panel, y), x), legend)) in
-        panels.iter().zip(&ordinates).zip(&abscissas).zip(&legends).enumerate()
-    {
-        legend.draw(&mut body, left, top);
+    for (i, ((panel, (x, y)), legend)) in figure.panels.iter().zip(&layout.axes).zip(&legends).enumerate() {
+        legend.draw(&mut body, layout.left, top);
         top += legend.height() + 4.0;
-        let plot = Plot { left, top, width: across, height: height_of_plot, x, y };
-        let last = panels.get(i + 1).is_none_or(|next| next.x != panel.x);
-        axes(&mut body, &plot, last);
-        let clip = format!("{id}-{i}");
-        let _ = writeln!(
-            body,
-            "<clipPath id=\"{clip}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>",
-            px(left),
-            px(top),
-            px(across),
-            px(height_of_plot)
-        );
-        let _ = writeln!(body, "<g clip-path=\"url(#{clip})\">");
-        for layer in &panel.layers {
-            plot.draw(&mut body, layer);
-        }
-        body.push_str("</g>\n");
-        frame(&mut body, &plot);
-        layer::labels(&mut body, &plot, panel, lang);
+        let plot = Plot { left: layout.left, top, width: layout.width, height: layout.height, x, y };
+        let last = figure.panels.get(i + 1).is_none_or(|next| next.x != panel.x);
+        draw_panel(&mut body, &plot, panel, &format!("{id}-{i}"), last, lang);
         description.push(format!("{} / {}: {}", y.title, x.title, legend.words().join("; ")));
         // Another panel below words of an abscissa keeps its distance from them.
-        let apart = if i + 1 < panels.len() { BETWEEN } else { 0.0 };
-        top += height_of_plot + if last { BELOW + apart } else { BETWEEN };
+        let apart = if i + 1 < figure.panels.len() { BETWEEN } else { 0.0 };
+        top += layout.height + if last { BELOW + apart } else { BETWEEN };
     }
+    page(&id, &title, &description.join(". "), top, &body)
+}
 
+/// Where the panels of a figure stand, and their axes.
+struct Layout {
+    left: f64,
+    width: f64,
+    height: f64,
+    /// Abscissa and ordinate of each panel.
+    axes: Vec<(Ruled, Ruled)>,
+}
+
+impl Layout {
+    fn new(figure: &Figure, lang: Lang) -> Layout {
+        let panels: Vec<&Panel> = figure.panels.iter().collect();
+        let height = match panels.len() {
+            0 | 1 if panels.iter().any(|p| p.x.scale == Scale::Polar) => 480.0,
+            0 | 1 => 330.0,
+            2 => 212.0,
+            _ => 150.0,
+        };
+        let ordinates: Vec<Ruled> = panels
+            .iter()
+            .map(|p| Ruled::new(&p.y, layer::extent(&[p], p.y.scale, true), Direction::Up, height, lang))
+            .collect();
+        let labels = ordinates.iter().flat_map(|r| &r.ticks).filter_map(|t| t.label.as_ref());
+        let widest = labels.map(|l| width(l, FONT)).fold(20.0, f64::max);
+        let left = (widest + 32.0).min(160.0);
+        let across = WIDTH - left - RIGHT;
+        let abscissa = |p: &Panel, y: &Ruled| {
+            if p.x.scale == Scale::Polar {
+                // A unit is as long across as up.
+                let (low, high) = y.range();
+                let half = 0.5 * (high - low) * across / height;
+                let axis = Axis { range: Some((-half, half)), ..p.x.clone() };
+                return Ruled::new(&axis, None, Direction::Across, across, lang);
+            }
+            let same: Vec<&Panel> = panels.iter().copied().filter(|q| q.x == p.x).collect();
+            Ruled::new(&p.x, layer::extent(&same, p.x.scale, false), Direction::Across, across, lang)
+        };
+        let axes = panels.iter().zip(ordinates).map(|(p, y)| (abscissa(p, &y), y)).collect();
+        Layout { left, width: across, height, axes }
+    }
+}
+
+/// A panel with its axes, its layers cut off at the frame, and its words.
+fn draw_panel(body: &mut String, plot: &Plot<'_>, panel: &Panel, clip: &str, last: bool, lang: Lang) {
+    axes(body, plot, last);
+    let _ = writeln!(
+        body,
+        "<clipPath id=\"{clip}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>",
+        px(plot.left),
+        px(plot.top),
+        px(plot.width),
+        px(plot.height)
+    );
+    let _ = writeln!(body, "<g clip-path=\"url(#{clip})\">");
+    for layer in &panel.layers {
+        plot.draw(body, layer);
+    }
+    body.push_str("</g>\n");
+    frame(body, plot);
+    layer::labels(body, plot, panel, lang);
+}
+
+/// The drawing around its body, with title and description for those who do not see it.
+fn page(id: &str, title: &str, description: &str, height: f64, body: &str) -> String {
     let mut out = String::with_capacity(body.len() + 700);
     let _ = writeln!(
         out,
@@ -117,12 +128,12 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
          aria-labelledby=\"{id}-title {id}-desc\" font-family=\"system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', \
          Arial, sans-serif\" fill=\"#111\">",
         px(WIDTH),
-        px(top)
+        px(height)
     );
-    let _ = writeln!(out, "<title id=\"{id}-title\">{}</title>", escape(&title));
-    let _ = writeln!(out, "<desc id=\"{id}-desc\">{}</desc>", escape(&description.join(". ")));
-    let _ = writeln!(out, "<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>", px(WIDTH), px(top));
-    out.push_str(&body);
+    let _ = writeln!(out, "<title id=\"{id}-title\">{}</title>", escape(title));
+    let _ = writeln!(out, "<desc id=\"{id}-desc\">{}</desc>", escape(description));
+    let _ = writeln!(out, "<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>", px(WIDTH), px(height));
+    out.push_str(body);
     out.push_str("</svg>\n");
     out
 }

@@ -1,11 +1,20 @@
 //! Checks that were not made, with the reason, and those that were.
 
-use super::Words;
-use super::evidence::Unmade;
 use crate::record::{CheckRecord, CheckStatus, RunRecord};
+use crate::report::translator::Translator;
+use serde::Serialize;
+
+/// A check that was not made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unmade {
+    /// Name, with its channels.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
 
 /// Checks not made, those for one reason on several channels together.
-pub fn unmade(record: &RunRecord, words: Words) -> Vec<Unmade> {
+pub fn unmade(record: &RunRecord, words: Translator) -> Vec<Unmade> {
     let mut list: Vec<(&CheckRecord, Vec<&str>)> = Vec::new();
     for check in record.checks.iter().filter(|c| c.status == CheckStatus::NotMade) {
         let same = |(c, _): &&mut (&CheckRecord, Vec<&str>)| {
@@ -34,7 +43,7 @@ pub fn unmade(record: &RunRecord, words: Words) -> Vec<Unmade> {
 }
 
 /// Names of the checks that were made on at least one channel.
-pub fn made(record: &RunRecord, words: Words) -> String {
+pub fn made(record: &RunRecord, words: Translator) -> String {
     let mut names: Vec<String> = Vec::new();
     for check in record.checks.iter().filter(|c| c.status == CheckStatus::Made) {
         let name = words.name("check_name", &check.id);

@@ -1,9 +1,10 @@
 //! Russian and Allan values of the same record, side by side, each with its convention.
 
-use super::{Words, rows};
+use super::rows;
 use crate::measurand;
 use crate::record::{MeasurandRecord, RunRecord};
 use crate::report::number::{bound, limit_digits};
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// The comparison for one channel.
@@ -54,7 +55,7 @@ const RATIOS: &[&str] =
     &[measurand::RATIO_RUSSIAN_TO_ALLAN_BIAS.id, measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id];
 
 /// The comparisons, one for each channel that has a Russian value.
-pub fn comparisons(record: &RunRecord, words: Words) -> Vec<Comparison> {
+pub fn comparisons(record: &RunRecord, words: Translator) -> Vec<Comparison> {
     let mut channels: Vec<&str> = vec![];
     for m in record.measurands.iter().filter(|m| PAIRS.iter().any(|(russian, _)| *russian == m.id)) {
         if !channels.contains(&m.channel.as_str()) {
@@ -80,7 +81,7 @@ pub fn comparisons(record: &RunRecord, words: Words) -> Vec<Comparison> {
         .collect()
 }
 
-fn side(m: &MeasurandRecord, words: Words) -> Side {
+fn side(m: &MeasurandRecord, words: Translator) -> Side {
     let unit = words.unit(&m.unit);
     let (value, unit) = match (m.value, m.upper_limit) {
         // The unit belongs to the number, the coverage to the statement.

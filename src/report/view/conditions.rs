@@ -1,8 +1,10 @@
 //! Conditions of the test with what was found, and how it is known, in words and units.
 
-use super::{Words, evidence::status, faults};
+use super::common::{required, status};
+use super::faults;
 use crate::record::{ConditionRecord, RunRecord};
 use crate::report::number::{NOTHING, count, duration, limit_digits};
+use crate::report::translator::Translator;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -40,7 +42,7 @@ const ENDINGS: &[(&str, &str)] = &[
 const IN_WORDS: &[&str] = &["difference"];
 
 /// The conditions that have no table of their own.
-pub fn conditions(record: &RunRecord, words: Words) -> Vec<Condition> {
+pub fn conditions(record: &RunRecord, words: Translator) -> Vec<Condition> {
     record
         .conditions
         .iter()
@@ -49,12 +51,7 @@ pub fn conditions(record: &RunRecord, words: Words) -> Vec<Condition> {
         .collect()
 }
 
-/// What was required, in words.
-pub fn required(c: &ConditionRecord, words: Words) -> String {
-    c.requirement.as_ref().map_or_else(|| c.required.clone(), |r| words.say(r))
-}
-
-fn condition(c: &ConditionRecord, words: Words) -> Condition {
+fn condition(c: &ConditionRecord, words: Translator) -> Condition {
     let (kind, channel) = c.id.split_once('.').unwrap_or((&c.id, ""));
     let name = words.name("condition", kind);
     Condition {
@@ -70,7 +67,7 @@ fn condition(c: &ConditionRecord, words: Words) -> Condition {
 
 /// What was found. Of a quantity that is held, the range and the mean; the rest stands in the explanation and in
 /// the result file.
-fn found(kind: &str, c: &ConditionRecord, words: Words) -> String {
+fn found(kind: &str, c: &ConditionRecord, words: Translator) -> String {
     let number = |name: &str| c.observed.get(name).and_then(Value::as_f64);
     if let (Some(low), Some(high)) = (number("min"), number("max")) {
         let unit = match kind {
@@ -95,7 +92,7 @@ fn found(kind: &str, c: &ConditionRecord, words: Words) -> String {
     shown.join(", ")
 }
 
-fn one(name: &str, value: &Value, alone: bool, words: Words) -> String {
+fn one(name: &str, value: &Value, alone: bool, words: Translator) -> String {
     let unit = ENDINGS.iter().find(|(ending, _)| name.ends_with(ending));
     let shown = match (value, unit) {
         (Value::Number(n), Some((_, "s"))) => {

@@ -1,8 +1,8 @@
 //! The Allan family as a table: one line for each averaging time, one column for each estimator.
 
-use super::Words;
 use crate::record::{DeviationRecord, RunRecord};
 use crate::report::number::{Rounding, limit_digits};
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// The table of a channel.
@@ -34,7 +34,7 @@ pub struct DeviationCell {
     pub interval: String,
 }
 
-pub(super) fn deviations(record: &RunRecord, words: Words) -> Vec<Deviations> {
+pub(super) fn deviations(record: &RunRecord, words: Translator) -> Vec<Deviations> {
     let mut tables: Vec<(&str, Vec<&DeviationRecord>)> = vec![];
     for point in &record.deviations {
         match tables.iter_mut().find(|(channel, _)| *channel == point.channel) {
@@ -45,7 +45,7 @@ pub(super) fn deviations(record: &RunRecord, words: Words) -> Vec<Deviations> {
     tables.into_iter().map(|(channel, points)| table(channel, &points, words)).collect()
 }
 
-fn table(channel: &str, points: &[&DeviationRecord], words: Words) -> Deviations {
+fn table(channel: &str, points: &[&DeviationRecord], words: Translator) -> Deviations {
     let mut estimators: Vec<&str> = vec![];
     let mut taus: Vec<f64> = vec![];
     for p in points {
@@ -88,7 +88,7 @@ fn estimator(id: &str) -> &'static str {
     }
 }
 
-fn printed(p: &DeviationRecord, words: Words) -> DeviationCell {
+fn printed(p: &DeviationRecord, words: Translator) -> DeviationCell {
     let range = p.low_deg_h.zip(p.high_deg_h);
     // The lower side of the interval sets the digits: the upper one of few degrees of freedom would leave none.
     let value = p.deviation_deg_h;

@@ -1,22 +1,23 @@
 //! What the verdict rests on beside the measured values: conditions, integrity, window, lines, models, power,
 //! instruments, waivers, clauses.
 
-use super::checks;
+use super::checks::{self, Unmade};
+use super::common::{MODEL_NOTES, probability, row_name, status};
 use super::conditions::{self, Condition};
 use super::deviations::{self, Deviations};
 use super::faults::Faults;
 use super::goodness::{self, Goodness};
-use super::{Field, Words};
 use crate::measurand;
-use crate::record::{ConditionStatus, LineRecord, MeasurandRecord, NoiseModelRecord, RunRecord};
+use crate::record::{
+    ClauseRecord, ExcludedSpan, InstrumentRecord, LineRecord, MeasurandRecord, NoiseModelRecord, PowerRecord,
+    RunRecord, WaiverRecord,
+};
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
+use crate::report::translator::{Field, Translator};
 use serde::Serialize;
 
 /// Lines that a report lists; a comb of harmonics would bury the rest of it.
 const SHOWN_LINES: usize = 16;
-
-/// Notes that belong to the noise model of a channel and not to one row.
-pub(super) const MODEL_NOTES: &[&str] = &["note.fit_restricted", "note.model_misfit"];
 
 /// Printed evidence. Each table is empty when the record has nothing for it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -56,15 +57,6 @@ pub struct Evidence {
     pub waivers: Vec<Waiver>,
     /// Clauses.
     pub clauses: Vec<Clause>,
-}
-
-/// A check that was not made.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Unmade {
-    /// Name, with its channels.
-    pub name: String,
-    /// Why.
-    pub reason: String,
 }
 
 /// A span left out.
@@ -204,35 +196,15 @@ pub struct Clause {
 
 impl Evidence {
     /// Prints the evidence of a record.
-    pub(crate) fn new(record: &RunRecord, words: Words) -> Evidence {
-        let lang = words.lang;
+    pub(crate) fn new(record: &RunRecord, words: Translator) -> Evidence {
         let (lines, lines_shown) = strongest(&record.lines, words);
         Evidence {
             conditions: conditions::conditions(record, words),
             checks: checks::unmade(record, words),
             checks_made: checks::made(record, words),
             faults: Faults::new(record, words),
-            // A run that read nothing evaluated nothing, and left nothing out.
-            window: [
-                ("report.window_from", record.window.from_s),
-                ("report.window_to", record.window.to_s),
-                ("report.window_usable", record.window.usable_s),
-            ]
-            .into_iter()
-            .filter(|_| record.window.to_s > record.window.from_s)
-            .map(|(key, s)| Field { label: words.t(key), value: duration(s, lang) })
-            .collect(),
-            excluded: record
-                .window
-                .excluded
-                .iter()
-                .map(|e| Excluded {
-                    from: duration(e.from_s, lang),
-                    to: duration(e.to_s, lang),
-                    length: duration(e.to_s - e.from_s, lang),
-                    reason: words.name("excluded", &e.reason),
-                })
-                .collect(),
+            window: window(record, words),
+            excluded: record.window.excluded.iter().map(|e| excluded(e, words)).collect(),
             lines: lines.into_iter().map(|l| line(l, words)).collect(),
             lines_shown,
             models: record.noise_models.iter().map(|m| model(m, &record.measurands, words)).collect(),
@@ -240,83 +212,74 @@ impl Evidence {
             deviations: deviations::deviations(record, words),
             table_steps: super::table_steps::table_steps(record, words),
             interval_means: super::interval_means::interval_means(record, words),
-            power: record
-                .power
-                .iter()
-                .map(|p| Power {
-                    name: words.name("measurand", &p.id),
-                    channel: p.channel.clone(),
-                    limit: words.quantity(&limit(p.limit, lang), &p.unit),
-                    power: percent(p.power, lang),
-                    pass: percent(p.pass_probability, lang),
-                    needed: p.needed_h.map_or_else(
-                        || NOTHING.to_owned(),
-                        |h| words.quantity(&limit_digits(h, 3, lang), "h"),
-                    ),
-                    message: words.say(&p.message),
-                })
-                .collect(),
-            instruments: record
-                .instruments
-                .iter()
-                .map(|i| Instrument {
-                    name: i.name.clone(),
-                    serial: i.serial.clone().unwrap_or_else(|| NOTHING.to_owned()),
-                    due: i.calibration_due.clone().unwrap_or_else(|| NOTHING.to_owned()),
-                    status: status(i.status),
-                    status_word: words.name("calibration", status(i.status)),
-                })
-                .collect(),
-            waivers: record
-                .waivers
-                .iter()
-                .map(|w| Waiver {
-                    row: row_name(&w.row, words),
-                    by: w.by.clone(),
-                    date: w.date.clone(),
-                    reason: w.reason.clone(),
-                })
-                .collect(),
-            clauses: record
-                .clauses
-                .iter()
-                .map(|c| Clause {
-                    clause: c.clause.clone(),
-                    title: c.title.clone(),
-                    status: c.status.clone(),
-                    status_word: words.name("clause", &c.status),
-                    note: c.note.clone(),
-                })
-                .collect(),
+            power: record.power.iter().map(|p| power(p, words)).collect(),
+            instruments: record.instruments.iter().map(|i| instrument(i, words)).collect(),
+            waivers: record.waivers.iter().map(|w| waiver(w, words)).collect(),
+            clauses: record.clauses.iter().map(|c| clause(c, words)).collect(),
         }
     }
 }
 
-pub(super) fn status(status: ConditionStatus) -> &'static str {
-    match status {
-        ConditionStatus::Ok => "ok",
-        ConditionStatus::Remark => "remark",
-        ConditionStatus::Invalid => "invalid",
+/// The evaluated span. A run that read nothing evaluated nothing, and left nothing out.
+fn window(record: &RunRecord, words: Translator) -> Vec<Field> {
+    let w = &record.window;
+    if w.to_s <= w.from_s {
+        return vec![];
+    }
+    [("report.window_from", w.from_s), ("report.window_to", w.to_s), ("report.window_usable", w.usable_s)]
+        .into_iter()
+        .map(|(key, s)| Field { label: words.t(key), value: duration(s, words.lang) })
+        .collect()
+}
+
+fn excluded(e: &ExcludedSpan, words: Translator) -> Excluded {
+    Excluded {
+        from: duration(e.from_s, words.lang),
+        to: duration(e.to_s, words.lang),
+        length: duration(e.to_s - e.from_s, words.lang),
+        reason: words.name("excluded", &e.reason),
     }
 }
 
-/// Name of the measurand or condition that a waiver is about.
-fn row_name(id: &str, words: Words) -> String {
-    ["measurand", "condition"]
-        .iter()
-        .find_map(|prefix| crate::i18n::lookup(words.lang, &format!("{prefix}.{id}")))
-        .map_or_else(|| id.to_owned(), str::to_owned)
+fn power(p: &PowerRecord, words: Translator) -> Power {
+    let hours = |h| words.quantity(&limit_digits(h, 3, words.lang), "h");
+    Power {
+        name: words.name("measurand", &p.id),
+        channel: p.channel.clone(),
+        limit: words.quantity(&limit(p.limit, words.lang), &p.unit),
+        power: percent(p.power, words.lang),
+        pass: percent(p.pass_probability, words.lang),
+        needed: p.needed_h.map_or_else(|| NOTHING.to_owned(), hours),
+        message: words.say(&p.message),
+    }
 }
 
-pub(super) fn probability(p: f64, words: Words) -> String {
-    if p < 1e-6 {
-        return format!("<\u{202f}{}", limit(1e-6, words.lang));
+fn instrument(i: &InstrumentRecord, words: Translator) -> Instrument {
+    Instrument {
+        name: i.name.clone(),
+        serial: i.serial.clone().unwrap_or_else(|| NOTHING.to_owned()),
+        due: i.calibration_due.clone().unwrap_or_else(|| NOTHING.to_owned()),
+        status: status(i.status),
+        status_word: words.name("calibration", status(i.status)),
     }
-    if p < 1e-3 { digits(p, 2, words.lang) } else { limit_digits(p, 3, words.lang) }
+}
+
+fn waiver(w: &WaiverRecord, words: Translator) -> Waiver {
+    Waiver { row: row_name(&w.row, words), by: w.by.clone(), date: w.date.clone(), reason: w.reason.clone() }
+}
+
+fn clause(c: &ClauseRecord, words: Translator) -> Clause {
+    Clause {
+        clause: c.clause.clone(),
+        title: c.title.clone(),
+        status: c.status.clone(),
+        status_word: words.name("clause", &c.status),
+        note: c.note.clone(),
+    }
 }
 
 /// The strongest lines, by frequency, and how many they are of all.
-fn strongest(lines: &[LineRecord], words: Words) -> (Vec<&LineRecord>, String) {
+fn strongest(lines: &[LineRecord], words: Translator) -> (Vec<&LineRecord>, String) {
     let mut shown: Vec<&LineRecord> = lines.iter().collect();
     shown.sort_by(|a, b| b.amplitude_deg_h.total_cmp(&a.amplitude_deg_h));
     shown.truncate(SHOWN_LINES);
@@ -330,7 +293,7 @@ fn strongest(lines: &[LineRecord], words: Words) -> (Vec<&LineRecord>, String) {
     (shown, hint)
 }
 
-fn line(l: &LineRecord, words: Words) -> Line {
+fn line(l: &LineRecord, words: Translator) -> Line {
     let lang = words.lang;
     let half = 0.5 * l.resolution_hz;
     let range = (l.frequency_hz - half, l.frequency_hz + half);
@@ -348,7 +311,7 @@ fn line(l: &LineRecord, words: Words) -> Line {
 /// Relative difference below which a row and the model speak of the same value.
 const SAME: f64 = 5e-3;
 
-fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model {
+fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Translator) -> Model {
     let lang = words.lang;
     let coefficients = [
         ("N", &measurand::ANGLE_RANDOM_WALK, m.angle_random_walk),
@@ -376,7 +339,7 @@ fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Words) -> Model 
         };
         Coefficient { label: symbol.to_owned(), value, interval }
     });
-    let terms: Vec<String> = m.terms.iter().map(|t| words.name("term", t)).collect();
+    let terms: Vec<String> = m.terms.iter().map(|t| words.name("term", t.id())).collect();
     let mut remarks: Vec<ModelRemark> = vec![];
     let of_model = rows.iter().filter(|r| r.channel == m.channel).flat_map(|r| &r.notes);
     for note in of_model.filter(|n| MODEL_NOTES.contains(&n.id.as_ref())) {

@@ -1,4 +1,4 @@
-//! The recording against the model of its family, as a report says it.
+//! The recording against the model of its family, printed.
 
 use crate::i18n::Lang;
 use crate::record::ExplainedRecord;
@@ -11,7 +11,7 @@ pub struct Explained {
     /// The model.
     pub model: String,
     /// What came of it, in sentences.
-    pub says: Vec<String>,
+    pub summary: Vec<String>,
     /// The whole explanation, where there is one.
     pub page: Option<&'static str>,
 }
@@ -21,7 +21,7 @@ impl Explained {
     pub fn new(explained: &ExplainedRecord, lang: Lang) -> Explained {
         Explained {
             model: explained.model.clone(),
-            says: explained_summary(explained, lang),
+            summary: explained_summary(explained, lang),
             page: explained.explanation.as_ref().map(|_| "explain/report.html"),
         }
     }

@@ -1,9 +1,10 @@
 //! Faults of the recording: what was found against what is allowed, and the first of each kind one by one.
 
-use super::{Field, Words, conditions::required, evidence::status};
+use super::common::{required, status};
 use crate::i18n::Localize;
 use crate::record::{ConditionRecord, FaultRecord, Integrity, RunRecord};
 use crate::report::number::{NOTHING, count, duration, limit_digits, percent};
+use crate::report::translator::{Field, Translator};
 use serde::Serialize;
 
 /// Faults of one kind that a report lists; more would bury the rest of it.
@@ -94,7 +95,7 @@ pub fn is_fault(id: &str) -> bool {
 
 impl Faults {
     /// Prints the faults of a record.
-    pub(crate) fn new(record: &RunRecord, words: Words) -> Faults {
+    pub(crate) fn new(record: &RunRecord, words: Translator) -> Faults {
         let integrity = &record.integrity;
         let rows: u64 = record.recording.iter().map(|f| f.samples).sum();
         let condition = |id: &str| record.conditions.iter().find(|c| c.id == id);
@@ -142,7 +143,7 @@ impl Faults {
     }
 }
 
-fn kind(id: &str, found: String, share: String, c: Option<&ConditionRecord>, words: Words) -> FaultKind {
+fn kind(id: &str, found: String, share: String, c: Option<&ConditionRecord>, words: Translator) -> FaultKind {
     let allowed = c.map(|c| required(c, words)).filter(|r| !r.is_empty());
     FaultKind {
         name: words.name("condition", id),
@@ -155,7 +156,7 @@ fn kind(id: &str, found: String, share: String, c: Option<&ConditionRecord>, wor
 }
 
 /// `Looked for and not found: gaps (at most 10), …`
-fn sentence(absent: &[FaultKind], words: Words) -> String {
+fn sentence(absent: &[FaultKind], words: Translator) -> String {
     let listed: Vec<String> = absent
         .iter()
         .map(|k| if k.allowed == NOTHING { k.name.clone() } else { format!("{} ({})", k.name, k.allowed) })
@@ -167,7 +168,7 @@ fn sentence(absent: &[FaultKind], words: Words) -> String {
     }
 }
 
-fn facts(i: &Integrity, words: Words) -> Vec<Field> {
+fn facts(i: &Integrity, words: Translator) -> Vec<Field> {
     let lang = words.lang;
     [
         i.timestamp_jitter_s.map(|v| ("report.jitter", duration(v, lang))),
@@ -197,7 +198,7 @@ fn first_of_each_kind(faults: &[FaultRecord]) -> Vec<&FaultRecord> {
         .collect()
 }
 
-fn fault(f: &FaultRecord, words: Words) -> Fault {
+fn fault(f: &FaultRecord, words: Translator) -> Fault {
     let note = f.message.as_ref().map_or_else(|| f.note.clone(), |m| m.say(words.lang));
     Fault {
         kind: words.name("fault", &f.kind),

@@ -1,9 +1,9 @@
 //! Figures as a report shows them.
 
-use super::Words;
 use crate::figure::Figure;
 use crate::i18n::lookup;
 use crate::record::RunRecord;
+use crate::report::translator::Translator;
 use crate::report::{file_name, svg};
 use serde::Serialize;
 
@@ -24,36 +24,37 @@ pub struct FigureView {
     pub href: String,
 }
 
+impl FigureView {
+    /// Draws a figure; `file` is that of the drawing, relative to the report.
+    pub(crate) fn new(figure: &Figure, number: usize, file: &str, words: Translator) -> FigureView {
+        let title = words.t(&figure.title);
+        FigureView {
+            id: figure.id.clone(),
+            number,
+            title: if figure.channel.is_empty() { title } else { format!("{title} · {}", figure.channel) },
+            caption: caption(figure, words),
+            svg: svg::render(figure, words.lang),
+            href: encode(file),
+        }
+    }
+
+    /// The same with the usual name of the file.
+    pub(crate) fn of(figure: &Figure, number: usize, words: Translator) -> FigureView {
+        FigureView::new(figure, number, &format!("figures/{}", file_name(&figure.id)), words)
+    }
+}
+
 /// The figures of a report with their titles and captions.
-pub(super) fn drawn(record: &RunRecord, figures: &[Figure], words: Words) -> Vec<FigureView> {
-    figures
-        .iter()
-        .enumerate()
-        .map(|(i, figure)| {
-            let title = words.t(&figure.title);
-            let file = record
-                .figures
-                .iter()
-                .find(|f| f.id == figure.id)
-                .map_or_else(|| format!("figures/{}", file_name(&figure.id)), |f| f.file.clone());
-            FigureView {
-                id: figure.id.clone(),
-                number: i + 1,
-                title: if figure.channel.is_empty() {
-                    title
-                } else {
-                    format!("{title} · {}", figure.channel)
-                },
-                caption: caption(figure, words),
-                svg: svg::render(figure, words.lang),
-                href: encode(&file),
-            }
-        })
-        .collect()
+pub(super) fn drawn(record: &RunRecord, figures: &[Figure], words: Translator) -> Vec<FigureView> {
+    let view = |(i, figure): (usize, &Figure)| match record.figures.iter().find(|f| f.id == figure.id) {
+        Some(known) => FigureView::new(figure, i + 1, &known.file, words),
+        None => FigureView::of(figure, i + 1, words),
+    };
+    figures.iter().enumerate().map(view).collect()
 }
 
 /// What is to be seen, in a sentence, and the numbers that belong to it.
-pub(crate) fn caption(figure: &Figure, words: Words) -> String {
+fn caption(figure: &Figure, words: Translator) -> String {
     let id = figure.title.strip_prefix("figure.title.").unwrap_or_default();
     let mut sentences: Vec<String> =
         lookup(words.lang, &format!("figure.caption.{id}")).map(str::to_owned).into_iter().collect();

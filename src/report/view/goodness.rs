@@ -1,8 +1,8 @@
 //! How well the noise models fit, view by view.
 
-use super::Words;
-use super::evidence::probability;
+use super::common::probability;
 use crate::record::RunRecord;
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// One view of the residual of one channel, printed.
@@ -20,27 +20,16 @@ pub struct Goodness {
     pub message: String,
 }
 
-pub(super) fn goodness(record: &RunRecord, words: Words) -> Vec<Goodness> {
+pub(super) fn goodness(record: &RunRecord, words: Translator) -> Vec<Goodness> {
     record
         .goodness_of_fit
         .iter()
         .map(|g| Goodness {
             channel: g.channel.clone(),
-            view: words.t(view(&g.view)),
+            view: words.t(&format!("goodness.view.{}", g.view.id())),
             departs: g.departs,
             probability: probability(g.p_value, words),
             message: words.say(&g.message),
         })
         .collect()
-}
-
-/// Key of the name of a view.
-fn view(id: &str) -> &'static str {
-    match id {
-        "frequency" => "goodness.view.frequency",
-        "lag" => "goodness.view.lag",
-        "averaging_time" => "goodness.view.averaging_time",
-        "jump" => "goodness.view.jump",
-        _ => "goodness.view.amplitude",
-    }
 }

@@ -1,8 +1,8 @@
 //! Runs of a series, or intervals without and with an influence, printed.
 
-use super::Words;
 use crate::record::{IntervalMeanRecord, RunRecord};
 use crate::report::number::{Rounding, digits, limit_digits};
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// Rows that a report lists; the rest stands in the table beside it.
@@ -56,13 +56,13 @@ pub struct IntervalMean {
     pub interval: String,
 }
 
-pub(super) fn interval_means(record: &RunRecord, words: Words) -> Vec<IntervalMeans> {
+pub(super) fn interval_means(record: &RunRecord, words: Translator) -> Vec<IntervalMeans> {
     let mut channels: Vec<&str> = record.interval_means.iter().map(|m| m.channel.as_str()).collect();
     channels.dedup();
     channels.into_iter().map(|channel| of(channel, record, words)).collect()
 }
 
-fn of(channel: &str, record: &RunRecord, words: Words) -> IntervalMeans {
+fn of(channel: &str, record: &RunRecord, words: Translator) -> IntervalMeans {
     let all: Vec<&IntervalMeanRecord> =
         record.interval_means.iter().filter(|m| m.channel == channel).collect();
     let has_levels = all.iter().any(|m| m.level.is_some());
@@ -93,7 +93,7 @@ fn of(channel: &str, record: &RunRecord, words: Words) -> IntervalMeans {
     }
 }
 
-fn one(m: &IntervalMeanRecord, words: Words) -> IntervalMean {
+fn one(m: &IntervalMeanRecord, words: Translator) -> IntervalMean {
     let lang = words.lang;
     let rounding = Rounding::of(m.mean_deg_h, Some((m.low_deg_h, m.high_deg_h)));
     let level = m.level.map_or_else(String::new, |l| limit_digits((l * 1e6).round() / 1e6, 4, lang));

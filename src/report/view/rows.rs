@@ -1,10 +1,10 @@
 //! Measured quantities with their limits.
 
-use super::evidence::MODEL_NOTES;
-use super::{Words, verdict_word};
+use super::common::MODEL_NOTES;
 use crate::estimate::Rule;
 use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
 use crate::report::number::{Rounding, acceptance, bound, digits, limit, limit_digits, percent};
+use crate::report::translator::Translator;
 use serde::Serialize;
 
 /// One row, printed. Empty strings where there is nothing to show.
@@ -49,7 +49,7 @@ pub struct Row {
 }
 
 /// The rows with and without a limit, in the order of the record; footnotes are collected, equal ones once.
-pub fn rows(record: &RunRecord, words: Words, footnotes: &mut Vec<String>) -> (Vec<Row>, Vec<Row>) {
+pub fn rows(record: &RunRecord, words: Translator, footnotes: &mut Vec<String>) -> (Vec<Row>, Vec<Row>) {
     let (mut judged, mut further) = (vec![], vec![]);
     // Footnotes are numbered in reading order: all rows with limits come first.
     let with_limit = record.measurands.iter().filter(|m| m.limit.is_some());
@@ -74,7 +74,7 @@ fn searched(m: &MeasurandRecord) -> bool {
 }
 
 /// The value as printed: rounded by its uncertainty, or `≤ x (95 %)`, or that nothing can be said.
-pub fn value(m: &MeasurandRecord, words: Words) -> String {
+pub fn value(m: &MeasurandRecord, words: Translator) -> String {
     if let Some(value) = m.value {
         return rounding(m).show(value, words.lang);
     }
@@ -112,7 +112,7 @@ pub fn value(m: &MeasurandRecord, words: Words) -> String {
 }
 
 /// The interval as printed.
-pub fn interval(m: &MeasurandRecord, words: Words) -> String {
+pub fn interval(m: &MeasurandRecord, words: Translator) -> String {
     match (m.interval, m.value) {
         (Some(i), Some(_)) => {
             let rounding = rounding(m);
@@ -125,7 +125,7 @@ pub fn interval(m: &MeasurandRecord, words: Words) -> String {
     }
 }
 
-fn row(m: &MeasurandRecord, words: Words, footnotes: &mut Vec<String>) -> Row {
+fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> Row {
     let lang = words.lang;
     let mut numbers = vec![];
     for note in &m.notes {
@@ -168,13 +168,13 @@ fn row(m: &MeasurandRecord, words: Words, footnotes: &mut Vec<String>) -> Row {
         risk: m.specific_risk.map_or_else(String::new, |p| percent(p, lang)),
         reference: m.reference.as_ref().map_or_else(String::new, |r| limit(r.value, lang)),
         verdict: m.verdict.id(),
-        verdict_word: verdict_word(m.verdict, words),
+        verdict_word: words.verdict(m.verdict),
         footnotes: numbers,
     }
 }
 
 /// A range with open ends: `≤ b`, `≥ a`, `± b`, `a … b`.
-fn between(min: Option<String>, max: Option<String>, symmetric: bool, words: Words) -> String {
+fn between(min: Option<String>, max: Option<String>, symmetric: bool, words: Translator) -> String {
     match (min, max) {
         (Some(_), Some(b)) if symmetric => format!("±\u{202f}{b}"),
         (Some(a), Some(b)) => words.with("report.interval", &[("low", &a), ("high", &b)]),
@@ -184,14 +184,14 @@ fn between(min: Option<String>, max: Option<String>, symmetric: bool, words: Wor
     }
 }
 
-fn limits(l: &LimitRecord, row_unit: &str, words: Words) -> String {
+fn limits(l: &LimitRecord, row_unit: &str, words: Translator) -> String {
     let symmetric = l.min.zip(l.max).is_some_and(|(a, b)| b > 0.0 && (a + b).abs() <= 1e-9 * b);
     let text =
         between(l.min.map(|v| limit(v, words.lang)), l.max.map(|v| limit(v, words.lang)), symmetric, words);
     if l.unit == row_unit { text } else { words.quantity(&text, &l.unit) }
 }
 
-fn accepted(l: &LimitRecord, words: Words) -> String {
+fn accepted(l: &LimitRecord, words: Translator) -> String {
     between(
         l.acceptance_min.map(|v| acceptance(v, false, words.lang)),
         l.acceptance_max.map(|v| acceptance(v, true, words.lang)),
@@ -200,7 +200,7 @@ fn accepted(l: &LimitRecord, words: Words) -> String {
     )
 }
 
-fn rule(l: &LimitRecord, words: Words) -> String {
+fn rule(l: &LimitRecord, words: Translator) -> String {
     match l.rule {
         Rule::Simple => words.t("rule.simple"),
         Rule::GuardBand => words.with("rule.guard_band", &[("risk", &percent(l.risk, words.lang))]),

@@ -1,8 +1,8 @@
 //! The steps of a rate table, printed.
 
-use super::Words;
 use crate::record::{RunRecord, TableStepRecord};
 use crate::report::number::{Rounding, digits, limit_digits};
+use crate::report::translator::Translator;
 use crate::units::RateUnit;
 use serde::Serialize;
 
@@ -47,7 +47,7 @@ pub struct TableStep {
     pub interval: String,
 }
 
-pub(super) fn table_steps(record: &RunRecord, words: Words) -> Vec<TableSteps> {
+pub(super) fn table_steps(record: &RunRecord, words: Translator) -> Vec<TableSteps> {
     let mut tables: Vec<TableSteps> = vec![];
     let highest = record.table_steps.iter().fold(0.0, |m: f64, s| m.max(s.rate_deg_h.abs()));
     let unit = RateUnit::up_to(highest);
@@ -88,7 +88,7 @@ fn to_grid(value: f64, highest: f64) -> f64 {
     }
 }
 
-fn one(step: &TableStepRecord, unit: RateUnit, highest: f64, words: Words) -> TableStep {
+fn one(step: &TableStepRecord, unit: RateUnit, highest: f64, words: Translator) -> TableStep {
     let lang = words.lang;
     let u = 1.96 * step.standard_uncertainty_deg_h * step.residual_ppm.abs()
         / step.residual_deg_h.abs().max(f64::MIN_POSITIVE);

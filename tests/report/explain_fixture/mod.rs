@@ -1,6 +1,7 @@
 //! Explanations made by hand, one of each verdict.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+use sagnac::effect::Domain;
 use sagnac::mismatch::finding::{
     Candidate, Experiment, Explanation, Finding, Fit, FitFigures, MismatchVerdict, NuisanceValue,
     ParameterValue, PlaceRecord, RecordingFacts, Test,
@@ -76,7 +77,7 @@ pub fn parameter(value: f64, half: f64, unit: &str) -> ParameterValue {
 
 /// A place.
 pub fn place(domain: &str, from: f64, to: f64) -> PlaceRecord {
-    PlaceRecord { domain: domain.into(), from, to }
+    PlaceRecord { domain: Domain::of_id(domain).unwrap(), from, to }
 }
 
 /// A finding of a kind with all its parameters.

@@ -1,7 +1,11 @@
 //! Where an effect shows: a domain and an interval of it.
 
+use serde::{Deserialize, Serialize};
+
 /// A quantity along which an effect or a departure is located.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Domain {
     /// `time_s`, s.
     Time,

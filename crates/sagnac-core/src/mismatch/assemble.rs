@@ -272,7 +272,7 @@ fn candidate(fitted: &Fitted) -> Candidate {
 }
 
 fn record(place: &Place) -> PlaceRecord {
-    PlaceRecord { domain: place.domain.id().to_owned(), from: place.from, to: place.to }
+    PlaceRecord { domain: place.domain, from: place.from, to: place.to }
 }
 
 fn finding(named: &Named) -> Finding {
@@ -388,7 +388,7 @@ fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
         let a = after.get(i).filter(same).or_else(|| after.iter().find(same));
         Test {
             id: b.test.to_owned(),
-            domain: b.place.domain.id().to_owned(),
+            domain: b.place.domain,
             from: b.place.from,
             to: b.place.to,
             p_before: (b.p_value() * many).min(1.0),

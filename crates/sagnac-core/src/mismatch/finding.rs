@@ -1,5 +1,6 @@
 //! What an explanation says, as `explain.json` has it.
 
+use crate::effect::Domain;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -115,8 +116,8 @@ pub struct ParameterValue {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlaceRecord {
-    /// Domain id.
-    pub domain: String,
+    /// Domain.
+    pub domain: Domain,
     /// Lower end.
     pub from: f64,
     /// Upper end.
@@ -170,7 +171,7 @@ pub struct Test {
     /// Id: `spectrum`, `line`, `level`, `variance`, `distribution`, ...
     pub id: String,
     /// Domain of the largest departure.
-    pub domain: String,
+    pub domain: Domain,
     /// Lower end of it.
     pub from: f64,
     /// Upper end of it.

@@ -1,6 +1,8 @@
 //! What one pass over a rate channel leaves behind: the statistics from which everything about its noise is
 //! computed. All of bounded size, whatever the length of the record. Rates in deg/h, times in s.
 
+use serde::{Deserialize, Serialize};
+
 /// Means of consecutive blocks on the uniform sample grid, the block length chosen so that at most `2^18` remain.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BlockSeries {
@@ -44,7 +46,9 @@ pub struct WelchSpectrum {
 }
 
 /// Kind of power-law noise, named by the exponent α of its rate spectrum f^α.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum NoiseType {
     /// White angle noise, quantisation: α = +2.
     Quantization,

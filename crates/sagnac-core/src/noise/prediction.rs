@@ -10,6 +10,7 @@ use super::composite::{Composite, Described, Line, Part, Propagated};
 use super::data::NoiseType;
 use super::windows::edf_of_window_std;
 use crate::estimate::{Interval, chi_square_quantile};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Share of the scatter of s² that is left to be tested at the least: a fit of few modes knows its own errors only
@@ -23,13 +24,17 @@ const UNSHARED: f64 = 0.01;
 const REACHED: f64 = 0.85;
 
 /// How an observed standard deviation stands to the predicted one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Agreement {
     /// The interval of observed over predicted holds 1.
     Consistent,
     /// Observed above: the record holds noise at low frequency that the model lacks.
+    #[serde(rename = "missing_low_frequency_term")]
     Above,
     /// Observed below: the two do not belong to the same noise.
+    #[serde(rename = "data_mismatch")]
     Below,
 }
 

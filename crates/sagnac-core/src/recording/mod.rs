@@ -7,10 +7,10 @@ pub mod integrity;
 pub mod window;
 
 use crate::units::Unit;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a channel measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Role {

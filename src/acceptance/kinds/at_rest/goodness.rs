@@ -15,7 +15,7 @@ pub fn records(gyro: &GyroEvidence) -> Vec<GoodnessOfFitRecord> {
             let departs = failures.contains(&judged.view);
             GoodnessOfFitRecord {
                 channel: gyro.channel.clone(),
-                view: judged.view.id().to_owned(),
+                view: judged.view,
                 statistic: judged.statistic,
                 p_value: judged.p_value,
                 departs,

@@ -26,7 +26,7 @@ pub fn noise_model(gyro: &GyroEvidence) -> NoiseModelRecord {
     NoiseModelRecord {
         channel: gyro.channel.clone(),
         method: id.method.to_owned(),
-        terms: id.claimed.iter().map(|t| t.id().to_owned()).collect(),
+        terms: id.claimed.clone(),
         angle_random_walk: model.n,
         bias_instability: model.b,
         rate_random_walk: model.k,

@@ -8,11 +8,10 @@ use crate::noise::composite::{Composite, Parameter, Part};
 use crate::noise::data::NoiseType;
 use crate::noise::identifiable::hours_until_identifiable_among;
 use crate::noise::null_ratio::null_ratio;
-use crate::noise::prediction::Agreement;
 use crate::noise::russian::{null_minimum, octave_identity};
 use crate::record::{
-    ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord, OctavesRecord, ParameterRecord,
-    ShareRecord, WindowRecord,
+    CoherentLine, ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord, OctavesRecord,
+    ParameterRecord, ShareRecord, WindowRecord,
 };
 
 /// The record of a channel; `None` when the record is too short for two windows of 100 s.
@@ -45,10 +44,7 @@ fn window(gyro: &GyroEvidence, window_s: f64) -> Option<WindowRecord> {
         predicted_interval: predicted.as_ref().and_then(|(p, spread)| spread.interval(p.sigma, 0.95)),
         ratio: ratio.map(|r| r.0),
         ratio_interval: ratio.map(|r| r.1),
-        agreement: prediction
-            .and_then(|p| p.agreement(w.standard_deviation))
-            .map(Agreement::id)
-            .map(str::to_owned),
+        agreement: prediction.and_then(|p| p.agreement(w.standard_deviation)),
         shares: prediction.map_or_else(Vec::new, |p| {
             let share = |s: &crate::noise::prediction::Share| ShareRecord {
                 part: s.part.id().to_owned(),
@@ -160,7 +156,12 @@ fn model(gyro: &GyroEvidence) -> ModelRecord {
         },
         misfit: finite(misfit.per_dof),
         misfit_probability: finite(misfit.probability),
-        lines: described.model.lines.iter().map(|l| (l.amplitude_deg_h, l.frequency_hz)).collect(),
+        lines: described
+            .model
+            .lines
+            .iter()
+            .map(|l| CoherentLine::from((l.amplitude_deg_h, l.frequency_hz)))
+            .collect(),
     }
 }
 

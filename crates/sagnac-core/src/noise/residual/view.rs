@@ -1,7 +1,11 @@
 //! The views of a residual, and what each finds.
 
+use serde::{Deserialize, Serialize};
+
 /// A way to look at a residual.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum View {
     /// Power by frequency.
     Frequency,

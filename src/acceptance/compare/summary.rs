@@ -1,11 +1,11 @@
-//! What the figures of a unit say, as sentences.
+//! The findings on a unit in sentences: what its drift is made of, and what could not be compared.
 
 use super::parts::grouped;
 use super::unit::{Origin, Unit};
 use crate::i18n::{Arg, Note};
 use crate::measurand;
 use crate::noise::data::NoiseType;
-use crate::record::{ComparisonRecord, WindowRecord};
+use crate::record::{Agreement, ComparisonRecord, WindowRecord};
 
 /// Smallest share that is named.
 const NAMED: f64 = 0.005;
@@ -57,12 +57,13 @@ fn made_of(w: &WindowRecord) -> Option<Note> {
         .filter(|(_, share)| *share >= NAMED)
         .map(|(key, share)| {
             let part = Arg::Key((*key).into());
-            Arg::from(Note::new("compare.says.share").with("part", part).with("share", percent(*share)))
+            Arg::from(Note::new("compare.summary.share").with("part", part).with("share", percent(*share)))
         })
         .collect();
-    let note = Note::new(if others.is_empty() { "compare.says.made_of_one" } else { "compare.says.made_of" })
-        .with("part", Arg::Key(first.0.into()))
-        .with("share", percent(first.1));
+    let note =
+        Note::new(if others.is_empty() { "compare.summary.made_of_one" } else { "compare.summary.made_of" })
+            .with("part", Arg::Key(first.0.into()))
+            .with("share", percent(first.1));
     Some(if others.is_empty() { note } else { note.with("others", Arg::Several(others, ", ".into())) })
 }
 
@@ -71,11 +72,11 @@ fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {
     // Two digits of the half-width, and not fewer than two of the value.
     let half = 0.5 * (interval.high - interval.low) / ratio;
     let figures = (1.0 - half.max(1e-6).log10().floor()).clamp(2.0, 6.0) as usize;
-    let key = match w.agreement.as_deref()? {
-        "consistent" => "compare.says.consistent",
-        "missing_low_frequency_term" if window == "100" => "compare.says.above",
-        "missing_low_frequency_term" => "compare.says.above_10",
-        _ => "compare.says.below",
+    let key = match w.agreement? {
+        Agreement::Consistent => "compare.summary.consistent",
+        Agreement::Above if window == "100" => "compare.summary.above",
+        Agreement::Above => "compare.summary.above_10",
+        Agreement::Below => "compare.summary.below",
     };
     Some(
         Note::new(key)
@@ -91,7 +92,7 @@ fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {
 /// Said when the model is no description of the record.
 pub(super) fn misfit(detail: &ComparisonRecord) -> Option<Note> {
     let (misfit, p) = (detail.model.misfit?, detail.model.misfit_probability?);
-    (p < UNBELIEVABLE).then(|| Note::new("compare.says.misfit").with("misfit", Arg::rounded(misfit, 2)))
+    (p < UNBELIEVABLE).then(|| Note::new("compare.summary.misfit").with("misfit", Arg::rounded(misfit, 2)))
 }
 
 /// Said when a verdict is so near that it may be chance.
@@ -116,11 +117,11 @@ fn null(detail: &ComparisonRecord) -> Option<Note> {
     let ([low, median, high], ratio) = (m.null_ratio?, m.ratio?);
     let white = white_share(detail);
     let key = if ratio < low {
-        "compare.says.null_below"
+        "compare.summary.null_below"
     } else if ratio > high {
-        "compare.says.null_above"
+        "compare.summary.null_above"
     } else if white.is_none_or(|white| white >= 0.5) {
-        "compare.says.null_inside"
+        "compare.summary.null_inside"
     } else {
         "compare.more.null_inside_of_other_noise"
     };
@@ -141,12 +142,12 @@ fn floor(unit: &Unit, detail: &ComparisonRecord) -> Option<Note> {
     let notes = unit.quantity(measurand::BIAS_INSTABILITY.id).map_or(&[][..], |q| &q.notes);
     let markov = notes.iter().any(|n| n.id == MARKOV_ALIKE);
     let key = match (f.is_limit, f.identifiable_h) {
-        (false, Some(_)) if markov => "compare.says.floor_or_markov",
-        (false, Some(h)) if h * 3600.0 <= detail.length_s => "compare.says.floor_shown",
-        (true, Some(h)) if h * 3600.0 <= detail.length_s => "compare.says.floor_limit_here",
-        (false, Some(_)) => "compare.says.floor_early",
-        (true, Some(_)) => "compare.says.floor_limit",
-        (_, None) => "compare.says.floor_never",
+        (false, Some(_)) if markov => "compare.summary.floor_or_markov",
+        (false, Some(h)) if h * 3600.0 <= detail.length_s => "compare.summary.floor_shown",
+        (true, Some(h)) if h * 3600.0 <= detail.length_s => "compare.summary.floor_limit_here",
+        (false, Some(_)) => "compare.summary.floor_early",
+        (true, Some(_)) => "compare.summary.floor_limit",
+        (_, None) => "compare.summary.floor_never",
     };
     let b = if f.is_limit { rounded_up(f.b_deg_h) } else { f.b_deg_h };
     let note = Note::new(key)

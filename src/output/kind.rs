@@ -1,0 +1,59 @@
+//! What a folder holds.
+
+/// What a folder holds; one kind never takes the place of another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The result of a run or an analysis.
+    Result,
+    /// A comparison.
+    Comparison,
+    /// The explanation of a mismatch.
+    Explanation,
+}
+
+impl Kind {
+    /// Every kind.
+    pub const ALL: [Kind; 3] = [Kind::Result, Kind::Comparison, Kind::Explanation];
+
+    /// The JSON file that a folder of this kind holds, and by which it is known.
+    pub fn record_file(self) -> &'static str {
+        match self {
+            Kind::Result => "result.json",
+            Kind::Comparison => "comparison.json",
+            Kind::Explanation => "explain.json",
+        }
+    }
+
+    /// How that file begins, without spaces.
+    pub(super) fn start(self) -> &'static str {
+        match self {
+            Kind::Result => "{\"format\":\"result/",
+            Kind::Comparison => "{\"format\":\"comparison/",
+            Kind::Explanation => "{\"format\":\"explain/",
+        }
+    }
+
+    /// True for the name of a table, or of another file that is data for other programs.
+    pub fn is_table(self, name: &str) -> bool {
+        match self {
+            Kind::Result => {
+                (name.starts_with("sigma_tau") && name.ends_with(".csv"))
+                    || matches!(name, "table_steps.csv" | "interval_means.csv")
+                    || (name.starts_with("compensation")
+                        && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
+            }
+            Kind::Comparison => name == "comparison.csv",
+            Kind::Explanation => matches!(name, "correction.csv" | "augmented.toml"),
+        }
+    }
+
+    /// True for a name that stands in a folder of this kind.
+    pub(super) fn owns(self, name: &str) -> bool {
+        let page = match self {
+            Kind::Result => matches!(name, "report.html" | "report.md" | "explain" | "phases"),
+            Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
+            Kind::Explanation => matches!(name, "report.html" | "report.md"),
+        };
+        page || name == "figures" || name == self.record_file() || self.is_table(name)
+    }
+}

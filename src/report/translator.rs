@@ -1,0 +1,98 @@
+//! Keys, ids, notes and units in the words of a language, numbers printed as a report prints them.
+
+use super::{number, unit};
+use crate::estimate::Verdict;
+use crate::i18n;
+use crate::i18n::{Arg, Lang, Localize, Note, fill, lookup};
+use serde::Serialize;
+
+/// A label and its value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Field {
+    /// Label, in words.
+    pub label: String,
+    /// Value, printed.
+    pub value: String,
+}
+
+/// Gives keys, ids, notes and units the words of a language.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Translator {
+    /// The language.
+    pub lang: Lang,
+}
+
+impl Translator {
+    /// The text of a key; the key itself, so that it is noticed, when the table lacks it.
+    pub fn t(self, key: &str) -> String {
+        lookup(self.lang, key).unwrap_or(key).to_owned()
+    }
+
+    /// The text of `prefix.id`; a readable form of the id when the table lacks it.
+    pub fn name(self, prefix: &str, id: &str) -> String {
+        lookup(self.lang, &format!("{prefix}.{id}")).map_or_else(|| id.replace('_', " "), str::to_owned)
+    }
+
+    /// The text of a key with its places filled.
+    pub fn with(self, key: &str, args: &[(&str, &str)]) -> String {
+        fill(lookup(self.lang, key).unwrap_or(key), |name| {
+            args.iter().find(|a| a.0 == name).map(|a| a.1.to_owned())
+        })
+    }
+
+    /// A note with printed numbers.
+    pub fn say(self, note: &Note) -> String {
+        fill(lookup(self.lang, &note.id).unwrap_or(&note.id), |name| {
+            note.args.get(name).map(|arg| match arg {
+                Arg::Number(v) => number::limit_digits(*v, 4, self.lang),
+                Arg::Stated(v) => number::limit(*v, self.lang),
+                Arg::Count(v) => number::count(*v, self.lang),
+                Arg::Text(t) => t.clone(),
+                Arg::Key(k) => i18n::words(k, self.lang),
+                Arg::Note(n) => self.say(n),
+                Arg::Decimals { .. } | Arg::Several(..) => arg.say(self.lang),
+                Arg::Figures { value, digits, zeros: true } => number::digits(*value, *digits, self.lang),
+                Arg::Figures { value, digits, zeros: false } => {
+                    number::limit_digits(*value, *digits, self.lang)
+                }
+            })
+        })
+    }
+
+    /// A formula with the decimal mark of the language.
+    pub fn formula(self, text: &str) -> String {
+        let mark = lookup(self.lang, "number.decimal").unwrap_or(".");
+        let chars: Vec<char> = text.chars().collect();
+        let mut out = String::with_capacity(text.len());
+        for (i, c) in chars.iter().enumerate() {
+            let figure = |at: Option<usize>| at.and_then(|i| chars.get(i)).is_some_and(char::is_ascii_digit);
+            if *c == '.' && figure(i.checked_sub(1)) && figure(Some(i + 1)) {
+                out.push_str(mark);
+            } else {
+                out.push(*c);
+            }
+        }
+        out
+    }
+
+    /// A unit in print.
+    pub fn unit(self, text: &str) -> String {
+        unit::pretty(text, self.lang)
+    }
+
+    /// A printed number with its unit.
+    pub fn quantity(self, number: &str, unit: &str) -> String {
+        let unit = self.unit(unit);
+        match unit.as_str() {
+            "" => number.to_owned(),
+            // Degrees, minutes and seconds of arc stand at the figure.
+            "°" | "′" | "″" => format!("{number}{unit}"),
+            _ => format!("{number}\u{202f}{unit}"),
+        }
+    }
+
+    /// The word of a verdict.
+    pub fn verdict(self, verdict: Verdict) -> String {
+        self.name("verdict", verdict.id())
+    }
+}
