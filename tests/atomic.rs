@@ -332,7 +332,8 @@ fn a_signal_leaves_nothing_half_made() {
         let id = child.id().to_string();
         assert!(Command::new("kill").args([&format!("-{name}"), &id]).status().unwrap().success());
     };
-    // Sooner and later, since a busy machine does not run at one speed; each signal has to interrupt at least one run.
+    // Sooner and later, since a busy machine does not run at one speed. Where tests run in the background of a shell, INT
+    // is ignored, and under nohup HUP.
     let names_of_signals = ["INT", "TERM", "HUP"];
     let mut interrupted = [0; 3];
     for attempt in 0..60 {
@@ -344,11 +345,12 @@ fn a_signal_leaves_nothing_half_made() {
         signal(&child, name);
         interrupted[which] += u64::from(child.wait().unwrap().code().is_none());
         assert!(names(dir.path()).iter().all(|n| n == "out"), "{name}: {:?}", names(dir.path()));
-        if attempt >= 5 && interrupted.iter().all(|n| *n > 0) {
+        if attempt >= 5 && interrupted[1] > 0 && interrupted.iter().sum::<u64>() >= 3 {
             break;
         }
     }
-    assert!(interrupted.iter().all(|n| *n > 0), "interrupted runs by signal: {interrupted:?}");
+    let all = interrupted.iter().sum::<u64>();
+    assert!(interrupted[1] > 0 && all >= 3, "interrupted runs by signal: {interrupted:?}");
     // A run that was killed leaves its folder; one beside it that lives keeps its own.
     let mut live = start(dir.path(), "pass", "live");
     let mut dead = start(dir.path(), "pass", "dead");

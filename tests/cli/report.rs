@@ -72,14 +72,13 @@ fn an_explanation_comes_out_the_same_alone_and_in_a_run() {
     comes_out_the_same(dir.path());
 
     let dir_of_run = tempdir().unwrap();
-    let text = format!(
-        "format = \"procedure/1\"\n[procedure]\nid = \"p\"\ntitle = \"P\"\nrevision = \"A\"\n\
+    let text = "format = \"procedure/1\"\n[procedure]\nid = \"p\"\ntitle = \"P\"\nrevision = \"A\"\n\
          [unit_under_test]\nserial_required = false\n\
          [[channel]]\nid = \"time\"\ncolumn = \"time_s\"\nrole = \"time\"\nunit = \"s\"\n\
          [[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"\n\
          [[measurand]]\nid = \"static_bias\"\n[measurand.options]\nearth_rate = \"keep\"\n\
-         [explain]\nmodel = '{family}'\n"
-    );
+         [explain]\nmodel = \"model.toml\"\n";
+    fs::copy(&family, dir_of_run.path().join("model.toml")).unwrap();
     fs::write(dir_of_run.path().join("p.toml"), text).unwrap();
     let recording = dir.path().join("step.csv").display().to_string();
     let said = sagnac(dir_of_run.path(), &["run", "p.toml", &recording, "--lang", "en", "--out", "o"]);
