@@ -4,9 +4,9 @@
 //! compared byte for byte. `result.json` is this value; HTML and Markdown are views of it; nothing is computed in a
 //! template.
 
-mod beside;
 mod check;
 mod comparison;
+mod context;
 mod deviation;
 mod evidence;
 mod explained;
@@ -20,12 +20,12 @@ mod phase;
 pub mod read;
 mod table_step;
 
-pub use beside::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
 pub use check::{CheckRecord, CheckStatus};
 pub use comparison::{
     Agreement, CoherentLine, ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord,
     OctavesRecord, ParameterRecord, ShareRecord, WindowRecord,
 };
+pub use context::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;
 pub use explained::ExplainedRecord;

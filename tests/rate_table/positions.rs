@@ -11,7 +11,7 @@ use sagnac::measurand::{
 use sagnac::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use sagnac::rate_table::known;
 use sagnac::rate_table::noise::Rows;
-use sagnac::rate_table::setup::{Input, Known};
+use sagnac::rate_table::setup::{Input, ReferenceInput};
 use sagnac::rate_table::turns;
 use sagnac::recording::Role;
 
@@ -54,7 +54,7 @@ fn in_positions(model: Noise, seed: u64) -> [Count; 2] {
         for v in &mut y[k * EACH_S..(k + 1) * EACH_S] {
             *v += (1.0 + 1e-6 * error_ppm) * input + bias + 60.0 * model.n * chance.normal();
         }
-        list.push(Known {
+        list.push(ReferenceInput {
             phase: None,
             from_s: Some((k * EACH_S) as f64),
             to_s: Some(((k + 1) * EACH_S) as f64),
@@ -158,7 +158,7 @@ fn of_triad(triad: &Triad, seed: u64) -> [Count; 2] {
             None => Input::Rest,
         };
         let channel = turn.map(|t| channels[t.axis].to_owned());
-        list.push(Known { phase: None, from_s, to_s, channel, input });
+        list.push(ReferenceInput { phase: None, from_s, to_s, channel, input });
         for i in at..at + count {
             let mut rate = earth;
             if let Some(Turn { axis, turned: angle, .. }) = turn {

@@ -15,7 +15,7 @@ use crate::measurand::KnownInputEvidence;
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::rate_table::blocks::{Blocks, Collector};
 use crate::rate_table::known::{self, Positions};
-use crate::rate_table::setup::{Input, Known, Setup};
+use crate::rate_table::setup::{Input, ReferenceInput, Setup};
 use crate::rate_table::turns::{self, Turns};
 use crate::record::ConditionRecord;
 use crate::recording::Channel;
@@ -75,7 +75,7 @@ impl TestKind for InPositions {
             (rate.value, rate.uncertainty)
         };
         let evaluate =
-            |known: &[Known], gyro: usize| known::positions(blocks, known, &stretches, gyro, &earth);
+            |known: &[ReferenceInput], gyro: usize| known::positions(blocks, known, &stretches, gyro, &earth);
         let mut positions: Vec<Positions> =
             (0..blocks.gyros.len()).filter_map(|gyro| evaluate(stated, gyro)).collect();
         for p in positions.iter_mut().filter(|p| !p.follows()) {
@@ -155,9 +155,9 @@ impl PositionEvidence {
 /// and the other in software only.
 fn turned_instead(
     blocks: &Blocks,
-    stated: &[Known],
+    stated: &[ReferenceInput],
     channel: &str,
-    evaluate: &dyn Fn(&[Known], usize) -> Option<Positions>,
+    evaluate: &dyn Fn(&[ReferenceInput], usize) -> Option<Positions>,
 ) -> Option<(String, f64)> {
     let mut stated = stated.to_vec();
     for k in stated.iter_mut().filter(|k| matches!(k.input, Input::Position { .. })) {

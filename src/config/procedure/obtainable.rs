@@ -5,7 +5,7 @@ use crate::i18n::Note;
 use crate::measurand::{Measurand, Stimulus, Test, TurnAxis};
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::rate_table::known;
-use crate::rate_table::setup::{Input, Known, Setup};
+use crate::rate_table::setup::{Input, ReferenceInput, Setup};
 use crate::recording::Role;
 
 /// Why a measurand can be shown for none of the channels it is asked for; `None` where it can be for one.
@@ -55,7 +55,7 @@ fn of_known(
     channel: &str,
 ) -> Option<&'static str> {
     let Some(input) = measurand.by_known_input() else { return Some("unshown.needs_steps") };
-    let is_turn = |k: &&Known| matches!(k.input, Input::Turn { .. });
+    let is_turn = |k: &&ReferenceInput| matches!(k.input, Input::Turn { .. });
     let turned = |own: bool| {
         setup
             .known

@@ -45,7 +45,7 @@ impl FigureView {
 }
 
 /// The figures of a report with their titles and captions.
-pub(super) fn drawn(record: &RunRecord, figures: &[Figure], words: Translator) -> Vec<FigureView> {
+pub(super) fn select(record: &RunRecord, figures: &[Figure], words: Translator) -> Vec<FigureView> {
     let view = |(i, figure): (usize, &Figure)| match record.figures.iter().find(|f| f.id == figure.id) {
         Some(known) => FigureView::new(figure, i + 1, &known.file, words),
         None => FigureView::of(figure, i + 1, words),

@@ -4,7 +4,7 @@ use super::rows::Row;
 use serde::Serialize;
 
 /// Channels that fit side by side on a page.
-const MOST: usize = 4;
+const MAX_COLUMNS: usize = 4;
 
 /// Rows set out by channel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,7 +38,7 @@ impl Matrix {
             }
         }
         // Rows by zone or by ramp are a list, not a channel beside others.
-        if !(2..=MOST).contains(&channels.len()) || channels.iter().any(|c| c.contains('@')) {
+        if !(2..=MAX_COLUMNS).contains(&channels.len()) || channels.iter().any(|c| c.contains('@')) {
             return None;
         }
         let mut lines: Vec<(&str, MatrixRow)> = vec![];

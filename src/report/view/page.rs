@@ -3,7 +3,7 @@
 use super::comparison::{self, Comparison};
 use super::evidence::Evidence;
 use super::explained::Explained;
-use super::figures::{FigureView, drawn};
+use super::figures::{FigureView, select};
 use super::matrix::Matrix;
 use super::rows::{self, Row};
 use crate::figure::Figure;
@@ -136,7 +136,7 @@ impl View {
             further,
             footnotes,
             evidence: Evidence::new(record, words),
-            figures: drawn(record, figures, words),
+            figures: select(record, figures, words),
             figures_missing: if figures.is_empty() && !record.figures.is_empty() {
                 words.t("report.figures_missing")
             } else {

@@ -252,12 +252,12 @@ fn known(cut: &Cut) -> DMatrix<f64> {
 fn solve(cut: &Cut, states: &States, x: &DMatrix<f64>) -> Option<(Fit, bool)> {
     let (fixed, mut components) = (known(cut), noise(cut, states));
     let own = levels(states);
-    let fit = gls::lean(&cut.y, x, &fixed, &components, own)?;
+    let fit = gls::pruned_fit(&cut.y, x, &fixed, &components, own)?;
     if states.of.len() <= x.ncols() {
         return Some((fit, false));
     }
     components.push(cut.rows.shared(&cut.of));
-    match gls::lean(&cut.y, x, &fixed, &components, own) {
+    match gls::pruned_fit(&cut.y, x, &fixed, &components, own) {
         Some(better) if better.twice_log_likelihood > fit.twice_log_likelihood + TAKEN_FROM => {
             Some((better, true))
         }
@@ -276,7 +276,7 @@ fn means(
     let (n, count) = (cut.rows.len(), found.list.len());
     // Time within an interval belongs to the noise here: the drift is taken from the means of those without.
     let x = DMatrix::from_fn(n, count, |i, j| f64::from(cut.of[i] == j));
-    let fit = gls::lean(&cut.y, &x, &known(cut), &noise(cut, states), levels(states))?;
+    let fit = gls::pruned_fit(&cut.y, &x, &known(cut), &noise(cut, states), levels(states))?;
     let middle = |k: usize, v: &dyn Fn(usize) -> f64| {
         let of: Vec<f64> = (0..n).filter(|i| cut.of[*i] == k).map(v).collect();
         of.iter().sum::<f64>() / of.len().max(1) as f64

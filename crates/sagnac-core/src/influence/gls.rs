@@ -9,7 +9,7 @@ const SHARE: f64 = 1e-3;
 /// Fits a model as [`reml::fit`]; components without a share in the noise are left out of it, and so is the doubt about
 /// them: how slow noise that is not seen might move the mean of the whole record is no part of a single mean. The first
 /// `own` components are kept: each is all the noise that some rows have, however small beside that of others.
-pub fn lean(
+pub fn pruned_fit(
     y: &DVector<f64>,
     x: &DMatrix<f64>,
     fixed: &DMatrix<f64>,

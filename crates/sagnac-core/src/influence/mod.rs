@@ -7,6 +7,7 @@
 pub mod comparison;
 pub mod contrasts;
 pub mod cut;
+mod flicker_marginal;
 mod gls;
 pub mod intervals;
 pub mod nuisance;
@@ -14,6 +15,5 @@ pub mod range;
 pub mod repeatability;
 pub mod runs;
 pub mod setup;
-mod unsure;
 
 pub use setup::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};

@@ -2,10 +2,10 @@
 
 use super::contrasts::{Contrasts, Means, coefficient};
 use super::cut::{cut, span_s};
+use super::flicker_marginal;
 use super::gls;
 use super::range::{self, PossibleMeans, Range};
 use super::runs::Runs;
-use super::unsure;
 use crate::estimate::{Spread, chi_square_quantile};
 use crate::numeric::reml::Combination;
 use crate::rate_table::blocks::Blocks;
@@ -74,7 +74,7 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     let x = DMatrix::from_fn(n, count, |i, j| if cut.of[i] == j { 1.0 } else { 0.0 });
     let fixed = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
     let components = [cut.rows.white(), cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()];
-    let fit = gls::lean(&cut.y, &x, &fixed, &components, 0)?;
+    let fit = gls::pruned_fit(&cut.y, &x, &fixed, &components, 0)?;
     let temperature = |run: usize| {
         let of: Vec<f64> = (0..n).filter(|i| cut.of[*i] == run).map(|i| cut.temperature[i]).collect();
         of.iter().sum::<f64>() / of.len() as f64
@@ -99,7 +99,7 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     let ones = DMatrix::from_element(count, 1, 1.0);
     let contrasts = Contrasts::new(&means, &ones)?;
     // Without a strength of flicker that can be fitted there is the noise that was identified.
-    let possible = unsure::means(&cut, &x, &fixed).unwrap_or_else(|| {
+    let possible = flicker_marginal::means(&cut, &x, &fixed).unwrap_or_else(|| {
         let dof = fit.coefficient(0).dof;
         vec![PossibleMeans { weight: 1.0, values: means.values.clone(), noise: means.noise.clone(), dof }]
     });
@@ -129,7 +129,7 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     Some(Repeatability {
         channel: blocks.gyros.get(gyro)?.clone(),
         mean: list.iter().map(|r| r.bias.value).sum::<f64>() / count as f64,
-        deviation: unsure::deviation(&possible).unwrap_or_else(|| contrasts.deviation()),
+        deviation: flicker_marginal::deviation(&possible).unwrap_or_else(|| contrasts.deviation()),
         plain: means.values.deviation_of_sample(),
         range: range::range(&possible)?,
         trend: trend.map(|l| l.0),

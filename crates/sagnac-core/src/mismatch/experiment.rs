@@ -19,7 +19,7 @@ const DRAWS: u64 = 60;
 /// Of those, how many must tell the two apart.
 const DECIDED: usize = 57;
 /// Longest record that is thought of, in lengths of this one.
-const MOST: f64 = 128.0;
+const MAX_TIMES_LONGER: f64 = 128.0;
 /// Evaluations of the rival's course while it is brought as near as it comes.
 const EVALUATIONS: usize = 40;
 /// Seed of the simulated records: a report is a function of recording and claim alone.
@@ -117,12 +117,12 @@ fn distance(
 }
 
 /// The shortest record, in lengths of this one, of which `told` is true: by doubling, then between the last two. `None`
-/// where no record up to [`MOST`] will do.
+/// where no record up to [`MAX_TIMES_LONGER`] will do.
 fn shortest(told: impl Fn(f64) -> bool) -> Option<f64> {
     let mut high = 1.0;
     while !told(high) {
         high *= 2.0;
-        if high > MOST {
+        if high > MAX_TIMES_LONGER {
             return None;
         }
     }
@@ -186,7 +186,7 @@ mod tests {
         (freed.base[1], freed.freed[1]) = (0.1, true);
         let flicker = tried(freed, vec![], 1, &spectra);
         let times = processes(&markov, &flicker, &spectra).unwrap();
-        assert!((1.0..=MOST).contains(&times), "{times}");
+        assert!((1.0..=MAX_TIMES_LONGER).contains(&times), "{times}");
         let decided = |times: f64| {
             let spectral = spectra.full.longer(times);
             let densities = markov.hypothesis.noise.densities(&spectral);

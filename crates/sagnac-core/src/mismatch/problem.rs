@@ -218,10 +218,10 @@ impl Problem {
 
 /// Samples of which averaged columns do not tell the course of an effect; none where that would be a good part of the record.
 fn bends_within(effect: &dyn Effect, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
-    const MOST: f64 = 0.05;
+    const MAX_SHARE: f64 = 0.05;
     let Model::Mean(course) = effect.model() else { return vec![] };
     let samples = course.bends_within(parameters, drivers);
-    if samples.len() as f64 > MOST * drivers.samples as f64 { vec![] } else { samples }
+    if samples.len() as f64 > MAX_SHARE * drivers.samples as f64 { vec![] } else { samples }
 }
 
 /// Samples at either end that filters make unlike noise that is even about the ends.

@@ -5,7 +5,7 @@
 //! tilts θ_x and θ_y about the plate's axes, y = y₀ + K·Ω_in + K·Ω_out·(θ_y cos β + θ_x sin β).
 
 use super::blocks::TURN_ARCSEC;
-use super::design::stands_out;
+use super::design::is_linearly_independent;
 use super::noise::Rows;
 use super::steps::{Step, Steps};
 use crate::message::Note;
@@ -69,7 +69,7 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64
         // An unknown that few rows cannot bear: what little the inner axis turns then counts with the nominal factor.
         if k == 2 && n < columns.len() + 3 {
             y -= c;
-        } else if (k == 2 || c.norm() > LEAST_SHARE * turning) && stands_out(&c, &columns) {
+        } else if (k == 2 || c.norm() > LEAST_SHARE * turning) && is_linearly_independent(&c, &columns) {
             at[k] = Some(columns.len());
             columns.push(c);
         }

@@ -105,7 +105,7 @@ impl Design {
                 Extra::Sine(order) => harmonic(&rows, *order, false),
                 _ => None,
             };
-            match column.filter(|c| stands_out(c, &columns)) {
+            match column.filter(|c| is_linearly_independent(c, &columns)) {
                 Some(c) => {
                     columns.push(c);
                     extras.push(*extra);
@@ -196,7 +196,7 @@ pub fn slope_of(x: &[f64], y: &[f64]) -> Option<f64> {
 }
 
 /// True when a column is not made of the others.
-pub fn stands_out(column: &DVector<f64>, others: &[DVector<f64>]) -> bool {
+pub fn is_linearly_independent(column: &DVector<f64>, others: &[DVector<f64>]) -> bool {
     let size = column.norm();
     if !(size > 0.0 && size.is_finite()) {
         return false;

@@ -3,7 +3,7 @@
 use super::blocks::{Block, Blocks};
 
 /// Least rate of the inner axis that is a turn, deg/h.
-const LEAST: f64 = 360.0;
+const MIN_TURN_RATE_DEG_H: f64 = 360.0;
 /// Share of the largest rate above which an axis turns.
 const TURNS: f64 = 0.1;
 /// Least time of turning, s.
@@ -35,7 +35,7 @@ impl InnerAxis {
         if blocks.has_rate && blocks.has_outer {
             out.during_step = during_step(blocks, outer);
         }
-        if largest < LEAST {
+        if largest < MIN_TURN_RATE_DEG_H {
             return out;
         }
         let turns = |b: &Block| b.table_rate.abs() > TURNS * largest;
@@ -53,8 +53,10 @@ impl InnerAxis {
             };
             out.angle_per_rate = slope(pairs.map(moved)).map(|(factor, _)| factor);
         }
-        let alone =
-            || turning().filter(|b| !blocks.has_outer || b.outer_rate.abs() <= 1e-3 * outer.max(LEAST));
+        let alone = || {
+            turning()
+                .filter(|b| !blocks.has_outer || b.outer_rate.abs() <= 1e-3 * outer.max(MIN_TURN_RATE_DEG_H))
+        };
         for (gyro, found) in out.output_per_rate.iter_mut().enumerate() {
             let output = |b: &Block| (b.table_rate, b.gyro.get(gyro).copied().unwrap_or(f64::NAN));
             *found = slope(alone().map(output));
@@ -77,7 +79,7 @@ fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
 
 /// The stretch of the outer axis during which the inner one turns most, in mean.
 fn during_step(blocks: &Blocks, outer: f64) -> Option<(f64, f64)> {
-    if outer < LEAST {
+    if outer < MIN_TURN_RATE_DEG_H {
         return None;
     }
     let turns = |b: &Block| b.outer_rate.abs() > 0.5 * outer && b.table_rate.is_finite();

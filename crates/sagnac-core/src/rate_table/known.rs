@@ -4,7 +4,7 @@ use super::blocks::{Block, Blocks};
 use super::design::slope_of;
 use super::model::TAKEN_FROM;
 use super::noise::Rows;
-use super::setup::{Input, Known};
+use super::setup::{Input, ReferenceInput};
 use crate::numeric::reml::{self, Combination, Fit};
 use nalgebra::{DMatrix, DVector};
 
@@ -24,7 +24,7 @@ pub struct Stretch {
 }
 
 /// Finds the stretches in the blocks. `phases` are the phases of a manifest with their first and last row.
-pub fn stretches(blocks: &Blocks, known: &[Known], phases: &[(String, u64, u64)]) -> Vec<Stretch> {
+pub fn stretches(blocks: &Blocks, known: &[ReferenceInput], phases: &[(String, u64, u64)]) -> Vec<Stretch> {
     let end_row = |b: &Block| b.first_row + u64::from(b.samples);
     known
         .iter()
@@ -144,7 +144,7 @@ pub struct Mean {
 /// `None` when fewer than two positions differ.
 pub fn positions(
     blocks: &Blocks,
-    known: &[Known],
+    known: &[ReferenceInput],
     stretches: &[Stretch],
     channel: usize,
     earth: &dyn Fn((f64, f64), (f64, f64)) -> (f64, f64),

@@ -34,7 +34,7 @@ pub struct Setup {
     /// True when the response is the sine of an open-loop interferometer.
     pub sine: bool,
     /// Stretches whose input is known without a table.
-    pub known: Vec<Known>,
+    pub known: Vec<ReferenceInput>,
 }
 
 impl Default for Setup {
@@ -62,7 +62,7 @@ impl Default for Setup {
 
 /// A stretch of the recording with a known input.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Known {
+pub struct ReferenceInput {
     /// Phase of a manifest that it is.
     pub phase: Option<String>,
     /// Start, s from the start of the recording.

@@ -3,7 +3,7 @@
 //! y = A·[1 + α(T − T̄)]·sin(κ(Ω − Ω₀)) + b + β(T − T̄), where κΩ is the phase of Sagnac. κ changes with the wavelength of
 //! the source, and with it with temperature. κ is sought; all else is linear once κ is given.
 
-use super::design::{slope_of, stands_out};
+use super::design::{is_linearly_independent, slope_of};
 use super::noise::Rows;
 use super::steps::Steps;
 use crate::numeric::optimize::golden_section;
@@ -125,7 +125,7 @@ pub fn fit(steps: &Steps, channel: usize) -> Option<Sine> {
     }
     let mut columns = data.columns(kappa);
     let bend = DVector::from_fn(n, |i, _| data.along(kappa, i) / kappa);
-    if !stands_out(&bend, &columns[..2]) {
+    if !is_linearly_independent(&bend, &columns[..2]) {
         return None;
     }
     columns.insert(KAPPA, bend);

@@ -6,7 +6,7 @@
 use super::blocks::Blocks;
 use super::known::{Stretch, cut, noise_components, solve};
 use super::noise::Rows;
-use super::setup::{Input, Known};
+use super::setup::{Input, ReferenceInput};
 use crate::numeric::reml::{Combination, Fit};
 use crate::units::EARTH_RATE_DEG_H;
 use nalgebra::{DMatrix, DVector};
@@ -72,7 +72,7 @@ impl Rest {
 }
 
 /// Evaluates turns by known angles; `None` without one.
-pub fn turns(blocks: &Blocks, known: &[Known], stretches: &[Stretch]) -> Option<Turns> {
+pub fn turns(blocks: &Blocks, known: &[ReferenceInput], stretches: &[Stretch]) -> Option<Turns> {
     let rests: Vec<&Stretch> =
         stretches.iter().filter(|s| matches!(known[s.known].input, Input::Rest)).collect();
     let mut table = Vec::new();

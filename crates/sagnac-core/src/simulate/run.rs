@@ -15,10 +15,10 @@ use std::collections::BTreeMap;
 const BLOCK: usize = 1 << 16;
 
 /// Most samples of a recording that has to be made as a whole.
-const MOST_WHOLE: u64 = 200_000_000;
+const MAX_SAMPLES_IN_MEMORY: u64 = 200_000_000;
 
 /// Most samples of a recording.
-const MOST: u64 = 10_000_000_000;
+const MAX_SAMPLES: u64 = 10_000_000_000;
 
 /// Most by which the sample rate of a recording may differ from that of the claim, relative.
 const RATE_TOLERANCE: f64 = 0.01;
@@ -100,7 +100,7 @@ impl<'a> Simulation<'a> {
         };
         let whole = matches!(order.over, Over::Like(_))
             || claim.effects.iter().any(|e| !matches!(e.effect.model(), Model::Spectrum(_)));
-        let most = if whole { MOST_WHOLE } else { MOST };
+        let most = if whole { MAX_SAMPLES_IN_MEMORY } else { MAX_SAMPLES };
         if !(1.0..=most as f64).contains(&samples) {
             let note = Note::new("simulate.length").with("samples", samples.to_string()).with("most", most);
             return Err(note.into());

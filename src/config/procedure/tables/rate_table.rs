@@ -8,7 +8,7 @@ use crate::config::spec::{
 };
 use crate::i18n::Note;
 use crate::measurand::Test;
-use crate::rate_table::setup::{Input, Known, Setup};
+use crate::rate_table::setup::{Input, ReferenceInput, Setup};
 use crate::recording::Role;
 
 pub(crate) static RATE_TABLE: TableSpec = TableSpec {
@@ -228,8 +228,8 @@ pub(crate) fn setup(section: &Section, root: &Section) -> Setup {
     }
 }
 
-fn known(section: &Section) -> Vec<Known> {
-    let one = |s: &Section, input: Input| Known {
+fn known(section: &Section) -> Vec<ReferenceInput> {
+    let one = |s: &Section, input: Input| ReferenceInput {
         phase: s.text("phase"),
         from_s: s.number("from"),
         to_s: s.number("to"),

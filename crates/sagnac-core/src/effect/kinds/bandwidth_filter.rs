@@ -39,13 +39,13 @@ const FORMS: [Form; 7] = [
     Form::BilinearSecond,
 ];
 /// Least power that is let through: below it is what rounding leaves.
-const LEAST: f64 = 1e-9;
+const MIN_POWER: f64 = 1e-9;
 /// Observed over expected power, times the samples, below which bins hold the ends of the record and not what a filter does.
 const FAINT: f64 = 30.0;
 /// Rounds in which the beginning of a cutoff is brought nearer.
 const CLOSER: i32 = 3;
 /// Longest moving average that is tried, samples.
-const LONGEST: usize = 64;
+const MAX_AVERAGE_SAMPLES: usize = 64;
 
 fn form(fitted: &[f64]) -> Form {
     let number = fitted.get(1).copied().unwrap_or(1.0).round().clamp(1.0, FORMS.len() as f64);
@@ -74,7 +74,7 @@ fn average_cutoff_hz(samples: usize, dt_s: f64) -> f64 {
 
 /// The moving average whose cutoff is nearest.
 fn average_samples(cutoff_hz: f64, dt_s: f64) -> usize {
-    (2..=LONGEST)
+    (2..=MAX_AVERAGE_SAMPLES)
         .min_by(|a, b| {
             let off = |n: usize| (average_cutoff_hz(n, dt_s) / cutoff_hz).ln().abs();
             off(*a).total_cmp(&off(*b))
@@ -138,14 +138,14 @@ impl Spectrum for BandwidthFilter {
             Some(low_pass) => {
                 let frequencies = bins.iter().map(|b| b.frequency_hz * b.dt_s);
                 if first.even_ends {
-                    return frequencies.map(|x| low_pass.power(x).max(LEAST)).collect();
+                    return frequencies.map(|x| low_pass.power(x).max(MIN_POWER)).collect();
                 }
                 let powers = low_pass.mode_powers(frequencies, first.samples);
-                powers.into_iter().map(|p| p.max(LEAST)).collect()
+                powers.into_iter().map(|p| p.max(MIN_POWER)).collect()
             }
             None if form(fitted) == Form::MovingAverage => {
                 let samples = average_samples(cutoff, first.dt_s);
-                bins.iter().map(|b| averaged(samples, b).max(LEAST)).collect()
+                bins.iter().map(|b| averaged(samples, b).max(MIN_POWER)).collect()
             }
             None => {
                 let filter = filter(fitted);
@@ -157,7 +157,7 @@ impl Spectrum for BandwidthFilter {
                         Sampling::Averaging,
                     )
                 };
-                bins.iter().map(|b| (white(b) / 3600.0).max(LEAST)).collect()
+                bins.iter().map(|b| (white(b) / 3600.0).max(MIN_POWER)).collect()
             }
         }
     }
@@ -224,7 +224,8 @@ impl Spectrum for BandwidthFilter {
                 of(near(found?[0]))
             })
         };
-        let averages = (2..=LONGEST).map(|n| vec![average_cutoff_hz(n, first.dt_s), 4.0]).collect();
+        let averages =
+            (2..=MAX_AVERAGE_SAMPLES).map(|n| vec![average_cutoff_hz(n, first.dt_s), 4.0]).collect();
         let forms = (1..=FORMS.len()).filter(|n| FORMS[n - 1] != Form::MovingAverage);
         forms.map(|n| of(n as f64)).chain([best(averages)]).flatten().collect()
     }

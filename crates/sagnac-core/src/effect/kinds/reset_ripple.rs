@@ -28,9 +28,9 @@ describe! {
 }
 
 /// Shortest period that is looked for, arcsec.
-const SHORTEST: f64 = 0.5;
+const MIN_PERIOD_ARCSEC: f64 = 0.5;
 /// Most periods of angle in a search.
-const LONGEST: usize = 1 << 18;
+const MAX_PERIODS: usize = 1 << 18;
 /// Cells and samples that a search of one octave of periods may go through.
 const EFFORT: f64 = 4e7;
 /// What a bias may be off from the claimed one, deg/h.
@@ -129,7 +129,7 @@ impl Octave {
         });
         let (low, high) = (low - margin, high + margin);
         let cells = (high - low) / period;
-        if samples.len() < 32 || !cells.is_finite() || cells >= LONGEST as f64 {
+        if samples.len() < 32 || !cells.is_finite() || cells >= MAX_PERIODS as f64 {
             return None;
         }
         // Twice the range, so that periods between the cycles of the range are seen too.
@@ -199,7 +199,7 @@ impl MeanModel for ResetRipple {
         let Some(angles) = sensed(fitted, drivers) else { return none };
         let Bounds { low, high } = ends(&angles.0);
         let level = fast_level(context);
-        let (mut period, mut found, mut trials) = (SHORTEST, vec![], 1.0);
+        let (mut period, mut found, mut trials) = (MIN_PERIOD_ARCSEC, vec![], 1.0);
         while period < (high - low) / 3.0 {
             // Half turns of the phase over the record that the uncertainty of the bias amounts to.
             let uncertain = SURE * deviation * drivers.length_s() / (0.5 * period);
@@ -234,7 +234,10 @@ impl MeanModel for ResetRipple {
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let bias = drivers.claim.bias_deg_h;
         let range = extent(bias, drivers);
-        vec![Bounds::new(0.5 * SHORTEST, (0.5 * range).max(SHORTEST)), Bounds::new(bias - WIDE, bias + WIDE)]
+        vec![
+            Bounds::new(0.5 * MIN_PERIOD_ARCSEC, (0.5 * range).max(MIN_PERIOD_ARCSEC)),
+            Bounds::new(bias - WIDE, bias + WIDE),
+        ]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {

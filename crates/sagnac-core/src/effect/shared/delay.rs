@@ -138,7 +138,7 @@ pub(in crate::effect) fn shifted(mean: &[f64], lag: impl Fn(usize) -> f64) -> (V
 }
 
 /// Columns in one stretch at an end; more would cost more than a record of any length can pay.
-const MOST: usize = 8;
+const MAX_COLUMNS: usize = 8;
 
 /// Columns that take the lost samples at the ends out of the fit: one for each sample where they are few, else
 /// polynomials.
@@ -148,10 +148,10 @@ fn ends_out(lost: &[bool]) -> Vec<Vec<f64>> {
     let tail = lost.iter().rev().take_while(|l| **l).count().min(n - head);
     let mut out = vec![];
     for (from, count) in [(0, head), (n - tail, tail)] {
-        for k in 0..count.min(MOST) {
+        for k in 0..count.min(MAX_COLUMNS) {
             let mut column = vec![0.0; n];
             for (j, x) in column[from..from + count].iter_mut().enumerate() {
-                *x = if count <= MOST {
+                *x = if count <= MAX_COLUMNS {
                     if j == k { 1.0 } else { 0.0 }
                 } else {
                     // Chebyshev polynomials.
@@ -293,7 +293,7 @@ mod tests {
     fn samples_before_the_record_are_taken_out() {
         let wave: Vec<f64> = (0..100).map(|i| (0.1 * f64::from(i)).sin()).collect();
         assert_eq!(regressors(&wave, |_| 3.2).nuisance.len(), 4);
-        assert_eq!(regressors(&wave, |_| -20.0).nuisance.len(), MOST);
+        assert_eq!(regressors(&wave, |_| -20.0).nuisance.len(), MAX_COLUMNS);
         assert!(regressors(&wave, |_| 0.0).nuisance.is_empty());
     }
 }

@@ -3,10 +3,10 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Highest cutoff, cycles a sample: beyond it a filter of samples passes everything.
-const HIGHEST: f64 = 0.49;
+const MAX_CUTOFF: f64 = 0.49;
 
 /// Longest memory for which what leaks from the ends of a record is counted, samples.
-const LONGEST: usize = 1024;
+const MAX_MEMORY_SAMPLES: usize = 1024;
 
 /// A filter y_i = Σ b_k x_{i−k} − Σ a_k y_{i−k}, which passes a constant unchanged.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +43,7 @@ impl LowPass {
 
     /// Exponential smoothing with half the power at a cutoff, cycles a sample.
     pub fn smoothing(cutoff: f64) -> LowPass {
-        let x = cutoff.min(HIGHEST);
+        let x = cutoff.min(MAX_CUTOFF);
         let c = 2.0 - (TAU * x).cos();
         let a = c - (c * c - 1.0).sqrt();
         LowPass::of([1.0 - a, 0.0, 0.0], [-a, 0.0], None)
@@ -51,7 +51,7 @@ impl LowPass {
 
     /// First-order filter by the bilinear transform, cutoff in cycles a sample.
     pub fn bilinear(cutoff: f64) -> LowPass {
-        let x = cutoff.min(HIGHEST);
+        let x = cutoff.min(MAX_CUTOFF);
         let c = (PI * x).tan();
         let b = c / (1.0 + c);
         LowPass::of([b, b, 0.0], [(c - 1.0) / (c + 1.0), 0.0], None)
@@ -59,7 +59,7 @@ impl LowPass {
 
     /// Second-order Butterworth filter by the bilinear transform, cutoff in cycles a sample.
     pub fn butterworth(cutoff: f64) -> LowPass {
-        let x = cutoff.min(HIGHEST);
+        let x = cutoff.min(MAX_CUTOFF);
         let c = (PI * x).tan();
         let norm = 1.0 + SQRT_2 * c + c * c;
         let b = c * c / norm;
@@ -96,7 +96,7 @@ impl LowPass {
     }
 
     /// Autocovariance of unit white noise behind the recursion at lags of 0, 1, 2, ... samples; nothing where its memory is
-    /// longer than [`LONGEST`] or another response is wanted.
+    /// longer than [`MAX_MEMORY_SAMPLES`] or another response is wanted.
     fn autocovariance(&self) -> Vec<f64> {
         if self.counted_memory() == 0 {
             return vec![];
@@ -114,7 +114,7 @@ impl LowPass {
 
     /// Samples within which it forgets, 0 where what leaks from ends is not counted.
     pub fn counted_memory(&self) -> usize {
-        if self.ideal.is_some() || self.memory > LONGEST { 0 } else { self.memory }
+        if self.ideal.is_some() || self.memory > MAX_MEMORY_SAMPLES { 0 } else { self.memory }
     }
 
     /// Mean power of cosine modes (DCT-II) of `samples` of filtered white noise at frequencies in cycles a sample. The ends

@@ -53,11 +53,11 @@ pub(super) fn try_spectrum(
 
 /// The best fit of several beginnings: all for a few steps, then the leading two to the end.
 fn best_of(begun: Vec<Noise>, spectral: &SpectralData, observed: &[f64]) -> Option<Noise> {
-    const FEW: usize = 5;
+    const FIRST_STEPS: usize = 5;
     let mut fits: Vec<(Noise, f64)> = begun
         .into_iter()
         .map(|mut noise| {
-            let value = noise_fit::fit_in(&mut noise, spectral, observed, FEW).log_likelihood;
+            let value = noise_fit::fit_in(&mut noise, spectral, observed, FIRST_STEPS).log_likelihood;
             (noise, value)
         })
         .collect();

@@ -7,7 +7,7 @@ use crate::mismatch::spectral_data::SpectralData;
 use crate::noise::autocorrelation::lagged_products;
 
 /// Longest lag, in samples, and as a share of the record.
-const LONGEST: usize = 20_000;
+const MAX_LAG_SAMPLES: usize = 20_000;
 const SHARE: usize = 8;
 /// Fewest samples.
 const FEWEST: usize = 256;
@@ -19,7 +19,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
     if n < FEWEST {
         return None;
     }
-    let longest = (n / SHARE).min(LONGEST);
+    let longest = (n / SHARE).min(MAX_LAG_SAMPLES);
     let sums = lagged_products(white.series.iter().copied(), (n + longest + 1).next_power_of_two(), longest)?;
     let variance = sums[0] / n as f64;
     // Of n − k products the sum has a standard deviation of √(n − k) variances.

@@ -9,7 +9,7 @@ use super::points::Points;
 use super::shape::{Kind, Shape};
 use super::widths;
 use crate::numeric::reml::{self, Scaled};
-use crate::rate_table::design::{Design, stands_out};
+use crate::rate_table::design::{Design, is_linearly_independent};
 use nalgebra::{DMatrix, DVector};
 
 /// Share of the confidence that white noise alone has before the test.
@@ -17,7 +17,7 @@ const WHITE_ALONE: f64 = 0.5;
 
 /// Least share of a further kind of noise in the variance of the rows, over that of the white one; each tried is twice the
 /// one before.
-const LEAST: f64 = 1e-3;
+const MIN_NOISE_SHARE: f64 = 1e-3;
 
 /// Strengths of a kind that share its confidence before the test, and the most that are tried where drift is stronger.
 const STRENGTHS: (usize, usize) = (14, 40);
@@ -41,15 +41,15 @@ pub struct Means {
     /// Their covariance.
     pub covariance: DMatrix<f64>,
     /// The noises that the steps may have.
-    pub likely: Vec<Likely>,
+    pub likely: Vec<NoiseHypothesis>,
     /// The steps as wholes.
-    pub steps: Wholes,
+    pub steps: StepMeans,
     /// Strength of the white noise where every rate has a mean of its own.
     pub white: f64,
 }
 
 /// A noise that the test may have.
-pub struct Likely {
+pub struct NoiseHypothesis {
     /// Share of the confidence.
     pub share: f64,
     /// Logarithm of its confidence before the test.
@@ -59,7 +59,7 @@ pub struct Likely {
 }
 
 /// The steps as wholes, each the mean of its rows.
-pub struct Wholes {
+pub struct StepMeans {
     /// Slope that outputs are taken about.
     pub slope: f64,
     /// Outputs about it, deg/h.
@@ -98,7 +98,10 @@ pub fn means(
         fit = reml::fit(&design.left, &free, &mean, &[])?;
         if !first || noises[0].share > 0.5 {
             let whole = whole(&design.step);
-            let of_steps = |l: Likely| Likely { covariance: &whole * l.covariance * whole.transpose(), ..l };
+            let of_steps = |l: NoiseHypothesis| NoiseHypothesis {
+                covariance: &whole * l.covariance * whole.transpose(),
+                ..l
+            };
             return Some(Means {
                 means: fit.coefficients.rows(0, levels).into_owned(),
                 covariance: of_levels(&fit.covariance),
@@ -111,14 +114,14 @@ pub fn means(
 }
 
 /// The steps as wholes. Extras that differ within steps only are none of theirs.
-fn wholes(design: &Design, whole: &DMatrix<f64>) -> Wholes {
+fn wholes(design: &Design, whole: &DMatrix<f64>) -> StepMeans {
     let mut free: Vec<DVector<f64>> = design.of_levels.iter().map(|c| whole * c).collect();
     for extra in design.of_extras.iter().map(|c| whole * c) {
-        if free.len() < whole.nrows() && stands_out(&extra, &free) {
+        if free.len() < whole.nrows() && is_linearly_independent(&extra, &free) {
             free.push(extra);
         }
     }
-    Wholes {
+    StepMeans {
         slope: design.slope,
         left: whole * &design.left,
         rate: whole * DVector::from_column_slice(&design.rate),
@@ -140,7 +143,7 @@ fn whole(step: &[usize]) -> DMatrix<f64> {
 
 /// The noises that the rows may have, white noise alone first. The noise about the columns has one further kind at most; the
 /// strength of all together is that of the restricted likelihood.
-pub fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<Likely>> {
+pub fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<NoiseHypothesis>> {
     let of_white = &design.quick.first()?.1;
     let white = white.max(1e-3 * design.fixed.trace() / of_white.trace()).max(f64::MIN_POSITIVE);
     let alone = of_white + &design.fixed / white;
@@ -154,7 +157,7 @@ pub fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<Likel
         design.quick.iter().skip(1).chain(&design.slow).chain(&design.further).map(|k| &k.1).collect();
     let before = ((1.0 - WHITE_ALONE) / (kinds.len() * STRENGTHS.0) as f64).ln();
     for kind in kinds {
-        let unit = LEAST * of_white.trace() / kind.trace().max(f64::MIN_POSITIVE);
+        let unit = MIN_NOISE_SHARE * of_white.trace() / kind.trace().max(f64::MIN_POSITIVE);
         let mut most = f64::NEG_INFINITY;
         for i in 0..STRENGTHS.1 {
             let Some(found) = try_it(before, Some((kind, unit * 2f64.powi(i as i32)))) else { break };
@@ -172,7 +175,8 @@ pub fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<Likel
     let mut first = true;
     tried.retain(|t| std::mem::take(&mut first) || weight(t) > NEGLIGIBLE * all);
     let kept: f64 = tried.iter().map(weight).sum();
-    let likely = |t: Tried| Likely { share: weight(&t) / kept, before: t.before, covariance: t.covariance };
+    let likely =
+        |t: Tried| NoiseHypothesis { share: weight(&t) / kept, before: t.before, covariance: t.covariance };
     Some(tried.into_iter().map(likely).collect())
 }
 
@@ -205,7 +209,7 @@ fn with_zone(design: &Design, points: &Points) -> Option<Vec<DVector<f64>>> {
         DVector::from_column_slice(&design.rate),
         DVector::from_iterator(n, design.rate.iter().map(lost)),
     ];
-    if !stands_out(&columns[2], &columns[..2]) {
+    if !is_linearly_independent(&columns[2], &columns[..2]) {
         columns.pop();
     }
     columns.extend(design.of_extras.iter().cloned());

@@ -4,7 +4,7 @@
 //! rows leave of a mean of their own for every rate, of all strengths that the test allows, and each says how likely the
 //! response would leave as much by chance.
 
-use super::about::{Likely, noises};
+use super::about::{NoiseHypothesis, noises};
 use super::points::Points;
 use super::shape::Shape;
 use crate::estimate::normal_probability;
@@ -43,7 +43,7 @@ impl Fits {
         let columns: Vec<DVector<f64>> = design.of_levels.iter().chain(&design.of_extras).cloned().collect();
         let free = DMatrix::from_columns(&columns);
         let levels = design.levels.len();
-        let of = |likely: Likely| -> Option<Noise> {
+        let of = |likely: NoiseHypothesis| -> Option<Noise> {
             let weighted = Cholesky::new(likely.covariance)?.solve(&free);
             let covariance = Cholesky::new(free.transpose() * &weighted)?.inverse();
             let means = (&covariance * weighted.transpose() * &design.left).rows(0, levels).into_owned();

@@ -13,7 +13,7 @@ use statrs::distribution::{Binomial, DiscreteCDF, Poisson};
 use statrs::function::beta::checked_beta_reg;
 
 /// Longest window, samples.
-const LONGEST: usize = 512;
+const MAX_WINDOW_SAMPLES: usize = 512;
 /// Share of the record beyond which outliers are no bursts.
 const COVER: f64 = 0.1;
 /// Share of false groups among those set aside (Benjamini and Hochberg 1995).
@@ -64,7 +64,7 @@ impl Scan {
 /// Bursts in a residual.
 pub(super) fn bursts(flat: &FlatResidual<'_>) -> Option<Outliers> {
     let n = flat.flat.len();
-    let longest = LONGEST.min(n / 20);
+    let longest = MAX_WINDOW_SAMPLES.min(n / 20);
     if longest < 2 {
         return None;
     }
@@ -150,7 +150,7 @@ fn squares(flat: &FlatResidual<'_>) -> (Vec<f64>, f64) {
     }
     // Values on a grid differ by whole steps even where nothing happens.
     let least = 0.5 * flat.rounding_step;
-    let guard = (LONGEST / 2).min(n / 40);
+    let guard = (MAX_WINDOW_SAMPLES / 2).min(n / 40);
     let width = (n / 6).clamp(24, 4096);
     let stride = (width / 16).max(1);
     let side = |from: usize, to: usize| {
@@ -180,7 +180,7 @@ fn squares(flat: &FlatResidual<'_>) -> (Vec<f64>, f64) {
 fn trimmed(scan: &Scan, mut first: usize, mut m: usize, taken: &[bool]) -> (usize, usize) {
     let n = taken.len();
     let mut best = scan.gain(first, m);
-    for _ in 0..2 * LONGEST {
+    for _ in 0..2 * MAX_WINDOW_SAMPLES {
         let mut options = vec![];
         for step in [1, 2, 4] {
             if m > step {
@@ -216,7 +216,7 @@ fn merged(scan: &Scan, mut groups: Vec<(usize, usize)>, n: usize) -> Vec<(usize,
         while let Some(last) = out.last().copied() {
             let whole = (last.0, here.0 + here.1 - last.0);
             let apart = scan.gain(last.0, last.1) + scan.gain(here.0, here.1);
-            if whole.1 > 4 * LONGEST || scan.gain(whole.0, whole.1) < apart - cost {
+            if whole.1 > 4 * MAX_WINDOW_SAMPLES || scan.gain(whole.0, whole.1) < apart - cost {
                 break;
             }
             out.pop();
