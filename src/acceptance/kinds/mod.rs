@@ -13,8 +13,11 @@ use super::request::Request;
 use super::test_kind::TestKind;
 use crate::config::procedure::Procedure;
 
+/// Makes a test of one kind of a procedure, where the procedure describes one.
+type Maker = fn(&Procedure) -> Option<Box<dyn Test>>;
+
 /// Every kind of test. A procedure is of the first kind that finds what it needs in it.
-const KINDS: &[fn(&Procedure) -> Option<Box<dyn Test>>] = &[
+const KINDS: &[Maker] = &[
     kind::<rate_table::RateTable>,
     kind::<positions::InPositions>,
     kind::<repeatability::Repeated>,
