@@ -181,7 +181,14 @@ fn a_result_that_is_read_back_is_written_as_the_run_writes_it_in_any_language() 
             assert_eq!(first.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>(), "{sample} {name}");
             let differ: Vec<&String> = first.keys().filter(|k| first[*k] != again[*k]).collect();
             assert!(differ.is_empty(), "{sample} {name}: {differ:?}");
-            assert!(first.contains_key("figures/data.json") && first.len() > 6, "{:?}", first.keys());
+            // A misalignment has no figure.
+            assert_eq!(
+                first.contains_key("figures/data.json"),
+                procedure != "misalignment",
+                "{:?}",
+                first.keys()
+            );
+            assert!(first.len() >= 4, "{:?}", first.keys());
         }
     }
 }

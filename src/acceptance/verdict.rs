@@ -72,7 +72,7 @@ pub fn whole(
     let mut reasons: Vec<Note> = Vec::new();
     if !invalid.is_empty() {
         reasons.push(match invalid.len() {
-            1 => Note::new("summary.one_condition_invalid"),
+            1 => Note::new("summary.one_condition_invalid").with("n", 1_usize),
             n => Note::new("summary.conditions_invalid").with("n", n),
         });
     }
@@ -103,7 +103,7 @@ pub fn whole(
     let worst = rows.iter().map(|r| r.verdict).max().unwrap_or(Verdict::None);
     let verdict = if invalid.is_empty() { worst } else { Verdict::Indeterminate };
     match verdict {
-        Verdict::Pass if judged == 1 => reasons.push(Note::new("summary.one_passed")),
+        Verdict::Pass if judged == 1 => reasons.push(Note::new("summary.one_passed").with("n", judged)),
         Verdict::Pass => reasons.push(Note::new("summary.all_passed").with("n", judged)),
         Verdict::None => reasons.push(Note::new("summary.no_limits")),
         _ => {}
