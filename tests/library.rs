@@ -160,7 +160,7 @@ fn a_result_that_is_read_back_is_written_as_the_run_writes_it_in_any_language() 
     for (procedure, sample) in [
         ("static-bias", "unit-faults"),
         ("temperature-ramp", "temperature-pass"),
-        ("misalignment", "misalignment-pass"),
+        ("scale-factor", "scale-factor-pass"),
         ("vibration", "vibration-fail"),
     ] {
         let run = Procedure::load(format!("procedures/{procedure}.toml"))

@@ -67,7 +67,7 @@ enum Verb {
     /// Render the report of a result anew, without its recording: in another language, with other templates
     #[command(after_help = "Exit codes: 0 written, 2 could not.\n\n\
         Examples:\n  sagnac report reports/SN-0042 --lang ru --out reports/SN-0042-ru\n  \
-        sagnac report result.json --format html --templates our-templates")]
+        sagnac report result.json --format html --templates templates")]
     Report(report::ReportArgs),
     /// Compare Russian and Allan figures and explain their ratio
     #[command(

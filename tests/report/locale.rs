@@ -68,6 +68,8 @@ const OPEN: &[&str] = &[
     "option_value",
     "explain.test",
     "stated",
+    "goodness.view",
+    "compare.column",
 ];
 
 /// A table that the tests of the command line hold against the command itself.

@@ -47,7 +47,7 @@ fn departure<'a>(result: &'a RunRecord, channel: &str, view: View) -> Option<&'a
 /// A note on the views in which the model of a channel departs from the record.
 pub(super) fn of_model(result: &RunRecord, channel: &str) -> Option<Note> {
     let departs = View::ALL.into_iter().filter(|view| departure(result, channel, *view).is_some());
-    let names: Vec<Arg> = departs.map(|view| Arg::key("goodness.view", view.id())).collect();
+    let names: Vec<Arg> = departs.map(|view| Arg::Key(format!("goodness.view.{}", view.id()))).collect();
     (!names.is_empty())
         .then(|| Note::new("compare.more.departs").with("views", Arg::Several(names, ", ".into())))
 }
