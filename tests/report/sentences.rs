@@ -17,7 +17,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/procedure/tables/temperature.rs", "descriptions of keys for the schema and the guide"),
     ("src/config/procedure/guide.rs", "the guide is an English document"),
     ("src/config/procedure/schema.rs", "the schema is English"),
-    ("crates/sagnac-core/src/ids.rs", "descriptions of measurands for the schema and the guide"),
+    ("crates/sagnac-core/src/measurand/", "descriptions of measurands for the schema and the guide"),
     ("src/config/syntax.rs", "what the TOML parser says, to be recognised"),
     ("crates/sagnac-core/src/temperature/compensation.rs", "declarations of a header in C"),
     ("src/report/methods.rs", "formulas and names of sources"),
@@ -158,7 +158,7 @@ fn every_sentence_comes_from_the_tables() {
     let bare: Vec<(String, String)> = found()
         .into_iter()
         .filter(|(file, text)| {
-            let whole = ENGLISH.iter().any(|(f, _)| f == file);
+            let whole = ENGLISH.iter().any(|(f, _)| f == file || f.ends_with('/') && file.starts_with(f));
             let single = LITERALS.iter().any(|(f, part, _)| f == file && text.contains(part));
             !whole && !single
         })
@@ -173,7 +173,7 @@ fn the_allow_lists_hold_nothing_idle() {
         assert!(found.iter().any(|(f, text)| f == file && text.contains(part)), "{file}: {part} ({why})");
     }
     for (file, why) in ENGLISH {
-        assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(file).is_file(), "{file} ({why})");
+        assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(file).exists(), "{file} ({why})");
     }
 }
 
