@@ -4,17 +4,11 @@ use super::{Error, Rate};
 use crate::estimate::Estimate;
 use crate::i18n::Note;
 use crate::measurand::{self, GyroEvidence, Options, Test};
-use crate::noise::coarse;
-use crate::noise::composite::{Composite, Sampling};
-use crate::noise::curve_check;
-use crate::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
+use crate::noise::digest::{DigestPlan, RateAccumulator};
 use crate::noise::family::Estimator;
-use crate::noise::intervals::{BoundedPoint, bounded};
-use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine, find_lines};
+use crate::noise::intervals::BoundedPoint;
+use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::noise::motion::motion;
-use crate::noise::residual::GoodnessOfFit;
-use crate::noise::spectral_record::SpectralRecord;
-use crate::noise::whole::Whole;
 
 /// The noise that a recording shows: its terms with their intervals, its Allan deviation, its spectral lines.
 pub struct Noise {
@@ -56,65 +50,11 @@ pub fn identify(rate: &Rate) -> Result<Noise, Error> {
     if digest.samples < 2 {
         return Err(Error::argument(Note::new("library.too_few")));
     }
-    Ok(Noise { evidence: evidence(&rate.name, digest, rate.rounding_deg_h) })
-}
-
-fn evidence(channel: &str, digest: RateDigest, rounding_deg_h: Option<f64>) -> GyroEvidence {
     let tau0_s = digest.tau0_s;
-    let curve = digest.deviations.curve(Estimator::Allan);
-    let points: Vec<(u64, f64)> =
-        curve.map(|c| c.points.iter().map(|p| (p.m, p.deviation)).collect()).unwrap_or_default();
-    let rounded_above_hz = rounding_deg_h.and_then(|step| coarse::highest_hz(step, tau0_s, &points));
-    let strongest = find_lines(&digest.welch.spectrum, tau0_s, FALSE_ALARM_RATE).lines;
-    let spectral = |lines| SpectralRecord {
-        blocks: &digest.blocks,
-        welch: Some(&digest.welch.spectrum),
-        tau0_s,
-        lines,
-        sampling: Sampling::Averaging,
-    };
-    let noise = spectral(&strongest).identify_up_to(channel, rounded_above_hz);
-    let (mut lines, mut identification) = (noise.lines, noise.ranged.identification);
-    let octaves = allan_points(&digest, &identification.described.model);
-    let whole = Whole::of(&digest, &octaves, identification.highest_hz);
-    let withheld_line = whole.lines(&mut lines);
-    if withheld_line.is_some() {
-        let kept: Vec<f64> = lines.iter().map(|l| l.frequency_hz).collect();
-        identification.described.keep_lines(|line| kept.contains(&line.frequency_hz));
-    }
-    whole.parts(&mut identification);
-    curve_check::contest(&mut identification, &octaves, tau0_s, digest.samples);
-    let octave_points: Vec<_> = octaves.iter().map(|p| p.point).collect();
-    let goodness = GoodnessOfFit::of(&spectral(&lines), &identification.described, &octave_points);
-    GyroEvidence {
-        channel: channel.to_owned(),
-        several: false,
-        tau0_s,
-        longest_stretch_s: digest.deviations.stretches.longest() as f64 * tau0_s,
-        motion: motion(&digest.blocks, tau0_s, digest.quietest_deg_h, 0.0),
-        digest,
-        sigma_tau: octaves.clone(),
-        octaves,
-        identification,
-        goodness,
-        lines,
-        withheld_line,
-        earth: None,
-        over_temperature: None,
-        warm_up: None,
-    }
-}
-
-/// The overlapping Allan deviation at octaves with its intervals.
-fn allan_points(digest: &RateDigest, model: &Composite) -> Vec<BoundedPoint> {
-    // A line adds to a deviation and does not scatter, so its slope tells nothing about degrees of freedom.
-    let scattering = Composite { lines: vec![], ..model.clone() };
-    let bound = |curve: &crate::noise::allan::DeviationCurve| {
-        let noise = |m: u64| scattering.dominant(m as f64 * digest.tau0_s, digest.tau0_s);
-        let points = curve.points.iter();
-        points.map(|p| bounded(Estimator::Allan, p, &curve.stretches, noise(p.m))).collect()
-    };
-    digest.deviations.curve(Estimator::Allan).map(bound).unwrap_or_default()
+    let motion = motion(&digest.blocks, tau0_s, digest.quietest_deg_h, 0.0);
+    let found =
+        GyroEvidence::identify(rate.name.clone(), digest, tau0_s, FALSE_ALARM_RATE, rate.rounding_deg_h);
+    Ok(Noise { evidence: GyroEvidence { motion, ..found } })
 }
 
 impl Noise {

@@ -3,7 +3,7 @@
 use crate::study::{Asked, Case, Row, Study};
 use rayon::prelude::*;
 use sagnac::measurand::{GyroEvidence, Options, find};
-use sagnac::noise::composite::{Bandwidth, Composite, Damped, Line, Sampling};
+use sagnac::noise::composite::{Bandwidth, Composite, Damped, Line};
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
 use sagnac::noise::family::Estimator;
 use sagnac::noise::intervals::bounded;
@@ -291,13 +291,7 @@ pub fn simulate(model: &Composite, hours: f64, tau0_s: f64, seed: u64) -> GyroEv
     let mut pass = RateAccumulator::new(DigestPlan::new(tau0_s));
     pass.push(&samples, 0, false);
     let digest = pass.finish();
-    let record = SpectralRecord {
-        blocks: &digest.blocks,
-        welch: Some(&digest.welch.spectrum),
-        tau0_s,
-        lines: &[],
-        sampling: Sampling::Averaging,
-    };
+    let record = SpectralRecord::of_digest(&digest, &[], tau0_s);
     let identification = record.identify("rate").ranged.identification;
     let curve = digest.deviations.curve(Estimator::Allan).expect("the overlapping Allan deviation");
     let octaves: Vec<_> = curve

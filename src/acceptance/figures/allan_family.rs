@@ -26,7 +26,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     if curves.len() < 2 {
         return None;
     }
-    let scattering = crate::acceptance::kinds::at_rest::scattering(&gyro.identification.described.model);
+    let scattering = gyro.identification.described.model.without_lines();
     let (mut bands, mut lines) = (vec![], vec![]);
     for curve in curves {
         let (style, legend) = style(curve.estimator);

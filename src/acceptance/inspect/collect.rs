@@ -3,7 +3,6 @@
 use super::columns::{self, Content, Listed};
 use super::tracks::{Angle, HeldLevels, LevelFinder, LinearFit, runs};
 use crate::acceptance::condition::stability_track::{StabilityFacts, StabilityTrack};
-use crate::acceptance::kinds::at_rest::identify_noise;
 use crate::acceptance::reading::tidy;
 use crate::i18n::{Arg, Note};
 use crate::ingest::{IngestError, IngestErrorKind, Plan, Source, StreamReport, TimeBaseSpec, prepare};
@@ -12,6 +11,7 @@ use crate::noise::envelope::EnvelopeAccumulator;
 use crate::noise::identification::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::noise::motion::{Motion, motion, together};
+use crate::noise::spectral_record::identify_digest;
 use crate::recording::{Channel, Role, SampleBlock, Sink};
 
 /// Time over which temperatures are smoothed, s.
@@ -223,15 +223,15 @@ impl Pass {
         let with = |track: GyroTrack| {
             let name = channels.get(track.slot)?.id.clone();
             let digest = track.digest.finish();
-            let (lines, identification) = identify_noise(&name, &digest, tau0_s, FALSE_ALARM_RATE, None);
+            let noise = identify_digest(&name, &digest, tau0_s, FALSE_ALARM_RATE, None);
             let quietest_deg_h = digest.quietest_deg_h;
             Some(Gyro {
                 slot: track.slot,
                 name,
                 motion: motion(&digest.blocks, tau0_s, quietest_deg_h, warming_deg_c),
                 digest,
-                lines,
-                identification,
+                lines: noise.lines,
+                identification: noise.ranged.identification,
                 quietest_deg_h,
                 angle: track.angle,
             })

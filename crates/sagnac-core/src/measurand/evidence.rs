@@ -2,13 +2,19 @@
 
 use crate::influence::comparison::{Comparison, NoiseChange};
 use crate::message::Note;
+use crate::noise::allan::{DeviationCurve, DeviationSet};
+use crate::noise::composite::Composite;
+use crate::noise::curve_check;
 use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::digest::RateDigest;
+use crate::noise::family::Estimator;
 use crate::noise::identification::Identification;
-use crate::noise::intervals::BoundedPoint;
+use crate::noise::intervals::{BoundedPoint, bounded};
 use crate::noise::lines::SpectralLine;
 use crate::noise::motion::Motion;
 use crate::noise::residual::GoodnessOfFit;
+use crate::noise::spectral_record::{SpectralRecord, identify_digest};
+use crate::noise::whole::Whole;
 use crate::noise::windows::WindowStatistics;
 use crate::rate_table::Setup;
 use crate::rate_table::alignment::Alignment;
@@ -66,6 +72,53 @@ pub struct GyroEvidence {
 }
 
 impl GyroEvidence {
+    /// What the digest of a channel shows: lines, noise with what the record cannot hold withheld, deviations with
+    /// intervals, goodness of fit. `tau0_s` is the measured sample interval, `line_false_alarm` the probability that noise
+    /// alone shows a line, `step_deg_h` the step of a rounded output. Whether the unit stood still, the Earth rate and
+    /// tests over temperature are for the caller to add.
+    pub fn identify(
+        channel: String,
+        digest: RateDigest,
+        tau0_s: f64,
+        line_false_alarm: f64,
+        step_deg_h: Option<f64>,
+    ) -> GyroEvidence {
+        let noise = identify_digest(&channel, &digest, tau0_s, line_false_alarm, step_deg_h);
+        let (mut lines, mut identification) = (noise.lines, noise.ranged.identification);
+        let model = &identification.described.model;
+        let sigma_tau = allan_points(&digest.deviations, model, tau0_s);
+        let octaves =
+            digest.octaves.as_ref().map_or_else(|| sigma_tau.clone(), |set| allan_points(set, model, tau0_s));
+        let whole = Whole::of(&digest, &octaves, identification.highest_hz);
+        let withheld_line = whole.lines(&mut lines);
+        if withheld_line.is_some() {
+            let kept: Vec<f64> = lines.iter().map(|l| l.frequency_hz).collect();
+            identification.described.keep_lines(|line| kept.contains(&line.frequency_hz));
+        }
+        whole.parts(&mut identification);
+        curve_check::contest(&mut identification, &octaves, tau0_s, digest.samples);
+        let points: Vec<_> = octaves.iter().map(|p| p.point).collect();
+        let record = SpectralRecord::of_digest(&digest, &lines, tau0_s);
+        let goodness = GoodnessOfFit::of(&record, &identification.described, &points);
+        GyroEvidence {
+            channel,
+            several: false,
+            tau0_s,
+            longest_stretch_s: digest.deviations.stretches.longest() as f64 * tau0_s,
+            digest,
+            sigma_tau,
+            octaves,
+            identification,
+            goodness,
+            lines,
+            withheld_line,
+            motion: Motion::Unknown,
+            earth: None,
+            over_temperature: None,
+            warm_up: None,
+        }
+    }
+
     /// Usable time, s.
     pub fn usable_s(&self) -> f64 {
         self.digest.samples as f64 * self.tau0_s
@@ -105,6 +158,17 @@ impl GyroEvidence {
     pub fn spectrum(&self) -> &WelchSpectrum {
         &self.digest.welch.spectrum
     }
+}
+
+/// The points of the overlapping Allan deviation with their intervals.
+fn allan_points(set: &DeviationSet, model: &Composite, tau0_s: f64) -> Vec<BoundedPoint> {
+    let model = model.without_lines();
+    let bound = |curve: &DeviationCurve| {
+        let noise = |m: u64| model.dominant(m as f64 * tau0_s, tau0_s);
+        let points = curve.points.iter();
+        points.map(|p| bounded(Estimator::Allan, p, &curve.stretches, noise(p.m))).collect()
+    };
+    set.curve(Estimator::Allan).map(bound).unwrap_or_default()
 }
 
 /// What the steps of a rate table showed of one gyro channel.

@@ -75,10 +75,7 @@ pub struct WindowPrediction {
 
 /// The stochastic part of a model: a ramp and lines shift s² and do not scatter it.
 fn scattering(model: &Composite) -> Composite {
-    let mut out = model.clone();
-    out.terms.r = 0.0;
-    out.lines.clear();
-    out
+    model.without_ramp().without_lines()
 }
 
 /// Variance of s² from the products of lines with noise, (deg/h)⁴, of which `part` counts for the share of a line's power

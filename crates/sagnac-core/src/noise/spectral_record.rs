@@ -3,12 +3,15 @@
 //! A narrow peak is a line when it stays coherent over the record, a quasi-periodic disturbance when it does not. The
 //! averaged periodogram, whose segments are short, cannot tell them apart; the modes of the whole record can.
 
+use super::coarse;
 use super::coherence::is_coherent;
 use super::composite::{Damped, Described, Line, Parameter, Sampling};
 use super::data::{BlockSeries, WelchSpectrum};
+use super::digest::RateDigest;
 use super::evidence::{Evidence, Mask};
+use super::family::Estimator;
 use super::identification::{Options, RangedIdentification, describe_in_range, identify_over};
-use super::lines::{SpectralLine, retain};
+use super::lines::{SpectralLine, find_lines, retain};
 use super::sinusoids;
 use std::borrow::Cow;
 use std::f64::consts::PI;
@@ -41,6 +44,36 @@ pub struct RecordNoise {
 const COHERENT: f64 = 1.0 / 3.0;
 /// Times that the lines are settled anew.
 const ROUNDS: usize = 3;
+
+impl<'a> SpectralRecord<'a> {
+    /// The statistics that one pass left, and lines found in its periodogram. `tau0_s` is the measured sample interval.
+    pub fn of_digest(digest: &'a RateDigest, lines: &'a [SpectralLine], tau0_s: f64) -> SpectralRecord<'a> {
+        SpectralRecord {
+            blocks: &digest.blocks,
+            welch: Some(&digest.welch.spectrum),
+            tau0_s,
+            lines,
+            sampling: Sampling::Averaging,
+        }
+    }
+}
+
+/// Finds the lines of a channel and identifies the noise beside them. `tau0_s` is the measured sample interval,
+/// `line_false_alarm` the probability that noise alone shows a line, `step_deg_h` the step of a rounded output.
+pub fn identify_digest(
+    channel: &str,
+    digest: &RateDigest,
+    tau0_s: f64,
+    line_false_alarm: f64,
+    step_deg_h: Option<f64>,
+) -> RecordNoise {
+    let lines = find_lines(&digest.welch.spectrum, tau0_s, line_false_alarm).lines;
+    let curve = digest.octaves.as_ref().unwrap_or(&digest.deviations).curve(Estimator::Allan);
+    let points: Vec<(u64, f64)> =
+        curve.map(|c| c.points.iter().map(|p| (p.m, p.deviation)).collect()).unwrap_or_default();
+    let rounded_above_hz = step_deg_h.and_then(|step| coarse::highest_hz(step, tau0_s, &points));
+    SpectralRecord::of_digest(digest, &lines, tau0_s).identify_up_to(channel, rounded_above_hz)
+}
 
 impl SpectralRecord<'_> {
     /// The frequencies of the lines. A line fills the main lobe of the window: two bins to each side.

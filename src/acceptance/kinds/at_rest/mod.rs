@@ -11,7 +11,6 @@ mod sigma_tau;
 mod warm_up_transient;
 
 pub use evidence::{RateDigests, evidence};
-pub(crate) use evidence::{identify_noise, scattering};
 
 use crate::acceptance::figures;
 use crate::acceptance::power;

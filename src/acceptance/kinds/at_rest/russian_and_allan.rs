@@ -129,7 +129,7 @@ fn floor(gyro: &GyroEvidence) -> Option<FloorRecord> {
     if b <= 0.0 {
         return None;
     }
-    let mut model = Composite { lines: vec![], ..found.described.model.without_ramp() };
+    let mut model = found.described.model.without_ramp().without_lines();
     (model.terms.n, model.terms.b) = (n, b);
     let flicker = Parameter::Coefficient(NoiseType::Flicker);
     let own = [Parameter::Coefficient(NoiseType::AngleRandomWalk), flicker];

@@ -1,6 +1,5 @@
 //! `sigma_tau.csv`: every point of the Allan family with its interval.
 
-use super::evidence::scattering;
 use crate::measurand::GyroEvidence;
 use crate::noise::intervals::bounded;
 use crate::record::DeviationRecord;
@@ -10,7 +9,7 @@ use std::fmt::Write;
 pub fn csv(gyro: &GyroEvidence) -> String {
     let mut out =
         String::from("estimator,tau_s,m,n,stride,deviation_deg_h,low_deg_h,high_deg_h,edf,noise_type\n");
-    let scattering = scattering(&gyro.identification.described.model);
+    let scattering = gyro.identification.described.model.without_lines();
     for curve in &gyro.digest.deviations.curves {
         for point in &curve.points {
             let tau_s = point.m as f64 * gyro.tau0_s;
@@ -43,7 +42,7 @@ const MAX_RECORD_SHARE: f64 = 1.0 / 3.0;
 /// Octaves of every estimator, for the report.
 pub fn records(gyro: &GyroEvidence) -> Vec<DeviationRecord> {
     let mut out = vec![];
-    let scattering = scattering(&gyro.identification.described.model);
+    let scattering = gyro.identification.described.model.without_lines();
     for curve in &gyro.digest.deviations.curves {
         for point in curve.points.iter().filter(|p| p.m.is_power_of_two()) {
             let tau_s = point.m as f64 * gyro.tau0_s;

@@ -1,12 +1,12 @@
 //! The angle random walk without and with an influence: each state is identified from its own samples.
 
-use crate::acceptance::kinds::at_rest::identify_noise;
 use crate::acceptance::reading::read_again;
 use crate::acceptance::test_kind::{Progress, Reading, Run};
 use crate::estimate::normal_quantile;
 use crate::influence::comparison::{NoiseChange, level_name};
 use crate::influence::intervals::Intervals;
 use crate::noise::digest::{DigestPlan, RateAccumulator};
+use crate::noise::spectral_record::identify_digest;
 use crate::rate_table::blocks::Blocks;
 use crate::recording::{SampleBlock, Sink};
 use std::collections::BTreeMap;
@@ -73,9 +73,8 @@ pub fn find(
             .into_iter()
             .zip(&levels)
             .map(|(digest, level)| {
-                let (_, noise) =
-                    identify_noise(&channel, &digest.finish(), reading.tau0_s, alarm, step_deg_h);
-                let n = noise.read_angle_random_walk();
+                let noise = identify_digest(&channel, &digest.finish(), reading.tau0_s, alarm, step_deg_h);
+                let n = noise.ranged.identification.read_angle_random_walk();
                 let half = n.interval95().map(|i| 0.5 * (i.high - i.low) / normal_quantile(0.975));
                 State { level: level.clone(), n: n.value.zip(half) }
             })

@@ -3,10 +3,10 @@
 use crate::claim::Stated;
 use crate::effect::{EFFECTS, Model};
 use crate::estimate::Estimate;
-use crate::noise::composite::{Composite, Damped, Sampling};
+use crate::noise::composite::{Composite, Damped};
 use crate::noise::digest::{DigestPlan, RateAccumulator};
-use crate::noise::lines::{FALSE_ALARM_RATE, find_lines};
-use crate::noise::spectral_record::SpectralRecord;
+use crate::noise::lines::FALSE_ALARM_RATE;
+use crate::noise::spectral_record::identify_digest;
 use crate::series::Series;
 
 /// Half of a 95 % interval in standard deviations.
@@ -76,15 +76,7 @@ pub fn identify(series: &Series, residual: &[f64]) -> Found {
         }
     }
     let digest = digest.finish();
-    let lines = find_lines(&digest.welch.spectrum, tau0_s, FALSE_ALARM_RATE).lines;
-    let record = SpectralRecord {
-        blocks: &digest.blocks,
-        welch: Some(&digest.welch.spectrum),
-        tau0_s,
-        lines: &lines,
-        sampling: Sampling::Averaging,
-    };
-    let noise = record.identify("rate");
+    let noise = identify_digest("rate", &digest, tau0_s, FALSE_ALARM_RATE, None);
     let identification = noise.ranged.identification;
     let composite = identification.described.model.clone();
     let processes = composite.markov.iter().chain(&composite.quasi_periodic);

@@ -71,6 +71,12 @@ impl From<NoiseModel> for Composite {
 }
 
 impl Composite {
+    /// What makes a deviation scatter: everything but the lines. A line adds to a deviation and does not scatter, so its
+    /// slope is no evidence of degrees of freedom.
+    pub fn without_lines(&self) -> Composite {
+        Composite { lines: vec![], ..self.clone() }
+    }
+
     /// The parts that are present, N, B, K, Q, R first.
     pub fn parts(&self) -> Vec<Part> {
         let terms = TERMS.into_iter().filter(|t| self.terms.coefficient(*t) != 0.0).map(Part::Term);
