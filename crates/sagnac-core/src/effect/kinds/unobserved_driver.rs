@@ -33,7 +33,7 @@ describe! {
     }
 }
 
-/// Fewest knots of a course that its size and pace are told by.
+/// Fewest knots of a course from which its size and pace can be estimated.
 const FEWEST_KNOTS: usize = 8;
 
 impl StatedByCourse for UnobservedDriver {

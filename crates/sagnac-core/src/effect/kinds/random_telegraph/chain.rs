@@ -13,7 +13,7 @@ pub struct Chain {
     pub change: [f64; 2],
 }
 
-/// Standard deviations of what is told of a chain.
+/// Standard deviations of the estimated properties of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviations {
     /// Of the distance of the levels.
