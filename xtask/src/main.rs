@@ -1,6 +1,7 @@
 //! Commands for people who work on Sagnac.
 
 mod features;
+mod long_studies;
 mod notices;
 mod same_results;
 
@@ -11,6 +12,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
 
 validate [STUDY]... [--records N] [--seed N] [--list] [--index]
     Run Monte Carlo studies and write their pages in docs/validation/.
+study [NAME]
+    Run a long study that is an ignored test; without a name: list them.
 same-results OLD NEW [--only TEXT]
     Run every shipped sample with two binaries and compare their result.json: numbers to the last digit.
 features [CARGO OPTION]...
@@ -28,6 +31,7 @@ fn main() -> ExitCode {
             Some((old, new, only)) => same_results::compare(root, &old, &new, &only),
             None => usage(),
         },
+        Some((command, rest)) if command == "study" && rest.len() < 2 => long_studies::run(root, rest),
         Some((command, rest)) if command == "features" => features::check(root, rest),
         Some((command, [])) if command == "notices" => notices::run(root, false),
         Some((command, [check])) if command == "notices" && check == "--check" => notices::run(root, true),
