@@ -52,6 +52,7 @@ fn nine_points_of_sp1065() {
     assert!((non_overlapping(&y, 2, 3).unwrap().deviation - 116.7980).abs() < 5.1e-5);
 }
 
+#[allow(clippy::too_many_lines, reason = "one list of cases or data")]
 #[test]
 fn thousand_points_to_ten_digits() {
     const TABLE: &[(u64, [f64; 6])] = &[

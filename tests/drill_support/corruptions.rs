@@ -69,6 +69,7 @@ fn comma(text: &str) -> String {
 }
 
 /// The bytes of the sample `name` with the corruption `what`.
+#[allow(clippy::too_many_lines, reason = "one list of cases or data")]
 pub fn corrupt(what: &str, name: &str) -> Vec<u8> {
     let mut r = Recording::sample(name);
     let mut chance = Chance::new(0x5a61_67e1);

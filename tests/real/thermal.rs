@@ -88,6 +88,7 @@ fn ordinary(course: &Course, columns: &[Vec<f64>], folds: &[(usize, usize)]) -> 
     ((inside / n as f64).sqrt(), (outside / count as f64).sqrt())
 }
 
+#[allow(clippy::too_many_lines, reason = "one recording, step by step")]
 #[test]
 fn a_chamber_sweep_is_predicted_better_than_by_the_ladder() {
     for axis in ["x", "y"] {

@@ -80,6 +80,7 @@ fn every_measurand_and_term_has_a_name() {
     assert_eq!(missing(TERMS.iter().map(|t| format!("term.{}", t.id()))), BTreeSet::new());
 }
 
+#[allow(clippy::too_many_lines, reason = "one list of cases or data")]
 #[test]
 fn every_condition_has_words_for_what_it_requires_and_observes() {
     let mut procedure = load(&root("procedures/static-bias.toml")).unwrap().value;
