@@ -3,8 +3,9 @@
 use super::columns::{ColumnArgs, about, channels, unit_contradictions};
 use super::finish::run_and_finish;
 use super::inputs::Inputs;
-use super::options::{GridArgs, renderer};
+use super::options::{GridArgs, OutputArgs};
 use super::place;
+use super::printer::Printer;
 use super::read::ReadArgs;
 use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
@@ -28,12 +29,8 @@ pub struct AnalyzeArgs {
     /// Output folder [default: named after the recording and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace an existing result made from different inputs
-    #[arg(long)]
-    force: bool,
-    /// Folder of templates that override built-in ones of the same name
-    #[arg(long, value_name = "DIR")]
-    templates: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgs,
     #[command(flatten)]
     grid: GridArgs,
     #[command(flatten)]
@@ -46,12 +43,12 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     if !(args.columns.warm_up >= 0.0 && args.columns.warm_up.is_finite()) {
         return Err(say(Note::new("cli.warm_up").with("given", args.columns.warm_up.to_string())));
     }
-    let renderer = renderer(args.templates.as_deref(), lang)?;
+    let renderer = args.output.renderer(lang)?;
     let now = Utc::now();
     let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
-    let folder = Inputs::new(args.force)
+    let folder = Inputs::new(args.output.force)
         .recording(&args.recording, &args.read.options())
         .options(&(
             (
@@ -63,7 +60,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
             ),
             (args.columns.sample_rate, args.columns.warm_up, &args.grid, &args.read),
         ))
-        .beside(args.templates.as_deref())
+        .beside(args.output.templates.as_deref())
         .begin(&out, Kind::Result, lang)?;
     let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
@@ -93,7 +90,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         taus,
         exact: args.grid.exact,
     };
-    run_and_finish(&request, None, folder, &renderer, lang)
+    run_and_finish(&request, None, folder, &renderer, Printer::new(&args.output, lang))
 }
 
 /// The recording as it was named first.

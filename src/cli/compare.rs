@@ -3,7 +3,8 @@
 use super::columns::{ColumnArgs, channels, unit_contradictions};
 use super::finish::{with_progress, write};
 use super::inputs::Inputs;
-use super::options::renderer;
+use super::options::OutputArgs;
+use super::printer::Printer;
 use super::read::ReadArgs;
 use super::{exit, place};
 use crate::acceptance::compare::published_checks::checked;
@@ -13,7 +14,7 @@ use crate::acceptance::compare::{
 use crate::acceptance::{Request, analysis};
 use crate::config::procedure::limits::LimitSpec;
 use crate::config::procedure::{EffectiveLimits, load_limits};
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, visible_lines};
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
 use crate::record::{RunKind, RunRecord, UnitUnderTest, read};
@@ -41,12 +42,8 @@ pub struct CompareArgs {
     /// Output folder [default: named after the first unit and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace an existing result made from different inputs
-    #[arg(long)]
-    force: bool,
-    /// Folder of templates that override built-in ones of the same name
-    #[arg(long, value_name = "DIR")]
-    templates: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgs,
     #[command(flatten)]
     read: ReadArgs,
 }
@@ -59,12 +56,13 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     if args.published && !args.recording.is_empty() {
         return Err(say("compare.error.published_alone".into()));
     }
-    let renderer = renderer(args.templates.as_deref(), lang)?;
+    let renderer = args.output.renderer(lang)?;
+    let printer = Printer::new(&args.output, lang);
     let now = Utc::now();
     let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);
     let first = args.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("comparison", Some(&first), now));
-    let folder = Inputs::new(args.force)
+    let folder = Inputs::new(args.output.force)
         .recording(&read_for(&args.recording), &args.read.options())
         .file("limits", args.limits.as_deref())
         .options(&(
@@ -77,11 +75,11 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
             ),
             (args.columns.sample_rate, args.columns.warm_up, args.published, &args.read),
         ))
-        .beside(args.templates.as_deref())
+        .beside(args.output.templates.as_deref())
         .begin(&out, Kind::Comparison, lang)?;
     if args.published {
         let checked = checked().ok_or_else(|| say("compare.error.tables".into()))?;
-        return finish(Comparison::of_published(checked, stamp), folder, &renderer, lang);
+        return finish(Comparison::of_published(checked, stamp), folder, &renderer, printer);
     }
     let limits = match args.limits.as_deref().map(load_limits).transpose() {
         Ok(file) => EffectiveLimits {
@@ -99,7 +97,7 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     }
     name_apart(&mut units);
     mark_repeated(&mut units);
-    finish(Comparison::of_units(units, stamp), folder, &renderer, lang)
+    finish(Comparison::of_units(units, stamp), folder, &renderer, printer)
 }
 
 /// The name of a file or folder without its endings.
@@ -224,10 +222,11 @@ fn finish(
     comparison: Comparison,
     folder: StagedFolder,
     renderer: &Renderer,
-    lang: Lang,
+    printer: Printer,
 ) -> Result<u8, String> {
+    let lang = printer.lang;
     let table = table(&CompareView::new(&comparison, &[], lang), lang);
     let folder = write(&Results::of_comparison(comparison), folder, EXPORTERS, renderer, lang)?;
-    place::print(&format!("{table}{}\n", place::shown(&folder.join("comparison.html"))));
+    printer.outcome(&folder, Kind::Comparison, |_| visible_lines(&table).into_owned())?;
     Ok(exit::PASS)
 }

@@ -2,7 +2,8 @@
 
 use super::finish::write;
 use super::inputs::Inputs;
-use super::options::renderer;
+use super::options::OutputArgs;
+use super::printer::Printer;
 use super::progress::Watch;
 use super::read::ReadArgs;
 use super::{exit, place};
@@ -15,7 +16,7 @@ use crate::mismatch::{self, Options};
 use crate::output::Kind;
 use crate::report::explain::{Context, ExplainView};
 use crate::report::export::EXPORTERS;
-use crate::report::{ExplanationResults, Results};
+use crate::report::{ExplanationResults, Results, terminal};
 use crate::series::{Series, SeriesOptions, load_series};
 use chrono::{SecondsFormat, Utc};
 use clap::Args;
@@ -57,12 +58,8 @@ pub struct ExplainArgs {
     /// Output folder [default: named after the recording and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace an existing result made from different inputs
-    #[arg(long)]
-    force: bool,
-    /// Folder of templates that override built-in ones of the same name
-    #[arg(long, value_name = "DIR")]
-    templates: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgs,
     #[command(flatten)]
     read: ReadArgs,
 }
@@ -70,14 +67,14 @@ pub struct ExplainArgs {
 pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     let options = options(args).map_err(say)?;
-    let renderer = renderer(args.templates.as_deref(), lang)?;
+    let renderer = args.output.renderer(lang)?;
     // What is wrong with the model is said before a long recording is read.
     let stated = args.model.as_deref().map(model::load).transpose().map_err(|p| p.say(lang))?;
     let now = Utc::now();
     let name = args.recording.first().map(|p| stem(p));
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("explain", name.as_deref(), now));
     let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();
-    let folder = Inputs::new(args.force)
+    let folder = Inputs::new(args.output.force)
         .recording(&args.recording, &args.read.options())
         .file("model", args.model.as_deref())
         .files("simulation", &files_read(&simulation, &ReadOptions::default()))
@@ -85,7 +82,7 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
             (&args.rate, &args.unit, args.sample_rate, &args.read),
             (&args.hide, &args.without, args.alpha, args.max_effects),
         ))
-        .beside(args.templates.as_deref())
+        .beside(args.output.templates.as_deref())
         .begin(&out, Kind::Explanation, lang)?;
 
     let mut progress = Watch::new(lang);
@@ -127,7 +124,8 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let view = ExplainView::new(&outcome.explanation, &[], &context, lang);
     let results = Results::Explanation(Box::new(ExplanationResults::new(&outcome, context)));
     let folder = write(&results, folder, EXPORTERS, &renderer, lang)?;
-    place::print(&format!("{}{}\n", view.summary(), place::shown(&folder.join("report.html"))));
+    Printer::new(&args.output, lang)
+        .outcome(&folder, Kind::Explanation, |t| terminal::explanation(&view, lang, t))?;
     Ok(match outcome.explanation.verdict {
         MismatchVerdict::Consistent => exit::PASS,
         MismatchVerdict::Mismatch => exit::FAIL,

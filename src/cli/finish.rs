@@ -1,16 +1,17 @@
 //! From a request to the folder of its results and the words on the terminal.
 
 use super::inputs;
+use super::printer::Printer;
 use super::progress::{Progress, Watch};
 use super::{exit, place};
 use crate::acceptance::{Outcome, Request, RunError, execute, explained, failed};
 use crate::config::model::Claim;
-use crate::i18n::{Lang, Localize, Note, lookup};
-use crate::output::StagedFolder;
-use crate::record::{Evidence, RunRecord};
-use crate::report::explain::{Context, explained_summary};
+use crate::i18n::{Lang, Localize, Note};
+use crate::output::{Kind, StagedFolder};
+use crate::report::explain::Context;
 use crate::report::export::{EXPORTERS, Exporter, export};
-use crate::report::{ExplanationResults, Renderer, Results, RunResults};
+use crate::report::view::{PhasePart, View};
+use crate::report::{ExplanationResults, Renderer, Results, RunResults, terminal};
 use chrono::SecondsFormat;
 use std::path::PathBuf;
 
@@ -31,8 +32,9 @@ pub fn run_and_finish(
     against: Option<Against<'_>>,
     folder: StagedFolder,
     renderer: &Renderer,
-    lang: Lang,
+    printer: Printer,
 ) -> Result<u8, String> {
+    let lang = printer.lang;
     let outcome = match with_progress(request, &Note::new("cli.reading").say(lang)) {
         Ok(outcome) => outcome,
         Err(error) => return Err(report_failure(request, &error, folder, renderer, lang)?),
@@ -41,7 +43,7 @@ pub fn run_and_finish(
     if let Some(against) = against {
         explain(request, against, &mut results, lang);
     }
-    finish(results, folder, renderer, lang)
+    finish(results, folder, renderer, printer)
 }
 
 /// Runs a request with a progress bar.
@@ -86,13 +88,30 @@ pub fn finish(
     results: RunResults,
     folder: StagedFolder,
     renderer: &Renderer,
-    lang: Lang,
+    printer: Printer,
 ) -> Result<u8, String> {
     let code = exit::code(results.outcome.record.verdict);
-    let summary = summary(&results.outcome.record, lang);
+    let lang = printer.lang;
+    let view = view(&results, lang);
     let place = write(&Results::Run(Box::new(results)), folder, EXPORTERS, renderer, lang)?;
-    place::print(&format!("{summary}{}\n", place::shown(&place.join("report.html"))));
+    printer.outcome(&place, Kind::Result, |terminal| terminal::run(&view, lang, terminal))?;
     Ok(code)
+}
+
+/// The view of a run, with its phases where it has some.
+fn view(results: &RunResults, lang: Lang) -> View {
+    let record = &results.outcome.record;
+    let parts: Vec<PhasePart<'_>> = record
+        .phases
+        .iter()
+        .zip(&results.phases)
+        .map(|(phase, outcome)| PhasePart {
+            phase,
+            record: outcome.as_ref().map(|o| &o.record),
+            figures: &[],
+        })
+        .collect();
+    View::of_phases(record, &parts, lang)
 }
 
 /// Writes the report of a run that could not be carried out, and gives the message for the terminal.
@@ -143,30 +162,4 @@ pub fn write(
         }
     }
     inputs::publish(folder, whole.record(), lang)
-}
-
-/// The outcome in a few lines for the terminal.
-fn summary(record: &RunRecord, lang: Lang) -> String {
-    let word = |key: String| lookup(lang, &key).map_or(key.clone(), str::to_owned);
-    let mut out = format!("{}\n", word(format!("verdict.{}", record.verdict.id())).to_uppercase());
-    for note in &record.summary {
-        out.push_str(&format!("  {}\n", note.say(lang)));
-    }
-    let mut declared: Vec<&str> = record
-        .conditions
-        .iter()
-        .filter(|c| c.evidence == Some(Evidence::Declared))
-        .map(|c| c.id.split('.').next().unwrap_or(&c.id))
-        .collect();
-    declared.sort_unstable();
-    declared.dedup();
-    if !declared.is_empty() {
-        let names: Vec<String> = declared.iter().map(|id| word(format!("condition.{id}"))).collect();
-        let note = Note::new("cli.declared").with("names", names.join(", "));
-        out.push_str(&format!("  {}\n", note.say(lang)));
-    }
-    for sentence in record.explained.iter().flat_map(|e| explained_summary(e, lang)) {
-        out.push_str(&format!("  {sentence}\n"));
-    }
-    out
 }

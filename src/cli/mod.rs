@@ -13,6 +13,7 @@ mod inputs;
 mod inspect;
 mod options;
 mod place;
+mod printer;
 mod progress;
 mod read;
 mod report;

@@ -4,8 +4,9 @@ use super::place;
 use crate::i18n::{Lang, Note};
 use crate::noise::tau_grid::TauGrid;
 use crate::report::Renderer;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::path::Path;
+use std::path::PathBuf;
 
 /// Choice of the averaging times.
 #[derive(Debug, Args)]
@@ -29,6 +30,46 @@ impl GridArgs {
             place::error(&note, lang)
         })
     }
+}
+
+/// How results are written and printed.
+#[derive(Debug, Args)]
+pub struct OutputArgs {
+    /// Replace an existing result made from different inputs
+    #[arg(long)]
+    pub force: bool,
+    /// Folder of templates that override built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    pub templates: Option<PathBuf>,
+    /// Print the outcome as text, or the result as JSON and nothing else
+    #[arg(
+        id = "print_format",
+        long = "format",
+        value_name = "FORMAT",
+        default_value = "text",
+        conflicts_with = "quiet"
+    )]
+    pub format: PrintFormat,
+    /// Print nothing but errors and the place of the report
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl OutputArgs {
+    /// The renderer with the user's templates, if any.
+    ///
+    /// # Errors
+    /// The diagnostic, in words.
+    pub fn renderer(&self, lang: Lang) -> Result<Renderer, String> {
+        renderer(self.templates.as_deref(), lang)
+    }
+}
+
+/// What is printed on standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum PrintFormat {
+    Text,
+    Json,
 }
 
 /// The renderer with the user's templates, if any.

@@ -12,8 +12,8 @@ use std::path::PathBuf;
 #[command(next_help_heading = "How the recording is read")]
 pub struct ReadArgs {
     /// File format [default: detected from the content]
-    #[arg(long, value_name = "ID")]
-    format: Option<String>,
+    #[arg(long = "input-format", value_name = "ID")]
+    input_format: Option<String>,
     /// Character encoding of a text file [default: detected]
     #[arg(long, value_parser = PossibleValuesParser::new(words(ENCODINGS)))]
     encoding: Option<String>,
@@ -45,7 +45,7 @@ impl ReadArgs {
     /// The decisions.
     pub fn options(&self) -> ReadOptions {
         ReadOptions {
-            format: self.format.clone(),
+            format: self.input_format.clone(),
             text: TextOptions {
                 encoding: self.encoding.as_deref().and_then(encoding),
                 delimiter: self.delimiter.as_deref().and_then(delimiter),

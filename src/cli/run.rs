@@ -2,8 +2,9 @@
 
 use super::finish::{Against, report_failure, run_and_finish};
 use super::inputs::{Inputs, serial};
-use super::options::{GridArgs, renderer};
+use super::options::{GridArgs, OutputArgs};
 use super::place;
+use super::printer::Printer;
 use crate::acceptance::{Request, explained};
 use crate::config::procedure::{effective, load, load_limits};
 use crate::i18n::Lang;
@@ -36,12 +37,8 @@ pub struct RunArgs {
     /// Output folder [default: named after procedure, serial number and UTC time]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Replace an existing result made from different inputs
-    #[arg(long)]
-    pub force: bool,
-    /// Folder of templates that override built-in ones of the same name
-    #[arg(long, value_name = "DIR")]
-    pub templates: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputArgs,
     #[command(flatten)]
     pub grid: GridArgs,
 }
@@ -60,7 +57,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         }
     };
     let model = procedure.value.explain.as_ref().map(|spec| explained::model(spec, lang)).transpose()?;
-    let renderer = renderer(args.templates.as_deref(), lang)?;
+    let renderer = args.output.renderer(lang)?;
     let effective = effective(&procedure, limits.as_ref());
     for warning in procedure.warnings.iter().chain(&effective.warnings) {
         place::eprint_diagnostic(&format!("{}\n", warning.say(lang)));
@@ -70,14 +67,14 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         .out
         .clone()
         .unwrap_or_else(|| place::default_folder(&procedure.value.id, args.serial.as_deref(), now));
-    let folder = Inputs::new(args.force)
+    let folder = Inputs::new(args.output.force)
         .recording(&args.recording, &procedure.value.recording.read)
         .file("procedure", Some(&args.procedure))
         .file("limits", args.limits.as_deref())
         .file("model", procedure.value.explain.as_ref().map(|e| e.model.as_path()))
         .text("unit", args.serial.as_deref())
         .options(&(&args.grid.taus, args.grid.exact))
-        .beside(args.templates.as_deref())
+        .beside(args.output.templates.as_deref())
         .begin(&out, Kind::Result, lang)?;
     // A recording that is there and cannot be opened still gets its report: the verdict is an error, and says why. A
     // name that is no file is a slip of the pen, which must not cost an earlier result.
@@ -118,7 +115,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     match refused {
         None => {
             let against = model.map(|claim| Against { claim, recording: &args.recording });
-            run_and_finish(&request, against, folder, &renderer, lang)
+            run_and_finish(&request, against, folder, &renderer, Printer::new(&args.output, lang))
         }
         Some(error) => Err(report_failure(&request, &error.into(), folder, &renderer, lang)?),
     }

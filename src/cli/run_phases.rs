@@ -2,8 +2,8 @@
 
 use super::finish::{finish, not_run, with_progress};
 use super::inputs::{Inputs, serial};
-use super::options::renderer;
 use super::place;
+use super::printer::Printer;
 use super::run::RunArgs;
 use crate::acceptance::phases::{Done, combine, failure};
 use crate::acceptance::{Outcome, Request, session};
@@ -23,7 +23,7 @@ use std::path::PathBuf;
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let (phased, manifest) = load(args, lang)?;
     let taus = args.grid.grid(lang)?;
-    let renderer = renderer(args.templates.as_deref(), lang)?;
+    let renderer = args.output.renderer(lang)?;
     let now = Utc::now();
     let unit = UnitUnderTest {
         serial: serial(args.serial.as_deref(), Some(&manifest), lang)?,
@@ -50,7 +50,12 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     }
     let phases = done.into_iter().map(|d| d.outcome).collect();
     let outcome = Outcome { record, figures: vec![], tables: vec![] };
-    finish(RunResults { outcome, phases, explanation: None }, folder, &renderer, lang)
+    finish(
+        RunResults { outcome, phases, explanation: None },
+        folder,
+        &renderer,
+        Printer::new(&args.output, lang),
+    )
 }
 
 /// The procedure and the manifest, which fit each other.
@@ -89,14 +94,14 @@ fn begin(
     let layouts: Vec<PathBuf> = phases()
         .filter_map(|p| p.procedure.value.recording.read.layout.as_ref().map(|l| l.path.clone()))
         .collect();
-    Inputs::new(args.force)
+    Inputs::new(args.output.force)
         .recording(&args.recording, &ReadOptions::default())
         .files("procedure", &procedures)
         .files("limits", &limits)
         .files("layout", &layouts)
         .text("unit", args.serial.as_deref())
         .options(&(&args.grid.taus, args.grid.exact))
-        .beside(args.templates.as_deref())
+        .beside(args.output.templates.as_deref())
         .begin(&out, Kind::Result, lang)
 }
 

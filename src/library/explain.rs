@@ -8,6 +8,7 @@ use crate::mismatch::{self, Options, Outcome};
 use crate::record::explanation::{self, MismatchVerdict};
 use crate::report::explain::{Context, ExplainView};
 use crate::report::export::Exporter;
+use crate::report::terminal::{self, Terminal};
 use crate::report::{Document, ExplanationResults};
 use crate::simulate::{Order, Over, Rows, SimulateError, Simulation};
 use chrono::{SecondsFormat, Utc};
@@ -121,7 +122,8 @@ impl Explanation {
 
     /// The finding in a few lines.
     pub fn summary(&self, lang: Lang) -> String {
-        ExplainView::new(&self.outcome.explanation, &[], &self.context(), lang).summary()
+        let view = ExplainView::new(&self.outcome.explanation, &[], &self.context(), lang);
+        terminal::explanation(&view, lang, Terminal { width: 100, colour: false })
     }
 
     fn context(&self) -> Context {

@@ -14,6 +14,7 @@ mod prose;
 pub mod render;
 mod results;
 pub mod svg;
+pub mod terminal;
 mod translator;
 pub mod unit;
 pub mod view;

@@ -82,8 +82,12 @@ impl Translator {
 
     /// A printed number with its unit.
     pub fn quantity(self, number: &str, unit: &str) -> String {
-        let unit = self.unit(unit);
-        match unit.as_str() {
+        self.joined(number, &self.unit(unit))
+    }
+
+    /// A printed number with its printed unit.
+    pub fn joined(self, number: &str, unit: &str) -> String {
+        match unit {
             "" => number.to_owned(),
             // Degrees, minutes and seconds of arc stand at the figure.
             "°" | "′" | "″" => format!("{number}{unit}"),

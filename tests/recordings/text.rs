@@ -140,8 +140,8 @@ fn options_of_the_command_line_decide_and_are_contradicted() {
     for (options, said) in [
         (&["--decimal", "point"][..], "the numbers have `,`"),
         (&["--delimiter", "tab"], "the lines are delimited by `;`"),
-        (&["--format", "parquet"], "the file does not match it"),
-        (&["--format", "docx"], "known formats: "),
+        (&["--input-format", "parquet"], "the file does not match it"),
+        (&["--input-format", "docx"], "known formats: "),
         (&["--header-line", "0"], ""),
         (&["--encoding", "utf-16le"], "it looks like UTF-8"),
     ] {

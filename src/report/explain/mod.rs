@@ -154,18 +154,6 @@ impl ExplainView {
             generator,
         }
     }
-
-    /// The outcome in a few lines for the terminal.
-    pub fn summary(&self) -> String {
-        let mut out = format!("{}\n", self.verdict_word.to_uppercase());
-        for sentence in &self.summary {
-            out.push_str(&format!("  {sentence}\n"));
-        }
-        if !self.fit_summary.is_empty() && !self.unchanged {
-            out.push_str(&format!("  {}\n", self.fit_summary));
-        }
-        out
-    }
 }
 
 fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<Field> {

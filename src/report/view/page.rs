@@ -6,6 +6,7 @@ use super::explained::Explained;
 use super::figures::{FigureView, select};
 use super::matrix::Matrix;
 use super::rows::{self, Row};
+use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::record::{PhaseRecord, RunKind, RunRecord};
@@ -111,7 +112,7 @@ impl View {
                 .map_or_else(|| words.t("report.title_analysis"), |p| p.title.clone()),
             verdict: record.verdict.id(),
             verdict_word: words.verdict(record.verdict),
-            summary: record.summary.iter().map(|n| words.say(n)).collect(),
+            summary: summary(record, channels.len() > 1, words),
             errors: record.errors.iter().map(|n| words.say(n)).collect(),
             identity: identity(record, words),
             files: files(record, words),
@@ -160,6 +161,21 @@ impl View {
             phases: vec![],
         }
     }
+}
+
+/// The reasons for the verdict; those of rows with their numbers.
+fn summary(record: &RunRecord, several_channels: bool, words: Translator) -> Vec<String> {
+    let is_row = |id: &str| id.starts_with("summary.row_");
+    let first_row = record.summary.iter().position(|n| is_row(&n.id)).unwrap_or(record.summary.len());
+    let (before, after) = record.summary.split_at(first_row);
+    let of = |verdict: Verdict| record.measurands.iter().filter(move |m| m.verdict == verdict);
+    let rows = of(Verdict::Fail).chain(of(Verdict::Indeterminate));
+    let mut out: Vec<String> = before.iter().map(|n| words.say(n)).collect();
+    if !after.is_empty() {
+        out.extend(rows.filter_map(|m| rows::reason(m, several_channels, words)));
+    }
+    out.extend(after.iter().filter(|n| !is_row(&n.id)).map(|n| words.say(n)));
+    out
 }
 
 /// The value of an option, which the result holds as it is written in a procedure.

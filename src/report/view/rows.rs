@@ -1,7 +1,8 @@
 //! Measured quantities with their limits.
 
 use super::common::MODEL_NOTES;
-use crate::estimate::Rule;
+use crate::estimate::{Rule, Verdict};
+use crate::i18n::Arg;
 use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
 use crate::report::number::{Rounding, acceptance, bound, digits, limit, limit_digits, percent};
 use crate::report::translator::Translator;
@@ -18,12 +19,16 @@ pub struct Row {
     pub name: String,
     /// How it was obtained, in words.
     pub method: String,
+    /// Where on the curve it was read; empty where it was not read from one.
+    pub place: String,
     /// Unit.
     pub unit: String,
     /// Value, or the bound where the record cannot show it.
     pub value: String,
     /// 95 % interval.
     pub interval: String,
+    /// What bounds the quantity where it has no value, as `≤ x`; empty otherwise.
+    pub bound: String,
     /// Whether the record can show the quantity.
     pub identifiable: bool,
     /// Why there is no value; empty where there is one, or where the words in its place say why.
@@ -125,6 +130,77 @@ pub fn interval(m: &MeasurandRecord, words: Translator) -> String {
     }
 }
 
+/// The 95 % bound of a quantity without a value.
+fn bound_alone(m: &MeasurandRecord, words: Translator) -> String {
+    match (m.value, m.upper_limit, m.lower_limit) {
+        (None, Some(u), _) => format!("≤\u{202f}{}", bound(u.value, true, words.lang)),
+        (None, None, Some(l)) => format!("≥\u{202f}{}", bound(l.value, false, words.lang)),
+        _ => String::new(),
+    }
+}
+
+/// The averaging time at which a value was read from σ(τ).
+fn place(m: &MeasurandRecord, words: Translator) -> String {
+    let tau_s = m.notes.iter().find_map(|n| {
+        let argument = match n.id.as_ref() {
+            "note.minimum_at" => "tau_s",
+            "readout.line" => "at_s",
+            _ => return None,
+        };
+        match n.args.get(argument)? {
+            Arg::Number(v) | Arg::Stated(v) => Some(*v),
+            _ => None,
+        }
+    });
+    let shown = |v: f64| words.with("terminal.at_tau", &[("tau", &limit_digits(v, 4, words.lang))]);
+    tau_s.map_or_else(String::new, shown)
+}
+
+/// Why a row does not pass, with its numbers: the value, its interval, the limit and the acceptance limit. `None` for a
+/// row that passes or has no limit.
+pub fn reason(m: &MeasurandRecord, several_channels: bool, words: Translator) -> Option<String> {
+    let l = m.limit.as_ref()?;
+    let upper = m.value.zip(l.max).is_some_and(|(v, max)| v > max);
+    let key = match (m.verdict, m.value) {
+        (Verdict::Fail, _) if upper => "reason.exceeds",
+        (Verdict::Fail, Some(_)) => "reason.below",
+        (Verdict::Fail, None) => "reason.outside",
+        (Verdict::Indeterminate, None) if bound_alone(m, words).is_empty() => "reason.unknown",
+        (Verdict::Indeterminate, None) => "reason.not_resolved",
+        (Verdict::Indeterminate, Some(_)) => "reason.inconclusive",
+        _ => return None,
+    };
+    let name = words.name("measurand", &m.id);
+    let name = if several_channels { format!("{name} · {}", m.channel) } else { name };
+    let value = if m.value.is_some() { value(m, words) } else { bound_alone(m, words) };
+    let mut value = if value.is_empty() { value } else { words.quantity(&value, &m.unit) };
+    let interval = interval(m, words);
+    if !interval.is_empty() {
+        value = words.with("reason.with_interval", &[("value", &value), ("interval", &interval)]);
+    }
+    // A value beyond one end is set against that end; a limit in another unit stands as it was written.
+    let ends = match key {
+        _ if l.unit != m.unit => None,
+        "reason.exceeds" => Some((l.max, l.acceptance_max, true)),
+        "reason.below" => Some((l.min, l.acceptance_min, false)),
+        _ => None,
+    };
+    let (limit, accepted) = match ends {
+        Some((end, accepted, is_maximum)) => (
+            end.map_or_else(String::new, |v| limit(v, words.lang)),
+            accepted.map_or_else(String::new, |v| acceptance(v, is_maximum, words.lang)),
+        ),
+        None => (limits(l, &m.unit, words), accepted(l, words)),
+    };
+    let limit = if l.unit == m.unit { words.quantity(&limit, &m.unit) } else { limit };
+    let mut text = words.with(key, &[("name", &name), ("value", &value), ("limit", &limit)]);
+    if !accepted.is_empty() && l.rule == Rule::GuardBand {
+        let accepted = words.quantity(&accepted, &m.unit);
+        text = words.with("reason.with_acceptance", &[("reason", &text), ("acceptance", &accepted)]);
+    }
+    Some(format!("{text}."))
+}
+
 fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> Row {
     let lang = words.lang;
     let mut numbers = vec![];
@@ -149,9 +225,11 @@ fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> R
         channel: m.channel.clone(),
         name: words.name("measurand", &m.id),
         method: words.name("how", &m.method),
+        place: place(m, words),
         unit: words.unit(&m.unit),
         value: value(m, words),
         interval: interval(m, words),
+        bound: bound_alone(m, words),
         identifiable: m.identifiable,
         hint: if m.identifiable || searched(m) {
             String::new()

@@ -1,0 +1,73 @@
+//! What a verb prints of its result on standard output.
+
+use super::options::{OutputArgs, PrintFormat};
+use super::place;
+use crate::i18n::{Lang, Localize, Note};
+use crate::output::Kind;
+use crate::report::terminal::Terminal;
+use anstream::{AutoStream, ColorChoice};
+use std::io::Write;
+use std::path::Path;
+
+/// Width where standard output is no terminal and `COLUMNS` is not set.
+const DEFAULT_WIDTH: usize = 100;
+/// Narrowest width that a text is set for.
+const LEAST_WIDTH: usize = 30;
+
+/// Prints results: in a language, as text or JSON, or only where they are.
+#[derive(Debug, Clone, Copy)]
+pub struct Printer {
+    /// Language of the text.
+    pub lang: Lang,
+    format: PrintFormat,
+    quiet: bool,
+}
+
+impl Printer {
+    /// The printer that the options ask for.
+    pub fn new(args: &OutputArgs, lang: Lang) -> Printer {
+        Printer { lang, format: args.format, quiet: args.quiet }
+    }
+
+    /// Prints the outcome of which the results stand in a folder.
+    ///
+    /// # Errors
+    /// The diagnostic, in words, where the record cannot be read back for JSON.
+    pub fn outcome(
+        self,
+        folder: &Path,
+        kind: Kind,
+        text: impl FnOnce(Terminal) -> String,
+    ) -> Result<(), String> {
+        let page = folder.join(if kind == Kind::Comparison { "comparison.html" } else { "report.html" });
+        if self.format == PrintFormat::Json {
+            let record = folder.join(kind.record_file());
+            let contents = std::fs::read(&record).map_err(|e| {
+                let note = Note::new("result_error.unreadable")
+                    .with("path", record.display().to_string())
+                    .with("reason", e.to_string());
+                place::error(&note, self.lang)
+            })?;
+            // A reader that went away is no error.
+            let _ = std::io::stdout().lock().write_all(&contents);
+            return Ok(());
+        }
+        let terminal = terminal();
+        let place = Note::new("terminal.report").with("place", place::shown(&page)).say(self.lang);
+        let said = if self.quiet { format!("{place}\n") } else { format!("{}\n{place}\n", text(terminal)) };
+        let _ = AutoStream::new(std::io::stdout().lock(), choice()).write_all(said.as_bytes());
+        Ok(())
+    }
+}
+
+/// The choice of colours: `NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`, `TERM`, and whether standard output is a terminal.
+fn choice() -> ColorChoice {
+    AutoStream::choice(&std::io::stdout())
+}
+
+fn terminal() -> Terminal {
+    let columns = || std::env::var("COLUMNS").ok()?.parse::<usize>().ok();
+    let real = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
+    let width = columns().or_else(real).unwrap_or(DEFAULT_WIDTH).max(LEAST_WIDTH);
+    Terminal { width, colour: choice() != ColorChoice::Never }
+}

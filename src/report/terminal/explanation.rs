@@ -1,0 +1,38 @@
+//! An explanation: where the mismatch is, what causes it and how large that is, what was gained.
+
+use super::Terminal;
+use super::table::{Align, Cell, Column, table};
+use crate::i18n::{Lang, visible};
+use crate::report::explain::{EffectView, ExplainView};
+use crate::report::translator::Translator;
+
+/// The outcome: verdict in sentences, each effect with its parameters, the fit before and after.
+pub fn explanation(view: &ExplainView, lang: Lang, terminal: Terminal) -> String {
+    let words = Translator { lang };
+    let verdict = terminal.verdict(&view.verdict_word.to_uppercase(), view.verdict_class);
+    let mut out = format!("{verdict}  {}\n", visible(&view.title));
+    out += &terminal.indented(&view.summary);
+    for effect in &view.effects {
+        out += &format!("\n{}\n", terminal.heading(&visible(&effect.title)));
+        out += &parameters(effect, words, terminal);
+    }
+    if !view.unchanged && !view.fit_summary.is_empty() {
+        out += &format!("\n{}\n", terminal.heading(&words.t("terminal.gained")));
+        out += &terminal.indented([&view.fit_summary]);
+    }
+    out
+}
+
+fn parameters(effect: &EffectView, words: Translator, terminal: Terminal) -> String {
+    let column = |id: &str, align| Column { head: words.name("terminal.column", id), align, optional: false };
+    let columns =
+        [column("parameter", Align::Left), column("value", Align::Right), column("interval", Align::Right)];
+    let rows: Vec<Vec<Cell>> = effect
+        .parameters
+        .iter()
+        .map(|p| {
+            vec![p.name.clone().into(), words.joined(&p.value, &p.unit).into(), p.interval.clone().into()]
+        })
+        .collect();
+    if rows.is_empty() { String::new() } else { table(&columns, &rows, terminal) }
+}

@@ -1,0 +1,187 @@
+//! A table in columns where they fit, and a paragraph for each row where they do not.
+
+use super::Terminal;
+use crate::i18n::visible;
+use anstyle::Style;
+use unicode_width::UnicodeWidthStr;
+
+/// Columns between two cells.
+const GAP: usize = 2;
+/// Widest first column; longer names are wrapped.
+const NAME_WIDTH: usize = 46;
+
+/// On which side the cells of a column are in line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// Text.
+    Left,
+    /// Numbers.
+    Right,
+}
+
+/// A column with its head.
+pub struct Column {
+    /// Head.
+    pub head: String,
+    /// Side.
+    pub align: Align,
+    /// Left out first where the columns do not fit.
+    pub optional: bool,
+}
+
+/// A cell with the style of its text.
+#[derive(Clone, Default)]
+pub struct Cell {
+    /// Text.
+    pub text: String,
+    /// Style.
+    pub style: Style,
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Cell {
+        Cell { text, style: Style::new() }
+    }
+}
+
+/// The rows under their heads, two columns indented; the first column names the row. Columns without any text are left
+/// out. Where not even the others fit, each row is its name, its last cell, and the cells between with their heads below.
+pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> String {
+    let rows: Vec<Vec<Cell>> = rows
+        .iter()
+        .map(|row| row.iter().map(|c| Cell { text: visible(&c.text).into_owned(), style: c.style }).collect())
+        .collect();
+    let cell = |row: &[Cell], c: usize| row.get(c).cloned().unwrap_or_default();
+    let filled = |c: &usize| rows.iter().any(|row| !cell(row, *c).text.is_empty());
+    let mut shown: Vec<usize> = (0..columns.len()).filter(filled).collect();
+    let widest = |c: usize| {
+        let head = columns.get(c).map_or(0, |column| column.head.width());
+        let widest = rows.iter().map(|row| cell(row, c).text.width()).max().unwrap_or(0).max(head);
+        if c == 0 { widest.min(NAME_WIDTH) } else { widest }
+    };
+    let total = |shown: &[usize]| shown.iter().map(|c| widest(*c) + GAP).sum::<usize>();
+    if total(&shown) > terminal.width {
+        shown.retain(|c| columns.get(*c).is_some_and(|column| !column.optional));
+    }
+    if total(&shown) > terminal.width {
+        return stacked(columns, &rows, terminal);
+    }
+    let line = |texts: &[(usize, Cell)]| {
+        let mut out = String::new();
+        for (c, cell) in texts {
+            let padding = " ".repeat(widest(*c).saturating_sub(cell.text.width()));
+            let text = terminal.styled(&cell.text, cell.style);
+            let right = columns.get(*c).is_some_and(|column| column.align == Align::Right);
+            out.push_str("  ");
+            out.push_str(&if right { padding + &text } else { text + &padding });
+        }
+        format!("{}\n", out.trim_end())
+    };
+    let heads: Vec<(usize, Cell)> = shown
+        .iter()
+        .filter_map(|c| {
+            Some((*c, Cell { text: columns.get(*c)?.head.clone(), style: Style::new().dimmed() }))
+        })
+        .collect();
+    let mut out = line(&heads);
+    for row in &rows {
+        let name = cell(row, 0);
+        let mut names = wrapped(&name.text, NAME_WIDTH).into_iter();
+        let first = Cell { text: names.next().unwrap_or_default(), style: name.style };
+        let cells: Vec<(usize, Cell)> =
+            shown.iter().map(|c| (*c, if *c == 0 { first.clone() } else { cell(row, *c) })).collect();
+        out.push_str(&line(&cells));
+        names.for_each(|rest| out.push_str(&format!("    {rest}\n")));
+    }
+    out
+}
+
+/// Each row as a paragraph: the first and the last cell, below them the others behind their heads.
+fn stacked(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> String {
+    let mut out = String::new();
+    for row in rows {
+        let Some((name, rest)) = row.split_first() else { continue };
+        let (last, between) = rest.split_last().unwrap_or((name, &[]));
+        let last_text = terminal.styled(&last.text, last.style);
+        for (i, line) in wrapped(&name.text, terminal.width.saturating_sub(4)).iter().enumerate() {
+            out.push_str(&format!("  {}{line}\n", if i > 0 { "  " } else { "" }));
+        }
+        for (column, cell) in columns.iter().skip(1).zip(between).filter(|(_, c)| !c.text.is_empty()) {
+            out.push_str(&format!("    {}: {}\n", column.head, terminal.styled(&cell.text, cell.style)));
+        }
+        if !last.text.is_empty() && !rest.is_empty() {
+            let head = columns.last().map_or("", |column| column.head.as_str());
+            out.push_str(&format!("    {head}: {last_text}\n"));
+        }
+    }
+    out
+}
+
+/// A text in lines of at most `width` columns, broken at spaces; a longer word has a line of its own.
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = vec![];
+    let mut line = String::new();
+    for word in text.split(' ').filter(|w| !w.is_empty()) {
+        if !line.is_empty() && line.width() + 1 + word.width() > width {
+            lines.push(std::mem::take(&mut line));
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    if !line.is_empty() || lines.is_empty() {
+        lines.push(line);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns() -> Vec<Column> {
+        let column = |head: &str, align, optional| Column { head: head.into(), align, optional };
+        vec![
+            column("Quantity", Align::Left, false),
+            column("Value", Align::Right, false),
+            column("Margin", Align::Right, true),
+            column("Verdict", Align::Left, false),
+        ]
+    }
+
+    fn rows() -> Vec<Vec<Cell>> {
+        let row = |texts: [&str; 4]| texts.iter().map(|t| Cell::from((*t).to_owned())).collect();
+        vec![row(["Сдвиг нуля", "0.12 °/h", "0.38", "pass"]), row(["N", "12.25 °/√h", "-1", "fail"])]
+    }
+
+    #[test]
+    fn columns_are_in_line_and_the_optional_ones_go_first() {
+        let wide = table(&columns(), &rows(), Terminal { width: 80, colour: false });
+        assert_eq!(
+            wide,
+            "  Quantity         Value  Margin  Verdict\n  Сдвиг нуля    0.12 °/h    0.38  pass\n\
+             \u{20}\u{20}N           12.25 °/√h      -1  fail\n"
+        );
+        let medium = table(&columns(), &rows(), Terminal { width: 36, colour: false });
+        assert!(!medium.contains("Margin") && medium.starts_with("  Quantity  "), "{medium}");
+        let narrow = table(&columns(), &rows(), Terminal { width: 20, colour: false });
+        assert!(narrow.starts_with("  Сдвиг нуля\n    Value: 0.12 °/h\n    Margin: 0.38\n"), "{narrow}");
+    }
+
+    #[test]
+    fn what_steers_a_terminal_is_shown_and_colour_is_not_counted() {
+        let evil = vec![vec![Cell::from("\u{1b}[2Ja".to_owned())]];
+        assert!(!table(&columns()[..1], &evil, Terminal { width: 80, colour: true }).contains("\u{1b}[2J"));
+        let plain = table(&columns(), &rows(), Terminal { width: 80, colour: false });
+        let coloured = table(&columns(), &rows(), Terminal { width: 80, colour: true });
+        assert_eq!(anstream::adapter::strip_str(&coloured).to_string(), plain);
+    }
+
+    #[test]
+    fn long_texts_are_broken_at_spaces() {
+        assert_eq!(wrapped("a bb ccc", 4), ["a bb", "ccc"]);
+        assert_eq!(wrapped("abcdefgh i", 4), ["abcdefgh", "i"]);
+        assert_eq!(wrapped("", 4), [""]);
+    }
+}
