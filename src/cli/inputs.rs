@@ -2,6 +2,7 @@
 
 use super::place;
 use crate::config::manifest::Manifest;
+use crate::config::shipped;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{ReadOptions, files_read};
 use crate::output::{Kind, Order, StagedFolder};
@@ -129,7 +130,7 @@ fn hex(bytes: impl AsRef<[u8]>) -> String {
 fn hash(path: &Path) -> String {
     let none = || "unread".to_owned();
     if !path.is_file() {
-        return none();
+        return shipped::find(path).map_or_else(none, |s| hex(Sha256::digest(s.text)));
     }
     let Ok(mut file) = File::open(path) else { return none() };
     let (mut hash, mut block) = (Sha256::new(), vec![0; 1 << 16]);

@@ -4,16 +4,19 @@ mod analyze;
 mod check;
 mod columns;
 mod compare;
+mod demo;
 mod effects;
 pub mod exit;
 mod explain;
 mod finish;
 mod help;
+mod init;
 mod inputs;
 mod inspect;
 mod options;
 mod place;
 mod printer;
+mod procedures;
 mod progress;
 mod read;
 mod report;
@@ -60,6 +63,9 @@ enum Verb {
     /// Show what a recording contains and which tests it supports
     #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]
     Inspect(inspect::InspectArgs),
+    /// Write a procedure, limits and a CI example from what a recording holds
+    #[command(after_help = "Example:\n  sagnac init unit-0042.csv --out acceptance")]
+    Init(init::InitArgs),
     /// Analyse the noise of a recording without a procedure
     #[command(
         after_help = "Example:\n  sagnac analyze unit-0042.csv --rate gyro_x --unit deg/s --out analysis-0042"
@@ -92,6 +98,25 @@ enum Verb {
         sagnac explain recording.csv --simulation simulated.csv --hide temp_degC"
     )]
     Explain(explain::ExplainArgs),
+    /// List the procedures and limits that the program carries, print or save them
+    #[command(
+        after_help = "Examples:\n  sagnac procedures\n  sagnac procedures show static-bias > mine.toml"
+    )]
+    Procedures(procedures::ProceduresArgs),
+    /// Run a static test on a sample recording that the program carries
+    #[command(after_help = "Example:\n  sagnac demo --out sagnac-demo")]
+    Demo(demo::DemoArgs),
+    /// Print the completion script of a shell
+    #[command(
+        after_help = "Example:\n  sagnac completions bash > ~/.local/share/bash-completion/completions/sagnac"
+    )]
+    Completions {
+        /// Shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page
+    #[command(after_help = "Example:\n  sagnac man > sagnac.1")]
+    Man,
     /// Print the JSON Schema of a file format, for completion in editors
     #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]
     Schema(schema::SchemaArgs),
@@ -121,12 +146,27 @@ pub fn main() -> ExitCode {
         Verb::Run(args) => run::main(&args, lang),
         Verb::Check(args) => check::main(&args, lang),
         Verb::Inspect(args) => inspect::main(&args, lang),
+        Verb::Init(args) => init::main(&args, lang),
         Verb::Analyze(args) => analyze::main(&args, lang),
         Verb::Report(args) => report::main(&args, lang),
         Verb::Compare(args) => compare::main(&args, lang),
         Verb::Simulate(args) => simulate::main(&args, lang),
         Verb::Effects(args) => effects::main(&args, lang),
         Verb::Explain(args) => explain::main(&args, lang),
+        Verb::Procedures(args) => procedures::main(&args, lang),
+        Verb::Demo(args) => demo::main(args, lang),
+        Verb::Completions { shell } => {
+            let mut script = vec![];
+            clap_complete::generate(shell, &mut help::command(Cli::command(), lang), "sagnac", &mut script);
+            place::print(&String::from_utf8_lossy(&script));
+            Ok(exit::PASS)
+        }
+        Verb::Man => {
+            let mut page = vec![];
+            let rendered = clap_mangen::Man::new(help::command(Cli::command(), lang)).render(&mut page);
+            place::print(&String::from_utf8_lossy(&page));
+            rendered.map(|()| exit::PASS).map_err(|e| e.to_string())
+        }
         Verb::Schema(args) => schema::main(&args),
         Verb::Selftest => selftest::main(lang),
     };

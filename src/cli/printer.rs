@@ -67,7 +67,7 @@ fn choice() -> ColorChoice {
 
 fn terminal() -> Terminal {
     let columns = || std::env::var("COLUMNS").ok()?.parse::<usize>().ok();
-    let real = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
+    let real = || terminal_size::terminal_size_of(std::io::stdout()).map(|(width, _)| usize::from(width.0));
     let width = columns().or_else(real).unwrap_or(DEFAULT_WIDTH).max(LEAST_WIDTH);
     Terminal { width, colour: choice() != ColorChoice::Never }
 }

@@ -5,6 +5,7 @@ use super::inputs::{Inputs, serial};
 use super::options::{GridArgs, OutputArgs};
 use super::place;
 use super::printer::Printer;
+use super::procedures::say_which;
 use crate::acceptance::{Request, explained};
 use crate::config::procedure::{effective, load, load_limits};
 use crate::i18n::Lang;
@@ -45,6 +46,8 @@ pub struct RunArgs {
 
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let grid = args.grid.grid(lang)?;
+    let named: Vec<&Path> = std::iter::once(args.procedure.as_path()).chain(args.limits.as_deref()).collect();
+    say_which(&named, lang);
     // Both files are read before either complains, so that all problems are seen at once.
     let procedure = load(&args.procedure);
     let limits = args.limits.as_deref().map(load_limits).transpose();

@@ -10,6 +10,7 @@ use crate::acceptance::{Outcome, Request, session};
 use crate::config::manifest::{self, Manifest, ManifestFile, is_manifest};
 use crate::config::procedure::effective;
 use crate::config::procedure::phases::{Phase, Phased, load_phased};
+use crate::config::shipped;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{ReadOptions, Source, open_files};
 use crate::noise::tau_grid::TauGrid;
@@ -61,6 +62,10 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
 /// The procedure and the manifest, which fit each other.
 fn load(args: &RunArgs, lang: Lang) -> Result<(Phased, Manifest), String> {
     let error = |note: Note| place::error(&note, lang);
+    // The files that its phases name are looked for beside it.
+    if let Some(shipped) = shipped::find(&args.procedure).filter(|_| !args.procedure.is_file()) {
+        return Err(error(Note::new("procedures.phased").with("name", shipped.name)));
+    }
     let phased = load_phased(&args.procedure).map_err(|p| p.say(lang))?;
     if args.limits.is_some() {
         return Err(error(Note::new("phases.limits")));

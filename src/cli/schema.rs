@@ -3,6 +3,7 @@
 use super::exit;
 use crate::output::Listed;
 use crate::record::RunRecord;
+use crate::record::explanation::Explanation;
 use clap::{Args, ValueEnum};
 
 #[derive(Debug, Args)]
@@ -25,6 +26,8 @@ pub enum SchemaKind {
     Manifest,
     /// A model: the expected content of a recording
     Model,
+    /// explain.json
+    Explain,
 }
 
 pub fn main(args: &SchemaArgs) -> Result<u8, String> {
@@ -34,6 +37,9 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Manifest => crate::config::procedure::schema::manifest(),
         SchemaKind::Layout => crate::config::procedure::schema::layout(),
         SchemaKind::Model => crate::config::procedure::schema::model(),
+        SchemaKind::Explain => {
+            serde_json::to_value(schemars::schema_for!(Listed<Explanation>)).unwrap_or_default()
+        }
         SchemaKind::Result => {
             serde_json::to_value(schemars::schema_for!(Listed<RunRecord>)).unwrap_or_default()
         }

@@ -15,6 +15,7 @@ pub(crate) mod reader;
 pub mod recording_keys;
 pub(crate) mod recording_options;
 pub(crate) mod section;
+pub mod shipped;
 pub mod spec;
 mod syntax;
 pub(crate) mod text_file;

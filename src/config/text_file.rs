@@ -1,6 +1,7 @@
 //! A file of keys as text: the bound on its size, UTF-8, the byte order mark, and what keeps it from being read.
 
 use super::diagnostics::{Problem, Problems, SourceText};
+use super::shipped;
 use crate::i18n::{Note, io_reason};
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -29,11 +30,11 @@ pub(crate) struct Wording {
 /// One problem without a place.
 pub(crate) fn bytes(path: &Path, wording: &Wording) -> Result<Vec<u8>, Problems> {
     let name = path.display().to_string();
-    if path.is_dir() {
+    if path.is_dir() && shipped::find(path).is_none() {
         return Err(Problem::of_file(&name, wording.folder, None).into());
     }
     read(path).map_err(|e| {
-        let help = (e.kind() == ErrorKind::NotFound).then(|| "text_file.check_path".into());
+        let help = (e.kind() == ErrorKind::NotFound).then(|| help(path));
         let message = Note::new(wording.unreadable).with("reason", io_reason(&e));
         Problem::of_file(&name, message, help).into()
     })
@@ -44,7 +45,22 @@ pub(crate) fn peek(path: &Path) -> Option<String> {
     read(path).ok().map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
 }
 
+/// What to do about a file that is not there: what looks like a name may be that of a shipped one.
+fn help(path: &Path) -> Note {
+    if path.extension().is_some() || path.components().count() > 1 {
+        return "text_file.check_path".into();
+    }
+    let names = |list: &[shipped::Shipped]| list.iter().map(|s| s.name).collect::<Vec<_>>().join(", ");
+    Note::new("text_file.check_name")
+        .with("procedures", names(shipped::PROCEDURES))
+        .with("limits", names(shipped::LIMITS))
+}
+
+/// The bytes of a file; where there is none, those of the shipped one of that name.
 fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    if let Some(shipped) = shipped::find(path).filter(|_| !path.is_file()) {
+        return Ok(shipped.text.as_bytes().to_vec());
+    }
     let mut bytes = Vec::new();
     File::open(path)?.take(MAX_READ_BYTES).read_to_end(&mut bytes)?;
     Ok(bytes)

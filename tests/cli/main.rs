@@ -57,7 +57,7 @@ fn samples_give_their_verdicts() {
         assert_eq!(said.code, code, "{name}: {said:?}");
         assert_eq!(result(&out)["verdict"], verdict, "{name}");
         assert!(said.out.starts_with(&verdict.to_uppercase()), "{name}: {}", said.out);
-        assert!(said.out.ends_with(&format!("{name}/report.html\n")), "{name}: {}", said.out);
+        assert!(said.out.ends_with(&format!("Report: {name}/report.html\n")), "{name}: {}", said.out);
         assert_eq!(said.err, "", "no terminal, no progress");
         assert_eq!(
             names(&out),

@@ -8,6 +8,7 @@ use sagnac::mismatch::figures::{TimeSeries, time_course};
 use sagnac::mismatch::finding::Explanation;
 use sagnac::report::Renderer;
 use sagnac::report::explain::{Context, ExplainView};
+use sagnac::report::terminal::{Terminal, explanation};
 use std::collections::BTreeSet;
 
 fn context() -> Context {
@@ -95,7 +96,7 @@ fn what_the_verdicts_say() {
     let mut out = String::new();
     for lang in Lang::ALL {
         for all in [fixture::consistent(), fixture::bias_step(), fixture::two(), fixture::unknown()] {
-            out.push_str(&view(&all, *lang).summary());
+            out.push_str(&explanation(&view(&all, *lang), *lang, Terminal { width: 100, colour: false }));
             out.push('\n');
         }
     }

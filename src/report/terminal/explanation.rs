@@ -1,6 +1,6 @@
 //! An explanation: where the mismatch is, what causes it and how large that is, what was gained.
 
-use super::Terminal;
+use super::screen::Terminal;
 use super::table::{Align, Cell, Column, table};
 use crate::i18n::{Lang, visible};
 use crate::report::explain::{EffectView, ExplainView};

@@ -1,7 +1,7 @@
 //! A run, an analysis, or a test of several phases.
 
+use super::screen::{Terminal, verdict_style};
 use super::table::{Align, Cell, Column, table};
-use super::{Terminal, verdict_style};
 use crate::i18n::{Lang, visible};
 use crate::report::translator::Translator;
 use crate::report::view::{PhaseView, Row, View};
@@ -165,7 +165,11 @@ fn name(row: &Row, several_channels: bool) -> String {
 
 fn value(row: &Row, words: Translator) -> String {
     if row.identifiable && row.bound.is_empty() {
-        if row.value.contains(char::is_numeric) { words.joined(&row.value, &row.unit) } else { row.value.clone() }
+        if row.value.contains(char::is_numeric) {
+            words.joined(&row.value, &row.unit)
+        } else {
+            row.value.clone()
+        }
     } else {
         "–".to_owned()
     }
@@ -203,17 +207,8 @@ fn conditions(view: &View, words: Translator, terminal: Terminal) -> String {
         let sentence = words.with("terminal.faults", &[("faults", &faults.join("; "))]);
         out += &format!("\n{}", terminal.indented([sentence]));
     }
-    let mut declared: Vec<&str> = view
-        .evidence
-        .conditions
-        .iter()
-        .filter(|c| c.evidence == words.name("evidence", "declared"))
-        .map(|c| c.name.split(" · ").next().unwrap_or(&c.name))
-        .collect();
-    declared.sort_unstable();
-    declared.dedup();
-    if !declared.is_empty() {
-        let note = words.with("cli.declared", &[("names", &declared.join(", "))]);
+    if !view.declared.is_empty() {
+        let note = words.with("cli.declared", &[("names", &view.declared.join(", "))]);
         out += &format!("\n{}", terminal.indented([note]));
     }
     out

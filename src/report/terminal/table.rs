@@ -1,6 +1,7 @@
 //! A table in columns where they fit, and a paragraph for each row where they do not.
 
-use super::Terminal;
+use super::screen::Terminal;
+use super::wrap::wrapped;
 use crate::i18n::visible;
 use anstyle::Style;
 use unicode_width::UnicodeWidthStr;
@@ -117,25 +118,6 @@ fn stacked(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> String
     out
 }
 
-/// A text in lines of at most `width` columns, broken at spaces; a longer word has a line of its own.
-pub fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = vec![];
-    let mut line = String::new();
-    for word in text.split(' ').filter(|w| !w.is_empty()) {
-        if !line.is_empty() && line.width() + 1 + word.width() > width {
-            lines.push(std::mem::take(&mut line));
-        }
-        if !line.is_empty() {
-            line.push(' ');
-        }
-        line.push_str(word);
-    }
-    if !line.is_empty() || lines.is_empty() {
-        lines.push(line);
-    }
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,12 +158,5 @@ mod tests {
         let plain = table(&columns(), &rows(), Terminal { width: 80, colour: false });
         let coloured = table(&columns(), &rows(), Terminal { width: 80, colour: true });
         assert_eq!(anstream::adapter::strip_str(&coloured).to_string(), plain);
-    }
-
-    #[test]
-    fn long_texts_are_broken_at_spaces() {
-        assert_eq!(wrapped("a bb ccc", 4), ["a bb", "ccc"]);
-        assert_eq!(wrapped("abcdefgh i", 4), ["abcdefgh", "i"]);
-        assert_eq!(wrapped("", 4), [""]);
     }
 }

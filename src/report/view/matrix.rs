@@ -74,6 +74,8 @@ mod tests {
             id: id.into(),
             channel: channel.into(),
             name: id.into(),
+            place: String::new(),
+            bound: String::new(),
             method: String::new(),
             unit: String::new(),
             value: format!("{id} of {channel}"),

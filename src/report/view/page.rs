@@ -9,7 +9,7 @@ use super::rows::{self, Row};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::Lang;
-use crate::record::{PhaseRecord, RunKind, RunRecord};
+use crate::record::{self, PhaseRecord, RunKind, RunRecord};
 use crate::report::methods;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::translator::{Field, Translator};
@@ -55,6 +55,8 @@ pub struct View {
     /// Conditions, integrity, window, lines, models, power, instruments, waivers, clauses.
     #[serde(flatten)]
     pub evidence: Evidence,
+    /// Conditions that are declared and not shown by the recording, by name.
+    pub declared: Vec<String>,
     /// Figures.
     pub figures: Vec<FigureView>,
     /// That there were figures whose data are not kept; empty otherwise.
@@ -136,6 +138,7 @@ impl View {
             judged,
             further,
             footnotes,
+            declared: declared(record, words),
             evidence: Evidence::new(record, words),
             figures: select(record, figures, words),
             figures_missing: if figures.is_empty() && !record.figures.is_empty() {
@@ -161,6 +164,13 @@ impl View {
             phases: vec![],
         }
     }
+}
+
+/// Names of the conditions that are only declared, in alphabetical order.
+fn declared(record: &RunRecord, words: Translator) -> Vec<String> {
+    let declared = record.conditions.iter().filter(|c| c.evidence == Some(record::Evidence::Declared));
+    let names = declared.map(|c| words.name("condition", c.id.split('.').next().unwrap_or(&c.id)));
+    names.collect::<std::collections::BTreeSet<String>>().into_iter().collect()
 }
 
 /// The reasons for the verdict; those of rows with their numbers.

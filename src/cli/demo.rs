@@ -1,0 +1,61 @@
+//! `sagnac demo`: the main job on a recording that the program carries.
+
+use super::options::OutputArgs;
+use super::run::{self, RunArgs};
+use super::{options::GridArgs, place};
+use crate::i18n::{Lang, Localize, Note};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// A synthetic unit, 100 h at rest.
+const RECORDING: &[u8] = include_bytes!("../../samples/unit-pass.csv");
+
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Folder for the recording and its report
+    #[arg(long, value_name = "DIR", default_value = "sagnac-demo")]
+    out: PathBuf,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
+    let recording = args.out.join("unit-pass.csv");
+    write(&recording, lang)?;
+    let report = args.out.join("report");
+    let command = format!(
+        "sagnac run static-bias {} --limits sample-unit --serial SN-0001 --out {}",
+        place::shown(&recording),
+        place::shown(&report)
+    );
+    place::eprint_diagnostic(&format!("{command}\n"));
+    let args = RunArgs {
+        procedure: "static-bias".into(),
+        recording: vec![recording],
+        limits: Some("sample-unit".into()),
+        serial: Some("SN-0001".to_owned()),
+        operator: None,
+        station: None,
+        out: Some(report),
+        output: args.output,
+        grid: GridArgs { taus: None, exact: false },
+    };
+    run::main(&args, lang)
+}
+
+/// Writes the recording where none is; another file of its name is not replaced.
+fn write(recording: &Path, lang: Lang) -> Result<(), String> {
+    let failed = |reason: String| {
+        let note = Note::new("procedures.not_saved").with("path", place::shown(recording));
+        place::error(&note.with("reason", reason), lang)
+    };
+    match std::fs::read(recording) {
+        Ok(found) if found == RECORDING => return Ok(()),
+        Ok(_) => return Err(failed(Note::new("procedures.other_content").say(lang))),
+        Err(_) => {}
+    }
+    if let Some(folder) = recording.parent() {
+        std::fs::create_dir_all(folder).map_err(|e| failed(e.to_string()))?;
+    }
+    std::fs::write(recording, RECORDING).map_err(|e| failed(e.to_string()))
+}

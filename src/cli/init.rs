@@ -1,0 +1,267 @@
+//! `sagnac init`: a procedure, limits and a job for continuous integration from what a recording holds.
+
+use super::columns::{ColumnArgs, about, channels};
+use super::finish::with_progress;
+use super::{exit, place};
+use crate::acceptance::{Request, analysis};
+use crate::config::procedure::EffectiveLimits;
+use crate::i18n::{Lang, Localize, Note};
+use crate::ingest::{ReadOptions, Source, open_recording};
+use crate::measurand::{
+    ANGLE_RANDOM_WALK, BIAS_INSTABILITY, QUANTIZATION, RATE_RAMP, RATE_RANDOM_WALK, RUSSIAN_ARW_10S,
+    RUSSIAN_DRIFT_100S,
+};
+use crate::record::{RunKind, RunRecord, UnitUnderTest};
+use crate::recording::{Channel, ColumnRef, Role};
+use crate::report::number::duration;
+use chrono::Utc;
+use clap::Args;
+use minijinja::{Environment, UndefinedBehavior, context};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct InitArgs {
+    /// Recording: a file of any supported format
+    recording: PathBuf,
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// Folder for the files; a file that is there is not replaced
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+}
+
+/// What a limit is proposed for.
+const PROPOSED: &[&str] = &[
+    ANGLE_RANDOM_WALK.id,
+    BIAS_INSTABILITY.id,
+    RATE_RANDOM_WALK.id,
+    RATE_RAMP.id,
+    RUSSIAN_DRIFT_100S.id,
+    RUSSIAN_ARW_10S.id,
+];
+
+pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
+    let say = |note: Note| place::error(&note, lang);
+    let names = ["procedure.toml", "limits.toml", "ci.yml"];
+    let paths = names.map(|name| args.out.join(name));
+    if let Some(path) = paths.iter().find(|p| p.exists()) {
+        return Err(say(Note::new("init.exists").with("path", place::shown(path))));
+    }
+    let recording = std::slice::from_ref(&args.recording);
+    let opened = open_recording(recording, &ReadOptions::default()).map_err(|e| e.say(lang))?;
+    let source = opened.source;
+    let channels = channels(&args.columns, &args.recording, &source).map_err(say)?;
+    let (record, sample_rate_hz) = analysed(args, &channels, &source, lang)?;
+    let files = written(args, &channels, &source, &record, sample_rate_hz)
+        .map_err(|e| say(Note::new("init.template").with("reason", e.to_string())))?;
+    let failed = |path: &Path, e: &std::io::Error| {
+        let note = Note::new("procedures.not_saved").with("path", place::shown(path));
+        say(note.with("reason", e.to_string()))
+    };
+    std::fs::create_dir_all(&args.out).map_err(|e| failed(&args.out, &e))?;
+    for (path, text) in paths.iter().zip(&files) {
+        std::fs::write(path, text).map_err(|e| failed(path, &e))?;
+    }
+    let shown = paths.each_ref().map(|p| place::shown(p));
+    let note = Note::new("init.written")
+        .with("procedure", shown[0].as_str())
+        .with("limits", shown[1].as_str())
+        .with("ci", shown[2].as_str())
+        .with("recording", quoted_for_shell(&args.recording.display().to_string()));
+    place::print(&format!("{}\n", note.say(lang)));
+    Ok(exit::PASS)
+}
+
+/// What the recording gives without a procedure; the sample rate where there is no time column.
+fn analysed(
+    args: &InitArgs,
+    channels: &[Channel],
+    source: &Source,
+    lang: Lang,
+) -> Result<(RunRecord, Option<f64>), String> {
+    let say = |note: Note| place::error(&note, lang);
+    let use_stamps = channels.iter().any(|c| c.role == Role::Time);
+    let declared = args.columns.sample_rate;
+    let sample_rate = if use_stamps { declared } else { source.rate_without_stamps_hz(declared) };
+    if !use_stamps && sample_rate.is_none() {
+        return Err(say(about(&args.recording, "cli.no_time")));
+    }
+    let procedure = analysis::procedure(channels.to_vec(), sample_rate, args.columns.warm_up);
+    let request = Request {
+        kind: RunKind::Analyze,
+        procedure: &procedure,
+        procedure_record: None,
+        limits: &EffectiveLimits::default(),
+        source,
+        use_stamps,
+        unit: UnitUnderTest::default(),
+        operator: None,
+        station: None,
+        now: Utc::now(),
+        taus: None,
+        exact: false,
+    };
+    let outcome = with_progress(&request, &Note::new("cli.reading").say(lang)).map_err(|e| say(e.note()))?;
+    Ok((outcome.record, if use_stamps { None } else { sample_rate }))
+}
+
+/// The three files.
+fn written(
+    args: &InitArgs,
+    channels: &[Channel],
+    source: &Source,
+    record: &RunRecord,
+    sample_rate_hz: Option<f64>,
+) -> Result<[String; 3], minijinja::Error> {
+    let mut environment = Environment::empty();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    let name = one_line(&args.recording.display().to_string());
+    let stem = args.recording.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let usable_s = record.window.usable_s;
+    let ids: Vec<&str> = [QUANTIZATION.id].into_iter().chain(PROPOSED.iter().copied()).collect();
+    let measurands: Vec<_> = ids.iter().map(|id| context! { id => *id, name => title(id) }).collect();
+    let channel_ids = ids_of(channels);
+    let is_temperature = |(c, _): &(&Channel, &String)| c.role == Role::Temperature;
+    let temperature = channels.iter().zip(&channel_ids).find(is_temperature).map(|(_, id)| id);
+    let values = context! {
+        recording => name,
+        recording_shell => quoted_for_shell(&args.recording.display().to_string()),
+        procedure => "procedure.toml",
+        id => toml_text(&id_of(&stem)),
+        channels => channels.iter().zip(&channel_ids).map(|(c, id)| context! {
+            id => toml_text(id),
+            column => match &c.column {
+                ColumnRef::Name(name) => toml_text(name),
+                ColumnRef::Position(position) => position.to_string(),
+            },
+            role => c.role.id(),
+            unit => toml_text(c.unit.text()),
+        }).collect::<Vec<_>>(),
+        unused => unused(channels, source),
+        sample_rate => sample_rate_hz.map(|hz| toml_text(&format!("{hz} Hz"))),
+        duration => duration(usable_s, Lang::En),
+        minimum_duration => toml_text(&minimum_duration(usable_s)),
+        warm_up => toml_text(&format!("{} s", args.columns.warm_up)),
+        temperature => temperature.map(|id| toml_text(id)),
+        measurands => measurands,
+        limits => limits(record),
+    };
+    // A template loses the end of its last line.
+    let render =
+        |text: &str| environment.render_str(text, &values).map(|text| format!("{}\n", text.trim_end()));
+    Ok([
+        render(include_str!("../../templates/init/procedure.toml"))?,
+        render(include_str!("../../templates/init/limits.toml"))?,
+        render(include_str!("../../templates/init/ci.yml"))?,
+    ])
+}
+
+/// A limit for each quantity that every channel bounds: by the largest of them.
+fn limits(record: &RunRecord) -> Vec<minijinja::Value> {
+    let rows = |id: &str| record.measurands.iter().filter(|m| m.id == id).collect::<Vec<_>>();
+    let proposal = |id: &&str| {
+        let rows = rows(id);
+        let upper = |m: &&crate::record::MeasurandRecord| {
+            m.interval
+                .map(|i| i.high)
+                .or(m.upper_limit.map(|u| u.value))
+                .filter(|v| *v > 0.0 && v.is_finite())
+        };
+        let largest = rows.iter().map(upper).collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
+        let unit = &rows.first()?.unit;
+        let measured = format!("95 % interval up to {} {unit}", rounded_up(largest));
+        let max = toml_text(&format!("{} {unit}", rounded_up(1.5 * largest)));
+        (largest > 0.0).then(|| context! { id => *id, name => title(id), measured, max })
+    };
+    PROPOSED.iter().filter_map(proposal).collect()
+}
+
+/// Two significant digits, upwards.
+fn rounded_up(value: f64) -> f64 {
+    let scale = 10f64.powf(value.log10().floor() - 1.0);
+    let digits = (value / scale - 1e-9).ceil();
+    format!("{:.1e}", digits * scale).parse().unwrap_or(value)
+}
+
+/// Nine tenths of what was recorded, in hours where that is a round number.
+fn minimum_duration(usable_s: f64) -> String {
+    let hours = (0.9 * usable_s / 3600.0).floor();
+    if hours >= 1.0 { format!("{hours} h") } else { format!("{} s", (0.9 * usable_s).floor().max(1.0)) }
+}
+
+fn title(id: &str) -> String {
+    crate::i18n::lookup(Lang::En, &format!("measurand.{id}")).unwrap_or(id).to_owned()
+}
+
+/// Names of the columns that no channel reads, on one line.
+fn unused(channels: &[Channel], source: &Source) -> String {
+    let used: Vec<usize> = channels.iter().filter_map(|c| source.resolve(&c.column).ok()).collect();
+    let left = source.columns().iter().enumerate().filter(|(i, _)| !used.contains(i));
+    let names: Vec<String> = left.map(|(_, c)| one_line(&c.name)).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// A text for a comment: nothing in it ends the line.
+fn one_line(text: &str) -> String {
+    crate::i18n::visible(text).into_owned()
+}
+
+fn toml_text(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// An id for each channel, no two alike.
+fn ids_of(channels: &[Channel]) -> Vec<String> {
+    let mut ids: Vec<String> = vec![];
+    for channel in channels {
+        let id = id_of(&channel.id);
+        let numbered = (2..).map(|n| format!("{}_{n}", id.chars().take(60).collect::<String>()));
+        let free = std::iter::once(id.clone()).chain(numbered).find(|id| !ids.contains(id));
+        ids.push(free.unwrap_or(id));
+    }
+    ids
+}
+
+/// A text as an id: letters a to z, digits, `_`, `-` and `.`, 64 at most, the first a letter or digit.
+fn id_of(text: &str) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' };
+    let id: String = text.chars().map(safe).collect();
+    let id: String = id.trim_start_matches(['_', '-', '.']).chars().take(64).collect();
+    if id.is_empty() { "unit".to_owned() } else { id }
+}
+
+fn quoted_for_shell(path: &str) -> String {
+    if path.chars().all(|c| c.is_ascii_alphanumeric() || "./_-".contains(c)) {
+        path.to_owned()
+    } else {
+        // The line stands in YAML as plain text, where a quote within is kept.
+        format!("'{}'", one_line(path).replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn proposals_are_rounded_upwards() {
+        assert_eq!(rounded_up(0.003041), 0.0031);
+        assert_eq!(rounded_up(0.0031), 0.0031);
+        assert_eq!(rounded_up(99.5), 100.0);
+    }
+
+    #[test]
+    fn any_text_gives_an_id() {
+        assert_eq!(id_of("odd name"), "odd_name");
+        assert_eq!(id_of("_Ωz [deg/h]"), "z__deg_h_");
+        assert_eq!(id_of("Ω"), "unit");
+        assert_eq!(id_of(&"a".repeat(100)).len(), 64);
+    }
+
+    #[test]
+    fn durations_are_below_what_was_recorded() {
+        assert_eq!(minimum_duration(36_000.0), "9 h");
+        assert_eq!(minimum_duration(1_000.0), "900 s");
+        assert_eq!(minimum_duration(0.0), "1 s");
+    }
+}

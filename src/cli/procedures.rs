@@ -1,0 +1,86 @@
+//! `sagnac procedures`: the procedures and limits that the program carries.
+
+use super::{exit, place};
+use crate::config::shipped::{LIMITS, PROCEDURES, Shipped, find};
+use crate::i18n::{Lang, Localize, Note};
+use clap::{Args, Subcommand};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct ProceduresArgs {
+    #[command(subcommand)]
+    what: Option<What>,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Print a shipped procedure or limits file
+    Show {
+        /// Name of the procedure or limits file
+        name: String,
+    },
+    /// Write all shipped procedures and limits into a folder
+    Save {
+        /// Folder, which is created; a file that is there is not replaced
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
+}
+
+pub fn main(args: &ProceduresArgs, lang: Lang) -> Result<u8, String> {
+    match &args.what {
+        None => list(lang),
+        Some(What::Show { name }) => {
+            let Some(shipped) = find(Path::new(name)) else {
+                let names: Vec<&str> = PROCEDURES.iter().chain(LIMITS).map(|s| s.name).collect();
+                let note = Note::new("procedures.unknown").with("name", name.as_str());
+                return Err(place::error(&note.with("names", names.join(", ")), lang));
+            };
+            place::print(shipped.text);
+        }
+        Some(What::Save { folder }) => save(folder, lang)?,
+    }
+    Ok(exit::PASS)
+}
+
+/// Says for each name of the command line whether the shipped file is taken or a file of the same name.
+pub fn say_which(named: &[&Path], lang: Lang) {
+    for path in named {
+        let Some(shipped) = find(path) else { continue };
+        let key = if path.is_file() { "procedures.file_taken" } else { "procedures.shipped_taken" };
+        place::eprint_diagnostic(&format!("{}\n", Note::new(key).with("name", shipped.name).say(lang)));
+    }
+}
+
+fn list(lang: Lang) {
+    let width = PROCEDURES.iter().chain(LIMITS).map(|s| s.name.len()).max().unwrap_or(0);
+    let group = |key: &'static str, all: &[Shipped]| {
+        let rows: String = all.iter().map(|s| format!("  {:width$}  {}\n", s.name, s.title())).collect();
+        format!("{}\n{rows}", Note::new(key).say(lang))
+    };
+    let text = [group("procedures.procedures", PROCEDURES), group("procedures.limits", LIMITS)].join("\n");
+    place::print(&format!("{text}\n{}\n", Note::new("procedures.more").say(lang)));
+}
+
+/// Writes what is not there yet; a file of other content ends it before anything is written.
+fn save(folder: &Path, lang: Lang) -> Result<(), String> {
+    let failed = |path: &Path, reason: String| {
+        let note = Note::new("procedures.not_saved").with("path", place::shown(path)).with("reason", reason);
+        place::error(&note, lang)
+    };
+    let all: Vec<(PathBuf, &Shipped)> =
+        PROCEDURES.iter().chain(LIMITS).map(|s| (folder.join(s.path()), s)).collect();
+    for (path, shipped) in &all {
+        if path.exists() && std::fs::read(path).ok().as_deref() != Some(shipped.text.as_bytes()) {
+            return Err(failed(path, Note::new("procedures.other_content").say(lang)));
+        }
+    }
+    for (path, shipped) in &all {
+        let parent = path.parent().unwrap_or(folder);
+        std::fs::create_dir_all(parent).map_err(|e| failed(parent, e.to_string()))?;
+        std::fs::write(path, shipped.text).map_err(|e| failed(path, e.to_string()))?;
+    }
+    let note = Note::new("procedures.saved").with("n", all.len()).with("folder", place::shown(folder));
+    place::print(&format!("{}\n", note.say(lang)));
+    Ok(())
+}

@@ -1,0 +1,119 @@
+//! Procedures and limits that the program carries, so that they are found by name from any folder.
+
+use std::path::{Component, Path};
+
+/// What a shipped file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShippedKind {
+    /// A procedure.
+    Procedure,
+    /// A limits file.
+    Limits,
+}
+
+/// A file that the program carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shipped {
+    /// Name by which it is found.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: ShippedKind,
+    /// Its text.
+    pub text: &'static str,
+}
+
+macro_rules! shipped {
+    ($kind:ident, $folder:literal: $($name:literal)*) => {
+        &[$(Shipped {
+            name: $name,
+            kind: ShippedKind::$kind,
+            text: include_str!(concat!("../../", $folder, "/", $name, ".toml")),
+        }),*]
+    };
+}
+
+/// Every procedure, by name.
+pub static PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
+    "acceptance"
+    "bias-repeatability"
+    "magnetic-sensitivity"
+    "misalignment"
+    "multi-position"
+    "scale-factor"
+    "static-bias"
+    "supply-sensitivity"
+    "temperature-ramp"
+    "temperature-soak"
+    "threshold"
+    "vibration"
+    "warm-up"
+);
+
+/// Every limits file, by name.
+pub static LIMITS: &[Shipped] = shipped!(Limits, "procedures/limits":
+    "oius-1000"
+    "oius-200"
+    "oius-2000"
+    "oius-501"
+    "sample-temperature"
+    "sample-unit"
+    "sample-warm-up"
+    "tius-500"
+);
+
+impl Shipped {
+    /// Where it stands in the folder of all shipped files.
+    pub fn path(&self) -> String {
+        match self.kind {
+            ShippedKind::Procedure => format!("{}.toml", self.name),
+            ShippedKind::Limits => format!("limits/{}.toml", self.name),
+        }
+    }
+
+    /// Its title, as its file states it.
+    pub fn title(&self) -> &'static str {
+        let line = self.text.lines().find(|l| l.trim_start().starts_with("title"));
+        line.and_then(|l| l.split('"').nth(1)).unwrap_or_default()
+    }
+}
+
+/// The shipped file that a name stands for. `None` for anything with a folder or an ending, which is a path.
+pub fn find(path: &Path) -> Option<&'static Shipped> {
+    let mut parts = path.components();
+    let (Some(Component::Normal(name)), None) = (parts.next(), parts.next()) else { return None };
+    let name = name.to_str()?;
+    PROCEDURES.iter().chain(LIMITS).find(|s| s.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_file_of_the_folder_is_carried_and_no_name_stands_for_two() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("procedures");
+        let names = |folder: &Path| -> BTreeSet<String> {
+            let files = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().path());
+            let toml = files.filter(|f| f.extension().is_some_and(|e| e == "toml"));
+            toml.map(|f| f.file_stem().unwrap().to_string_lossy().into_owned()).collect()
+        };
+        let of = |list: &[Shipped]| -> BTreeSet<String> { list.iter().map(|s| s.name.to_owned()).collect() };
+        assert_eq!(of(PROCEDURES), names(&root));
+        assert_eq!(of(LIMITS), names(&root.join("limits")));
+        assert!(of(PROCEDURES).is_disjoint(&of(LIMITS)));
+        for s in PROCEDURES.iter().chain(LIMITS) {
+            assert!(!s.title().is_empty(), "{}", s.name);
+            assert_eq!(std::fs::read_to_string(root.join(s.path())).unwrap(), s.text);
+        }
+    }
+
+    #[test]
+    fn a_name_is_no_path() {
+        assert_eq!(find(Path::new("static-bias")).map(|s| s.kind), Some(ShippedKind::Procedure));
+        assert_eq!(find(Path::new("sample-unit")).map(|s| s.kind), Some(ShippedKind::Limits));
+        for path in ["./static-bias", "static-bias.toml", "a/static-bias", "", "..", "static"] {
+            assert_eq!(find(Path::new(path)), None, "{path}");
+        }
+    }
+}
