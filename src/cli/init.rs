@@ -169,7 +169,7 @@ fn limits(record: &RunRecord) -> Vec<minijinja::Value> {
         };
         let largest = rows.iter().map(upper).collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
         let unit = &rows.first()?.unit;
-        let measured = format!("95 % interval up to {} {unit}", rounded_up(largest));
+        let measured = format!("{} {unit}", rounded_up(largest));
         let max = toml_text(&format!("{} {unit}", rounded_up(1.5 * largest)));
         (largest > 0.0).then(|| context! { id => *id, name => title(id), measured, max })
     };

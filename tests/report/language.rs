@@ -175,6 +175,19 @@ const LATIN: &[&str] = &[
     "simulation",
     "hide",
     "temp",
+    "ADAPT",
+    "CI",
+    "acceptance",
+    "bash",
+    "completion",
+    "completions",
+    "demo",
+    "init",
+    "local",
+    "man",
+    "mine",
+    "share",
+    "show",
 ];
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
@@ -228,6 +241,9 @@ const SAME: &[&str] = &[
     "explain.fit.log_likelihood",
     "explain.plus_minus",
     "explain.with_interval",
+    "help.schema.value.kind.explain",
+    "reason.with_interval",
+    "terminal.condition_plain",
 ];
 
 fn places(text: &str) -> BTreeSet<String> {

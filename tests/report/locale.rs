@@ -12,6 +12,10 @@ use std::path::Path;
 /// Ids that a record may hold where its documentation lists them.
 const LISTED: &[(&str, &[&str])] = &[
     (
+        "terminal_column",
+        &["interval", "limit", "margin", "met", "parameter", "phase", "quantity", "read", "value", "verdict"],
+    ),
+    (
         "fault",
         &[
             "gap",

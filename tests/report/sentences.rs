@@ -59,6 +59,7 @@ const LITERALS: &[(&str, &str, &str)] = &[
         "is not an argument of this presentation",
         "a fault of the reader of JSON, quoted as it says it",
     ),
+    ("src/cli/demo.rs", "sagnac run static-bias", "a command line"),
     (
         "crates/sagnac-ingest/src/column_inference.rs",
         "the inside units are units",

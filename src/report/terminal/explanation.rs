@@ -10,7 +10,7 @@ use crate::report::translator::Translator;
 pub fn explanation(view: &ExplainView, lang: Lang, terminal: Terminal) -> String {
     let words = Translator { lang };
     let verdict = terminal.verdict(&view.verdict_word.to_uppercase(), view.verdict_class);
-    let mut out = format!("{verdict}  {}\n", visible(&view.title));
+    let mut out = terminal.headed(&verdict, &view.verdict_word, &visible(&view.title));
     out += &terminal.indented(&view.summary);
     for effect in &view.effects {
         out += &format!("\n{}\n", terminal.heading(&visible(&effect.title)));
@@ -24,7 +24,7 @@ pub fn explanation(view: &ExplainView, lang: Lang, terminal: Terminal) -> String
 }
 
 fn parameters(effect: &EffectView, words: Translator, terminal: Terminal) -> String {
-    let column = |id: &str, align| Column { head: words.name("terminal.column", id), align, optional: false };
+    let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, optional: false };
     let columns =
         [column("parameter", Align::Left), column("value", Align::Right), column("interval", Align::Right)];
     let rows: Vec<Vec<Cell>> = effect

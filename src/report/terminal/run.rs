@@ -46,7 +46,7 @@ fn head(view: &View, words: Translator, terminal: Terminal) -> String {
         .flatten()
         .map(|part| visible(part).into_owned())
         .collect();
-    format!("{verdict}  {}\n", parts.join(" · "))
+    terminal.headed(&verdict, &view.verdict_word, &parts.join(" · "))
 }
 
 /// Errors and reasons, each once.
@@ -156,7 +156,7 @@ fn without_limits(view: &View, words: Translator, terminal: Terminal) -> String 
 }
 
 fn column(id: &str, align: Align, optional: bool, words: Translator) -> Column {
-    Column { head: words.name("terminal.column", id), align, optional }
+    Column { head: words.name("terminal_column", id), align, optional }
 }
 
 fn name(row: &Row, several_channels: bool) -> String {

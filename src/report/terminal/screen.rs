@@ -3,6 +3,7 @@
 use super::wrap::wrapped;
 use crate::i18n::visible;
 use anstyle::{AnsiColor, Style};
+use unicode_width::UnicodeWidthStr;
 
 /// What the text is written to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,6 +28,15 @@ impl Terminal {
     /// A word in the colour of a verdict.
     pub(super) fn verdict(self, text: &str, id: &str) -> String {
         self.styled(text, verdict_style(id))
+    }
+
+    /// A styled word with what it is of, on its line or, where that is too long, below it.
+    pub(super) fn headed(self, styled: &str, word: &str, of: &str) -> String {
+        if word.width() + 2 + of.width() > self.width {
+            format!("{styled}\n{}", self.indented([of]))
+        } else {
+            format!("{styled}  {of}\n")
+        }
     }
 
     /// Sentences, each wrapped to the width behind an indent of two columns.

@@ -173,9 +173,19 @@ fn declared(record: &RunRecord, words: Translator) -> Vec<String> {
     names.collect::<std::collections::BTreeSet<String>>().into_iter().collect()
 }
 
+/// Reasons that a record gives for a row; a report states them with their numbers.
+const ROW_REASONS: [&str; 6] = [
+    "summary.row_failed",
+    "summary.row_failed_of",
+    "summary.row_not_shown",
+    "summary.row_not_shown_of",
+    "summary.row_indeterminate",
+    "summary.row_indeterminate_of",
+];
+
 /// The reasons for the verdict; those of rows with their numbers.
 fn summary(record: &RunRecord, several_channels: bool, words: Translator) -> Vec<String> {
-    let is_row = |id: &str| id.starts_with("summary.row_");
+    let is_row = |id: &str| ROW_REASONS.contains(&id);
     let first_row = record.summary.iter().position(|n| is_row(&n.id)).unwrap_or(record.summary.len());
     let (before, after) = record.summary.split_at(first_row);
     let of = |verdict: Verdict| record.measurands.iter().filter(move |m| m.verdict == verdict);
