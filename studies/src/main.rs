@@ -4,17 +4,18 @@ use sagnac_studies::results::{CaseResult, Results, code_commit};
 use sagnac_studies::study::Study;
 use sagnac_studies::{STUDIES, index, pages};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-const USAGE: &str = "usage: cargo xtask validate [STUDY]... [--records N] [--seed N] [--list] [--index]
+const USAGE: &str = "usage: cargo xtask validate [STUDY]... [--records N] [--seed N] [--out DIR] [--list] [--index]
 
 Runs Monte Carlo studies and writes their pages in docs/validation/, generated.md with all of one build, and the misses of
 all pages into README.md there. Pages kept by hand are never overwritten. Without a name: all studies.
 A study that was interrupted goes on after its last finished case, as long as the code is the same.
 --records  records of each case (default: that of the study)
 --seed     first seed (default: 1)
+--out      folder for the pages (default: docs/validation/); the misses in README.md stay as they are
 --list     names the studies
 --index    runs nothing; writes the misses of all pages into README.md
 ";
@@ -23,6 +24,8 @@ struct Options {
     studies: Vec<&'static Study>,
     records: Option<u64>,
     seed: u64,
+    /// Folder for the pages instead of `docs/validation/`.
+    out: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -60,9 +63,14 @@ fn exit_code(done: io::Result<()>) -> ExitCode {
 }
 
 fn parse(arguments: &[String]) -> Result<Options, String> {
-    let mut options = Options { studies: vec![], records: None, seed: 1 };
+    let mut options = Options { studies: vec![], records: None, seed: 1, out: None };
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
+        if argument == "--out" {
+            let folder = rest.next().ok_or("--out lacks a folder")?;
+            options.out = Some(PathBuf::from(folder));
+            continue;
+        }
         let mut number = || {
             let text = rest.next().ok_or_else(|| format!("{argument} lacks a number"))?;
             text.parse::<u64>().map_err(|_| format!("{argument} {text}: not a number"))
@@ -83,10 +91,12 @@ fn parse(arguments: &[String]) -> Result<Options, String> {
     Ok(options)
 }
 
-fn validate(options: &Options, folder: &Path) -> io::Result<()> {
+fn validate(options: &Options, pages: &Path) -> io::Result<()> {
     let root =
         Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or_else(|| io::Error::other("no root folder"))?;
     let commit = code_commit(root)?;
+    let folder = options.out.as_deref().unwrap_or(pages);
+    std::fs::create_dir_all(folder)?;
     for study in &options.studies {
         let records = options.records.unwrap_or(study.records);
         let path = folder.join(format!("{}.json", study.id));
@@ -99,6 +109,9 @@ fn validate(options: &Options, folder: &Path) -> io::Result<()> {
         write_page(&folder.join(format!("{}.md", study.id)), &pages::study_page(study, &results))?;
         results.write(&path)?;
         write_summary(folder, &commit)?;
+        if options.out.is_none() {
+            index::update(folder)?;
+        }
     }
     Ok(())
 }
@@ -138,6 +151,5 @@ fn write_summary(folder: &Path, commit: &str) -> io::Result<()> {
     for study in STUDIES {
         all.extend(Results::read(&folder.join(format!("{}.json", study.id)))?);
     }
-    write_page(&folder.join("generated.md"), &pages::summary(STUDIES, &all, commit))?;
-    index::update(folder)
+    write_page(&folder.join("generated.md"), &pages::summary(STUDIES, &all, commit))
 }

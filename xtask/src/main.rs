@@ -10,7 +10,7 @@ use std::process::{Command, ExitCode};
 
 const USAGE: &str = "usage: cargo xtask COMMAND
 
-validate [STUDY]... [--records N] [--seed N] [--list] [--index]
+validate [STUDY]... [--records N] [--seed N] [--out DIR] [--list] [--index]
     Run Monte Carlo studies and write their pages in docs/validation/.
 study [NAME]
     Run a long study that is an ignored test; without a name: list them.
