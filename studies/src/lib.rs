@@ -4,13 +4,17 @@
 //! `docs/validation/`. Short versions with fixed seeds run with `cargo test`; they use the same functions.
 
 pub mod allan_intervals;
+pub mod chance;
 pub mod comparison;
+pub mod coverage;
 pub mod false_lines;
 pub mod goodness_of_fit;
 pub mod index;
+pub mod influence;
 pub mod pages;
 pub mod results;
 pub mod study;
+pub mod thermal;
 pub mod whole_runs;
 
 use study::Study;
@@ -24,4 +28,9 @@ pub static STUDIES: &[&Study] = &[
     &goodness_of_fit::STUDY,
     &comparison::STUDY,
     &comparison::PUBLISHED,
+    &influence::STUDY,
+    &thermal::INTERVALS,
+    &thermal::AMBIGUITY,
+    &thermal::SLOW_NOISE,
+    &thermal::warm_up::STUDY,
 ];

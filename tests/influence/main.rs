@@ -3,10 +3,10 @@
 //!
 //! `cargo test --release --test influence -- --ignored write_the_samples` writes the samples anew.
 
-mod generator;
 mod study;
 
-use generator::{Noise, Recorded, Series, Turns, linear, squared};
+use sagnac_studies::influence::generator::{Recorded, Series, Turns, linear, squared};
+use sagnac_studies::influence::presets::{FIELD, NOISE, SUPPLY, series, shaken, turns};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -14,46 +14,6 @@ use std::process::Command;
 
 fn root(path: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path)
-}
-
-const NOISE: Noise = Noise { n: 0.002, b: 0.001, k: 0.0003 };
-const LEVEL: f64 = 12.467 + 0.12;
-
-fn series(between: f64) -> Series {
-    Series {
-        runs: 8,
-        run_s: 360.0,
-        pause_s: 1200.0,
-        between,
-        trend: 0.0,
-        per_deg_c: (0.0, 0.3),
-        level: LEVEL,
-        noise: NOISE,
-        dt: 1.0,
-    }
-}
-
-fn turns(levels: &[f64], per_unit: f64) -> Turns {
-    Turns {
-        levels: levels.to_vec(),
-        interval_s: 120.0,
-        bias: linear,
-        per_unit,
-        drift: 0.05,
-        noisier: |_| 1.0,
-        warms: 0.0,
-        level: LEVEL,
-        noise: NOISE,
-        dt: 1.0,
-    }
-}
-
-const FIELD: [f64; 9] = [0.0, 0.5, 0.0, -0.5, 0.0, 0.5, 0.0, -0.5, 0.0];
-const SUPPLY: [f64; 9] = [5.0, 4.75, 5.0, 5.25, 5.0, 4.75, 5.0, 5.25, 5.0];
-const SHAKER: [f64; 9] = [0.0, 2.0, 0.0, 4.0, 0.0, 2.0, 0.0, 4.0, 0.0];
-
-fn shaken(per_unit: f64, noisier: fn(f64) -> f64) -> Turns {
-    Turns { bias: squared, noisier, dt: 0.2, ..turns(&SHAKER, per_unit) }
 }
 
 fn text(serial: &str, level: &str, r: &Recorded) -> String {

@@ -2,8 +2,9 @@
 //!
 //! `cargo test --release --test thermal_study samples -- --ignored` writes them anew.
 
-use crate::chamber::{Leg, Noise, Unit, programme, record, warm_up};
 use assert_cmd::Command;
+use sagnac_studies::chance::Noise;
+use sagnac_studies::thermal::chamber::{Leg, Unit, programme, record, warm_up};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

@@ -1,25 +1,28 @@
 //! A gyro at rest that is switched off and on, or put under an influence. Uses nothing of the program under test.
-#![allow(dead_code)]
 
-#[path = "../../thermal_study/chamber/mod.rs"]
-mod chamber;
-
-pub use chamber::{Chance, Noise, noise};
+use crate::chance::{Chance, Noise, noise};
 
 /// What was recorded: time, rate, temperature, level.
 #[derive(Clone, Debug, Default)]
 pub struct Recorded {
+    /// s
     pub time_s: Vec<f64>,
+    /// deg/h
     pub rate: Vec<f64>,
+    /// degC
     pub temperature: Vec<f64>,
+    /// Of the influence, in its unit.
     pub level: Vec<f64>,
 }
 
 /// A series of runs.
 #[derive(Clone, Debug)]
 pub struct Series {
+    /// Runs of the unit.
     pub runs: usize,
+    /// Length of a run, s.
     pub run_s: f64,
+    /// Time off between runs, s.
     pub pause_s: f64,
     /// Standard deviation of the bias between runs, deg/h.
     pub between: f64,
@@ -27,8 +30,11 @@ pub struct Series {
     pub trend: f64,
     /// Change with the temperature of the run, deg/h/degC, and standard deviation of that, degC.
     pub per_deg_c: (f64, f64),
+    /// Bias and Earth rate together, deg/h.
     pub level: f64,
+    /// Noise of the rate.
     pub noise: Noise,
+    /// Sampling interval, s.
     pub dt: f64,
 }
 
@@ -58,7 +64,9 @@ impl Series {
 /// Intervals in turns at levels.
 #[derive(Clone, Debug)]
 pub struct Turns {
+    /// Level of each interval, in its unit; the first is the reference.
     pub levels: Vec<f64>,
+    /// Length of an interval, s.
     pub interval_s: f64,
     /// Bias at a level, deg/h.
     pub bias: fn(f64, f64) -> f64,
@@ -70,12 +78,16 @@ pub struct Turns {
     pub noisier: fn(f64) -> f64,
     /// degC with the influence, reached at once.
     pub warms: f64,
+    /// Bias and Earth rate together, deg/h.
     pub level: f64,
+    /// Noise of the rate.
     pub noise: Noise,
+    /// Sampling interval, s.
     pub dt: f64,
 }
 
 impl Turns {
+    /// The recording of a seed.
     pub fn record(&self, seed: u64) -> Recorded {
         let mut chance = Chance::new(seed);
         let each = (self.interval_s / self.dt).round() as usize;
