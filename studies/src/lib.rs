@@ -12,6 +12,7 @@ pub mod goodness_of_fit;
 pub mod index;
 pub mod influence;
 pub mod pages;
+pub mod rate_table;
 pub mod results;
 pub mod study;
 pub mod thermal;
@@ -33,4 +34,9 @@ pub static STUDIES: &[&Study] = &[
     &thermal::AMBIGUITY,
     &thermal::SLOW_NOISE,
     &thermal::warm_up::STUDY,
+    &rate_table::intervals::STUDY,
+    &rate_table::tilts::STUDY,
+    &rate_table::KNOWN_INPUTS,
+    &rate_table::zones::DEAD_ZONES,
+    &rate_table::zones::ROUNDED,
 ];

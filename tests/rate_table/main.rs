@@ -1,7 +1,6 @@
-//! Scale factor on a rate table against a table made of geometry: `bench` imports nothing of the program.
+//! Tests on a rate table against a table made of geometry (`sagnac_studies::rate_table::bench`), which imports nothing of the
+//! program. The studies are `cargo xtask validate scale-factor misalignment`.
 
-mod bench;
-mod judged;
 mod motion;
 mod pauses;
 mod positions;
@@ -10,15 +9,11 @@ mod thermometer;
 mod unshown;
 mod zones;
 
-use bench::{Bench, EARTH, Recorded, SmallRates, TwoAxes};
-use judged::{Count, told, truths};
-use rayon::prelude::*;
-use sagnac::estimate::Estimate;
-use sagnac::measurand::{MISALIGNMENT_X, MISALIGNMENT_Y, TableEvidence, find, table_extras};
-use sagnac::rate_table::blocks::{Blocks, Collector};
-use sagnac::rate_table::{Setup, TableRun, alignment, scale_factor};
-use sagnac::recording::{Channel, ColumnRef, Role, SampleBlock, Sink};
-use sagnac::units::Unit;
+use sagnac_studies::rate_table::bench::Bench;
+use sagnac_studies::rate_table::intervals::study;
+use sagnac_studies::rate_table::small::SmallRates;
+use sagnac_studies::rate_table::tilts::tilts;
+use sagnac_studies::rate_table::two_axes::TwoAxes;
 use std::path::PathBuf;
 
 /// Size of a count of the samples, arcsec.
@@ -124,99 +119,6 @@ fn write_the_samples() {
     }
 }
 
-fn run_of(channels: &[(Role, Vec<f64>)], dt: f64, setup: &Setup) -> TableRun {
-    let named: Vec<(&str, Role, Vec<f64>)> = channels.iter().map(|(r, v)| (r.id(), *r, v.clone())).collect();
-    TableRun::new(blocks_of(named, dt), setup)
-}
-
-fn blocks_of(channels: Vec<(&str, Role, Vec<f64>)>, dt: f64) -> Blocks {
-    let list: Vec<Channel> = channels
-        .iter()
-        .map(|(id, role, _)| Channel {
-            id: (*id).into(),
-            column: ColumnRef::Name((*id).into()),
-            role: *role,
-            unit: Unit::parse(role.internal_unit().unwrap()).unwrap(),
-            scale: 1.0,
-        })
-        .collect();
-    let values: Vec<Vec<f64>> = channels.into_iter().map(|c| c.2).collect();
-    let mut collector = Collector::new(&list, dt, None);
-    collector.push(&SampleBlock {
-        first_index: 0,
-        first_row: 1,
-        time_s: 0.0,
-        continues: false,
-        values: &values,
-    });
-    collector.finish(dt)
-}
-
-fn on_bench(bench: &Bench, recorded: &Recorded) -> (TableRun, Setup) {
-    let setup = Setup {
-        settling_s: 4.0,
-        minimum_step_s: 20.0,
-        by_angle: true,
-        angle_uncertainty_arcsec: bench.reading_arcsec,
-        full_scale_deg_h: Some(bench.full_scale()),
-        of_rate_from_deg_h: Some(18_000.0),
-        ..Setup::default()
-    };
-    let channels = [
-        (Role::Rate, recorded.rate_deg_h.clone()),
-        (Role::TableRate, recorded.table_rate_deg_h.clone()),
-        (Role::TableAngle, recorded.table_angle_arcsec.clone()),
-        (Role::Temperature, recorded.temperature.clone()),
-    ];
-    (run_of(&channels, 1.0 / bench.hz, &setup), setup)
-}
-
-/// Coverage over many simulated tests of every measurand that has a truth.
-fn study(bench: &Bench, runs: u64, first: u64) -> Vec<(&'static str, Count)> {
-    let mut counts: Vec<(&'static str, Count)> = vec![];
-    let evaluated = |seed: u64| -> Vec<(&'static str, Estimate, f64, Option<f64>)> {
-        let bench = Bench { seed, ..bench.clone() };
-        let recorded = bench.record();
-        let (run, setup) = on_bench(&bench, &recorded);
-        let found = scale_factor::evaluate(&run, 0, &setup, &table_extras(&|_| true)).expect("a line");
-        let told = told(&bench, &run, &found);
-        let truths = truths(&bench, &recorded, &found).into_iter().filter(|t| t.1.is_finite());
-        let line = Some(found);
-        let evidence = TableEvidence { line, ..TableEvidence::new(0, "rate", &setup, &run.steps) };
-        truths
-            .map(|(id, truth)| {
-                let [estimate] = find(id).unwrap().evaluate_steps(&evidence).try_into().expect("an estimate");
-                (id, estimate, truth, told.get(id).copied())
-            })
-            .collect()
-    };
-    let tests: Vec<_> = (first..first + runs).into_par_iter().map(evaluated).collect();
-    for test in tests {
-        for (id, estimate, truth, told) in test {
-            match counts.iter_mut().find(|c| c.0 == id) {
-                Some((_, count)) => count.take(&estimate, truth, told),
-                None => {
-                    let mut count = Count::default();
-                    count.take(&estimate, truth, told);
-                    counts.push((id, count));
-                }
-            }
-        }
-    }
-    counts
-}
-
-fn benches() -> Vec<(&'static str, Bench)> {
-    let usual = Bench::default();
-    vec![
-        ("usual", usual.clone()),
-        ("drifting", Bench { k: 0.3, b: 0.05, ..usual.clone() }),
-        ("cycles differ", Bench { cycle_ppm: 5.0, ..usual.clone() }),
-        ("hysteresis", Bench { hysteresis_ppm: 3.0, ..usual.clone() }),
-        ("wobble", Bench { tilt: 0.02, dwell_s: 80.0, ..usual }),
-    ]
-}
-
 #[test]
 fn intervals_hold_the_truth() {
     let runs = 24;
@@ -230,65 +132,11 @@ fn intervals_hold_the_truth() {
     }
 }
 
-/// A number of the environment.
-fn asked<T: std::str::FromStr>(name: &str, otherwise: T) -> T {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
-}
-
-#[test]
-#[ignore = "SAGNAC_RUNS=n cargo test --release --test rate_table -- --ignored --nocapture long_study"]
-fn long_study_of_intervals() {
-    let only = std::env::var("SAGNAC_BENCH").unwrap_or_default();
-    for (name, bench) in benches().into_iter().filter(|b| b.0.starts_with(&only)) {
-        println!("{name}");
-        for (id, count) in study(&bench, asked("SAGNAC_RUNS", 1000), asked("SAGNAC_FIRST", 1_000_000)) {
-            count.say(id);
-        }
-    }
-}
-
-fn tilts(runs: u64, first: u64) -> [Count; 2] {
-    let mut counts = [Count::default(), Count::default()];
-    for seed in first..first + runs {
-        let bench = TwoAxes { seed, ..TwoAxes::default() };
-        let r = bench.record();
-        let setup = Setup { settling_s: 4.0, minimum_step_s: 15.0, ..Setup::default() };
-        let channels = [
-            (Role::Rate, r.rate_deg_h),
-            (Role::TableRate, r.inner_rate_deg_h),
-            (Role::TableAngle, r.inner_angle_arcsec),
-            (Role::OuterRate, r.outer_rate_deg_h),
-        ];
-        let run = run_of(&channels, 1.0 / bench.hz, &setup);
-        let vertical = EARTH * bench.latitude.to_radians().sin();
-        let found = alignment::evaluate(&run.steps, "rate", 0, vertical, 0.0);
-        let gain = 1e3 * (1.0 + 1e-6 * bench.error_ppm);
-        let alignment = Some(found);
-        let evidence = TableEvidence { alignment, ..TableEvidence::new(0, "rate", &setup, &run.steps) };
-        for (i, (m, truth)) in
-            [(&MISALIGNMENT_X, bench.tilt.0), (&MISALIGNMENT_Y, bench.tilt.1)].into_iter().enumerate()
-        {
-            counts[i].take(&m.evaluate_steps(&evidence)[0], gain * truth, None);
-        }
-    }
-    counts
-}
-
 #[test]
 fn tilts_of_the_input_axis_come_back() {
     for count in tilts(30, 100) {
         assert_eq!(count.errors.len(), 30);
         assert!(count.held >= 25, "{}", count.held);
         assert!(count.errors.iter().all(|e| e.abs() < 0.005), "{:?}", count.errors);
-    }
-}
-
-#[test]
-#[ignore = "SAGNAC_RUNS=n cargo test --release --test rate_table -- --ignored --nocapture long_study"]
-fn long_study_of_tilts() {
-    for (name, count) in
-        ["x", "y"].iter().zip(tilts(asked("SAGNAC_RUNS", 1000), asked("SAGNAC_FIRST", 1_000_000)))
-    {
-        count.say(name);
     }
 }

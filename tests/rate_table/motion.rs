@@ -1,8 +1,8 @@
 //! A table that needs longer than the settling, and stamps in a wrong unit, name themselves.
 
-use super::bench::Bench;
 use super::runs::run;
 use super::{COUNT, pass, root};
+use sagnac_studies::rate_table::bench::Bench;
 use serde_json::Value;
 
 /// The sample of a good unit with its rows changed: time, counts, rate of the table, angle of the table, temperature.

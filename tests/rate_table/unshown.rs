@@ -1,8 +1,8 @@
 //! What a test cannot show has its row, and a limit on it decides nothing.
 
-use super::bench::TwoAxes;
 use super::runs::run;
 use super::{root, tilted, two_axes_csv};
+use sagnac_studies::rate_table::two_axes::TwoAxes;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;

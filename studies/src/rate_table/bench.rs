@@ -1,20 +1,13 @@
 //! A rate table and a gyro on it as geometry and mechanics. Imports nothing of the program under test.
-#![allow(dead_code)]
 
-mod drift;
-mod small;
-
-use drift::Drift;
-pub use small::SmallRates;
-
+use super::drift::{Drift, normal};
 use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Rotation of the Earth, deg/h (7.292115e-5 rad/s).
 pub const EARTH: f64 = 15.041_067;
 
-const ARCSEC_PER_TURN: f64 = 1_296_000.0;
+pub(super) const ARCSEC_PER_TURN: f64 = 1_296_000.0;
 
 /// A gyro on a table about the vertical.
 #[derive(Debug, Clone)]
@@ -25,31 +18,37 @@ pub struct Bench {
     pub ppm_per_c: f64,
     /// Reference temperature, degC.
     pub reference_c: f64,
-    /// Cubic and quadratic error at full scale, ppm of full scale.
+    /// Cubic error at full scale, ppm of full scale.
     pub cubic_ppm: f64,
+    /// Quadratic error at full scale, ppm of full scale.
     pub even_ppm: f64,
     /// Gap between a rate reached from below and from above, ppm of full scale.
     pub hysteresis_ppm: f64,
     /// Standard deviation of the scale factor between cycles, ppm.
     pub cycle_ppm: f64,
-    /// Bias, deg/h, and its change with temperature, deg/h/degC.
+    /// Bias, deg/h.
     pub bias: f64,
+    /// Its change with temperature, deg/h/degC.
     pub bias_per_c: f64,
-    /// N, deg/sqrt(h); 1/f noise of the one-sided density b²/(2πf), deg/h; K, deg/h/sqrt(h).
+    /// N, deg/sqrt(h).
     pub n: f64,
+    /// 1/f noise of the one-sided density b²/(2πf), deg/h.
     pub b: f64,
+    /// K, deg/h/sqrt(h).
     pub k: f64,
     /// Angle of one count of the output, arcsec; 0 for none.
     pub count_arcsec: f64,
     /// Error of a reading of the table angle, arcsec.
     pub reading_arcsec: f64,
-    /// Tilt of the input axis to the axis of the table, rad, and its direction, rad.
+    /// Tilt of the input axis to the axis of the table, rad.
     pub tilt: f64,
+    /// Direction of the tilt, rad.
     pub direction: f64,
     /// Latitude, deg.
     pub latitude: f64,
     /// Rates of one cycle, deg/s; full scale is the largest.
     pub rates: Vec<f64>,
+    /// Cycles of these rates.
     pub cycles: usize,
     /// Time at a rate, s.
     pub dwell_s: f64,
@@ -59,6 +58,7 @@ pub struct Bench {
     pub hz: f64,
     /// Temperature: mean, drift over the test and amplitude of a swing, degC.
     pub temperature: (f64, f64, f64),
+    /// Seed of the noise.
     pub seed: u64,
 }
 
@@ -101,12 +101,15 @@ impl Default for Bench {
 /// What was recorded.
 #[derive(Debug, Clone, Default)]
 pub struct Recorded {
+    /// s
     pub time_s: Vec<f64>,
+    /// Output of the gyro, deg/h.
     pub rate_deg_h: Vec<f64>,
     /// Rate asked of the table, deg/h.
     pub table_rate_deg_h: Vec<f64>,
     /// Reading of the table angle, arcsec, 0 to a turn.
     pub table_angle_arcsec: Vec<f64>,
+    /// Reading of the thermometer, degC.
     pub temperature: Vec<f64>,
     /// Temperature of every sample without its rounding.
     pub true_temperature: Vec<f64>,
@@ -116,11 +119,8 @@ pub struct Recorded {
     pub cycles_ppm: Vec<f64>,
 }
 
-fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
-    StandardNormal.sample(rng)
-}
-
 impl Bench {
+    /// Largest rate, deg/h.
     pub fn full_scale(&self) -> f64 {
         self.rates.iter().fold(0.0, |m: f64, r| m.max(r.abs())) * 3600.0
     }
@@ -132,6 +132,7 @@ impl Bench {
         1e-6 * full * (self.cubic_ppm * x.powi(3) + self.even_ppm * x * x)
     }
 
+    /// The recording.
     /// The recording.
     pub fn record(&self) -> Recorded {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(self.seed);
@@ -230,111 +231,6 @@ impl Recorded {
                 self.table_angle_arcsec[i] / 3600.0,
                 self.temperature[i]
             ));
-        }
-        out
-    }
-}
-
-/// A triad's axis on a table with a horizontal inner axis on a vertical outer one: the input axis lies nearly along the
-/// inner axis, and the table turns about the outer one.
-#[derive(Debug, Clone)]
-pub struct TwoAxes {
-    /// Tilts of the input axis about x and y of the plate, rad.
-    pub tilt: (f64, f64),
-    pub error_ppm: f64,
-    pub bias: f64,
-    /// N, deg/sqrt(h).
-    pub n: f64,
-    pub latitude: f64,
-    /// Inner angles, deg, and outer rates, deg/s.
-    pub inner: Vec<f64>,
-    pub outer: Vec<f64>,
-    pub dwell_s: f64,
-    pub hz: f64,
-    pub seed: u64,
-}
-
-impl Default for TwoAxes {
-    fn default() -> TwoAxes {
-        TwoAxes {
-            tilt: (1.2e-3, -0.8e-3),
-            error_ppm: 80.0,
-            bias: 0.4,
-            n: 0.004,
-            latitude: 55.98,
-            inner: vec![0.0, 90.0, 180.0, 270.0],
-            outer: vec![0.0, 20.0, -20.0, 0.0],
-            dwell_s: 42.0,
-            hz: 10.0,
-            seed: 1,
-        }
-    }
-}
-
-/// What was recorded on two axes.
-#[derive(Debug, Clone, Default)]
-pub struct TwoAxesRecorded {
-    pub time_s: Vec<f64>,
-    pub rate_deg_h: Vec<f64>,
-    pub inner_rate_deg_h: Vec<f64>,
-    pub inner_angle_arcsec: Vec<f64>,
-    pub outer_rate_deg_h: Vec<f64>,
-}
-
-impl TwoAxes {
-    pub fn record(&self) -> TwoAxesRecorded {
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(self.seed);
-        let dt = 1.0 / self.hz;
-        let mut out = TwoAxesRecorded::default();
-        // z turned by a small vector (θx, θy, 0).
-        let raw = [self.tilt.1, -self.tilt.0, 1.0];
-        let size = raw.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let a = raw.map(|v| v / size);
-        let (sin, cos) = (self.latitude.to_radians().sin(), self.latitude.to_radians().cos());
-        let (mut t, mut beta, mut azimuth, mut rate): (f64, f64, f64, f64) = (0.0, 0.0, 0.3, 0.0);
-        let mut until = 0.0;
-        for inner in &self.inner {
-            for outer in &self.outer {
-                until += self.dwell_s;
-                while t < until - 0.5 * dt {
-                    // The inner axis goes to its angle at 30 deg/s, the outer one to its rate at 20 deg/s².
-                    let move_by =
-                        (inner.to_radians() - beta).clamp(-30f64.to_radians() * dt, 30f64.to_radians() * dt);
-                    let inner_rate = move_by / dt;
-                    rate += (outer - rate).clamp(-20.0 * dt, 20.0 * dt);
-                    let omega = rate.to_radians();
-                    let mid = azimuth + 0.5 * omega * dt;
-                    let b = beta + 0.5 * move_by;
-                    // Frame of the plate in north, west, up: z along the inner axis, x up at β = 0.
-                    let z = [mid.cos(), mid.sin(), 0.0];
-                    let up = [0.0, 0.0, 1.0];
-                    let side = [
-                        z[1] * up[2] - z[2] * up[1],
-                        z[2] * up[0] - z[0] * up[2],
-                        z[0] * up[1] - z[1] * up[0],
-                    ];
-                    let x: Vec<f64> = (0..3).map(|i| up[i] * b.cos() + side[i] * b.sin()).collect();
-                    let y: Vec<f64> = (0..3).map(|i| -up[i] * b.sin() + side[i] * b.cos()).collect();
-                    let axis: Vec<f64> = (0..3).map(|i| a[0] * x[i] + a[1] * y[i] + a[2] * z[i]).collect();
-                    let earth = [EARTH * cos, 0.0, EARTH * sin];
-                    let to_deg_h = 3600.0 * 180.0 / std::f64::consts::PI;
-                    let turning: Vec<f64> =
-                        (0..3).map(|i| (omega * up[i] + inner_rate * z[i]) * to_deg_h + earth[i]).collect();
-                    let input: f64 = (0..3).map(|i| axis[i] * turning[i]).sum();
-                    out.time_s.push(t);
-                    out.rate_deg_h.push(
-                        (1.0 + 1e-6 * self.error_ppm) * input
-                            + self.bias
-                            + self.n / (dt / 3600.0).sqrt() * normal(&mut rng),
-                    );
-                    out.inner_rate_deg_h.push(inner_rate * to_deg_h);
-                    out.inner_angle_arcsec.push(beta.to_degrees().rem_euclid(360.0) * 3600.0);
-                    out.outer_rate_deg_h.push(rate * 3600.0);
-                    azimuth += omega * dt;
-                    beta += move_by;
-                    t += dt;
-                }
-            }
         }
         out
     }

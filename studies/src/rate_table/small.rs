@@ -1,33 +1,42 @@
 //! A gyro at small rates, with or without a dead zone.
 
-use super::drift::Drift;
-use super::{ARCSEC_PER_TURN, EARTH, Recorded, normal};
+use super::bench::{ARCSEC_PER_TURN, EARTH, Recorded};
+use super::drift::{Drift, normal};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// A gyro at small rates about the vertical: the Earth's rotation is part of the input.
 #[derive(Debug, Clone)]
 pub struct SmallRates {
-    /// Half width of the dead zone, deg/h, and whether the output is short by it outside.
+    /// Half width of the dead zone, deg/h.
     pub half_width: f64,
+    /// Whether the output is short by it outside.
     pub subtractive: bool,
     /// Standard deviation of the rate noise inside the loop, which moves the input in and out of the zone, deg/h.
     pub loop_noise: f64,
-    /// N, deg/sqrt(h); 1/f noise of the one-sided density b²/(2πf), deg/h; K, deg/h/sqrt(h).
+    /// N, deg/sqrt(h).
     pub n: f64,
+    /// 1/f noise of the one-sided density b²/(2πf), deg/h.
     pub b: f64,
+    /// K, deg/h/sqrt(h).
     pub k: f64,
     /// Bias behind the zone, deg/h.
     pub bias: f64,
     /// Deviation of the scale factor, ppm.
     pub error_ppm: f64,
+    /// Latitude, deg.
     pub latitude: f64,
-    /// Distance of the rates and their number to each side, deg/h.
+    /// Distance of the rates, deg/h.
     pub spacing: f64,
+    /// Number of the rates to each side.
     pub each_side: i32,
+    /// Time at a rate, s.
     pub dwell_s: f64,
+    /// Error of a reading of the table angle, arcsec.
     pub reading_arcsec: f64,
+    /// Sample rate, Hz.
     pub hz: f64,
+    /// Seed of the noise.
     pub seed: u64,
 }
 

@@ -1,10 +1,15 @@
 //! Flicker and rate random walk, sample by sample.
 
-use super::normal;
+use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+/// A standard normal number.
+pub(super) fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
+    StandardNormal.sample(rng)
+}
+
 /// What drifts.
-pub struct Drift {
+pub(super) struct Drift {
     k: f64,
     walk: f64,
     weight: f64,
@@ -14,7 +19,7 @@ pub struct Drift {
 
 impl Drift {
     /// 1/f noise of the one-sided density b²/(2πf), deg/h, and K, deg/h/sqrt(h).
-    pub fn new(b: f64, k: f64, rng: &mut Xoshiro256PlusPlus) -> Drift {
+    pub(super) fn new(b: f64, k: f64, rng: &mut Xoshiro256PlusPlus) -> Drift {
         let times = (0..16).map(|i| 0.3 * 10f64.powf(f64::from(i) / 3.0));
         let weight = b * (std::f64::consts::LN_10 / 3.0 / (2.0 * std::f64::consts::PI)).sqrt();
         let relax = times.map(|t| (t, weight * normal(rng))).collect();
@@ -22,7 +27,7 @@ impl Drift {
     }
 
     /// The drift of the next sample, deg/h, after so many seconds.
-    pub fn next(&mut self, dt: f64, rng: &mut Xoshiro256PlusPlus) -> f64 {
+    pub(super) fn next(&mut self, dt: f64, rng: &mut Xoshiro256PlusPlus) -> f64 {
         self.walk += self.k * (dt / 3600.0).sqrt() * normal(rng);
         let mut sum = self.walk;
         for (tau, x) in &mut self.relax {

@@ -1,95 +1,11 @@
-//! What studies of tests on a rate table count, the truths of a bench, and a fit that is told them.
+//! The truths of a bench, and a fit that knows its noise.
 
-use crate::bench::{Bench, EARTH, Recorded};
+use super::bench::{Bench, EARTH, Recorded};
 use nalgebra::{DMatrix, DVector};
-use sagnac::estimate::Estimate;
 use sagnac::rate_table::design::Extra;
 use sagnac::rate_table::noise::Rows;
 use sagnac::rate_table::{TableRun, scale_factor};
 use std::collections::BTreeMap;
-
-/// What a study of one measurand counts.
-#[derive(Default)]
-pub struct Count {
-    pub runs: usize,
-    pub held: usize,
-    pub errors: Vec<f64>,
-    pub widths: Vec<f64>,
-    /// Bounds given in place of a value, and those that hold.
-    pub bounds: (usize, usize),
-    /// Rows that state nothing.
-    pub withheld: usize,
-    /// Width over that of a fit that is told the noise.
-    pub over_told: Vec<f64>,
-}
-
-impl Count {
-    pub fn add(&mut self, other: Count) {
-        self.runs += other.runs;
-        self.held += other.held;
-        self.errors.extend(other.errors);
-        self.widths.extend(other.widths);
-        self.bounds = (self.bounds.0 + other.bounds.0, self.bounds.1 + other.bounds.1);
-        self.withheld += other.withheld;
-        self.over_told.extend(other.over_told);
-    }
-
-    pub fn take(&mut self, estimate: &Estimate, truth: f64, told: Option<f64>) {
-        self.runs += 1;
-        match estimate.value {
-            Some(value) => {
-                let interval = estimate.interval95().expect("an interval");
-                self.held += usize::from(interval.low <= truth && truth <= interval.high);
-                self.errors.push(value - truth);
-                self.widths.push(interval.high - interval.low);
-                self.over_told.extend(told.map(|t| (interval.high - interval.low) / (3.919_928 * t)));
-            }
-            None => {
-                let Some(bound) = estimate.upper_limit.map(|u| u.value) else {
-                    self.withheld += 1;
-                    return;
-                };
-                let holds = usize::from(truth.abs() <= bound);
-                self.held += holds;
-                self.bounds = (self.bounds.0 + 1, self.bounds.1 + holds);
-            }
-        }
-    }
-
-    /// Share of the intervals, bounds left out, that hold.
-    pub fn of_intervals(&self) -> f64 {
-        (self.held - self.bounds.1) as f64 / self.errors.len() as f64
-    }
-
-    pub fn say(&self, name: &str) {
-        let (bias, width) = if self.errors.len() > 1 { self.shape() } else { (f64::NAN, f64::NAN) };
-        let mut told = self.over_told.clone();
-        told.sort_by(f64::total_cmp);
-        println!(
-            "  {name:40} {:.3} of all, {:.3} of {} intervals, {} of {} bounds; bias {bias:+.3} sd, width {width:.2} sd, {:.2} of told",
-            self.coverage(),
-            self.of_intervals(),
-            self.errors.len(),
-            self.bounds.1,
-            self.bounds.0,
-            told.get(told.len() / 2).copied().unwrap_or(f64::NAN),
-        );
-    }
-
-    pub fn coverage(&self) -> f64 {
-        self.held as f64 / self.runs as f64
-    }
-
-    /// Mean error over its standard deviation, and median width of an interval over the same.
-    pub fn shape(&self) -> (f64, f64) {
-        let n = self.errors.len() as f64;
-        let mean = self.errors.iter().sum::<f64>() / n;
-        let sd = (self.errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / n).sqrt();
-        let mut widths = self.widths.clone();
-        widths.sort_by(f64::total_cmp);
-        (mean / sd, widths[widths.len() / 2] / sd)
-    }
-}
 
 /// Truths of a bench at the rates of a run, from its own formulas.
 pub fn truths(
@@ -123,7 +39,7 @@ pub fn truths(
         / slope;
     let rms = (left.iter().map(|v| v * v).sum::<f64>() / n).sqrt() * ppm;
     let signs = DMatrix::from_fn(x.len(), 3, |i, j| [1.0, x[i].max(0.0), x[i].min(0.0)][j]);
-    let halves = (signs.transpose() * &signs).cholesky().unwrap();
+    let halves = (signs.transpose() * &signs).cholesky().expect("a design");
     let halves = halves.solve(&(signs.transpose() * DVector::from_column_slice(&y)));
     vec![
         ("scale_factor_asymmetry", 1e6 * (halves[1] - halves[2]) / slope),
@@ -143,7 +59,7 @@ pub fn truths(
     ]
 }
 
-/// Standard deviations of least squares that is told the noise, for what is linear in the response.
+/// Standard deviations of a least-squares fit that knows the noise, for what is linear in the response.
 pub fn told(bench: &Bench, run: &TableRun, found: &scale_factor::ScaleFactor) -> BTreeMap<&'static str, f64> {
     let r = &found.response;
     let parts: Vec<_> = run
@@ -193,7 +109,7 @@ pub fn told(bench: &Bench, run: &TableRun, found: &scale_factor::ScaleFactor) ->
     let levels = covariance.view((0, 0), (count, count)).into_owned();
     let of = |columns: usize, row: &dyn Fn(&DMatrix<f64>) -> Vec<f64>, entry: &dyn Fn(f64, usize) -> f64| {
         let a = DMatrix::from_fn(count, columns, |i, j| entry(r.levels[i], j));
-        let h = (a.transpose() * &a).try_inverse().unwrap() * a.transpose();
+        let h = (a.transpose() * &a).try_inverse().expect("a design") * a.transpose();
         let w = DVector::from_vec(row(&h));
         w.dot(&(&levels * &w)).sqrt()
     };
