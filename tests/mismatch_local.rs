@@ -1,37 +1,16 @@
 //! Bursts, levels of noise and telegraph signals: nothing is claimed of noise that is as claimed, and what was put in is
-//! found. Numbers of the full study are in docs/validation/explanation.md; `cargo test --release --test mismatch_local -- --ignored`
-//! repeats it.
+//! found. The studies are `cargo xtask validate local-false-finds local-effects`.
 
-mod local_support;
-#[path = "local_support/studies.rs"]
-mod studies;
-
-use local_support::*;
-use rayon::prelude::*;
-use sagnac::effect::{Column, Law, Level};
-
-/// p-values of bursts, level and telegraph signal in records of a model.
-fn p_values(model: Model, samples: usize, records: u64) -> Vec<[f64; 3]> {
-    let one = |seed: u64| {
-        let (problem, tried) = model.problem(samples, 1000 + seed, |_| {});
-        let levels = levels(&problem, &tried);
-        [
-            bursts(&problem, &tried).map_or(1.0, |b| b.p_value),
-            levels.iter().map(|l| l.p_value).fold(1.0, f64::min),
-            telegraph(&problem, &tried).map_or(1.0, |t| t.detection.p_value),
-        ]
-    };
-    (0..records).into_par_iter().map(one).collect()
-}
-
-fn below(values: &[[f64; 3]], bound: f64) -> [usize; 3] {
-    [0, 1, 2].map(|i| values.iter().filter(|p| p[i] < bound).count())
-}
+use sagnac::effect::Law;
+use sagnac_studies::single_samples::false_finds::{below, p_values};
+use sagnac_studies::single_samples::inject::{self, Group};
+use sagnac_studies::single_samples::level::{Found, rate_level};
+use sagnac_studies::single_samples::records::{FLICKER, WALK, WHITE, bursts, levels, telegraph};
 
 #[test]
 fn noise_that_is_as_claimed_is_left_alone() {
     for model in [WHITE, FLICKER, WALK] {
-        assert_eq!(below(&p_values(model, 6000, 24), 1e-3), [0; 3], "{model:?}");
+        assert_eq!(below(&p_values(model, 6000, 24, 1000), 1e-3), [0; 3], "{model:?}");
     }
 }
 
@@ -45,7 +24,7 @@ fn bursts_are_found_with_their_groups() {
         });
         let found = bursts(&problem, &tried).unwrap();
         let truth = truth.into_inner();
-        let inside = |i: &&usize| truth.iter().any(|g| **i >= g.0 && **i < g.0 + g.1);
+        let inside = |i: &&usize| truth.iter().any(|g: &Group| g.holds(**i));
         assert_eq!(found.groups.len(), 4, "{found:?} {truth:?}");
         assert!(found.samples.iter().filter(inside).count() as f64 >= 0.85 * found.samples.len() as f64);
         assert!(found.p_value < 1e-10 && found.gain > 60.0 && (found.deviation - 3.0).abs() < 0.7);
@@ -92,24 +71,11 @@ fn a_changing_level_is_found_with_its_ratio() {
     assert!(held >= 5, "{held} of 6 intervals hold the ratio");
 }
 
-/// A level that follows the rate of a table, ±50 deg/s and seven periods: σ² = σ₀² (1 + (ratio² − 1)(|Ω|/max)^q).
-fn rate_level(seed: u64, ratio: f64, exponent: i32) -> (Vec<Level>, f64) {
-    let share = |u: f64| (u * 44.0).sin();
-    let table: Vec<f64> = (0..12_000).map(|i| 50.0 * share((i as f64 + 0.5) / 12_000.0)).collect();
-    let columns = [(Column::TableRate, table.clone())].into_iter().collect();
-    let (problem, tried) = WHITE.with_columns(12_000, 80 + seed, &columns, |r| {
-        let at = |u: f64| (1.0 + (ratio * ratio - 1.0) * share(u).abs().powi(exponent)).sqrt();
-        inject::level(r, WHITE.sigma(), at, seed);
-        r.iter_mut().zip(&table).for_each(|(y, w)| *y += 3600.0 * w);
-    });
-    (levels(&problem, &tried), bursts(&problem, &tried).map_or(1.0, |b| b.p_value))
-}
-
 #[test]
 fn a_level_that_follows_the_rate_is_told_from_time() {
     let mut held = 0;
     for seed in 0..6 {
-        let (found, outliers) = rate_level(seed, 1.5, 1);
+        let Found { levels: found, bursts: outliers } = rate_level(seed, 1.5, 1);
         assert_eq!(found[0].effect.kind(), "noise_variance_rate");
         assert!(matches!(found[0].law, Law::Rate { .. }) && found[0].p_value < 1e-8);
         assert!(outliers > 1e-4);

@@ -14,6 +14,7 @@ pub mod influence;
 pub mod pages;
 pub mod rate_table;
 pub mod results;
+pub mod single_samples;
 pub mod study;
 pub mod thermal;
 pub mod whole_runs;
@@ -39,4 +40,6 @@ pub static STUDIES: &[&Study] = &[
     &rate_table::KNOWN_INPUTS,
     &rate_table::zones::DEAD_ZONES,
     &rate_table::zones::ROUNDED,
+    &single_samples::false_finds::STUDY,
+    &single_samples::DETECTION,
 ];

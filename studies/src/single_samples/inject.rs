@@ -1,10 +1,58 @@
-//! What is put into the noise, with the log-likelihood that it is worth to one who knows all but its size.
+//! What is put into the noise.
 
-use super::{RATE_HZ, normal, random, telegraph_path};
-use rand::RngExt as _;
+use super::records::RATE_HZ;
+use rand::{RngExt as _, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// A generator of its own for what is put in.
+fn random(seed: u64) -> Xoshiro256PlusPlus {
+    Xoshiro256PlusPlus::seed_from_u64(seed ^ 0x7e57)
+}
+
+/// A standard normal number.
+fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+/// A path of 0 and 1 with exponential dwells of mean `dwell` samples, averaged over each sample.
+fn telegraph_path(samples: usize, dwell: f64, seed: u64) -> Vec<f64> {
+    let mut rng = random(seed);
+    let mut up = rng.random::<f64>() < 0.5;
+    let mut left = -dwell * (1.0 - rng.random::<f64>()).ln();
+    (0..samples)
+        .map(|_| {
+            let (mut rest, mut mean) = (1.0, 0.0);
+            while left < rest {
+                mean += if up { left } else { 0.0 };
+                rest -= left;
+                up = !up;
+                left = -dwell * (1.0 - rng.random::<f64>()).ln();
+            }
+            left -= rest;
+            mean + if up { rest } else { 0.0 }
+        })
+        .collect()
+}
+
+/// A run of samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Group {
+    /// Index of its first sample.
+    pub first: usize,
+    /// Number of its samples.
+    pub samples: usize,
+}
+
+impl Group {
+    /// Whether a sample belongs to it.
+    pub fn holds(&self, index: usize) -> bool {
+        (self.first..self.first + self.samples).contains(&index)
+    }
+}
 
 /// Groups of outliers: `lengths` samples each, at random places that do not touch; deviation `times` the noise's.
-pub fn bursts(rate: &mut [f64], sigma: f64, lengths: &[usize], times: f64, seed: u64) -> Vec<(usize, usize)> {
+pub fn bursts(rate: &mut [f64], sigma: f64, lengths: &[usize], times: f64, seed: u64) -> Vec<Group> {
     let mut rng = random(seed);
     let slot = rate.len() / lengths.len();
     let extra = sigma * (times * times - 1.0).max(0.0).sqrt();
@@ -13,7 +61,7 @@ pub fn bursts(rate: &mut [f64], sigma: f64, lengths: &[usize], times: f64, seed:
         let room = slot - 2 * length - 20;
         let first = g * slot + 10 + (rng.random::<f64>() * room as f64) as usize;
         rate[first..first + length].iter_mut().for_each(|y| *y += extra * normal(&mut rng));
-        groups.push((first, *length));
+        groups.push(Group { first, samples: *length });
     }
     groups
 }

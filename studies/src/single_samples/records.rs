@@ -1,11 +1,5 @@
-//! Records for the tests of what shows in single samples: simulated noise, a claim of it, and a hand that changes it.
+//! Records of simulated noise, changed and set against a claim of the noise alone.
 
-use rand::RngExt as _;
-pub mod inject;
-
-use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
-use rand_xoshiro::Xoshiro256PlusPlus;
 use sagnac::config::model::{Claim, Uncertainty};
 use sagnac::effect::{ClaimedMean, Column, Detector, Jumps, Outliers, find};
 use sagnac::mismatch::jumps::jumps;
@@ -90,40 +84,10 @@ impl Model {
 pub fn against(claim: &Claim, rate: &[f64], columns: &BTreeMap<Column, Vec<f64>>) -> (Problem, Tried) {
     let time: Vec<f64> = (0..rate.len()).map(|i| i as f64 / RATE_HZ).collect();
     let columns = columns.iter().map(|(c, v)| (*c, v.as_slice())).collect();
-    let regular = Regular::new(&time, rate, &columns, RATE_HZ).unwrap();
+    let regular = Regular::new(&time, rate, &columns, RATE_HZ).expect("a regular record");
     let problem = Problem::new(&regular, claim);
     let tried = problem.baseline();
     (problem, tried)
-}
-
-/// A generator of its own for what is put in.
-pub fn random(seed: u64) -> Xoshiro256PlusPlus {
-    Xoshiro256PlusPlus::seed_from_u64(seed ^ 0x7e57)
-}
-
-/// A standard normal number.
-pub fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
-    StandardNormal.sample(rng)
-}
-
-/// A path of 0 and 1 with exponential dwells of mean `dwell` samples, averaged over each sample.
-pub fn telegraph_path(samples: usize, dwell: f64, seed: u64) -> Vec<f64> {
-    let mut rng = random(seed);
-    let mut up = rng.random::<f64>() < 0.5;
-    let mut left = -dwell * (1.0 - rng.random::<f64>()).ln();
-    (0..samples)
-        .map(|_| {
-            let (mut rest, mut mean) = (1.0, 0.0);
-            while left < rest {
-                mean += if up { left } else { 0.0 };
-                rest -= left;
-                up = !up;
-                left = -dwell * (1.0 - rng.random::<f64>()).ln();
-            }
-            left -= rest;
-            mean + if up { rest } else { 0.0 }
-        })
-        .collect()
 }
 
 /// Bursts in the residual of a hypothesis.
