@@ -7,10 +7,14 @@ pub mod allan_intervals;
 pub mod chance;
 pub mod comparison;
 pub mod coverage;
+pub mod edges;
+pub mod explain;
 pub mod false_lines;
 pub mod goodness_of_fit;
+pub mod identification;
 pub mod index;
 pub mod influence;
+pub mod noise_source;
 pub mod pages;
 pub mod rate_table;
 pub mod results;
@@ -42,4 +46,18 @@ pub static STUDIES: &[&Study] = &[
     &rate_table::zones::ROUNDED,
     &single_samples::false_finds::STUDY,
     &single_samples::DETECTION,
+    &edges::INFLUENCE,
+    &edges::NOISE,
+    &edges::RATE_TABLE,
+    &edges::SMALL_RATES,
+    &edges::TEMPERATURE,
+    &edges::TILTS,
+    &identification::STUDY,
+    &identification::sample_rates::STUDY,
+    &identification::flicker_or_markov::STUDY,
+    &explain::studies::NULLS,
+    &explain::studies::CLEAR_EFFECTS,
+    &explain::studies::WEAK_EFFECTS,
+    &explain::studies::CLOSED_LOOP,
+    &explain::studies::OTHERS,
 ];

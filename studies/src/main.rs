@@ -140,7 +140,7 @@ fn run(study: &Study, mut results: Results, partial: &Path) -> io::Result<Result
         let rows = (case.run)(results.records, results.seed);
         let elapsed_s = start.elapsed().as_secs_f64();
         eprintln!("{place}: {elapsed_s:.1} s, {} cases left", cases.len() - i - 1);
-        results.cases.push(CaseResult { name: case.name.clone(), elapsed_s, rows });
+        results.cases.push(CaseResult { name: case.name.clone(), elapsed_s: Some(elapsed_s), rows });
         results.write(partial)?;
     }
     Ok(results)

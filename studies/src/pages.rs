@@ -159,7 +159,7 @@ mod tests {
             Row::share("b", "95 % interval holds the truth", Asked::AtLeast(0.93), 800, 1000),
         ];
         let mut results = Results::new(&STUDY, "abc", 1000, 1);
-        results.cases.push(CaseResult { name: "case".into(), elapsed_s: 1.0, rows });
+        results.cases.push(CaseResult { name: "case".into(), elapsed_s: Some(1.0), rows });
         results
     }
 

@@ -28,8 +28,9 @@ pub struct Results {
 pub struct CaseResult {
     /// Name of the case.
     pub name: String,
-    /// Time that it took, in s.
-    pub elapsed_s: f64,
+    /// Time that it took, in s; absent where it was not kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elapsed_s: Option<f64>,
     /// Its rows.
     pub rows: Vec<Row>,
 }

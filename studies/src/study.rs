@@ -139,6 +139,19 @@ impl Row {
         Row::judged(quantity.into(), claim.into(), asked, value.is_finite().then_some(value), None, of)
     }
 
+    /// A number that is no share, with its 95 % interval of the Monte Carlo.
+    pub fn estimate(
+        quantity: impl Into<String>,
+        claim: impl Into<String>,
+        asked: Asked,
+        value: f64,
+        interval: [f64; 2],
+        of: u64,
+    ) -> Row {
+        let measured = value.is_finite().then_some(value);
+        Row::judged(quantity.into(), claim.into(), asked, measured, measured.map(|_| interval), of)
+    }
+
     /// How far the number lies outside what is asked; negative within.
     pub(crate) fn shortfall(&self) -> f64 {
         let (least, most) = self.asked.range();

@@ -1,44 +1,36 @@
-//! The table of edges: how every measurand behaves where a truth lies at its edge, or where a second effect walks in
-//! step with the first.
+//! Every measurand where a truth lies at its edge, or where a second effect walks in step with the first, in short.
 //!
-//! Each family of measurands is one file with its cases and a generator of its own, which imports nothing from the
-//! analysis. A case draws a recording, the procedure and the truth; the program tests it as a user would, and
-//! `result.json` is set against the truth. A short study of every case runs with the tests. The table in
-//! `docs/validation/edges.md` is written by
-//!
-//! ```sh
-//! cargo test --release --test edges -- --ignored --nocapture
-//! ```
-//!
-//! `FAMILY` restricts it to one family, `RECORDS` sets the number of recordings of each case.
+//! A case draws a recording, the procedure and the truth; the program tests it as a user would, and `result.json` is set
+//! against the truth. The studies are `cargo xtask validate edges-influence edges-noise edges-rate-table edges-small-rates
+//! edges-temperature edges-tilts`.
 
-mod case;
-mod influence;
-mod noise;
+mod in_step;
 mod noise_source;
-mod on_table;
-mod page;
-mod rate_table;
-mod small_rates;
-mod study;
-mod temperature;
-mod tilts;
+mod tallies;
 
-use case::Family;
 use sagnac::measurand::MEASURANDS;
-
-/// Every family. One more: one file and one line.
-static FAMILIES: &[&Family] = &[
-    &influence::FAMILY,
-    &noise::FAMILY,
-    &rate_table::FAMILY,
-    &small_rates::FAMILY,
-    &temperature::FAMILY,
-    &tilts::FAMILY,
-];
+use sagnac::record::{MeasurandRecord, RunRecord};
+use sagnac_studies::edges::case::Simulated;
+use sagnac_studies::edges::{FAMILIES, noise, tally};
+use std::path::Path;
+use std::process::Command;
 
 /// Recordings of each case in the study that runs with the tests.
 const SHORT: usize = 8;
+
+/// Runs the program and reads its result.
+fn by_the_program(simulated: &Simulated, folder: &Path) -> Result<Vec<MeasurandRecord>, String> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sagnac"));
+    command.current_dir(folder).env("RAYON_NUM_THREADS", "1");
+    command.args(["run", "p.toml", "r.csv", "--serial", "SN-0001", "--out", "o"]);
+    if simulated.is_limited() {
+        command.args(["--limits", "l.toml"]);
+    }
+    let output = command.output().map_err(|e| e.to_string())?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let text = std::fs::read_to_string(folder.join("o/result.json")).map_err(|e| format!("{e}: {said}"))?;
+    serde_json::from_str::<RunRecord>(&text).map(|r| r.measurands).map_err(|e| e.to_string())
+}
 
 #[test]
 fn every_measurand_stands_in_one_family_and_every_family_is_complete() {
@@ -60,7 +52,7 @@ fn intervals_hold_at_the_edges_in_a_short_study() {
     let mut wrong = Vec::new();
     for family in FAMILIES {
         for case in family.cases {
-            let tallies = study::run(case, SHORT, 0);
+            let tallies = tally::run(case, SHORT, 0, &by_the_program);
             wrong.extend(
                 tallies.iter().filter_map(|t| t.certainly_wrong().map(|why| format!("{}: {why}", case.name))),
             );
@@ -70,20 +62,6 @@ fn intervals_hold_at_the_edges_in_a_short_study() {
 }
 
 #[test]
-#[ignore = "the whole table takes an hour or more"]
-fn the_table() {
-    let only = std::env::var("FAMILY").ok();
-    for family in FAMILIES.iter().filter(|f| only.as_ref().is_none_or(|name| name == f.name)) {
-        let mut results = Vec::new();
-        for case in family.cases {
-            let records = std::env::var("RECORDS").ok().and_then(|r| r.parse().ok()).unwrap_or(case.records);
-            let tallies = study::run(case, records, 1_000_000);
-            for tally in &tallies {
-                println!("{} | {} | {}", family.name, case.name, tally.line());
-            }
-            results.push((case, tallies));
-        }
-        page::keep(family, &results);
-    }
-    page::write(FAMILIES);
+fn slow_terms_have_a_case_at_every_edge() {
+    assert!(noise::SLOW.iter().all(|id| noise::OF_WHITE.contains(id) && noise::OF_BELOW.contains(id)));
 }

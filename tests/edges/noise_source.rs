@@ -1,130 +1,24 @@
-//! Noise of known strength, by sums that share nothing with the analysis.
-//!
-//! Two-sided densities in (deg/h)²/Hz as IEEE Std 952 defines them: white 3600 N², flicker B²/(2πf), random walk
-//! K²/(3600 (2πf)²).
-#![allow(dead_code, reason = "each family uses its own part")]
+//! The noise that edges are simulated with, against closed forms.
 
-use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
-use rand_xoshiro::Xoshiro256PlusPlus;
+use sagnac_studies::noise_source::NoiseSource;
 
-/// A seeded source of normal deviates and of noise made from them.
-pub struct NoiseSource {
-    rng: Xoshiro256PlusPlus,
+/// Mean square of the difference of neighbouring means of `m` samples, halved: the Allan variance.
+fn allan_variance(x: &[f64], m: usize) -> f64 {
+    let means: Vec<f64> = x.chunks_exact(m).map(|c| c.iter().sum::<f64>() / m as f64).collect();
+    means.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>() / (2.0 * (means.len() - 1) as f64)
 }
 
-impl NoiseSource {
-    /// A source of its own for every seed.
-    pub fn new(seed: u64) -> NoiseSource {
-        NoiseSource { rng: Xoshiro256PlusPlus::seed_from_u64(seed) }
-    }
-
-    /// A standard normal deviate.
-    pub fn normal(&mut self) -> f64 {
-        StandardNormal.sample(&mut self.rng)
-    }
-
-    /// A deviate that is uniform between two bounds.
-    pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
-        use rand::RngExt;
-        low + (high - low) * self.rng.random::<f64>()
-    }
-
-    /// White noise of coefficient `n` in deg/√h, in deg/h, sampled every `dt_s`.
-    pub fn white(&mut self, n: f64, dt_s: f64, len: usize) -> Vec<f64> {
-        let sigma = 60.0 * n / dt_s.sqrt();
-        (0..len).map(|_| sigma * self.normal()).collect()
-    }
-
-    /// A random walk of coefficient `k` in deg/h/√h that starts at zero.
-    pub fn walk(&mut self, k: f64, dt_s: f64, len: usize) -> Vec<f64> {
-        let step = k * (dt_s / 3600.0).sqrt();
-        let mut level = 0.0;
-        (0..len)
-            .map(|_| {
-                level += step * self.normal();
-                level
-            })
-            .collect()
-    }
-
-    /// A Gauss-Markov process of standard deviation `sigma` and correlation time `tau_s`, stationary from the start.
-    pub fn markov(&mut self, sigma: f64, tau_s: f64, dt_s: f64, len: usize) -> Vec<f64> {
-        let keep = (-dt_s / tau_s).exp();
-        let fresh = sigma * (1.0 - keep * keep).sqrt();
-        let mut level = sigma * self.normal();
-        (0..len)
-            .map(|_| {
-                let now = level;
-                level = keep * level + fresh * self.normal();
-                now
-            })
-            .collect()
-    }
-
-    /// Flicker of coefficient `b` in deg/h: a ladder of Markov processes, four to the octave in correlation time, from half
-    /// a sample to thirty times the record. The density of a continuum of processes with equal variance
-    /// per logarithm of correlation time is `∫ 2σ²τ/(1+(2πfτ)²) dln τ = σ²/(2f)` two-sided, so that `σ² = B²/π` for
-    /// each unit of ln τ.
-    pub fn flicker(&mut self, b: f64, dt_s: f64, len: usize) -> Vec<f64> {
-        let step = 2f64.ln() / 4.0;
-        let sigma = b * (step / std::f64::consts::PI).sqrt();
-        let longest = 30.0 * dt_s * len as f64;
-        let mut sum = vec![0.0; len];
-        let mut tau = 0.5 * dt_s;
-        while tau < longest {
-            for (s, x) in sum.iter_mut().zip(self.markov(sigma, tau, dt_s, len)) {
-                *s += x;
-            }
-            tau *= step.exp();
-        }
-        sum
-    }
-}
-
-/// Adds one series to another.
-pub fn add(to: &mut [f64], what: &[f64]) {
-    for (t, w) in to.iter_mut().zip(what) {
-        *t += w;
-    }
-}
-
-/// The text of a recording: a header and rows of columns, with as many digits as a double holds to 1e-9 of its size.
-pub fn csv(header: &str, columns: &[&[f64]]) -> String {
-    use std::fmt::Write;
-    let mut text = format!("{header}\n");
-    for row in 0..columns.first().map_or(0, |c| c.len()) {
-        for (i, column) in columns.iter().enumerate() {
-            let comma = if i == 0 { "" } else { "," };
-            let _ = write!(text, "{comma}{:.9}", column[row]);
-        }
-        text.push('\n');
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Mean square of the difference of neighbouring means of `m` samples, halved: the Allan variance.
-    fn allan_variance(x: &[f64], m: usize) -> f64 {
-        let means: Vec<f64> = x.chunks_exact(m).map(|c| c.iter().sum::<f64>() / m as f64).collect();
-        means.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>() / (2.0 * (means.len() - 1) as f64)
-    }
-
-    #[test]
-    fn each_noise_has_the_allan_variance_of_its_closed_form() {
-        let mut source = NoiseSource::new(1);
-        let len = 1 << 20;
-        let tau_h = 256.0 / 3600.0;
-        for (x, expected) in [
-            (source.white(0.01, 1.0, len), 0.01f64.powi(2) / tau_h),
-            (source.flicker(0.1, 1.0, len), 0.1f64.powi(2) * 2.0 * 2f64.ln() / std::f64::consts::PI),
-            (source.walk(0.1, 1.0, len), 0.1f64.powi(2) * tau_h / 3.0),
-        ] {
-            let ratio = allan_variance(&x, 256) / expected;
-            assert!((0.85..1.15).contains(&ratio), "{ratio}");
-        }
+#[test]
+fn each_noise_has_the_allan_variance_of_its_closed_form() {
+    let mut source = NoiseSource::new(1);
+    let len = 1 << 20;
+    let tau_h = 256.0 / 3600.0;
+    for (x, expected) in [
+        (source.white(0.01, 1.0, len), 0.01f64.powi(2) / tau_h),
+        (source.flicker(0.1, 1.0, len), 0.1f64.powi(2) * 2.0 * 2f64.ln() / std::f64::consts::PI),
+        (source.walk(0.1, 1.0, len), 0.1f64.powi(2) * tau_h / 3.0),
+    ] {
+        let ratio = allan_variance(&x, 256) / expected;
+        assert!((0.85..1.15).contains(&ratio), "{ratio}");
     }
 }

@@ -1,21 +1,22 @@
 //! The generator of concealed cases held against closed forms, and its files against the contract.
 
-use crate::support::case::single;
-use crate::support::claim::Claim;
-use crate::support::draw::Draw;
-use crate::support::effect::{DEVELOPMENT_UNKNOWNS, HELD_OUT_UNKNOWNS, KINDS, find};
-use crate::support::files;
-use crate::support::modes::{cosine_modes, mode_frequency};
-use crate::support::noise::{
+use sagnac_studies::explain::case::single;
+use sagnac_studies::explain::claim::Claim;
+use sagnac_studies::explain::draw::Draw;
+use sagnac_studies::explain::files;
+use sagnac_studies::explain::kinds::{DEVELOPMENT_UNKNOWNS, HELD_OUT_UNKNOWNS, KINDS, find};
+use sagnac_studies::explain::modes::{cosine_modes, mode_frequency};
+use sagnac_studies::explain::noise::{
     flicker, markov, markov_variance, quantisation_variance, quantised, random_walk, resonance,
     resonance_variance, white,
 };
-use crate::support::plan::{self, Wish};
-use crate::support::profile::Profile;
-use crate::support::setting::{Scenario, Setting};
-use crate::support::strength::Spectrum;
-use crate::support::thermal::Thermal;
-use crate::support::unknowns::divergence_of_tails;
+use sagnac_studies::explain::plan::{self, Wish};
+use sagnac_studies::explain::profile::Profile;
+use sagnac_studies::explain::scenario::Scenario;
+use sagnac_studies::explain::setting::Setting;
+use sagnac_studies::explain::strength::Spectrum;
+use sagnac_studies::explain::thermal::Thermal;
+use sagnac_studies::explain::unknowns::divergence_of_tails;
 use std::f64::consts::{PI, TAU};
 
 /// Samples and draws of a spectrum's test.

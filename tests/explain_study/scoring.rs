@@ -1,14 +1,16 @@
 //! The judge of the study is judged: scores of hand-made reports, and the fit told the truth against closed forms.
 
-use crate::support::case::{Case, single};
-use crate::support::classes::{CLASSES, SUBSTITUTES, same_class};
-use crate::support::draw::Draw;
-use crate::support::effect::{DEVELOPMENT_UNKNOWNS, HELD_OUT_UNKNOWNS, KINDS, find};
-use crate::support::files;
-use crate::support::oracle::told;
-use crate::support::score::{located, removed, score};
-use crate::support::setting::{Scenario, Setting};
-use crate::support::table::{Row, Tally, by_kind};
+use sagnac_studies::explain::case::{Case, single};
+use sagnac_studies::explain::classes::{CLASSES, SUBSTITUTES, same_class};
+use sagnac_studies::explain::draw::Draw;
+use sagnac_studies::explain::files;
+use sagnac_studies::explain::kinds::{DEVELOPMENT_UNKNOWNS, HELD_OUT_UNKNOWNS, KINDS, find};
+use sagnac_studies::explain::oracle::told;
+use sagnac_studies::explain::rows::of_kinds;
+use sagnac_studies::explain::scenario::Scenario;
+use sagnac_studies::explain::score::{located, removed, score};
+use sagnac_studies::explain::setting::Setting;
+use sagnac_studies::explain::table::{Row, Tally};
 use serde_json::{Value, json};
 
 fn line_case() -> (Case, Value, (Vec<f64>, Vec<f64>)) {
@@ -85,7 +87,7 @@ fn silence_and_nonsense_are_seen() {
     let rows = vec![Row { score: alarm, ..Row::default() }, Row { score: s, ..Row::default() }];
     let tally = Tally::of(rows.iter());
     assert_eq!((tally.cases, tally.detected, tally.sane), (2, 1, 1));
-    assert!(by_kind(&rows).contains("null"));
+    assert!(of_kinds(&rows).iter().any(|r| r.quantity == "null"));
 }
 
 #[test]
@@ -124,7 +126,7 @@ fn white_case(kind: &str, amplitude: f64) -> Case {
     setting.departure = Default::default();
     setting.claim.uncertainty.n_rel = 1e-9;
     let effect = (find(kind).expect("a kind").make)(&mut Draw::new(8, "x"), &setting, amplitude);
-    let left = crate::support::case::Left { effect, strength: 0.0 };
+    let left = sagnac_studies::explain::case::Left { effect, strength: 0.0 };
     Case { name: kind.into(), seed: 8, setting, left_out: vec![left], stated: Vec::new() }
 }
 
@@ -165,14 +167,15 @@ fn the_course_of_a_process_is_predicted_as_well_as_theory_allows() {
     let removed = told(&case, &made).removed.expect("a process adds");
     // Σ P²/(P + λ) over Σ P, from the closed forms alone.
     let s = &case.setting;
-    let Some(crate::support::effect::Process::Markov { sigma, time_s }) = case.left_out[0].effect.process
+    let Some(sagnac_studies::explain::effect::Process::Markov { sigma, time_s }) =
+        case.left_out[0].effect.process
     else {
         panic!("a Markov process");
     };
     let (mut kept, mut all) = (0.0, 0.0);
     for k in 1..s.rows {
-        let f = crate::support::modes::mode_frequency(k, s.rows, s.claim.rate_hz);
-        let p = crate::support::noise::markov_variance(f, s.claim.rate_hz, sigma, time_s);
+        let f = sagnac_studies::explain::modes::mode_frequency(k, s.rows, s.claim.rate_hz);
+        let p = sagnac_studies::explain::noise::markov_variance(f, s.claim.rate_hz, sigma, time_s);
         kept += p * p / (p + s.claim.mode_variance(f, [0.0; 3]));
         all += p;
     }

@@ -1,18 +1,18 @@
 //! The parts of the identification study are themselves checked here: the usual methods on exact variances, the claims
 //! against hand-made identifications, the exchange of a filter and a Markov process.
 
-use crate::study::allan::{self, Point};
-use crate::study::alternatives::{log_log, minimum, nonnegative_variances, slopes};
-use crate::study::claims::{estimate_of, false_claims, swapped};
-use crate::study::mixes::{Kind, Mix, TAU0_S, mixes};
-use crate::study::oracle::Oracle;
-use crate::study::record::{digest, identify};
-use crate::study::run::simulated;
-use crate::study::whittle::Layout;
 use sagnac::estimate::{Estimate, Spread};
 use sagnac::noise::family::Estimator;
 use sagnac::noise::identification::{MarkovFound, QuasiPeriodicFound};
 use sagnac::noise::model::{NoiseModel, TERMS};
+use sagnac_studies::identification::allan::{self, Point};
+use sagnac_studies::identification::alternatives::{log_log, minimum, nonnegative_variances, slopes};
+use sagnac_studies::identification::claims::{estimate_of, false_claims, swapped};
+use sagnac_studies::identification::mixes::{Kind, Mix, TAU0_S, mixes};
+use sagnac_studies::identification::oracle::Oracle;
+use sagnac_studies::identification::record::{digest, identify};
+use sagnac_studies::identification::run::simulated;
+use sagnac_studies::identification::whittle::Layout;
 
 fn mix(name: &str) -> Mix {
     mixes().into_iter().find(|m| m.name == name).expect("a mix")

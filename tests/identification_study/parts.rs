@@ -1,10 +1,6 @@
 //! Identification with parts beside N, B, K, Q and R: quantisation that another part could stand for, and intervals
 //! without a second search.
 
-use crate::study::generator::Generator;
-use crate::study::mixes::{Mix, TAU0_S, mixes};
-use crate::study::record::{digest, identify};
-use crate::study::run::simulated;
 use sagnac::noise::composite::{Composite, Sampling};
 use sagnac::noise::data::NoiseType;
 use sagnac::noise::evidence::Evidence;
@@ -12,6 +8,10 @@ use sagnac::noise::identification::{
     Identification, Options, complete, describe, identify as identify_terms,
 };
 use sagnac::noise::model::NoiseModel;
+use sagnac_studies::identification::generator::Generator;
+use sagnac_studies::identification::mixes::{Mix, TAU0_S, mixes};
+use sagnac_studies::identification::record::{digest, identify};
+use sagnac_studies::identification::run::simulated;
 
 const SAMPLES: usize = 36_000;
 

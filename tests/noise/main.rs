@@ -4,8 +4,6 @@ mod described_noise;
 mod evidence;
 mod identification;
 mod no_false_part;
-#[path = "../edges/noise_source.rs"]
-mod noise_source;
 mod readouts;
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,8 +1,8 @@
 //! No part of a record that is not there: white noise is not split, no part exceeds the record, a record that moves shows no
 //! noise at rest, clipped values are told.
 
-use crate::noise_source::{NoiseSource, add, csv};
 use crate::support::{result, sagnac};
+use sagnac_studies::noise_source::{NoiseSource, add, csv};
 use serde_json::Value;
 use std::path::Path;
 

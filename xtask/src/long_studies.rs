@@ -1,4 +1,5 @@
-//! Long Monte Carlo studies that are ignored tests, because they share their generators with the tests of every day.
+//! Long studies that are ignored tests, because they check every case and measure no rate: all corruptions of all samples,
+//! many kills. Monte Carlo studies are those of `cargo xtask validate`.
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -10,64 +11,18 @@ struct LongStudy {
     title: &'static str,
     /// Arguments of `cargo test` that select it.
     target: &'static [&'static str],
-    /// Names of its tests begin or contain this.
-    filter: &'static str,
 }
 
 const STUDIES: &[LongStudy] = &[
     LongStudy {
-        name: "edges",
-        title: "Every measurand at the edges of its range; writes edges.md (an hour; FAMILY, RECORDS)",
-        target: &["--test", "edges"],
-        filter: "the_table",
-    },
-    LongStudy {
-        name: "noise",
-        title: "Identification of noise, every mix at two lengths (hours)",
-        target: &["--test", "identification_study"],
-        filter: "long_study",
-    },
-    LongStudy {
-        name: "explain",
-        title: "Explanations of concealed effects (hours; KINDS, COUNT, SEED, STRENGTH)",
-        target: &["--test", "explain_study"],
-        filter: "study",
-    },
-    LongStudy {
-        name: "local-effects",
-        title: "Steps, telegraph signals, outliers: false finds, detection, confusion (an hour)",
-        target: &["--test", "mismatch_local"],
-        filter: "study_of",
-    },
-    LongStudy {
-        name: "temperature",
-        title: "Temperature: intervals with and without dwells, warm-up, settling (an hour; SAGNAC_RUNS, SAGNAC_FIRST)",
-        target: &["--test", "thermal_study"],
-        filter: "",
-    },
-    LongStudy {
-        name: "rate-table",
-        title: "Rate table: intervals, tilts, positions, dead zones (an hour; SAGNAC_RUNS, SAGNAC_FIRST)",
-        target: &["--test", "rate_table"],
-        filter: "long_study",
-    },
-    LongStudy {
-        name: "influence",
-        title: "Magnetic field, supply, vibration, repeatability (an hour; SAGNAC_RUNS, SAGNAC_FIRST)",
-        target: &["--test", "influence"],
-        filter: "long",
-    },
-    LongStudy {
         name: "drill",
         title: "Every corruption of every sample; SAGNAC_WRITE_DRILL=1 writes drill.md (minutes)",
         target: &["--test", "drill"],
-        filter: "",
     },
     LongStudy {
         name: "kills",
         title: "A run that is killed 200 times (minutes)",
         target: &["--test", "atomic"],
-        filter: "",
     },
 ];
 
@@ -86,7 +41,7 @@ pub fn run(root: &Path, arguments: &[String]) -> ExitCode {
         .current_dir(root)
         .args(["test", "--release", "--package", "sagnac"])
         .args(study.target)
-        .args([study.filter, "--", "--ignored", "--nocapture", "--skip", "write_"])
+        .args(["--", "--ignored", "--nocapture"])
         .status();
     match status {
         Ok(status) if status.success() => ExitCode::SUCCESS,

@@ -13,7 +13,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
 validate [STUDY]... [--records N] [--seed N] [--out DIR] [--list] [--index]
     Run Monte Carlo studies and write their pages in docs/validation/.
 study [NAME]
-    Run a long study that is an ignored test; without a name: list them.
+    Run a long study of corrupted samples or killed runs, which is an ignored test; without a name: list them.
 same-results OLD NEW [--only TEXT]
     Run every shipped sample with two binaries and compare their result.json: numbers to the last digit.
 features [CARGO OPTION]...
