@@ -3,6 +3,7 @@
 
 use sagnac_studies::pages::GENERATED;
 use sagnac_studies::{STUDIES, index};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -151,6 +152,20 @@ fn the_summary_of_validation_has_what_every_page_misses() {
     }
     let expected = index::with_misses(&summary, &pages).unwrap();
     assert!(summary == expected, "`cargo xtask validate --index` writes it anew");
+}
+
+#[test]
+fn studies_and_their_cases_have_names_of_their_own_and_stand_in_the_summary() {
+    let summary = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation/README.md");
+    let summary = fs::read_to_string(summary).unwrap();
+    let mut ids = BTreeSet::new();
+    for study in STUDIES {
+        assert!(ids.insert(study.id), "two studies are named {}", study.id);
+        assert!(summary.contains(&format!("`cargo xtask validate {}`", study.id)), "{}", study.id);
+        let cases = (study.cases)();
+        let names: BTreeSet<&str> = cases.iter().map(|c| c.name.as_str()).collect();
+        assert!(!cases.is_empty() && names.len() == cases.len(), "{}", study.id);
+    }
 }
 
 #[test]

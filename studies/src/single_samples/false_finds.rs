@@ -55,7 +55,6 @@ fn claims(change: &Change, seeds: std::ops::Range<u64>) -> [u64; 3] {
 }
 
 /// Other effects by their names.
-#[allow(clippy::too_many_lines, reason = "a list")]
 fn others() -> Vec<(&'static str, Change)> {
     let sigma = WHITE.sigma();
     let ramp = move |rate: &mut [f64], size: f64| {
