@@ -4,7 +4,6 @@ use super::mixes::Kind;
 use super::rivals::TELLING;
 use super::run::IDENTIFIABLE;
 use super::tally::{METHODS, Tally};
-use crate::coverage::median;
 use crate::study::{Asked, Row};
 use sagnac::noise::data::NoiseType;
 
@@ -88,14 +87,6 @@ fn of_false_claims(tally: &Tally) -> Vec<Row> {
     );
     let restricted = tally.records.iter().filter(|r| r.restricted).count() as u64;
     rows.push(Row::share("fit", "range restricted or interval widened", Asked::Nothing, restricted, records));
-    let seconds: Vec<f64> = tally.records.iter().map(|r| r.seconds).collect();
-    rows.push(Row::number(
-        "fit",
-        "median time of an identification, s",
-        Asked::Nothing,
-        median(&seconds),
-        records,
-    ));
     rows
 }
 

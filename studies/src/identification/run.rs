@@ -98,9 +98,7 @@ impl Study<'_> {
         let truth = &self.mix.truth;
         let y = self.samples_of(run, seed);
         let digest = digest(&y, TAU0_S);
-        let start = std::time::Instant::now();
         let ranged = identify(&digest);
-        let seconds = start.elapsed().as_secs_f64();
         let found = &ranged.identification;
 
         let data = self.layout.data(&y);
@@ -140,7 +138,6 @@ impl Study<'_> {
             false_claims: false_claims(found, truth),
             swap,
             restricted: ranged.highest_hz.is_some() || ranged.widened > 1.0,
-            seconds,
         }
     }
 

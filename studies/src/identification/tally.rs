@@ -38,8 +38,6 @@ pub struct Judged {
     pub swap: Option<f64>,
     /// Whether the fit covers a part of the frequencies or widens its intervals.
     pub restricted: bool,
-    /// Time of the identification, s.
-    pub seconds: f64,
 }
 
 /// One mix over many records.
