@@ -8,6 +8,7 @@ pub mod comparison;
 pub mod false_lines;
 pub mod goodness_of_fit;
 pub mod index;
+pub mod laboratory;
 pub mod pages;
 pub mod results;
 pub mod study;
@@ -24,4 +25,5 @@ pub static STUDIES: &[&Study] = &[
     &goodness_of_fit::STUDY,
     &comparison::STUDY,
     &comparison::PUBLISHED,
+    &laboratory::study::STUDY,
 ];
