@@ -47,7 +47,8 @@ impl Answer {
     /// Reads the report; what it lacks is empty. `None` without a verdict.
     pub fn of(report: &Value, correction: Vec<[f64; 2]>) -> Option<Answer> {
         let verdict = report["verdict"].as_str()?.to_owned();
-        let effects = report["effects"].as_array().map_or_else(Vec::new, |all| all.iter().map(entry).collect());
+        let effects =
+            report["effects"].as_array().map_or_else(Vec::new, |all| all.iter().map(entry).collect());
         Some(Answer { verdict, effects, correction })
     }
 
@@ -112,7 +113,9 @@ fn entry(value: &Value) -> Entry {
     };
     Entry {
         kind: owned(&value["kind"]).unwrap_or_default(),
-        equivalents: value["equivalents"].as_array().map_or_else(Vec::new, |all| all.iter().filter_map(owned).collect()),
+        equivalents: value["equivalents"]
+            .as_array()
+            .map_or_else(Vec::new, |all| all.iter().filter_map(owned).collect()),
         parameters,
         places,
         column: owned(&value["column"]),

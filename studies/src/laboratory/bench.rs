@@ -46,7 +46,8 @@ impl Bench {
     /// A unit at rest: 2 to 12 h at 1 to 10 Hz, 20 000 to 80 000 rows.
     pub fn new(mut dice: Dice) -> Bench {
         let rate_hz = *dice.one_of(&[1.0, 2.0, 4.0, 5.0, 10.0]);
-        let hours = dice.uniform((20_000.0 / rate_hz / 3600.0f64).max(2.0), (80_000.0 / rate_hz / 3600.0f64).min(12.0));
+        let hours = dice
+            .uniform((20_000.0 / rate_hz / 3600.0f64).max(2.0), (80_000.0 / rate_hz / 3600.0f64).min(12.0));
         Bench::of_length(dice, rate_hz, hours)
     }
 
@@ -61,11 +62,8 @@ impl Bench {
         let levels = instrument(&mut dice);
         let levels_rel = [dice.uniform(0.008, 0.025), dice.uniform(0.06, 0.18), dice.uniform(0.08, 0.22)];
         let off = levels_rel.map(|rel| 1.0 + rel * dice.within_two());
-        let claimed = Levels {
-            n: short(levels.n / off[0]),
-            b: short(levels.b / off[1]),
-            k: short(levels.k / off[2]),
-        };
+        let claimed =
+            Levels { n: short(levels.n / off[0]), b: short(levels.b / off[1]), k: short(levels.k / off[2]) };
         let bias_sd_deg_h = short(10.0 * (levels.b + levels.n));
         let bias = short(dice.sign() * dice.decades(100.0, 1000.0) * levels.n);
         let claim = Claim {
@@ -189,7 +187,8 @@ impl Bench {
 
     /// Records some of the quantities that are not recorded yet.
     pub fn record_others(&mut self, count: usize) {
-        let mut names: Vec<&str> = SURROUNDINGS.into_iter().filter(|n| !self.columns.contains_key(*n)).collect();
+        let mut names: Vec<&str> =
+            SURROUNDINGS.into_iter().filter(|n| !self.columns.contains_key(*n)).collect();
         self.dice.shuffle(&mut names);
         names.into_iter().take(count).for_each(|name| self.record(name));
     }
@@ -229,7 +228,10 @@ fn surrounding(name: &str, dice: &mut Dice, span: &Span) -> (Vec<f64>, Sensor) {
         _ => {
             let volts = supply::voltage(dice, span);
             let (level, gain) = (dice.uniform(80.0, 200.0), dice.uniform(3.0, 15.0));
-            (volts.iter().map(|v| level + gain * (v / volts[0] - 1.0) * 100.0).collect(), sensor(0.0, 0.05, 0.02))
+            (
+                volts.iter().map(|v| level + gain * (v / volts[0] - 1.0) * 100.0).collect(),
+                sensor(0.0, 0.05, 0.02),
+            )
         }
     }
 }
@@ -241,4 +243,38 @@ pub fn short(value: f64) -> f64 {
     }
     let scale = 10f64.powi(3 - value.abs().log10().floor() as i32);
     (value * scale).round() / scale
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::oracle::Oracle;
+
+    #[test]
+    fn the_residual_of_a_right_claim_is_standard_normal_mode_by_mode() {
+        let scenes: [fn(&mut Bench); 5] = [
+            |b| b.record_others(5),
+            |b| b.warm(true, Pace::Quick),
+            |b| b.turn(Programme::Steps),
+            |b| b.turn(Programme::Swings),
+            |b| b.index(true),
+        ];
+        let (mut low, mut of) = (0.0, 0.0);
+        for (seed, scene) in (100u64..).zip(scenes) {
+            let mut bench = Bench::new(Dice::new(seed));
+            scene(&mut bench);
+            // What is true within the uncertainties takes the place of the claim.
+            bench.claim = bench.right.clone();
+            let white = Oracle::new(&bench.claim, &bench.columns, &bench.residual()).whitened();
+            let n = white.len() as f64;
+            let moment = |p: i32| white.iter().map(|x| x.powi(p)).sum::<f64>() / n;
+            assert!(moment(1).abs() < 5.0 / n.sqrt(), "{seed}: {}", moment(1));
+            assert!((moment(2) - 1.0).abs() < 0.01 + 5.0 * (2.0 / n).sqrt(), "{seed}: {}", moment(2));
+            assert!((moment(4) - 3.0).abs() < 0.05 + 5.0 * (96.0 / n).sqrt(), "{seed}: {}", moment(4));
+            low += white[..200].iter().map(|x| x * x).sum::<f64>();
+            of += 200.0;
+        }
+        // The slow modes, where flicker and random walk rule.
+        assert!((low / of - 1.0).abs() < 4.5 * (2.0f64 / of).sqrt(), "{}", low / of);
+    }
 }

@@ -84,7 +84,13 @@ fn finish(
         decoys: decoys.cloned().collect(),
         concealed,
     };
-    Case { truth, time_s: bench.time_s(), rate_deg_h: bench.rate(), claim: bench.claim, columns: bench.columns }
+    Case {
+        truth,
+        time_s: bench.time_s(),
+        rate_deg_h: bench.rate(),
+        claim: bench.claim,
+        columns: bench.columns,
+    }
 }
 
 /// A claim that is right, in any of the scenes, with up to five columns that drive nothing.
@@ -163,4 +169,66 @@ fn dropped(mut dice: Dice, strength: Strength, seed: u64) -> Case {
     keep(&mut case.rate_deg_h);
     case.columns.values_mut().for_each(keep);
     case
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::catalogue::names;
+    use crate::laboratory::truth::Half;
+
+    #[test]
+    fn a_seed_gives_one_recording() {
+        for name in ["temp_rate", "quasi_periodic", NULL] {
+            let [a, b, other] = [3, 3, 5].map(|seed| make(name, Strength::Clear, seed).unwrap());
+            assert!(a.rate_deg_h == b.rate_deg_h && a.columns == b.columns && a.truth == b.truth, "{name}");
+            assert_ne!(a.rate_deg_h, other.rate_deg_h, "{name}");
+        }
+    }
+
+    #[test]
+    fn effects_are_as_strong_as_asked() {
+        for name in ["temp_hysteresis", "sf_supply", "excess_rrw", "quantization", "heading_change", "chirp"]
+        {
+            for strength in Strength::ALL {
+                let case = make(name, strength, 2).unwrap();
+                let [low, high] = strength.gains();
+                let gain = case.truth.concealed[0].gain.unwrap();
+                assert!((low..=high).contains(&gain), "{name} {strength:?}: {gain}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_told_is_what_was_added() {
+        // The rate less the contribution is that of a right claim: its modes have the variance of the claimed noise.
+        let mut case = make("column_linear", Strength::Clear, 4).unwrap();
+        let told = case.truth.contribution();
+        case.rate_deg_h.iter_mut().zip(&told).for_each(|(r, t)| *r -= t);
+        let mean = case.claim.mean(&case.columns, case.rate_deg_h.len());
+        let left: Vec<f64> = case.rate_deg_h.iter().zip(mean).map(|(r, m)| r - m).collect();
+        let white = Oracle::new(&case.claim, &case.columns, &left).whitened();
+        let power = white.iter().map(|x| x * x).sum::<f64>() / white.len() as f64;
+        // N may be off by two standard deviations of 2.5 %, its power by twice that.
+        assert!((power - 1.0).abs() < 0.12, "{power}");
+    }
+
+    #[test]
+    fn lost_rows_are_lost_from_every_column() {
+        let case = make(DROPPED, Strength::Clear, 1).unwrap();
+        let rows = case.time_s.len();
+        assert!(case.rate_deg_h.len() == rows && case.columns.values().all(|c| c.len() == rows));
+        let whole = ((case.time_s[rows - 1] - case.time_s[0]) * case.claim.rate_hz).round() as usize + 1;
+        assert_eq!((whole - rows) as f64, case.truth.concealed[0].parameters["missing_rows"]);
+    }
+
+    #[test]
+    fn the_halves_share_no_case_and_no_kind_of_unknown_physics() {
+        let held = |name: &&str| half(name, 1) == Half::HeldOut;
+        let unknown = names(Family::Unknown);
+        assert!(unknown.iter().all(|n| half(n, 1) == half(n, 2)));
+        let of = unknown.iter().filter(|n| held(n)).count();
+        assert!(unknown.len() >= 10 && unknown.len().abs_diff(2 * of) <= 1, "{of} of {}", unknown.len());
+        assert_ne!(half("line", 1), half("line", 2));
+    }
 }

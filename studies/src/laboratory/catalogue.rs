@@ -88,7 +88,12 @@ pub static SUBJECTS: &[Subject] = &[
     one(Noise, "noise_variance_time", noise::at_rest, &[noise::level_in_time]),
     one(Noise, "noise_variance_rate", noise::on_table, &[noise::level_by_rate]),
     one(Several, "curve_and_rate", temperature::quick, &[temperature::polynomial, temperature::rate]),
-    one(Several, "curve_and_hysteresis", temperature::quick, &[temperature::polynomial, temperature::hysteresis]),
+    one(
+        Several,
+        "curve_and_hysteresis",
+        temperature::quick,
+        &[temperature::polynomial, temperature::hysteresis],
+    ),
     one(Several, "rate_and_walk", temperature::quick, &[temperature::rate, noise::walk]),
     one(
         Several,
@@ -100,7 +105,12 @@ pub static SUBJECTS: &[Subject] = &[
     one(Several, "supply_and_white", driver::among_decoys, &[driver::supply, noise::white]),
     one(Several, "column_and_supply", driver::among_decoys, &[driver::column_linear, driver::supply]),
     one(Several, "column_and_bursts", driver::among_decoys, &[driver::column_curve, event::bursts]),
-    one(Several, "scale_by_temperature_and_error", table::steps_in_chamber, &[table::by_temperature, table::error]),
+    one(
+        Several,
+        "scale_by_temperature_and_error",
+        table::steps_in_chamber,
+        &[table::by_temperature, table::error],
+    ),
     one(Several, "offset_and_asymmetry", table::swings, &[table::offset, table::asymmetry]),
     one(Several, "saturation_and_harmonic", table::turning, &[table::harmonic, table::limit]),
     one(Several, "step_and_line", event::at_rest, &[event::step, event::line]),

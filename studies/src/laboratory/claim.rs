@@ -37,7 +37,8 @@ impl Claim {
     /// The claimed mean, deg/h per row.
     pub fn mean(&self, columns: &Columns, rows: usize) -> Vec<f64> {
         let mut mean = vec![self.bias_deg_h; rows];
-        if let (Some([coefficient, reference, _]), Some(deg_c)) = (self.temperature, columns.get("temp_degC")) {
+        if let (Some([coefficient, reference, _]), Some(deg_c)) = (self.temperature, columns.get("temp_degC"))
+        {
             mean.iter_mut().zip(deg_c).for_each(|(m, t)| *m += coefficient * (t - reference));
         }
         if let Some(rate) = columns.get("table_rate_deg_s") {

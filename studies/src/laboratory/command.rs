@@ -13,7 +13,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Help of the commands.
-pub const USAGE: &str = "usage: sagnac-studies laboratory-write DIR [--half HALF] [--family NAME] [--subject NAME] \
+pub const USAGE: &str =
+    "usage: sagnac-studies laboratory-write DIR [--half HALF] [--family NAME] [--subject NAME] \
 [--strength NAME] [--count N] [--seed N]
        sagnac-studies laboratory-explain DIR [--again]
        sagnac-studies laboratory-score DIR [--wrong]
@@ -134,8 +135,10 @@ fn write(asked: &Asked) -> Result<(), String> {
 
 /// Folders with a truth, in order.
 fn folders(of: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut all: Vec<PathBuf> =
-        std::fs::read_dir(of)?.filter_map(|e| e.ok().map(|e| e.path())).filter(|p| p.join("truth.json").exists()).collect();
+    let mut all: Vec<PathBuf> = std::fs::read_dir(of)?
+        .filter_map(|e| e.ok().map(|e| e.path()))
+        .filter(|p| p.join("truth.json").exists())
+        .collect();
     all.sort();
     Ok(all)
 }
@@ -165,9 +168,13 @@ fn score(asked: &Asked) -> Result<(), String> {
     }
     for half in Half::ALL {
         for family in Family::ALL {
-            let own: Vec<Score> = scores.iter().filter(|s| s.half == half && s.family == family).cloned().collect();
+            let own: Vec<Score> =
+                scores.iter().filter(|s| s.half == half && s.family == family).cloned().collect();
             if !own.is_empty() {
-                println!("{}", tally::table(&format!("{}, {}", family.name(), half.name()), &tally::rows(family, &own)));
+                println!(
+                    "{}",
+                    tally::table(&format!("{}, {}", family.name(), half.name()), &tally::rows(family, &own))
+                );
             }
         }
     }

@@ -17,8 +17,9 @@ impl Dice {
     /// The source of a text and a seed: subjects of the same seed share no draw.
     pub fn of(text: &str, seed: u64) -> Dice {
         // FNV-1a: the standard library's hash may change between versions.
-        let hash =
-            text.bytes().fold(0xcbf2_9ce4_8422_2325u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+        let hash = text
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
         Dice::new(hash ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
 

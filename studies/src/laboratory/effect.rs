@@ -7,6 +7,9 @@ use super::oracle::{Density, Oracle};
 use super::truth::{Concealed, Place};
 use std::collections::BTreeMap;
 
+/// Less than this part of the variance counts as nothing that could be predicted.
+const PREDICTABLE: f64 = 0.3;
+
 /// A contribution of a size, deg/h per row.
 pub type OfSize<T> = Box<dyn Fn(&Bench, f64) -> T>;
 
@@ -83,17 +86,13 @@ pub struct Effect {
     pub claimed: f64,
     /// How it comes into the rate.
     pub shape: Shape,
-    /// Parameters and places, from bench, size and contribution.
-    pub facts: Box<dyn Fn(&Bench, f64, &[f64]) -> Facts>,
+    /// Parameters and places, from bench and size.
+    pub facts: Box<dyn Fn(&Bench, f64) -> Facts>,
 }
 
 impl Effect {
     /// An effect of a kind.
-    pub fn new(
-        kind: &'static str,
-        shape: Shape,
-        facts: impl Fn(&Bench, f64, &[f64]) -> Facts + 'static,
-    ) -> Effect {
+    pub fn new(kind: &'static str, shape: Shape, facts: impl Fn(&Bench, f64) -> Facts + 'static) -> Effect {
         Effect {
             kind,
             subject: kind,
@@ -194,10 +193,11 @@ impl Effect {
     pub fn conceal(&self, bench: &mut Bench, oracle: &Oracle, asked: f64) -> Option<Hidden> {
         let (size, gain) = self.size_for(bench, oracle, asked)?;
         for claim in [&mut bench.claim, &mut bench.right] {
-            claim.temperature = claim.temperature.map(|[c, reference, sd]| [c + self.claimed * size, reference, sd]);
+            claim.temperature =
+                claim.temperature.map(|[c, reference, sd]| [c + self.claimed * size, reference, sd]);
         }
         let contribution = self.contribution(bench, size);
-        let facts = (self.facts)(bench, size, &contribution);
+        let facts = (self.facts)(bench, size);
         let mut parameters = facts.parameters;
         let adds = !matches!(self.shape, Shape::Spread(_));
         if adds {
@@ -206,7 +206,9 @@ impl Effect {
         let modes = oracle.modes(&contribution);
         let possible = match (&self.shape, self.latent) {
             (Shape::Spread(_), _) => None,
-            (_, true) | (Shape::Process(..), _) => Some(oracle.predictable(&modes)).filter(|p| *p > 0.05),
+            (_, true) | (Shape::Process(..), _) => {
+                Some(oracle.predictable(&modes)).filter(|p| *p > PREDICTABLE)
+            }
             // What one amplitude that is estimated loses.
             _ => Some(1.0 - 1.0 / (2.0 * gain)),
         };

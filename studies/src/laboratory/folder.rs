@@ -47,3 +47,28 @@ fn recording(case: &Case) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::case::make;
+    use crate::laboratory::truth::Strength;
+
+    #[test]
+    fn a_folder_holds_the_case() {
+        let case = make("supply_sensitivity", Strength::Middling, 6).unwrap();
+        let at = std::env::temp_dir().join(format!("laboratory-folder-{}", std::process::id()));
+        write(&case, &at).unwrap();
+        let back = truth(&at).unwrap();
+        let text = fs::read_to_string(at.join("recording.csv")).unwrap();
+        let model = fs::read_to_string(at.join("model.toml")).unwrap();
+        fs::remove_dir_all(&at).unwrap();
+        assert_eq!(text.lines().count(), case.time_s.len() + 1);
+        assert!(text.starts_with("time_s,rate_deg_h,") && text.lines().next().unwrap().contains("supply_v"));
+        assert!(model.contains("[uncertainty]") && model.contains("supply_v"), "{model}");
+        let (told, kept) = (case.truth.contribution(), back.contribution());
+        let most = told.iter().fold(0.0f64, |m, t| m.max(t.abs()));
+        assert!(told.iter().zip(&kept).all(|(a, b)| (a - b).abs() < 1e-4 * most));
+        assert_eq!(back.concealed[0].parameters, case.truth.concealed[0].parameters);
+    }
+}

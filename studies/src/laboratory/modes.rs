@@ -87,7 +87,8 @@ mod tests {
             let fast = cosine_transform(&x);
             for (k, value) in fast.iter().enumerate() {
                 let norm = if k == 0 { (1.0 / n as f64).sqrt() } else { (2.0 / n as f64).sqrt() };
-                let slow: f64 = (0..n).map(|j| x[j] * (PI * k as f64 * (j as f64 + 0.5) / n as f64).cos()).sum();
+                let slow: f64 =
+                    (0..n).map(|j| x[j] * (PI * k as f64 * (j as f64 + 0.5) / n as f64).cos()).sum();
                 assert!((value - norm * slow).abs() < 1e-10, "{n} {k}: {value} {}", norm * slow);
             }
             let mean = x.iter().sum::<f64>() / n as f64;

@@ -58,7 +58,9 @@ impl Motion {
 
     /// Mean rate in each sampling interval, deg/s.
     pub fn rate_deg_s(&self) -> Vec<f64> {
-        (0..self.rows()).map(|i| (self.turned_deg[FINE * (i + 1)] - self.turned_deg[FINE * i]) * self.rate_hz).collect()
+        (0..self.rows())
+            .map(|i| (self.turned_deg[FINE * (i + 1)] - self.turned_deg[FINE * i]) * self.rate_hz)
+            .collect()
     }
 
     /// Mean rate in each sampling interval as a late clock sees it: `late_s` of the time in s, in s.
@@ -109,10 +111,11 @@ fn follow(targets: &[(f64, f64)], acceleration: f64, count: usize, fine_s: f64) 
 }
 
 fn steps(dice: &mut Dice, count: usize, fine_s: f64) -> Vec<f64> {
-    let largest = dice.decades(8.0, 150.0);
+    let largest = dice.decades(2.0, 150.0);
     let levels = dice.count(3, 6);
-    let mut list: Vec<f64> =
-        (1..=levels).flat_map(|l| [1.0, -1.0].map(|s| s * largest * (l as f64 / levels as f64).powf(1.3))).collect();
+    let mut list: Vec<f64> = (1..=levels)
+        .flat_map(|l| [1.0, -1.0].map(|s| s * largest * (l as f64 / levels as f64).powf(1.3)))
+        .collect();
     list.extend([0.0, 0.0]);
     dice.shuffle(&mut list);
     let dwell = dice.uniform(25.0, 160.0);
@@ -121,7 +124,7 @@ fn steps(dice: &mut Dice, count: usize, fine_s: f64) -> Vec<f64> {
 }
 
 fn swings(dice: &mut Dice, count: usize, fine_s: f64) -> Vec<f64> {
-    let largest = dice.decades(5.0, 60.0);
+    let largest = dice.decades(0.03, 5.0);
     let tones: Vec<[f64; 3]> =
         (0..3).map(|_| [dice.uniform(0.3, 1.0), dice.decades(15.0, 300.0), dice.uniform(0.0, TAU)]).collect();
     let total: f64 = tones.iter().map(|t| t[0]).sum();

@@ -69,7 +69,7 @@ pub fn flicker(dice: &mut Dice, b: f64, rows: usize, rate_hz: f64) -> Vec<f64> {
     let sigma = b * (spacing / PI).sqrt();
     let duration_s = rows as f64 / rate_hz;
     let mut decay = TAU / (20.0 * duration_s);
-    while decay < PI * rate_hz {
+    while decay < TAU * rate_hz {
         let part = relaxation(dice, rows, 1.0 / rate_hz, 1.0 / decay, sigma);
         sum.iter_mut().zip(part).for_each(|(s, p)| *s += p);
         decay *= spacing.exp();
@@ -101,7 +101,9 @@ mod tests {
         for draw in 0..60 {
             let noise = Parts::draw(&mut Dice::new(seed + draw), levels, rows, rate_hz).sum();
             let modes = Modes::of(&noise, rate_hz);
-            for (f, x) in modes.frequency_hz.iter().zip(&modes.value).filter(|(f, _)| (band[0]..band[1]).contains(*f)) {
+            for (f, x) in
+                modes.frequency_hz.iter().zip(&modes.value).filter(|(f, _)| (band[0]..band[1]).contains(*f))
+            {
                 sum += x * x / (levels.density(*f) * rate_hz);
                 of += 1.0;
             }

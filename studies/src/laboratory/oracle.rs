@@ -51,9 +51,9 @@ impl Oracle {
         if let (Some([_, sd]), Some(rate)) = (claim.scale_ppm, columns.get("table_rate_deg_s")) {
             terms.push(rate.iter().map(|r| 3.6e-3 * sd * r).collect());
         }
-        let linear = terms.iter().map(|t| {
-            Modes::of(t, claim.rate_hz).value.iter().zip(&sigma).map(|(v, s)| v / s).collect()
-        });
+        let linear = terms
+            .iter()
+            .map(|t| Modes::of(t, claim.rate_hz).value.iter().zip(&sigma).map(|(v, s)| v / s).collect());
         Oracle {
             rate_hz: claim.rate_hz,
             linear: linear.collect(),
@@ -122,11 +122,8 @@ impl Oracle {
     /// Penalised log-likelihood, its nuisances at their best.
     fn likelihood(&self, modes: &[f64], density: &Density) -> f64 {
         let (left, linear_cost) = self.without_linear(modes);
-        let power: Vec<f64> = self
-            .bands
-            .iter()
-            .map(|b| left[b.from..b.to].iter().map(|x| x * x).sum::<f64>())
-            .collect();
+        let power: Vec<f64> =
+            self.bands.iter().map(|b| left[b.from..b.to].iter().map(|x| x * x).sum::<f64>()).collect();
         self.fit_levels(&power, density) - linear_cost
     }
 
@@ -180,7 +177,8 @@ impl Oracle {
     /// Variances of a mode due to N, B, K and the rest.
     fn parts(&self, frequency_hz: f64, density: &Density) -> [f64; 4] {
         let nothing = Levels { n: 0.0, b: 0.0, k: 0.0 };
-        let of = |levels: Levels| (density.factor)(frequency_hz) * levels.density(frequency_hz) * self.rate_hz;
+        let of =
+            |levels: Levels| (density.factor)(frequency_hz) * levels.density(frequency_hz) * self.rate_hz;
         let Levels { n, b, k } = density.levels;
         [
             of(Levels { n, ..nothing }),
@@ -247,4 +245,47 @@ fn solve(mut m: [[f64; 3]; 3], mut y: [f64; 3]) -> [f64; 3] {
         y[i] /= m[i][i];
     }
     y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::bench::Bench;
+    use crate::laboratory::dice::Dice;
+
+    #[test]
+    fn the_gain_of_a_fast_course_is_that_of_the_matched_filter() {
+        let bench = Bench::new(Dice::new(11));
+        let oracle = Oracle::new(&bench.claim, &bench.columns, &bench.residual());
+        // Far above the corner of flicker: half the energy over the variance, give or take its root.
+        let sigma = 60.0 * bench.right.levels.n * bench.rate_hz.sqrt();
+        let course: Vec<f64> = (0..bench.rows).map(|i| 0.1 * sigma * (2.0 * i as f64).sin()).collect();
+        let expected = 0.25 * 0.01 * bench.rows as f64;
+        let gain = oracle.course_gain(&oracle.modes(&course));
+        assert!((gain - expected).abs() < 4.0 * (2.0 * expected).sqrt(), "{gain} {expected}");
+    }
+
+    #[test]
+    fn nothing_is_gained_from_nothing() {
+        let bench = Bench::new(Dice::new(12));
+        let oracle = Oracle::new(&bench.claim, &bench.columns, &bench.residual());
+        assert_eq!(oracle.course_gain(&vec![0.0; bench.rows - 1]), 0.0);
+    }
+
+    #[test]
+    fn what_the_claim_may_move_gains_nothing() {
+        let mut bench = Bench::new(Dice::new(13));
+        bench.turn(crate::laboratory::motion::Programme::Steps);
+        let oracle = Oracle::new(&bench.claim, &bench.columns, &bench.residual());
+        // A scale factor off by half of its uncertainty, against one off by fifty.
+        let sd = bench.claim.scale_ppm.map_or(0.0, |[_, sd]| sd);
+        let off = |sds: f64| -> f64 {
+            let course: Vec<f64> =
+                bench.columns["table_rate_deg_s"].iter().map(|r| 3.6e-3 * sds * sd * r).collect();
+            oracle.course_gain(&oracle.modes(&course))
+        };
+        assert!(off(0.5).abs() < 2.0, "{}", off(0.5));
+        // The likelihood is flat under a wide uncertainty, so that only moving it costs.
+        assert!(off(50.0) > 500.0, "{}", off(50.0));
+    }
 }

@@ -134,7 +134,8 @@ fn overlaps(said: &Place, real: &Place) -> bool {
 fn intervals(truth: &Truth, answer: &Answer) -> Vec<Held> {
     let mut all = vec![];
     for part in &truth.concealed {
-        let Some(entry) = answer.effects.iter().find(|e| e.kind == part.kind && matches(part, e, false)) else {
+        let Some(entry) = answer.effects.iter().find(|e| e.kind == part.kind && matches(part, e, false))
+        else {
             continue;
         };
         for (name, real) in &part.parameters {
@@ -212,7 +213,10 @@ mod tests {
         let answer = answer(json!([entry]), vec![[0.0, 5.0], [3.0, 8.0]]);
         let score = Score::of(&truth(), &answer, &[0.0, 1.0, 2.0, 3.0], Some("consistent"));
         assert!(score.detected && score.named_first && score.named && score.located && score.found == 1);
-        assert_eq!((score.extra, score.decoys_named, score.law, score.closes), (0, 0, Some(true), Some(true)));
+        assert_eq!(
+            (score.extra, score.decoys_named, score.law, score.closes),
+            (0, 0, Some(true), Some(true))
+        );
         assert_eq!(score.intervals, [Held { of: "column_driver coefficient".into(), holds: true }]);
         assert_eq!(score.explained, Some(1.0));
     }
@@ -232,7 +236,10 @@ mod tests {
         let wrong = json!({"kind": "line"});
         let answer = answer(json!([right, beside, wrong]), vec![]);
         let score = Score::of(&truth(), &answer, &[0.0, 1.0, 2.0, 3.0], Some("mismatch"));
-        assert!(!score.named_first && score.named && score.extra == 1 && score.closes == Some(false), "{score:?}");
+        assert!(
+            !score.named_first && score.named && score.extra == 1 && score.closes == Some(false),
+            "{score:?}"
+        );
     }
 
     #[test]

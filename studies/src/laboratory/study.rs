@@ -28,7 +28,9 @@ fn cases() -> Vec<Case> {
     for half in Half::ALL {
         for family in Family::ALL {
             let name = format!("{}, {}", family.name(), half.name());
-            cases.push(Case::new(name, move |records, seed| run(family, half, records, 1 + 100_000 * (seed - 1))));
+            cases.push(Case::new(name, move |records, seed| {
+                run(family, half, records, 1 + 100_000 * (seed - 1))
+            }));
         }
     }
     cases

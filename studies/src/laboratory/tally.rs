@@ -33,7 +33,9 @@ fn strength_rows(family: Family, strength: Strength, of: &[&Score]) -> Vec<Row> 
     let clear = strength == Strength::Clear;
     let when = |asked: f64| if clear { Asked::AtLeast(asked) } else { Asked::Nothing };
     let mut rows =
-        vec![share(name, "detected", if clear { Asked::Nothing } else { Asked::AtLeast(0.85) }, of, |s| s.detected)];
+        vec![share(name, "detected", if clear { Asked::Nothing } else { Asked::AtLeast(0.85) }, of, |s| {
+            s.detected
+        })];
     let names = match (family, clear) {
         (Family::Unknown, true) => Asked::AtLeast(0.8),
         (Family::Unknown, false) => Asked::AtLeast(0.5),
@@ -42,13 +44,20 @@ fn strength_rows(family: Family, strength: Strength, of: &[&Score]) -> Vec<Row> 
     rows.push(share(name, "named first or as one of three equivalents", names, of, |s| s.named));
     rows.push(share(name, "named first", Asked::Nothing, of, |s| s.named_first));
     if family == Family::Several {
-        let (found, concealed) = of.iter().fold((0, 0), |(f, c), s| (f + s.found as u64, c + s.concealed as u64));
+        let (found, concealed) =
+            of.iter().fold((0, 0), |(f, c), s| (f + s.found as u64, c + s.concealed as u64));
         rows.push(Row::share(name, "each of the effects named", Asked::Nothing, found, concealed));
     }
     rows.push(share(name, "located", when(0.9), of, |s| s.located));
     let held: Vec<bool> = of.iter().flat_map(|s| s.intervals.iter().map(|i| i.holds)).collect();
     let hits = held.iter().filter(|h| **h).count() as u64;
-    rows.push(Row::share(name, "95 % intervals hold the truth", Asked::Between(0.93, 0.97), hits, held.len() as u64));
+    rows.push(Row::share(
+        name,
+        "95 % intervals hold the truth",
+        Asked::Between(0.93, 0.97),
+        hits,
+        held.len() as u64,
+    ));
     let parts: Vec<f64> = of.iter().filter_map(|s| s.explained).collect();
     let mean = parts.iter().sum::<f64>() / parts.len() as f64;
     rows.push(Row::number(name, "explained variance over the possible", when(0.9), mean, parts.len() as u64));

@@ -26,7 +26,11 @@ pub fn programme(dice: &mut Dice, duration_s: f64, low: f64, high: f64) -> (f64,
         left -= legs[0].duration_s;
     }
     while left > 0.0 {
-        let to = if up { dice.uniform(high - 0.3 * (high - low), high) } else { dice.uniform(low, low + 0.3 * (high - low)) };
+        let to = if up {
+            dice.uniform(high - 0.3 * (high - low), high)
+        } else {
+            dice.uniform(low, low + 0.3 * (high - low))
+        };
         let ramp_s = (to - at).abs() / rate_per_h * 3600.0 * dice.uniform(0.8, 1.25);
         let soak_s = dice.uniform(0.02, 0.18) * duration_s;
         legs.push(Leg { to_deg_c: to, duration_s: ramp_s.max(60.0) });
@@ -55,8 +59,7 @@ pub fn air(dice: &mut Dice, span: &Span, start_deg_c: f64, legs: &[Leg]) -> Vec<
                 (since, from) = (since - legs[leg].duration_s, legs[leg].to_deg_c);
                 leg += 1;
             }
-            let wanted =
-                legs.get(leg).map_or(from, |l| from + (l.to_deg_c - from) * since / l.duration_s);
+            let wanted = legs.get(leg).map_or(from, |l| from + (l.to_deg_c - from) * since / l.duration_s);
             let wish = match inside - wanted {
                 e if e > band => -1.0,
                 e if e < -band => 1.0,
@@ -66,10 +69,18 @@ pub fn air(dice: &mut Dice, span: &Span, start_deg_c: f64, legs: &[Leg]) -> Vec<
             if wish != effort && held >= shortest {
                 (effort, held) = (wish, 0.0);
             }
-            let power = if effort > 0.0 { heat } else if effort < 0.0 { -cold } else { 0.0 };
+            let power = if effort > 0.0 {
+                heat
+            } else if effort < 0.0 {
+                -cold
+            } else {
+                0.0
+            };
             let now = inside;
             inside += span.step_s
-                * ((power + wall - inside) / (2.0 * air_s) + (wall - inside) / air_s + (room - inside) / 20_000.0);
+                * ((power + wall - inside) / (2.0 * air_s)
+                    + (wall - inside) / air_s
+                    + (room - inside) / 20_000.0);
             wall += span.step_s * (inside - wall) / wall_s;
             since += span.step_s;
             now

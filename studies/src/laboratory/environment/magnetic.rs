@@ -18,7 +18,11 @@ pub fn field(dice: &mut Dice, span: &Span) -> Vec<f64> {
             left -= span.step_s;
             if left < 0.0 {
                 // Accelerating, coasting or gone; at night gone most of the time.
-                current = if dice.chance(busyness(span.hour(i))) { *dice.one_of(&[0.0, 0.4, 1.0, -0.6]) } else { 0.0 };
+                current = if dice.chance(busyness(span.hour(i))) {
+                    *dice.one_of(&[0.0, 0.4, 1.0, -0.6])
+                } else {
+                    0.0
+                };
                 current *= dice.uniform(0.5, 1.5);
                 left = dice.waiting(45.0);
             }

@@ -30,7 +30,8 @@ pub fn air(dice: &mut Dice, span: &Span, outside_deg_c: &[f64]) -> Vec<f64> {
                 running = if running { inside > wanted - band } else { inside > wanted + band };
             }
             let now = inside;
-            let draught = if open_s > 0.0 { (0.5 * (outside_deg_c[i] + wanted) - inside) / 2500.0 } else { 0.0 };
+            let draught =
+                if open_s > 0.0 { (0.5 * (outside_deg_c[i] + wanted) - inside) / 2500.0 } else { 0.0 };
             open_s -= span.step_s;
             inside += span.step_s
                 * ((0.3 * outside_deg_c[i] + 0.7 * wanted + 0.8 - inside) / leak_s

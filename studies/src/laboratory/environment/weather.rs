@@ -48,11 +48,14 @@ pub fn weather(dice: &mut Dice, span: &Span) -> Weather {
     let outside = |i: usize| {
         let day = (TAU * (span.hour(i) - peak_hour) / 24.0).cos();
         // The night is flatter than the day.
-        warm + swing * (day + 0.2 * (2.0 * TAU * (span.hour(i) - peak_hour) / 24.0).cos()) - 2.2 * shared[i] + 1.5 * own[i]
+        warm + swing * (day + 0.2 * (2.0 * TAU * (span.hour(i) - peak_hour) / 24.0).cos()) - 2.2 * shared[i]
+            + 1.5 * own[i]
     };
     Weather {
         pressure_hpa: (0..span.length)
-            .map(|i| mean + deep * shared[i] + gusts[i] + tide * (2.0 * TAU * (span.hour(i) - 10.0) / 24.0).cos())
+            .map(|i| {
+                mean + deep * shared[i] + gusts[i] + tide * (2.0 * TAU * (span.hour(i) - 10.0) / 24.0).cos()
+            })
             .collect(),
         outside_deg_c: (0..span.length).map(outside).collect(),
         humidity_pct: (0..span.length)

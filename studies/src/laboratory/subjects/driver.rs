@@ -49,7 +49,7 @@ fn followed(law: Law, course: &[f64], bench: &mut Bench) -> (Shape, f64) {
 pub fn supply(bench: &mut Bench) -> Effect {
     let course = bench.surroundings["supply_v"].clone();
     let (shape, per_size) = followed(Law::Linear, &course, bench);
-    let mut effect = Effect::new("supply_sensitivity", shape, move |bench, size, _| {
+    let mut effect = Effect::new("supply_sensitivity", shape, move |bench, size| {
         let [low, high] = range_of(&bench.columns["supply_v"]);
         Facts::default().at("supply", low, high).with("coefficient_deg_h_per_V", size * per_size)
     });
@@ -61,7 +61,7 @@ fn column(bench: &mut Bench, law: Law) -> Effect {
     let (name, course) = driver(bench);
     let (shape, per_size) = followed(law, &course, bench);
     let of = name.clone();
-    let mut effect = Effect::new("column_driver", shape, move |bench, size, _| {
+    let mut effect = Effect::new("column_driver", shape, move |bench, size| {
         let [low, high] = range_of(&bench.columns[&of]);
         let facts = Facts::default().at("driver", low, high).at("time", 0.0, bench.duration_s());
         match law {
@@ -113,11 +113,15 @@ pub fn noise_level(bench: &mut Bench) -> Effect {
         levels.iter().map(|l| (1.0 + 0.1 * size * (l + 0.15 * l * l)).max(0.2)).collect()
     };
     let again = level;
-    let mut effect = Effect::new("noise_variance_driver", Shape::Spread(Box::new(spread_of_size)), move |b, size, _| {
-        let [low, high] = range_of(&b.columns[&of]);
-        let [least, most] = range_of(&again).map(|l| (1.0 + 0.1 * size * (l + 0.15 * l * l)).max(0.2));
-        Facts::default().at("driver", low, high).at("time", 0.0, b.duration_s()).with("ratio", (most / least).max(least / most))
-    });
+    let mut effect =
+        Effect::new("noise_variance_driver", Shape::Spread(Box::new(spread_of_size)), move |b, size| {
+            let [low, high] = range_of(&b.columns[&of]);
+            let [least, most] = range_of(&again).map(|l| (1.0 + 0.1 * size * (l + 0.15 * l * l)).max(0.2));
+            Facts::default()
+                .at("driver", low, high)
+                .at("time", 0.0, b.duration_s())
+                .with("ratio", (most / least).max(least / most))
+        });
     effect.column = Some(name);
     effect
 }
@@ -155,7 +159,7 @@ fn scale(bench: &mut Bench, name: &'static str, recorded: bool) -> Effect {
     let sign = bench.dice.sign();
     let rate = &bench.columns["table_rate_deg_s"];
     let course = rows.iter().zip(rate).map(|(x, r)| sign * (x - middle) / spread * 3.6e-3 * r).collect();
-    let mut effect = Effect::new("sf_driver", Shape::Course(course), move |bench, size, _| {
+    let mut effect = Effect::new("sf_driver", Shape::Course(course), move |bench, size| {
         let [low, high] = range_of(&bench.columns["table_rate_deg_s"]);
         let facts = Facts::default().at("input_rate", low, high).at("time", 0.0, bench.duration_s());
         let Some(values) = bench.columns.get(name) else { return facts };

@@ -26,7 +26,7 @@ pub fn line(bench: &mut Bench) -> Effect {
     let frequency = dice.decades(10.0 / bench.duration_s(), 0.45 * bench.rate_hz);
     let phase = dice.uniform(0.0, TAU);
     let course = averaged(bench, |t| (TAU * frequency * t + phase).cos());
-    Effect::new("line", Shape::Course(course), move |bench, size, _| {
+    Effect::new("line", Shape::Course(course), move |bench, size| {
         let wide = 1.0 / bench.duration_s();
         Facts::default()
             .at("frequency", frequency - wide, frequency + wide)
@@ -54,7 +54,7 @@ pub fn resonant(bench: &mut Bench) -> Effect {
             size * size * box_car * (half(frequency) + half(-frequency))
         }),
     });
-    Effect::new("quasi_periodic", Shape::Process(added, law), move |_, size, _| {
+    Effect::new("quasi_periodic", Shape::Process(added, law), move |_, size| {
         let half = 2.0 / (TAU * decay);
         Facts::default()
             .at("frequency", (frequency - half).max(0.0), frequency + half)
@@ -71,7 +71,7 @@ pub fn strokes(bench: &mut Bench) -> Effect {
     let (start, fall) = (dice.uniform(0.0, 1.0), dice.uniform(0.04, 0.12) * period);
     let sign = dice.sign();
     let course = averaged(bench, |t| sign * (-((t / period + start).fract() * period) / fall).exp());
-    Effect::new("comb", Shape::Course(course), move |bench, _, _| {
+    Effect::new("comb", Shape::Course(course), move |bench, _| {
         Facts::default()
             .at("frequency", 0.99 / period, (6.01 / period).min(bench.rate_hz / 2.0))
             .with("fundamental_hz", 1.0 / period)
@@ -93,7 +93,7 @@ pub fn bursts(bench: &mut Bench) -> Effect {
         groups.push([at, at + length]);
     }
     groups.sort_unstable();
-    Effect::new("outlier_bursts", Shape::Course(course), move |bench, _, _| {
+    Effect::new("outlier_bursts", Shape::Course(course), move |bench, _| {
         let mut facts = Facts::default();
         for [from, to] in &groups {
             facts = facts.at("time", *from as f64 / bench.rate_hz, *to as f64 / bench.rate_hz);
@@ -110,7 +110,7 @@ pub fn telegraph(bench: &mut Bench) -> Effect {
     let mut dice = bench.dice.fork();
     let dwell = bench.duration_s() / dice.decades(6.0, 60.0);
     let course = two_levels(&mut dice, bench.rows, 1.0 / bench.rate_hz, dwell);
-    Effect::new("random_telegraph", Shape::Course(course), move |bench, size, _| {
+    Effect::new("random_telegraph", Shape::Course(course), move |bench, size| {
         Facts::default()
             .at("time", 0.0, bench.duration_s())
             .with("amplitude_deg_h", size)
@@ -125,7 +125,7 @@ pub fn step(bench: &mut Bench) -> Effect {
     let at = dice.uniform(0.12, 0.88) * bench.duration_s();
     let sign = dice.sign();
     let course = averaged(bench, |t| if t < at { 0.0 } else { sign });
-    Effect::new("bias_step", Shape::Course(course), move |bench, size, _| {
+    Effect::new("bias_step", Shape::Course(course), move |bench, size| {
         // What the noise leaves open of the instant is a hundredth of the record.
         let near = 0.01 * bench.duration_s();
         Facts::default().at("time", at - near, at + near).with("step_deg_h", sign * size).with("time_s", at)
@@ -150,13 +150,16 @@ pub fn slip(bench: &mut Bench) -> Effect {
         // Degrees; a mount that slips by more than a right angle has fallen off.
         let slip = sign * (0.01 * size).min(90.0);
         let projection = |a: f64| level * (a + earth[1]).to_radians().cos();
-        angle.iter().zip(&time).map(|(a, t)| if *t < at { 0.0 } else { projection(a + slip) - projection(*a) }).collect()
+        angle
+            .iter()
+            .zip(&time)
+            .map(|(a, t)| if *t < at { 0.0 } else { projection(a + slip) - projection(*a) })
+            .collect()
     };
-    Effect::new("heading_change", Shape::Bend(Box::new(of)), move |bench, _, added| {
+    Effect::new("heading_change", Shape::Bend(Box::new(of)), move |bench, _| {
+        // The step differs from position to position, so no single one is true.
         let near = 0.03 * bench.duration_s();
-        let after: Vec<f64> = added.iter().copied().filter(|a| *a != 0.0).collect();
-        let mean = after.iter().sum::<f64>() / after.len().max(1) as f64;
-        Facts::default().at("time", at - near, at + near).at("angle", 0.0, 360.0).with("step_deg_h", mean).with("time_s", at)
+        Facts::default().at("time", at - near, at + near).at("angle", 0.0, 360.0).with("time_s", at)
     })
 }
 

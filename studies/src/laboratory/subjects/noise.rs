@@ -30,7 +30,7 @@ fn level(kind: &'static str, sign: f64, part: usize, name: &'static str) -> Effe
         factor: Box::new(|_| 1.0),
         added: Box::new(|_| 0.0),
     });
-    Effect::new(kind, Shape::Process(added, law), move |bench, size, _| {
+    Effect::new(kind, Shape::Process(added, law), move |bench, size| {
         let Levels { n, b, k } = changed(bench, size);
         let band = [[1e-3, bench.rate_hz / 2.0], [0.0, 0.1], [0.0, 0.02]][part];
         let band = [band[0].min(band[1] / 10.0), band[1].min(bench.rate_hz / 2.0)];
@@ -65,10 +65,11 @@ fn correlated(bench: &mut Bench, kind: &'static str, time_s: f64) -> Effect {
         // Density of samples of an exponential correlation.
         added: Box::new(move |f| {
             let kept = (-step_s / time_s).exp();
-            size * size * step_s * (1.0 - kept * kept) / (1.0 + kept * kept - 2.0 * kept * (TAU * f * step_s).cos())
+            size * size * step_s * (1.0 - kept * kept)
+                / (1.0 + kept * kept - 2.0 * kept * (TAU * f * step_s).cos())
         }),
     });
-    Effect::new(kind, Shape::Process(added, law), move |bench, size, _| {
+    Effect::new(kind, Shape::Process(added, law), move |bench, size| {
         let corner = 1.0 / (TAU * time_s);
         Facts::default()
             .at("lag", 0.0, 3.0 * time_s)
@@ -119,7 +120,7 @@ pub fn quantisation(bench: &mut Bench) -> Effect {
             added: Box::new(move |f| lsb * lsb / 3.0 * rate_hz * (PI * f / rate_hz).sin().powi(2)),
         }
     });
-    Effect::new("quantization", Shape::Process(added, law), move |bench, size, _| {
+    Effect::new("quantization", Shape::Process(added, law), move |bench, size| {
         let lsb = step(size);
         Facts::default()
             .at("amplitude", 0.0, lsb * bench.rate_hz)
@@ -152,9 +153,13 @@ pub fn filter(bench: &mut Bench) -> Effect {
     };
     let law: OfSize<Law> = Box::new(move |bench, size| {
         let rate_hz = bench.rate_hz;
-        Law { levels: bench.right.levels, factor: Box::new(move |f| response(size, f / rate_hz)), added: Box::new(|_| 0.0) }
+        Law {
+            levels: bench.right.levels,
+            factor: Box::new(move |f| response(size, f / rate_hz)),
+            added: Box::new(|_| 0.0),
+        }
     });
-    Effect::new("bandwidth_filter", Shape::Process(added, law), move |bench, size, _| {
+    Effect::new("bandwidth_filter", Shape::Process(added, law), move |bench, size| {
         let facts = Facts::default().at("frequency", 0.02 * bench.rate_hz, bench.rate_hz / 2.0);
         let corner = (1..5000).map(|i| i as f64 * 1e-4).find(|f| response(size, *f) < 0.5);
         match corner {
@@ -187,7 +192,7 @@ pub fn level_in_time(bench: &mut Bench) -> Effect {
     let levels = level.clone();
     let spread: OfSize<Vec<f64>> =
         Box::new(move |_, size| levels.iter().map(|l| 1.0 + 0.05 * size * l).collect());
-    Effect::new("noise_variance_time", Shape::Spread(spread), move |bench, size, _| {
+    Effect::new("noise_variance_time", Shape::Spread(spread), move |bench, size| {
         let loud = |i: &usize| level[*i] > 0.5;
         let first = (0..level.len()).find(loud).unwrap_or(0);
         let last = (0..level.len()).rfind(loud).unwrap_or(level.len() - 1);
@@ -211,10 +216,8 @@ pub fn level_by_rate(bench: &mut Bench) -> Effect {
     let spread: OfSize<Vec<f64>> =
         // Noise of the scale factor adds to that of the bias in power.
         Box::new(move |_, size| part.iter().map(|p| (1.0 + 0.1 * size * p * p).sqrt()).collect());
-    Effect::new("noise_variance_rate", Shape::Spread(spread), move |bench, size, _| {
+    Effect::new("noise_variance_rate", Shape::Spread(spread), move |bench, size| {
         let [low, high] = range_of(&bench.columns["table_rate_deg_s"]);
-        Facts::default()
-            .at("input_rate", low, high)
-            .with("ratio", (1.0 + 0.1 * size).sqrt())
+        Facts::default().at("input_rate", low, high).with("ratio", (1.0 + 0.1 * size).sqrt())
     })
 }

@@ -45,7 +45,7 @@ pub fn positions(bench: &mut Bench) {
 /// A unit at rest about its own axis on a table whose other axis turns.
 pub fn other_axis(bench: &mut Bench) {
     let mut dice = bench.dice.fork();
-    let motion = Motion::draw(&mut dice, Programme::Steps, bench.rows, bench.rate_hz);
+    let motion = Motion::draw(&mut dice, Programme::Swings, bench.rows, bench.rate_hz);
     bench.columns.insert("outer_rate_deg_s".to_owned(), motion.rate_deg_s());
     bench.claim.description = "turned about the other axis".to_owned();
     let count = bench.dice.count(0, 2);
@@ -70,7 +70,7 @@ fn off_ppm(bench: &Bench) -> f64 {
 pub fn error(bench: &mut Bench) -> Effect {
     let sign = bench.dice.sign();
     let course = rates(bench).iter().map(|r| sign * 3.6e-3 * r).collect();
-    Effect::new("sf_error", Shape::Course(course), move |bench, size, _| {
+    Effect::new("sf_error", Shape::Course(course), move |bench, size| {
         over_rates(bench).with("error_ppm", off_ppm(bench) + sign * size)
     })
 }
@@ -78,11 +78,8 @@ pub fn error(bench: &mut Bench) -> Effect {
 /// One scale factor for each direction.
 pub fn asymmetry(bench: &mut Bench) -> Effect {
     let sign = bench.dice.sign();
-    let course = bench
-        .motion
-        .as_ref()
-        .map_or_else(Vec::new, |m| m.mean_of(|_, r| sign * 1.8e-3 * r.abs()));
-    Effect::new("sf_asymmetry", Shape::Course(course), move |bench, size, _| {
+    let course = bench.motion.as_ref().map_or_else(Vec::new, |m| m.mean_of(|_, r| sign * 1.8e-3 * r.abs()));
+    Effect::new("sf_asymmetry", Shape::Course(course), move |bench, size| {
         over_rates(bench).with("asymmetry_ppm", sign * size)
     })
 }
@@ -98,7 +95,7 @@ pub fn sine(bench: &mut Bench) -> Effect {
             .as_ref()
             .map_or_else(Vec::new, |m| m.mean_of(|_, r| 3600.0 * ((per * r).sin() / per - r)))
     };
-    Effect::new("sf_nonlinearity", Shape::Bend(Box::new(of)), move |bench, size, _| {
+    Effect::new("sf_nonlinearity", Shape::Bend(Box::new(of)), move |bench, size| {
         let phase = (1e-3 * size).min(1.5);
         over_rates(bench).with("cubic_ppm_at_max", -1e6 * phase * phase / 6.0)
     })
@@ -111,7 +108,7 @@ pub fn by_temperature(bench: &mut Bench) -> Effect {
     let coil = bench.warmth.as_ref().map_or_else(Vec::new, |w| w.coil());
     let course =
         bench.at_rows(&coil).iter().zip(rates(bench)).map(|(t, r)| sign * 3.6e-3 * (t - 20.0) * r).collect();
-    let mut effect = Effect::new("sf_temperature", Shape::Course(course), move |bench, size, _| {
+    let mut effect = Effect::new("sf_temperature", Shape::Course(course), move |bench, size| {
         let [low, high] = range_of(&bench.columns["temp_degC"]);
         let [from, to] = range_of(&bench.columns["table_rate_deg_s"]);
         Facts::default()
@@ -133,7 +130,7 @@ pub fn lock(_: &mut Bench) -> Effect {
         };
         bench.motion.as_ref().map_or_else(Vec::new, |m| m.mean_of(|_, r| beat(3600.0 * r) - 3600.0 * r))
     };
-    Effect::new("dead_zone", Shape::Bend(Box::new(of)), |bench, size, _| {
+    Effect::new("dead_zone", Shape::Bend(Box::new(of)), |bench, size| {
         let half = 0.01 * size;
         let [low, high] = range_of(&bench.columns["table_rate_deg_s"]);
         let near = 3.0 * half / 3600.0;
@@ -150,11 +147,14 @@ pub fn limit(bench: &mut Bench) -> Effect {
         let limit = 3600.0 * cut(size);
         bench.rate().iter().map(|y| y.clamp(-limit, limit) - y).collect()
     };
-    Effect::new("saturation", Shape::Bend(Box::new(of)), move |bench, size, _| {
+    Effect::new("saturation", Shape::Bend(Box::new(of)), move |bench, size| {
         let limit = cut(size);
         let [low, high] = range_of(&bench.columns["table_rate_deg_s"]);
         let side = if high > -low { [limit.min(high) * 0.98, high] } else { [low, limit.max(low) * -0.98] };
-        Facts::default().at("input_rate", side[0], side[1]).at("input_rate", low, high).with("limit_deg_s", limit)
+        Facts::default()
+            .at("input_rate", side[0], side[1])
+            .at("input_rate", low, high)
+            .with("limit_deg_s", limit)
     })
 }
 
@@ -162,7 +162,7 @@ pub fn limit(bench: &mut Bench) -> Effect {
 pub fn cross(bench: &mut Bench) -> Effect {
     let sign = bench.dice.sign();
     let course = bench.columns["outer_rate_deg_s"].iter().map(|r| sign * 3.6 * r).collect();
-    let mut effect = Effect::new("cross_axis", Shape::Course(course), move |bench, size, _| {
+    let mut effect = Effect::new("cross_axis", Shape::Course(course), move |bench, size| {
         let [low, high] = range_of(&bench.columns["outer_rate_deg_s"]);
         Facts::default().at("outer_rate", low, high).with("misalignment_mrad", sign * size)
     });
@@ -175,10 +175,11 @@ pub fn harmonic(bench: &mut Bench) -> Effect {
     let mut dice = bench.dice.fork();
     let order = *dice.one_of(&[1.0, 2.0, 3.0, 4.0, 6.0, 8.0]);
     let phase = dice.uniform(0.0, TAU);
-    let course = bench.motion.as_ref().map_or_else(Vec::new, |m| {
-        m.mean_of(|angle, _| (order * angle.to_radians() + phase).cos())
-    });
-    Effect::new("table_harmonic", Shape::Course(course), move |_, size, _| {
+    let course = bench
+        .motion
+        .as_ref()
+        .map_or_else(Vec::new, |m| m.mean_of(|angle, _| (order * angle.to_radians() + phase).cos()));
+    Effect::new("table_harmonic", Shape::Course(course), move |_, size| {
         Facts::default().at("angle", 0.0, 360.0).with("order", order).with("amplitude_deg_h", size)
     })
 }
@@ -194,11 +195,10 @@ pub fn heading(bench: &mut Bench) -> Effect {
         let projection = |a: f64| level * (a + earth[1]).to_radians().cos();
         angle.iter().map(|a| projection(a + off(size)) - projection(*a)).collect()
     };
-    Effect::new("earth_rate_projection", Shape::Bend(Box::new(of)), move |_, size, _| {
+    Effect::new("earth_rate_projection", Shape::Bend(Box::new(of)), move |_, size| {
         let amplitude = 2.0 * level * (off(size).abs().to_radians() / 2.0).sin();
         Facts::default().at("angle", 0.0, 360.0).with("amplitude_deg_h", amplitude)
     })
-
 }
 
 /// The phase ramp of a closed loop, set back by a little more or less than 2π whenever it has run through a period of the
@@ -222,7 +222,7 @@ pub fn reset(bench: &mut Bench) -> Effect {
         })
         .collect();
     let course = missed.windows(2).map(|w| (w[1] - w[0]) * rate_hz).collect();
-    Effect::new("reset_ripple", Shape::Course(course), move |bench, _, _| {
+    Effect::new("reset_ripple", Shape::Course(course), move |bench, _| {
         let [low, high] = range_of(&bench.columns["table_rate_deg_s"]);
         Facts::default()
             .at("angle", 0.97 * period_arcsec / 3600.0, 1.03 * period_arcsec / 3600.0)
@@ -239,7 +239,7 @@ fn late(kind: &'static str, late_s: impl Fn(f64, f64) -> f64 + 'static) -> Effec
         late.iter().zip(&shown).map(|(l, s)| 3600.0 * (l - s)).collect()
     };
     let sign = if kind == "time_offset" { 1e-5 } else { 0.01 };
-    Effect::new(kind, Shape::Bend(Box::new(of)), move |bench, size, _| {
+    Effect::new(kind, Shape::Bend(Box::new(of)), move |bench, size| {
         let most = if kind == "time_offset" { 1e-5 * size } else { 1e-8 * size * bench.duration_s() };
         let name = if kind == "time_offset" { "lag_s" } else { "drift_ppm" };
         Facts::default()

@@ -45,7 +45,7 @@ fn seen_with_rate(bench: &Bench, facts: Facts) -> Facts {
 pub fn linear(bench: &mut Bench) -> Effect {
     let sign = bench.dice.sign();
     let course = bench.at_rows(&coil(bench)).iter().map(|t| sign * (t - 20.0)).collect();
-    let mut effect = Effect::new("temp_linear", Shape::Course(course), move |bench, size, _| {
+    let mut effect = Effect::new("temp_linear", Shape::Course(course), move |bench, size| {
         let right = bench.right.temperature.map_or(0.0, |[c, ..]| c);
         seen(bench, Facts::default()).with("coefficient_deg_h_per_degC", right + sign * size)
     });
@@ -61,7 +61,7 @@ pub fn polynomial(bench: &mut Bench) -> Effect {
     let bent: Vec<f64> = coil.iter().map(|t| curve.at(*t)).collect();
     let course = bench.at_rows(&without_line(&bent, &coil));
     let mut effect =
-        Effect::new("temp_polynomial", Shape::Course(course), |bench, _, _| seen(bench, Facts::default()));
+        Effect::new("temp_polynomial", Shape::Course(course), |bench, _| seen(bench, Facts::default()));
     effect.column = Some("temp_degC".to_owned());
     effect.beside(&["thermal_lag", "temp_rate", "temp_linear"])
 }
@@ -72,7 +72,7 @@ pub fn rate(bench: &mut Bench) -> Effect {
     let sign = dice.sign();
     let course = bench.warmth.as_ref().map_or_else(Vec::new, |w| w.shupe(&mut dice, &bench.span));
     let course = bench.at_rows(&course).iter().map(|c| sign * c).collect();
-    let mut effect = Effect::new("temp_rate", Shape::Course(course), move |bench, size, _| {
+    let mut effect = Effect::new("temp_rate", Shape::Course(course), move |bench, size| {
         seen_with_rate(bench, Facts::default()).with("coefficient_deg_h_per_degC_per_min", sign * size)
     });
     effect.column = Some("temp_degC".to_owned());
@@ -83,11 +83,11 @@ pub fn rate(bench: &mut Bench) -> Effect {
 pub fn lag(bench: &mut Bench) -> Effect {
     let sign = bench.dice.sign();
     let recorded = bench.columns.get("temp_degC").cloned().unwrap_or_default();
-    let course =
-        bench.at_rows(&coil(bench)).iter().zip(&recorded).map(|(c, r)| sign * (c - r)).collect();
-    let mut effect = Effect::new("thermal_lag", Shape::Course(course), |bench, _, _| {
+    let course = bench.at_rows(&coil(bench)).iter().zip(&recorded).map(|(c, r)| sign * (c - r)).collect();
+    let mut effect = Effect::new("thermal_lag", Shape::Course(course), |bench, _| {
         let lag_s = bench.warmth.as_ref().map_or(0.0, |w| w.lag_s);
-        seen_with_rate(bench, Facts::default().at("lag", 0.5 * lag_s, 1.5 * lag_s)).with("time_constant_s", lag_s)
+        seen_with_rate(bench, Facts::default().at("lag", 0.5 * lag_s, 1.5 * lag_s))
+            .with("time_constant_s", lag_s)
     });
     effect.column = Some("temp_degC".to_owned());
     effect.claimed = sign;
@@ -105,7 +105,7 @@ pub fn hysteresis(bench: &mut Bench) -> Effect {
     let course: Vec<f64> = without_line(&loops, &coil).iter().map(|c| sign * c).collect();
     let width = loop_width(&coil, &course);
     let course = bench.at_rows(&course);
-    let mut effect = Effect::new("temp_hysteresis", Shape::Course(course), move |bench, size, _| {
+    let mut effect = Effect::new("temp_hysteresis", Shape::Course(course), move |bench, size| {
         seen_with_rate(bench, Facts::default()).with("loop_width_deg_h", size * width)
     });
     effect.column = Some("temp_degC".to_owned());

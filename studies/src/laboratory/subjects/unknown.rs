@@ -18,8 +18,13 @@ pub fn at_rest(bench: &mut Bench) {
 }
 
 /// An unknown course; where it lives in time, s, and in frequency, Hz.
-fn unknown(subject: &'static str, course: Vec<f64>, time_s: Vec<[f64; 2]>, band_hz: Option<[f64; 2]>) -> Effect {
-    Effect::new("unknown", Shape::Course(course), move |bench, _, _| {
+fn unknown(
+    subject: &'static str,
+    course: Vec<f64>,
+    time_s: Vec<[f64; 2]>,
+    band_hz: Option<[f64; 2]>,
+) -> Effect {
+    Effect::new("unknown", Shape::Course(course), move |bench, _| {
         let mut facts = Facts::default();
         for [from, to] in &time_s {
             facts = facts.at("time", *from, *to);
@@ -336,7 +341,8 @@ pub fn aftershocks(bench: &mut Bench) -> Effect {
         }
         last = f64::max(last, shock_s + after);
     }
-    unknown("aftershocks", course, vec![[shock_s, last + 40.0 / bench.rate_hz]], None).same(&["outlier_bursts"])
+    unknown("aftershocks", course, vec![[shock_s, last + 40.0 / bench.rate_hz]], None)
+        .same(&["outlier_bursts"])
 }
 
 /// Gusts that press on the housing: they come through an opening that gives way only beyond a slope, to one side.

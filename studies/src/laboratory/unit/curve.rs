@@ -15,15 +15,26 @@ impl Curve {
     pub fn draw(dice: &mut Dice, low: f64, high: f64) -> Curve {
         let width = high - low;
         let steps = (0..dice.count(1, 3))
-            .map(|_| [dice.uniform(low, high), width * dice.uniform(0.06, 0.3), dice.sign() * dice.uniform(0.4, 1.0)])
+            .map(|_| {
+                [
+                    dice.uniform(low, high),
+                    width * dice.uniform(0.06, 0.3),
+                    dice.sign() * dice.uniform(0.4, 1.0),
+                ]
+            })
             .collect();
         let bend = [dice.uniform(low, high), width * dice.uniform(0.1, 0.4), dice.uniform(-0.6, 0.6)];
-        Curve { steps, bend, kink: [dice.uniform(low + 0.2 * width, high - 0.2 * width), dice.uniform(-1.5, 1.5) / width] }
+        Curve {
+            steps,
+            bend,
+            kink: [dice.uniform(low + 0.2 * width, high - 0.2 * width), dice.uniform(-1.5, 1.5) / width],
+        }
     }
 
     /// Its value.
     pub fn at(&self, x: f64) -> f64 {
-        let steps: f64 = self.steps.iter().map(|[at, width, size]| size / (1.0 + (-(x - at) / width).exp())).sum();
+        let steps: f64 =
+            self.steps.iter().map(|[at, width, size]| size / (1.0 + (-(x - at) / width).exp())).sum();
         let [at, width, size] = self.bend;
         steps + size * ((x - at) / width).atan() + self.kink[1] * (x - self.kink[0]).max(0.0)
     }

@@ -13,8 +13,8 @@ impl Hysteresis {
     /// Draws 60 to 100 elements, their half widths spread over decades about a typical one.
     pub fn draw(dice: &mut Dice, typical: f64) -> Hysteresis {
         let count = dice.count(60, 100);
-        let elements =
-            (0..count).map(|_| [typical * (0.7 * dice.normal()).exp(), dice.uniform(0.2, 1.0) / count as f64]);
+        let elements = (0..count)
+            .map(|_| [typical * (0.7 * dice.normal()).exp(), dice.uniform(0.2, 1.0) / count as f64]);
         Hysteresis { elements: elements.collect() }
     }
 

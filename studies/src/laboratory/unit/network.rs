@@ -49,7 +49,13 @@ impl Network {
 
     /// Temperatures over time in surroundings given at each step, with power in W put into each node. The step is divided
     /// so that the fastest node keeps less than a third of its difference away.
-    pub fn run(&self, start_deg_c: &[f64], around_deg_c: &[f64], power_w: &[f64], step_s: f64) -> Vec<Vec<f64>> {
+    pub fn run(
+        &self,
+        start_deg_c: &[f64],
+        around_deg_c: &[f64],
+        power_w: &[f64],
+        step_s: f64,
+    ) -> Vec<Vec<f64>> {
         let mut load = vec![0.0; self.len()];
         for link in &self.links {
             load[link.from] += link.w_per_k;
