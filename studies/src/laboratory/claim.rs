@@ -7,6 +7,9 @@ use std::fmt::Write;
 /// Rate of the Earth, deg/h.
 pub const EARTH_DEG_H: f64 = 15.041067;
 
+/// Columns with a role of their own in the contract.
+const KNOWN: [&str; 5] = ["temp_degC", "table_rate_deg_s", "table_angle_deg", "outer_rate_deg_s", "supply_v"];
+
 /// Recorded columns besides time and rate, by name.
 pub type Columns = BTreeMap<String, Vec<f64>>;
 
@@ -55,7 +58,8 @@ impl Claim {
     /// The text of `model.toml`.
     pub fn toml(&self, case: &str, columns: &Columns) -> String {
         let mut names = vec!["time_s".to_owned(), "rate_deg_h".to_owned()];
-        names.extend(columns.keys().cloned());
+        // The author lists what he knows of; the laboratory recorded more.
+        names.extend(columns.keys().filter(|c| KNOWN.contains(&c.as_str())).cloned());
         let Levels { n, b, k } = self.levels;
         let mut text = format!(
             "[recording]\ncase = {case:?}\ndescription = {:?}\nsample_rate_hz = {}\ncolumns = {names:?}\n\n\

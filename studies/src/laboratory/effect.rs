@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Less than this part of the variance counts as nothing that could be predicted.
 const PREDICTABLE: f64 = 0.3;
 
-/// A contribution of a size, deg/h per row.
+/// Something that depends on the bench and on the size of an effect.
 pub type OfSize<T> = Box<dyn Fn(&Bench, f64) -> T>;
 
 /// Density of a random process.
@@ -87,7 +87,7 @@ pub struct Effect {
     /// How it comes into the rate.
     pub shape: Shape,
     /// Parameters and places, from bench and size.
-    pub facts: Box<dyn Fn(&Bench, f64) -> Facts>,
+    pub facts: OfSize<Facts>,
 }
 
 impl Effect {

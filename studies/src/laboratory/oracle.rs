@@ -7,6 +7,9 @@ use super::claim::{Claim, Columns};
 use super::modes::{Modes, series_of};
 use super::noise::Levels;
 
+/// How many standard deviations a level may move.
+const FARTHEST: f64 = 2.5;
+
 /// A band of modes of nearly one density.
 #[derive(Debug, Clone, Copy)]
 struct Band {
@@ -101,10 +104,13 @@ impl Oracle {
         for band in &self.bands {
             let width = (band.to - band.from) as f64;
             let power = added[band.from..band.to].iter().map(|a| a * a).sum::<f64>() / width;
-            for i in band.from..band.to {
-                let kept = power / (power + self.sigma[i] * self.sigma[i]);
-                missed += (added[i] - kept * (added[i] + self.residual[i])).powi(2);
-                all += added[i] * added[i];
+            let modes = band.from..band.to;
+            for ((a, r), sigma) in
+                added[modes.clone()].iter().zip(&self.residual[modes.clone()]).zip(&self.sigma[modes])
+            {
+                let kept = power / (power + sigma * sigma);
+                missed += (a - kept * (a + r)).powi(2);
+                all += a * a;
             }
         }
         if all > 0.0 { (1.0 - missed / all).max(0.0) } else { 0.0 }
@@ -148,17 +154,30 @@ impl Oracle {
     }
 
     /// Likelihood of band powers with the levels moved within their uncertainties, by Fisher scoring with halved steps.
+    ///
+    /// A level moves by [`FARTHEST`] standard deviations at most: a claim that must move farther is wrong in its noise, and
+    /// likelihood alone would let it.
     fn fit_levels(&self, power: &[f64], density: &Density) -> f64 {
         let parts: Vec<[f64; 4]> = self.bands.iter().map(|b| self.parts(b.frequency_hz, density)).collect();
+        let most = self.levels_rel.map(|rel| FARTHEST * rel);
         let mut moved = [0.0f64; 3];
         let mut best = self.at(power, &parts, moved).0;
         for _ in 0..30 {
-            let (_, gradient, fisher) = self.at(power, &parts, moved);
+            let (_, mut gradient, mut fisher) = self.at(power, &parts, moved);
+            for i in 0..3 {
+                // At its limit and pushed outwards, a level stays.
+                if moved[i].abs() >= most[i] && moved[i] * gradient[i] > 0.0 {
+                    gradient[i] = 0.0;
+                    fisher.iter_mut().for_each(|row| row[i] = 0.0);
+                    fisher[i] = [0.0; 3];
+                    fisher[i][i] = 1.0;
+                }
+            }
             let step = solve(fisher, gradient);
             let mut scale = 1.0;
             let mut improved = false;
             while scale > 1e-3 {
-                let tried = [0, 1, 2].map(|i| moved[i] + scale * step[i]);
+                let tried = [0, 1, 2].map(|i| (moved[i] + scale * step[i]).clamp(-most[i], most[i]));
                 let value = self.at(power, &parts, tried).0;
                 if value > best {
                     improved = value > best + 1e-4;
@@ -227,22 +246,19 @@ fn bands(frequency_hz: &[f64]) -> Vec<Band> {
     all
 }
 
-/// Solves three equations with a positive definite matrix.
+/// Solves three equations with a positive definite matrix, by elimination.
 fn solve(mut m: [[f64; 3]; 3], mut y: [f64; 3]) -> [f64; 3] {
     for i in 0..3 {
+        let pivot = m[i];
         for j in i + 1..3 {
-            let f = m[j][i] / m[i][i];
-            for c in i..3 {
-                m[j][c] -= f * m[i][c];
-            }
+            let f = m[j][i] / pivot[i];
+            m[j].iter_mut().zip(pivot).for_each(|(a, p)| *a -= f * p);
             y[j] -= f * y[i];
         }
     }
     for i in (0..3).rev() {
-        for c in i + 1..3 {
-            y[i] -= m[i][c] * y[c];
-        }
-        y[i] /= m[i][i];
+        let known: f64 = (i + 1..3).map(|c| m[i][c] * y[c]).sum();
+        y[i] = (y[i] - known) / m[i][i];
     }
     y
 }

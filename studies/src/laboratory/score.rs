@@ -70,7 +70,7 @@ impl Score {
             Some(truth.concealed.iter().any(|part| located(part, first)))
         });
         let spurious = |e: &&Entry| {
-            let beside = |part: &Concealed| part.beside.iter().any(|k| *k == e.kind);
+            let beside = |part: &Concealed| part.beside.contains(&e.kind);
             !truth.concealed.iter().any(|part| matches(part, e, true) || beside(part))
         };
         let law = truth.concealed.iter().find_map(|part| {

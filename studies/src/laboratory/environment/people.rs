@@ -21,9 +21,11 @@ pub fn shaking(dice: &mut Dice, span: &Span, floor: f64) -> Vec<f64> {
         }
         let (size, half_s) = (floor * dice.decades(0.3, 6.0), dice.uniform(5.0, 25.0));
         let reach = (4.0 * half_s / span.step_s) as usize;
-        for i in middle.saturating_sub(reach)..(middle + reach).min(span.length) {
+        let first = middle.saturating_sub(reach);
+        let near = &mut level[first..(middle + reach).min(span.length)];
+        for (i, l) in (first..).zip(near) {
             let far = (i as f64 - middle as f64) * span.step_s / half_s;
-            level[i] += size / (1.0 + far * far);
+            *l += size / (1.0 + far * far);
         }
     }
     level

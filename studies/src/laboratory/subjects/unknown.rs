@@ -57,8 +57,9 @@ pub fn avalanches(bench: &mut Bench) -> Effect {
         loop {
             let first = (at * bench.rate_hz) as usize;
             let tail = (8.0 * tail_s * bench.rate_hz) as usize;
-            for i in first..(first + tail).min(bench.rows) {
-                course[i] += size * (-((i - first) as f64) / bench.rate_hz / tail_s).exp();
+            let last = (first + tail).min(bench.rows);
+            for (i, c) in course[first.min(last)..last].iter_mut().enumerate() {
+                *c += size * (-(i as f64) / bench.rate_hz / tail_s).exp();
             }
             if !dice.chance(0.45) {
                 break;
@@ -336,8 +337,9 @@ pub fn aftershocks(bench: &mut Bench) -> Effect {
         let at = ((shock_s + after) * bench.rate_hz) as usize;
         let size = dice.decades(0.15, 1.0) * dice.sign();
         let fall = dice.decades(1.5, 10.0);
-        for i in at..(at + 40).min(bench.rows) {
-            course[i] += size * (-((i - at) as f64) / fall).exp() * (1.9 * (i - at) as f64).cos();
+        let last_row = (at + 40).min(bench.rows);
+        for (i, c) in course[at.min(last_row)..last_row].iter_mut().enumerate() {
+            *c += size * (-(i as f64) / fall).exp() * (1.9 * i as f64).cos();
         }
         last = f64::max(last, shock_s + after);
     }
