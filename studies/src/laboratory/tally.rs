@@ -12,7 +12,9 @@ pub fn rows(family: Family, scores: &[Score]) -> Vec<Row> {
     let mut rows = vec![];
     for strength in Strength::ALL {
         let of: Vec<&Score> = scores.iter().filter(|s| s.strength == Some(strength)).collect();
-        rows.extend(strength_rows(family, strength, &of));
+        if !of.is_empty() {
+            rows.extend(strength_rows(family, strength, &of));
+        }
     }
     let both: Vec<&Score> = scores.iter().collect();
     rows.push(share("any", "no name besides what is there", Asked::AtLeast(0.95), &both, |s| s.extra == 0));
@@ -43,6 +45,9 @@ fn strength_rows(family: Family, strength: Strength, of: &[&Score]) -> Vec<Row> 
     };
     rows.push(share(name, "named first or as one of three equivalents", names, of, |s| s.named));
     rows.push(share(name, "named first", Asked::Nothing, of, |s| s.named_first));
+    if family == Family::Unknown {
+        rows.push(share(name, "called unknown by any entry", Asked::Nothing, of, |s| s.found > 0));
+    }
     if family == Family::Several {
         let (found, concealed) =
             of.iter().fold((0, 0), |(f, c), s| (f + s.found as u64, c + s.concealed as u64));
@@ -101,4 +106,54 @@ pub fn table(title: &str, rows: &[Row]) -> String {
         );
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laboratory::truth::Half;
+    use crate::study::Verdict;
+
+    fn score(family: Family, strength: Option<Strength>, right: bool) -> Score {
+        Score {
+            case: "one".into(),
+            subject: "line".into(),
+            family,
+            half: Half::Development,
+            strength,
+            detected: right,
+            first: String::new(),
+            named_first: right,
+            named: right,
+            found: usize::from(right),
+            concealed: 1,
+            located: right,
+            extra: usize::from(!right),
+            decoys_named: 0,
+            law: None,
+            intervals: vec![],
+            explained: Some(f64::from(right)),
+            closes: Some(right),
+        }
+    }
+
+    #[test]
+    fn shares_are_of_the_cases_of_their_strength() {
+        let clear = |right| score(Family::Event, Some(Strength::Clear), right);
+        let rows = rows(Family::Event, &[clear(true), clear(true), clear(true), clear(false)]);
+        let of = |claim: &str| rows.iter().find(|r| r.claim.starts_with(claim)).unwrap();
+        assert_eq!((of("named first or").measured, of("named first or").of), (Some(0.75), 4));
+        assert_eq!(of("explained").measured, Some(0.75));
+        assert_eq!(of("no name besides").measured, Some(0.75));
+        // A loop can close only where something was found.
+        assert_eq!((of("loop").measured, of("loop").of), (Some(1.0), 3));
+        assert!(rows.iter().all(|r| !r.quantity.starts_with("middling")), "{rows:?}");
+    }
+
+    #[test]
+    fn of_a_right_claim_every_detection_is_a_false_alarm() {
+        let many: Vec<Score> = (0..100).map(|i| score(Family::Null, None, i < 10)).collect();
+        let rows = rows(Family::Null, &many);
+        assert_eq!((rows[0].measured, rows[0].verdict), (Some(0.1), Verdict::Misses));
+    }
 }
