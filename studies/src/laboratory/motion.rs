@@ -137,7 +137,7 @@ fn swings(dice: &mut Dice, count: usize, fine_s: f64) -> Vec<f64> {
 }
 
 fn crawl(dice: &mut Dice, count: usize, fine_s: f64) -> Vec<f64> {
-    let largest = dice.decades(20.0, 200.0) / 3600.0;
+    let largest = dice.decades(3.0, 60.0) / 3600.0;
     let scan_s = dice.uniform(300.0, 1500.0);
     let hold = dice.uniform(0.05, 0.25);
     (0..count)

@@ -32,8 +32,10 @@ fn level(kind: &'static str, sign: f64, part: usize, name: &'static str) -> Effe
     });
     Effect::new(kind, Shape::Process(added, law), move |bench, size| {
         let Levels { n, b, k } = changed(bench, size);
-        let band = [[1e-3, bench.rate_hz / 2.0], [0.0, 0.1], [0.0, 0.02]][part];
-        let band = [band[0].min(band[1] / 10.0), band[1].min(bench.rate_hz / 2.0)];
+        // Where the term is as strong as white noise; a few periods of the record at least.
+        let to_white = [f64::INFINITY, b * b / (TAU * 3600.0 * n * n), k / (TAU * 3600.0 * n)][part];
+        let top = (4.0 * to_white).max(10.0 / bench.duration_s()).min(bench.rate_hz / 2.0);
+        let band = [if part == 0 { 0.01 * top } else { 0.0 }, top];
         Facts::default().at("frequency", band[0], band[1]).with(name, [n, b, k][part])
     })
 }

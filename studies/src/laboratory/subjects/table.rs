@@ -205,7 +205,10 @@ pub fn heading(bench: &mut Bench) -> Effect {
 /// sensed angle. What the reset misses is an error of angle that comes back with each period.
 pub fn reset(bench: &mut Bench) -> Effect {
     let mut dice = bench.dice.fork();
-    let period_arcsec = dice.decades(1.8, 8.0);
+    let most =
+        rates(bench).iter().fold(0.0f64, |m, r| m.max(3600.0 * r.abs())) + bench.right.bias_deg_h.abs();
+    // The ripple runs through the band of the recording, and folds over only where the table is fast.
+    let period_arcsec = (most / bench.rate_hz / dice.decades(0.15, 1.0)).clamp(1.8, 200.0);
     let sign = dice.sign();
     let bias = bench.right.bias_deg_h;
     let rate_hz = bench.rate_hz;
