@@ -15,6 +15,7 @@ pub mod identification;
 pub mod index;
 pub mod influence;
 pub mod noise_source;
+pub mod laboratory;
 pub mod pages;
 pub mod rate_table;
 pub mod results;
@@ -60,4 +61,5 @@ pub static STUDIES: &[&Study] = &[
     &explain::studies::WEAK_EFFECTS,
     &explain::studies::CLOSED_LOOP,
     &explain::studies::OTHERS,
+    &laboratory::study::STUDY,
 ];

@@ -2,7 +2,7 @@
 
 use sagnac_studies::results::{CaseResult, Results, code_commit};
 use sagnac_studies::study::Study;
-use sagnac_studies::{STUDIES, index, pages};
+use sagnac_studies::{STUDIES, index, laboratory, pages};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,6 +18,7 @@ A study that was interrupted goes on after its last finished case, as long as th
 --out      folder for the pages (default: docs/validation/); the misses in README.md stay as they are
 --list     names the studies
 --index    runs nothing; writes the misses of all pages into README.md
+Cases of the laboratory as folders: laboratory-write, laboratory-explain, laboratory-score (run without arguments for help)
 ";
 
 struct Options {
@@ -37,6 +38,15 @@ fn main() -> ExitCode {
     if arguments.iter().any(|a| a == "--list") {
         STUDIES.iter().for_each(|s| println!("{:<20} {}", s.id, s.title));
         return ExitCode::SUCCESS;
+    }
+    if let Some(done) = laboratory::command::run(&arguments) {
+        return match done {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(message) => {
+                eprintln!("{message}");
+                ExitCode::from(2)
+            }
+        };
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("docs").join("validation");
     if arguments.iter().any(|a| a == "--index") {
