@@ -8,8 +8,8 @@ use super::matrix::Matrix;
 use super::rows::{self, Row};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::i18n::Lang;
-use crate::record::{self, PhaseRecord, RunKind, RunRecord};
+use crate::i18n::{Lang, LocalText};
+use crate::record::{self, PhaseRecord, ReferenceRecord, RunKind, RunRecord};
 use crate::report::methods;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::translator::{Field, Translator};
@@ -111,7 +111,7 @@ impl View {
             title: record
                 .procedure
                 .as_ref()
-                .map_or_else(|| words.t("report.title_analysis"), |p| p.title.clone()),
+                .map_or_else(|| words.t("report.title_analysis"), |p| words.local(&p.title)),
             verdict: record.verdict.id(),
             verdict_word: words.verdict(record.verdict),
             summary: summary(record, channels.len() > 1, words),
@@ -128,7 +128,7 @@ impl View {
                 .measurands
                 .iter()
                 .filter_map(|m| m.reference.as_ref())
-                .map(|r| r.source.clone())
+                .map(|r| reference(r, words))
                 .collect::<std::collections::BTreeSet<String>>()
                 .into_iter()
                 .collect(),
@@ -217,6 +217,17 @@ fn option_value(value: &str, words: Translator) -> String {
     }
 }
 
+/// Where a reference value comes from, with its conventions.
+fn reference(reference: &ReferenceRecord, words: Translator) -> String {
+    let source = words.local(&reference.source);
+    match &reference.note {
+        Some(note) => {
+            words.with("report.reference_note", &[("source", &source), ("note", &words.local(note))])
+        }
+        None => source,
+    }
+}
+
 fn identity(record: &RunRecord, words: Translator) -> Vec<Field> {
     let mut out = vec![];
     let mut put = |key: &str, value: Option<&str>| {
@@ -235,18 +246,19 @@ fn identity(record: &RunRecord, words: Translator) -> Vec<Field> {
     if let Some(p) = &record.procedure {
         let id = words.with("report.id_revision", &[("id", &p.id), ("revision", &p.revision)]);
         put("report.procedure", Some(&id));
-        let standard = match (&p.standard, &p.clause) {
+        let local = |text: &Option<LocalText>| text.as_ref().map(|t| words.local(t));
+        let standard = match (local(&p.standard), local(&p.clause)) {
             (Some(s), Some(c)) => {
-                Some(words.with("report.standard_clause", &[("standard", s), ("clause", c)]))
+                Some(words.with("report.standard_clause", &[("standard", &s), ("clause", &c)]))
             }
-            (s, c) => s.clone().or_else(|| c.clone()),
+            (s, c) => s.or(c),
         };
         put("report.standard", standard.as_deref());
-        put("report.author", p.author.as_deref());
+        put("report.author", local(&p.author).as_deref());
         if let Some(l) = &p.limits {
             let id = words.with("report.id_revision", &[("id", &l.id), ("revision", &l.revision)]);
-            put("report.limits", Some(&format!("{} ({id})", l.title)));
-            put("report.limits_source", l.source.as_deref());
+            put("report.limits", Some(&format!("{} ({id})", words.local(&l.title))));
+            put("report.limits_source", local(&l.source).as_deref());
         }
     }
     put("report.station", record.session.station.as_deref());
@@ -375,7 +387,7 @@ fn one(part: &PhasePart<'_>, lang: Lang) -> PhaseView {
     });
     PhaseView {
         id: phase.id.clone(),
-        title: phase.title.clone(),
+        title: words.local(&phase.title),
         verdict: phase.verdict.id(),
         verdict_word: words.verdict(phase.verdict),
         summary: phase.summary.iter().map(|n| words.say(n)).collect(),
