@@ -161,7 +161,11 @@ fn value(kind: Kind) -> Value {
 
 /// A text for every language, or one for each.
 fn local_text(text: Value) -> Value {
-    let of = |lang: &Lang| (lang.code().to_owned(), text.clone());
+    let of = |lang: &Lang| {
+        let mut text = text.clone();
+        text["description"] = json!(format!("Text of reports in the language `{}`.", lang.code()));
+        (lang.code().to_owned(), text)
+    };
     let languages: Map<String, Value> = Lang::ALL.iter().map(of).collect();
     let table = json!({
         "type": "object",
