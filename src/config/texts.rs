@@ -75,7 +75,11 @@ fn by_language(
             DeValue::String(_) => text(reader, value.with(given.get_ref(), &at), blank),
             _ => {
                 let message = Note::new("local_text.no_text").with("key", value.key.name);
-                reader.error(&at, message.with("code", code.get_ref().as_ref()), Some(written(value.key.name)));
+                reader.error(
+                    &at,
+                    message.with("code", code.get_ref().as_ref()),
+                    Some(written(value.key.name)),
+                );
                 None
             }
         };
@@ -92,7 +96,11 @@ fn by_language(
             .with("key", value.key.name)
             .with("default", default)
             .with("shown", texts.keys().next().map_or("", String::as_str));
-        reader.warning(value.span, message, Some(Note::new("local_text.help.default").with("key", value.key.name)));
+        reader.warning(
+            value.span,
+            message,
+            Some(Note::new("local_text.help.default").with("key", value.key.name)),
+        );
     }
     sound.then(|| LocalText::in_languages(texts, default))
 }

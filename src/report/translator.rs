@@ -65,6 +65,11 @@ impl Translator {
         text.say(self.lang)
     }
 
+    /// A source as it is cited; the part of a standard that has a name of its own by that of the language.
+    pub fn citation(self, source: &str) -> String {
+        fill(source, |name| (name == "annex").then(|| self.t("report.annex")))
+    }
+
     /// A formula with the decimal mark of the language.
     pub fn formula(self, text: &str) -> String {
         let mark = lookup(self.lang, "number.decimal").unwrap_or(".");

@@ -95,13 +95,16 @@ fn of_one_language(spec: &'static TableSpec, file: &toml::Table, found: &mut Vec
         match key.kind {
             // A number of a clause or the like is the same in every language.
             Kind::LocalText | Kind::LocalRemark => match value.as_str() {
-                Some(text) if text.chars().any(char::is_alphabetic) => found.push(format!("{}: {text}", key.name)),
+                Some(text) if text.chars().any(char::is_alphabetic) => {
+                    found.push(format!("{}: {text}", key.name))
+                }
                 Some(_) => {}
                 None if tables.iter().all(|t| t.len() == Lang::ALL.len()) => {}
                 None => found.push(format!("{}: {value}", key.name)),
             },
             kind => {
-                let below = kind.table().into_iter().flat_map(|below| tables.iter().map(move |t| (below, *t)));
+                let below =
+                    kind.table().into_iter().flat_map(|below| tables.iter().map(move |t| (below, *t)));
                 below.for_each(|(below, table)| of_one_language(below, table, found));
             }
         }

@@ -1,5 +1,6 @@
 //! The tables of words against one another, and what the program says in Russian.
 
+use crate::russian::sentences;
 use crate::support::corpus::{cases, problems};
 use sagnac::config::procedure::{parse_limits, parse_procedure};
 use sagnac::i18n::{Lang, Localize, table};
@@ -299,9 +300,13 @@ fn nothing_is_left_untranslated() {
     let (en, ru) = (table(Lang::En), table(Lang::Ru));
     let mut latin: Vec<String> = vec![];
     for (key, russian) in ru {
-        // Formulas, and the titles of standards and papers as they are cited.
-        let universal = key.starts_with("effect.") && (key.ends_with(".source") || key.ends_with(".formula"));
-        if universal {
+        let of_effect = |part: &str| key.starts_with("effect.") && key.ends_with(part);
+        if of_effect(".formula") {
+            continue;
+        }
+        // Authors, journals and standards are cited by their names; what is said of them is Russian.
+        if of_effect(".source") {
+            latin.extend(sentences(russian, 2).iter().map(|english| format!("{key}: {english}")));
             continue;
         }
         let same = SAME.iter().any(|s| key == s || (s.ends_with('.') && key.starts_with(s)));

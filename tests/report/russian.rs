@@ -27,12 +27,21 @@ const CASES: &[Case] = &[
     case("scale-factor", "scale-factor-fail.csv", "SN-0111"),
     Case { limits: Some("oius-501"), ..case("static-bias", "unit-faults.csv", "SN-0001") },
     case("supply-sensitivity", "supply-sensitivity-fail.csv", "SN-0116"),
-    Case { limits: Some("sample-temperature"), ..case("temperature-ramp", "temperature-aborted.csv", "SN-0103") },
-    Case { limits: Some("sample-temperature"), ..case("temperature-soak", "temperature-soak-fail.csv", "SN-0105") },
+    Case {
+        limits: Some("sample-temperature"),
+        ..case("temperature-ramp", "temperature-aborted.csv", "SN-0103")
+    },
+    Case {
+        limits: Some("sample-temperature"),
+        ..case("temperature-soak", "temperature-soak-fail.csv", "SN-0105")
+    },
     case("threshold", "threshold-fail.csv", "SN-0111"),
     case("vibration", "vibration-fail.csv", "SN-0118"),
     Case { limits: Some("sample-warm-up"), ..case("warm-up", "warm-up-fail.csv", "SN-0107") },
 ];
+
+/// Words in a row that make a sentence.
+const SENTENCE: usize = 3;
 
 /// Words that run on in Latin letters and are no sentence: titles of books and papers as they are cited.
 const CITED: &[&str] = &[];
@@ -52,7 +61,8 @@ fn pieces_of_html(page: &str) -> Vec<String> {
     while let Some((text, after)) = rest.split_once('<') {
         piece.push_str(text);
         let Some((tag, after)) = after.split_once('>') else { break };
-        let name: String = tag.trim_start_matches('/').chars().take_while(char::is_ascii_alphanumeric).collect();
+        let name: String =
+            tag.trim_start_matches('/').chars().take_while(char::is_ascii_alphanumeric).collect();
         rest = after;
         for attribute in READ_OUT {
             let value = tag.split_once(attribute).and_then(|(_, v)| v.split_once('"'));
@@ -74,10 +84,15 @@ fn pieces_of_markdown(text: &str) -> Vec<String> {
     let mut pieces = vec![];
     for (i, block) in text.split("```").enumerate().filter(|(i, _)| i % 2 == 0) {
         let prose = |line: &str| {
-            line.split('`').enumerate().map(|(i, part)| if i % 2 == 0 { part } else { "|" }).collect::<String>()
+            line.split('`')
+                .enumerate()
+                .map(|(i, part)| if i % 2 == 0 { part } else { "|" })
+                .collect::<String>()
         };
         assert!(i == 0 || !block.is_empty());
-        pieces.extend(block.lines().flat_map(|line| prose(line).split('|').map(str::to_owned).collect::<Vec<_>>()));
+        pieces.extend(
+            block.lines().flat_map(|line| prose(line).split('|').map(str::to_owned).collect::<Vec<_>>()),
+        );
     }
     pieces
 }
@@ -91,8 +106,8 @@ fn is_word(token: &str) -> bool {
     first && letters.all(small) && (token.len() > 1 || token.eq_ignore_ascii_case("a"))
 }
 
-/// Runs of three or more such words.
-fn sentences(piece: &str) -> Vec<String> {
+/// Runs of at least so many such words.
+pub fn sentences(piece: &str, least: usize) -> Vec<String> {
     let (mut found, mut run) = (vec![], vec![]);
     for token in piece.split_whitespace().chain(["|"]) {
         let bare = token.trim_matches(|c: char| "()[],;:.!?«»\"".contains(c));
@@ -100,7 +115,7 @@ fn sentences(piece: &str) -> Vec<String> {
             run.push(bare);
             continue;
         }
-        if run.len() >= 3 {
+        if run.len() >= least {
             found.push(run.join(" "));
         }
         run.clear();
@@ -113,13 +128,15 @@ fn english(folder: &Path, cited: &mut BTreeSet<&'static str>) -> Vec<String> {
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
     let (html, markdown) = (pieces_of_html(&read("report.html")), pieces_of_markdown(&read("report.md")));
     assert!(html.len() > 100 && markdown.len() > 100, "a report has more text");
-    let mut found: BTreeSet<String> = html.iter().chain(&markdown).flat_map(|p| sentences(p)).collect();
+    let mut found: BTreeSet<String> =
+        html.iter().chain(&markdown).flat_map(|p| sentences(p, SENTENCE)).collect();
     cited.extend(CITED.iter().filter(|title| found.remove(**title)));
     found.into_iter().collect()
 }
 
 fn run(case: &Case, folder: &Path, lang: &str) {
-    let (procedure, sample) = (format!("procedures/{}.toml", case.procedure), format!("samples/{}", case.sample));
+    let (procedure, sample) =
+        (format!("procedures/{}.toml", case.procedure), format!("samples/{}", case.sample));
     let limits = case.limits.map(|l| format!("procedures/limits/{l}.toml"));
     let out = folder.display().to_string();
     let mut args = vec!["run", &procedure, &sample, "--serial", case.serial, "--out", &out, "--lang", lang];
@@ -134,7 +151,8 @@ fn no_shipped_procedure_gives_an_english_sentence_in_a_russian_report() {
     let names: BTreeSet<&str> = CASES.iter().map(|c| c.procedure).collect();
     let shipped = std::fs::read_dir(root().join("procedures")).unwrap().map(|e| e.unwrap().path());
     let shipped = shipped.filter(|p| p.extension().is_some_and(|e| e == "toml"));
-    let shipped: Vec<String> = shipped.map(|p| p.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    let shipped: Vec<String> =
+        shipped.map(|p| p.file_stem().unwrap().to_string_lossy().into_owned()).collect();
     assert_eq!(shipped.iter().map(String::as_str).collect::<BTreeSet<_>>(), names);
     let (mut wrong, mut cited) = (vec![], BTreeSet::new());
     for case in CASES {
@@ -175,7 +193,7 @@ fn a_result_renders_in_the_other_language_without_its_procedure() {
 #[test]
 fn the_watch_for_sentences_is_awake() {
     let html = "<p title=\"not a title\">Смещение <b>was not</b> measured, <code>this is code</code></p><td>a</td><td>b c</td>";
-    let found = |pieces: Vec<String>| pieces.iter().flat_map(|p| sentences(p)).collect::<Vec<_>>();
+    let found = |pieces: Vec<String>| pieces.iter().flat_map(|p| sentences(p, SENTENCE)).collect::<Vec<_>>();
     assert_eq!(found(pieces_of_html(html)), ["not a title", "was not measured"]);
     let markdown = "| The unit, passed | by IEEE Std 952 |\n```\nsome code here\n```\nкод `in back ticks` N = 3 rate_deg_h";
     assert_eq!(found(pieces_of_markdown(markdown)), ["The unit passed"]);

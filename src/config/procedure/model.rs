@@ -4,9 +4,9 @@ use super::diagnostics::{Problem, SourceText, Span};
 use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
+use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
-use crate::i18n::LocalText;
 use crate::record::{
     ClauseRecord, ConditionStatus, ExclusionRecord, InstrumentRecord, ProcedureRecord, WaiverRecord,
 };

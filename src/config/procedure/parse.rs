@@ -3,9 +3,8 @@
 use super::diagnostics::{Problems, SourceText};
 use super::limits::{self, LimitsFile};
 use super::model::{
-    Analysis, ChannelSpec, Conditions, EarthRate, ExplainSpec, FaultBudget, Instrument,
-    MeasurandSpec, Procedure, RecordingSpec, ReportSpec, SupplyCondition, Taus, TemperatureCondition,
-    UnitSpec, Waiver,
+    Analysis, ChannelSpec, Conditions, EarthRate, ExplainSpec, FaultBudget, Instrument, MeasurandSpec,
+    Procedure, RecordingSpec, ReportSpec, SupplyCondition, Taus, TemperatureCondition, UnitSpec, Waiver,
 };
 use super::reader::Reader;
 use super::section::{Entry, Section};

@@ -169,7 +169,10 @@ fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<Fiel
     let claim = if context.identified { "explain.fact.simulation" } else { "explain.fact.claim" };
     put(claim, context.claim.clone());
     put("explain.fact.case", all.case.clone());
-    put("explain.fact.description", context.description.as_ref().map_or_else(String::new, |d| words.local(d)));
+    put(
+        "explain.fact.description",
+        context.description.as_ref().map_or_else(String::new, |d| words.local(d)),
+    );
     put("explain.fact.rows", count(r.rows as u64, words.lang));
     put("explain.fact.missing", count(r.missing as u64, words.lang));
     put("explain.fact.interval", duration(r.sample_interval_s, words.lang));

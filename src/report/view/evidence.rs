@@ -9,8 +9,8 @@ use super::faults::Faults;
 use super::goodness::{self, Goodness};
 use crate::measurand;
 use crate::record::{
-    ClauseRecord, ExcludedSpan, ExclusionRecord, InstrumentRecord, LineRecord, MeasurandRecord, NoiseModelRecord, PowerRecord,
-    RunRecord, WaiverRecord,
+    ClauseRecord, ExcludedSpan, ExclusionRecord, InstrumentRecord, LineRecord, MeasurandRecord,
+    NoiseModelRecord, PowerRecord, RunRecord, WaiverRecord,
 };
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use crate::report::translator::{Field, Translator};
@@ -273,7 +273,12 @@ fn instrument(i: &InstrumentRecord, words: Translator) -> Instrument {
 }
 
 fn waiver(w: &WaiverRecord, words: Translator) -> Waiver {
-    Waiver { row: row_name(&w.row, words), by: words.local(&w.by), date: w.date.clone(), reason: words.local(&w.reason) }
+    Waiver {
+        row: row_name(&w.row, words),
+        by: words.local(&w.by),
+        date: w.date.clone(),
+        reason: words.local(&w.reason),
+    }
 }
 
 fn clause(c: &ClauseRecord, words: Translator) -> Clause {

@@ -96,7 +96,7 @@ pub struct MethodView {
     /// Formulas.
     pub formulas: Vec<String>,
     /// Source.
-    pub source: &'static str,
+    pub source: String,
 }
 
 impl View {
@@ -151,7 +151,7 @@ impl View {
                     title: words.t(&format!("methods.{}.title", m.id)),
                     text: words.t(&format!("methods.{}.text", m.id)),
                     formulas: m.formulas.iter().map(|f| words.formula(f)).collect(),
-                    source: m.source,
+                    source: words.citation(m.source),
                 })
                 .collect(),
             options: record

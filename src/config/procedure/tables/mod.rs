@@ -139,7 +139,12 @@ pub(crate) static PROCEDURE: TableSpec = TableSpec {
             "\"A\"",
             "Revision. Change it whenever anything else in the file changes.",
         ),
-        optional("standard", Kind::LocalText, "\"IEEE Std 952-2020\"", "Standard followed, with its edition."),
+        optional(
+            "standard",
+            Kind::LocalText,
+            "\"IEEE Std 952-2020\"",
+            "Standard followed, with its edition.",
+        ),
         optional("clause", Kind::LocalText, "\"12.11 drift-rate series\"", "Clause of the standard."),
         optional("author", Kind::LocalText, "\"QA department\"", "Author of the procedure."),
     ],
@@ -390,7 +395,12 @@ static REPORT: TableSpec = TableSpec {
     name: "report",
     doc: "What the report shows.",
     keys: &[
-        optional("title", Kind::LocalText, "\"Acceptance report\"", "Title. Default: the title of the procedure."),
+        optional(
+            "title",
+            Kind::LocalText,
+            "\"Acceptance report\"",
+            "Title. Default: the title of the procedure.",
+        ),
         optional(
             "figures",
             Kind::Choices(FIGURES),
