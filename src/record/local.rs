@@ -84,6 +84,7 @@ field!(standard, "standard", "standard_by_language", "Standard followed.");
 field!(clause, "clause", "clause_by_language", "Clause of the standard, for example `12.11`.");
 field!(author, "author", "author_by_language", "Who wrote it.");
 field!(source, "source", "source_by_language", "Where the values come from.");
+field!(family, "family", "family_by_language", "Family, for example `OIUS-501`.");
 field!(name, "name", "name_by_language", "Name.");
 field!(note, "note", "note_by_language", "What must be known with it.");
 field!(description, "description", "description_by_language", "Free text.");

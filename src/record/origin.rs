@@ -72,7 +72,9 @@ pub struct UnitUnderTest {
     /// Serial number.
     pub serial: Option<String>,
     /// Family, for example `OIUS-501`.
-    pub family: Option<String>,
+    #[serde(flatten, with = "super::local::family")]
+    #[schemars(with = "super::local::family::Members<Option<String>>")]
+    pub family: Option<LocalText>,
     /// Part number.
     pub part: Option<String>,
     /// Revision of the part.

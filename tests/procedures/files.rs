@@ -93,9 +93,9 @@ fn of_one_language(spec: &'static TableSpec, file: &toml::Table, found: &mut Vec
             other => other.as_table().into_iter().collect::<Vec<_>>(),
         };
         match key.kind {
-            // A number of a clause or the like is the same in every language.
+            // The number of a clause and a standard are the same in every language.
             Kind::LocalText | Kind::LocalRemark => match value.as_str() {
-                Some(text) if text.chars().any(char::is_alphabetic) => {
+                Some(text) if !text.starts_with("IEEE Std ") && text.chars().any(char::is_alphabetic) => {
                     found.push(format!("{}: {text}", key.name))
                 }
                 Some(_) => {}

@@ -68,7 +68,7 @@ pub struct LimitsFile {
     /// Revision.
     pub revision: String,
     /// Family of devices.
-    pub family: Option<String>,
+    pub family: Option<LocalText>,
     /// Where the values come from.
     pub source: Option<LocalText>,
     /// What it states. Limits made by a factor are among them.

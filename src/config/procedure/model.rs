@@ -102,7 +102,7 @@ pub struct RecordingSpec {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct UnitSpec {
     /// Family of devices.
-    pub family: Option<String>,
+    pub family: Option<LocalText>,
     /// Part number.
     pub part: Option<String>,
     /// Revision of the part.

@@ -72,7 +72,7 @@ pub(super) fn limits_file(source: &SourceText) -> (Option<LimitsFile>, Problems)
             id: text("id").unwrap_or_default(),
             title: local("title").unwrap_or_default(),
             revision: text("revision").unwrap_or_default(),
-            family: text("family"),
+            family: local("family"),
             source: local("source"),
             set,
         }
@@ -122,7 +122,7 @@ fn unit(section: Option<&Section>) -> UnitSpec {
         return UnitSpec { serial_required: true, ..UnitSpec::default() };
     };
     UnitSpec {
-        family: section.text("family"),
+        family: section.local_text("family"),
         part: section.text("part"),
         revision: section.text("revision"),
         serial_required: section.flag("serial_required"),

@@ -23,7 +23,7 @@ pub struct Phased {
     /// Identity of the whole.
     pub identity: ProcedureRecord,
     /// Family of the unit.
-    pub family: Option<String>,
+    pub family: Option<LocalText>,
     /// Part number.
     pub part: Option<String>,
     /// Revision of the part.
@@ -117,7 +117,7 @@ fn read(
                 sha256,
                 limits: None,
             },
-            family: of_unit("family"),
+            family: unit.and_then(|u| u.local_text("family")),
             part: of_unit("part"),
             part_revision: of_unit("revision"),
             serial_required: unit.is_none_or(|u| u.flag("serial_required")),

@@ -9,11 +9,12 @@ use super::rows::{self, Row};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::{Lang, LocalText};
-use crate::record::{self, PhaseRecord, ReferenceRecord, RunKind, RunRecord};
+use crate::record::{self, PhaseRecord, RunKind, RunRecord};
 use crate::report::methods;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::translator::{Field, Translator};
 use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything a report shows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -105,7 +106,7 @@ impl View {
         let words = Translator { lang };
         let mut footnotes = vec![];
         let (judged, further) = rows::rows(record, words, &mut footnotes);
-        let channels: std::collections::BTreeSet<&str> =
+        let channels: BTreeSet<&str> =
             record.measurands.iter().map(|m| m.channel.as_str()).collect();
         View {
             title: record
@@ -124,14 +125,7 @@ impl View {
                 Some(first) if judged.iter().all(|r| r.rule == first.rule) => first.rule.clone(),
                 _ => String::new(),
             },
-            references: record
-                .measurands
-                .iter()
-                .filter_map(|m| m.reference.as_ref())
-                .map(|r| reference(r, words))
-                .collect::<std::collections::BTreeSet<String>>()
-                .into_iter()
-                .collect(),
+            references: references(record, words),
             comparison: comparison::comparisons(record, words),
             explained: record.explained.as_ref().map(|e| Explained::new(e, lang)),
             by_channel: Matrix::new(&further),
@@ -170,7 +164,7 @@ impl View {
 fn declared(record: &RunRecord, words: Translator) -> Vec<String> {
     let declared = record.conditions.iter().filter(|c| c.evidence == Some(record::Evidence::Declared));
     let names = declared.map(|c| words.name("condition", c.id.split('.').next().unwrap_or(&c.id)));
-    names.collect::<std::collections::BTreeSet<String>>().into_iter().collect()
+    names.collect::<BTreeSet<String>>().into_iter().collect()
 }
 
 /// Reasons that a record gives for a row; a report states them with their numbers.
@@ -217,15 +211,21 @@ fn option_value(value: &str, words: Translator) -> String {
     }
 }
 
-/// Where a reference value comes from, with its conventions.
-fn reference(reference: &ReferenceRecord, words: Translator) -> String {
-    let source = words.local(&reference.source);
-    match &reference.note {
-        Some(note) => {
-            words.with("report.reference_note", &[("source", &source), ("note", &words.local(note))])
-        }
-        None => source,
+/// Where the reference values come from, each source once with the conventions of its values.
+fn references(record: &RunRecord, words: Translator) -> Vec<String> {
+    let mut sources: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for r in record.measurands.iter().filter_map(|m| m.reference.as_ref()) {
+        let notes = sources.entry(words.local(&r.source)).or_default();
+        notes.extend(r.note.as_ref().map(|n| words.local(n)));
     }
+    let said = |(source, notes): (String, BTreeSet<String>)| match notes.len() {
+        0 => source,
+        _ => {
+            let notes: Vec<String> = notes.into_iter().collect();
+            words.with("report.reference_notes", &[("source", &source), ("notes", &notes.join("; "))])
+        }
+    };
+    sources.into_iter().map(said).collect()
 }
 
 fn identity(record: &RunRecord, words: Translator) -> Vec<Field> {
@@ -239,7 +239,7 @@ fn identity(record: &RunRecord, words: Translator) -> Vec<Field> {
     let missing = words.t("report.missing");
     let expected = record.kind == RunKind::Run;
     put("report.serial", unit.serial.as_deref().or(expected.then_some(missing.as_str())));
-    put("report.family", unit.family.as_deref());
+    put("report.family", unit.family.as_ref().map(|f| words.local(f)).as_deref());
     put("report.part", unit.part.as_deref());
     put("report.part_revision", unit.revision.as_deref());
     put("report.lot", unit.lot.as_deref());

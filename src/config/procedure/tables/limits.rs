@@ -38,7 +38,7 @@ static LIMITS: TableSpec = TableSpec {
             "\"A\"",
             "Revision. Change it whenever anything else in the file changes.",
         ),
-        optional("family", Kind::Text, "\"OIUS-501\"", "Family of devices the limits are for."),
+        optional("family", Kind::LocalText, "\"OIUS-501\"", "Family of devices the limits are for."),
         optional("source", Kind::LocalText, "\"data sheet DS-501, rev. 3\"", "Where the values come from."),
         optional(
             "factor",

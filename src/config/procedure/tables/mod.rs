@@ -154,7 +154,7 @@ pub(crate) static UNIT_UNDER_TEST: TableSpec = TableSpec {
     name: "unit_under_test",
     doc: "The unit the procedure is for. The serial number is given when the test is run.",
     keys: &[
-        optional("family", Kind::Text, "\"OIUS-501\"", "Family of devices."),
+        optional("family", Kind::LocalText, "\"OIUS-501\"", "Family of devices."),
         optional("part", Kind::Text, "\"501-00-01\"", "Part number."),
         optional("revision", Kind::Text, "\"C\"", "Revision of the part."),
         with_default(
