@@ -117,6 +117,6 @@ fn unknown(reader: &mut Reader<'_>, key: &str, code: &str, at: &Span) {
 
 /// How a text is written in every language.
 fn written(key: &str) -> Note {
-    let texts: Vec<String> = Lang::ALL.iter().map(|l| format!("{} = \"...\"", l.code())).collect();
-    Note::new("local_text.help.written").with("example", format!("{key} = {{ {} }}", texts.join(", ")))
+    let texts: Vec<String> = Lang::ALL.iter().map(|l| format!("{key}.{} = \"...\"", l.code())).collect();
+    Note::new("local_text.help.written").with("example", texts.join("; "))
 }

@@ -46,14 +46,14 @@ impl Written for Option<LocalText> {
 
 /// A module for `#[serde(flatten, with = "local::title")]`, and its schema for `#[schemars(with = "...")]`.
 macro_rules! field {
-    ($name:ident, $plain:literal, $by_language:literal, $doc:literal) => {
+    ($(#[$doc:meta])* $name:ident, $plain:literal, $by_language:literal) => {
         pub(crate) mod $name {
             use super::*;
 
             /// The two members of JSON.
             #[derive(Serialize, Deserialize, schemars::JsonSchema)]
             pub(crate) struct Members<T> {
-                #[doc = $doc]
+                $(#[$doc])*
                 #[serde(rename = $plain)]
                 plain: T,
                 /// The same by language code, where it was written in several languages.
@@ -79,17 +79,72 @@ macro_rules! field {
     };
 }
 
-field!(title, "title", "title_by_language", "Title.");
-field!(standard, "standard", "standard_by_language", "Standard followed.");
-field!(clause, "clause", "clause_by_language", "Clause of the standard, for example `12.11`.");
-field!(author, "author", "author_by_language", "Who wrote it.");
-field!(source, "source", "source_by_language", "Where the values come from.");
-field!(family, "family", "family_by_language", "Family, for example `OIUS-501`.");
-field!(name, "name", "name_by_language", "Name.");
-field!(note, "note", "note_by_language", "What must be known with it.");
-field!(description, "description", "description_by_language", "Free text.");
-field!(by, "by", "by_by_language", "Who decided.");
-field!(reason, "reason", "reason_by_language", "Why.");
+field!(
+    /// Title.
+    title,
+    "title",
+    "title_by_language"
+);
+field!(
+    /// Standard followed.
+    standard,
+    "standard",
+    "standard_by_language"
+);
+field!(
+    /// Clause of the standard, for example `12.11`.
+    clause,
+    "clause",
+    "clause_by_language"
+);
+field!(
+    /// Who wrote it.
+    author,
+    "author",
+    "author_by_language"
+);
+field!(
+    /// Where the values come from.
+    source,
+    "source",
+    "source_by_language"
+);
+field!(
+    /// Family, for example `OIUS-501`.
+    family,
+    "family",
+    "family_by_language"
+);
+field!(
+    /// Name.
+    name,
+    "name",
+    "name_by_language"
+);
+field!(
+    /// What must be known with it.
+    note,
+    "note",
+    "note_by_language"
+);
+field!(
+    /// Free text.
+    description,
+    "description",
+    "description_by_language"
+);
+field!(
+    /// Who decided.
+    by,
+    "by",
+    "by_by_language"
+);
+field!(
+    /// Why.
+    reason,
+    "reason",
+    "reason_by_language"
+);
 
 #[cfg(test)]
 mod tests {

@@ -205,6 +205,8 @@ const SAME: &[&str] = &[
     "ingest.raw.problem",
     "time_base.fault_in",
     "report.sha256",
+    "report.excluded_because",
+    "report.reference_notes",
     "report.at_least",
     "report.at_most",
     "report.interval",
@@ -306,7 +308,9 @@ fn nothing_is_left_untranslated() {
         }
         // Authors, journals and standards are cited by their names; what is said of them is Russian.
         if of_effect(".source") {
-            latin.extend(sentences(russian, 2).iter().map(|english| format!("{key}: {english}")));
+            let small = |run: &String| run.split(' ').filter(|w| w.starts_with(char::is_lowercase)).count();
+            let english = sentences(russian, 2).into_iter().filter(|run| small(run) >= 2);
+            latin.extend(english.map(|english| format!("{key}: {english}")));
             continue;
         }
         let same = SAME.iter().any(|s| key == s || (s.ends_with('.') && key.starts_with(s)));
