@@ -54,7 +54,10 @@ fn procedure_of(folder: &Path, name: &str, evil: &str, rate: &str, temperature: 
         &procedure(),
         &[
             ("warm_up = \"30 min\"", "warm_up = \"10 s\""),
-            ("title = \"Static bias and noise\"", &format!("title = \"{t}\"")),
+            (
+                "title = { en = \"Static bias and noise\", ru = \"Смещение нуля и шум в покое\" }",
+                &format!("title = \"{t}\""),
+            ),
             ("author = \"Sagnac project\"", &format!("author = \"{t}\"")),
             ("standard = \"IEEE Std 952-2020\"", &format!("standard = \"{t}\"")),
             ("\"rate_deg_h\"", &format!("\"{}\"", in_toml(rate))),
