@@ -9,6 +9,7 @@ mod system;
 
 pub use effect_text::{EffectText, effect_key, effect_text};
 pub use lang::Lang;
+pub use sagnac_core::local_text::LocalText;
 pub use sagnac_core::message::{Arg, Note};
 use sagnac_core::render;
 pub use sagnac_core::render::{fill, significant};
@@ -71,6 +72,13 @@ pub fn decimal(ascii: &str, lang: Lang) -> String {
 pub trait Localize {
     /// The words, with the decimal mark of the language.
     fn say(&self, lang: Lang) -> String;
+}
+
+impl Localize for LocalText {
+    /// The text that the user wrote for the language, or the one that stands in for it.
+    fn say(&self, lang: Lang) -> String {
+        self.in_language(lang.code()).to_owned()
+    }
 }
 
 impl Localize for Arg {

@@ -13,7 +13,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
     (
         "crates/sagnac-core/src",
         &[
-            &["real", "visible", "spelling"],
+            &["real", "visible", "spelling", "local_text"],
             &["message"],
             &["render"],
             &["numeric", "units"],

@@ -54,13 +54,22 @@ fn procedure_of(folder: &Path, name: &str, evil: &str, rate: &str, temperature: 
         &procedure(),
         &[
             ("warm_up = \"30 min\"", "warm_up = \"10 s\""),
-            ("title = \"Static bias and noise\"", &format!("title = \"{t}\"")),
-            ("author = \"Sagnac project\"", &format!("author = \"{t}\"")),
+            (
+                "title = { en = \"Static bias and noise\", ru = \"Смещение нуля и шум в покое\" }",
+                &format!("title = \"{t}\""),
+            ),
+            ("author = { en = \"Sagnac project\", ru = \"проект Sagnac\" }", &format!("author = \"{t}\"")),
             ("standard = \"IEEE Std 952-2020\"", &format!("standard = \"{t}\"")),
             ("\"rate_deg_h\"", &format!("\"{}\"", in_toml(rate))),
             ("\"temp_degC\"", &format!("\"{}\"", in_toml(temperature))),
-            ("title = \"Examination of product, mechanical\"", &format!("title = \"{t}\"")),
-            ("note = \"incoming inspection\"", &format!("note = \"{t}\"")),
+            (
+                "title = { en = \"Examination of product, mechanical\", ru = \"Внешний осмотр и проверка механической части\" }",
+                &format!("title = \"{t}\""),
+            ),
+            (
+                "note = { en = \"incoming inspection\", ru = \"входной контроль\" }",
+                &format!("note = \"{t}\""),
+            ),
             ("[[channel]]\nid = \"time\"", &format!("{more}\nid = \"time\"")),
         ],
     )

@@ -114,6 +114,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         power: vec![],
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure.waivers_for(serial),
+        exclusions: procedure.exclusions.clone(),
         clauses: procedure.clauses.clone(),
         options: vec![],
         figures: vec![],

@@ -42,7 +42,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
             Some(why) => Note::new("phases.failed").with("verdict", verdict).with("why", why.clone()),
             None => Note::new("phases.verdict").with("verdict", verdict),
         }
-        .with("title", p.title.as_str())
+        .with("title", p.title.clone())
     };
     let declared = Note::new("summary.influence_declared");
     let said = phases.iter().any(|p| p.summary.iter().any(|s| **s == declared)).then_some(declared);
@@ -81,6 +81,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
             usable_s: records.iter().map(|r| r.window.usable_s).sum(),
             excluded: vec![],
         },
+        exclusions: vec![],
         measurands: phases.iter().flat_map(|p| p.measurands.clone()).collect(),
         lines: vec![],
         noise_models: vec![],

@@ -116,7 +116,7 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
         recording: args.recording.iter().map(|p| shown(p)).collect::<Vec<_>>().join(", "),
         claim: named,
         identified,
-        description: claim.description.clone(),
+        description: Some(claim.description.clone()),
         explained_at: now.to_rfc3339_opts(SecondsFormat::Secs, true),
         correction: outcome.correction.is_some(),
         notes,

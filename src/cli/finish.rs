@@ -70,7 +70,7 @@ fn explain(request: &Request<'_>, against: Against<'_>, results: &mut RunResults
             recording: names.join(", "),
             claim: out.record.model.clone(),
             identified: false,
-            description: claim.description,
+            description: Some(claim.description),
             explained_at: request.now.to_rfc3339_opts(SecondsFormat::Secs, true),
             correction: outcome.correction.is_some(),
             notes,

@@ -55,7 +55,7 @@ pub fn say_which(named: &[&Path], lang: Lang) {
 fn list(lang: Lang) {
     let width = PROCEDURES.iter().chain(LIMITS).map(|s| s.name.len()).max().unwrap_or(0);
     let group = |key: &'static str, all: &[Shipped]| {
-        let rows: String = all.iter().map(|s| format!("  {:width$}  {}\n", s.name, s.title())).collect();
+        let rows: String = all.iter().map(|s| format!("  {:width$}  {}\n", s.name, s.title(lang))).collect();
         format!("{}\n{rows}", Note::new(key).say(lang))
     };
     let text = [group("procedures.procedures", PROCEDURES), group("procedures.limits", LIMITS)].join("\n");

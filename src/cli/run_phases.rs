@@ -45,7 +45,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let record = combine(&phased, &done, unit, who.unwrap_or_default());
     for phase in &record.phases {
         if let Some(why) = failure(phase) {
-            let note = Note::new("phases.error").with("title", phase.title.as_str()).with("why", why.clone());
+            let note = Note::new("phases.error").with("title", phase.title.clone()).with("why", why.clone());
             place::eprint_diagnostic(&place::error(&note, lang));
         }
     }
@@ -148,7 +148,7 @@ impl Order<'_> {
             exact: self.args.grid.exact,
         };
         who.get_or_insert_with(|| session(&request));
-        let label = format!("{}: {}", phase.title, Note::new("cli.reading").say(self.lang));
+        let label = format!("{}: {}", phase.title.say(self.lang), Note::new("cli.reading").say(self.lang));
         match refused {
             Some(e) => not_run(&request, &e.into()),
             None => with_progress(&request, &label).unwrap_or_else(|e| not_run(&request, &e)),

@@ -19,4 +19,5 @@ pub mod shipped;
 pub mod spec;
 mod syntax;
 pub(crate) mod text_file;
+mod texts;
 pub(crate) mod values;

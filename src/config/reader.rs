@@ -46,6 +46,15 @@ impl Reader<'_> {
         }
     }
 
+    /// Adds a warning at a place, while there are not too many problems.
+    pub fn warning(&mut self, span: &Span, message: impl Into<Note>, help: Option<Note>) {
+        if self.problems.list.len() < MAX_ERRORS {
+            let mut problem = self.source.warning(span, message);
+            problem.help = help;
+            self.problems.list.push(problem);
+        }
+    }
+
     /// Looks up a measurand; reports an unknown one.
     pub fn measurand(&mut self, name: &str, span: &Span) -> Option<&'static Measurand> {
         let found = measurand::find(name);

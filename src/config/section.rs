@@ -1,6 +1,7 @@
 //! Checked values of a table, by key.
 
 use super::diagnostics::Span;
+use crate::i18n::LocalText;
 use crate::measurand::Measurand;
 use crate::recording::ColumnRef;
 use crate::units::Unit;
@@ -11,6 +12,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Entry {
     Text(String),
+    LocalText(LocalText),
     Flag(bool),
     Number(f64),
     /// A number in one of the units that a quantity has as it was recorded.
@@ -112,6 +114,14 @@ impl Section {
     pub fn text(&self, key: &str) -> Option<String> {
         match self.entry(key) {
             Some(Entry::Text(text)) => Some(text.clone()),
+            _ => None,
+        }
+    }
+
+    /// A text of the user, in one language for all or in several.
+    pub fn local_text(&self, key: &str) -> Option<LocalText> {
+        match self.entry(key) {
+            Some(Entry::LocalText(text)) => Some(text.clone()),
             _ => None,
         }
     }

@@ -1,5 +1,6 @@
 //! Procedures and limits that the program carries, so that they are found by name from any folder.
 
+use crate::i18n::Lang;
 use std::path::{Component, Path};
 
 /// What a shipped file is.
@@ -70,10 +71,16 @@ impl Shipped {
         }
     }
 
-    /// Its title, as its file states it.
-    pub fn title(&self) -> &'static str {
-        let line = self.text.lines().find(|l| l.trim_start().starts_with("title"));
-        line.and_then(|l| l.split('"').nth(1)).unwrap_or_default()
+    /// Its title in a language, as its file states it.
+    pub fn title(&self, lang: Lang) -> String {
+        let table = match self.kind {
+            ShippedKind::Procedure => "procedure",
+            ShippedKind::Limits => "limits",
+        };
+        let file = self.text.parse::<toml::Table>().unwrap_or_default();
+        let title = file.get(table).and_then(|identity| identity.get("title"));
+        let text = title.and_then(|t| t.as_str().or_else(|| t.get(lang.code())?.as_str()));
+        text.unwrap_or_default().to_owned()
     }
 }
 
@@ -103,7 +110,11 @@ mod tests {
         assert_eq!(of(LIMITS), names(&root.join("limits")));
         assert!(of(PROCEDURES).is_disjoint(&of(LIMITS)));
         for s in PROCEDURES.iter().chain(LIMITS) {
-            assert!(!s.title().is_empty(), "{}", s.name);
+            for lang in Lang::ALL {
+                assert!(!s.title(*lang).is_empty(), "{}", s.name);
+            }
+            let same = s.title(Lang::Ru) == s.title(Lang::En);
+            assert!(!same, "{}: one title for both languages", s.name);
             assert_eq!(std::fs::read_to_string(root.join(s.path())).unwrap(), s.text);
         }
     }

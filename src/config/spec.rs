@@ -110,6 +110,10 @@ pub type Word = (&'static str, &'static str);
 pub enum Kind {
     /// A text that is not blank.
     Text,
+    /// A text that is not blank, in one language for all or in several.
+    LocalText,
+    /// The same, and it may be blank.
+    LocalRemark,
     /// The version of the format: exactly this text.
     Format(&'static str),
     /// A name of letters, digits, `_`, `-` and `.`.
@@ -174,6 +178,7 @@ impl Kind {
     pub fn describe(self) -> Note {
         match self {
             Kind::Text => Note::new("keyed.kind.text"),
+            Kind::LocalText | Kind::LocalRemark => Note::new("local_text.kind"),
             Kind::Format(text) => Note::new("keyed.kind.quoted").with("text", text),
             Kind::Id => Note::new("keyed.kind.id"),
             Kind::Flag => Note::new("keyed.kind.flag"),

@@ -5,15 +5,13 @@ use super::quantity::{self, QuantityError};
 use super::reader::{Reader, Value, for_example, shorten};
 use super::section::{Allowance, Entry, Given, Named, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
+use super::texts::{Blank, local, text};
 use crate::i18n::Note;
 use crate::recording::ColumnRef;
 use crate::units::Unit;
 use chrono::NaiveDate;
 use sagnac_core::spelling::nearest;
 use toml::de::DeValue;
-
-/// Longest text that is taken, characters.
-const MAX_TEXT_CHARACTERS: usize = 2000;
 
 /// Most averaging times in a list.
 const MAX_TAUS: usize = 1000;
@@ -27,8 +25,9 @@ const MAX_NAMES: usize = 100;
 /// Reads a value that is no table.
 pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry> {
     match value.key.kind {
-        Kind::Text => text(reader, value).map(Entry::Text),
-        Kind::Format(_) => text(reader, value).map(Entry::Text),
+        Kind::Text | Kind::Format(_) => text(reader, value, Blank::Refused).map(Entry::Text),
+        Kind::LocalText => local(reader, value, Blank::Refused).map(Entry::LocalText),
+        Kind::LocalRemark => local(reader, value, Blank::Allowed).map(Entry::LocalText),
         Kind::Id => id(reader, value).map(Entry::Text),
         Kind::Flag => match value.toml {
             DeValue::Boolean(flag) => Some(Entry::Flag(*flag)),
@@ -40,10 +39,7 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
         }
         Kind::Numbers(range) => numbers(reader, value, range).map(Entry::Numbers),
         Kind::Values => named(reader, value).map(Entry::Values),
-        Kind::Remark => match value.toml {
-            DeValue::String(given) if given.trim().is_empty() => Some(Entry::Text(String::new())),
-            _ => text(reader, value).map(Entry::Text),
-        },
+        Kind::Remark => text(reader, value, Blank::Allowed).map(Entry::Text),
         Kind::Date => date(reader, value).map(Entry::Date),
         Kind::Choice(words) => word(reader, value, words).map(Entry::Word),
         Kind::Choices(words) => {
@@ -62,7 +58,7 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
         Kind::Taus => taus(reader, value).map(Entry::Taus),
         Kind::Allowance => allowance(reader, value).map(Entry::Allowance),
         Kind::Measurand => {
-            let name = text(reader, value)?;
+            let name = text(reader, value, Blank::Refused)?;
             reader.measurand(&name, &inside_quotes(reader, &name, value.span)).map(Entry::Measurand)
         }
         Kind::QuantityBy(_)
@@ -73,26 +69,8 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
     }
 }
 
-fn text(reader: &mut Reader<'_>, value: Value<'_>) -> Option<String> {
-    let DeValue::String(text) = value.toml else { return reader.wrong(value) };
-    if text.trim().is_empty() {
-        let message = Note::new("keyed.empty").with("key", value.key.name);
-        reader.error(value.span, message, Some("keyed.help.fill_in".into()));
-        return None;
-    }
-    if text.chars().count() > MAX_TEXT_CHARACTERS
-        || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t')
-    {
-        let message = Note::new("keyed.no_text").with("key", value.key.name);
-        let help = Note::new("keyed.help.text").with("most", MAX_TEXT_CHARACTERS);
-        reader.error(value.span, message, Some(help));
-        return None;
-    }
-    Some(text.trim().to_owned())
-}
-
 fn id(reader: &mut Reader<'_>, value: Value<'_>) -> Option<String> {
-    let given = text(reader, value)?;
+    let given = text(reader, value, Blank::Refused)?;
     let plain = given.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
     if plain && given.len() <= 64 && given.starts_with(|c: char| c.is_ascii_alphanumeric()) {
         return Some(given);
@@ -190,7 +168,7 @@ fn word(reader: &mut Reader<'_>, value: Value<'_>, words: &'static [Word]) -> Op
 }
 
 fn unit(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Unit> {
-    let given = text(reader, value)?;
+    let given = text(reader, value, Blank::Refused)?;
     match Unit::parse(&given) {
         Ok(unit) => Some(unit),
         Err(e) => {
@@ -203,7 +181,7 @@ fn unit(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Unit> {
 
 fn column(reader: &mut Reader<'_>, value: Value<'_>) -> Option<ColumnRef> {
     match value.toml {
-        DeValue::String(_) => text(reader, value).map(ColumnRef::Name),
+        DeValue::String(_) => text(reader, value, Blank::Refused).map(ColumnRef::Name),
         DeValue::Integer(_) => match number(value.toml) {
             Some(position) if (1.0..=100_000.0).contains(&position) => {
                 Some(ColumnRef::Position(position as usize))

@@ -131,7 +131,7 @@ impl Explanation {
             recording: self.recording.clone(),
             claim: self.model.name.clone(),
             identified: false,
-            description: self.model.claim.description.clone(),
+            description: Some(self.model.claim.description.clone()),
             explained_at: Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true),
             correction: self.outcome.correction.is_some(),
             notes: self.notes.clone(),

@@ -1,6 +1,7 @@
 //! What stands beside the measured rows of a run: instruments, waivers, clauses, options.
 
 use super::ConditionStatus;
+use crate::i18n::LocalText;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +9,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InstrumentRecord {
     /// Name.
-    pub name: String,
+    #[serde(flatten, with = "super::local::name")]
+    #[schemars(with = "super::local::name::Members<String>")]
+    pub name: LocalText,
     /// Serial number.
     pub serial: Option<String>,
     /// Date until which its calibration holds, ISO 8601.
@@ -23,25 +26,48 @@ pub struct WaiverRecord {
     /// Measurand or condition concerned.
     pub row: String,
     /// Who decided.
-    pub by: String,
+    #[serde(flatten, with = "super::local::by")]
+    #[schemars(with = "super::local::by::Members<String>")]
+    pub by: LocalText,
     /// Why.
-    pub reason: String,
+    #[serde(flatten, with = "super::local::reason")]
+    #[schemars(with = "super::local::reason::Members<String>")]
+    pub reason: LocalText,
     /// When, ISO 8601 date.
     pub date: String,
+}
+
+/// A span that the procedure excludes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ExclusionRecord {
+    /// Start, s from the start of the recording.
+    pub from_s: f64,
+    /// End, s from the start of the recording.
+    pub to_s: f64,
+    /// Why.
+    #[serde(flatten, with = "super::local::reason")]
+    #[schemars(with = "super::local::reason::Members<String>")]
+    pub reason: LocalText,
 }
 
 /// A clause of the standard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClauseRecord {
     /// Clause, for example `12.11`.
-    pub clause: String,
+    #[serde(flatten, with = "super::local::clause")]
+    #[schemars(with = "super::local::clause::Members<String>")]
+    pub clause: LocalText,
     /// Its title.
-    pub title: String,
+    #[serde(flatten, with = "super::local::title")]
+    #[schemars(with = "super::local::title::Members<String>")]
+    pub title: LocalText,
     /// `here`, `elsewhere`, `not_applicable`; `not_done` in place of `here` where the test could not be carried out,
     /// `partly` where not every phase of it could.
     pub status: String,
     /// Where or why.
-    pub note: String,
+    #[serde(flatten, with = "super::local::note")]
+    #[schemars(with = "super::local::note::Members<String>")]
+    pub note: LocalText,
 }
 
 /// An option that the analysis used.

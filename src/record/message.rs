@@ -1,6 +1,6 @@
 //! A sentence as it stands in results: in English, and by name with its arguments for other languages.
 
-use crate::i18n::{Arg, Lang, Localize, Note};
+use crate::i18n::{Arg, Lang, LocalText, Localize, Note};
 use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::ser::{Error as _, SerializeMap, SerializeStruct};
@@ -69,6 +69,8 @@ enum Presentation {
     Stated,
     /// A key of the locale tables, not a text.
     Key,
+    /// A text of a user by language code; the plain value stands in for other languages.
+    ByLanguage(BTreeMap<String, String>),
     /// A fixed number of decimals.
     Decimals {
         /// Decimals.
@@ -163,6 +165,7 @@ fn presentation(arg: &Arg) -> serde_json::Result<Option<Presentation>> {
     }
     Ok(match arg {
         Arg::Number(_) | Arg::Count(_) | Arg::Text(_) | Arg::Note(_) => None,
+        Arg::Local(text) => Some(Presentation::ByLanguage(text.by_language().clone())),
         Arg::Stated(_) => Some(Presentation::Stated),
         Arg::Key(_) => Some(Presentation::Key),
         Arg::Decimals { digits, zeros, .. } => {
@@ -196,6 +199,9 @@ fn argument(value: Value, show: Option<Presentation>) -> Result<Arg, String> {
             None => Arg::Number(number(&value)?),
         },
         (Some(Presentation::Key), Value::String(key)) => Arg::Key(key),
+        (Some(Presentation::ByLanguage(texts)), Value::String(text)) => {
+            Arg::Local(LocalText::with_languages(text, texts))
+        }
         (Some(Presentation::Stated), value) => Arg::Stated(number(&value)?),
         (Some(Presentation::Decimals { digits, zeros }), value) => {
             Arg::Decimals { value: number(&value)?, digits, zeros }
@@ -209,7 +215,7 @@ fn argument(value: Value, show: Option<Presentation>) -> Result<Arg, String> {
         }
         (Some(Presentation::Infinity), _) => Arg::Number(f64::INFINITY),
         (Some(Presentation::NegativeInfinity), _) => Arg::Number(f64::NEG_INFINITY),
-        (Some(Presentation::Key), value) => return Err(wrong(&value)),
+        (Some(Presentation::Key | Presentation::ByLanguage(_)), value) => return Err(wrong(&value)),
     })
 }
 
@@ -234,6 +240,7 @@ impl Serialize for Plain<'_> {
             Arg::Decimals { value, .. } | Arg::Figures { value, .. } => serializer.serialize_f64(*value),
             Arg::Count(v) => serializer.serialize_u64(*v),
             Arg::Text(text) | Arg::Key(text) => serializer.serialize_str(text),
+            Arg::Local(text) => serializer.serialize_str(text.text()),
             Arg::Note(inner) => note(inner, serializer),
             several @ Arg::Several(..) => serializer.serialize_str(&several.say(Lang::En)),
         }
@@ -268,6 +275,10 @@ mod tests {
             .with("count", 3_u64)
             .with("stated", Arg::Stated(12.50))
             .with("text", "measurand.static_bias")
+            .with(
+                "local",
+                LocalText::in_languages([("en".into(), "a".into()), ("ru".into(), "б".into())].into(), "en"),
+            )
             .with("key", Arg::key("measurand", "static_bias"))
             .with("fixed", Arg::fixed(1.0, 2))
             .with("rounded", Arg::rounded(-1e-300, 3))

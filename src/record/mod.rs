@@ -13,6 +13,7 @@ mod explained;
 mod goodness;
 pub mod integrity;
 mod interval_mean;
+pub(crate) mod local;
 pub(crate) mod message;
 mod null_numbers;
 mod origin;
@@ -25,7 +26,7 @@ pub use comparison::{
     Agreement, CoherentLine, ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord,
     OctavesRecord, ParameterRecord, ShareRecord, WindowRecord,
 };
-pub use context::{ClauseRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use context::{ClauseRecord, ExclusionRecord, InstrumentRecord, OptionRecord, WaiverRecord};
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;
 pub use explained::ExplainedRecord;
@@ -38,6 +39,7 @@ pub use phase::PhaseRecord;
 pub use table_step::TableStepRecord;
 
 use crate::estimate::{Interval, Judgement, LowerLimit, Rule, UpperLimit, Verdict};
+use crate::i18n::LocalText;
 use crate::noise::data::NoiseType;
 pub use sagnac_core::mismatch::finding as explanation;
 pub use sagnac_core::recording::window::{ExcludedSpan, Window};
@@ -86,6 +88,9 @@ pub struct RunRecord {
     pub integrity: Integrity,
     /// The part of the recording that was evaluated, and what was left out of it.
     pub window: Window,
+    /// Spans that the procedure excludes, with their reasons; absent where it excludes none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub exclusions: Vec<ExclusionRecord>,
     /// Measured quantities.
     pub measurands: Vec<MeasurandRecord>,
     /// Spectral lines that were found.
@@ -230,7 +235,13 @@ pub struct ReferenceRecord {
     /// Value in the unit of the row.
     pub value: f64,
     /// Where it was published.
-    pub source: String,
+    #[serde(flatten, with = "local::source")]
+    #[schemars(with = "local::source::Members<String>")]
+    pub source: LocalText,
+    /// Conventions that apply to the value; absent in earlier results.
+    #[serde(flatten, with = "local::note")]
+    #[schemars(with = "local::note::Members<Option<String>>")]
+    pub note: Option<LocalText>,
 }
 
 /// A spectral line.

@@ -1,5 +1,6 @@
 //! What a run rests on: program, procedure, unit, session and the files read.
 
+use crate::i18n::LocalText;
 use crate::recording::Role;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,15 +20,23 @@ pub struct ProcedureRecord {
     /// Id, for example `static-bias`.
     pub id: String,
     /// Title shown on the report.
-    pub title: String,
+    #[serde(flatten, with = "super::local::title")]
+    #[schemars(with = "super::local::title::Members<String>")]
+    pub title: LocalText,
     /// Revision.
     pub revision: String,
     /// Standard followed.
-    pub standard: Option<String>,
+    #[serde(flatten, with = "super::local::standard")]
+    #[schemars(with = "super::local::standard::Members<Option<String>>")]
+    pub standard: Option<LocalText>,
     /// Clause of the standard.
-    pub clause: Option<String>,
+    #[serde(flatten, with = "super::local::clause")]
+    #[schemars(with = "super::local::clause::Members<Option<String>>")]
+    pub clause: Option<LocalText>,
     /// Who wrote it.
-    pub author: Option<String>,
+    #[serde(flatten, with = "super::local::author")]
+    #[schemars(with = "super::local::author::Members<Option<String>>")]
+    pub author: Option<LocalText>,
     /// File it was read from, as given.
     pub path: String,
     /// SHA-256 of the file.
@@ -42,11 +51,15 @@ pub struct LimitsFile {
     /// Id of the limits.
     pub id: String,
     /// Title.
-    pub title: String,
+    #[serde(flatten, with = "super::local::title")]
+    #[schemars(with = "super::local::title::Members<String>")]
+    pub title: LocalText,
     /// Revision.
     pub revision: String,
     /// Where the values come from.
-    pub source: Option<String>,
+    #[serde(flatten, with = "super::local::source")]
+    #[schemars(with = "super::local::source::Members<Option<String>>")]
+    pub source: Option<LocalText>,
     /// File it was read from, as given.
     pub path: String,
     /// SHA-256 of the file.
@@ -59,7 +72,9 @@ pub struct UnitUnderTest {
     /// Serial number.
     pub serial: Option<String>,
     /// Family, for example `OIUS-501`.
-    pub family: Option<String>,
+    #[serde(flatten, with = "super::local::family")]
+    #[schemars(with = "super::local::family::Members<Option<String>>")]
+    pub family: Option<LocalText>,
     /// Part number.
     pub part: Option<String>,
     /// Revision of the part.

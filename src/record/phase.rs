@@ -3,6 +3,7 @@
 use super::Message;
 use super::{ConditionRecord, FigureRecord, Integrity, MeasurandRecord, ProcedureRecord, RecordingFile};
 use crate::estimate::Verdict;
+use crate::i18n::LocalText;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,9 @@ pub struct PhaseRecord {
     /// Id.
     pub id: String,
     /// Title.
-    pub title: String,
+    #[serde(flatten, with = "super::local::title")]
+    #[schemars(with = "super::local::title::Members<String>")]
+    pub title: LocalText,
     /// Folder with its own report and result, relative to this result; absent when it was not recorded.
     pub folder: Option<String>,
     /// Its procedure.

@@ -11,7 +11,7 @@ pub struct Method {
     pub id: &'static str,
     /// Formulas, one a line, with a point as the decimal mark and no units.
     pub formulas: &'static [&'static str],
-    /// Where they come from.
+    /// Where they come from; `{annex}` is the word of the language for an annex of a standard.
     pub source: &'static str,
     applies: fn(&RunRecord) -> bool,
 }
@@ -64,13 +64,13 @@ const METHODS: &[Method] = &[
     Method {
         id: "runs",
         formulas: &["m = (x'V⁻¹x)⁻¹·x'V⁻¹y;  Q(σ²) = d'(Z(σ²I + C)Z')⁻¹d;  d = Zm"],
-        source: "IEEE Std 952, 12.11; Paule and Mandel 1982; Viechtbauer 2007",
+        source: "IEEE Std 952, 12.11; Paule, Mandel 1982; Viechtbauer 2007",
         applies: |r| measured_by(r, "means_of_runs"),
     },
     Method {
         id: "influence",
         formulas: &["y = y₀ + r·t + k·(x − x₀) + ν;  cov ν = N₀²V₀ + N₁²V₁ + B²V_B + K²V_K + s²V_s"],
-        source: "IEEE Std 952, 12.11; Patterson and Thompson 1971",
+        source: "IEEE Std 952, 12.11; Patterson, Thompson 1971",
         applies: |r| measured_by(r, "alternating_intervals"),
     },
     Method {
@@ -110,7 +110,7 @@ const METHODS: &[Method] = &[
     Method {
         id: "table_levels",
         formulas: &["yⱼ = K·Ωⱼ + y₀ + eⱼ;  S₀ = 1/K;  δⱼ = eⱼ/(K·Ω_max)", "ε = 2·(K₊ − K₋)/(K₊ + K₋)"],
-        source: "IEEE Std 952, 12.9; Patterson and Thompson 1971",
+        source: "IEEE Std 952, 12.9; Patterson, Thompson 1971",
         applies: |r| measured_by(r, "table_levels"),
     },
     Method {
@@ -127,13 +127,13 @@ const METHODS: &[Method] = &[
     Method {
         id: "allan",
         formulas: &["σ²(τ) = Σᵢ (θᵢ₊₂ₘ − 2θᵢ₊ₘ + θᵢ)² / [2τ²·(M − 2m + 1)],  τ = m·τ₀,  i = 0 … M − 2m"],
-        source: "IEEE Std 952, Annex C; NIST SP 1065",
+        source: "IEEE Std 952, {annex} C; NIST SP 1065",
         applies: noise,
     },
     Method {
         id: "edf",
         formulas: &["σ̂·√(ν / χ²(0.975; ν)) … σ̂·√(ν / χ²(0.025; ν))"],
-        source: "Greenhall and Riley 2003; NIST SP 1065",
+        source: "Greenhall, Riley 2003; NIST SP 1065",
         applies: noise,
     },
     Method {
@@ -142,7 +142,7 @@ const METHODS: &[Method] = &[
             "S(f) = N² + B²/(2πf) + K²/(2πf)² + (4Q²/τ₀)·sin²(πfτ₀)",
             "σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)·B² + K²τ/3 + R²τ²/2",
         ],
-        source: "IEEE Std 952, Annex C",
+        source: "IEEE Std 952, {annex} C",
         applies: noise,
     },
     Method {
@@ -157,25 +157,25 @@ const METHODS: &[Method] = &[
             "γ(t) = σ²·exp(−|t|/T)·cos(2πf₀t)",
             "V(t) = 2σ²·Re[(z − 1 + exp(−z))/z²],  z = (1/T − 2πi·f₀)·t;  σ²(τ) = 2[V(τ) − V(2τ)]",
         ],
-        source: "IEEE Std 952, Annex C; Zhang 2008",
+        source: "IEEE Std 952, {annex} C; Zhang 2008",
         applies: |r| r.noise_models.iter().any(|m| !m.markov.is_empty() || !m.quasi_periodic.is_empty()),
     },
     Method {
         id: "goodness",
         formulas: &["wⱼ = Σₖ cₖ/√Pₖ · √(2/M)·cos[πk(j + ½)/M]", "ν = n²·r₀² / Σ (n − |l|)·rₗ²"],
-        source: "Greenhall and Riley 2003; D'Agostino 1970; Anscombe and Glynn 1983; Holm 1979",
+        source: "Greenhall, Riley 2003; D'Agostino 1970; Anscombe, Glynn 1983; Holm 1979",
         applies: |r| !r.goodness_of_fit.is_empty(),
     },
     Method {
         id: "slope",
         formulas: &["N = σ(τ)·√τ", "K = σ(τ)·√(3/τ)", "R = σ(τ)·√2/τ", "Q = σ(τ)·τ/√3"],
-        source: "IEEE Std 952, Annex C",
+        source: "IEEE Std 952, {annex} C",
         applies: |r| fitted_by(r, "slope_readout"),
     },
     Method {
         id: "bias_instability",
         formulas: &["σ_BI = √(2 ln 2/π)·B = 0.664·B"],
-        source: "IEEE Std 952, Annex C",
+        source: "IEEE Std 952, {annex} C",
         applies: |r| {
             measures(
                 r,
@@ -208,7 +208,7 @@ const METHODS: &[Method] = &[
     Method {
         id: "russian_prediction",
         formulas: &["E[s²] = 2Q²(n + 1)/(nτ²) + N²/τ + (B²/π)·n·ln n/(n − 1) + K²τn/6 + R²τ²n(n + 1)/12"],
-        source: "Barnes 1969 (bias function B₁)",
+        source: "Barnes 1969 (B₁)",
         applies: |r| measures(r, &[&measurand::RUSSIAN_DRIFT_100S_PREDICTED]),
     },
     Method {
@@ -229,7 +229,7 @@ const METHODS: &[Method] = &[
     Method {
         id: "spectrum",
         formulas: &["G(f) = 2·S(f), f > 0;  N = √S / 60 = √(G/2) / 60"],
-        source: "IEEE Std 952, Annex C; Welch 1967",
+        source: "IEEE Std 952, {annex} C; Welch 1967",
         applies: |r| r.figures.iter().any(|f| f.id.starts_with("spectrum")) || !r.lines.is_empty(),
     },
     Method {
@@ -255,7 +255,7 @@ const METHODS: &[Method] = &[
     Method {
         id: "thermal_noise",
         formulas: &["N² = τ·Σ (ȳᵢ₊₂ − 2ȳᵢ₊₁ + ȳᵢ)² / (6n),  ν = n/1.944"],
-        source: "IEEE Std 952, Annex C",
+        source: "IEEE Std 952, {annex} C",
         applies: |r| measures(r, &[&measurand::ANGLE_RANDOM_WALK_AT_TEMPERATURE]),
     },
     Method {

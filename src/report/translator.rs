@@ -3,7 +3,7 @@
 use super::{number, unit};
 use crate::estimate::Verdict;
 use crate::i18n;
-use crate::i18n::{Arg, Lang, Localize, Note, fill, lookup};
+use crate::i18n::{Arg, Lang, LocalText, Localize, Note, fill, lookup};
 use serde::Serialize;
 
 /// A label and its value.
@@ -48,6 +48,7 @@ impl Translator {
                 Arg::Stated(v) => number::limit(*v, self.lang),
                 Arg::Count(v) => number::count(*v, self.lang),
                 Arg::Text(t) => t.clone(),
+                Arg::Local(t) => self.local(t),
                 Arg::Key(k) => i18n::words(k, self.lang),
                 Arg::Note(n) => self.say(n),
                 Arg::Decimals { .. } | Arg::Several(..) => arg.say(self.lang),
@@ -57,6 +58,16 @@ impl Translator {
                 }
             })
         })
+    }
+
+    /// A text of a user.
+    pub fn local(self, text: &LocalText) -> String {
+        text.say(self.lang)
+    }
+
+    /// A source as it is cited; the part of a standard that has a name of its own by that of the language.
+    pub fn citation(self, source: &str) -> String {
+        fill(source, |name| (name == "annex").then(|| self.t("report.annex")))
     }
 
     /// A formula with the decimal mark of the language.

@@ -124,7 +124,7 @@ fn a_missing_serial_is_an_error_and_the_report_is_written() {
 #[test]
 fn an_overdue_calibration_makes_the_test_indeterminate() {
     let dir = tempdir().unwrap();
-    let name = "name = \"thermal chamber\"\ncalibration_due = ";
+    let name = "name = { en = \"thermal chamber\", ru = \"термокамера\" }\ncalibration_due = ";
     for (sample_name, changed) in [("pass", "2020-01-01"), ("fail", "2020-01-01")] {
         let overdue = altered(
             dir.path(),
@@ -197,7 +197,7 @@ fn wrong_usages_of_run_are_refused_in_one_message() {
         (&["run", "none.toml", r], &["none.toml", "cannot be read", "check the path"]),
         (&["run", p, "none.csv"], &["none.csv", "cannot be read", "check the path"]),
         (&["run", p, r, "--limits", "none.toml"], &["none.toml", "cannot be read"]),
-        (&["run", p, r, "--limits", &wrong], &["l.toml:23:16", "deg/s^2", "deg/h"]),
+        (&["run", p, r, "--limits", &wrong], &["l.toml:24:16", "deg/s^2", "deg/h"]),
         (&["run", p, r, "--limits", p], &["static-bias.toml"]),
         (&["run", p, r, "--templates", "none"], &["none"]),
         (&["run", p, r, "--taus", "octaves"], &["--taus", "`octaves`", "octave, decade, all"]),

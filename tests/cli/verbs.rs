@@ -169,7 +169,7 @@ fn check_says_what_a_short_record_cannot_show() {
         assert_eq!(said.code, 0, "a warning is no error: {said:?}");
         let about = said.out.contains("1 h cannot decide bias_instability <= 0.005 deg/h");
         assert_eq!(about, warned, "{}", said.out);
-        assert_eq!(said.out.contains("sample-unit.toml:29:1"), warned, "{}", said.out);
+        assert_eq!(said.out.contains("sample-unit.toml:30:1"), warned, "{}", said.out);
         assert_eq!(said.out.contains("a unit at 1.5 times the limit"), warned, "{}", said.out);
     }
 }

@@ -1,5 +1,6 @@
 //! The shipped procedures and limits, the schema, the guide.
 
+use sagnac::config::manifest::tables::MANIFEST_FILE;
 use sagnac::config::model::tables::MODEL_FILE;
 use sagnac::config::procedure::check::{check, check_report};
 use sagnac::config::procedure::model::{Allowance, EarthRate, Taus};
@@ -83,6 +84,58 @@ fn every_shipped_file_is_sound() {
     assert_eq!(report.text.matches("; valid").count(), files.len());
 }
 
+/// Texts of a file that reports show and that are not in every language, each with its key.
+fn of_one_language(spec: &'static TableSpec, file: &toml::Table, found: &mut Vec<String>) {
+    for key in spec.keys {
+        let Some(value) = file.get(key.name) else { continue };
+        let tables = match value {
+            toml::Value::Array(list) => list.iter().filter_map(|v| v.as_table()).collect(),
+            other => other.as_table().into_iter().collect::<Vec<_>>(),
+        };
+        match key.kind {
+            // The number of a clause and a standard are the same in every language.
+            Kind::LocalText | Kind::LocalRemark => match value.as_str() {
+                Some(text) if !text.starts_with("IEEE Std ") && text.chars().any(char::is_alphabetic) => {
+                    found.push(format!("{}: {text}", key.name))
+                }
+                Some(_) => {}
+                None if tables.iter().all(|t| t.len() == Lang::ALL.len()) => {}
+                None => found.push(format!("{}: {value}", key.name)),
+            },
+            kind => {
+                let below =
+                    kind.table().into_iter().flat_map(|below| tables.iter().map(move |t| (below, *t)));
+                below.for_each(|(below, table)| of_one_language(below, table, found));
+            }
+        }
+    }
+}
+
+#[test]
+fn every_text_of_shipped_files_is_in_every_language() {
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples");
+    let mut examined = 0;
+    for path in [shipped(""), shipped("limits"), samples].iter().flat_map(|folder| toml_files(folder)) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let spec = match (text.contains("\"procedure/1\""), text.contains("\"limits/1\"")) {
+            (true, _) if text.contains("[[phase]]") => &PHASES_FILE,
+            (true, _) => &PROCEDURE_FILE,
+            (_, true) => &LIMITS_FILE,
+            _ if text.contains("\"manifest/1\"") => &MANIFEST_FILE,
+            _ => &MODEL_FILE,
+        };
+        let mut found = vec![];
+        of_one_language(spec, &text.parse().unwrap(), &mut found);
+        assert!(found.is_empty(), "{}: {found:#?}", path.display());
+        examined += 1;
+    }
+    assert!(examined >= 25, "{examined}");
+    let mut found = vec![];
+    let plain = "[limits]\ntitle = \"Limits\"\n[[reference]]\nsource = { en = \"a\" }\nnote = \"12.1\"\n";
+    of_one_language(&LIMITS_FILE, &plain.parse().unwrap(), &mut found);
+    assert_eq!(found.len(), 2, "{found:?}");
+}
+
 #[test]
 fn published_values_are_those_of_the_paper_and_no_limits() {
     // Tables 1 and 2 of Korkishko et al.: N, B, Russian drift over 100 s, Russian angle random walk, N of Table 2.
@@ -105,7 +158,7 @@ fn published_values_are_those_of_the_paper_and_no_limits() {
         let second =
             all.set.references.iter().filter(|r| r.measurand.id == "angle_random_walk").nth(1).unwrap();
         assert_eq!(second.record.value, n2);
-        assert!(second.record.source.ends_with("Table 2"));
+        assert!(second.record.source.text().ends_with("Table 2"));
         assert_eq!(all.expected("angle_random_walk"), Some(n));
     }
 }

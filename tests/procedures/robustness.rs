@@ -21,7 +21,7 @@ fn files_that_cannot_be_read_say_so() {
 fn windows_line_ends_and_a_byte_order_mark_are_no_problem() {
     let text = format!("\u{feff}{}", SHIPPED.replace('\n', "\r\n"));
     let p = parse_procedure("p", text.as_bytes()).unwrap();
-    assert_eq!(p.value.title, "Static bias and noise");
+    assert_eq!(p.value.title.text(), "Static bias and noise");
 }
 
 #[test]

@@ -16,7 +16,7 @@ fn context() -> Context {
         recording: "recording.csv".into(),
         claim: "model.toml".into(),
         identified: false,
-        description: "static, laboratory".into(),
+        description: Some("static, laboratory".into()),
         explained_at: "2026-11-21T04:23:29Z".into(),
         correction: true,
         notes: vec![],

@@ -1,5 +1,6 @@
 //! The tables of words against one another, and what the program says in Russian.
 
+use crate::russian::sentences;
 use crate::support::corpus::{cases, problems};
 use sagnac::config::procedure::{parse_limits, parse_procedure};
 use sagnac::i18n::{Lang, Localize, table};
@@ -204,6 +205,8 @@ const SAME: &[&str] = &[
     "ingest.raw.problem",
     "time_base.fault_in",
     "report.sha256",
+    "report.excluded_because",
+    "report.reference_notes",
     "report.at_least",
     "report.at_most",
     "report.interval",
@@ -299,9 +302,15 @@ fn nothing_is_left_untranslated() {
     let (en, ru) = (table(Lang::En), table(Lang::Ru));
     let mut latin: Vec<String> = vec![];
     for (key, russian) in ru {
-        // Formulas, and the titles of standards and papers as they are cited.
-        let universal = key.starts_with("effect.") && (key.ends_with(".source") || key.ends_with(".formula"));
-        if universal {
+        let of_effect = |part: &str| key.starts_with("effect.") && key.ends_with(part);
+        if of_effect(".formula") {
+            continue;
+        }
+        // Authors, journals and standards are cited by their names; what is said of them is Russian.
+        if of_effect(".source") {
+            let small = |run: &String| run.split(' ').filter(|w| w.starts_with(char::is_lowercase)).count();
+            let english = sentences(russian, 2).into_iter().filter(|run| small(run) >= 2);
+            latin.extend(english.map(|english| format!("{key}: {english}")));
             continue;
         }
         let same = SAME.iter().any(|s| key == s || (s.ends_with('.') && key.starts_with(s)));

@@ -7,6 +7,7 @@ mod fixture;
 mod language;
 mod locale;
 mod render;
+mod russian;
 mod sentences;
 #[path = "../support/mod.rs"]
 mod support;

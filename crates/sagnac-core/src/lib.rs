@@ -17,7 +17,7 @@
 //!
 //! | module | what it has |
 //! |---|---|
-//! | [`message`], [`render`], [`visible`], [`spelling`] | messages as a key with arguments; a table that the caller brings turns them into text |
+//! | [`local_text`], [`message`], [`render`], [`visible`], [`spelling`] | texts of users by language; messages as a key with arguments; a table that the caller brings turns them into text |
 //! | [`numeric`], [`units`] | numerical methods; units and their conversion |
 //! | [`estimate`] | an estimate with its confidence distribution, limits, decision rules, verdicts |
 //! | [`figure`] | plots as data |
@@ -36,6 +36,7 @@ pub mod effect;
 pub mod estimate;
 pub mod figure;
 pub mod influence;
+pub mod local_text;
 pub mod measurand;
 pub mod message;
 pub mod mismatch;

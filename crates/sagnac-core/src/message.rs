@@ -2,6 +2,7 @@
 //!
 //! This crate has no sentences. A [`Note`] becomes text where it is shown, by a locale table that the program owns.
 
+use crate::local_text::LocalText;
 use crate::real;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -19,6 +20,8 @@ pub enum Arg {
     Count(u64),
     /// A text, shown on one line without control characters.
     Text(String),
+    /// A text of a user, shown like `Text` in the language of the reader.
+    Local(LocalText),
     /// A key of the locale tables, shown as its text there, or as its last part if the tables lack it.
     Key(String),
     /// A message within the message.
@@ -91,6 +94,7 @@ impl Arg {
             Arg::Decimals { value, .. } | Arg::Figures { value, .. } => value.to_string(),
             Arg::Count(v) => v.to_string(),
             Arg::Text(text) => format!("{text:?}"),
+            Arg::Local(text) => format!("{:?}", text.text()),
             Arg::Key(key) => key.clone(),
             Arg::Note(note) => note.plain(),
             Arg::Several(list, between) => list.iter().map(Arg::plain).collect::<Vec<_>>().join(between),
@@ -121,6 +125,12 @@ impl From<Note> for Arg {
 impl From<&str> for Arg {
     fn from(v: &str) -> Self {
         Arg::Text(v.to_owned())
+    }
+}
+impl From<LocalText> for Arg {
+    /// A text that serves every language is a plain one.
+    fn from(v: LocalText) -> Self {
+        if v.by_language().is_empty() { Arg::Text(v.text().to_owned()) } else { Arg::Local(v) }
     }
 }
 impl From<String> for Arg {

@@ -3,7 +3,8 @@
 use crate::message::{Arg, Note};
 use crate::visible::visible;
 
-/// A table of patterns: key to text with `{argument}` places. `number.decimal` is the decimal mark.
+/// A table of patterns: key to text with `{argument}` places. `number.decimal` is the decimal mark, `language.code` the
+/// code of the language.
 pub type Patterns<'a> = &'a dyn Fn(&str) -> Option<&'static str>;
 
 impl Arg {
@@ -22,6 +23,9 @@ impl Arg {
             }
             Arg::Count(v) => v.to_string(),
             Arg::Text(t) => visible(t).into_owned(),
+            Arg::Local(t) => {
+                visible(t.in_language(patterns("language.code").unwrap_or_default())).into_owned()
+            }
             Arg::Key(k) => words(k, patterns),
             Arg::Note(n) => n.render(patterns),
             Arg::Several(list, between) => {

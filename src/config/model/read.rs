@@ -66,7 +66,7 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> ModelFile {
     });
     let claim = Claim {
         case: text("case"),
-        description: text("description"),
+        description: root.table("recording").and_then(|t| t.local_text("description")).unwrap_or_default(),
         sample_rate_hz: number("recording", "sample_rate_hz").unwrap_or(1.0),
         columns,
         noise: NoiseModel {

@@ -64,7 +64,7 @@ static RECORDING: TableSpec = TableSpec {
     doc: "The recording that the claim is of.",
     keys: &[
         optional("case", Kind::Remark, "\"unit-0042\"", "Name of the case."),
-        optional("description", Kind::Remark, "\"static, laboratory\"", "Free text."),
+        optional("description", Kind::LocalRemark, "\"static, laboratory\"", "Free text."),
         required("sample_rate_hz", Kind::Number(RATE), "10", "Nominal sample rate, Hz."),
         optional(
             "columns",

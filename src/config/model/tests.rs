@@ -1,5 +1,6 @@
 use super::*;
 use crate::effect::{ClaimedMean, Column, EFFECTS, Value};
+use crate::i18n::LocalText;
 use crate::noise::model::NoiseModel;
 use crate::noise::simulate::{Setup, Simulator};
 
@@ -54,7 +55,7 @@ fn read(text: &str) -> Claim {
 #[test]
 fn the_example_of_the_contract_is_read_as_it_says() {
     let c = read(CONTRACT);
-    assert_eq!((c.case.as_str(), c.description.as_str()), ("case-000", "static, laboratory"));
+    assert_eq!((c.case.as_str(), c.description.text()), ("case-000", "static, laboratory"));
     assert_eq!(c.sample_rate_hz, 10.0);
     assert_eq!(c.columns, Some(vec![Column::Temperature, Column::TableRate]));
     assert_eq!((c.noise.n, c.noise.b, c.noise.k, c.noise.r), (0.0023, 0.0017, 0.0009, 0.0));
@@ -110,7 +111,10 @@ fn what_is_written_reads_back_to_the_bit() {
 #[test]
 fn texts_with_quotes_and_line_breaks_read_back() {
     let mut claim = read(CONTRACT);
-    claim.description = "a \"b\" \\ c\nsecond line".to_owned();
+    claim.description = "a \"b\" \\ c\nsecond line".into();
+    assert_eq!(read(&write(&claim)).description, claim.description);
+    let both = [("en".to_owned(), "step \"1\"".to_owned()), ("ru".to_owned(), "скачок".to_owned())];
+    claim.description = LocalText::in_languages(both.into(), "en");
     assert_eq!(read(&write(&claim)).description, claim.description);
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Claim, Stated};
 use crate::effect::{Column, Value};
+use crate::i18n::LocalText;
 use std::fmt::Write as _;
 
 /// Numbers in a line of a list.
@@ -17,7 +18,7 @@ pub fn write(claim: &Claim) -> String {
         line(&mut out, "case", quoted(&claim.case));
     }
     if !claim.description.is_empty() {
-        line(&mut out, "description", quoted(&claim.description));
+        line(&mut out, "description", local(&claim.description));
     }
     line(&mut out, "sample_rate_hz", float(claim.sample_rate_hz));
     if let Some(columns) = &claim.columns {
@@ -101,6 +102,16 @@ fn float(value: f64) -> String {
 }
 
 /// A TOML string.
+/// A text in one language for all, or a table of it by language.
+fn local(text: &LocalText) -> String {
+    if text.by_language().is_empty() {
+        return quoted(text.text());
+    }
+    let texts: Vec<String> =
+        text.by_language().iter().map(|(code, text)| format!("{code} = {}", quoted(text))).collect();
+    format!("{{ {} }}", texts.join(", "))
+}
+
 fn quoted(text: impl AsRef<str>) -> String {
     toml::Value::String(text.as_ref().to_owned()).to_string()
 }

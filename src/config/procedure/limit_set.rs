@@ -2,6 +2,7 @@
 
 use super::diagnostics::Span;
 use crate::estimate::Limit;
+use crate::i18n::LocalText;
 use crate::measurand::Measurand;
 use crate::record::ReferenceRecord;
 
@@ -40,10 +41,8 @@ pub struct Reference {
     pub measurand: &'static Measurand,
     /// Channel; `None`: every one.
     pub channel: Option<String>,
-    /// Value and where it was published.
+    /// Value, where it was published, and conventions a reader must know.
     pub record: ReferenceRecord,
-    /// Conventions a reader must know.
-    pub note: Option<String>,
     /// Where it is declared.
     pub span: Span,
 }
@@ -65,13 +64,13 @@ pub struct LimitsFile {
     /// Id.
     pub id: String,
     /// Title.
-    pub title: String,
+    pub title: LocalText,
     /// Revision.
     pub revision: String,
     /// Family of devices.
-    pub family: Option<String>,
+    pub family: Option<LocalText>,
     /// Where the values come from.
-    pub source: Option<String>,
+    pub source: Option<LocalText>,
     /// What it states. Limits made by a factor are among them.
     pub set: LimitSet,
 }

@@ -161,8 +161,11 @@ pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut
         set.references.push(Reference {
             measurand,
             channel: section.text("channel"),
-            record: ReferenceRecord { value, source: section.text("source").unwrap_or_default() },
-            note: section.text("note"),
+            record: ReferenceRecord {
+                value,
+                source: section.local_text("source").unwrap_or_default(),
+                note: section.local_text("note"),
+            },
             span: section.span.clone(),
         });
     }

@@ -4,9 +4,12 @@ use super::diagnostics::{Problem, SourceText, Span};
 use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
+use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
-use crate::record::{ClauseRecord, ConditionStatus, InstrumentRecord, ProcedureRecord, WaiverRecord};
+use crate::record::{
+    ClauseRecord, ConditionStatus, ExclusionRecord, InstrumentRecord, ProcedureRecord, WaiverRecord,
+};
 use crate::recording::Channel;
 use crate::temperature::{TemperatureTest, WarmUpTest};
 use chrono::NaiveDate;
@@ -35,15 +38,15 @@ pub struct Procedure {
     /// Id, for example `static-bias`.
     pub id: String,
     /// Title of the report.
-    pub title: String,
+    pub title: LocalText,
     /// Revision.
     pub revision: String,
     /// Standard followed.
-    pub standard: Option<String>,
+    pub standard: Option<LocalText>,
     /// Clause of the standard.
-    pub clause: Option<String>,
+    pub clause: Option<LocalText>,
     /// Who wrote it.
-    pub author: Option<String>,
+    pub author: Option<LocalText>,
     /// The unit it is for.
     pub unit_under_test: UnitSpec,
     /// How the recording is read.
@@ -57,7 +60,7 @@ pub struct Procedure {
     /// Conditions of the test.
     pub conditions: Conditions,
     /// Spans left out, declared beforehand.
-    pub exclusions: Vec<Exclusion>,
+    pub exclusions: Vec<ExclusionRecord>,
     /// Where the unit stands and its axes point.
     pub site: Option<Site>,
     /// Instruments used.
@@ -99,7 +102,7 @@ pub struct RecordingSpec {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct UnitSpec {
     /// Family of devices.
-    pub family: Option<String>,
+    pub family: Option<LocalText>,
     /// Part number.
     pub part: Option<String>,
     /// Revision of the part.
@@ -208,22 +211,11 @@ pub struct FaultBudget {
     pub timestamp_jitter_s: Option<f64>,
 }
 
-/// A span left out of the evaluation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Exclusion {
-    /// Start, s from the beginning of the recording.
-    pub from_s: f64,
-    /// End, s from the beginning of the recording.
-    pub to_s: f64,
-    /// Why.
-    pub reason: String,
-}
-
 /// An instrument.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Instrument {
     /// What it is.
-    pub name: String,
+    pub name: LocalText,
     /// Serial number.
     pub serial: Option<String>,
     /// Last day on which its calibration is valid.
@@ -310,7 +302,7 @@ pub enum EarthRate {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReportSpec {
     /// Title; `None`: that of the procedure.
-    pub title: Option<String>,
+    pub title: Option<LocalText>,
     /// Ids of figures in their order; `None`: all.
     pub figures: Option<Vec<&'static str>>,
     /// Whether published values stand beside the measured ones.
@@ -345,7 +337,7 @@ impl Loaded<Procedure> {
     pub fn record(&self, limits: Option<&Loaded<LimitsFile>>) -> ProcedureRecord {
         ProcedureRecord {
             id: self.value.id.clone(),
-            title: self.value.title.clone(),
+            title: self.value.report.title.as_ref().unwrap_or(&self.value.title).clone(),
             revision: self.value.revision.clone(),
             standard: self.value.standard.clone(),
             clause: self.value.clause.clone(),

@@ -3,9 +3,8 @@
 use super::diagnostics::{Problems, SourceText};
 use super::limits::{self, LimitsFile};
 use super::model::{
-    Analysis, ChannelSpec, Conditions, EarthRate, Exclusion, ExplainSpec, FaultBudget, Instrument,
-    MeasurandSpec, Procedure, RecordingSpec, ReportSpec, SupplyCondition, Taus, TemperatureCondition,
-    UnitSpec, Waiver,
+    Analysis, ChannelSpec, Conditions, EarthRate, ExplainSpec, FaultBudget, Instrument, MeasurandSpec,
+    Procedure, RecordingSpec, ReportSpec, SupplyCondition, Taus, TemperatureCondition, UnitSpec, Waiver,
 };
 use super::reader::Reader;
 use super::section::{Entry, Section};
@@ -16,7 +15,7 @@ use super::{channel, recording_options, validate};
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
 use crate::measurand::EARTH_RATE_OPTION;
-use crate::record::{ClauseRecord, WaiverRecord};
+use crate::record::{ClauseRecord, ExclusionRecord, WaiverRecord};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
 use sagnac_ingest::layout::LayoutFile;
 use std::path::{Path, PathBuf};
@@ -65,15 +64,16 @@ pub(super) fn limits_file(source: &SourceText) -> (Option<LimitsFile>, Problems)
     checked(source, &LIMITS_FILE, |root, reader| {
         let identity = root.table("limits");
         let text = |key| identity.and_then(|i| i.text(key));
+        let local = |key| identity.and_then(|i| i.local_text(key));
         let set = limits::read_set(root, identity.and_then(|i| i.number("factor")), reader);
         let warnings = limits::warnings(&set, reader.source);
         reader.problems.list.extend(warnings);
         LimitsFile {
             id: text("id").unwrap_or_default(),
-            title: text("title").unwrap_or_default(),
+            title: local("title").unwrap_or_default(),
             revision: text("revision").unwrap_or_default(),
-            family: text("family"),
-            source: text("source"),
+            family: local("family"),
+            source: local("source"),
             set,
         }
     })
@@ -82,14 +82,15 @@ pub(super) fn limits_file(source: &SourceText) -> (Option<LimitsFile>, Problems)
 fn build(root: &Section, reader: &mut Reader<'_>) -> Procedure {
     let identity = root.table("procedure");
     let text = |key| identity.and_then(|i| i.text(key));
+    let local = |key| identity.and_then(|i| i.local_text(key));
     let recording = root.table("recording");
     Procedure {
         id: text("id").unwrap_or_default(),
-        title: text("title").unwrap_or_default(),
+        title: local("title").unwrap_or_default(),
         revision: text("revision").unwrap_or_default(),
-        standard: text("standard"),
-        clause: text("clause"),
-        author: text("author"),
+        standard: local("standard"),
+        clause: local("clause"),
+        author: local("author"),
         unit_under_test: unit(root.table("unit_under_test")),
         recording: RecordingSpec {
             read: recording_options::options(recording, root.tables("channel"), reader),
@@ -121,7 +122,7 @@ fn unit(section: Option<&Section>) -> UnitSpec {
         return UnitSpec { serial_required: true, ..UnitSpec::default() };
     };
     UnitSpec {
-        family: section.text("family"),
+        family: section.local_text("family"),
         part: section.text("part"),
         revision: section.text("revision"),
         serial_required: section.flag("serial_required"),
@@ -190,11 +191,11 @@ fn faults(section: &Section) -> FaultBudget {
     }
 }
 
-fn exclusion(section: &Section) -> Exclusion {
-    Exclusion {
+fn exclusion(section: &Section) -> ExclusionRecord {
+    ExclusionRecord {
         from_s: section.number("from").unwrap_or(0.0),
         to_s: section.number("to").unwrap_or(0.0),
-        reason: section.text("reason").unwrap_or_default(),
+        reason: section.local_text("reason").unwrap_or_default(),
     }
 }
 
@@ -219,7 +220,7 @@ fn site(section: &Section) -> Site {
 
 fn instrument(section: &Section) -> Instrument {
     Instrument {
-        name: section.text("name").unwrap_or_default(),
+        name: section.local_text("name").unwrap_or_default(),
         serial: section.text("serial"),
         calibration_due: section.date("calibration_due"),
         required: section.flag("required"),
@@ -321,10 +322,10 @@ fn measurand(section: &Section) -> Option<MeasurandSpec> {
 
 pub(super) fn clause(section: &Section) -> ClauseRecord {
     ClauseRecord {
-        clause: section.text("clause").unwrap_or_default(),
-        title: section.text("title").unwrap_or_default(),
+        clause: section.local_text("clause").unwrap_or_default(),
+        title: section.local_text("title").unwrap_or_default(),
         status: section.word("status").unwrap_or_default().to_owned(),
-        note: section.text("note").unwrap_or_default(),
+        note: section.local_text("note").unwrap_or_default(),
     }
 }
 
@@ -334,7 +335,7 @@ fn report(section: Option<&Section>) -> ReportSpec {
         _ => None,
     };
     ReportSpec {
-        title: section.and_then(|s| s.text("title")),
+        title: section.and_then(|s| s.local_text("title")),
         figures,
         show_reference: section.is_none_or(|s| s.flag("show_reference")),
     }
@@ -345,8 +346,8 @@ fn waiver(section: &Section) -> Waiver {
         serial: section.text("serial").unwrap_or_default(),
         record: WaiverRecord {
             row: section.text("row").unwrap_or_default(),
-            by: section.text("by").unwrap_or_default(),
-            reason: section.text("reason").unwrap_or_default(),
+            by: section.local_text("by").unwrap_or_default(),
+            reason: section.local_text("reason").unwrap_or_default(),
             date: section.date("date").map(|d| d.to_string()).unwrap_or_default(),
         },
     }

@@ -10,7 +10,7 @@ use super::tables::phases::PHASES_FILE;
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
 use crate::config::text_file::{self, Wording};
-use crate::i18n::Note;
+use crate::i18n::{LocalText, Note};
 use crate::record::{ClauseRecord, ProcedureRecord};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ pub struct Phased {
     /// Identity of the whole.
     pub identity: ProcedureRecord,
     /// Family of the unit.
-    pub family: Option<String>,
+    pub family: Option<LocalText>,
     /// Part number.
     pub part: Option<String>,
     /// Revision of the part.
@@ -42,7 +42,7 @@ pub struct Phase {
     /// Id: files of a manifest with this phase, or with one that begins with it and a point, belong to it.
     pub id: String,
     /// Title; that of its procedure where none is given.
-    pub title: String,
+    pub title: LocalText,
     /// Its procedure.
     pub procedure: Loaded<Procedure>,
     /// Its limits file.
@@ -52,7 +52,7 @@ pub struct Phase {
 /// What the file itself says of a phase.
 struct Stated {
     id: String,
-    title: Option<String>,
+    title: Option<LocalText>,
     procedure: PathBuf,
     limits: Option<PathBuf>,
 }
@@ -102,21 +102,22 @@ fn read(
         let stated = stated(root, folder, reader);
         let identity = root.table("procedure");
         let text = |key| identity.and_then(|i| i.text(key));
+        let local = |key| identity.and_then(|i| i.local_text(key));
         let unit = root.table("unit_under_test");
         let of_unit = |key| unit.and_then(|u| u.text(key));
         let phased = Phased {
             identity: ProcedureRecord {
                 id: text("id").unwrap_or_default(),
-                title: text("title").unwrap_or_default(),
+                title: local("title").unwrap_or_default(),
                 revision: text("revision").unwrap_or_default(),
-                standard: text("standard"),
-                clause: text("clause"),
-                author: text("author"),
+                standard: local("standard"),
+                clause: local("clause"),
+                author: local("author"),
                 path: path.to_owned(),
                 sha256,
                 limits: None,
             },
-            family: of_unit("family"),
+            family: unit.and_then(|u| u.local_text("family")),
             part: of_unit("part"),
             part_revision: of_unit("revision"),
             serial_required: unit.is_none_or(|u| u.flag("serial_required")),
@@ -147,7 +148,7 @@ fn stated(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Stated>
             let message = Note::new("phases.twice").with("id", id.as_str()).with("other", other.id.as_str());
             reader.error(&section.span_of("id"), message, None);
         }
-        list.push(Stated { id, title: section.text("title"), procedure, limits });
+        list.push(Stated { id, title: section.local_text("title"), procedure, limits });
     }
     list
 }

@@ -118,6 +118,8 @@ fn value(kind: Kind) -> Value {
     let quantity = || json!({"type": "string", "pattern": QUANTITY_PATTERN});
     match kind {
         Kind::Text | Kind::UnitText => json!({"type": "string", "minLength": 1}),
+        Kind::LocalText => local_text(json!({"type": "string", "minLength": 1})),
+        Kind::LocalRemark => local_text(json!({"type": "string"})),
         Kind::Format(text) => json!({"const": text}),
         Kind::Id => json!({"type": "string", "pattern": "^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"}),
         Kind::Flag => json!({"type": "boolean"}),
@@ -155,6 +157,23 @@ fn value(kind: Kind) -> Value {
             json!({"oneOf": [one.clone(), {"type": "array", "items": one}]})
         }
     }
+}
+
+/// A text for every language, or one for each.
+fn local_text(text: Value) -> Value {
+    let of = |lang: &Lang| {
+        let mut text = text.clone();
+        text["description"] = json!(format!("Text of reports in the language `{}`.", lang.code()));
+        (lang.code().to_owned(), text)
+    };
+    let languages: Map<String, Value> = Lang::ALL.iter().map(of).collect();
+    let table = json!({
+        "type": "object",
+        "properties": languages,
+        "minProperties": 1,
+        "additionalProperties": false,
+    });
+    json!({"oneOf": [text, table]})
 }
 
 fn available() -> impl Iterator<Item = &'static str> {

@@ -14,7 +14,7 @@ use super::number::{count, date_time, digits, duration};
 use super::translator::{Field, Translator};
 use super::view::FigureView;
 use crate::figure::Figure;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, LocalText, Note};
 use crate::record::ExplainedRecord;
 use crate::record::explanation::{Explanation, MismatchVerdict};
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,8 @@ pub struct Context {
     /// True when the claim was identified from a simulated recording.
     pub identified: bool,
     /// What the claim says of itself.
-    pub description: String,
+    #[serde(flatten, with = "crate::record::local::description")]
+    pub description: Option<LocalText>,
     /// RFC 3339.
     pub explained_at: String,
     /// True when `correction.csv` is written.
@@ -168,7 +169,10 @@ fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<Fiel
     let claim = if context.identified { "explain.fact.simulation" } else { "explain.fact.claim" };
     put(claim, context.claim.clone());
     put("explain.fact.case", all.case.clone());
-    put("explain.fact.description", context.description.clone());
+    put(
+        "explain.fact.description",
+        context.description.as_ref().map_or_else(String::new, |d| words.local(d)),
+    );
     put("explain.fact.rows", count(r.rows as u64, words.lang));
     put("explain.fact.missing", count(r.missing as u64, words.lang));
     put("explain.fact.interval", duration(r.sample_interval_s, words.lang));

@@ -9,8 +9,8 @@ use super::faults::Faults;
 use super::goodness::{self, Goodness};
 use crate::measurand;
 use crate::record::{
-    ClauseRecord, ExcludedSpan, InstrumentRecord, LineRecord, MeasurandRecord, NoiseModelRecord, PowerRecord,
-    RunRecord, WaiverRecord,
+    ClauseRecord, ExcludedSpan, ExclusionRecord, InstrumentRecord, LineRecord, MeasurandRecord,
+    NoiseModelRecord, PowerRecord, RunRecord, WaiverRecord,
 };
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use crate::report::translator::{Field, Translator};
@@ -204,7 +204,7 @@ impl Evidence {
             checks_made: checks::made(record, words),
             faults: Faults::new(record, words),
             window: window(record, words),
-            excluded: record.window.excluded.iter().map(|e| excluded(e, words)).collect(),
+            excluded: record.window.excluded.iter().map(|e| excluded(e, &record.exclusions, words)).collect(),
             lines: lines.into_iter().map(|l| line(l, words)).collect(),
             lines_shown,
             models: record.noise_models.iter().map(|m| model(m, &record.measurands, words)).collect(),
@@ -232,12 +232,20 @@ fn window(record: &RunRecord, words: Translator) -> Vec<Field> {
         .collect()
 }
 
-fn excluded(e: &ExcludedSpan, words: Translator) -> Excluded {
+/// A span left out; a declared one with the reasons that the procedure gives.
+fn excluded(e: &ExcludedSpan, declared: &[ExclusionRecord], words: Translator) -> Excluded {
+    let of = |d: &&ExclusionRecord| e.reason == "declared" && d.from_s < e.to_s && d.to_s > e.from_s;
+    let reasons: Vec<String> = declared.iter().filter(of).map(|d| words.local(&d.reason)).collect();
+    let word = words.name("excluded", &e.reason);
     Excluded {
         from: duration(e.from_s, words.lang),
         to: duration(e.to_s, words.lang),
         length: duration(e.to_s - e.from_s, words.lang),
-        reason: words.name("excluded", &e.reason),
+        reason: if reasons.is_empty() {
+            word
+        } else {
+            words.with("report.excluded_because", &[("kind", &word), ("reasons", &reasons.join("; "))])
+        },
     }
 }
 
@@ -256,7 +264,7 @@ fn power(p: &PowerRecord, words: Translator) -> Power {
 
 fn instrument(i: &InstrumentRecord, words: Translator) -> Instrument {
     Instrument {
-        name: i.name.clone(),
+        name: words.local(&i.name),
         serial: i.serial.clone().unwrap_or_else(|| NOTHING.to_owned()),
         due: i.calibration_due.clone().unwrap_or_else(|| NOTHING.to_owned()),
         status: status(i.status),
@@ -265,16 +273,21 @@ fn instrument(i: &InstrumentRecord, words: Translator) -> Instrument {
 }
 
 fn waiver(w: &WaiverRecord, words: Translator) -> Waiver {
-    Waiver { row: row_name(&w.row, words), by: w.by.clone(), date: w.date.clone(), reason: w.reason.clone() }
+    Waiver {
+        row: row_name(&w.row, words),
+        by: words.local(&w.by),
+        date: w.date.clone(),
+        reason: words.local(&w.reason),
+    }
 }
 
 fn clause(c: &ClauseRecord, words: Translator) -> Clause {
     Clause {
-        clause: c.clause.clone(),
-        title: c.title.clone(),
+        clause: words.local(&c.clause),
+        title: words.local(&c.title),
         status: c.status.clone(),
         status_word: words.name("clause", &c.status),
-        note: c.note.clone(),
+        note: words.local(&c.note),
     }
 }
 

@@ -8,12 +8,13 @@ use super::matrix::Matrix;
 use super::rows::{self, Row};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::i18n::Lang;
+use crate::i18n::{Lang, LocalText};
 use crate::record::{self, PhaseRecord, RunKind, RunRecord};
 use crate::report::methods;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::translator::{Field, Translator};
 use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything a report shows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -96,7 +97,7 @@ pub struct MethodView {
     /// Formulas.
     pub formulas: Vec<String>,
     /// Source.
-    pub source: &'static str,
+    pub source: String,
 }
 
 impl View {
@@ -105,13 +106,13 @@ impl View {
         let words = Translator { lang };
         let mut footnotes = vec![];
         let (judged, further) = rows::rows(record, words, &mut footnotes);
-        let channels: std::collections::BTreeSet<&str> =
+        let channels: BTreeSet<&str> =
             record.measurands.iter().map(|m| m.channel.as_str()).collect();
         View {
             title: record
                 .procedure
                 .as_ref()
-                .map_or_else(|| words.t("report.title_analysis"), |p| p.title.clone()),
+                .map_or_else(|| words.t("report.title_analysis"), |p| words.local(&p.title)),
             verdict: record.verdict.id(),
             verdict_word: words.verdict(record.verdict),
             summary: summary(record, channels.len() > 1, words),
@@ -124,14 +125,7 @@ impl View {
                 Some(first) if judged.iter().all(|r| r.rule == first.rule) => first.rule.clone(),
                 _ => String::new(),
             },
-            references: record
-                .measurands
-                .iter()
-                .filter_map(|m| m.reference.as_ref())
-                .map(|r| r.source.clone())
-                .collect::<std::collections::BTreeSet<String>>()
-                .into_iter()
-                .collect(),
+            references: references(record, words),
             comparison: comparison::comparisons(record, words),
             explained: record.explained.as_ref().map(|e| Explained::new(e, lang)),
             by_channel: Matrix::new(&further),
@@ -151,7 +145,7 @@ impl View {
                     title: words.t(&format!("methods.{}.title", m.id)),
                     text: words.t(&format!("methods.{}.text", m.id)),
                     formulas: m.formulas.iter().map(|f| words.formula(f)).collect(),
-                    source: m.source,
+                    source: words.citation(m.source),
                 })
                 .collect(),
             options: record
@@ -170,7 +164,7 @@ impl View {
 fn declared(record: &RunRecord, words: Translator) -> Vec<String> {
     let declared = record.conditions.iter().filter(|c| c.evidence == Some(record::Evidence::Declared));
     let names = declared.map(|c| words.name("condition", c.id.split('.').next().unwrap_or(&c.id)));
-    names.collect::<std::collections::BTreeSet<String>>().into_iter().collect()
+    names.collect::<BTreeSet<String>>().into_iter().collect()
 }
 
 /// Reasons that a record gives for a row; a report states them with their numbers.
@@ -217,6 +211,23 @@ fn option_value(value: &str, words: Translator) -> String {
     }
 }
 
+/// Where the reference values come from, each source once with the conventions of its values.
+fn references(record: &RunRecord, words: Translator) -> Vec<String> {
+    let mut sources: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for r in record.measurands.iter().filter_map(|m| m.reference.as_ref()) {
+        let notes = sources.entry(words.local(&r.source)).or_default();
+        notes.extend(r.note.as_ref().map(|n| words.local(n)));
+    }
+    let said = |(source, notes): (String, BTreeSet<String>)| match notes.len() {
+        0 => source,
+        _ => {
+            let notes: Vec<String> = notes.into_iter().collect();
+            words.with("report.reference_notes", &[("source", &source), ("notes", &notes.join("; "))])
+        }
+    };
+    sources.into_iter().map(said).collect()
+}
+
 fn identity(record: &RunRecord, words: Translator) -> Vec<Field> {
     let mut out = vec![];
     let mut put = |key: &str, value: Option<&str>| {
@@ -228,25 +239,26 @@ fn identity(record: &RunRecord, words: Translator) -> Vec<Field> {
     let missing = words.t("report.missing");
     let expected = record.kind == RunKind::Run;
     put("report.serial", unit.serial.as_deref().or(expected.then_some(missing.as_str())));
-    put("report.family", unit.family.as_deref());
+    put("report.family", unit.family.as_ref().map(|f| words.local(f)).as_deref());
     put("report.part", unit.part.as_deref());
     put("report.part_revision", unit.revision.as_deref());
     put("report.lot", unit.lot.as_deref());
     if let Some(p) = &record.procedure {
         let id = words.with("report.id_revision", &[("id", &p.id), ("revision", &p.revision)]);
         put("report.procedure", Some(&id));
-        let standard = match (&p.standard, &p.clause) {
+        let local = |text: &Option<LocalText>| text.as_ref().map(|t| words.local(t));
+        let standard = match (local(&p.standard), local(&p.clause)) {
             (Some(s), Some(c)) => {
-                Some(words.with("report.standard_clause", &[("standard", s), ("clause", c)]))
+                Some(words.with("report.standard_clause", &[("standard", &s), ("clause", &c)]))
             }
-            (s, c) => s.clone().or_else(|| c.clone()),
+            (s, c) => s.or(c),
         };
         put("report.standard", standard.as_deref());
-        put("report.author", p.author.as_deref());
+        put("report.author", local(&p.author).as_deref());
         if let Some(l) = &p.limits {
             let id = words.with("report.id_revision", &[("id", &l.id), ("revision", &l.revision)]);
-            put("report.limits", Some(&format!("{} ({id})", l.title)));
-            put("report.limits_source", l.source.as_deref());
+            put("report.limits", Some(&format!("{} ({id})", words.local(&l.title))));
+            put("report.limits_source", local(&l.source).as_deref());
         }
     }
     put("report.station", record.session.station.as_deref());
@@ -375,7 +387,7 @@ fn one(part: &PhasePart<'_>, lang: Lang) -> PhaseView {
     });
     PhaseView {
         id: phase.id.clone(),
-        title: phase.title.clone(),
+        title: words.local(&phase.title),
         verdict: phase.verdict.id(),
         verdict_word: words.verdict(phase.verdict),
         summary: phase.summary.iter().map(|n| words.say(n)).collect(),

@@ -43,7 +43,7 @@ impl Model {
     pub fn claim(self) -> Claim {
         Claim {
             case: String::new(),
-            description: String::new(),
+            description: Default::default(),
             sample_rate_hz: RATE_HZ,
             columns: None,
             noise: NoiseModel { n: self.n, b: self.b, k: self.k, ..NoiseModel::default() },

@@ -6,6 +6,7 @@ mod profile;
 pub use profile::{Profile, SimulationPlan};
 
 use crate::effect::{ClaimedMean, Column, Effect, Values};
+use crate::local_text::LocalText;
 use crate::noise::model::NoiseModel;
 
 /// A claim (`model.toml`).
@@ -14,7 +15,7 @@ pub struct Claim {
     /// Name of the case; empty where none is stated.
     pub case: String,
     /// Free text.
-    pub description: String,
+    pub description: LocalText,
     /// Nominal sample rate, Hz.
     pub sample_rate_hz: f64,
     /// Columns that the recording is stated to have, beside time and rate. `None` where the claim does not say.

@@ -65,7 +65,7 @@ fn claim(series: &Series, mean: &mean::Fitted, noise: &noise::Found) -> Claim {
     let deviation = |d: f64| if d.is_finite() { d.min(1e6) } else { 1e6 };
     Claim {
         case: String::new(),
-        description: String::new(),
+        description: Default::default(),
         sample_rate_hz: 1.0 / series.sample_interval_s,
         columns: Some(series.columns.keys().copied().collect::<Vec<Column>>()),
         noise: NoiseModel { n: n.value, b: b.value, k: k.value, r: 0.0, q: q.value },

@@ -368,7 +368,7 @@ mod tests {
     fn empty_claim() -> Claim {
         Claim {
             case: String::new(),
-            description: String::new(),
+            description: Default::default(),
             sample_rate_hz: 1.0,
             columns: None,
             noise: NoiseModel::default(),

@@ -160,6 +160,11 @@ pub(crate) static EXCLUDE: TableSpec = TableSpec {
             "\"2.5 h\"",
             "End, from the beginning of the recording.",
         ),
-        required("reason", Kind::Text, "\"door of the chamber opened\"", "Reason, as shown in the report."),
+        required(
+            "reason",
+            Kind::LocalText,
+            "\"door of the chamber opened\"",
+            "Reason, as shown in the report.",
+        ),
     ],
 };

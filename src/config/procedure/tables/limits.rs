@@ -31,15 +31,15 @@ static LIMITS: TableSpec = TableSpec {
     doc: "Identity of the limits, shown in the header of every report.",
     keys: &[
         required("id", Kind::Id, "\"oius-501\"", "Id of the limits."),
-        required("title", Kind::Text, "\"OIUS-501\"", "Title of the file."),
+        required("title", Kind::LocalText, "\"OIUS-501\"", "Title of the file."),
         required(
             "revision",
             Kind::Text,
             "\"A\"",
             "Revision. Change it whenever anything else in the file changes.",
         ),
-        optional("family", Kind::Text, "\"OIUS-501\"", "Family of devices the limits are for."),
-        optional("source", Kind::Text, "\"data sheet DS-501, rev. 3\"", "Where the values come from."),
+        optional("family", Kind::LocalText, "\"OIUS-501\"", "Family of devices the limits are for."),
+        optional("source", Kind::LocalText, "\"data sheet DS-501, rev. 3\"", "Where the values come from."),
         optional(
             "factor",
             Kind::Number(Range::POSITIVE),
@@ -60,10 +60,10 @@ pub static REFERENCE: TableSpec = TableSpec {
         required("measurand", Kind::Measurand, "\"angle_random_walk\"", "Id of the measurand."),
         optional("channel", Kind::Id, "\"x\"", "Channel. Default: every channel."),
         required("value", Kind::QuantityBy("measurand"), "\"0.0023 deg/sqrt(h)\"", "Value with unit."),
-        required("source", Kind::Text, "\"data sheet DS-501, rev. 3\"", "Where it was published."),
+        required("source", Kind::LocalText, "\"data sheet DS-501, rev. 3\"", "Where it was published."),
         optional(
             "note",
-            Kind::Text,
+            Kind::LocalText,
             "\"read at the minimum of the curve\"",
             "Conventions that apply to the value.",
         ),

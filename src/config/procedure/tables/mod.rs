@@ -132,16 +132,21 @@ pub(crate) static PROCEDURE: TableSpec = TableSpec {
     doc: "Identity of the procedure, shown in the header of every report.",
     keys: &[
         required("id", Kind::Id, "\"static-bias\"", "Id, also used in the name of the output folder."),
-        required("title", Kind::Text, "\"Static bias and noise\"", "Title of the report."),
+        required("title", Kind::LocalText, "\"Static bias and noise\"", "Title of the report."),
         required(
             "revision",
             Kind::Text,
             "\"A\"",
             "Revision. Change it whenever anything else in the file changes.",
         ),
-        optional("standard", Kind::Text, "\"IEEE Std 952-2020\"", "Standard followed, with its edition."),
-        optional("clause", Kind::Text, "\"12.11 drift-rate series\"", "Clause of the standard."),
-        optional("author", Kind::Text, "\"QA department\"", "Author of the procedure."),
+        optional(
+            "standard",
+            Kind::LocalText,
+            "\"IEEE Std 952-2020\"",
+            "Standard followed, with its edition.",
+        ),
+        optional("clause", Kind::LocalText, "\"12.11 drift-rate series\"", "Clause of the standard."),
+        optional("author", Kind::LocalText, "\"QA department\"", "Author of the procedure."),
     ],
 };
 
@@ -149,7 +154,7 @@ pub(crate) static UNIT_UNDER_TEST: TableSpec = TableSpec {
     name: "unit_under_test",
     doc: "The unit the procedure is for. The serial number is given when the test is run.",
     keys: &[
-        optional("family", Kind::Text, "\"OIUS-501\"", "Family of devices."),
+        optional("family", Kind::LocalText, "\"OIUS-501\"", "Family of devices."),
         optional("part", Kind::Text, "\"501-00-01\"", "Part number."),
         optional("revision", Kind::Text, "\"C\"", "Revision of the part."),
         with_default(
@@ -373,10 +378,10 @@ pub(crate) static CLAUSE: TableSpec = TableSpec {
     name: "clause",
     doc: "A clause of the standard and where it is covered.",
     keys: &[
-        required("clause", Kind::Text, "\"12.11\"", "Number of the clause."),
-        required("title", Kind::Text, "\"Drift-rate series\"", "Its title."),
+        required("clause", Kind::LocalText, "\"12.11\"", "Number of the clause."),
+        required("title", Kind::LocalText, "\"Drift-rate series\"", "Its title."),
         required("status", Kind::Choice(CLAUSE_STATUS), "\"here\"", "Where it is covered."),
-        optional("note", Kind::Text, "\"bias and random drift\"", "Details, or the reason why not."),
+        optional("note", Kind::LocalText, "\"bias and random drift\"", "Details, or the reason why not."),
     ],
 };
 
@@ -390,7 +395,12 @@ static REPORT: TableSpec = TableSpec {
     name: "report",
     doc: "What the report shows.",
     keys: &[
-        optional("title", Kind::Text, "\"Acceptance report\"", "Title. Default: the title of the procedure."),
+        optional(
+            "title",
+            Kind::LocalText,
+            "\"Acceptance report\"",
+            "Title. Default: the title of the procedure.",
+        ),
         optional(
             "figures",
             Kind::Choices(FIGURES),
@@ -414,10 +424,10 @@ static WAIVER: TableSpec = TableSpec {
     keys: &[
         required("serial", Kind::Text, "\"0042\"", "Serial number of the unit: a waiver is for one unit."),
         required("row", Kind::Text, "\"angle_random_walk\"", "Measurand or condition concerned."),
-        required("by", Kind::Text, "\"J. Smith, quality\"", "Who decided."),
+        required("by", Kind::LocalText, "\"J. Smith, quality\"", "Who decided."),
         required(
             "reason",
-            Kind::Text,
+            Kind::LocalText,
             "\"used at constant temperature only\"",
             "Reason, as shown in the report.",
         ),

@@ -35,7 +35,7 @@ static PHASE: TableSpec = TableSpec {
         ),
         optional(
             "title",
-            Kind::Text,
+            Kind::LocalText,
             "\"Repeatability of the bias\"",
             "Title. Default: that of its procedure.",
         ),

@@ -88,7 +88,7 @@ pub(crate) static INSTRUMENT: TableSpec = TableSpec {
     doc: "An instrument and the validity of its calibration. A calibration that has expired on the day of \
           the test is a condition not met.",
     keys: &[
-        required("name", Kind::Text, "\"chamber thermometer\"", "What it is."),
+        required("name", Kind::LocalText, "\"chamber thermometer\"", "What it is."),
         optional("serial", Kind::Text, "\"T-0412\"", "Serial number."),
         optional("calibration_due", Kind::Date, "2030-12-31", "Last day on which the calibration is valid."),
         with_default(
