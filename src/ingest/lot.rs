@@ -59,6 +59,10 @@ pub fn members(
     for path in named {
         recordings.extend(each_of(path).map_err(|e| LotError::Recording(e.into()))?);
     }
+    // A name that is no file is a slip of the pen; a damaged file is found when it is tested.
+    if let Some(missing) = recordings.iter().find(|r| !r.exists()) {
+        open_recording(std::slice::from_ref(missing), options).map_err(LotError::Recording)?;
+    }
     let (mut members, mut wrong) = (vec![], vec![]);
     for recording in recordings {
         match pattern.map(|p| p.serial_of(&recording)) {
@@ -87,7 +91,7 @@ fn member(recording: PathBuf, serial: String, serial_from: SerialSource) -> Memb
 
 /// The serial number that a recording states, or else the name of its file.
 fn stated(recording: &Path, options: &ReadOptions) -> (String, SerialSource) {
-    let opened = open_recording(std::slice::from_ref(&recording.to_path_buf()), options).ok();
+    let opened = open_recording(&[recording.to_owned()], options).ok();
     let of_manifest = || {
         // A manifest whose files cannot be opened states its number all the same.
         let loaded = manifest::is_manifest(recording).then(|| manifest::load(recording).ok()).flatten();

@@ -49,8 +49,12 @@ fn suite(unit: &LotUnit, procedure: &str) -> TestSuite {
         case
     };
     let several = several_channels(unit);
-    for c in &unit.conditions {
-        let mut case = of(c.id.clone(), c.phase.as_deref(), of_condition(c));
+    for (i, c) in unit.conditions.iter().enumerate() {
+        // Several instruments or channels have the same condition.
+        let same = |other: &&LotCondition| other.id == c.id && other.phase == c.phase;
+        let before = unit.conditions.iter().take(i).filter(same).count();
+        let name = if before > 0 { format!("{}[{}]", c.id, before + 1) } else { c.id.clone() };
+        let mut case = of(name, c.phase.as_deref(), of_condition(c));
         if let Some(remark) = c.message.as_ref().filter(|_| c.status == ConditionStatus::Remark) {
             case.set_system_out(remark.say(Lang::En));
         }

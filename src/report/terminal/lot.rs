@@ -21,7 +21,7 @@ pub fn lot(view: &LotView, lang: Lang, terminal: Terminal) -> String {
     let verdict = terminal.verdict(&view.verdict_word.to_uppercase(), view.verdict);
     let counts = view.counts.iter().map(|c| format!("{} {}", c.verdict_word, c.n));
     let counts = counts.collect::<Vec<_>>().join(", ");
-    let of = format!("{} · {}: {counts}", visible(&view.title), view.size);
+    let of = format!("{} · {} ({counts})", visible(&view.title), view.size);
     let mut out = format!("\n{}", terminal.headed(&verdict, &view.verdict_word, &of));
     let column =
         |id: &str, optional| Column { head: words.name("terminal_column", id), align: Align::Left, optional };
