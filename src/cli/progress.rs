@@ -326,7 +326,10 @@ mod tests {
     #[test]
     fn a_long_reading_shows_rate_and_remaining_time() {
         let text = drawn(Duration::ZERO, Lang::En, reading);
-        assert!(text.contains(" 50 %") && text.contains(" MB/s") && text.contains(" left"), "{text}");
+        let states: Vec<&str> = text.lines().filter(|l| l.contains('█')).collect();
+        let told = |l: &&str| l.contains(" % · ") && l.contains(" MB/s · ") && l.ends_with(" left");
+        assert!(states.len() > 3 && states.iter().all(|l| told(&l.trim_end())), "{text}");
+        assert!(!states.iter().any(|l| l.contains('–')), "{text}");
         let text = drawn(Duration::ZERO, Lang::Ru, reading);
         assert!(text.contains(" МБ/с") && text.contains("осталось 0:0"), "{text}");
     }
