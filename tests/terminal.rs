@@ -190,7 +190,6 @@ fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
         vec!["run", "bad-p.toml", &name, "--serial", serial, "--out", "r5"],
         vec!["run", p, &name, "--serial", serial, "--out", &missing],
         vec!["run", p, &name, "bad.csv", "--each", "--out", "lot"],
-        vec!["run", p, &name, &name, "--each", "--out", "lot2"],
         vec!["run", p, &name, "bad.csv", "--each", "--serial-from", &evil, "--out", "lot3"],
         vec!["run", p, &name, "bad.csv"],
         vec!["analyze", &name, "--out", "a"],

@@ -181,13 +181,16 @@ pub fn write(
     inputs::publish(folder, results.whole(lang).record(), lang)
 }
 
+/// Writes a file: its name, which may hold sub-folders, and its contents.
+pub type Put<'a> = &'a dyn Fn(&str, &[u8]) -> Result<(), OutputError>;
+
 /// Writes the files of results in some forms, all but the record of the whole.
 ///
 /// # Errors
 /// The diagnostic, in words.
 pub fn write_files(
     results: &Results,
-    write: &dyn Fn(&str, &[u8]) -> Result<(), OutputError>,
+    write: Put<'_>,
     exporters: &[&dyn Exporter],
     renderer: &Renderer,
     lang: Lang,

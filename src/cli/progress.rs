@@ -312,8 +312,7 @@ mod tests {
         let mut progress = Progress::shown(Some((patience, target)), lang);
         work(&mut progress);
         progress.finish();
-        let text = fake.0.lock().unwrap().clone();
-        text
+        fake.0.lock().unwrap().clone()
     }
 
     fn reading(progress: &mut Progress) {
