@@ -410,3 +410,25 @@ fn progress_is_shown_where_it_is_wanted_only() {
         assert!(sagnac(dir.path(), verb).err.lines().all(|l| l.contains("--force")), "{verb:?}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_signal_leaves_no_part_of_a_lot() {
+    let dir = lot();
+    let mut child = std::process::Command::new(support::program())
+        .current_dir(dir.path())
+        .args(
+            [&["run", PROCEDURE], &NAMED[..], &["--each", "--jobs", "1", "--out", "out", "--quiet"]].concat(),
+        )
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = |n: &String| n.starts_with(".out.partial-");
+    while !names(dir.path()).iter().any(begun) && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), None, "ended by the signal");
+    assert_eq!(names(dir.path()), ["lot"]);
+}
