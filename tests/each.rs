@@ -304,6 +304,14 @@ fn a_serial_number_that_is_not_one_units_own_is_refused_by_name() {
         args.extend(["--serial-from", pattern]);
         refused(dir.path(), &args, fragments);
     }
+    for i in 0..7 {
+        std::fs::write(dir.path().join(format!("lot/x{i}.csv")), "").unwrap();
+    }
+    refused(
+        dir.path(),
+        &run(&["lot/x*.csv", "--serial-from", "unit-{serial}"]),
+        &["lot/x4.csv", "2 more of the kind"],
+    );
     refused(dir.path(), &run(&["lot/b.csv", "--serial", "1"]), &["--serial", "--each"]);
     refused(dir.path(), &run(&["lot/b.csv", "--join"]), &["--join", "--each"]);
     refused(dir.path(), &["run", PROCEDURE, "lot/b.csv", "--serial-from", "{stem}"], &["--each"]);

@@ -28,6 +28,9 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
 
+/// Most complaints of one kind that are said.
+const SAID: usize = 5;
+
 /// A test that is run on one unit after another.
 trait UnitTest: Sync {
     /// Id of the procedure, for the name of the folder.
@@ -176,7 +179,11 @@ fn refused(error: &LotError, lang: Lang) -> String {
     match error {
         LotError::Recording(e) => e.say(lang),
         LotError::Serial { notes, help } => {
-            let said: String = notes.iter().map(|note| place::error(note, lang)).collect();
+            let mut said: String = notes.iter().take(SAID).map(|note| place::error(note, lang)).collect();
+            if notes.len() > SAID {
+                let more = Note::new("lot.more").with("n", notes.len() - SAID).say(lang);
+                said.push_str(&format!("  {more}\n"));
+            }
             format!("{said}  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang))
         }
     }
