@@ -11,12 +11,14 @@ mod earlier;
 mod error;
 mod file;
 mod kind;
+mod part;
 mod partial;
 
 pub use csv::quoted;
 pub use error::OutputError;
 pub use file::StagedFile;
 pub use kind::Kind;
+pub use part::StagedPart;
 pub use partial::abandon_all;
 
 use crate::i18n::Note;
@@ -25,11 +27,11 @@ use error::io;
 use partial::Partial;
 use schemars::JsonSchema;
 use serde::Serialize;
-use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Attempts to put a folder in place while other runs put theirs there.
 const ATTEMPTS: usize = 100;
@@ -42,7 +44,7 @@ pub struct StagedFolder {
     kind: Kind,
     order: Order,
     replaces: Option<Note>,
-    written: RefCell<BTreeSet<String>>,
+    written: Mutex<BTreeSet<String>>,
 }
 
 /// What a folder is made from, and whether it may replace a result of other inputs.
@@ -103,7 +105,7 @@ impl StagedFolder {
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
         let staging =
             Partial::begin(|| builder.tempdir_in(parent)).map_err(io("output_error.write_into", parent))?;
-        let written = RefCell::default();
+        let written = Mutex::default();
         Ok(StagedFolder { target: target.to_owned(), staging, kind, order, replaces, written })
     }
 
@@ -123,6 +125,11 @@ impl StagedFolder {
         if !self.kind.owns(name.split('/').next().unwrap_or_default()) {
             return Err(OutputError::Unforeseen(name.to_owned()));
         }
+        self.put(name, contents)
+    }
+
+    /// Writes one file whose name is known to be one of the folder.
+    fn put(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
         // A signal waits until the file is there: what is written after its cleaning would stay.
         let _quiet = partial::quiet();
         let path = self.staging.path().join(name);
@@ -132,7 +139,7 @@ impl StagedFolder {
         let mut file = File::create(&path).map_err(io("output_error.create", &path))?;
         file.write_all(contents).map_err(io("output_error.write", &path))?;
         file.sync_all().map_err(io("output_error.sync", &path))?;
-        self.written.borrow_mut().insert(name.to_owned());
+        self.written.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned());
         Ok(())
     }
 
@@ -144,11 +151,8 @@ impl StagedFolder {
     /// it was taken meanwhile.
     pub fn publish(self, record: impl Serialize) -> Result<PathBuf, OutputError> {
         let marks = self.kind.record_file();
-        let mut files = self.written.borrow().clone();
-        files.insert(marks.to_owned());
-        let files = files.into_iter().collect();
-        let listed = Listed { record, inputs: self.order.inputs.clone(), files };
-        let json = serde_json::to_vec_pretty(&listed).map_err(|e| OutputError::Unwritable(e.to_string()))?;
+        let files = self.written.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let json = listed(record, &self.order.inputs, files, marks)?;
         self.write(marks, &json)?;
         let quiet = partial::quiet();
         let figures = self.staging.path().join("figures");
@@ -170,6 +174,18 @@ impl StagedFolder {
         sync_folder(parent(&target))?;
         Ok(target)
     }
+}
+
+/// A record with its inputs and the list of the files beside it, `marks` among them, as JSON.
+fn listed(
+    record: impl Serialize,
+    inputs: &BTreeMap<String, String>,
+    mut files: BTreeSet<String>,
+    marks: &str,
+) -> Result<Vec<u8>, OutputError> {
+    files.insert(marks.to_owned());
+    let listed = Listed { record, inputs: inputs.clone(), files: files.into_iter().collect() };
+    serde_json::to_vec_pretty(&listed).map_err(|e| OutputError::Unwritable(e.to_string()))
 }
 
 /// The folder that holds a path.

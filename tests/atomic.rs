@@ -306,7 +306,7 @@ fn nothing_that_the_result_does_not_list_is_removed_and_no_input() {
     std::fs::copy(&limits, at("out/limits.toml")).unwrap();
     for arguments in [
         run(&procedure, "out/figures/u.csv", &limits, "SN-1"),
-        run(&procedure, "out/figures/*.csv", &limits, "SN-1"),
+        [run(&procedure, "out/figures/*.csv", &limits, "SN-1"), vec!["--join"]].concat(),
         run(&procedure, "u.csv", "out/limits.toml", "SN-1"),
         vec!["analyze", "out/figures/u.csv", "--out", "out"],
         vec!["compare", "u.csv", "out", "--out", "out"],

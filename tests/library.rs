@@ -105,6 +105,8 @@ fn errors_say_what_they_are_about() {
     assert!(none.is_recording() && !none.is_argument(), "{none}");
     assert!(none.to_string().contains("no-such-file.csv"), "{none}");
     assert_ne!(none.localized(Lang::Ru), none.to_string());
+    let pattern = Recording::open("samples/unit-*.csv").err().unwrap();
+    assert!(pattern.is_argument() && pattern.to_string().contains("open_with"), "{pattern}");
     let recording = Recording::from_columns([("x", vec![1.0; 100])]).unwrap();
     assert!(recording.rate("x").unwrap_err().is_argument());
     assert!(recording.rate("y").unwrap_err().is_recording());

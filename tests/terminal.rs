@@ -198,6 +198,9 @@ fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
         vec!["run", p, "m.toml", "--serial", serial, "--out", "r4"],
         vec!["run", "bad-p.toml", &name, "--serial", serial, "--out", "r5"],
         vec!["run", p, &name, "--serial", serial, "--out", &missing],
+        vec!["run", p, &name, "bad.csv", "--each", "--out", "lot"],
+        vec!["run", p, &name, "bad.csv", "--each", "--serial-from", &evil, "--out", "lot3"],
+        vec!["run", p, &name, "bad.csv"],
         vec!["analyze", &name, "--out", "a"],
         vec!["analyze", &name, "--rate", &evil, "--out", "a2"],
         vec!["analyze", &name, "--rate", rate, "--unit", &evil, "--out", "a3"],
@@ -222,7 +225,7 @@ fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
             clean(&sagnac(dir.path(), &verb), &verb);
         }
     }
-    for folder in ["r", "r2", "a", "c"] {
+    for folder in ["r", "r2", "a", "c", "lot"] {
         pages_or_less(&at(folder));
     }
 }

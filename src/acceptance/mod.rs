@@ -6,6 +6,7 @@
 //! | `kinds` | what each kind of test adds to that way; one file or folder a kind, one list |
 //! | `condition` | whether the test was done as required; one condition a file |
 //! | `figures` | plots as data |
+//! | `lot` | a lot from the records of its units |
 //! | `phases`, `explained` | several procedures as one test; a recording against the model of its family |
 //! | `compare`, `inspect` | results side by side; what a file holds and which tests it can support |
 
@@ -18,6 +19,7 @@ pub mod figures;
 pub mod inspect;
 mod interval_means;
 mod kinds;
+pub mod lot;
 mod missing_rows;
 pub mod phases;
 mod pipeline;

@@ -3,6 +3,7 @@
 use super::columns::{ColumnArgs, about, channels, unit_contradictions};
 use super::finish::run_and_finish;
 use super::inputs::Inputs;
+use super::join::JoinArgs;
 use super::options::{GridArgs, OutputArgs};
 use super::place;
 use super::printer::Printer;
@@ -21,9 +22,11 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct AnalyzeArgs {
-    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
+    /// Recording: a file of any supported format, or a manifest; several files or a quoted pattern with --join
     #[arg(required = true)]
     recording: Vec<PathBuf>,
+    #[command(flatten)]
+    join: JoinArgs,
     #[command(flatten)]
     columns: ColumnArgs,
     /// Output folder [default: named after the recording and UTC time]
@@ -39,6 +42,7 @@ pub struct AnalyzeArgs {
 
 pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
+    args.join.check(&args.recording, "join.help.other", lang)?;
     let taus = args.grid.grid(lang)?;
     if !(args.columns.warm_up >= 0.0 && args.columns.warm_up.is_finite()) {
         return Err(say(Note::new("cli.warm_up").with("given", args.columns.warm_up.to_string())));
@@ -48,6 +52,9 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
+    let printer = Printer::new(&args.output, lang);
+    let mut progress = printer.progress();
+    progress.stage("progress.inputs");
     let folder = Inputs::new(args.output.force)
         .recording(&args.recording, &args.read.options())
         .options(&(
@@ -66,7 +73,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let (source, manifest) = (recording.source, recording.manifest);
     let channels = channels(&args.columns, named(args), &source).map_err(say)?;
     for note in unit_contradictions(&channels, &source) {
-        place::eprint_diagnostic(&format!("{}\n", note.say(lang)));
+        progress.beside(|| place::eprint_diagnostic(&format!("{}\n", note.say(lang))));
     }
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     let declared = args.columns.sample_rate;
@@ -90,7 +97,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         taus,
         exact: args.grid.exact,
     };
-    run_and_finish(&request, None, folder, &renderer, Printer::new(&args.output, lang))
+    run_and_finish(&request, folder, &renderer, printer, progress)
 }
 
 /// The recording as it was named first.

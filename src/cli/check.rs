@@ -1,5 +1,6 @@
 //! `sagnac check`: procedures and limits without data.
 
+use super::progress::{Display, Progress};
 use super::{exit, place};
 use crate::acceptance::power::warning;
 use crate::config::diagnostics::Problem;
@@ -19,6 +20,8 @@ pub struct CheckArgs {
 
 pub fn main(args: &CheckArgs, lang: Lang) -> Result<u8, String> {
     let paths: Vec<&Path> = args.files.iter().map(|p| p.as_path()).collect();
+    let mut progress = Progress::new(Display::unless(false), lang);
+    progress.stage("progress.checking");
     // Limits files among the arguments are also set against every procedure among them.
     let limits: Vec<Loaded<LimitsFile>> = paths
         .iter()
@@ -42,6 +45,7 @@ pub fn main(args: &CheckArgs, lang: Lang) -> Result<u8, String> {
             })
             .collect()
     });
+    drop(progress);
     place::print(&report.text);
     Ok(if report.failed > 0 { exit::ERROR } else { exit::PASS })
 }

@@ -5,6 +5,7 @@ use super::finish::{with_progress, write};
 use super::inputs::Inputs;
 use super::options::OutputArgs;
 use super::printer::Printer;
+use super::progress::Progress;
 use super::read::ReadArgs;
 use super::{exit, place};
 use crate::acceptance::compare::published_checks::checked;
@@ -62,6 +63,8 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);
     let first = args.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("comparison", Some(&first), now));
+    let mut progress = printer.progress();
+    progress.stage("progress.inputs");
     let folder = Inputs::new(args.output.force)
         .recording(&read_for(&args.recording), &args.read.options())
         .file("limits", args.limits.as_deref())
@@ -88,13 +91,17 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
         },
         Err(problems) => return Err(problems.say(lang)),
     };
-    let mut units: Vec<Unit> = vec![];
+    // Each file of a pattern is a unit; one recording in several files is a manifest.
+    let mut paths: Vec<PathBuf> = vec![];
     for given in &args.recording {
-        // Each file of a pattern is a unit; one recording in several files is a manifest.
-        for path in each_of(given).map_err(|e| RecordingError::from(e).say(lang))? {
-            units.extend(read_units(args, &path, &limits, now, lang)?);
-        }
+        paths.extend(each_of(given).map_err(|e| RecordingError::from(e).say(lang))?);
     }
+    let mut units: Vec<Unit> = vec![];
+    for (i, path) in paths.iter().enumerate() {
+        let label = Note::new("progress.of_unit").with("n", i + 1).with("all", paths.len()).say(lang);
+        units.extend(read_units(args, path, &limits, now, (&label, &mut progress))?);
+    }
+    drop(progress);
     name_apart(&mut units);
     mark_repeated(&mut units);
     finish(Comparison::of_units(units, stamp), folder, &renderer, printer)
@@ -118,8 +125,9 @@ fn read_units(
     path: &Path,
     limits: &EffectiveLimits,
     now: DateTime<Utc>,
-    lang: Lang,
+    watch: (&str, &mut Progress),
 ) -> Result<Vec<Unit>, String> {
+    let lang = watch.1.lang();
     let say = |note: Note| place::error(&note, lang);
     let shown = path.display().to_string();
     let mut otherwise = vec![];
@@ -138,7 +146,7 @@ fn read_units(
             return Err(say(Note::new("result_error.no_result_in").with("path", shown)));
         }
         None => {
-            let analysed = analysed(args, path, limits, now, lang)?;
+            let analysed = analysed(args, path, limits, now, watch)?;
             otherwise = analysed.otherwise;
             (analysed.record, analysed.name, Origin::Recording)
         }
@@ -185,8 +193,9 @@ fn analysed(
     path: &Path,
     limits: &EffectiveLimits,
     now: DateTime<Utc>,
-    lang: Lang,
+    (label, progress): (&str, &mut Progress),
 ) -> Result<Analysed, String> {
+    let lang = progress.lang();
     let say = |note: Note| place::error(&note, lang);
     let recording = open_recording(&[path.to_owned()], &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
@@ -213,7 +222,7 @@ fn analysed(
         taus: None,
         exact: false,
     };
-    let outcome = with_progress(&request, &Note::new("cli.reading").say(lang)).map_err(|e| say(e.note()))?;
+    let outcome = with_progress(&request, label, progress).map_err(|e| say(e.note()))?;
     Ok(Analysed { record: outcome.record, name: stem(path), otherwise })
 }
 

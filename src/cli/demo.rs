@@ -1,7 +1,9 @@
 //! `sagnac demo`: the main job on a recording that the program carries.
 
+use super::join::JoinArgs;
 use super::options::OutputArgs;
-use super::run::{self, RunArgs};
+use super::run;
+use super::run_args::{EachArgs, RunArgs};
 use super::{options::GridArgs, place};
 use crate::i18n::{Lang, Localize, Note};
 use clap::Args;
@@ -32,6 +34,8 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
     let args = RunArgs {
         procedure: "static-bias".into(),
         recording: vec![recording],
+        join: JoinArgs::default(),
+        each: EachArgs::default(),
         limits: Some("sample-unit".into()),
         serial: Some("SN-0001".to_owned()),
         operator: None,

@@ -2,9 +2,10 @@
 
 use super::finish::write;
 use super::inputs::Inputs;
+use super::join::JoinArgs;
 use super::options::OutputArgs;
 use super::printer::Printer;
-use super::progress::Watch;
+use super::progress::Progress;
 use super::read::ReadArgs;
 use super::{exit, place};
 use crate::config::model;
@@ -25,9 +26,11 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct ExplainArgs {
-    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
+    /// Recording: a file of any supported format, or a manifest; several files or a quoted pattern with --join
     #[arg(required = true)]
     recording: Vec<PathBuf>,
+    #[command(flatten)]
+    join: JoinArgs,
     /// The claimed simulation (TOML)
     #[arg(long, value_name = "FILE", required_unless_present = "simulation", conflicts_with = "simulation")]
     model: Option<PathBuf>,
@@ -66,6 +69,9 @@ pub struct ExplainArgs {
 
 pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
+    args.join.check(&args.recording, "join.help.other", lang)?;
+    let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();
+    args.join.check(&simulation, "join.help.other", lang)?;
     let options = options(args).map_err(say)?;
     let renderer = args.output.renderer(lang)?;
     // What is wrong with the model is said before a long recording is read.
@@ -73,7 +79,9 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let name = args.recording.first().map(|p| stem(p));
     let out = args.out.clone().unwrap_or_else(|| place::default_folder("explain", name.as_deref(), now));
-    let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();
+    let printer = Printer::new(&args.output, lang);
+    let mut progress = printer.progress();
+    progress.stage("progress.inputs");
     let folder = Inputs::new(args.output.force)
         .recording(&args.recording, &args.read.options())
         .file("model", args.model.as_deref())
@@ -85,18 +93,18 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
         .beside(args.output.templates.as_deref())
         .begin(&out, Kind::Explanation, lang)?;
 
-    let mut progress = Watch::new(lang);
     let recording = read(args, &args.recording, &mut progress, lang)?;
     let mut notes = recording.remarks();
     let (claim, outcome, named, identified) = match (stated, args.simulation.as_deref()) {
         (Some(claim), _) => {
             let path = args.model.as_deref().map(shown).unwrap_or_default();
-            let outcome = mismatch::explain(recording, &claim, &options, &mut |p| progress.of(p));
+            let outcome = mismatch::explain(recording, &claim, &options, &mut |p| progress.explaining(p));
             (claim, outcome.map_err(say)?, path, false)
         }
         (None, Some(simulation)) => {
             let series = read(args, &[simulation.to_owned()], &mut progress, lang)?;
-            let taken = mismatch::explain_simulation(&recording, series, &options, &mut |p| progress.of(p));
+            let taken =
+                mismatch::explain_simulation(&recording, series, &options, &mut |p| progress.explaining(p));
             let taken = taken.map_err(say)?;
             if taken.same {
                 notes.push("explain.note.same_samples".into());
@@ -110,7 +118,7 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
         }
         (None, None) => return Err(say("explain.error.both".into())),
     };
-    progress.finish();
+    progress.stage("progress.writing");
 
     let context = Context {
         recording: args.recording.iter().map(|p| shown(p)).collect::<Vec<_>>().join(", "),
@@ -124,8 +132,8 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let view = ExplainView::new(&outcome.explanation, &[], &context, lang);
     let results = Results::Explanation(Box::new(ExplanationResults::new(&outcome, context)));
     let folder = write(&results, folder, EXPORTERS, &renderer, lang)?;
-    Printer::new(&args.output, lang)
-        .outcome(&folder, Kind::Explanation, |t| terminal::explanation(&view, lang, t))?;
+    drop(progress);
+    printer.outcome(&folder, Kind::Explanation, |t| terminal::explanation(&view, lang, t))?;
     Ok(match outcome.explanation.verdict {
         MismatchVerdict::Consistent => exit::PASS,
         MismatchVerdict::Mismatch => exit::FAIL,
@@ -179,7 +187,12 @@ fn options(args: &ExplainArgs) -> Result<Options, Note> {
     Ok(Options { alpha, hide, max_effects, without })
 }
 
-fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang) -> Result<Series, String> {
+fn read(
+    args: &ExplainArgs,
+    paths: &[PathBuf],
+    progress: &mut Progress,
+    lang: Lang,
+) -> Result<Series, String> {
     let options = SeriesOptions {
         read: args.read.options(),
         rate: args.rate.clone(),
@@ -189,7 +202,7 @@ fn read(args: &ExplainArgs, paths: &[PathBuf], progress: &mut Watch, lang: Lang)
         sample_rate_hz: args.sample_rate,
     };
     let series = load_series(paths, &options, &mut |done, total| {
-        progress.of(mismatch::Progress { doing: "explain.progress.reading", done, total });
+        progress.explaining(mismatch::Progress { doing: "explain.progress.reading", done, total });
     });
     series.map_err(|e| {
         progress.finish();

@@ -2,12 +2,12 @@
 
 use super::inputs;
 use super::printer::Printer;
-use super::progress::{Progress, Watch};
+use super::progress::Progress;
 use super::{exit, place};
 use crate::acceptance::{Outcome, Request, RunError, execute, explained, failed};
 use crate::config::model::Claim;
 use crate::i18n::{Lang, Localize, Note};
-use crate::output::{Kind, StagedFolder};
+use crate::output::{Kind, OutputError, StagedFolder};
 use crate::report::explain::Context;
 use crate::report::export::{EXPORTERS, Exporter, export};
 use crate::report::view::{PhasePart, View};
@@ -29,41 +29,85 @@ pub struct Against<'a> {
 /// The diagnostic, in words. Where the recording could not be evaluated, a report that says so is written all the same.
 pub fn run_and_finish(
     request: &Request<'_>,
-    against: Option<Against<'_>>,
     folder: StagedFolder,
     renderer: &Renderer,
     printer: Printer,
+    mut progress: Progress,
 ) -> Result<u8, String> {
-    let lang = printer.lang;
-    let outcome = match with_progress(request, &Note::new("cli.reading").say(lang)) {
-        Ok(outcome) => outcome,
-        Err(error) => return Err(report_failure(request, &error, folder, renderer, lang)?),
-    };
-    let mut results = RunResults::from(outcome);
-    if let Some(against) = against {
-        explain(request, against, &mut results, lang);
-    }
-    finish(results, folder, renderer, printer)
+    let evaluated = evaluate(request, None, &mut progress);
+    settle(evaluated, folder, renderer, printer, progress)
 }
 
-/// Runs a request with a progress bar.
+/// What came of a request.
+pub struct Evaluated {
+    /// Record, figures and tables; the verdict is an error where the recording could not be evaluated.
+    pub results: RunResults,
+    /// Why the recording could not be evaluated.
+    pub refused: Option<Note>,
+}
+
+impl Evaluated {
+    /// A request that could not be carried out.
+    pub fn refused(request: &Request<'_>, error: &RunError) -> Evaluated {
+        Evaluated { results: not_run(request, error).into(), refused: Some(error.note()) }
+    }
+}
+
+/// Runs a request, and explains the recording where there is a model.
+pub fn evaluate(request: &Request<'_>, against: Option<Against<'_>>, progress: &mut Progress) -> Evaluated {
+    let lang = progress.lang();
+    match with_progress(request, &Note::new("cli.reading").say(lang), progress) {
+        Ok(outcome) => {
+            let mut results = RunResults::from(outcome);
+            if let Some(against) = against {
+                explain(request, against, &mut results, progress);
+            }
+            Evaluated { results, refused: None }
+        }
+        Err(error) => Evaluated::refused(request, &error),
+    }
+}
+
+/// Writes the folder of what was evaluated and prints the outcome; gives the exit code.
+///
+/// # Errors
+/// The diagnostic, in words. Where the recording could not be evaluated, a report that says so is written all the same.
+pub fn settle(
+    evaluated: Evaluated,
+    folder: StagedFolder,
+    renderer: &Renderer,
+    printer: Printer,
+    progress: Progress,
+) -> Result<u8, String> {
+    match evaluated.refused {
+        None => finish(evaluated.results, folder, renderer, printer, progress),
+        Some(note) => {
+            let lang = printer.lang;
+            let results = Results::Run(Box::new(evaluated.results));
+            let place = write(&results, folder, EXPORTERS, renderer, lang)?;
+            let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
+            Err(format!("{}{}\n", place::error(&note, lang), report.say(lang)))
+        }
+    }
+}
+
+/// Runs a request and says how far it is.
 ///
 /// # Errors
 /// As [`execute`].
-pub fn with_progress(request: &Request<'_>, label: &str) -> Result<Outcome, RunError> {
-    let mut progress = Progress::new();
-    let outcome = execute(request, &mut |done, total| progress.update(label, done, total));
-    progress.finish();
-    outcome
+pub fn with_progress(
+    request: &Request<'_>,
+    label: &str,
+    progress: &mut Progress,
+) -> Result<Outcome, RunError> {
+    execute(request, &mut |done, total| progress.reading(label, done, total))
 }
 
 /// Explains a recording against the model of its procedure.
-fn explain(request: &Request<'_>, against: Against<'_>, results: &mut RunResults, lang: Lang) {
+fn explain(request: &Request<'_>, against: Against<'_>, results: &mut RunResults, progress: &mut Progress) {
     let Some(spec) = &request.procedure.explain else { return };
-    let mut watch = Watch::new(lang);
     let Against { claim, recording } = against;
-    let out = explained::explain(spec, claim, request.procedure, recording, &mut |p| watch.of(p));
-    watch.finish();
+    let out = explained::explain(spec, claim, request.procedure, recording, &mut |p| progress.explaining(p));
     results.explanation = out.outcome.map(|(claim, notes, outcome)| {
         let names: Vec<String> = recording.iter().map(|p| p.display().to_string()).collect();
         let context = Context {
@@ -89,11 +133,14 @@ pub fn finish(
     folder: StagedFolder,
     renderer: &Renderer,
     printer: Printer,
+    mut progress: Progress,
 ) -> Result<u8, String> {
     let code = exit::code(results.outcome.record.verdict);
     let lang = printer.lang;
+    progress.stage("progress.writing");
     let view = view(&results, lang);
     let place = write(&Results::Run(Box::new(results)), folder, EXPORTERS, renderer, lang)?;
+    drop(progress);
     printer.outcome(&place, Kind::Result, |terminal| terminal::run(&view, lang, terminal))?;
     Ok(code)
 }
@@ -114,23 +161,6 @@ fn view(results: &RunResults, lang: Lang) -> View {
     View::of_phases(record, &parts, lang)
 }
 
-/// Writes the report of a run that could not be carried out, and gives the message for the terminal.
-///
-/// # Errors
-/// The diagnostic, in words, where not even that can be written.
-pub fn report_failure(
-    request: &Request<'_>,
-    error: &RunError,
-    folder: StagedFolder,
-    renderer: &Renderer,
-    lang: Lang,
-) -> Result<String, String> {
-    let results = Results::Run(Box::new(not_run(request, error).into()));
-    let place = write(&results, folder, EXPORTERS, renderer, lang)?;
-    let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
-    Ok(format!("{}{}\n", place::error(&error.note(), lang), report.say(lang)))
-}
-
 /// The outcome of a run that could not be carried out.
 pub fn not_run(request: &Request<'_>, error: &RunError) -> Outcome {
     Outcome { record: failed(request, error), figures: vec![], tables: vec![] }
@@ -147,19 +177,37 @@ pub fn write(
     renderer: &Renderer,
     lang: Lang,
 ) -> Result<PathBuf, String> {
+    write_files(results, &|name, contents| folder.write(name, contents), exporters, renderer, lang)?;
+    inputs::publish(folder, results.whole(lang).record(), lang)
+}
+
+/// Writes a file: its name, which may hold sub-folders, and its contents.
+pub type Put<'a> = &'a dyn Fn(&str, &[u8]) -> Result<(), OutputError>;
+
+/// Writes the files of results in some forms, all but the record of the whole.
+///
+/// # Errors
+/// The diagnostic, in words.
+pub fn write_files(
+    results: &Results,
+    write: Put<'_>,
+    exporters: &[&dyn Exporter],
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<(), String> {
     let whole = results.whole(lang);
     let record_file = whole.kind().record_file();
     for (name, contents) in export(&whole, exporters, renderer).map_err(|e| place::error(&e.note(), lang))? {
         if name != record_file {
-            folder.write(&name, &contents).map_err(|e| place::error(&e.note(), lang))?;
+            write(&name, &contents).map_err(|e| place::error(&e.note(), lang))?;
         }
     }
     for (below, part) in results.parts(lang) {
         for (name, contents) in
             export(&part, exporters, renderer).map_err(|e| place::error(&e.note(), lang))?
         {
-            folder.write(&format!("{below}/{name}"), &contents).map_err(|e| place::error(&e.note(), lang))?;
+            write(&format!("{below}/{name}"), &contents).map_err(|e| place::error(&e.note(), lang))?;
         }
     }
-    inputs::publish(folder, whole.record(), lang)
+    Ok(())
 }

@@ -2,6 +2,8 @@
 
 use super::columns::{ColumnArgs, about, channels};
 use super::finish::with_progress;
+use super::join::JoinArgs;
+use super::progress::{Display, Progress};
 use super::{exit, place};
 use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
@@ -48,6 +50,7 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
         return Err(say(Note::new("init.exists").with("path", place::shown(path))));
     }
     let recording = std::slice::from_ref(&args.recording);
+    JoinArgs::default().check(recording, "join.help.init", lang)?;
     let opened = open_recording(recording, &ReadOptions::default()).map_err(|e| e.say(lang))?;
     let source = opened.source;
     let channels = channels(&args.columns, &args.recording, &source).map_err(say)?;
@@ -101,7 +104,9 @@ fn analysed(
         taus: None,
         exact: false,
     };
-    let outcome = with_progress(&request, &Note::new("cli.reading").say(lang)).map_err(|e| say(e.note()))?;
+    let mut progress = Progress::new(Display::unless(false), lang);
+    let outcome = with_progress(&request, &Note::new("cli.reading").say(lang), &mut progress)
+        .map_err(|e| say(e.note()))?;
     Ok((outcome.record, if use_stamps { None } else { sample_rate }))
 }
 

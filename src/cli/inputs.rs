@@ -82,6 +82,23 @@ impl Inputs {
         self
     }
 
+    /// What is told of the inputs, by their names.
+    pub fn told(self) -> BTreeMap<String, String> {
+        self.0.inputs
+    }
+
+    /// The recordings of a lot, told by what is told of each; the files are read.
+    #[must_use]
+    pub fn lot(mut self, units: &[BTreeMap<String, String>], read: Vec<PathBuf>) -> Inputs {
+        let told: Vec<&str> = units
+            .iter()
+            .flat_map(|u| ["recording", "unit"].map(|n| u.get(n).map_or("", String::as_str)))
+            .collect();
+        self.0.inputs.insert("recording".to_owned(), hex(Sha256::digest(told.join("\n"))));
+        self.0.read.extend(read);
+        self
+    }
+
     /// Begins the folder.
     ///
     /// # Errors
@@ -92,18 +109,12 @@ impl Inputs {
 }
 
 /// The serial number given; the manifest's where none is. Two that differ are an error: this is another unit's recording.
-pub fn serial(
-    given: Option<&str>,
-    manifest: Option<&Manifest>,
-    lang: Lang,
-) -> Result<Option<String>, String> {
+pub fn serial(given: Option<&str>, manifest: Option<&Manifest>) -> Result<Option<String>, Note> {
     let stated = manifest.and_then(|m| m.serial.as_deref());
     match (given, stated) {
         (Some(given), Some(stated)) if given.trim() != stated.trim() => {
             let path = manifest.map(|m| m.path.display().to_string()).unwrap_or_default();
-            let note =
-                Note::new("manifest.serial").with("path", path).with("stated", stated).with("given", given);
-            Err(place::error(&note, lang))
+            Err(Note::new("manifest.serial").with("path", path).with("stated", stated).with("given", given))
         }
         _ => Ok(given.or(stated).map(str::to_owned)),
     }

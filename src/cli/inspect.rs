@@ -1,6 +1,7 @@
 //! `sagnac inspect`: what a recording holds.
 
-use super::progress::Progress;
+use super::join::JoinArgs;
+use super::progress::{Display, Progress};
 use super::read::ReadArgs;
 use super::{exit, place};
 use crate::acceptance::inspect::inspect_source;
@@ -11,9 +12,11 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct InspectArgs {
-    /// Recording: a file of any supported format, several files in sequence, a quoted pattern, or a manifest
+    /// Recording: a file of any supported format, or a manifest; several files or a quoted pattern with --join
     #[arg(required = true)]
     recording: Vec<PathBuf>,
+    #[command(flatten)]
+    join: JoinArgs,
     /// Sample rate, if the recording has no time column
     #[arg(long, value_name = "HZ")]
     sample_rate: Option<f64>,
@@ -22,11 +25,12 @@ pub struct InspectArgs {
 }
 
 pub fn main(args: &InspectArgs, lang: Lang) -> Result<u8, String> {
-    let mut progress = Progress::new();
+    args.join.check(&args.recording, "join.help.other", lang)?;
+    let mut progress = Progress::new(Display::unless(false), lang);
     let reading = Note::new("cli.reading").say(lang);
     let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let report = inspect_source(&recording.source, args.sample_rate, lang, &mut |done, total| {
-        progress.update(&reading, done, total);
+        progress.reading(&reading, done, total);
     });
     progress.finish();
     place::print(&report.map_err(|e| place::error(&e.note(), lang))?);

@@ -5,6 +5,7 @@ mod check;
 mod columns;
 mod compare;
 mod demo;
+mod each;
 mod effects;
 pub mod exit;
 mod explain;
@@ -13,7 +14,9 @@ mod help;
 mod init;
 mod inputs;
 mod inspect;
+mod join;
 mod options;
+mod phased_test;
 mod place;
 mod printer;
 mod procedures;
@@ -21,10 +24,12 @@ mod progress;
 mod read;
 mod report;
 mod run;
+mod run_args;
 mod run_phases;
 mod schema;
 mod selftest;
 mod simulate;
+mod single_test;
 
 use crate::config::procedure::phases::is_phased;
 use crate::i18n::{Lang, visible};
@@ -54,9 +59,10 @@ enum Verb {
     /// Run a test procedure on a recording and write the acceptance report
     #[command(
         after_help = "Example:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
-        --serial SN-0042 --operator \"A. Ivanova\" --out reports/SN-0042"
+        --serial SN-0042 --operator \"A. Ivanova\" --out reports/SN-0042\n  \
+        sagnac run static-bias 'lot-7/*.csv' --each --limits sample-unit --out reports/lot-7"
     )]
-    Run(run::RunArgs),
+    Run(run_args::RunArgs),
     /// Validate procedures and limits without data, and report what they cannot decide
     #[command(after_help = "Example:\n  sagnac check procedures/static-bias.toml procedures/limits/*.toml")]
     Check(check::CheckArgs),
@@ -142,6 +148,7 @@ pub fn main() -> ExitCode {
         }
     };
     let done = match cli.verb {
+        Verb::Run(args) if args.each.each => each::main(&args, lang),
         Verb::Run(args) if is_phased(&args.procedure) => run_phases::main(&args, lang),
         Verb::Run(args) => run::main(&args, lang),
         Verb::Check(args) => check::main(&args, lang),

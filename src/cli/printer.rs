@@ -2,6 +2,7 @@
 
 use super::options::{OutputArgs, PrintFormat};
 use super::place;
+use super::progress::{Display, Progress};
 use crate::i18n::{Lang, Localize, Note};
 use crate::output::Kind;
 use crate::report::terminal::Terminal;
@@ -29,6 +30,19 @@ impl Printer {
         Printer { lang, format: args.format, quiet: args.quiet }
     }
 
+    /// Progress, unless nothing is to be said.
+    pub fn progress(self) -> Progress {
+        Progress::new(Display::unless(self.quiet), self.lang)
+    }
+
+    /// Prints a part of the outcome while the work goes on, where the outcome is printed as text.
+    pub fn line(self, text: impl FnOnce(Terminal) -> String) {
+        if !self.quiet && self.format == PrintFormat::Text {
+            let said = text(terminal());
+            let _ = AutoStream::new(std::io::stdout().lock(), choice()).write_all(said.as_bytes());
+        }
+    }
+
     /// Prints the outcome of which the results stand in a folder.
     ///
     /// # Errors
@@ -39,7 +53,7 @@ impl Printer {
         kind: Kind,
         text: impl FnOnce(Terminal) -> String,
     ) -> Result<(), String> {
-        let page = folder.join(if kind == Kind::Comparison { "comparison.html" } else { "report.html" });
+        let page = folder.join(format!("{}.html", kind.page_stem()));
         if self.format == PrintFormat::Json {
             let record = folder.join(kind.record_file());
             let contents = std::fs::read(&record).map_err(|e| {

@@ -2,8 +2,8 @@
 
 use super::exit;
 use crate::output::Listed;
-use crate::record::RunRecord;
 use crate::record::explanation::Explanation;
+use crate::record::{LotRecord, RunRecord};
 use clap::{Args, ValueEnum};
 
 #[derive(Debug, Args)]
@@ -28,6 +28,8 @@ pub enum SchemaKind {
     Model,
     /// explain.json
     Explain,
+    /// index.json of a lot
+    Lot,
 }
 
 pub fn main(args: &SchemaArgs) -> Result<u8, String> {
@@ -37,6 +39,7 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Manifest => crate::config::procedure::schema::manifest(),
         SchemaKind::Layout => crate::config::procedure::schema::layout(),
         SchemaKind::Model => crate::config::procedure::schema::model(),
+        SchemaKind::Lot => serde_json::to_value(schemars::schema_for!(Listed<LotRecord>)).unwrap_or_default(),
         SchemaKind::Explain => {
             serde_json::to_value(schemars::schema_for!(Listed<Explanation>)).unwrap_or_default()
         }

@@ -1,6 +1,7 @@
 //! `sagnac simulate`: a recording from a model.
 
-use super::progress::Progress;
+use super::join::JoinArgs;
+use super::progress::{Display, Measure, Progress};
 use super::{exit, place};
 use crate::config::model::{ModelFile, load_model};
 use crate::config::quantity;
@@ -35,6 +36,8 @@ pub struct SimulateArgs {
     /// Recording that provides rows and columns: timestamps, gaps, temperatures, table rates
     #[arg(long, value_name = "RECORDING")]
     like: Option<PathBuf>,
+    #[command(flatten)]
+    join: JoinArgs,
 }
 
 pub fn main(args: &SimulateArgs, lang: Lang) -> Result<u8, String> {
@@ -46,6 +49,7 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     let say = |note: &Note| place::error(note, lang);
     Format::of(&args.out).map_err(|e| say(e.note()))?;
     let like: Vec<PathBuf> = args.like.clone().into_iter().collect();
+    args.join.check(&like, "join.help.other", lang)?;
     let mut read = files_read(&like, &ReadOptions::default());
     read.push(args.model.clone());
     if read.iter().any(|input| same(input, &args.out)) {
@@ -57,7 +61,7 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
         return Err(say(&Note::new("simulate.both")));
     }
     let model = load_model(&args.model).map_err(|problems| problems.say(lang))?;
-    let mut progress = Progress::new();
+    let mut progress = Progress::new(Display::unless(false), lang);
     let mut series = None;
     if let Some(path) = &args.like {
         let reading = Note::new("cli.reading").say(lang);
@@ -67,10 +71,8 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
             ..SeriesOptions::default()
         };
         let read = load_series(std::slice::from_ref(path), &options, &mut |done, total| {
-            progress.update(&reading, done, total);
+            progress.reading(&reading, done, total);
         });
-        progress.finish();
-        progress = Progress::new();
         series = Some(read.map_err(|e| e.say(lang))?);
     }
     let seed = args.seed.or(model.simulation.seed).unwrap_or(SEED);
@@ -86,7 +88,9 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     let writing = Note::new("simulate.writing").say(lang);
     let replaced = args.force && args.out.exists();
     let staged = StagedFile::begin(&args.out, &read, args.force).map_err(|e| say(&e.note()))?;
-    let written = write(simulation, staged, &mut |done, total| progress.update(&writing, done, total));
+    let written = write(simulation, staged, &mut |done, total| {
+        progress.update(&writing, Measure::Rows, done, total);
+    });
     progress.finish();
     let written = written.map_err(|e| say(&e.note()))?;
     if replaced {

@@ -179,6 +179,12 @@ pub fn each_of(path: &Path) -> Result<Vec<PathBuf>, IngestError> {
     }
 }
 
+/// True where what a user named may stand for several files: more than one name, or a pattern. A manifest stands for its
+/// files and says how they belong together.
+pub fn are_several(named: &[PathBuf]) -> bool {
+    named.len() > 1 || named.first().is_some_and(|path| pattern_of(path).is_some())
+}
+
 /// The text of a path that is a pattern and no file.
 fn pattern_of(path: &Path) -> Option<String> {
     let text = path.to_str()?;

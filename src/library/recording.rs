@@ -3,7 +3,7 @@
 use super::Error;
 use crate::config::manifest::Manifest;
 use crate::i18n::Note;
-use crate::ingest::{ReadOptions, Source, open_recording};
+use crate::ingest::{ReadOptions, Source, are_several, open_recording};
 use crate::record::UnitUnderTest;
 use crate::series::{Series, SeriesOptions, load_series_of};
 use std::path::{Path, PathBuf};
@@ -31,15 +31,21 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Opens a file of any format that is read (see `docs/formats.md`), a pattern such as `unit7/*.csv`, or a manifest.
+    /// Opens a file of any format that is read (see `docs/guide/recordings.md`), or a manifest.
     ///
     /// # Errors
-    /// [`Error::is_recording`] when it cannot be opened or its format is not known.
+    /// [`Error::is_recording`] when it cannot be opened or its format is not known, [`Error::is_argument`] for a pattern
+    /// such as `unit7/*.csv`: [`Recording::open_with`] joins its files.
     pub fn open(path: impl AsRef<Path>) -> Result<Recording, Error> {
-        Recording::open_with(&[path.as_ref().to_owned()], &ReadOptions::default())
+        let named = [path.as_ref().to_owned()];
+        if are_several(&named) {
+            let path = path.as_ref().display().to_string();
+            return Err(Error::argument(Note::new("library.pattern").with("path", path)));
+        }
+        Recording::open_with(&named, &ReadOptions::default())
     }
 
-    /// Opens several files as one recording, in sequence, with options for reading them.
+    /// Opens several files, or those of patterns, as one recording, in sequence, with options for reading them.
     ///
     /// # Errors
     /// As [`Recording::open`].

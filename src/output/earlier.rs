@@ -39,6 +39,7 @@ impl Earlier {
         if !is_of(target, kind) {
             return in_the_way(match kind {
                 Kind::Result => "output_error.why.foreign".into(),
+                Kind::Lot => "output_error.why.foreign_lot".into(),
                 Kind::Comparison => "compare.more.foreign_folder".into(),
                 Kind::Explanation => "explain.error.foreign_folder".into(),
             });
@@ -83,6 +84,10 @@ impl Earlier {
                     .with("serial", serial)
             }
             Kind::Comparison => note("output_error.what.comparison"),
+            Kind::Lot => {
+                let units = self.record.get("units").and_then(Value::as_array).map_or(0, Vec::len);
+                note("output_error.what.lot").with("n", units)
+            }
             Kind::Explanation => {
                 note("output_error.what.explanation").with("verdict", text("/verdict").unwrap_or_default())
             }

@@ -9,11 +9,13 @@ pub enum Kind {
     Comparison,
     /// The explanation of a mismatch.
     Explanation,
+    /// A lot: an index, and a result folder for each unit.
+    Lot,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 3] = [Kind::Result, Kind::Comparison, Kind::Explanation];
+    pub const ALL: [Kind; 4] = [Kind::Result, Kind::Comparison, Kind::Explanation, Kind::Lot];
 
     /// The JSON file that a folder of this kind holds, and by which it is known.
     pub fn record_file(self) -> &'static str {
@@ -21,6 +23,16 @@ impl Kind {
             Kind::Result => "result.json",
             Kind::Comparison => "comparison.json",
             Kind::Explanation => "explain.json",
+            Kind::Lot => "index.json",
+        }
+    }
+
+    /// Name of its pages without the ending, such as `report` for `report.html`.
+    pub fn page_stem(self) -> &'static str {
+        match self {
+            Kind::Result | Kind::Explanation => "report",
+            Kind::Comparison => "comparison",
+            Kind::Lot => "index",
         }
     }
 
@@ -30,6 +42,7 @@ impl Kind {
             Kind::Result => "{\"format\":\"result/",
             Kind::Comparison => "{\"format\":\"comparison/",
             Kind::Explanation => "{\"format\":\"explain/",
+            Kind::Lot => "{\"format\":\"lot/",
         }
     }
 
@@ -44,6 +57,7 @@ impl Kind {
             }
             Kind::Comparison => name == "comparison.csv",
             Kind::Explanation => matches!(name, "correction.csv" | "augmented.toml"),
+            Kind::Lot => name == "index.csv",
         }
     }
 
@@ -53,6 +67,7 @@ impl Kind {
             Kind::Result => matches!(name, "report.html" | "report.md" | "explain" | "phases"),
             Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
             Kind::Explanation => matches!(name, "report.html" | "report.md"),
+            Kind::Lot => matches!(name, "index.html" | "index.md" | "junit.xml"),
         };
         page || name == "figures" || name == self.record_file() || self.is_table(name)
     }

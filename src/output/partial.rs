@@ -157,5 +157,14 @@ fn holds_only_ours(folder: &Path) -> bool {
     let Ok(entries) = fs::read_dir(folder) else { return false };
     let names: Vec<String> =
         entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect();
-    Kind::ALL.iter().any(|k| names.iter().all(|n| k.owns(n)))
+    Kind::ALL
+        .iter()
+        .any(|k| names.iter().all(|n| k.owns(n) || *k == Kind::Lot && holds_a_result(&folder.join(n))))
+}
+
+/// True for the folder of a unit in a lot: every entry is one that a result has.
+fn holds_a_result(folder: &Path) -> bool {
+    let Ok(entries) = fs::read_dir(folder) else { return false };
+    let is_link = folder.symlink_metadata().is_ok_and(|m| m.file_type().is_symlink());
+    !is_link && entries.flatten().all(|e| Kind::Result.owns(&e.file_name().to_string_lossy()))
 }

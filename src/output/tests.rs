@@ -188,3 +188,38 @@ fn names_that_are_no_folder_to_be_made_are_refused() {
     let begun = begin(&dir.path().join("r")).unwrap();
     assert!(matches!(begun.write("notes.txt", b""), Err(OutputError::Unforeseen(_))));
 }
+
+#[test]
+fn a_lot_appears_with_its_units_and_is_replaced_as_a_whole() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("lot");
+    for n in [1, 2] {
+        let lot = StagedFolder::begin(&target, Kind::Lot, order("1", false)).unwrap();
+        let part = StagedPart::begin(&lot, "SN-1", BTreeMap::new());
+        part.write("figures/a.svg", b"<svg/>").unwrap();
+        assert!(matches!(part.write("notes.txt", b""), Err(OutputError::Unforeseen(_))));
+        part.finish(record(n)).unwrap();
+        assert_eq!(target.exists(), n > 1, "a unit that is done waits for the others");
+        lot.write("index.html", b"<html/>").unwrap();
+        lot.publish(json!({"format": "lot/1", "units": [1]})).unwrap();
+        assert_eq!(entries(&target), ["SN-1", "index.html", "index.json"]);
+        assert_eq!((round(&target.join("SN-1")), entries(dir.path()).len()), (n, 1));
+    }
+    fs::write(target.join("SN-1/notes.txt"), "of the user").unwrap();
+    let refused = StagedFolder::begin(&target, Kind::Lot, order("1", true));
+    assert!(matches!(refused, Err(OutputError::InTheWay { .. })));
+}
+
+#[test]
+fn a_lot_that_a_killed_run_left_is_removed_and_a_folder_of_the_user_is_not() {
+    let dir = tempfile::tempdir().unwrap();
+    let left = |name: &str, file: &str| {
+        let folder = dir.path().join(format!("{}{name}", prefix("lot")));
+        fs::create_dir_all(folder.join("SN-1")).unwrap();
+        fs::write(folder.join("SN-1").join(file), "").unwrap();
+        folder
+    };
+    let (ours, other) = (left("abcdef", "report.html"), left("ghijkl", "notes.txt"));
+    remove_abandoned(dir.path());
+    assert!(!ours.exists() && other.exists());
+}

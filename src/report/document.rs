@@ -2,6 +2,7 @@
 
 use super::compare::CompareView;
 use super::explain::{ExplainFile, ExplainView};
+use super::lot::LotView;
 use super::render::{run_context, view_context};
 use super::results::{ExplanationResults, Results};
 use super::view::{PhasePart, View};
@@ -11,7 +12,7 @@ use crate::acceptance::phases::figures as phase_figures;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::output::Kind;
-use crate::record::RunRecord;
+use crate::record::{LotRecord, RunRecord};
 use minijinja::value::Value;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -36,6 +37,7 @@ enum Record<'a> {
     Run(&'a RunRecord),
     Explanation(&'a ExplainFile),
     Comparison(&'a Comparison),
+    Lot(&'a LotRecord),
 }
 
 impl<'a> Document<'a> {
@@ -105,19 +107,39 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// The document of a lot.
+    pub fn of_lot(lot: &'a LotRecord, tables: &'a [(String, String)], lang: Lang) -> Document<'a> {
+        Document {
+            lang,
+            context: view_context(&LotView::new(lot, lang), lang),
+            template: "lot",
+            figures: Cow::Borrowed(&[]),
+            tables,
+            record: Record::Lot(lot),
+        }
+    }
+
+    /// The lot that the document is of.
+    pub fn lot(&self) -> Option<&'a LotRecord> {
+        match self.record {
+            Record::Lot(lot) => Some(lot),
+            _ => None,
+        }
+    }
+
     /// What the folder of the document holds.
     pub fn kind(&self) -> Kind {
         match self.record {
             Record::Run(_) => Kind::Result,
             Record::Explanation(_) => Kind::Explanation,
             Record::Comparison(_) => Kind::Comparison,
+            Record::Lot(_) => Kind::Lot,
         }
     }
 
     /// Name of a page, such as `report.html`, by the ending of its file.
     pub fn page(&self, ending: &str) -> String {
-        let stem = if self.kind() == Kind::Comparison { "comparison" } else { "report" };
-        format!("{stem}.{ending}")
+        format!("{}.{ending}", self.kind().page_stem())
     }
 
     /// Name of the template that makes a page, by the ending of its file.
@@ -153,6 +175,7 @@ impl Results {
             Results::Comparison(comparison, figures, tables) => {
                 Document::of_comparison(comparison, figures, tables, lang)
             }
+            Results::Lot(lot, tables) => Document::of_lot(lot, tables, lang),
         }
     }
 

@@ -8,6 +8,7 @@ mod document;
 pub mod explain;
 pub mod export;
 mod figure_file;
+pub mod lot;
 pub mod methods;
 pub mod number;
 mod prose;

@@ -29,6 +29,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("report.md", include_str!("../../templates/report.md")),
     ("compare.html", include_str!("../../templates/compare.html")),
     ("compare.md", include_str!("../../templates/compare.md")),
+    ("lot.html", include_str!("../../templates/lot.html")),
+    ("lot.md", include_str!("../../templates/lot.md")),
     ("explain.html", include_str!("../../templates/explain.html")),
     ("explain.md", include_str!("../../templates/explain.md")),
 ];
@@ -71,6 +73,8 @@ pub enum ReportError {
     },
     /// A record cannot be written as JSON.
     Json(serde_json::Error),
+    /// Verdicts cannot be written as XML.
+    Xml(String),
 }
 
 impl ReportError {
@@ -95,6 +99,7 @@ impl ReportError {
                 Note::new("template_error.io").with("path", path.as_str()).with("reason", io_reason(source))
             }
             ReportError::Json(e) => Note::new("system.other").with("reason", e.to_string()),
+            ReportError::Xml(reason) => Note::new("system.other").with("reason", reason.as_str()),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::explain::{Context, ExplainFile};
 use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
+use super::lot;
 use crate::acceptance::Outcome;
 use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, csv, figures};
 use crate::config::model;
@@ -11,7 +12,7 @@ use crate::mismatch;
 use crate::output::Kind;
 use crate::record::explanation::Explanation;
 use crate::record::read::{self, ReadError};
-use crate::record::{FigureRecord, RESULT_FORMAT, RunRecord};
+use crate::record::{FigureRecord, LOT_FORMAT, LotRecord, RESULT_FORMAT, RunRecord};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -79,6 +80,8 @@ pub enum Results {
     Explanation(Box<ExplanationResults>),
     /// Of a comparison: the record, figures and tables.
     Comparison(Box<Comparison>, Vec<Figure>, Vec<(String, String)>),
+    /// Of a lot: the record and tables. The results of its units stand in folders of their own.
+    Lot(Box<LotRecord>, Vec<(String, String)>),
 }
 
 impl Results {
@@ -89,12 +92,19 @@ impl Results {
         Results::Comparison(Box::new(comparison), figures, vec![("comparison.csv".into(), rows)])
     }
 
+    /// The results of a lot.
+    pub fn of_lot(record: LotRecord) -> Results {
+        let rows = lot::csv(&record);
+        Results::Lot(Box::new(record), vec![("index.csv".into(), rows)])
+    }
+
     /// What the folder of the results holds.
     pub fn kind(&self) -> Kind {
         match self {
             Results::Run(_) => Kind::Result,
             Results::Explanation(_) => Kind::Explanation,
             Results::Comparison(..) => Kind::Comparison,
+            Results::Lot(..) => Kind::Lot,
         }
     }
 
@@ -106,6 +116,7 @@ impl Results {
                 Some(results.file.explanation.case.as_str()).filter(|c| !c.is_empty())
             }
             Results::Comparison(..) => None,
+            Results::Lot(lot, _) => Some(&lot.procedure.id),
         }
     }
 }
@@ -130,7 +141,7 @@ struct Listing {
 }
 
 impl StoredResults {
-    /// Reads a `result.json`, `explain.json` or `comparison.json`, or the folder of one, with what stands beside it.
+    /// Reads a `result.json`, `explain.json`, `comparison.json` or `index.json`, or the folder of one, with what stands beside it.
     ///
     /// # Errors
     /// A note that names the file and what is wrong with it.
@@ -147,6 +158,7 @@ impl StoredResults {
             Some("comparison") => {
                 Results::of_comparison(read::of_format(&bytes, COMPARISON_FORMAT).map_err(wrong)?)
             }
+            Some("lot") => Results::of_lot(read::of_format::<LotRecord>(&bytes, LOT_FORMAT).map_err(wrong)?),
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
         };
         Ok(StoredResults { results, inputs: listing.inputs, missing: from.missing })

@@ -35,9 +35,16 @@ fn three() -> TempDir {
     dir
 }
 
+/// The option that makes several files one recording, where there are several.
+fn joined<'a>(recording: &[&'a str]) -> Vec<&'a str> {
+    let several = recording.len() > 1 || recording.iter().any(|name| name.contains('*'));
+    let option = if several && recording.get(1) != Some(&"--sample-rate") { &["--join"][..] } else { &[] };
+    [recording, option].concat()
+}
+
 fn analysed(dir: &Path, recording: &[&str]) -> Value {
     let mut args = vec!["analyze"];
-    args.extend(recording);
+    args.extend(joined(recording));
     args.extend(["--out", "a"]);
     let said = sagnac(dir, &args);
     assert_eq!(said.code, 0, "{recording:?}: {said:?}");
@@ -143,7 +150,7 @@ fn joints_without_stamps_are_gaps_unless_the_manifest_says_otherwise() {
 
 fn refused(dir: &Path, recording: &[&str], fragments: &[&str]) {
     let mut args = vec!["analyze"];
-    args.extend(recording);
+    args.extend(joined(recording));
     args.extend(["--out", "refused"]);
     let said = sagnac(dir, &args);
     assert_eq!(said.code, 2, "{said:?}");

@@ -13,7 +13,20 @@ use std::path::Path;
 const LISTED: &[(&str, &[&str])] = &[
     (
         "terminal_column",
-        &["interval", "limit", "margin", "met", "parameter", "phase", "quantity", "read", "value", "verdict"],
+        &[
+            "interval",
+            "limit",
+            "margin",
+            "met",
+            "parameter",
+            "phase",
+            "quantity",
+            "read",
+            "recording",
+            "unit",
+            "value",
+            "verdict",
+        ],
     ),
     (
         "fault",
@@ -48,6 +61,7 @@ const LISTED: &[(&str, &[&str])] = &[
             "input.options",
         ],
     ),
+    ("serial_from", &["manifest", "recording", "pattern", "file_name"]),
     ("status", &["ok", "remark", "invalid"]),
     ("calibration", &["ok", "remark", "invalid"]),
     // Of each channel: the id goes on with its name.

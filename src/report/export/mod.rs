@@ -4,6 +4,7 @@ mod csv;
 mod exporter;
 mod html;
 mod json;
+mod junit;
 mod markdown;
 mod svg;
 
@@ -11,6 +12,7 @@ pub use csv::Csv;
 pub use exporter::{ExportedFile, Exporter};
 pub use html::Html;
 pub use json::Json;
+pub use junit::Junit;
 pub use markdown::Markdown;
 pub use svg::Svg;
 
@@ -18,7 +20,7 @@ use super::{Document, Renderer, ReportError};
 use std::collections::BTreeMap;
 
 /// Every form, in the order of the help.
-pub static EXPORTERS: &[&dyn Exporter] = &[&Html, &Markdown, &Csv, &Json, &Svg];
+pub static EXPORTERS: &[&dyn Exporter] = &[&Html, &Markdown, &Csv, &Json, &Svg, &Junit];
 
 /// The files of a document in some forms: contents by name.
 ///

@@ -3,11 +3,13 @@
 //! Texts from files are made visible before they are styled, so that only this module writes control sequences.
 
 mod explanation;
+mod lot;
 mod run;
 mod screen;
 mod table;
 mod wrap;
 
 pub use explanation::explanation;
+pub use lot::{lot, lot_unit};
 pub use run::run;
 pub use screen::Terminal;

@@ -29,6 +29,8 @@ pub use figures::FigureView;
 pub use goodness::Goodness;
 pub use interval_means::{IntervalMean, IntervalMeans};
 pub use matrix::{Matrix, MatrixRow};
+pub(super) use page::summary;
 pub use page::{FileView, MethodView, PhasePart, PhaseView, View};
 pub use rows::Row;
+pub(super) use rows::{limit_text, reason as row_reason, rounding};
 pub use table_steps::{TableStep, TableSteps};

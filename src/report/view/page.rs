@@ -9,7 +9,7 @@ use super::rows::{self, Row};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::{Lang, LocalText};
-use crate::record::{self, PhaseRecord, RunKind, RunRecord};
+use crate::record::{self, MeasurandRecord, Message, PhaseRecord, RunKind, RunRecord};
 use crate::report::methods;
 use crate::report::number::{count, date_time, duration, limit};
 use crate::report::translator::{Field, Translator};
@@ -115,7 +115,7 @@ impl View {
                 .map_or_else(|| words.t("report.title_analysis"), |p| words.local(&p.title)),
             verdict: record.verdict.id(),
             verdict_word: words.verdict(record.verdict),
-            summary: summary(record, channels.len() > 1, words),
+            summary: summary(&record.summary, &record.measurands, channels.len() > 1, words),
             errors: record.errors.iter().map(|n| words.say(n)).collect(),
             identity: identity(record, words),
             files: files(record, words),
@@ -178,11 +178,16 @@ const ROW_REASONS: [&str; 6] = [
 ];
 
 /// The reasons for the verdict; those of rows with their numbers.
-fn summary(record: &RunRecord, several_channels: bool, words: Translator) -> Vec<String> {
+pub fn summary(
+    reasons: &[Message],
+    rows: &[MeasurandRecord],
+    several_channels: bool,
+    words: Translator,
+) -> Vec<String> {
     let is_row = |id: &str| ROW_REASONS.contains(&id);
-    let first_row = record.summary.iter().position(|n| is_row(&n.id)).unwrap_or(record.summary.len());
-    let (before, after) = record.summary.split_at(first_row);
-    let of = |verdict: Verdict| record.measurands.iter().filter(move |m| m.verdict == verdict);
+    let first_row = reasons.iter().position(|n| is_row(&n.id)).unwrap_or(reasons.len());
+    let (before, after) = reasons.split_at(first_row);
+    let of = |verdict: Verdict| rows.iter().filter(move |m| m.verdict == verdict);
     let rows = of(Verdict::Fail).chain(of(Verdict::Indeterminate));
     let mut out: Vec<String> = before.iter().map(|n| words.say(n)).collect();
     if !after.is_empty() {

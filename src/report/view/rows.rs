@@ -262,6 +262,14 @@ fn between(min: Option<String>, max: Option<String>, symmetric: bool, words: Tra
     }
 }
 
+/// The limit of a row with its unit; empty without one.
+pub fn limit_text(m: &MeasurandRecord, words: Translator) -> String {
+    m.limit.as_ref().map_or_else(String::new, |l| {
+        let text = limits(l, &m.unit, words);
+        if l.unit == m.unit { words.quantity(&text, &m.unit) } else { text }
+    })
+}
+
 fn limits(l: &LimitRecord, row_unit: &str, words: Translator) -> String {
     let symmetric = l.min.zip(l.max).is_some_and(|(a, b)| b > 0.0 && (a + b).abs() <= 1e-9 * b);
     let text =

@@ -1,0 +1,50 @@
+//! A lot from the records of its units.
+
+use crate::estimate::Verdict;
+use crate::ingest::lot::Member;
+use crate::record::{
+    ConditionStatus, LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, ProcedureRecord, Program,
+    RunRecord, Session, VerdictCounts,
+};
+
+/// What a lot has of one of its units.
+pub fn unit(member: &Member, record: &RunRecord) -> LotUnit {
+    LotUnit {
+        unit_under_test: record.unit_under_test.clone(),
+        serial_from: member.serial_from,
+        recording: member.recording.display().to_string(),
+        files: record
+            .recording
+            .iter()
+            .map(|f| LotFile { path: f.path.clone(), sha256: f.sha256.clone() })
+            .collect(),
+        folder: member.folder.clone(),
+        verdict: record.verdict,
+        summary: record.summary.clone(),
+        conditions: record
+            .conditions
+            .iter()
+            .map(|c| LotCondition {
+                id: c.id.clone(),
+                phase: c.phase.clone(),
+                status: c.status,
+                message: c.message.clone().filter(|_| c.status != ConditionStatus::Ok),
+            })
+            .collect(),
+        measurands: record.measurands.iter().filter(|m| m.limit.is_some()).cloned().collect(),
+        errors: record.errors.clone(),
+    }
+}
+
+/// A lot of units, in their order.
+pub fn lot(procedure: ProcedureRecord, session: Session, units: Vec<LotUnit>) -> LotRecord {
+    LotRecord {
+        format: LOT_FORMAT.to_owned(),
+        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        procedure,
+        session,
+        verdict: units.iter().map(|u| u.verdict).max().unwrap_or(Verdict::None),
+        counts: VerdictCounts::of(units.iter().map(|u| u.verdict)),
+        units,
+    }
+}

@@ -1,0 +1,263 @@
+//! `sagnac run --each`: every recording is a unit of its own.
+
+use super::exit;
+use super::finish::write_files;
+use super::inputs::{Inputs, publish, serial};
+use super::phased_test::{PhasedTest, belong};
+use super::place;
+use super::printer::Printer;
+use super::progress::{Measure, Progress};
+use super::run_args::RunArgs;
+use super::single_test::SingleTest;
+use crate::acceptance::lot;
+use crate::config::manifest::{self, is_manifest};
+use crate::config::procedure::phases::is_phased;
+use crate::i18n::{Lang, Localize, Note};
+use crate::ingest::lot::{LotError, Member, members};
+use crate::ingest::serial::SerialPattern;
+use crate::ingest::{ReadOptions, RecordingError, files_read};
+use crate::output::{Kind, StagedFolder, StagedPart};
+use crate::record::{LotUnit, ProcedureRecord, SerialSource, Session};
+use crate::report::export::{EXPORTERS, export};
+use crate::report::lot::{LotUnitView, LotView};
+use crate::report::{Renderer, Results, RunResults, terminal};
+use chrono::{DateTime, SecondsFormat, Utc};
+use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::channel;
+
+/// Most complaints of one kind that are said.
+const SAID: usize = 5;
+
+/// A test that is run on one unit after another.
+trait UnitTest: Sync {
+    /// Id of the procedure, for the name of the folder.
+    fn procedure(&self) -> ProcedureRecord;
+
+    /// What the whole lot is made from, but for the recordings.
+    fn common_inputs(&self) -> Inputs;
+
+    /// What the result of one unit is made from.
+    fn inputs(&self, member: &Member) -> Inputs;
+
+    /// How recordings are read.
+    fn options(&self) -> &ReadOptions;
+
+    /// Tests one unit. What keeps it from being tested is in the result.
+    fn run(&self, member: &Member, progress: &mut Progress) -> RunResults;
+}
+
+/// The serial number that a user would give on the command line: none where the manifest states it.
+fn given(member: &Member) -> Option<&str> {
+    (member.serial_from != SerialSource::Manifest).then_some(member.serial.as_str())
+}
+
+impl UnitTest for SingleTest<'_> {
+    fn procedure(&self) -> ProcedureRecord {
+        self.procedure.record(self.limits.as_ref())
+    }
+
+    fn common_inputs(&self) -> Inputs {
+        SingleTest::common_inputs(self)
+    }
+
+    fn inputs(&self, member: &Member) -> Inputs {
+        SingleTest::inputs(self, std::slice::from_ref(&member.recording), given(member))
+    }
+
+    fn options(&self) -> &ReadOptions {
+        &self.procedure.value.recording.read
+    }
+
+    fn run(&self, member: &Member, progress: &mut Progress) -> RunResults {
+        let recording = std::slice::from_ref(&member.recording);
+        self.evaluate(recording, self.open(recording), given(member), progress).results
+    }
+}
+
+/// A test of several phases with the options of recordings whose procedures decide them.
+struct PhasedUnits<'a> {
+    test: PhasedTest<'a>,
+    options: ReadOptions,
+}
+
+impl UnitTest for PhasedUnits<'_> {
+    fn procedure(&self) -> ProcedureRecord {
+        self.test.phased.identity.clone()
+    }
+
+    fn common_inputs(&self) -> Inputs {
+        self.test.common_inputs()
+    }
+
+    fn inputs(&self, member: &Member) -> Inputs {
+        self.test.inputs(std::slice::from_ref(&member.recording), given(member))
+    }
+
+    fn options(&self) -> &ReadOptions {
+        &self.options
+    }
+
+    fn run(&self, member: &Member, progress: &mut Progress) -> RunResults {
+        let loaded = manifest::load(&member.recording)
+            .map_err(|problems| RecordingError::Manifest(problems).into_ingest(&member.recording).note());
+        let checked = loaded.and_then(|manifest| {
+            belong(&self.test.phased, &manifest)?;
+            serial(given(member), Some(&manifest)).map(|serial| (manifest, serial))
+        });
+        match checked {
+            Ok((manifest, serial)) => self.test.evaluate(&manifest, serial, progress),
+            Err(why) => self.test.not_run(why, Some(member.serial.clone())),
+        }
+    }
+}
+
+/// Tests every unit, writes the folder of the lot and prints the outcome; gives the exit code of the worst verdict.
+///
+/// # Errors
+/// The diagnostic, in words, where the lot as a whole cannot be tested or written.
+pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
+    let now = Utc::now();
+    if is_phased(&args.procedure) {
+        let test = PhasedTest::load(args, now, lang)?;
+        if let Some(odd) = args.recording.iter().find(|r| !is_manifest(r) && r.exists()) {
+            let note = Note::new("lot.needs_manifests").with("path", odd.display().to_string());
+            return Err(place::error(&note, lang));
+        }
+        test_lot(args, &PhasedUnits { test, options: ReadOptions::default() }, now, lang)
+    } else {
+        test_lot(args, &SingleTest::load(args, now, lang)?, now, lang)
+    }
+}
+
+fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang) -> Result<u8, String> {
+    let error = |note: Note| place::error(&note, lang);
+    let renderer = args.output.renderer(lang)?;
+    let printer = Printer::new(&args.output, lang);
+    let mut progress = printer.progress();
+    let session = Session {
+        operator: args.operator.clone(),
+        station: args.station.clone(),
+        evaluated_at: now.to_rfc3339_opts(SecondsFormat::Secs, true),
+    };
+    // What is wrong with a template is said before the first unit is tested.
+    let none = Results::of_lot(lot::lot(test.procedure(), session.clone(), vec![]));
+    export(&none.whole(lang), EXPORTERS, &renderer).map_err(|e| error(e.note()))?;
+    progress.stage("progress.inputs");
+    let pattern = args.each.serial_from.as_deref().map(SerialPattern::parse).transpose().map_err(error)?;
+    let members =
+        members(&args.recording, test.options(), pattern.as_ref()).map_err(|e| refused(&e, lang))?;
+    let told: Vec<BTreeMap<String, String>> = members.iter().map(|m| test.inputs(m).told()).collect();
+    let recordings: Vec<PathBuf> = members.iter().map(|m| m.recording.clone()).collect();
+    let out =
+        args.out.clone().unwrap_or_else(|| place::default_folder(&test.procedure().id, Some("lot"), now));
+    let folder = test.common_inputs().lot(&told, files_read(&recordings, test.options())).begin(
+        &out,
+        Kind::Lot,
+        lang,
+    )?;
+    let work = Work { test, members: &members, told: &told, folder: &folder, renderer: &renderer, lang };
+    let jobs =
+        args.each.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let units = work.run(jobs, printer, &mut progress)?;
+    progress.stage("progress.writing");
+    let record = lot::lot(test.procedure(), session, units);
+    let code = exit::code(record.verdict);
+    let view = LotView::new(&record, lang);
+    let results = Results::of_lot(record);
+    write_files(&results, &|name, contents| folder.write(name, contents), EXPORTERS, &renderer, lang)?;
+    let place = publish(folder, results.whole(lang).record(), lang)?;
+    drop(progress);
+    printer.outcome(&place, Kind::Lot, |t| terminal::lot(&view, lang, t))?;
+    Ok(code)
+}
+
+/// The diagnostic of units that cannot be told.
+fn refused(error: &LotError, lang: Lang) -> String {
+    match error {
+        LotError::Recording(e) => e.say(lang),
+        LotError::Serial { notes, help } => {
+            let mut said: String = notes.iter().take(SAID).map(|note| place::error(note, lang)).collect();
+            if notes.len() > SAID {
+                let more = Note::new("lot.more").with("n", notes.len() - SAID).say(lang);
+                said.push_str(&format!("  {more}\n"));
+            }
+            format!("{said}  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang))
+        }
+    }
+}
+
+/// The units of a lot and where their results go.
+struct Work<'a> {
+    test: &'a dyn UnitTest,
+    members: &'a [Member],
+    told: &'a [BTreeMap<String, String>],
+    folder: &'a StagedFolder,
+    renderer: &'a Renderer,
+    lang: Lang,
+}
+
+impl Work<'_> {
+    /// Tests all units, `jobs` at a time; gives them in their order.
+    ///
+    /// The threads are not those of the pool that the analysis computes with: one of these that waits for a part of its
+    /// own unit would begin another unit meanwhile, and the number of units in memory would have no bound.
+    fn run(&self, jobs: usize, printer: Printer, progress: &mut Progress) -> Result<Vec<LotUnit>, String> {
+        let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let (send, receive) = channel();
+        let testing = Note::new("progress.testing").say(self.lang);
+        let total = self.members.len() as u64;
+        let mut units: BTreeMap<usize, LotUnit> = BTreeMap::new();
+        let mut failed = None;
+        std::thread::scope(|scope| {
+            for _ in 0..jobs.min(self.members.len()) {
+                let send = send.clone();
+                scope.spawn(|| {
+                    let send = send;
+                    while !stop.load(Ordering::Relaxed) {
+                        let i = next.fetch_add(1, Ordering::Relaxed);
+                        let Some(done) = self.unit(i) else { break };
+                        stop.fetch_or(done.is_err(), Ordering::Relaxed);
+                        let _ = send.send((i, done));
+                    }
+                });
+            }
+            drop(send);
+            progress.update(&testing, Measure::Units, 0, total);
+            for (i, done) in receive {
+                match done {
+                    Ok(unit) => {
+                        let view = LotUnitView::new(&unit, self.lang);
+                        progress.beside(|| printer.line(|t| terminal::lot_unit(&view, t)));
+                        units.insert(i, unit);
+                    }
+                    Err(why) => failed = failed.take().or(Some(why)),
+                }
+                progress.update(&testing, Measure::Units, units.len() as u64, total);
+            }
+        });
+        failed.map_or_else(|| Ok(units.into_values().collect()), Err)
+    }
+
+    /// Tests one unit and writes its folder; `None` after the last.
+    fn unit(&self, i: usize) -> Option<Result<LotUnit, String>> {
+        let (member, told) = (self.members.get(i)?, self.told.get(i)?);
+        let results = self.test.run(member, &mut Progress::silent(self.lang));
+        let unit = lot::unit(member, &results.outcome.record);
+        let results = Results::Run(Box::new(results));
+        let part = StagedPart::begin(self.folder, &member.folder, told.clone());
+        let written = write_files(
+            &results,
+            &|name, contents| part.write(name, contents),
+            EXPORTERS,
+            self.renderer,
+            self.lang,
+        );
+        Some(written.and_then(|()| {
+            part.finish(results.whole(self.lang).record()).map_err(|e| place::error(&e.note(), self.lang))?;
+            Ok(unit)
+        }))
+    }
+}

@@ -1,0 +1,53 @@
+//! The arguments of `sagnac run`.
+
+use super::join::JoinArgs;
+use super::options::{GridArgs, OutputArgs};
+use clap::Args;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    /// Procedure (TOML)
+    pub procedure: PathBuf,
+    /// Recording: a file of any supported format, or a manifest; several files or a quoted pattern with --join or --each
+    #[arg(required = true)]
+    pub recording: Vec<PathBuf>,
+    #[command(flatten)]
+    pub join: JoinArgs,
+    #[command(flatten)]
+    pub each: EachArgs,
+    /// Limits file; overrides the procedure's limits for the same measurand
+    #[arg(long, value_name = "FILE")]
+    pub limits: Option<PathBuf>,
+    /// Serial number of the unit under test
+    #[arg(long, value_name = "SN", conflicts_with = "each")]
+    pub serial: Option<String>,
+    /// Name of the operator
+    #[arg(long, value_name = "NAME")]
+    pub operator: Option<String>,
+    /// Test station where the recording was made
+    #[arg(long, value_name = "NAME")]
+    pub station: Option<String>,
+    /// Output folder [default: named after procedure, serial number and UTC time]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputArgs,
+    #[command(flatten)]
+    pub grid: GridArgs,
+}
+
+/// Units instead of one recording.
+#[derive(Debug, Default, Args)]
+pub struct EachArgs {
+    /// Test every file, or every file of a pattern, as a unit of its own, and write an index over all
+    #[arg(long, conflicts_with = "join")]
+    pub each: bool,
+    /// Take serial numbers from file names: a name with {serial} in it, such as 'unit-{serial}_*', or {stem}
+    #[arg(long, value_name = "PATTERN", requires = "each")]
+    pub serial_from: Option<String>,
+    /// Units tested at the same time [default: as many as there are cores]
+    #[arg(long, value_name = "COUNT", requires = "each")]
+    pub jobs: Option<NonZeroUsize>,
+}

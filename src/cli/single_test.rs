@@ -1,0 +1,132 @@
+//! A procedure with its limits, ready to be run on recordings.
+
+use super::finish::{Against, Evaluated, evaluate};
+use super::inputs::{Inputs, serial};
+use super::place;
+use super::procedures::say_which;
+use super::progress::Progress;
+use super::run_args::RunArgs;
+use crate::acceptance::{Request, RunError, explained};
+use crate::config::model::Claim;
+use crate::config::procedure::{
+    EffectiveLimits, LimitsFile, Loaded, Procedure, effective, load, load_limits,
+};
+use crate::i18n::Lang;
+use crate::ingest::{Recording, RecordingError, Source, open_recording};
+use crate::noise::tau_grid::TauGrid;
+use crate::record::{RunKind, UnitUnderTest};
+use chrono::{DateTime, Utc};
+use std::path::{Path, PathBuf};
+
+/// A procedure of one phase, with its limits and the model that it names.
+pub struct SingleTest<'a> {
+    args: &'a RunArgs,
+    pub procedure: Loaded<Procedure>,
+    pub limits: Option<Loaded<LimitsFile>>,
+    effective: EffectiveLimits,
+    model: Option<Claim>,
+    taus: Option<TauGrid>,
+    now: DateTime<Utc>,
+}
+
+impl<'a> SingleTest<'a> {
+    /// Reads the files, and says what is to be known of them.
+    ///
+    /// # Errors
+    /// The diagnostics, in words.
+    pub fn load(args: &'a RunArgs, now: DateTime<Utc>, lang: Lang) -> Result<SingleTest<'a>, String> {
+        let taus = args.grid.grid(lang)?;
+        let named: Vec<&Path> =
+            std::iter::once(args.procedure.as_path()).chain(args.limits.as_deref()).collect();
+        say_which(&named, lang);
+        // Both files are read before either complains, so that all problems are seen at once.
+        let procedure = load(&args.procedure);
+        let limits = args.limits.as_deref().map(load_limits).transpose();
+        let (procedure, limits) = match (procedure, limits) {
+            (Ok(p), Ok(l)) => (p, l),
+            (p, l) => {
+                let complaints: Vec<String> =
+                    [p.err(), l.err()].into_iter().flatten().map(|e| e.say(lang)).collect();
+                return Err(complaints.join("\n"));
+            }
+        };
+        let model = procedure.value.explain.as_ref().map(|spec| explained::model(spec, lang)).transpose()?;
+        let effective = effective(&procedure, limits.as_ref());
+        for warning in procedure.warnings.iter().chain(&effective.warnings) {
+            place::eprint_diagnostic(&format!("{}\n", warning.say(lang)));
+        }
+        Ok(SingleTest { args, procedure, limits, effective, model, taus, now })
+    }
+
+    /// What a result of this test is made from, but for the recording and its unit.
+    pub fn common_inputs(&self) -> Inputs {
+        Inputs::new(self.args.output.force)
+            .file("procedure", Some(&self.args.procedure))
+            .file("limits", self.args.limits.as_deref())
+            .file("model", self.procedure.value.explain.as_ref().map(|e| e.model.as_path()))
+            .options(&(&self.args.grid.taus, self.args.grid.exact))
+            .beside(self.args.output.templates.as_deref())
+    }
+
+    /// What the result of a recording is made from.
+    pub fn inputs(&self, recording: &[PathBuf], serial: Option<&str>) -> Inputs {
+        let read = &self.procedure.value.recording.read;
+        self.common_inputs().recording(recording, read).text("unit", serial)
+    }
+
+    /// Opens a recording as the procedure says.
+    ///
+    /// # Errors
+    /// [`RecordingError`].
+    pub fn open(&self, recording: &[PathBuf]) -> Result<Recording, RecordingError> {
+        open_recording(recording, &self.procedure.value.recording.read)
+    }
+
+    /// Runs the test. A recording that could not be opened gives a record that says so.
+    pub fn evaluate(
+        &self,
+        recording: &[PathBuf],
+        opened: Result<Recording, RecordingError>,
+        given: Option<&str>,
+        progress: &mut Progress,
+    ) -> Evaluated {
+        let name = recording.first().map_or(Path::new(""), PathBuf::as_path);
+        let (source, manifest, mut refused) = match opened {
+            Ok(opened) => (opened.source, opened.manifest, None),
+            Err(error) => (Source::unopened(name), None, Some(RunError::from(error.into_ingest(name)))),
+        };
+        let serial = serial(given, manifest.as_ref()).unwrap_or_else(|note| {
+            refused = Some(RunError::Nothing(note));
+            given.map(str::to_owned)
+        });
+        let procedure = &self.procedure.value;
+        let family = self.limits.as_ref().and_then(|l| l.value.family.clone());
+        let request = Request {
+            kind: RunKind::Run,
+            procedure,
+            procedure_record: Some(self.procedure.record(self.limits.as_ref())),
+            limits: &self.effective,
+            source: &source,
+            use_stamps: true,
+            unit: UnitUnderTest {
+                serial,
+                family: procedure.unit_under_test.family.clone().or(family),
+                part: procedure.unit_under_test.part.clone(),
+                revision: procedure.unit_under_test.revision.clone(),
+                lot: None,
+            },
+            operator: self.args.operator.clone(),
+            station: self.args.station.clone(),
+            now: self.now,
+            taus: self.taus.clone(),
+            exact: self.args.grid.exact,
+        };
+        match refused {
+            None => {
+                let against = self.model.clone().map(|claim| Against { claim, recording });
+                evaluate(&request, against, progress)
+            }
+            Some(error) => Evaluated::refused(&request, &error),
+        }
+    }
+}

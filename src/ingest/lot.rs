@@ -1,0 +1,179 @@
+//! A lot: recordings that are units of their own, each with its serial number.
+
+use super::serial::{SerialPattern, plain, stem};
+use super::{ReadOptions, RecordingError, each_of, open_recording};
+use crate::config::manifest;
+use crate::i18n::Note;
+use crate::record::SerialSource;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Most recordings that a message names.
+const NAMED: usize = 4;
+/// Longest name of a folder, in characters.
+const LONGEST: usize = 80;
+/// Names that the folder of a lot has for other things.
+const RESERVED: [&str; 5] = ["index.html", "index.md", "index.csv", "index.json", "junit.xml"];
+
+/// A recording that is a unit of its own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Member {
+    /// The recording as named: a file or a manifest.
+    pub recording: PathBuf,
+    /// Serial number of the unit.
+    pub serial: String,
+    /// Where the serial number was taken from.
+    pub serial_from: SerialSource,
+    /// Name for the folder of its result, safe in any file system; no two of a lot are alike.
+    pub folder: String,
+}
+
+/// Why the units of a lot cannot be told.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LotError {
+    /// A name or pattern stands for no file.
+    Recording(RecordingError),
+    /// A serial number cannot be told, or is that of several recordings.
+    Serial {
+        /// What is wrong, one note for each serial number or file.
+        notes: Vec<Note>,
+        /// What to do.
+        help: Note,
+    },
+}
+
+/// The units of a lot in the order of what was named; files of a pattern in their order.
+///
+/// The serial number is the part of the file name that `pattern` selects. Without a pattern it is what the manifest or the
+/// recording states, else the file name without its ending. A recording that cannot be opened is a unit too: what is
+/// wrong with it is found when it is tested.
+///
+/// # Errors
+/// [`LotError`] where a file is missing, the pattern does not fit, or two recordings have one serial number.
+pub fn members(
+    named: &[PathBuf],
+    options: &ReadOptions,
+    pattern: Option<&SerialPattern>,
+) -> Result<Vec<Member>, LotError> {
+    let mut recordings = vec![];
+    for path in named {
+        recordings.extend(each_of(path).map_err(|e| LotError::Recording(e.into()))?);
+    }
+    // A name that is no file is a slip of the pen; a damaged file is found when it is tested.
+    if let Some(missing) = recordings.iter().find(|r| !r.exists()) {
+        open_recording(std::slice::from_ref(missing), options).map_err(LotError::Recording)?;
+    }
+    let (mut members, mut wrong) = (vec![], vec![]);
+    for recording in recordings {
+        match pattern.map(|p| p.serial_of(&recording)) {
+            Some(Err(note)) => wrong.push(note),
+            Some(Ok(serial)) => members.push(member(recording, serial, SerialSource::Pattern)),
+            None => {
+                let (serial, serial_from) = stated(&recording, options);
+                members.push(member(recording, serial, serial_from));
+            }
+        }
+    }
+    if !wrong.is_empty() {
+        return Err(LotError::Serial { notes: wrong, help: Note::new("lot.help.pattern") });
+    }
+    let twice = repeated(&members);
+    if !twice.is_empty() {
+        return Err(LotError::Serial { notes: twice, help: Note::new("lot.help.duplicate") });
+    }
+    name_folders(&mut members);
+    Ok(members)
+}
+
+fn member(recording: PathBuf, serial: String, serial_from: SerialSource) -> Member {
+    Member { recording, serial, serial_from, folder: String::new() }
+}
+
+/// The serial number that a recording states, or else the name of its file.
+fn stated(recording: &Path, options: &ReadOptions) -> (String, SerialSource) {
+    let opened = open_recording(&[recording.to_owned()], options).ok();
+    let of_manifest = || {
+        // A manifest whose files cannot be opened states its number all the same.
+        let loaded = manifest::is_manifest(recording).then(|| manifest::load(recording).ok()).flatten();
+        loaded.and_then(|m| m.serial).map(|s| s.trim().to_owned()).filter(|s| !s.is_empty())
+    };
+    if let Some(serial) = of_manifest() {
+        return (serial, SerialSource::Manifest);
+    }
+    let numbers: Vec<&str> = opened.as_ref().map(|o| o.source.stated_serials()).unwrap_or_default();
+    let different: BTreeSet<String> = numbers.iter().map(|s| plain(s)).filter(|s| !s.is_empty()).collect();
+    match (different.len(), numbers.iter().find(|s| !plain(s).is_empty())) {
+        (1, Some(serial)) => (serial.trim().to_owned(), SerialSource::Recording),
+        _ => (stem(recording), SerialSource::FileName),
+    }
+}
+
+/// What tells one serial number from another.
+fn identity(serial: &str) -> String {
+    let plain = plain(serial);
+    if plain.is_empty() { serial.trim().to_lowercase() } else { plain }
+}
+
+/// A note for each serial number that several recordings have.
+fn repeated(members: &[Member]) -> Vec<Note> {
+    let mut by_number: BTreeMap<String, Vec<&Member>> = BTreeMap::new();
+    for member in members {
+        by_number.entry(identity(&member.serial)).or_default().push(member);
+    }
+    let several = by_number.values().filter(|m| m.len() > 1);
+    several
+        .map(|m| {
+            let written: BTreeSet<&str> = m.iter().map(|m| m.serial.as_str()).collect();
+            let named: Vec<String> =
+                m.iter().take(NAMED).map(|m| m.recording.display().to_string()).collect();
+            let key = if m.len() > NAMED { "lot.duplicate_more" } else { "lot.duplicate" };
+            Note::new(key)
+                .with("serial", written.into_iter().collect::<Vec<_>>().join(", "))
+                .with("n", m.len())
+                .with("recordings", named.join(", "))
+        })
+        .collect()
+}
+
+/// Gives each unit a folder of its own.
+fn name_folders(members: &mut [Member]) {
+    let mut taken: BTreeSet<String> = RESERVED.iter().map(|name| (*name).to_owned()).collect();
+    for member in members {
+        let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+        let name: String = member.serial.chars().map(safe).take(LONGEST).collect();
+        let name = name.trim_matches('.');
+        let name = if name.is_empty() { "unit" } else { name };
+        // Some file systems do not tell upper from lower case.
+        let numbered = (2..).map(|n| format!("{name}_{n}"));
+        let free = std::iter::once(name.to_owned()).chain(numbered).find(|n| taken.insert(n.to_lowercase()));
+        member.folder = free.unwrap_or_default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(serials: &[&str]) -> Vec<Member> {
+        serials
+            .iter()
+            .map(|s| member(PathBuf::from(format!("{s}.csv")), (*s).to_owned(), SerialSource::FileName))
+            .collect()
+    }
+
+    #[test]
+    fn folders_are_safe_and_no_two_are_alike() {
+        let mut members = of(&["a/b", "A_B", "..", "index.json", "", "блок 7"]);
+        name_folders(&mut members);
+        let folders: Vec<&str> = members.iter().map(|m| m.folder.as_str()).collect();
+        assert_eq!(folders, ["a_b", "A_B_2", "unit", "index.json_2", "unit_2", "блок_7"]);
+    }
+
+    #[test]
+    fn a_number_written_in_two_ways_is_one_number() {
+        let notes = repeated(&of(&["SN-0043", "44", "43", "№"]));
+        assert_eq!(notes.len(), 1);
+        assert_eq!(notes[0].args["serial"], "43, SN-0043".into());
+        assert!(repeated(&of(&["1", "2", "-", "№"])).is_empty());
+    }
+}
