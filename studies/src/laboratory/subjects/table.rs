@@ -138,14 +138,15 @@ pub fn lock(_: &mut Bench) -> Effect {
     })
 }
 
-/// A detector that has no more to give beyond a rate.
+/// A detector that has no more to give beyond a rate. The noise of the electronics behind it stays.
 pub fn limit(bench: &mut Bench) -> Effect {
     let most = rates(bench).iter().fold(0.0f64, |m, r| m.max(r.abs()));
     // Less than the noise at first, so that middling ones exist.
-    let cut = move |size: f64| most - 1e-4 * size / 3600.0;
+    let cut = move |size: f64| (most - 1e-4 * size / 3600.0).max(0.0);
     let of = move |bench: &Bench, size: f64| -> Vec<f64> {
         let limit = 3600.0 * cut(size);
-        bench.rate().iter().map(|y| y.clamp(-limit, limit) - y).collect()
+        let clipped = |r: f64| (3600.0 * r).clamp(-limit, limit) - 3600.0 * r;
+        bench.motion.as_ref().map_or_else(Vec::new, |m| m.mean_of(|_, r| clipped(r)))
     };
     Effect::new("saturation", Shape::Bend(Box::new(of)), move |bench, size| {
         let limit = cut(size);
