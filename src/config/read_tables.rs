@@ -29,11 +29,12 @@ fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Prob
     }
     let (table, errors) = DeTable::parse_recoverable(&source.text);
     if !errors.is_empty() {
-        for error in errors.iter().take(MAX_SYNTAX_ERRORS) {
-            let span = error.span().unwrap_or(0..0);
-            reader.problems.list.push(syntax::problem(source, &span, error.message()));
-        }
+        let told = errors.iter().map(|e| syntax::problem(source, &e.span().unwrap_or(0..0), e.message()));
+        reader.problems.list = told.collect();
         reader.problems.sort();
+        // What follows on the line of a mistake is most often its consequence.
+        reader.problems.list.dedup_by_key(|p| p.line);
+        reader.problems.list.truncate(MAX_SYNTAX_ERRORS);
         return (None, reader.problems);
     }
     if let Some(problem) = other_format(source, root, table.get_ref()) {
