@@ -58,7 +58,7 @@ enum Verb {
     )]
     Run(run::RunArgs),
     /// Validate procedures and limits without data, and report what they cannot decide
-    #[command(after_help = "Example:\n  sagnac check procedures/static-bias.toml procedures/limits/*.toml")]
+    #[command(after_help = "Example:\n  sagnac check 'procedures/**/*.toml'")]
     Check(check::CheckArgs),
     /// Show what a recording contains and which tests it supports
     #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]

@@ -10,6 +10,7 @@ mod load;
 pub mod model;
 pub mod obtainable;
 mod parse;
+pub mod pairs;
 pub mod phases;
 pub mod power;
 pub mod recording_options;

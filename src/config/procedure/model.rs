@@ -134,6 +134,8 @@ pub struct Conditions {
     pub minimum_duration_s: Option<f64>,
     /// Time at the beginning that is left out, s.
     pub warm_up_s: f64,
+    /// Usable time that the limits are to be decided in, s; `None`: the least.
+    pub planned_duration_s: Option<f64>,
     /// Temperatures to be held.
     pub temperatures: Vec<TemperatureCondition>,
     /// Supply voltages to be held.

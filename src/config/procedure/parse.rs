@@ -146,6 +146,7 @@ fn conditions(section: &Section) -> Conditions {
     Conditions {
         minimum_duration_s: section.number("minimum_duration"),
         warm_up_s: section.number("warm_up").unwrap_or(0.0),
+        planned_duration_s: section.number("planned_duration"),
         temperatures: section.tables("temperature").iter().map(temperature).collect(),
         supplies: section.tables("supply").iter().map(supply).collect(),
         faults: section.table("faults").map(faults).unwrap_or_default(),
