@@ -3,6 +3,7 @@
 use super::columns::{ColumnArgs, about, channels, unit_contradictions};
 use super::finish::run_and_finish;
 use super::inputs::Inputs;
+use super::next_step;
 use super::options::{GridArgs, OutputArgs};
 use super::place;
 use super::printer::Printer;
@@ -11,7 +12,7 @@ use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::model::Procedure;
 use crate::i18n::{Lang, Localize, Note};
-use crate::ingest::open_recording;
+use crate::ingest::{ReadOptions, open_recording};
 use crate::output::Kind;
 use crate::record::{RunKind, UnitUnderTest};
 use crate::recording::Role;
@@ -90,7 +91,13 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         taus,
         exact: args.grid.exact,
     };
-    run_and_finish(&request, None, folder, &renderer, Printer::new(&args.output, lang))
+    let printer = Printer::new(&args.output, lang);
+    let code = run_and_finish(&request, None, folder, &renderer, printer)?;
+    // The other verb reads a recording as it is found.
+    let as_found = args.read.options() == ReadOptions::default();
+    let step = next_step::init(&args.recording, &args.columns.as_typed()).filter(|_| as_found);
+    printer.next_step(step.as_ref());
+    Ok(code)
 }
 
 /// The recording as it was named first.

@@ -6,7 +6,7 @@ use super::options::OutputArgs;
 use super::printer::Printer;
 use super::progress::Watch;
 use super::read::ReadArgs;
-use super::{exit, place};
+use super::{exit, next_step, place};
 use crate::config::model;
 use crate::effect::{Column, EFFECTS, find};
 use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
@@ -124,8 +124,10 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let view = ExplainView::new(&outcome.explanation, &[], &context, lang);
     let results = Results::Explanation(Box::new(ExplanationResults::new(&outcome, context)));
     let folder = write(&results, folder, EXPORTERS, &renderer, lang)?;
-    Printer::new(&args.output, lang)
-        .outcome(&folder, Kind::Explanation, |t| terminal::explanation(&view, lang, t))?;
+    let printer = Printer::new(&args.output, lang);
+    printer.outcome(&folder, Kind::Explanation, |t| terminal::explanation(&view, lang, t))?;
+    let named = view.effects.iter().find(|e| !e.unknown);
+    printer.next_step(named.map(|e| next_step::after_effect(&e.kind)).as_ref());
     Ok(match outcome.explanation.verdict {
         MismatchVerdict::Consistent => exit::PASS,
         MismatchVerdict::Mismatch => exit::FAIL,

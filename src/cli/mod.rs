@@ -13,6 +13,7 @@ mod help;
 mod init;
 mod inputs;
 mod inspect;
+mod next_step;
 mod options;
 mod place;
 mod printer;
