@@ -125,10 +125,25 @@ pub fn report_failure(
     renderer: &Renderer,
     lang: Lang,
 ) -> Result<String, String> {
+    let report = write_failure(request, error, folder, renderer, lang)?;
+    Ok(format!("{}{report}", place::error(&error.note(), lang)))
+}
+
+/// Writes the report of a run that could not be carried out, and gives the line that says where it is.
+///
+/// # Errors
+/// As [`report_failure`].
+pub fn write_failure(
+    request: &Request<'_>,
+    error: &RunError,
+    folder: StagedFolder,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<String, String> {
     let results = Results::Run(Box::new(not_run(request, error).into()));
     let place = write(&results, folder, EXPORTERS, renderer, lang)?;
     let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
-    Ok(format!("{}{}\n", place::error(&error.note(), lang), report.say(lang)))
+    Ok(format!("{}\n", report.say(lang)))
 }
 
 /// The outcome of a run that could not be carried out.

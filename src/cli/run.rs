@@ -1,17 +1,21 @@
 //! `sagnac run`: a procedure on a recording.
 
-use super::finish::{Against, report_failure, run_and_finish};
+use super::finish::{Against, report_failure, run_and_finish, write_failure};
 use super::inputs::{Inputs, serial};
 use super::options::{GridArgs, OutputArgs};
-use super::place;
 use super::printer::Printer;
 use super::procedures::say_which;
+use super::{exit, next_step, place};
 use crate::acceptance::{Request, explained};
-use crate::config::procedure::{effective, load, load_limits};
-use crate::i18n::Lang;
+use crate::config::model::Claim;
+use crate::config::procedure::missing_columns::missing_columns;
+use crate::config::procedure::{Loaded, Procedure, effective, load, load_limits};
+use crate::config::shipped::find;
+use crate::i18n::{Lang, Localize};
 use crate::ingest::{RecordingError, Source, open_recording};
-use crate::output::Kind;
+use crate::output::{Kind, StagedFolder};
 use crate::record::{RunKind, UnitUnderTest};
+use crate::report::Renderer;
 use chrono::Utc;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -116,10 +120,32 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         exact: args.grid.exact,
     };
     match refused {
-        None => {
-            let against = model.map(|claim| Against { claim, recording: &args.recording });
-            run_and_finish(&request, against, folder, &renderer, Printer::new(&args.output, lang))
-        }
+        None => run_opened(args, &procedure, &request, model, folder, &renderer, lang),
         Some(error) => Err(report_failure(&request, &error.into(), folder, &renderer, lang)?),
     }
+}
+
+/// Runs a request on a recording that could be opened. Columns that it lacks are told at the lines that ask for them.
+fn run_opened(
+    args: &RunArgs,
+    procedure: &Loaded<Procedure>,
+    request: &Request<'_>,
+    model: Option<Claim>,
+    folder: StagedFolder,
+    renderer: &Renderer,
+    lang: Lang,
+) -> Result<u8, String> {
+    if let Some((problems, first)) = missing_columns(procedure, request.source) {
+        let report = write_failure(request, &first.into(), folder, renderer, lang)?;
+        // A shipped procedure cannot be edited: one of its own suits the recording.
+        let own = find(&args.procedure).and_then(|_| next_step::init(&args.recording, ""));
+        let own = own.map(|step| format!("{}\n", step.say(lang))).unwrap_or_default();
+        return Err(format!("{}\n{report}{own}", problems.say(lang)));
+    }
+    let against = model.map(|claim| Against { claim, recording: &args.recording });
+    let printer = Printer::new(&args.output, lang);
+    let code = run_and_finish(request, against, folder, renderer, printer)?;
+    let step = next_step::after_fail(&args.recording, &procedure.value);
+    printer.next_step(step.filter(|_| code == exit::FAIL).as_ref());
+    Ok(code)
 }

@@ -4,15 +4,16 @@ use super::finish::{finish, not_run, with_progress};
 use super::inputs::{Inputs, serial};
 use super::place;
 use super::printer::Printer;
+use super::procedures::say_which;
 use super::run::RunArgs;
 use crate::acceptance::phases::{Done, combine, failure};
 use crate::acceptance::{Outcome, Request, session};
 use crate::config::manifest::{self, Manifest, ManifestFile, is_manifest};
 use crate::config::procedure::effective;
+use crate::config::procedure::missing_columns::missing_columns;
 use crate::config::procedure::phases::{Phase, Phased, load_phased};
-use crate::config::shipped;
 use crate::i18n::{Lang, Localize, Note};
-use crate::ingest::{ReadOptions, Source, open_files};
+use crate::ingest::{IngestError, ReadOptions, Source, open_files};
 use crate::noise::tau_grid::TauGrid;
 use crate::output::{Kind, StagedFolder};
 use crate::record::{RunKind, Session, UnitUnderTest};
@@ -36,14 +37,15 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let folder = begin(args, &phased, unit.serial.as_deref(), now, lang)?;
     let order = Order { args, manifest: &manifest, unit: &unit, taus, now, lang };
     let mut done: Vec<Done<'_>> = Vec::new();
+    let mut told: Vec<&str> = Vec::new();
     let mut who = None;
     for phase in &phased.phases {
         let files = files(phase, &manifest);
-        let outcome = (!files.is_empty()).then(|| order.evaluate(phase, &files, &mut who));
+        let outcome = (!files.is_empty()).then(|| order.evaluate(phase, &files, &mut who, &mut told));
         done.push(Done { phase, outcome });
     }
     let record = combine(&phased, &done, unit, who.unwrap_or_default());
-    for phase in &record.phases {
+    for phase in record.phases.iter().filter(|p| !told.contains(&p.id.as_str())) {
         if let Some(why) = failure(phase) {
             let note = Note::new("phases.error").with("title", phase.title.as_str()).with("why", why.clone());
             place::eprint_diagnostic(&place::error(&note, lang));
@@ -62,10 +64,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
 /// The procedure and the manifest, which fit each other.
 fn load(args: &RunArgs, lang: Lang) -> Result<(Phased, Manifest), String> {
     let error = |note: Note| place::error(&note, lang);
-    // The files that its phases name are looked for beside it.
-    if let Some(shipped) = shipped::find(&args.procedure).filter(|_| !args.procedure.is_file()) {
-        return Err(error(Note::new("procedures.phased").with("name", shipped.name)));
-    }
+    say_which(&[&args.procedure], lang);
     let phased = load_phased(&args.procedure).map_err(|p| p.say(lang))?;
     if args.limits.is_some() {
         return Err(error(Note::new("phases.limits")));
@@ -74,8 +73,11 @@ fn load(args: &RunArgs, lang: Lang) -> Result<(Phased, Manifest), String> {
         return Err(error(Note::new("phases.explain").with("id", odd.id.as_str())));
     }
     let path = match args.recording.as_slice() {
-        [one] if is_manifest(one) => one,
-        _ => return Err(error(Note::new("phases.needs_manifest"))),
+        [one] if is_manifest(one) || one.extension().is_some_and(|e| e == "toml") => one,
+        _ => {
+            let needed = error(Note::new("phases.needs_manifest").with("id", phased.identity.id.as_str()));
+            return Err(format!("{needed}\n{}", phased.example_manifest()));
+        }
     };
     let manifest = manifest::load(path).map_err(|p| p.say(lang))?;
     belong(&phased, &manifest, lang)?;
@@ -121,8 +123,14 @@ struct Order<'a> {
 }
 
 impl Order<'_> {
-    /// Runs one phase on its files; `who` is told who evaluates, by the first.
-    fn evaluate(&self, phase: &Phase, files: &[ManifestFile], who: &mut Option<Session>) -> Outcome {
+    /// Runs one phase on its files; `who` gets who evaluates, by the first, and `told` the phase whose error was printed.
+    fn evaluate<'p>(
+        &self,
+        phase: &'p Phase,
+        files: &[ManifestFile],
+        who: &mut Option<Session>,
+        told: &mut Vec<&'p str>,
+    ) -> Outcome {
         let limits = effective(&phase.procedure, phase.limits.as_ref());
         for warning in phase.procedure.warnings.iter().chain(&limits.warnings) {
             place::eprint_diagnostic(&format!("{}\n", warning.say(self.lang)));
@@ -149,10 +157,23 @@ impl Order<'_> {
         };
         who.get_or_insert_with(|| session(&request));
         let label = format!("{}: {}", phase.title, Note::new("cli.reading").say(self.lang));
-        match refused {
+        match refused.or_else(|| self.missing_column(phase, &source, told)) {
             Some(e) => not_run(&request, &e.into()),
             None => with_progress(&request, &label).unwrap_or_else(|e| not_run(&request, &e)),
         }
+    }
+
+    /// The first column that the recording of a phase lacks; all of them are printed.
+    fn missing_column<'p>(
+        &self,
+        phase: &'p Phase,
+        source: &Source,
+        told: &mut Vec<&'p str>,
+    ) -> Option<IngestError> {
+        let (problems, first) = missing_columns(&phase.procedure, source)?;
+        place::eprint_diagnostic(&problems.say(self.lang));
+        told.push(&phase.id);
+        Some(first)
     }
 }
 

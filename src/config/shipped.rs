@@ -1,6 +1,6 @@
 //! Procedures and limits that the program carries, so that they are found by name from any folder.
 
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 /// What a shipped file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,11 +70,21 @@ impl Shipped {
         }
     }
 
+    /// Its name as a path by which it is found.
+    pub fn name_as_path(&self) -> PathBuf {
+        PathBuf::from(self.name)
+    }
+
     /// Its title, as its file states it.
     pub fn title(&self) -> &'static str {
         let line = self.text.lines().find(|l| l.trim_start().starts_with("title"));
         line.and_then(|l| l.split('"').nth(1)).unwrap_or_default()
     }
+}
+
+/// The shipped file at a path in the folder of all shipped files, as one of them names another.
+pub fn at(path: &str) -> Option<&'static Shipped> {
+    PROCEDURES.iter().chain(LIMITS).find(|s| s.path() == path)
 }
 
 /// The shipped file that a name stands for. `None` for anything with a folder or an ending, which is a path.
@@ -102,6 +112,14 @@ mod tests {
         assert_eq!(of(PROCEDURES), names(&root));
         assert_eq!(of(LIMITS), names(&root.join("limits")));
         assert!(of(PROCEDURES).is_disjoint(&of(LIMITS)));
+        // What a shipped file names in the way of a file is shipped too.
+        for s in PROCEDURES.iter().filter(|s| s.text.contains("[[phase]]")) {
+            let named = s
+                .text
+                .lines()
+                .filter_map(|l| l.strip_prefix("procedure = \"").or(l.strip_prefix("limits = \"")));
+            named.for_each(|n| assert!(at(n.trim_end_matches('"')).is_some(), "{}: {n}", s.name));
+        }
         for s in PROCEDURES.iter().chain(LIMITS) {
             assert!(!s.title().is_empty(), "{}", s.name);
             assert_eq!(std::fs::read_to_string(root.join(s.path())).unwrap(), s.text);
