@@ -170,13 +170,14 @@ fn silent(said: &Said, files: usize) {
 #[test]
 fn check_is_silent_on_all_shipped_files_and_on_its_own_example() {
     let help = sagnac(root(), &["check", "--help"]).out;
-    let example = help.split("sagnac check ").nth(1).unwrap().trim().trim_matches('\'').to_owned();
+    let (_, example) = help.split_once("\nExample:\n").unwrap();
+    let example = example.trim().strip_prefix("sagnac check ").unwrap().trim_matches('\'');
     let count = |folder: &str| {
         let entries = std::fs::read_dir(root().join(folder)).unwrap();
         entries.filter(|e| e.as_ref().unwrap().path().extension().is_some_and(|e| e == "toml")).count()
     };
     let all = count("procedures") + count("procedures/limits");
-    let said = sagnac(root(), &["check", &example]);
+    let said = sagnac(root(), &["check", example]);
     silent(&said, all);
     assert!(said.out.contains("limits/sample-unit.toml: limits `sample-unit`"), "{}", said.out);
     assert!(said.out.contains("; checked with static-bias\n"), "{}", said.out);
@@ -240,7 +241,8 @@ fn a_next_step_is_shown_where_there_is_one_and_never_beside_json() {
     assert!(!sagnac(dir.path(), &["inspect", "t.csv"]).out.contains("sagnac init"));
     let run = |name: &str| {
         let (p, l) = (procedure(), crate::support::limits());
-        sagnac(dir.path(), &["run", &p, &sample(name), "--limits", &l, "--serial", "S", "--out", name]).out
+        sagnac(dir.path(), &["run", &p, &sample(name), "--limits", &l, "--serial", "SN-0001", "--out", name])
+            .out
     };
     assert!(run("fail").ends_with(&format!("\n  sagnac explain {} --model MODEL.toml\n", sample("fail"))));
     assert!(run("pass").ends_with("Report: pass/report.html\n"));

@@ -163,7 +163,7 @@ fn check_says_what_a_short_record_cannot_show() {
     let own = "minimum_duration = \"10 h\"\nplanned_duration = \"100 h\"";
     let cases = [
         ("minimum_duration = \"1 h\"", true),
-        ("minimum_duration = \"30 min\"\nplanned_duration = \"1 h\"", true),
+        ("minimum_duration = \"50 min\"\nplanned_duration = \"1 h\"", true),
         ("minimum_duration = \"1 h\"\nplanned_duration = \"100 h\"", false),
         ("minimum_duration = \"100 h\"", false),
     ];
