@@ -29,12 +29,21 @@ fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Prob
     }
     let (table, errors) = DeTable::parse_recoverable(&source.text);
     if !errors.is_empty() {
-        let told = errors.iter().map(|e| syntax::problem(source, &e.span().unwrap_or(0..0), e.message()));
-        reader.problems.list = told.collect();
+        let mut line_end = 0;
+        for error in &errors {
+            let span = error.span().unwrap_or(0..0);
+            // What follows on the line of a mistake is most often its consequence.
+            if span.start < line_end {
+                continue;
+            }
+            reader.problems.list.push(syntax::problem(source, &span, error.message()));
+            if reader.problems.list.len() == MAX_SYNTAX_ERRORS {
+                break;
+            }
+            let rest = source.text.get(span.start..).unwrap_or_default();
+            line_end = span.start + rest.find('\n').map_or(rest.len(), |end| end + 1);
+        }
         reader.problems.sort();
-        // What follows on the line of a mistake is most often its consequence.
-        reader.problems.list.dedup_by_key(|p| p.line);
-        reader.problems.list.truncate(MAX_SYNTAX_ERRORS);
         return (None, reader.problems);
     }
     if let Some(problem) = other_format(source, root, table.get_ref()) {
