@@ -29,14 +29,16 @@ fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Prob
     }
     let (table, errors) = DeTable::parse_recoverable(&source.text);
     if !errors.is_empty() {
+        let mut found: Vec<(Span, &str)> =
+            errors.iter().map(|e| (e.span().unwrap_or(0..0), e.message())).collect();
+        found.sort_by_key(|(span, _)| span.start);
         let mut line_end = 0;
-        for error in &errors {
-            let span = error.span().unwrap_or(0..0);
+        for (span, said) in found {
             // What follows on the line of a mistake is most often its consequence.
             if span.start < line_end {
                 continue;
             }
-            reader.problems.list.push(syntax::problem(source, &span, error.message()));
+            reader.problems.list.push(syntax::problem(source, &span, said));
             if reader.problems.list.len() == MAX_SYNTAX_ERRORS {
                 break;
             }

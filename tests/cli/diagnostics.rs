@@ -69,6 +69,12 @@ fn text_without_quotes_is_shown_with_them() {
         let said = one_mistake(dir.path(), from, to);
         assert!(said.contains(message) && said.contains(right), "{to}: {said}");
     }
+    // Mistakes on two lines are two.
+    let both =
+        [("revision = \"A\"", "revision = A"), ("column = \"rate_deg_h\"", "column = Omega_z [deg/h]")];
+    let path = altered(dir.path(), "p.toml", &procedure(), &both);
+    let said = sagnac(dir.path(), &["check", &path]).out;
+    assert!(said.contains("write `revision = \"A\"`") && said.contains("2 problems"), "{said}");
     let text = std::fs::read_to_string(procedure()).unwrap().replace("= 2030-12-31", "= 31.12.2030");
     std::fs::write(dir.path().join("p.toml"), text).unwrap();
     let said = sagnac(dir.path(), &["check", "p.toml"]);
