@@ -21,6 +21,7 @@ pub fn procedure(channels: Vec<Channel>, sample_rate_hz: Option<f64>, warm_up_s:
                 rollover: None,
                 required: true,
                 span: 0..0,
+                column_span: 0..0,
             })
             .collect(),
         conditions: Conditions { warm_up_s, ..Conditions::default() },

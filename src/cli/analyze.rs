@@ -4,6 +4,7 @@ use super::columns::{ColumnArgs, about, channels, unit_contradictions};
 use super::finish::run_and_finish;
 use super::inputs::Inputs;
 use super::join::JoinArgs;
+use super::next_step;
 use super::options::{GridArgs, OutputArgs};
 use super::place;
 use super::printer::Printer;
@@ -12,7 +13,7 @@ use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::model::Procedure;
 use crate::i18n::{Lang, Localize, Note};
-use crate::ingest::open_recording;
+use crate::ingest::{ReadOptions, open_recording};
 use crate::output::Kind;
 use crate::record::{RunKind, UnitUnderTest};
 use crate::recording::Role;
@@ -97,7 +98,12 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         taus,
         exact: args.grid.exact,
     };
-    run_and_finish(&request, folder, &renderer, printer, progress)
+    let code = run_and_finish(&request, folder, &renderer, printer, progress)?;
+    // The other verb reads a recording as it is found.
+    let as_found = args.read.options() == ReadOptions::default();
+    let step = next_step::init(&args.recording, &args.columns.as_typed()).filter(|_| as_found);
+    printer.next_step(step.as_ref());
+    Ok(code)
 }
 
 /// The recording as it was named first.

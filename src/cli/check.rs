@@ -3,48 +3,32 @@
 use super::progress::{Display, Progress};
 use super::{exit, place};
 use crate::acceptance::power::warning;
-use crate::config::diagnostics::Problem;
-use crate::config::procedure::check::{Checked, check, check_report_with};
-use crate::config::procedure::power::{questions, warnings};
-use crate::config::procedure::{LimitsFile, Loaded, effective};
+use crate::config::procedure::check::check_report;
 use crate::i18n::Lang;
+use crate::ingest::each_of;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Procedures, limits files, manifests and layouts (TOML)
+    /// Procedures, limits files, manifests and layouts (TOML), or quoted patterns of them
     #[arg(required = true)]
     files: Vec<PathBuf>,
 }
 
 pub fn main(args: &CheckArgs, lang: Lang) -> Result<u8, String> {
-    let paths: Vec<&Path> = args.files.iter().map(|p| p.as_path()).collect();
+    let mut files: Vec<PathBuf> = vec![];
+    for named in &args.files {
+        for file in each_of(named).map_err(|e| place::error(&e.note(), lang))? {
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+    }
     let mut progress = Progress::new(Display::unless(false), lang);
     progress.stage("progress.checking");
-    // Limits files among the arguments are also set against every procedure among them.
-    let limits: Vec<Loaded<LimitsFile>> = paths
-        .iter()
-        .filter_map(|p| match check(p) {
-            Ok(Checked::Limits(l)) => Some(*l),
-            _ => None,
-        })
-        .collect();
-    let report = check_report_with(&paths, None, lang, |procedure, _| {
-        let sets: Vec<Option<&Loaded<LimitsFile>>> =
-            if limits.is_empty() { vec![None] } else { limits.iter().map(Some).collect() };
-        sets.into_iter()
-            .flat_map(|file| {
-                let effective = effective(procedure, file);
-                let asked = questions(&procedure.value, &effective);
-                let mut found = effective.warnings.clone();
-                let idle = effective.idle.clone().zip(file.filter(|f| !f.value.set.limits.is_empty()));
-                found.extend(idle.map(|(note, file)| Problem::remark_on_file(&file.path, note)));
-                found.extend(warnings(&asked, procedure, file, warning));
-                found
-            })
-            .collect()
-    });
+    let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+    let report = check_report(&paths, lang, &warning);
     drop(progress);
     place::print(&report.text);
     Ok(if report.failed > 0 { exit::ERROR } else { exit::PASS })

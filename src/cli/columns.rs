@@ -1,5 +1,6 @@
 //! The columns of a recording without a procedure: as named on the command line, else as their names tell.
 
+use super::place::for_shell;
 use crate::i18n::Note;
 use crate::ingest::Source;
 use crate::recording::{Channel, ColumnRef, Role};
@@ -31,6 +32,29 @@ pub struct ColumnArgs {
     /// Time excluded at the start, s
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     pub warm_up: f64,
+}
+
+impl ColumnArgs {
+    /// The options as they are typed, each behind a space.
+    pub fn as_typed(&self) -> String {
+        let mut typed = String::new();
+        let mut add = |option: &str, value: &str| typed.push_str(&format!(" {option} {}", for_shell(value)));
+        self.rate.iter().for_each(|column| add("--rate", column));
+        self.angle.iter().for_each(|column| add("--angle", column));
+        let texts = [("--unit", &self.unit), ("--counter", &self.counter), ("--time", &self.time)];
+        for (option, value) in texts {
+            if let Some(value) = value {
+                add(option, value);
+            }
+        }
+        if let Some(hz) = self.sample_rate {
+            add("--sample-rate", &hz.to_string());
+        }
+        if self.warm_up > 0.0 {
+            add("--warm-up", &self.warm_up.to_string());
+        }
+        typed
+    }
 }
 
 /// A sentence about a recording.

@@ -2,9 +2,10 @@
 
 use super::join::JoinArgs;
 use super::options::OutputArgs;
+use super::printer::Printer;
 use super::run;
 use super::run_args::{EachArgs, RunArgs};
-use super::{options::GridArgs, place};
+use super::{next_step, options::GridArgs, place};
 use crate::i18n::{Lang, Localize, Note};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -44,7 +45,10 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
         output: args.output,
         grid: GridArgs { taus: None, exact: false },
     };
-    run::main(&args, lang)
+    let printer = Printer::new(&args.output, lang);
+    let code = run::main(&args, lang)?;
+    printer.next_step(Some(&next_step::after_demo()));
+    Ok(code)
 }
 
 /// Writes the recording where none is; another file of its name is not replaced.

@@ -7,7 +7,7 @@ use super::options::OutputArgs;
 use super::printer::Printer;
 use super::progress::Progress;
 use super::read::ReadArgs;
-use super::{exit, place};
+use super::{exit, next_step, place};
 use crate::config::model;
 use crate::effect::{Column, EFFECTS, find};
 use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
@@ -134,6 +134,8 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let folder = write(&results, folder, EXPORTERS, &renderer, lang)?;
     drop(progress);
     printer.outcome(&folder, Kind::Explanation, |t| terminal::explanation(&view, lang, t))?;
+    let named = view.effects.iter().find(|e| !e.unknown);
+    printer.next_step(named.map(|e| next_step::after_effect(&e.kind)).as_ref());
     Ok(match outcome.explanation.verdict {
         MismatchVerdict::Consistent => exit::PASS,
         MismatchVerdict::Mismatch => exit::FAIL,

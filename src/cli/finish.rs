@@ -5,6 +5,7 @@ use super::printer::Printer;
 use super::progress::Progress;
 use super::{exit, place};
 use crate::acceptance::{Outcome, Request, RunError, execute, explained, failed};
+use crate::config::diagnostics::Problems;
 use crate::config::model::Claim;
 use crate::i18n::{Lang, Localize, Note};
 use crate::output::{Kind, OutputError, StagedFolder};
@@ -44,12 +45,14 @@ pub struct Evaluated {
     pub results: RunResults,
     /// Why the recording could not be evaluated.
     pub refused: Option<Note>,
+    /// Diagnostics that tell more than that, such as each column that is missing at the line that asks for it.
+    pub problems: Option<Problems>,
 }
 
 impl Evaluated {
     /// A request that could not be carried out.
     pub fn refused(request: &Request<'_>, error: &RunError) -> Evaluated {
-        Evaluated { results: not_run(request, error).into(), refused: Some(error.note()) }
+        Evaluated { results: not_run(request, error).into(), refused: Some(error.note()), problems: None }
     }
 }
 
@@ -62,7 +65,7 @@ pub fn evaluate(request: &Request<'_>, against: Option<Against<'_>>, progress: &
             if let Some(against) = against {
                 explain(request, against, &mut results, progress);
             }
-            Evaluated { results, refused: None }
+            Evaluated { results, refused: None, problems: None }
         }
         Err(error) => Evaluated::refused(request, &error),
     }
@@ -86,7 +89,11 @@ pub fn settle(
             let results = Results::Run(Box::new(evaluated.results));
             let place = write(&results, folder, EXPORTERS, renderer, lang)?;
             let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
-            Err(format!("{}{}\n", place::error(&note, lang), report.say(lang)))
+            let why = match &evaluated.problems {
+                Some(problems) => format!("{}\n", problems.say(lang)),
+                None => place::error(&note, lang),
+            };
+            Err(format!("{why}{}\n", report.say(lang)))
         }
     }
 }

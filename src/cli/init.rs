@@ -70,7 +70,7 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
         .with("procedure", shown[0].as_str())
         .with("limits", shown[1].as_str())
         .with("ci", shown[2].as_str())
-        .with("recording", quoted_for_shell(&args.recording.display().to_string()));
+        .with("recording", place::for_shell(&args.recording.display().to_string()));
     place::print(&format!("{}\n", note.say(lang)));
     Ok(exit::PASS)
 }
@@ -130,7 +130,7 @@ fn written(
     let temperature = channels.iter().zip(&channel_ids).find(is_temperature).map(|(_, id)| id);
     let values = context! {
         recording => name,
-        recording_shell => quoted_for_shell(&args.recording.display().to_string()),
+        recording_shell => place::for_shell(&args.recording.display().to_string()),
         procedure => "procedure.toml",
         id => toml_text(&id_of(&stem)),
         channels => channels.iter().zip(&channel_ids).map(|(c, id)| context! {
@@ -233,15 +233,6 @@ fn id_of(text: &str) -> String {
     let id: String = text.chars().map(safe).collect();
     let id: String = id.trim_start_matches(['_', '-', '.']).chars().take(64).collect();
     if id.is_empty() { "unit".to_owned() } else { id }
-}
-
-fn quoted_for_shell(path: &str) -> String {
-    if path.chars().all(|c| c.is_ascii_alphanumeric() || "./_-".contains(c)) {
-        path.to_owned()
-    } else {
-        // The line stands in YAML as plain text, where a quote within is kept.
-        format!("'{}'", one_line(path).replace('\'', "'\\''"))
-    }
 }
 
 #[cfg(test)]

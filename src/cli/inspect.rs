@@ -3,7 +3,7 @@
 use super::join::JoinArgs;
 use super::progress::{Display, Progress};
 use super::read::ReadArgs;
-use super::{exit, place};
+use super::{exit, next_step, place};
 use crate::acceptance::inspect::inspect_source;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::open_recording;
@@ -34,5 +34,8 @@ pub fn main(args: &InspectArgs, lang: Lang) -> Result<u8, String> {
     });
     progress.finish();
     place::print(&report.map_err(|e| place::error(&e.note(), lang))?);
+    if let Some(step) = next_step::after_inspection(&args.recording, &recording.source) {
+        place::print(&format!("\n{}\n", step.say(lang)));
+    }
     Ok(exit::PASS)
 }

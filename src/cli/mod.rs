@@ -15,6 +15,7 @@ mod init;
 mod inputs;
 mod inspect;
 mod join;
+mod next_step;
 mod options;
 mod phased_test;
 mod place;
@@ -64,7 +65,7 @@ enum Verb {
     )]
     Run(run_args::RunArgs),
     /// Validate procedures and limits without data, and report what they cannot decide
-    #[command(after_help = "Example:\n  sagnac check procedures/static-bias.toml procedures/limits/*.toml")]
+    #[command(after_help = "Example:\n  sagnac check 'procedures/**/*.toml'")]
     Check(check::CheckArgs),
     /// Show what a recording contains and which tests it supports
     #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]

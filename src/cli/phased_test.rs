@@ -3,17 +3,18 @@
 use super::finish::{not_run, with_progress};
 use super::inputs::Inputs;
 use super::place;
+use super::procedures::say_which;
 use super::progress::Progress;
 use super::run_args::RunArgs;
 use crate::acceptance::phases::{Done, combine};
 use crate::acceptance::{Outcome, Request, session};
 use crate::config::manifest::{Manifest, ManifestFile};
+use crate::config::procedure::missing_columns::missing_columns;
 use crate::config::procedure::phases::{Phase, Phased, load_phased};
 use crate::config::procedure::{EffectiveLimits, effective};
-use crate::config::shipped;
 use crate::estimate::Verdict;
 use crate::i18n::{Lang, Localize, Note};
-use crate::ingest::{ReadOptions, Source, open_files};
+use crate::ingest::{IngestError, ReadOptions, Source, open_files};
 use crate::noise::tau_grid::TauGrid;
 use crate::record::{RunKind, Session, UnitUnderTest};
 use crate::report::RunResults;
@@ -36,10 +37,7 @@ impl<'a> PhasedTest<'a> {
     /// The diagnostics, in words.
     pub fn load(args: &'a RunArgs, now: DateTime<Utc>, lang: Lang) -> Result<PhasedTest<'a>, String> {
         let error = |note: Note| place::error(&note, lang);
-        // The files that its phases name are looked for beside it.
-        if let Some(shipped) = shipped::find(&args.procedure).filter(|_| !args.procedure.is_file()) {
-            return Err(error(Note::new("procedures.phased").with("name", shipped.name)));
-        }
+        say_which(&[&args.procedure], lang);
         let phased = load_phased(&args.procedure).map_err(|p| p.say(lang))?;
         if args.limits.is_some() {
             return Err(error(Note::new("phases.limits")));
@@ -161,12 +159,21 @@ impl<'a> PhasedTest<'a> {
             exact: self.args.grid.exact,
         };
         who.get_or_insert_with(|| session(&request));
-        let label = format!("{}: {}", phase.title.say(progress.lang()), Note::new("cli.reading").say(progress.lang()));
-        match refused {
+        let lang = progress.lang();
+        let label = format!("{}: {}", phase.title.say(lang), Note::new("cli.reading").say(lang));
+        match refused.or_else(|| missing_column(phase, &source, progress)) {
             Some(e) => not_run(&request, &e.into()),
             None => with_progress(&request, &label, progress).unwrap_or_else(|e| not_run(&request, &e)),
         }
     }
+}
+
+/// The first column that the recording of a phase lacks; all of them are printed.
+fn missing_column(phase: &Phase, source: &Source, progress: &mut Progress) -> Option<IngestError> {
+    let (problems, first) = missing_columns(&phase.procedure, source)?;
+    let lang = progress.lang();
+    progress.beside(|| place::eprint_diagnostic(&problems.say(lang)));
+    Some(first)
 }
 
 /// What a file's phase leaves when the id of a phase is taken off; `None` when it is not of that phase.

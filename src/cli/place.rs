@@ -21,6 +21,16 @@ pub fn shown(path: &Path) -> String {
     visible(&path.display().to_string()).into_owned()
 }
 
+/// A word of a command as a shell takes it, on one line.
+pub fn for_shell(path: &str) -> String {
+    if path.chars().all(|c| c.is_ascii_alphanumeric() || "./_-".contains(c)) {
+        path.to_owned()
+    } else {
+        // The line stands in YAML as plain text, where a quote within is kept.
+        format!("'{}'", visible(path).replace('\'', "'\\''"))
+    }
+}
+
 /// The line of an error for the terminal.
 pub fn error(note: &Note, lang: Lang) -> String {
     format!("{}: {}\n", Note::new("diagnostic.error").say(lang), note.say(lang))

@@ -74,6 +74,15 @@ impl Printer {
     }
 }
 
+impl Printer {
+    /// Prints what to do next, unless only the result was asked for.
+    pub fn next_step(self, step: Option<&Note>) {
+        if let Some(step) = step.filter(|_| !self.quiet && self.format == PrintFormat::Text) {
+            place::print(&format!("{}\n", step.say(self.lang)));
+        }
+    }
+}
+
 /// The choice of colours: `NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`, `TERM`, and whether standard output is a terminal.
 fn choice() -> ColorChoice {
     AutoStream::choice(&std::io::stdout())

@@ -2,11 +2,12 @@
 
 use super::finish::settle;
 use super::inputs::serial;
-use super::place;
 use super::printer::Printer;
 use super::run_args::RunArgs;
 use super::single_test::SingleTest;
-use crate::i18n::Lang;
+use super::{exit, next_step, place};
+use crate::config::shipped::find;
+use crate::i18n::{Lang, Localize};
 use crate::ingest::RecordingError;
 use crate::output::Kind;
 use chrono::Utc;
@@ -40,5 +41,13 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         Err(RecordingError::File(_)) => {}
     }
     let evaluated = test.evaluate(&args.recording, opened, args.serial.as_deref(), &mut progress);
-    settle(evaluated, folder, &renderer, printer, progress)
+    // A shipped procedure cannot be edited: one of its own suits the recording.
+    let lacks = evaluated.problems.is_some() && find(&args.procedure).is_some();
+    let own = next_step::init(&args.recording, "").filter(|_| lacks);
+    let own = own.map(|step| format!("{}\n", step.say(lang))).unwrap_or_default();
+    let code = settle(evaluated, folder, &renderer, printer, progress)
+        .map_err(|message| format!("{message}{own}"))?;
+    let step = next_step::after_fail(&args.recording, &test.procedure.value);
+    printer.next_step(step.filter(|_| code == exit::FAIL).as_ref());
+    Ok(code)
 }

@@ -18,8 +18,11 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let test = PhasedTest::load(args, now, lang)?;
     let path = match args.recording.as_slice() {
-        [one] if is_manifest(one) => one,
-        _ => return Err(error(Note::new("phases.needs_manifest"))),
+        [one] if is_manifest(one) || one.extension().is_some_and(|e| e == "toml") => one,
+        _ => {
+            let needed = error(Note::new("phases.needs_manifest").with("id", test.phased.identity.id.as_str()));
+            return Err(format!("{needed}\n{}", test.phased.example_manifest()));
+        }
     };
     let manifest = manifest::load(path).map_err(|p| p.say(lang))?;
     belong(&test.phased, &manifest).map_err(error)?;

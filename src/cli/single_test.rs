@@ -8,6 +8,7 @@ use super::progress::Progress;
 use super::run_args::RunArgs;
 use crate::acceptance::{Request, RunError, explained};
 use crate::config::model::Claim;
+use crate::config::procedure::missing_columns::missing_columns;
 use crate::config::procedure::{
     EffectiveLimits, LimitsFile, Loaded, Procedure, effective, load, load_limits,
 };
@@ -121,6 +122,11 @@ impl<'a> SingleTest<'a> {
             taus: self.taus.clone(),
             exact: self.args.grid.exact,
         };
+        if refused.is_none()
+            && let Some((problems, first)) = missing_columns(&self.procedure, &source)
+        {
+            return Evaluated { problems: Some(problems), ..Evaluated::refused(&request, &first.into()) };
+        }
         match refused {
             None => {
                 let against = self.model.clone().map(|claim| Against { claim, recording });

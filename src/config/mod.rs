@@ -6,6 +6,7 @@
 pub(crate) mod contained_files;
 pub mod diagnostics;
 pub mod layout;
+mod line_repair;
 pub mod manifest;
 pub mod model;
 pub mod procedure;
@@ -14,6 +15,7 @@ pub(crate) mod read_tables;
 pub(crate) mod reader;
 pub mod recording_keys;
 pub(crate) mod recording_options;
+pub(crate) mod role_words;
 pub(crate) mod section;
 pub mod shipped;
 pub mod spec;

@@ -29,9 +29,21 @@ fn read(source: &SourceText, root: &'static TableSpec) -> (Option<Section>, Prob
     }
     let (table, errors) = DeTable::parse_recoverable(&source.text);
     if !errors.is_empty() {
-        for error in errors.iter().take(MAX_SYNTAX_ERRORS) {
-            let span = error.span().unwrap_or(0..0);
-            reader.problems.list.push(syntax::problem(source, &span, error.message()));
+        let mut found: Vec<(Span, &str)> =
+            errors.iter().map(|e| (e.span().unwrap_or(0..0), e.message())).collect();
+        found.sort_by_key(|(span, _)| span.start);
+        let mut line_end = 0;
+        for (span, said) in found {
+            // What follows on the line of a mistake is most often its consequence.
+            if span.start < line_end {
+                continue;
+            }
+            reader.problems.list.push(syntax::problem(source, &span, said));
+            if reader.problems.list.len() == MAX_SYNTAX_ERRORS {
+                break;
+            }
+            let rest = source.text.get(span.start..).unwrap_or_default();
+            line_end = span.start + rest.find('\n').map_or(rest.len(), |end| end + 1);
         }
         reader.problems.sort();
         return (None, reader.problems);

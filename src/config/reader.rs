@@ -59,15 +59,8 @@ impl Reader<'_> {
     pub fn measurand(&mut self, name: &str, span: &Span) -> Option<&'static Measurand> {
         let found = measurand::find(name);
         if found.is_none() {
-            let known = || measurand::MEASURANDS.iter().map(|m| m.id);
-            let help = match nearest(name, known()) {
-                Some(near) => meant(near),
-                None => {
-                    Note::new("keyed.help.measurands").with("names", known().collect::<Vec<_>>().join(", "))
-                }
-            };
             let message = Note::new("keyed.unknown_measurand").with("name", shorten(name));
-            self.error(span, message, Some(help));
+            self.error(span, message, Some(measurand_meant(name)));
         }
         found
     }
@@ -102,6 +95,27 @@ pub(crate) fn for_example(key: &KeySpec) -> Note {
 /// Offers a name that is spelt nearly the same.
 pub(crate) fn meant(near: &str) -> Note {
     Note::new("keyed.help.did_you_mean").with("name", near)
+}
+
+/// The measurand that a name means: by its symbol or abbreviation, else those whose ids hold the word,
+/// else by its spelling.
+fn measurand_meant(name: &str) -> Note {
+    let known = || measurand::MEASURANDS.iter().map(|m| m.id);
+    let by_word = || match measurand::with_word(name).as_slice() {
+        [] => None,
+        [one] => Some(meant(one.id)),
+        several => {
+            let names: Vec<&str> = several.iter().map(|m| m.id).collect();
+            Some(Note::new("keyed.help.one_of").with("values", names.join(", ")))
+        }
+    };
+    measurand::called(name)
+        .map(|m| meant(m.id))
+        .or_else(by_word)
+        .or_else(|| nearest(name, known()).map(meant))
+        .unwrap_or_else(|| {
+            Note::new("keyed.help.measurands").with("names", known().collect::<Vec<_>>().join(", "))
+        })
 }
 
 /// A name short enough for a message.

@@ -1,7 +1,7 @@
 //! Procedures and limits that the program carries, so that they are found by name from any folder.
 
 use crate::i18n::Lang;
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 /// What a shipped file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,6 +71,11 @@ impl Shipped {
         }
     }
 
+    /// Its name as a path by which it is found.
+    pub fn name_as_path(&self) -> PathBuf {
+        PathBuf::from(self.name)
+    }
+
     /// Its title in a language, as its file states it.
     pub fn title(&self, lang: Lang) -> String {
         let table = match self.kind {
@@ -82,6 +87,11 @@ impl Shipped {
         let text = title.and_then(|t| t.as_str().or_else(|| t.get(lang.code())?.as_str()));
         text.unwrap_or_default().to_owned()
     }
+}
+
+/// The shipped file at a path in the folder of all shipped files, as one of them names another.
+pub fn at(path: &str) -> Option<&'static Shipped> {
+    PROCEDURES.iter().chain(LIMITS).find(|s| s.path() == path)
 }
 
 /// The shipped file that a name stands for. `None` for anything with a folder or an ending, which is a path.
@@ -109,6 +119,14 @@ mod tests {
         assert_eq!(of(PROCEDURES), names(&root));
         assert_eq!(of(LIMITS), names(&root.join("limits")));
         assert!(of(PROCEDURES).is_disjoint(&of(LIMITS)));
+        // What a shipped file names in the way of a file is shipped too.
+        for s in PROCEDURES.iter().filter(|s| s.text.contains("[[phase]]")) {
+            let named = s
+                .text
+                .lines()
+                .filter_map(|l| l.strip_prefix("procedure = \"").or(l.strip_prefix("limits = \"")));
+            named.for_each(|n| assert!(at(n.trim_end_matches('"')).is_some(), "{}: {n}", s.name));
+        }
         for s in PROCEDURES.iter().chain(LIMITS) {
             for lang in Lang::ALL {
                 assert!(!s.title(*lang).is_empty(), "{}", s.name);

@@ -1,6 +1,7 @@
 //! Syntax errors: what the TOML parser says, in words of the tables, and what to do about the common ones.
 
 use super::diagnostics::{Problem, SourceText, Span};
+use super::line_repair::{Fault, repaired};
 use crate::i18n::{Arg, Note};
 
 /// What the parser says, and the key of the locale tables for it.
@@ -53,6 +54,16 @@ const FAULTS: &[(&str, &str)] = &[
 pub(super) fn problem(source: &SourceText, span: &Span, said: &str) -> Problem {
     // The part that speaks of the parser's grammar helps nobody.
     let said = said.strip_suffix(", expected literal string").unwrap_or(said);
+    if let Some((line, repair)) = repaired(source, span) {
+        let key = match repair.fault {
+            Fault::Unquoted => "keyed.unquoted",
+            Fault::Quotes => "keyed.odd_quotes",
+            Fault::Flag => "keyed.flag_case",
+            Fault::Date => "keyed.date_order",
+            Fault::Colon => "keyed.colon",
+        };
+        return source.error(&line, key).help(Note::new("keyed.help.write").with("text", repair.line));
+    }
     let problem = source.error(span, Note::new("keyed.not_toml").with("reason", reason(said)));
     let help = if said.contains("duplicate key") {
         "keyed.help.once"

@@ -3,6 +3,7 @@
 use super::diagnostics::Span;
 use super::quantity::{self, QuantityError};
 use super::reader::{Reader, Value, for_example, shorten};
+use super::role_words;
 use super::section::{Allowance, Entry, Given, Named, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
 use super::texts::{Blank, local, text};
@@ -155,7 +156,9 @@ fn word(reader: &mut Reader<'_>, value: Value<'_>, words: &'static [Word]) -> Op
     if let Some((known, _)) = words.iter().find(|(known, _)| known == given) {
         return Some(known);
     }
-    let help = match nearest(given, words.iter().map(|(known, _)| *known)) {
+    let role = || (value.key.name == "role").then(|| role_words::meant(given)).flatten();
+    let meant = role().filter(|role| words.iter().any(|(known, _)| known == role));
+    let help = match meant.or_else(|| nearest(given, words.iter().map(|(known, _)| *known))) {
         Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
         None => {
             let all: Vec<&str> = words.iter().map(|(known, _)| *known).collect();

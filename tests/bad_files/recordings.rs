@@ -143,7 +143,8 @@ fn columns_that_are_missing_doubled_or_words_are_named() {
     std::fs::write(dir.path().join("c.csv"), sound.replace("rate_deg_h", "rate_deg_s")).unwrap();
     let (analysed, run) = both(dir.path(), "c.csv");
     assert_eq!((analysed.code, run.code), (0, 2), "another unit is another column for a procedure");
-    assert!(run.err.contains("no column `rate_deg_h`; did you mean `rate_deg_s`?"), "{}", run.err);
+    assert!(run.err.contains("there is no column `rate_deg_h`\n"), "{}", run.err);
+    assert!(run.err.contains("did you mean `rate_deg_s`? "), "{}", run.err);
     refused("norate.csv", sound.replace("rate_deg_h", "x").as_bytes(), &["column", "x"]);
     let doubled = sound.replace("temp_degC", "rate_deg_h");
     refused(

@@ -105,7 +105,7 @@ fn what_does_not_fit_is_said_before_anything_is_read() {
         assert!(!out.exists());
     };
     let sample = root("samples/scale-factor-pass.csv").to_string_lossy().into_owned();
-    refused(&["run", &acceptance(), &sample, "--lang", "en"], "needs a manifest");
+    refused(&["run", &acceptance(), &sample, "--lang", "en"], "pass a manifest that names the phase");
     let odd = manifest(folder.path(), &[("scale-factor-pass.csv", Some("scalefactor"))]);
     refused(&["run", &acceptance(), &odd, "--lang", "en"], "unknown phase");
     let none = manifest(folder.path(), &[("scale-factor-pass.csv", None)]);
@@ -160,7 +160,12 @@ fn a_phase_that_fails_says_why_on_the_terminal() {
     let reasons = shown.split("\nScale factor\n").nth(1).unwrap_or_else(|| panic!("{shown}"));
     assert!(reasons.contains("counts"), "{shown}");
     let stderr = said(&done);
-    assert!(stderr.contains("error: Scale factor") && stderr.contains("counts"), "{stderr}");
+    // At the line of the procedure that asks for the column, and only there.
+    assert!(
+        stderr.contains("there is no column `counts`\n") && stderr.contains("scale-factor.toml:"),
+        "{stderr}"
+    );
+    assert_eq!(stderr.matches("error: ").count(), 1, "{stderr}");
 }
 
 #[test]

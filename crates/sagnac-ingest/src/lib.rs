@@ -97,6 +97,7 @@ mod pauses;
 mod plan;
 mod requested_columns;
 mod row_clock;
+mod similar_column;
 mod source;
 mod stream;
 mod system;

@@ -6,11 +6,15 @@ use super::file_identity::FileIdentity;
 use super::format_detection::format_of;
 use super::guarded::guarded;
 use super::metadata::serial_numbers;
+use super::similar_column::similar;
 use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, in_memory, requested_columns};
 use sagnac_core::message::Note;
 use sagnac_core::recording::{ColumnRef, Role};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+
+/// Most columns whose names are listed in a hint.
+const NAMED_COLUMNS: usize = 30;
 
 /// A recording that can be read: a file, or columns in memory.
 pub struct Source {
@@ -270,6 +274,25 @@ impl Source {
         }
     }
 
+    /// The column that a name means which no column has.
+    pub fn similar_column(&self, name: &str) -> Option<&str> {
+        similar(name, self.columns().iter().map(|c| c.name.as_str()))
+    }
+
+    /// Which columns there are, and which of them may be meant.
+    pub fn columns_hint(&self, meant: Option<&str>) -> Note {
+        let columns = self.columns();
+        let mut names: Vec<&str> = columns.iter().take(NAMED_COLUMNS).map(|c| c.name.as_str()).collect();
+        if columns.len() > NAMED_COLUMNS {
+            names.push("…");
+        }
+        let hint = match meant {
+            Some(meant) => Note::new("ingest.hint.column_meant").with("name", meant),
+            None => Note::new("ingest.hint.the_file_has"),
+        };
+        hint.with("names", names.join(", "))
+    }
+
     fn column_error(&self, message: Note) -> IngestError {
         IngestError::new(IngestErrorKind::Column, &self.path, message)
     }
@@ -282,15 +305,7 @@ impl Source {
         match found.as_slice() {
             [one] => Ok(*one),
             [] => {
-                let distances = columns.iter().map(|c| (strsim::damerau_levenshtein(&c.name, name), &c.name));
-                let near = distances.min().filter(|(distance, c)| *distance <= 1 + c.chars().count() / 3);
-                let hint = match near {
-                    Some((_, near)) => Note::new("ingest.hint.did_you_mean").with("name", near.as_str()),
-                    None => {
-                        let names: Vec<&str> = columns.iter().take(30).map(|c| c.name.as_str()).collect();
-                        Note::new("ingest.hint.the_file_has").with("names", names.join(", "))
-                    }
-                };
+                let hint = self.columns_hint(self.similar_column(name));
                 Err(self.column_error(Note::new("ingest.no_column_named").with("name", name)).hint(hint))
             }
             several => {

@@ -4,13 +4,13 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
+use super::pairs::{self, Answer};
 use super::phases::{Phase, Phased, is_phased, load_phased};
-use super::slips;
 use crate::config::layout;
 use crate::config::manifest::{self, Manifest, is_manifest};
 use crate::config::model;
 use crate::config::text_file;
-use crate::i18n::{Lang, Localize, Note, visible};
+use crate::i18n::{Arg, Lang, LocalText, Localize, Note, visible};
 use sagnac_ingest::layout::Layout;
 use std::path::Path;
 
@@ -68,63 +68,98 @@ fn all_named<'a>(procedures: impl Iterator<Item = &'a Procedure>) -> Result<(), 
 /// The result of checking several files, ready to be shown.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct CheckReport {
-    /// One paragraph a file, problems first.
+    /// A line for each file, its problems before it; the counts at the end where there are several.
     pub text: String,
     /// Files that cannot be used.
     pub failed: usize,
 }
 
-/// Checks files one by one. With `limits`, each procedure is also checked against those limits.
-pub fn check_report(paths: &[&Path], limits: Option<&Loaded<LimitsFile>>, lang: Lang) -> CheckReport {
-    check_report_with(paths, limits, lang, |_, _| vec![])
-}
-
-/// As [`check_report`]; `extra` gives further warnings for a procedure with its limits, such as those of
-/// [`super::power::warnings`].
-pub fn check_report_with(
-    paths: &[&Path],
-    limits: Option<&Loaded<LimitsFile>>,
-    lang: Lang,
-    extra: impl Fn(&Loaded<Procedure>, Option<&Loaded<LimitsFile>>) -> Vec<Problem>,
-) -> CheckReport {
+/// Checks files one by one, and each limits file with the procedures among them that it belongs to. `answer` says which
+/// limits cannot be decided.
+pub fn check_report(paths: &[&Path], lang: Lang, answer: Answer<'_>) -> CheckReport {
+    let checked: Vec<(&Path, Result<Checked, Problems>)> = paths.iter().map(|p| (*p, check(p))).collect();
+    let procedures: Vec<&Loaded<Procedure>> = checked
+        .iter()
+        .filter_map(|(_, c)| match c {
+            Ok(Checked::Procedure(p)) => Some(&**p),
+            _ => None,
+        })
+        .collect();
     let mut report = CheckReport::default();
-    for path in paths {
-        match check(path) {
+    let mut told: Vec<Problem> = vec![];
+    for (path, found) in &checked {
+        let name = visible(&path.display().to_string()).into_owned();
+        match found {
             Ok(checked) => {
-                let (sentence, warnings) = match &checked {
-                    Checked::Procedure(p) => {
-                        let mut warnings = p.warnings.clone();
-                        warnings.extend(effective(p, limits).warnings);
-                        warnings.extend(slips::instruments(p));
-                        warnings.extend(extra(p, limits));
-                        (procedure_sentence(p), warnings)
+                for warning in warnings(checked, &procedures, answer) {
+                    if told.contains(&warning) {
+                        continue;
                     }
-                    Checked::Limits(l) => (limits_sentence(l), l.warnings.clone()),
-                    Checked::Manifest(m) => (manifest_sentence(m), vec![]),
-                    Checked::Layout(l) => (layout_sentence(l), vec![]),
-                    Checked::Phased(p) => (phased_sentence(p), p.phases.iter().flat_map(of_phase).collect()),
-                };
-                for warning in warnings {
                     report.text.push_str(&format!("{}\n", warning.say(lang)));
+                    told.push(warning);
                 }
-                report.text.push_str(&format!(
-                    "{}: {}\n",
-                    visible(&path.display().to_string()),
-                    sentence.say(lang)
-                ));
+                let said: Vec<String> = sentences(checked, &procedures).iter().map(|s| s.say(lang)).collect();
+                report.text.push_str(&format!("{name}: {}\n", said.join("; ")));
             }
             Err(problems) => {
                 report.failed += 1;
                 let summary = count(problems.list.len(), "check.one_problem", "check.problems").say(lang);
-                report.text.push_str(&format!(
-                    "{}\n{}: {summary}\n",
-                    problems.say(lang),
-                    visible(&path.display().to_string())
-                ));
+                report.text.push_str(&format!("{}\n{name}: {summary}\n", problems.say(lang)));
             }
         }
     }
+    if paths.len() > 1 {
+        let total = Note::new("check.total").with("files", paths.len()).with("failed", report.failed);
+        report.text.push_str(&format!("{}\n", total.with("warnings", told.len()).say(lang)));
+    }
     report
+}
+
+/// What is worth knowing of a sound file.
+fn warnings(checked: &Checked, procedures: &[&Loaded<Procedure>], answer: Answer<'_>) -> Vec<Problem> {
+    match checked {
+        Checked::Procedure(p) => p.warnings.iter().cloned().chain(pairs::of_procedure(p, answer)).collect(),
+        Checked::Limits(l) => {
+            l.warnings.iter().cloned().chain(pairs::of_limits(l, procedures, answer)).collect()
+        }
+        Checked::Manifest(_) | Checked::Layout(_) => vec![],
+        Checked::Phased(p) => p.phases.iter().flat_map(of_phase).collect(),
+    }
+}
+
+/// What a sound file is, in clauses.
+fn sentences(checked: &Checked, procedures: &[&Loaded<Procedure>]) -> Vec<Note> {
+    match checked {
+        Checked::Procedure(p) => {
+            std::iter::once(procedure_sentence(p)).chain(nameless_instruments([&**p])).collect()
+        }
+        Checked::Limits(l) => {
+            let names: Vec<&str> =
+                pairs::belonging(&l.value, procedures).iter().map(|p| p.value.id.as_str()).collect();
+            let with = Note::new("check.with_procedures").with("names", names.join(", "));
+            std::iter::once(limits_sentence(l)).chain((!names.is_empty()).then_some(with)).collect()
+        }
+        Checked::Manifest(m) => vec![manifest_sentence(m)],
+        Checked::Layout(l) => vec![layout_sentence(l)],
+        Checked::Phased(p) => {
+            let nameless = nameless_instruments(p.phases.iter().map(|phase| &phase.procedure));
+            std::iter::once(phased_sentence(p)).chain(nameless).collect()
+        }
+    }
+}
+
+/// The instruments of procedures that nobody can find again, each once.
+fn nameless_instruments<'a>(procedures: impl IntoIterator<Item = &'a Loaded<Procedure>>) -> Option<Note> {
+    let mut names: Vec<&LocalText> = vec![];
+    for instrument in procedures.into_iter().flat_map(|p| &p.value.instruments) {
+        let nameless = instrument.serial.as_deref().is_none_or(|s| s.trim().is_empty());
+        if nameless && !names.contains(&&instrument.name) {
+            names.push(&instrument.name);
+        }
+    }
+    let list: Vec<Arg> = names.into_iter().map(|name| Arg::from(name.clone())).collect();
+    (!list.is_empty())
+        .then(|| Note::new("check.no_serial").with("names", Arg::Several(list, ", ".into())))
 }
 
 /// What is worth knowing of a phase: what its own files say, and that no verdict can come from them.
@@ -132,7 +167,6 @@ fn of_phase(phase: &Phase) -> Vec<Problem> {
     let mut found = phase.procedure.warnings.clone();
     let effective = effective(&phase.procedure, phase.limits.as_ref());
     found.extend(effective.warnings);
-    found.extend(slips::instruments(&phase.procedure));
     let unjudged = effective
         .set
         .limits

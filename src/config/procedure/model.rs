@@ -128,6 +128,8 @@ pub struct ChannelSpec {
     pub required: bool,
     /// Where it is declared.
     pub span: Span,
+    /// Where its column is named.
+    pub column_span: Span,
 }
 
 /// Conditions under which a test is valid.
@@ -135,6 +137,8 @@ pub struct ChannelSpec {
 pub struct Conditions {
     /// Least usable time, s.
     pub minimum_duration_s: Option<f64>,
+    /// Usable time that the limits are to be decided in, s; `None`: the least.
+    pub planned_duration_s: Option<f64>,
     /// Time at the beginning that is left out, s.
     pub warm_up_s: f64,
     /// Temperatures to be held.

@@ -140,12 +140,14 @@ fn one_channel(section: &Section, reader: &mut Reader<'_>) -> Option<ChannelSpec
         rollover,
         required: section.flag("required"),
         span: section.span.clone(),
+        column_span: reader.source.inside_quotes(&section.span_of("column")),
     })
 }
 
 fn conditions(section: &Section) -> Conditions {
     Conditions {
         minimum_duration_s: section.number("minimum_duration"),
+        planned_duration_s: section.number("planned_duration"),
         warm_up_s: section.number("warm_up").unwrap_or(0.0),
         temperatures: section.tables("temperature").iter().map(temperature).collect(),
         supplies: section.tables("supply").iter().map(supply).collect(),

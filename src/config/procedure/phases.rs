@@ -9,6 +9,7 @@ use super::section::Section;
 use super::tables::phases::PHASES_FILE;
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
+use crate::config::shipped::{self, Shipped};
 use crate::config::text_file::{self, Wording};
 use crate::i18n::{LocalText, Note};
 use crate::record::{ClauseRecord, ProcedureRecord};
@@ -57,6 +58,24 @@ struct Stated {
     limits: Option<PathBuf>,
 }
 
+/// Where the files of the phases are.
+#[derive(Debug, Clone, Copy)]
+enum Home<'a> {
+    /// In a folder or below it.
+    Folder(&'a Path),
+    /// In the program, as the procedure itself.
+    Program,
+}
+
+impl Phased {
+    /// A manifest for it, with a file for each phase.
+    pub fn example_manifest(&self) -> String {
+        let file = |p: &Phase| format!("\n[[file]]\npath = \"{0}.csv\"\nphase = \"{0}\"\n", p.id);
+        let files: String = self.phases.iter().map(file).collect();
+        format!("format = \"manifest/1\"\nserial = \"SN-0001\"\nseveral_phases = true\n{files}")
+    }
+}
+
 /// True when a file states phases.
 pub fn is_phased(path: &Path) -> bool {
     text_file::peek(path).is_some_and(|text| text.lines().any(|l| l.trim().starts_with("[[phase]]")))
@@ -70,9 +89,12 @@ pub fn load_phased(path: &Path) -> Result<Phased, Problems> {
     let name = path.display().to_string();
     let bytes = text_file::bytes(path, &WORDING)?;
     let source = text_file::source(&name, &bytes)?;
-    let folder = contained_files::folder_of(path);
+    let home = match shipped::find(path).filter(|_| !path.is_file()) {
+        Some(_) => Home::Program,
+        None => Home::Folder(contained_files::folder_of(path)),
+    };
     let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    let (read, problems) = read(&source, &name, sha256, folder);
+    let (read, problems) = read(&source, &name, sha256, home);
     let Some((mut phased, stated)) = read else { return Err(problems) };
     let mut found: Option<Problems> = None;
     let mut keep = |problems: Problems| match &mut found {
@@ -96,10 +118,10 @@ fn read(
     source: &SourceText,
     path: &str,
     sha256: String,
-    folder: &Path,
+    home: Home<'_>,
 ) -> (Option<(Phased, Vec<Stated>)>, Problems) {
     checked(source, &PHASES_FILE, |root, reader| {
-        let stated = stated(root, folder, reader);
+        let stated = stated(root, home, reader);
         let identity = root.table("procedure");
         let text = |key| identity.and_then(|i| i.text(key));
         let local = |key| identity.and_then(|i| i.local_text(key));
@@ -128,14 +150,18 @@ fn read(
     })
 }
 
-fn stated(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Stated> {
+fn stated(root: &Section, home: Home<'_>, reader: &mut Reader<'_>) -> Vec<Stated> {
     let mut list: Vec<Stated> = Vec::new();
     for section in root.tables("phase") {
         let Some(id) = section.text("id") else { continue };
         let mut named = |key: &str| {
             let text = section.text(key)?;
             let at = reader.source.inside_quotes(&section.span_of(key));
-            contained_files::file(&text, folder, &at, reader).map(|f| f.path)
+            match home {
+                Home::Folder(folder) => contained_files::file(&text, folder, &at, reader).map(|f| f.path),
+                // By its name; the text of the program names only what the program carries.
+                Home::Program => shipped::at(&text).map(Shipped::name_as_path),
+            }
         };
         let (procedure, limits) = (named("procedure"), named("limits"));
         let procedure = procedure.unwrap_or_default();

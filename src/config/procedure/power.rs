@@ -33,7 +33,7 @@ pub struct PowerQuestion {
     pub limit: LimitSpec,
     /// Channels it holds for.
     pub channels: Vec<String>,
-    /// Least usable time of a valid record, s.
+    /// Usable time of a record as planned, else the least of a valid one, s.
     pub duration_s: f64,
     /// Declared sample rate, Hz; `None` where the procedure leaves it open.
     pub sample_rate_hz: Option<f64>,
@@ -41,9 +41,12 @@ pub struct PowerQuestion {
     pub typical: TypicalNoise,
 }
 
-/// The questions of a procedure with its limits; none when it states no least duration.
+/// The questions of a procedure with its limits; none when it states neither a planned nor a least duration.
 pub fn questions(procedure: &Procedure, effective: &EffectiveLimits) -> Vec<PowerQuestion> {
-    let Some(duration_s) = procedure.conditions.minimum_duration_s else { return vec![] };
+    let conditions = &procedure.conditions;
+    let Some(duration_s) = conditions.planned_duration_s.or(conditions.minimum_duration_s) else {
+        return vec![];
+    };
     let typical = TypicalNoise {
         angle_random_walk: effective.expected(measurand::ANGLE_RANDOM_WALK.id),
         bias_instability: effective.expected(measurand::BIAS_INSTABILITY.id),

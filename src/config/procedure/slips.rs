@@ -2,10 +2,10 @@
 
 use super::diagnostics::{Problem, SourceText, Span};
 use super::limit_set::{FastUnit, LimitSet, LimitSpec};
-use super::model::{ChannelSpec, Loaded, Procedure};
+use super::model::{ChannelSpec, Procedure};
 use super::reader::Reader;
 use super::section::Section;
-use crate::i18n::{Arg, Note};
+use crate::i18n::Note;
 use crate::units::Unit;
 
 /// Unit of rates in results.
@@ -91,16 +91,6 @@ pub(super) fn against_channels(procedure: &Procedure, set: &LimitSet, source: &S
         }
     }
     found
-}
-
-/// Instruments that nobody can find again.
-pub fn instruments(procedure: &Loaded<Procedure>) -> Option<Problem> {
-    let nameless = |i: &&super::model::Instrument| i.serial.as_deref().is_none_or(|s| s.trim().is_empty());
-    let list: Vec<_> = procedure.value.instruments.iter().filter(nameless).collect();
-    let first = list.first()?;
-    let names = list.iter().map(|i| Arg::from(i.name.clone())).collect();
-    let message = Note::new("check.no_serial").with("names", Arg::Several(names, ", ".into()));
-    Some(procedure.source.warning(&first.span, message).help("check.help.serial"))
 }
 
 /// The bound of a limit that is farthest from zero.

@@ -163,6 +163,12 @@ fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             let help = "check.help.warm_up";
             reader.error(&section.span_of("warm_up"), "check.warm_up", Some(help.into()));
         }
+        if let (Some(least), Some(planned)) =
+            (section.number("minimum_duration"), section.number("planned_duration"))
+            && planned < least
+        {
+            reader.error(&section.span_of("planned_duration"), "check.planned_duration", None);
+        }
         for held in section.tables("temperature") {
             channel_of(held, procedure, root, |r| r == Role::Temperature, "check.needs_temperature", reader);
             provable(held, "degC", reader);

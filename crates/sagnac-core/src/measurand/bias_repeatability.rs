@@ -13,6 +13,7 @@ pub static BIAS_REPEATABILITY: Measurand = Measurand::of_runs(
     "standard deviation of the bias between switchings-on, noise taken out",
     |m, runs| vec![deviation(m, runs)],
 )
+.also_called(&["br", "repeatability", "run_to_run", "turn_on_to_turn_on"])
 .drift();
 
 /// Range of the switchings-on.

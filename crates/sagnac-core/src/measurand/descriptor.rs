@@ -134,6 +134,8 @@ pub struct Measurand {
     pub unit: &'static str,
     /// What it is, in one line.
     pub doc: &'static str,
+    /// Other names that people write for it, in lower case, so that the id can be offered; no file may use them.
+    pub other_names: &'static [&'static str],
     /// True when it can be negative, so that a limit on its magnitude makes sense.
     pub signed: bool,
     /// Options that a procedure may set for it.
@@ -180,6 +182,7 @@ impl Measurand {
             id,
             unit,
             doc,
+            other_names: &[],
             signed: false,
             options: &[],
             from_site: false,
@@ -297,6 +300,13 @@ impl Measurand {
     #[must_use]
     pub const fn drift(mut self) -> Measurand {
         self.drift = true;
+        self
+    }
+
+    /// Symbols and names that people write for it, in lower case.
+    #[must_use]
+    pub const fn also_called(mut self, names: &'static [&'static str]) -> Measurand {
+        self.other_names = names;
         self
     }
 

@@ -125,6 +125,18 @@ pub fn find(id: &str) -> Option<&'static Measurand> {
     MEASURANDS.iter().copied().find(|m| m.id == id)
 }
 
+/// The measurand that a name other than its id stands for: a symbol such as `N`, an abbreviation such as `ARW`.
+pub fn called(name: &str) -> Option<&'static Measurand> {
+    let plain = name.trim().to_lowercase().replace(['-', ' '], "_");
+    MEASURANDS.iter().copied().find(|m| m.other_names.contains(&plain.as_str()))
+}
+
+/// The measurands whose ids hold a word, such as `hysteresis`.
+pub fn with_word(word: &str) -> Vec<&'static Measurand> {
+    let plain = word.trim().to_lowercase();
+    MEASURANDS.iter().copied().filter(|m| m.id.split('_').any(|part| part == plain)).collect()
+}
+
 /// What the model of the response to a rate table has to hold beside the rate, for the measurands that are wanted.
 pub fn table_extras(wanted: &dyn Fn(&Measurand) -> bool) -> Vec<Extra> {
     let steps = MEASURANDS.iter().filter(|m| wanted(m)).filter_map(|m| m.by_steps());
@@ -142,9 +154,34 @@ mod tests {
             assert!(m.unit.is_empty() || Unit::parse(m.unit).is_ok(), "{} {}", m.id, m.unit);
             assert!(MEASURANDS[..i].iter().all(|other| other.id != m.id), "{}", m.id);
             assert!(!m.doc.is_empty());
+            for name in m.other_names {
+                assert_eq!(called(name), Some(*m), "`{name}` stands for two");
+                assert!(find(name).is_none(), "`{name}` is an id");
+            }
             let on_table = m.test() == Test::RateTable;
             assert_eq!(on_table, m.by_steps().is_some() || m.by_known_input().is_some(), "{}", m.id);
         }
+    }
+
+    #[test]
+    fn symbols_and_abbreviations_stand_for_ids() {
+        for (name, id) in [
+            ("arw", "angle_random_walk"),
+            ("ARW", "angle_random_walk"),
+            ("N", "angle_random_walk"),
+            ("rrw", "rate_random_walk"),
+            ("K", "rate_random_walk"),
+            ("bi", "bias_instability"),
+            ("b", "bias_instability"),
+            ("bias", "static_bias"),
+            ("sf", "scale_factor"),
+            ("Bias stability", "bias_instability"),
+        ] {
+            assert_eq!(called(name).map(|m| m.id), Some(id), "{name}");
+        }
+        assert_eq!(called("angle"), None);
+        let hysteresis: Vec<&str> = with_word("Hysteresis").iter().map(|m| m.id).collect();
+        assert_eq!(hysteresis, ["thermal_hysteresis", "scale_factor_hysteresis"]);
     }
 
     #[test]

@@ -10,6 +10,7 @@ pub static ANGLE_RANDOM_WALK: Measurand = Measurand::at_rest(
     "N of the joint noise fit: white noise with every process that is white where it is read",
     |m, gyro, _| vec![m.named(gyro.identification.read_angle_random_walk())],
 )
+.also_called(&["n", "arw", "white_noise"])
 .power(PowerModel::NoiseTerm(NoiseType::AngleRandomWalk))
 .needs_stillness();
 
@@ -29,6 +30,7 @@ pub static BIAS_INSTABILITY: Measurand = Measurand::at_rest(
     "flicker coefficient B of the joint noise fit",
     |m, gyro, _| vec![m.named(&gyro.identification.bias_instability)],
 )
+.also_called(&["b", "bi", "flicker", "bias_stability"])
 .power(PowerModel::NoiseTerm(NoiseType::Flicker))
 .needs_stillness()
 .drift();
@@ -38,6 +40,7 @@ pub static RATE_RANDOM_WALK: Measurand =
     Measurand::at_rest("rate_random_walk", "deg/h/sqrt(h)", "K of the joint noise fit", |m, gyro, _| {
         vec![m.named(&gyro.identification.rate_random_walk)]
     })
+    .also_called(&["k", "rrw", "random_walk"])
     .power(PowerModel::NoiseTerm(NoiseType::RateRandomWalk))
     .needs_stillness();
 
@@ -46,6 +49,7 @@ pub static RATE_RAMP: Measurand =
     Measurand::at_rest("rate_ramp", "deg/h/h", "R of the joint noise fit", |m, gyro, _| {
         vec![m.named(&gyro.identification.rate_ramp)]
     })
+    .also_called(&["r", "rr", "ramp", "drift"])
     .power(PowerModel::NoiseTerm(NoiseType::RateRamp))
     .needs_stillness();
 
@@ -54,5 +58,6 @@ pub static QUANTIZATION: Measurand =
     Measurand::at_rest("quantization", "arcsec", "Q of the joint noise fit", |m, gyro, _| {
         vec![m.named(&gyro.identification.quantization)]
     })
+    .also_called(&["q", "qn"])
     .power(PowerModel::NoiseTerm(NoiseType::Quantization))
     .needs_stillness();

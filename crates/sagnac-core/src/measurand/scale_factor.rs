@@ -15,6 +15,7 @@ use crate::rate_table::turns::Turned;
 pub static SCALE_FACTOR: Measurand =
     Measurand::of_steps("scale_factor", "", "output per input", Stimulus::Rates, scale_factor)
         .or_known_input(OfKnownInput { positions: false, turns: Some(TurnAxis::Own), evaluate: of_turns })
+        .also_called(&["sf", "scale", "sensitivity", "gain"])
         .signed();
 
 /// Scale factor against the nominal one.
@@ -26,6 +27,7 @@ pub static SCALE_FACTOR_ERROR: Measurand = Measurand::of_steps(
     error,
 )
 .or_known_input(OfKnownInput { positions: true, turns: Some(TurnAxis::Own), evaluate: error_of_known_input })
+.also_called(&["sfe", "sf_error"])
 .signed();
 
 /// Bias of the line.

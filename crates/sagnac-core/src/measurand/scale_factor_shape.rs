@@ -24,7 +24,8 @@ pub static SCALE_FACTOR_NONLINEARITY: Measurand = Measurand::of_steps(
             largest(m, line, found, rate, line.ppm_of_full_scale())
         })
     },
-);
+)
+.also_called(&["sfn", "sfnl", "linearity", "nonlinearity", "sf_nonlinearity"]);
 
 /// Largest residual of the rate itself.
 pub static SCALE_FACTOR_NONLINEARITY_OF_RATE: Measurand = Measurand::of_steps(

@@ -15,6 +15,7 @@ use crate::noise::static_bias::BiasUncertainty;
 pub static STATIC_BIAS: Measurand =
     Measurand::at_rest("static_bias", "deg/h", "mean rate at rest, Earth rate removed", evaluate)
         .options(&[EARTH_RATE_OPTION])
+        .also_called(&["bias", "offset", "zero_offset", "mean", "mean_rate"])
         .power(PowerModel::Mean)
         .signed();
 

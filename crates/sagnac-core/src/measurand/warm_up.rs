@@ -26,7 +26,8 @@ pub static WARM_UP_TIME: Measurand = Measurand::of_warm_up(
     "s",
     "time after switching on until the bias stays in its band",
     |m, channel, found| vec![started(m, time(m, found, channel), found, true)],
-);
+)
+.also_called(&["turn_on_time", "start_up_time", "readiness_time"]);
 
 const METHOD: &str = "decays_gls";
 

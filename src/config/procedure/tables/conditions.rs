@@ -13,6 +13,13 @@ pub(crate) static CONDITIONS: TableSpec = TableSpec {
             "\"10 h\"",
             "Minimum usable time after warm-up, exclusions and gaps.",
         ),
+        optional(
+            "planned_duration",
+            quantity("s", Range::POSITIVE),
+            "\"100 h\"",
+            "Usable time of a record as planned. `sagnac check` examines whether the limits can be decided in it. \
+             Default: `minimum_duration`.",
+        ),
         with_default(
             "warm_up",
             quantity("s", Range::NOT_NEGATIVE),

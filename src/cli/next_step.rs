@@ -1,0 +1,56 @@
+//! What to do after a verb: one sentence and, below it, the command.
+
+use super::place::for_shell;
+use crate::config::procedure::Procedure;
+use crate::i18n::Note;
+use crate::ingest::Source;
+use std::path::PathBuf;
+
+/// After a recording was looked at: a procedure and limits from it. `options` stand behind the recording. `None` for
+/// several files, which `init` does not read.
+pub fn init(recording: &[PathBuf], options: &str) -> Option<Note> {
+    Some(Note::new("next_step.init").with("recording", only(recording)?).with("options", options))
+}
+
+/// After a recording was inspected: as [`init`], with the options that its columns leave open. `None` without a column that
+/// looks like a gyro output.
+pub fn after_inspection(recording: &[PathBuf], source: &Source) -> Option<Note> {
+    let mut gyros = source.columns().iter().filter(|c| c.numeric).map(|c| c.inferred());
+    let gyro = gyros.find(|found| found.role.is_gyro())?;
+    let mut options = String::new();
+    if !gyro.unit_is_named {
+        options.push_str(" --unit UNIT");
+    }
+    if source.time_column().is_none() && source.stated_sample_rate_hz().is_none() {
+        options.push_str(" --sample-rate HZ");
+    }
+    init(recording, &options)
+}
+
+/// After a unit failed at rest: where and why it differs from its model. `None` where the procedure has a model, so that
+/// the report tells it, and for tests that move the unit.
+pub fn after_fail(recording: &[PathBuf], procedure: &Procedure) -> Option<Note> {
+    let p = procedure;
+    let moved = p.rate_table.is_some() || p.repeatability_test.is_some() || p.comparison_test.is_some();
+    if moved || p.explain.is_some() {
+        return None;
+    }
+    Some(Note::new("next_step.explain").with("recording", only(recording)?))
+}
+
+/// After an effect was found.
+pub fn after_effect(kind: &str) -> Note {
+    Note::new("next_step.effect").with("effect", kind)
+}
+
+/// After the demonstration.
+pub fn after_demo() -> Note {
+    Note::new("next_step.own_recording")
+}
+
+fn only(recording: &[PathBuf]) -> Option<String> {
+    match recording {
+        [one] => Some(for_shell(&one.display().to_string())),
+        _ => None,
+    }
+}

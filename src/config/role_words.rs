@@ -1,0 +1,73 @@
+//! Words that people write for the role of a channel, so that the role can be offered.
+
+use crate::recording::Role;
+
+/// Words in lower case and the role that each stands for. Beginnings such as `temp` need no word here.
+const WORDS: &[(&str, Role)] = &[
+    ("acc", Role::Vibration),
+    ("acceleration", Role::Vibration),
+    ("accelerometer", Role::Vibration),
+    ("angle", Role::AccumulatedAngle),
+    ("angular_rate", Role::Rate),
+    ("clock", Role::Time),
+    ("dtheta", Role::AngleIncrement),
+    ("delta_angle", Role::AngleIncrement),
+    ("encoder", Role::TableAngle),
+    ("field", Role::MagneticField),
+    ("frame", Role::Counter),
+    ("gyro", Role::Rate),
+    ("increment", Role::AngleIncrement),
+    ("index", Role::Counter),
+    ("omega", Role::Rate),
+    ("other", Role::Auxiliary),
+    ("output", Role::Rate),
+    ("power", Role::Supply),
+    ("sample", Role::Counter),
+    ("sequence", Role::Counter),
+    ("stamp", Role::Time),
+    ("t", Role::Time),
+    ("thermometer", Role::Temperature),
+    ("timestamp", Role::Time),
+    ("voltage", Role::Supply),
+];
+
+/// The role that a word means which is none: whole, without what follows it (`temp_c`), or by meaning.
+pub(crate) fn meant(word: &str) -> Option<&'static str> {
+    let plain = word.trim().to_lowercase().replace(['-', ' '], "_");
+    let by_meaning = |w: &str| WORDS.iter().find(|(known, _)| *known == w).map(|(_, role)| role.id());
+    by_meaning(&plain).or_else(|| {
+        let first = plain.split('_').next().unwrap_or_default();
+        let begun = |role: &Role| first.len() >= 3 && role.id().starts_with(first);
+        let mut roles = Role::ALL.iter().filter(|r| begun(r));
+        match (roles.next(), roles.next()) {
+            (Some(role), None) => Some(role.id()),
+            _ => by_meaning(first),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::meant;
+
+    #[test]
+    fn roles_are_offered_by_meaning_before_spelling() {
+        for (word, role) in [
+            ("temp", Some("temperature")),
+            ("Temp_C", Some("temperature")),
+            ("timestamp", Some("time")),
+            ("gyro", Some("rate")),
+            ("gyro_x", Some("rate")),
+            ("omega", Some("rate")),
+            ("voltage", Some("supply")),
+            ("mag", Some("magnetic_field")),
+            ("vib", Some("vibration")),
+            ("aux", Some("auxiliary")),
+            ("encoder", Some("table_angle")),
+            ("table", None),
+            ("zebra", None),
+        ] {
+            assert_eq!(meant(word), role, "{word}");
+        }
+    }
+}
