@@ -3,7 +3,7 @@
 use super::{number, unit};
 use crate::estimate::Verdict;
 use crate::i18n;
-use crate::i18n::{Arg, Lang, Localize, Note, fill, lookup};
+use crate::i18n::{Arg, Lang, Note, fill, lookup};
 use serde::Serialize;
 
 /// A label and its value.
@@ -43,20 +43,26 @@ impl Translator {
     /// A note with printed numbers.
     pub fn say(self, note: &Note) -> String {
         fill(lookup(self.lang, &note.id).unwrap_or(&note.id), |name| {
-            note.args.get(name).map(|arg| match arg {
-                Arg::Number(v) => number::limit_digits(*v, 4, self.lang),
-                Arg::Stated(v) => number::limit(*v, self.lang),
-                Arg::Count(v) => number::count(*v, self.lang),
-                Arg::Text(t) => t.clone(),
-                Arg::Key(k) => i18n::words(k, self.lang),
-                Arg::Note(n) => self.say(n),
-                Arg::Decimals { .. } | Arg::Several(..) => arg.say(self.lang),
-                Arg::Figures { value, digits, zeros: true } => number::digits(*value, *digits, self.lang),
-                Arg::Figures { value, digits, zeros: false } => {
-                    number::limit_digits(*value, *digits, self.lang)
-                }
-            })
+            note.args.get(name).map(|arg| self.argument(arg))
         })
+    }
+
+    /// An argument of a note as a report prints it.
+    fn argument(self, arg: &Arg) -> String {
+        match arg {
+            Arg::Number(v) => number::limit_digits(*v, 4, self.lang),
+            Arg::Stated(v) => number::limit(*v, self.lang),
+            Arg::Count(v) => number::count(*v, self.lang),
+            Arg::Text(t) => t.clone(),
+            Arg::Key(k) => i18n::words(k, self.lang),
+            Arg::Note(n) => self.say(n),
+            Arg::Several(list, between) => {
+                list.iter().map(|a| self.argument(a)).collect::<Vec<_>>().join(between)
+            }
+            Arg::Figures { value, digits, zeros: true } => number::digits(*value, *digits, self.lang),
+            Arg::Figures { value, digits, zeros: false } => number::limit_digits(*value, *digits, self.lang),
+            Arg::Decimals { value, digits, zeros } => number::decimals(*value, *digits, *zeros, self.lang),
+        }
     }
 
     /// A formula with the decimal mark of the language.
