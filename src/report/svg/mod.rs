@@ -140,7 +140,7 @@ fn frame(out: &mut String, plot: &Plot<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Layer, Style};
+    use crate::figure::{Axis, Layer, Scale, Style};
 
     fn figure(scale: Scale, points: Vec<(f64, f64)>) -> Figure {
         let axis = Axis { label: "axis.a & b".into(), unit: "deg/h".into(), scale, range: None };
