@@ -7,20 +7,24 @@ use crate::i18n::{Lang, lookup, significant};
 /// Shown where there is nothing to show.
 pub const NOTHING: &str = "–";
 
-/// An ASCII number (`-1.5e-9`) in print: true minus, decimal mark of the language, `×10ⁿ`.
+/// An ASCII number (`-12345.6e-9`) in print: true minus, whole part in groups, decimal mark of the language, `×10ⁿ`.
 pub fn typographic(ascii: &str, lang: Lang) -> String {
     let (mantissa, exponent) = match ascii.split_once(['e', 'E']) {
         Some((m, e)) => (m, Some(e)),
         None => (ascii, None),
     };
-    let mark = lookup(lang, "number.decimal").unwrap_or(".");
-    let mut out = String::with_capacity(ascii.len() + 8);
-    for c in mantissa.chars() {
-        match c {
-            '-' => out.push('−'),
-            '.' => out.push_str(mark),
-            c => out.push(c),
-        }
+    let (sign, mantissa) = match mantissa.strip_prefix('-') {
+        Some(rest) => ("−", rest),
+        None => ("", mantissa),
+    };
+    let (whole, decimals) = match mantissa.split_once('.') {
+        Some((whole, decimals)) => (whole, Some(decimals)),
+        None => (mantissa, None),
+    };
+    let mut out = format!("{sign}{}", grouped(whole, lang));
+    if let Some(decimals) = decimals {
+        out.push_str(lookup(lang, "number.decimal").unwrap_or("."));
+        out.push_str(decimals);
     }
     if let Some(exponent) = exponent {
         out.push_str(lookup(lang, "number.times").unwrap_or("×10"));
@@ -177,14 +181,18 @@ pub fn percent(probability: f64, lang: Lang) -> String {
 
 /// A count in groups of three figures.
 pub fn count(value: u64, lang: Lang) -> String {
-    let plain = value.to_string();
-    if plain.len() < 5 {
-        return plain;
+    grouped(&value.to_string(), lang)
+}
+
+/// Five and more figures in groups of three; what is no row of figures stays as it is.
+fn grouped(figures: &str, lang: Lang) -> String {
+    if figures.len() < 5 || !figures.bytes().all(|b| b.is_ascii_digit()) {
+        return figures.to_owned();
     }
     let group = lookup(lang, "number.group").unwrap_or("\u{202f}");
-    let mut out = String::new();
-    for (i, c) in plain.chars().enumerate() {
-        if i > 0 && (plain.len() - i).is_multiple_of(3) {
+    let mut out = String::with_capacity(2 * figures.len());
+    for (i, c) in figures.chars().enumerate() {
+        if i > 0 && (figures.len() - i).is_multiple_of(3) {
             out.push_str(group);
         }
         out.push(c);
@@ -234,6 +242,19 @@ pub fn limit_digits(value: f64, count: usize, lang: Lang) -> String {
     }
 }
 
+/// A number with so many decimals, or at most so many where zeros that say nothing are left out.
+pub fn decimals(value: f64, count: usize, zeros: bool, lang: Lang) -> String {
+    if !value.is_finite() {
+        return NOTHING.to_owned();
+    }
+    let text = format!("{value:.count$}");
+    let short =
+        if !zeros && text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    // What was rounded to zero has no sign.
+    let zero = short.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
+    typographic(if zero { short.trim_start_matches('-') } else { short }, lang)
+}
+
 /// An RFC 3339 stamp as `2026-11-21 04:23:29 UTC`; any other text as it is.
 pub fn date_time(stamp: &str) -> String {
     match chrono::DateTime::parse_from_rfc3339(stamp) {
@@ -254,7 +275,7 @@ mod tests {
         assert_eq!(r.show(0.002_314_9, EN), "0.002315");
         assert_eq!(r.show(0.002_291_2, EN), "0.002291");
         let r = Rounding::of(123_456.0, Some((120_000.0, 127_000.0)));
-        assert_eq!(r.show(123_456.0, EN), "123500");
+        assert_eq!(r.show(123_456.0, EN), "123\u{202f}500");
         let r = Rounding::of(-0.04, Some((-0.14, 0.06)));
         assert_eq!(r.show(-0.004, EN), "0.00");
         assert_eq!(r.show(-0.14, EN), "−0.14");
@@ -290,7 +311,7 @@ mod tests {
             for w in odd {
                 let r = Rounding::of(v, Some((w, v)));
                 for text in [r.show(v, EN), r.show(w, EN), bound(v, true, EN), acceptance(v, false, EN)] {
-                    let fine = |c: char| c.is_ascii_digit() || ".−–×⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c);
+                    let fine = |c: char| c.is_ascii_digit() || ".−–×⁻⁰¹²³⁴⁵⁶⁷⁸⁹\u{202f}".contains(c);
                     assert!(!text.is_empty() && text.chars().all(fine), "{v} {w}: {text}");
                 }
             }
@@ -332,6 +353,13 @@ mod tests {
     fn counts_times_and_dates() {
         assert_eq!(count(36_000_000, EN), "36\u{202f}000\u{202f}000");
         assert_eq!(count(3600, EN), "3600");
+        // Numbers that are not counts are grouped alike.
+        assert_eq!(limit(-81_920.5, EN), "−81\u{202f}920.5");
+        assert_eq!(limit_digits(10_000.0, 6, EN), "10\u{202f}000");
+        assert_eq!(decimals(-0.004, 2, false, EN), "0");
+        assert_eq!(decimals(-1.50, 2, false, EN), "−1.5");
+        assert_eq!(decimals(-1.50, 2, true, Lang::Ru), "−1,50");
+        assert_eq!(digits(12_345.0, 6, Lang::Ru), "12\u{202f}345,0");
         assert_eq!(duration(36_000.0, EN), "10\u{202f}h");
         assert_eq!(duration(34_199.0, EN), "9\u{202f}h 29\u{202f}min 59\u{202f}s");
         assert_eq!(duration(-1800.5, EN), "−30\u{202f}min 0.5\u{202f}s");

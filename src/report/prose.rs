@@ -23,11 +23,16 @@ pub fn prose(state: &State, sentence: &str) -> Value {
 /// Escapes what stands between pairs of backticks and around them.
 fn parted(sentence: &str, escape: impl Fn(&str) -> String, code: impl Fn(&str) -> String) -> String {
     let parts: Vec<&str> = sentence.split('`').collect();
-    if parts.len().is_multiple_of(2) || parts.iter().skip(1).step_by(2).any(|name| name.is_empty()) {
+    if parts.len().is_multiple_of(2) {
         return escape(sentence);
     }
     let each = parts.iter().enumerate();
-    each.map(|(i, part)| if i % 2 == 1 { code(part) } else { escape(part) }).collect()
+    each.map(|(i, part)| match (i % 2 == 1, part.is_empty()) {
+        (true, true) => escape("``"),
+        (true, false) => code(part),
+        _ => escape(part),
+    })
+    .collect()
 }
 
 /// Text of a Markdown file in which nothing is markup.
@@ -70,6 +75,7 @@ mod tests {
         assert_eq!(html("channel `a<b`, x < 1"), "channel <code>a&lt;b</code>, x &lt; 1");
         assert_eq!(html("`a` and `"), "`a` and `");
         assert_eq!(html("an empty field ``"), "an empty field ``");
+        assert_eq!(html("column `a`: ``"), "column <code>a</code>: ``");
         let mut env = minijinja::Environment::new();
         env.set_auto_escape_callback(|_| AutoEscape::Custom("md".into()));
         env.add_filter("prose", prose);

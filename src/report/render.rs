@@ -7,8 +7,10 @@ use super::view::View;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note, io_reason, lookup, table};
 use crate::record::RunRecord;
+use base64::Engine as _;
 use minijinja::value::{Kwargs, Serde, Value};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
@@ -17,6 +19,11 @@ use std::path::Path;
 pub const TEMPLATES: &[(&str, &str)] = &[
     ("report.html", include_str!("../../templates/report.html")),
     ("meta.html", include_str!("../../templates/meta.html")),
+    ("pointer.js", include_str!("../../templates/pointer.js")),
+    ("cover.html", include_str!("../../templates/cover.html")),
+    ("limits.html", include_str!("../../templates/limits.html")),
+    ("conditions.html", include_str!("../../templates/conditions.html")),
+    ("files.html", include_str!("../../templates/files.html")),
     ("top.html", include_str!("../../templates/top.html")),
     ("style.css", include_str!("../../templates/style.css")),
     ("head.html", include_str!("../../templates/head.html")),
@@ -147,7 +154,7 @@ impl Renderer {
             let entry = entry.map_err(failed(folder))?;
             let path = entry.path();
             let Some(name) = path.file_name().and_then(|n| n.to_str()).map(str::to_owned) else { continue };
-            let known = [".html", ".md", ".css"].iter().any(|suffix| name.ends_with(suffix));
+            let known = [".html", ".md", ".css", ".js"].iter().any(|suffix| name.ends_with(suffix));
             let about = std::fs::metadata(&path).map_err(failed(&path))?;
             if !known || !about.is_file() {
                 continue;
@@ -201,6 +208,7 @@ impl Renderer {
             let given: Vec<(&str, &str)> = given.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
             Ok(words.with(&key, &given))
         });
+        env.add_filter("sha256", |text: String| digest(&text));
         env.add_filter("css_string", |text: String| css_string(&text));
         env.add_filter("unit", move |text: String| words.unit(&text));
         env.add_filter("digits", move |v: f64, n: usize| number::digits(v, n.clamp(1, 15), lang));
@@ -324,6 +332,12 @@ fn say(note: &Value, words: Translator) -> String {
     })
 }
 
+/// SHA-256 of an inline script in the form in which a content security policy names it.
+fn digest(text: &str) -> String {
+    // A browser reads every end of a line as one character.
+    base64::engine::general_purpose::STANDARD.encode(Sha256::digest(text.replace("\r\n", "\n")))
+}
+
 /// A quoted string of CSS in which nothing can end the string or the style sheet.
 fn css_string(text: &str) -> String {
     let mut out = String::from("\"");
@@ -345,6 +359,13 @@ mod tests {
     #[test]
     fn css_strings_cannot_be_left() {
         assert_eq!(css_string("SN \"1\"</style>"), "\"SN \\22 1\\22 \\3c \\2f style\\3e \"");
+    }
+
+    #[test]
+    fn a_script_is_named_by_its_digest() {
+        // RFC 4648 form of the digest of nothing.
+        assert_eq!(digest(""), "47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=");
+        assert_eq!(digest("a\r\nb"), digest("a\nb"));
     }
 
     #[test]

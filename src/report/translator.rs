@@ -43,21 +43,27 @@ impl Translator {
     /// A note with printed numbers.
     pub fn say(self, note: &Note) -> String {
         fill(lookup(self.lang, &note.id).unwrap_or(&note.id), |name| {
-            note.args.get(name).map(|arg| match arg {
-                Arg::Number(v) => number::limit_digits(*v, 4, self.lang),
-                Arg::Stated(v) => number::limit(*v, self.lang),
-                Arg::Count(v) => number::count(*v, self.lang),
-                Arg::Text(t) => t.clone(),
-                Arg::Local(t) => self.local(t),
-                Arg::Key(k) => i18n::words(k, self.lang),
-                Arg::Note(n) => self.say(n),
-                Arg::Decimals { .. } | Arg::Several(..) => arg.say(self.lang),
-                Arg::Figures { value, digits, zeros: true } => number::digits(*value, *digits, self.lang),
-                Arg::Figures { value, digits, zeros: false } => {
-                    number::limit_digits(*value, *digits, self.lang)
-                }
-            })
+            note.args.get(name).map(|arg| self.argument(arg))
         })
+    }
+
+    /// An argument of a note as a report prints it.
+    fn argument(self, arg: &Arg) -> String {
+        match arg {
+            Arg::Number(v) => number::limit_digits(*v, 4, self.lang),
+            Arg::Stated(v) => number::limit(*v, self.lang),
+            Arg::Count(v) => number::count(*v, self.lang),
+            Arg::Text(t) => t.clone(),
+            Arg::Local(t) => self.local(t),
+            Arg::Key(k) => i18n::words(k, self.lang),
+            Arg::Note(n) => self.say(n),
+            Arg::Several(list, between) => {
+                list.iter().map(|a| self.argument(a)).collect::<Vec<_>>().join(between)
+            }
+            Arg::Figures { value, digits, zeros: true } => number::digits(*value, *digits, self.lang),
+            Arg::Figures { value, digits, zeros: false } => number::limit_digits(*value, *digits, self.lang),
+            Arg::Decimals { value, digits, zeros } => number::decimals(*value, *digits, *zeros, self.lang),
+        }
     }
 
     /// A text of a user.

@@ -153,7 +153,7 @@ fn lines(figure: &Figure, panel: usize) -> Vec<Drawn<'_>> {
 #[test]
 fn every_part_of_the_description_is_drawn_and_named() {
     let gyro = gyro();
-    let figure = sigma_tau::figure(&gyro, None, None);
+    let figure = sigma_tau::figure(&gyro, &|_| None);
     let drawn = lines(&figure, 0);
     let parts = ["angle_random_walk", "bias_instability"].map(|p| format!("figure.legend.{p}"));
     let others = ["markov", "quasi_periodic", "lines"].map(|p| format!("figure.fit.{p}"));
@@ -232,7 +232,7 @@ fn draw() {
     let folder = std::env::var("FIGURES").expect("FIGURES names a folder");
     let gyro = gyro();
     let figures: Vec<Figure> = [
-        Some(sigma_tau::figure(&gyro, None, None)),
+        Some(sigma_tau::figure(&gyro, &|_| None)),
         spectrum::figure(&gyro),
         autocorrelation::figure(&gyro),
         residual::figure(&gyro),

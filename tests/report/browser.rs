@@ -9,9 +9,20 @@ use std::process::Command;
 
 const BROWSERS: &[&str] = &["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-fn browser() -> Option<PathBuf> {
+/// A browser of this machine; `None` where there is none.
+pub fn browser() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     std::env::split_paths(&path).flat_map(|d| BROWSERS.iter().map(move |b| d.join(b))).find(|p| p.is_file())
+}
+
+/// Says that a test is skipped for want of a browser; fails where one is required.
+pub fn required() {
+    assert!(
+        std::env::var_os("SAGNAC_REQUIRE_BROWSER").is_none_or(|v| v != "1"),
+        "no browser found; looked for {}",
+        BROWSERS.join(", ")
+    );
+    let _ = writeln!(std::io::stderr(), "SKIPPED: no browser found; looked for {}", BROWSERS.join(", "));
 }
 
 /// The page as the browser built it, what it wrote to its log, and its log of the network.
@@ -58,15 +69,7 @@ fn requests_of_pages(netlog: &str) -> Vec<String> {
 
 #[test]
 fn a_report_opens_quietly_in_a_browser() {
-    let Some(browser) = browser() else {
-        assert!(
-            std::env::var_os("SAGNAC_REQUIRE_BROWSER").is_none_or(|v| v != "1"),
-            "no browser found; looked for {}",
-            BROWSERS.join(", ")
-        );
-        let _ = writeln!(std::io::stderr(), "SKIPPED: no browser found; looked for {}", BROWSERS.join(", "));
-        return;
-    };
+    let Some(browser) = browser() else { return required() };
     for (record, word) in [(fixture::three_channels(), "fail"), (fixture::error(), "error")] {
         let folder = tempfile::tempdir().unwrap();
         let page = folder.path().join("report.html");
@@ -88,11 +91,41 @@ fn a_report_opens_quietly_in_a_browser() {
 }
 
 #[test]
+fn values_at_the_pointer_are_those_of_the_figure() {
+    let Some(browser) = browser() else { return required() };
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("pointed.html");
+    let html = render_html(&fixture::pass(), &fixture::figures::all(), Lang::En, &Renderer::new()).unwrap();
+    // A second script, let in beside that of the page, moves the pointer and steps by keys.
+    let point = "<script>addEventListener('load', () => {
+        const svg = document.querySelector('figure svg'), box = document.querySelector('.readings');
+        const data = JSON.parse(svg.closest('figure').dataset.readings), f = data.panels[0].frame;
+        const m = svg.getScreenCTM(), seen = [];
+        const at = (x, y) => svg.dispatchEvent(new PointerEvent('pointermove',
+            { clientX: m.e + m.a * x, clientY: m.f + m.d * y, pointerType: 'mouse', bubbles: true }));
+        at(f[0] + 0.3 * f[2], f[1] + 0.5 * f[3]); seen.push(box.hidden ? '' : box.innerText);
+        svg.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true })); seen.push(box.innerText);
+        svg.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape', bubbles: true })); seen.push(String(box.hidden));
+        document.documentElement.dataset.seen = JSON.stringify(seen);
+      });</script></body>";
+    let open_policy =
+        html.replace("script-src 'sha256-", "script-src 'unsafe-inline' 'nothing-").replace("</body>", point);
+    std::fs::write(&page, open_policy).unwrap();
+    let (dom, _, _) = open(&browser, &page, folder.path());
+    let seen = dom.split("data-seen=\"").nth(1).and_then(|s| s.split('"').next()).expect("the script ran");
+    let seen: Vec<String> = serde_json::from_str(&seen.replace("&quot;", "\"")).unwrap();
+    // The abscissa with its unit, then a line for each series.
+    assert!(
+        seen[0].starts_with("Time\n") && seen[0].contains("\nrate\n") && seen[0].contains("°/h"),
+        "{seen:?}"
+    );
+    assert!(seen[1] != seen[0] && !seen[1].is_empty(), "{seen:?}");
+    assert_eq!(seen[2], "true", "{seen:?}");
+}
+
+#[test]
 fn the_watch_for_complaints_and_requests_is_awake() {
-    let Some(browser) = browser() else {
-        let _ = writeln!(std::io::stderr(), "SKIPPED: no browser found; looked for {}", BROWSERS.join(", "));
-        return;
-    };
+    let Some(browser) = browser() else { return required() };
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("loud.html");
     std::fs::write(

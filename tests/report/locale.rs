@@ -63,7 +63,7 @@ const LISTED: &[(&str, &[&str])] = &[
     ),
     ("serial_from", &["manifest", "recording", "pattern", "file_name"]),
     ("status", &["ok", "remark", "invalid"]),
-    ("calibration", &["ok", "remark", "invalid"]),
+    ("calibration", &["ok", "remark", "invalid", "overdue", "unknown", "unidentified"]),
     // Of each channel: the id goes on with its name.
     ("condition", &["steadiness", "influence_beside"]),
     ("verdict", &["none", "pass", "indeterminate", "fail", "error"]),
@@ -257,6 +257,9 @@ fn no_report_shows_a_key() {
             render_html(&record, &figures, Lang::En, &Renderer::new()).unwrap(),
             render_markdown(&record, &figures, Lang::En, &Renderer::new()).unwrap(),
         ] {
+            // Names of the script of the page are no words for a reader.
+            let script = text.split_once("<script>").and_then(|(_, rest)| rest.split_once("</script>"));
+            let text = script.map_or_else(|| text.clone(), |(script, _)| text.replace(script, ""));
             let shown: Vec<&str> = text
                 .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '.'))
                 .map(|w| w.trim_end_matches('.'))

@@ -6,6 +6,7 @@ mod explained;
 mod fixture;
 mod language;
 mod locale;
+mod print;
 mod render;
 mod russian;
 mod sentences;

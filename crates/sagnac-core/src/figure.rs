@@ -44,8 +44,14 @@ pub enum Style {
     Model,
     /// One term of the model; the number tells terms apart.
     Term(u8),
-    /// A limit.
+    /// One of several units on the same axes; the number tells them apart.
+    Unit(u8),
+    /// A limit; points are upper ones.
     Limit,
+    /// What was measured while the temperature rose: red.
+    Heating,
+    /// What was measured while it fell: blue.
+    Cooling,
     /// A reference line or point, such as the Russian 100-s value.
     Reference,
     /// Uncertain or left-out data, greyed.

@@ -3,6 +3,7 @@
 use super::Unit;
 use crate::figure::{Axis, Figure, Layer, Panel, Scale, Style};
 use crate::i18n::Note;
+use crate::measurand;
 
 /// Units that are named in the figure of ratios.
 const NAMED: usize = 14;
@@ -97,8 +98,61 @@ pub fn ratios(units: &[Unit]) -> Option<Figure> {
     })
 }
 
+/// Units whose σ(τ) one figure holds: as many as can be told apart.
+const OVERLAID: usize = 8;
+
+/// Share of the record up to which σ(τ) is drawn.
+const MAX_RECORD_SHARE: f64 = 1.0 / 3.0;
+
+/// σ(τ) of the units on common axes, with the standard deviation of 100-s means of each; `None` for fewer than two.
+pub fn sigma_tau(units: &[Unit]) -> Option<Figure> {
+    let with_curve: Vec<&Unit> = units.iter().filter(|u| u.deviations.len() > 1).collect();
+    if with_curve.len() < 2 {
+        return None;
+    }
+    let mut layers = vec![];
+    for (i, unit) in with_curve.iter().take(OVERLAID).enumerate() {
+        let style = Style::Unit(i as u8);
+        let longest_s = unit.length_s.map_or(f64::INFINITY, |t| t * MAX_RECORD_SHARE);
+        let points: Vec<(f64, f64)> = unit
+            .deviations
+            .iter()
+            .filter(|d| d.deviation_deg_h > 0.0 && d.tau_s <= longest_s)
+            .map(|d| (d.tau_s, d.deviation_deg_h))
+            .collect();
+        let bands = unit.deviations.iter().filter(|d| d.tau_s <= longest_s);
+        let band = bands.filter_map(|d| Some((d.tau_s, d.low_deg_h?, d.high_deg_h?))).collect();
+        layers.push(Layer::Band { points: band, style, legend: String::new() });
+        layers.push(Layer::Line { points: points.clone(), style, legend: unit.label() });
+        layers.push(Layer::Points { points, style, legend: unit.label() });
+    }
+    let russian = with_curve.iter().take(OVERLAID).filter_map(|u| u.value(measurand::RUSSIAN_DRIFT_100S.id));
+    let russian: Vec<(f64, f64)> = russian.map(|v| (100.0, v)).collect();
+    layers.push(Layer::Points {
+        points: russian,
+        style: Style::Reference,
+        legend: "figure.legend.russian".into(),
+    });
+    let mut remarks = vec![];
+    if with_curve.len() > OVERLAID {
+        let shown = Note::new("compare.figure.sigma_tau_remark");
+        remarks.push(shown.with("shown", OVERLAID).with("all", with_curve.len()));
+    }
+    Some(Figure {
+        id: "sigma_tau".into(),
+        title: "compare.figure.sigma_tau".into(),
+        channel: String::new(),
+        panels: vec![Panel {
+            x: axis("axis.averaging_time", "s", Scale::Log),
+            y: axis("axis.allan_deviation", "deg/h", Scale::Log),
+            layers,
+        }],
+        remarks,
+    })
+}
+
 /// All figures of a set of units.
 pub fn all(units: &[Unit]) -> Vec<Figure> {
     let bars = units.iter().enumerate().filter_map(|(i, u)| octaves(u, i + 1));
-    ratios(units).into_iter().chain(bars).collect()
+    sigma_tau(units).into_iter().chain(ratios(units)).chain(bars).collect()
 }

@@ -51,6 +51,12 @@ pub fn units_of(result: &RunRecord, path: &str, stem: &str, origin: Origin) -> R
             length_s: Some(result.window.usable_s).filter(|t| *t > 0.0),
             quantities: quantities.iter().filter(|q| q.channel == *channel).cloned().collect(),
             rules: vec![],
+            deviations: result
+                .deviations
+                .iter()
+                .filter(|d| d.channel == *channel && d.estimator == "oadev")
+                .cloned()
+                .collect(),
             detail: result.comparison.iter().find(|d| d.channel == *channel).cloned(),
             indicative: false,
             summary: faults::of_recording(result),

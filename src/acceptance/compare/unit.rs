@@ -2,7 +2,7 @@
 
 use crate::estimate::{Interval, UpperLimit, Verdict};
 use crate::i18n::Note;
-use crate::record::{ComparisonRecord, LimitRecord, MeasurandRecord, Message};
+use crate::record::{ComparisonRecord, DeviationRecord, LimitRecord, MeasurandRecord, Message};
 use serde::{Deserialize, Serialize};
 
 /// Where a unit's values come from.
@@ -143,6 +143,9 @@ pub struct Unit {
     pub quantities: Vec<Quantity>,
     /// Allan bias instability under each read-out rule, with the ratios.
     pub rules: Vec<RuleRow>,
+    /// The overlapping Allan deviation at octaves, for the figure; empty where the result lacks it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub deviations: Vec<DeviationRecord>,
     /// Window statistics, predictions, octaves, null; absent where the result lacks them.
     pub detail: Option<ComparisonRecord>,
     /// True where the model departs from the record, so that what it predicts is indicative.

@@ -15,6 +15,7 @@ impl Condition for Instruments {
                 let status = instrument.record_on(facts.today).status;
                 let key = match (status, instrument.calibration_due) {
                     (ConditionStatus::Ok, _) => "note.condition.calibration_valid",
+                    (_, Some(due)) if facts.today <= due => "note.condition.calibration_unidentified",
                     (_, Some(_)) => "note.condition.calibration_overdue",
                     (_, None) => "note.condition.calibration_unknown",
                 };

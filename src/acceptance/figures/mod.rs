@@ -13,6 +13,7 @@ pub mod positions;
 pub mod residual;
 pub mod scale_factor;
 pub mod sigma_tau;
+mod sigma_tau_limits;
 pub mod spectrum;
 pub mod thermal;
 pub mod time_series;

@@ -1,7 +1,7 @@
-//! σ(τ) with its band, the fitted terms, reading points, the limit and the Russian value.
+//! σ(τ) with its band, the fitted terms, reading points, the limits and the Russian value.
 
-use super::{draw, parts};
-use crate::estimate::{Limit, normal_quantile};
+use super::{draw, parts, sigma_tau_limits};
+use crate::estimate::normal_quantile;
 use crate::figure::{Figure, Layer, Style};
 use crate::i18n::{Arg, Note};
 use crate::measurand::GyroEvidence;
@@ -15,8 +15,8 @@ const CURVE_POINTS: usize = 96;
 const RELIABLE_SHARE: f64 = 0.2;
 const MAX_RECORD_SHARE: f64 = 1.0 / 3.0;
 
-/// Draws σ(τ) of a channel. `drift_limit` is the limit on the Russian 100-s value, in deg/h.
-pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Option<&Limit>) -> Figure {
+/// Draws σ(τ) of a channel. `highest` gives the upper limit of a measurand by its id, in its own unit.
+pub fn figure(gyro: &GyroEvidence, highest: &dyn Fn(&str) -> Option<f64>) -> Figure {
     let longest_s = gyro.longest_stretch_s;
     let shown: Vec<_> = gyro
         .sigma_tau
@@ -49,17 +49,15 @@ pub fn figure(gyro: &GyroEvidence, drift_limit: Option<&Limit>, floor_limit: Opt
     layers.push(draw::points(reliable, Style::Data, "figure.legend.allan"));
     layers.push(draw::line(tail, Style::Muted, "figure.legend.unreliable"));
     layers.push(draw::points(tail_points, Style::Muted, "figure.legend.unreliable"));
-    let limits = [(drift_limit, "figure.legend.limit_drift"), (floor_limit, "figure.legend.limit_floor")];
-    for (limit, legend) in limits {
-        if let Some(max) = limit.and_then(|l| l.max) {
-            layers.push(draw::horizontal(max, Style::Limit, legend));
-        }
+    let lowest = readable.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a });
+    if let (Some(first), Some(last), Some(lowest)) = (shown.first(), shown.last(), lowest) {
+        let span = sigma_tau_limits::Span { first_s: first.0, lowest_s: lowest.0, last_s: last.0 };
+        layers.extend(sigma_tau_limits::layers(span, highest));
     }
     if let Some(drift) = gyro.drift_100s() {
         layers.push(draw::points(vec![(100.0, drift)], Style::Reference, "figure.legend.russian"));
         layers.push(draw::label((100.0, drift), label("figure_label.drift", drift)));
     }
-    let lowest = readable.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a });
     if let Some(at) = lowest {
         layers.push(draw::label(at, label("figure_label.minimum", at.1)));
     }

@@ -100,8 +100,8 @@ fn over_temperature(a: &Analysis) -> (Vec<Panel>, Vec<Note>) {
         |points: Vec<(f64, f64)>, style, legend: &str| draw::points(decimated(points), style, legend);
     let layers = vec![
         points(branch(&|r| r.abs() < least), Style::Muted, "figure_thermal.legend.still"),
-        points(branch(&|r| r >= least), Style::Data, "figure_thermal.legend.heating"),
-        points(branch(&|r| r <= -least), Style::SecondData, "figure_thermal.legend.cooling"),
+        points(branch(&|r| r >= least), Style::Heating, "figure_thermal.legend.heating"),
+        points(branch(&|r| r <= -least), Style::Cooling, "figure_thermal.legend.cooling"),
         draw::band(
             curve.iter().map(|(t, b, u)| (*t, b - u, b + u)).collect(),
             Style::Model,
@@ -149,8 +149,8 @@ fn course(s: &Schedule, procedure: &Procedure) -> Vec<Panel> {
             .iter()
             .filter_map(|segment| {
                 let (style, legend) = match segment.kind {
-                    SegmentKind::Heating => (Style::Data, "figure_thermal.legend.heating"),
-                    SegmentKind::Cooling => (Style::SecondData, "figure_thermal.legend.cooling"),
+                    SegmentKind::Heating => (Style::Heating, "figure_thermal.legend.heating"),
+                    SegmentKind::Cooling => (Style::Cooling, "figure_thermal.legend.cooling"),
                     SegmentKind::Soak | SegmentKind::Dwell => return None,
                 };
                 Some(draw::span(segment.from_s, segment.to_s, style, legend))
@@ -195,8 +195,8 @@ fn residual(a: &Analysis, schedule: Option<&Schedule>) -> Panel {
         .filter(|s| s.kind.is_ramp())
         .map(|s| {
             let (style, legend) = match s.kind {
-                SegmentKind::Heating => (Style::Data, "figure_thermal.legend.heating"),
-                _ => (Style::SecondData, "figure_thermal.legend.cooling"),
+                SegmentKind::Heating => (Style::Heating, "figure_thermal.legend.heating"),
+                _ => (Style::Cooling, "figure_thermal.legend.cooling"),
             };
             draw::span(s.from_s, s.to_s, style, legend)
         })

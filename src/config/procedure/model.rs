@@ -234,11 +234,13 @@ impl Instrument {
     /// The record of the instrument with its state on the day of the test.
     ///
     /// A calibration that has run out makes the test invalid where the instrument is required, and is a remark
-    /// otherwise; so is one that states no date. The last day of validity counts as valid.
+    /// otherwise; so is one that states no date. The last day of validity counts as valid. A valid date without a
+    /// serial number is a remark too: it belongs to no certain instrument.
     pub fn record_on(&self, day: NaiveDate) -> InstrumentRecord {
+        let identified = self.serial.as_deref().is_some_and(|s| !s.trim().is_empty());
         let status = match self.calibration_due {
-            Some(due) if day <= due => ConditionStatus::Ok,
-            Some(_) if self.required => ConditionStatus::Invalid,
+            Some(due) if day > due && self.required => ConditionStatus::Invalid,
+            Some(due) if day <= due && identified => ConditionStatus::Ok,
             _ => ConditionStatus::Remark,
         };
         InstrumentRecord {
@@ -395,12 +397,15 @@ mod tests {
         let day = |d| NaiveDate::from_ymd_opt(2027, 3, d).unwrap();
         let mut instrument = Instrument {
             name: "t".into(),
-            serial: None,
+            serial: Some("7".into()),
             calibration_due: Some(day(1)),
             required: true,
             span: 0..0,
         };
         assert_eq!(instrument.record_on(day(1)).status, ConditionStatus::Ok);
+        assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Invalid);
+        instrument.serial = Some(" ".into());
+        assert_eq!(instrument.record_on(day(1)).status, ConditionStatus::Remark);
         assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Invalid);
         instrument.required = false;
         assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Remark);

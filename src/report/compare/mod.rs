@@ -23,6 +23,8 @@ pub struct CompareView {
     pub units: Vec<UnitView>,
     /// Limits with the figure each names.
     pub limits: Vec<LimitView>,
+    /// σ(τ) of the units on common axes, where several have it.
+    pub sigma_tau: Option<FigureView>,
     /// The figure of the ratios, where there is one.
     pub ratios: Option<FigureView>,
     /// The published tables.
@@ -50,6 +52,7 @@ impl CompareView {
                 .map(|(i, u)| UnitView::new(u, drawn(&format!("octaves_{}", i + 1)), words))
                 .collect(),
             limits: comparison.units.iter().flat_map(|u| unit::limits(u, words)).collect(),
+            sigma_tau: drawn("sigma_tau"),
             ratios: drawn("ratios"),
             published: comparison.published.as_ref().map(|p| PublishedView::new(p, words)),
             footer: format!("{} · {generator}", date_time(&comparison.compared_at)),

@@ -170,7 +170,7 @@ mod tests {
         let lopsided = value("time_constant_s", &given(900.0, 700.0, 1500.0, "s"), EN);
         assert_eq!(lopsided.whole, "900\u{202f}s (95 %: 700 … 1500)");
         let exact = value("missing_rows", &given(12_345.0, 12_345.0, 12_345.0, ""), EN);
-        assert_eq!((exact.whole.as_str(), exact.interval.as_str()), ("12345", ""));
+        assert_eq!((exact.whole.as_str(), exact.interval.as_str()), ("12\u{202f}345", ""));
         let unknown = value("x", &given(1.5, f64::NAN, f64::NAN, "Hz"), EN);
         assert_eq!(unknown.whole, "1.500\u{202f}Hz");
     }

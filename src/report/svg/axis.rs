@@ -28,6 +28,19 @@ pub struct Ruled {
     pub ticks: Vec<Tick>,
     /// Label with unit.
     pub title: String,
+    /// The unit in which values are read off.
+    pub reading: Reading,
+}
+
+/// How values of an axis are read off: name, unit, and how much of the unit of the data one of it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Name, in words.
+    pub name: String,
+    /// Unit, printed.
+    pub unit: String,
+    /// Size of the unit, in the unit of the data.
+    pub per: f64,
 }
 
 /// Direction of an axis: decides how much room a mark needs.
@@ -60,7 +73,8 @@ impl Ruled {
         let (low, high) = range(axis.scale, axis.range, data, room);
         let words = lookup(lang, &axis.label).unwrap_or(&axis.label);
         let timed = axis.scale == Scale::Linear && direction == Direction::Across && axis.unit == "s";
-        let mut ruled = Ruled { scale: axis.scale, low, high, ticks: vec![], title: String::new() };
+        let reading = Reading { name: words.to_owned(), unit: unit::pretty(&axis.unit, lang), per: 1.0 };
+        let mut ruled = Ruled { scale: axis.scale, low, high, ticks: vec![], title: String::new(), reading };
         let (prefix, unit_text) = match axis.scale {
             Scale::Log => {
                 ruled.ticks = log_ticks(low, high, direction, length, lang);
@@ -92,6 +106,11 @@ impl Ruled {
         if self.scale == Scale::Log && value <= 0.0 { Some(-1.0) } else { self.place(value) }
     }
 
+    /// True for an axis of decades.
+    pub fn is_log(&self) -> bool {
+        self.scale == Scale::Log
+    }
+
     /// True when the value lies on the axis.
     pub fn holds(&self, value: f64) -> bool {
         value >= self.low && value <= self.high
@@ -112,6 +131,8 @@ impl Ruled {
             s if timed && s >= 180.0 => (60.0, &[0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0], "min"),
             _ => (1.0, &[], unit_text),
         };
+        self.reading.unit = unit::pretty(shown, lang);
+        self.reading.per = factor;
         let (low, high) = (self.low / factor, self.high / factor);
         let mut target = match direction {
             Direction::Across => (length / 55.0).clamp(2.0, 12.0),

@@ -15,7 +15,7 @@ fn words(r: &Ruled) -> Vec<&str> {
 #[test]
 fn decades_are_marked_and_written() {
     let r = rule(Scale::Log, "s", (1.0, 12_000.0), Direction::Across, 650.0);
-    assert_eq!(words(&r), ["1", "10", "100", "1000", "10000"]);
+    assert_eq!(words(&r), ["1", "10", "100", "1000", "10\u{202f}000"]);
     assert_eq!(r.title, "x, s");
     let minor = r.ticks.iter().filter(|t| t.label.is_none()).count();
     assert!(minor >= 32, "{minor}");

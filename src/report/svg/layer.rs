@@ -2,9 +2,8 @@
 
 use super::axis::Ruled;
 use super::style::{Look, Marker, look};
-use super::write::{Anchor, px, text, width};
+use super::write::px;
 use crate::figure::{Layer, Panel, Scale, Style};
-use crate::i18n::{Lang, Localize};
 use std::fmt::Write;
 
 /// The rectangle of a pair of axes on paper, with its axes.
@@ -25,11 +24,11 @@ pub struct Plot<'a> {
 }
 
 impl Plot<'_> {
-    fn at_x(&self, v: f64) -> Option<f64> {
+    pub(super) fn at_x(&self, v: f64) -> Option<f64> {
         self.x.place(v).map(|p| self.left + p * self.width)
     }
 
-    fn at_y(&self, v: f64) -> Option<f64> {
+    pub(super) fn at_y(&self, v: f64) -> Option<f64> {
         self.y.place(v).map(|p| self.top + (1.0 - p) * self.height)
     }
 
@@ -42,7 +41,7 @@ impl Plot<'_> {
         Some((self.at_x(x)?, self.at_y(y)?))
     }
 
-    /// Draws one layer; words are drawn last by [`labels`].
+    /// Draws one layer; words are drawn last, by [`super::label::labels`].
     pub fn draw(&self, out: &mut String, layer: &Layer) {
         match layer {
             Layer::Line { points, style, .. } => self.line(out, points, look(*style)),
@@ -89,7 +88,7 @@ impl Plot<'_> {
     fn points(&self, out: &mut String, points: &[(f64, f64)], style: Style) {
         let places: Vec<(f64, f64)> = points.iter().filter_map(|p| self.at(*p)).collect();
         let size = match places.len() {
-            0..=60 if style == Style::Reference => 5.0,
+            0..=60 if matches!(style, Style::Reference | Style::Limit) => 5.0,
             0..=60 => 2.9,
             61..=400 => 1.9,
             _ => 1.1,
@@ -214,6 +213,14 @@ pub fn mark(out: &mut String, (x, y): (f64, f64), look: Look, r: f64) {
             p(0.0, r),
             p(-r, 0.0)
         ),
+        Marker::Ceiling => writeln!(
+            out,
+            "<path d=\"M{}L{}M{}L{}\" stroke=\"{c}\" stroke-width=\"2\"/>",
+            p(-1.6 * r, 0.0),
+            p(1.6 * r, 0.0),
+            p(0.0, 0.0),
+            p(0.0, 1.4 * r)
+        ),
         Marker::Cross => writeln!(
             out,
             "<path d=\"M{}L{}M{}L{}\" stroke=\"{c}\" stroke-width=\"1.5\"/>",
@@ -223,89 +230,6 @@ pub fn mark(out: &mut String, (x, y): (f64, f64), look: Look, r: f64) {
             p(r, -r)
         ),
     };
-}
-
-/// Draws the words of a panel where they cover least: each is tried about its point, away from the others and from
-/// the data.
-pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, lang: Lang) {
-    const SIZE: f64 = 11.0;
-    let drawn: Vec<(f64, f64)> = panel
-        .layers
-        .iter()
-        .flat_map(|layer| match layer {
-            Layer::Line { points, .. } | Layer::Points { points, .. } => points.as_slice(),
-            _ => &[],
-        })
-        .filter_map(|p| plot.at(*p))
-        .collect();
-    let levels: Vec<f64> = panel
-        .layers
-        .iter()
-        .filter_map(|layer| match layer {
-            Layer::Horizontal { at, .. } => plot.at_y(*at),
-            _ => None,
-        })
-        .collect();
-    let mut taken: Vec<[f64; 4]> = vec![];
-    for layer in &panel.layers {
-        let Layer::Label { at, text: words } = layer else { continue };
-        let Some((x, y)) = plot.at(*at) else { continue };
-        if !plot.x.holds(at.0) || !plot.y.holds(at.1) {
-            continue;
-        }
-        let words = words.say(lang);
-        let (w, h) = (width(&words, SIZE), SIZE + 3.0);
-        let (gap, mut best, mut least) = (7.0, [x + 7.0, y - 7.0 - h, w, h], f64::INFINITY);
-        for (i, (dx, dy)) in [
-            (gap, -gap - h),
-            (-gap - w, -gap - h),
-            (gap, gap),
-            (-gap - w, gap),
-            (-0.5 * w, -gap - h - 4.0),
-            (-0.5 * w, gap + 4.0),
-            (gap + 6.0, -gap - 2.2 * h),
-            (gap + 6.0, gap + 1.2 * h),
-        ]
-        .into_iter()
-        .enumerate()
-        {
-            let place = [
-                (x + dx).clamp(plot.left + 2.0, (plot.left + plot.width - w - 4.0).max(plot.left + 2.0)),
-                (y + dy).clamp(plot.top + 2.0, (plot.top + plot.height - h - 2.0).max(plot.top + 2.0)),
-                w,
-                h,
-            ];
-            let covered = drawn.iter().filter(|p| contains(&place, **p)).count() as f64;
-            let crossed = taken.iter().filter(|other| overlap(&place, other)).count() as f64;
-            let struck =
-                levels.iter().filter(|y| **y >= place[1] - 2.0 && **y <= place[1] + h + 2.0).count() as f64;
-            let cost = covered + 8.0 * struck + 1000.0 * crossed + 0.1 * i as f64;
-            if cost < least {
-                (least, best) = (cost, place);
-            }
-        }
-        // Words over words can be read by nobody; the table has the number.
-        if least >= 1000.0 {
-            continue;
-        }
-        taken.push(best);
-        text(
-            out,
-            (best[0], best[1] + SIZE),
-            Anchor::Start,
-            SIZE,
-            " fill=\"#111\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\" stroke-linejoin=\"round\"",
-            &words,
-        );
-    }
-}
-
-fn contains(r: &[f64; 4], (x, y): (f64, f64)) -> bool {
-    x >= r[0] && x <= r[0] + r[2] && y >= r[1] && y <= r[1] + r[3]
-}
-
-fn overlap(a: &[f64; 4], b: &[f64; 4]) -> bool {
-    a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]
 }
 
 /// Extent of the data of panels along one axis.

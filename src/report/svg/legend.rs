@@ -123,7 +123,7 @@ impl Legend {
                     );
                 }
                 if entry.shown.points {
-                    let size = if entry.style == Style::Reference { 5.0 } else { 2.9 };
+                    let size = if matches!(entry.style, Style::Reference | Style::Limit) { 5.0 } else { 2.9 };
                     mark(out, (0.5 * (a + b), middle), look, size);
                 }
                 text(out, (b + 6.0, middle + 3.8), Anchor::Start, SIZE, "", &entry.words);

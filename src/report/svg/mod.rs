@@ -2,26 +2,22 @@
 //! and dashes for the colour-blind and for print without colour.
 
 mod axis;
+mod label;
 mod layer;
+mod layout;
 mod legend;
+mod pointer;
 mod style;
 mod write;
 
-use crate::figure::{Axis, Figure, Panel, Scale};
+use crate::figure::{Figure, Panel};
 use crate::i18n::{Lang, lookup};
-use axis::{Direction, Ruled};
 use layer::Plot;
-use legend::Legend;
+use layout::{Layout, WIDTH, ends_abscissa};
+pub(crate) use pointer::readings;
 use std::fmt::Write;
 pub(crate) use write::escape;
 use write::{Anchor, FONT, px, text, width};
-
-/// Width of the view box, px. The height follows from the content.
-const WIDTH: f64 = 760.0;
-const RIGHT: f64 = 18.0;
-const TITLE: f64 = 26.0;
-const BELOW: f64 = 44.0;
-const BETWEEN: f64 = 14.0;
 
 /// Draws a figure.
 ///
@@ -31,7 +27,7 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     let id: String =
         figure.id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
     let layout = Layout::new(figure, lang);
-    let legends: Vec<Legend> = figure.panels.iter().map(|p| Legend::new(p, layout.width, say)).collect();
+    let legends = layout.legends(figure, lang);
 
     let mut body = String::new();
     let mut title = say(&figure.title);
@@ -41,62 +37,14 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     let shown_title = write::cut(&title, 14.0, WIDTH - 10.0);
     text(&mut body, (0.0, 15.0), Anchor::Start, 14.0, " font-weight=\"600\"", &shown_title);
 
-    let mut top = TITLE;
     let mut description = vec![];
-    for (i, ((panel, (x, y)), legend)) in figure.panels.iter().zip(&layout.axes).zip(&legends).enumerate() {
-        legend.draw(&mut body, layout.left, top);
-        top += legend.height() + 4.0;
-        let plot = Plot { left: layout.left, top, width: layout.width, height: layout.height, x, y };
-        let last = figure.panels.get(i + 1).is_none_or(|next| next.x != panel.x);
-        draw_panel(&mut body, &plot, panel, &format!("{id}-{i}"), last, lang);
-        description.push(format!("{} / {}: {}", y.title, x.title, legend.words().join("; ")));
-        // Another panel below words of an abscissa keeps its distance from them.
-        let apart = if i + 1 < figure.panels.len() { BETWEEN } else { 0.0 };
-        top += layout.height + if last { BELOW + apart } else { BETWEEN };
+    let (plots, height) = layout.plots(figure, &legends);
+    for (i, ((panel, plot), legend)) in figure.panels.iter().zip(&plots).zip(&legends).enumerate() {
+        legend.draw(&mut body, layout.left, plot.top - legend.height() - 4.0);
+        draw_panel(&mut body, plot, panel, &format!("{id}-{i}"), ends_abscissa(figure, i), lang);
+        description.push(format!("{} / {}: {}", plot.y.title, plot.x.title, legend.words().join("; ")));
     }
-    page(&id, &title, &description.join(". "), top, &body)
-}
-
-/// Where the panels of a figure stand, and their axes.
-struct Layout {
-    left: f64,
-    width: f64,
-    height: f64,
-    /// Abscissa and ordinate of each panel.
-    axes: Vec<(Ruled, Ruled)>,
-}
-
-impl Layout {
-    fn new(figure: &Figure, lang: Lang) -> Layout {
-        let panels: Vec<&Panel> = figure.panels.iter().collect();
-        let height = match panels.len() {
-            0 | 1 if panels.iter().any(|p| p.x.scale == Scale::Polar) => 480.0,
-            0 | 1 => 330.0,
-            2 => 212.0,
-            _ => 150.0,
-        };
-        let ordinates: Vec<Ruled> = panels
-            .iter()
-            .map(|p| Ruled::new(&p.y, layer::extent(&[p], p.y.scale, true), Direction::Up, height, lang))
-            .collect();
-        let labels = ordinates.iter().flat_map(|r| &r.ticks).filter_map(|t| t.label.as_ref());
-        let widest = labels.map(|l| width(l, FONT)).fold(20.0, f64::max);
-        let left = (widest + 32.0).min(160.0);
-        let across = WIDTH - left - RIGHT;
-        let abscissa = |p: &Panel, y: &Ruled| {
-            if p.x.scale == Scale::Polar {
-                // A unit is as long across as up.
-                let (low, high) = y.range();
-                let half = 0.5 * (high - low) * across / height;
-                let axis = Axis { range: Some((-half, half)), ..p.x.clone() };
-                return Ruled::new(&axis, None, Direction::Across, across, lang);
-            }
-            let same: Vec<&Panel> = panels.iter().copied().filter(|q| q.x == p.x).collect();
-            Ruled::new(&p.x, layer::extent(&same, p.x.scale, false), Direction::Across, across, lang)
-        };
-        let axes = panels.iter().zip(ordinates).map(|(p, y)| (abscissa(p, &y), y)).collect();
-        Layout { left, width: across, height, axes }
-    }
+    page(&id, &title, &description.join(". "), height, &body)
 }
 
 /// A panel with its axes, its layers cut off at the frame, and its words.
@@ -116,7 +64,7 @@ fn draw_panel(body: &mut String, plot: &Plot<'_>, panel: &Panel, clip: &str, las
     }
     body.push_str("</g>\n");
     frame(body, plot);
-    layer::labels(body, plot, panel, lang);
+    label::labels(body, plot, panel, lang);
 }
 
 /// The drawing around its body, with title and description for those who do not see it.
@@ -192,7 +140,7 @@ fn frame(out: &mut String, plot: &Plot<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Layer, Style};
+    use crate::figure::{Axis, Layer, Scale, Style};
 
     fn figure(scale: Scale, points: Vec<(f64, f64)>) -> Figure {
         let axis = Axis { label: "axis.a & b".into(), unit: "deg/h".into(), scale, range: None };

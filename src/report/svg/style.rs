@@ -15,6 +15,8 @@ pub enum Marker {
     Triangle,
     /// Oblique cross.
     Cross,
+    /// A bar with a stroke below it: what lies below is allowed.
+    Ceiling,
 }
 
 /// Stroke, dash and marker of a part.
@@ -51,14 +53,16 @@ pub fn look(style: Style) -> Look {
         Style::Data => plain,
         Style::SecondData => Look { colour: "#d55e00", marker: Marker::Square, ..plain },
         Style::Model => Look { colour: "#111111", dash: "7 3", marker: Marker::Cross, ..plain },
-        Style::Term(n) => {
+        Style::Term(n) | Style::Unit(n) => {
             let (colour, dash, marker) = TERMS[usize::from(n) % TERMS.len()];
             Look { colour, dash, width: 1.4, marker, ..plain }
         }
         Style::Limit => {
-            Look { colour: "#a50026", dash: "12 4", width: 1.8, marker: Marker::Cross, fill_opacity: 0.10 }
+            Look { colour: "#a50026", dash: "12 4", width: 1.8, marker: Marker::Ceiling, fill_opacity: 0.10 }
         }
         Style::Reference => Look { colour: "#111111", dash: "3 3", marker: Marker::Diamond, ..plain },
+        Style::Heating => Look { colour: "#c1121f", marker: Marker::Triangle, ..plain },
+        Style::Cooling => Look { colour: "#1d5fa8", marker: Marker::Disc, ..plain },
         Style::Muted => {
             Look { colour: "#8a8a8a", dash: "", width: 1.3, marker: Marker::Disc, fill_opacity: 0.20 }
         }
@@ -76,6 +80,8 @@ mod tests {
                 assert!(a.0 != b.0 && a.1 != b.1, "{a:?} {b:?}");
             }
         }
+        let (warm, cold) = (look(Style::Heating), look(Style::Cooling));
+        assert!(warm.colour != cold.colour && warm.marker != cold.marker);
         assert_eq!(look(Style::Term(0)), look(Style::Term(TERMS.len() as u8)));
     }
 }

@@ -30,6 +30,7 @@ pub struct Condition {
 /// Units that the name of a value found ends in, longest first, with the unit.
 const ENDINGS: &[(&str, &str)] = &[
     ("_deg_c_h", "degC/h"),
+    ("_arw", "deg/sqrt(h)"),
     ("_deg_c", "degC"),
     ("_deg_h", "deg/h"),
     ("_deg_s", "deg/s"),

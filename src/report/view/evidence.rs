@@ -2,14 +2,16 @@
 //! instruments, waivers, clauses.
 
 use super::checks::{self, Unmade};
-use super::common::{MODEL_NOTES, probability, row_name, status};
+use super::common::{MODEL_NOTES, probability, required, row_name, status};
 use super::conditions::{self, Condition};
 use super::deviations::{self, Deviations};
-use super::faults::Faults;
+use super::faults::{self, Faults};
 use super::goodness::{self, Goodness};
+use crate::i18n::Arg;
 use crate::measurand;
 use crate::record::{
-    ClauseRecord, ExcludedSpan, ExclusionRecord, InstrumentRecord, LineRecord, MeasurandRecord,
+    ClauseRecord, ConditionStatus, ExcludedSpan, ExclusionRecord, InstrumentRecord, LineRecord,
+    MeasurandRecord, Message,
     NoiseModelRecord, PowerRecord, RunRecord, WaiverRecord,
 };
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
@@ -24,6 +26,8 @@ const SHOWN_LINES: usize = 16;
 pub struct Evidence {
     /// Conditions, without those on faults and instruments, which have tables of their own.
     pub conditions: Vec<Condition>,
+    /// Faults and instruments, a line each.
+    pub conditions_in_short: Vec<Condition>,
     /// Checks that this kind of test could make and did not.
     pub checks: Vec<Unmade>,
     /// The others, in one line; empty where there is none.
@@ -108,6 +112,8 @@ pub struct Model {
     pub probability: String,
     /// Where it misfits most; empty when it fits.
     pub band: String,
+    /// Whether it describes the spectrum of the record, in words, with the probability of a larger misfit.
+    pub fit: String,
     /// What limits the use of the model: the range of the fit, a misfit.
     pub remarks: Vec<ModelRemark>,
 }
@@ -198,11 +204,15 @@ impl Evidence {
     /// Prints the evidence of a record.
     pub(crate) fn new(record: &RunRecord, words: Translator) -> Evidence {
         let (lines, lines_shown) = strongest(&record.lines, words);
+        let faults = Faults::new(record, words);
+        let instruments: Vec<Instrument> =
+            record.instruments.iter().map(|i| instrument(i, record, words)).collect();
         Evidence {
             conditions: conditions::conditions(record, words),
+            conditions_in_short: in_short(record, &faults, &instruments, words),
             checks: checks::unmade(record, words),
             checks_made: checks::made(record, words),
-            faults: Faults::new(record, words),
+            faults,
             window: window(record, words),
             excluded: record.window.excluded.iter().map(|e| excluded(e, &record.exclusions, words)).collect(),
             lines: lines.into_iter().map(|l| line(l, words)).collect(),
@@ -213,11 +223,61 @@ impl Evidence {
             table_steps: super::table_steps::table_steps(record, words),
             interval_means: super::interval_means::interval_means(record, words),
             power: record.power.iter().map(|p| power(p, words)).collect(),
-            instruments: record.instruments.iter().map(|i| instrument(i, words)).collect(),
+            instruments,
             waivers: record.waivers.iter().map(|w| waiver(w, words)).collect(),
             clauses: record.clauses.iter().map(|c| clause(c, words)).collect(),
         }
     }
+}
+
+/// The faults of the recording and the instruments, a line each.
+fn in_short(
+    record: &RunRecord,
+    faults: &Faults,
+    instruments: &[Instrument],
+    words: Translator,
+) -> Vec<Condition> {
+    let line =
+        |key: &str, worst: ConditionStatus, required: String, found: String, evidence: &str| Condition {
+            name: words.t(key),
+            status: status(worst),
+            status_word: words.name("status", status(worst)),
+            required,
+            evidence: words.name("evidence", evidence),
+            found,
+            note: String::new(),
+        };
+    let worst = |of: &dyn Fn(&str) -> bool| {
+        let states = record.conditions.iter().filter(|c| of(&c.id)).map(|c| c.status);
+        states.max().unwrap_or(ConditionStatus::Ok)
+    };
+    let mut lines = vec![];
+    if record.conditions.iter().any(|c| faults::is_fault(&c.id)) {
+        let found: Vec<String> =
+            faults.found_faults.iter().map(|f| format!("{}\u{a0}{}", f.name, f.found)).collect();
+        let found = if found.is_empty() { words.t("report.faultless") } else { found.join("; ") };
+        let allowed = words.t("report.within_budget");
+        lines.push(line("report.integrity", worst(&faults::is_fault), allowed, found, "recorded"));
+    }
+    if !instruments.is_empty() {
+        let calibrated = record.conditions.iter().find(|c| c.id == "calibration");
+        let required = calibrated.map_or_else(String::new, |c| required(c, words));
+        let mut found: Vec<(&str, u64)> = vec![];
+        for i in instruments {
+            match found.iter_mut().find(|(word, _)| *word == i.status_word) {
+                Some((_, n)) => *n += 1,
+                None => found.push((&i.status_word, 1)),
+            }
+        }
+        let found: Vec<String> =
+            found.iter().map(|(word, n)| format!("{word} ({})", count(*n, words.lang))).collect();
+        let mut state = worst(&|id| id == "calibration");
+        if state == ConditionStatus::Ok && instruments.iter().any(|i| i.status != "ok") {
+            state = ConditionStatus::Remark;
+        }
+        lines.push(line("condition.calibration", state, required, found.join("; "), "declared"));
+    }
+    lines
 }
 
 /// The evaluated span. A run that read nothing evaluated nothing, and left nothing out.
@@ -262,13 +322,31 @@ fn power(p: &PowerRecord, words: Translator) -> Power {
     }
 }
 
-fn instrument(i: &InstrumentRecord, words: Translator) -> Instrument {
+fn instrument(i: &InstrumentRecord, record: &RunRecord, words: Translator) -> Instrument {
     Instrument {
         name: words.local(&i.name),
         serial: i.serial.clone().unwrap_or_else(|| NOTHING.to_owned()),
         due: i.calibration_due.clone().unwrap_or_else(|| NOTHING.to_owned()),
-        status: status(i.status),
-        status_word: words.name("calibration", status(i.status)),
+        status: if calibration(i, record) == "unidentified" { "remark" } else { status(i.status) },
+        status_word: words.name("calibration", calibration(i, record)),
+    }
+}
+
+/// Id of what is to be said of a calibration: why it is remarked on, where its condition says so.
+fn calibration(i: &InstrumentRecord, record: &RunRecord) -> &'static str {
+    let of_instrument = |n: &&Message| match n.args.get("instrument") {
+        Some(Arg::Text(name)) => *name == i.name.text(),
+        Some(Arg::Local(name)) => *name == i.name,
+        _ => false,
+    };
+    let notes = record.conditions.iter().filter(|c| c.id == "calibration").filter_map(|c| c.message.as_ref());
+    match notes.into_iter().find(of_instrument).map(|n| n.id.as_ref()) {
+        Some("note.condition.calibration_unidentified") => "unidentified",
+        Some("note.condition.calibration_overdue") => "overdue",
+        Some("note.condition.calibration_unknown") => "unknown",
+        // Results of earlier versions called an instrument without a serial number valid.
+        _ if i.serial.is_none() && i.status == ConditionStatus::Ok => "unidentified",
+        _ => status(i.status),
     }
 }
 
@@ -362,15 +440,18 @@ fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Translator) -> M
         }
     }
     remarks.extend(m.remarks.iter().map(|note| ModelRemark { text: words.say(note), misfit: false }));
+    let p = probability(m.misfit_probability, words);
     // The remark on the misfit names the band.
     let misfit_said = remarks.iter().any(|r| r.misfit);
+    let departs = misfit_said || m.misfit_band_hz.is_some();
     Model {
         channel: m.channel.clone(),
         method: words.name("how", &m.method),
         terms: if terms.is_empty() { NOTHING.to_owned() } else { terms.join(", ") },
         coefficients: coefficients.into(),
         misfit: digits(m.misfit, 3, lang),
-        probability: probability(m.misfit_probability, words),
+        fit: words.with(if departs { "report.fit_departs" } else { "report.fit_good" }, &[("p", &p)]),
+        probability: p,
         band: m.misfit_band_hz.filter(|_| !misfit_said).map_or_else(String::new, |[low, high]| {
             let range = words
                 .with("report.interval", &[("low", &digits(low, 3, lang)), ("high", &digits(high, 3, lang))]);

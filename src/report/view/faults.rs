@@ -1,7 +1,6 @@
 //! Faults of the recording: what was found against what is allowed, and the first of each kind one by one.
 
 use super::common::{required, status};
-use crate::i18n::Localize;
 use crate::record::{ConditionRecord, FaultRecord, Integrity, RunRecord};
 use crate::report::number::{NOTHING, count, duration, limit_digits, percent};
 use crate::report::translator::{Field, Translator};
@@ -199,7 +198,7 @@ fn first_of_each_kind(faults: &[FaultRecord]) -> Vec<&FaultRecord> {
 }
 
 fn fault(f: &FaultRecord, words: Translator) -> Fault {
-    let note = f.message.as_ref().map_or_else(|| f.note.clone(), |m| m.say(words.lang));
+    let note = f.message.as_ref().map_or_else(|| f.note.clone(), |m| words.say(m));
     Fault {
         kind: words.name("fault", &f.kind),
         channel: f.channel.clone().unwrap_or_default(),

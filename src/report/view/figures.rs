@@ -20,6 +20,8 @@ pub struct FigureView {
     pub caption: String,
     /// The drawing.
     pub svg: String,
+    /// What a pointer reads off it, as JSON for the script of the page; empty where nothing can be read off.
+    pub readings: String,
     /// File, relative to the report, as a URL.
     pub href: String,
 }
@@ -34,6 +36,7 @@ impl FigureView {
             title: if figure.channel.is_empty() { title } else { format!("{title} · {}", figure.channel) },
             caption: caption(figure, words),
             svg: svg::render(figure, words.lang),
+            readings: svg::readings(figure, words.lang),
             href: encode(file),
         }
     }

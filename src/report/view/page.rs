@@ -31,10 +31,14 @@ pub struct View {
     pub errors: Vec<String>,
     /// Unit, procedure, session.
     pub identity: Vec<Field>,
+    /// Paths of the recording; how many there are where they are many.
+    pub recordings: String,
     /// Files with their digests.
     pub files: Vec<FileView>,
     /// True when rows must name their channel.
     pub several_channels: bool,
+    /// True when rows with a limit must name their channel.
+    pub several_judged: bool,
     /// True when a row has a reference value.
     pub has_references: bool,
     /// The decision rule, when all rows with a limit have the same one; empty otherwise.
@@ -43,6 +47,8 @@ pub struct View {
     pub references: Vec<String>,
     /// Rows with a limit.
     pub judged: Vec<Row>,
+    /// How they were obtained: each method with its quantities.
+    pub judged_methods: Vec<Field>,
     /// Rows without a limit.
     pub further: Vec<Row>,
     /// The same with a column for each channel, when there are several but few.
@@ -118,8 +124,10 @@ impl View {
             summary: summary(&record.summary, &record.measurands, channels.len() > 1, words),
             errors: record.errors.iter().map(|n| words.say(n)).collect(),
             identity: identity(record, words),
+            recordings: recordings(record, words),
             files: files(record, words),
             several_channels: channels.len() > 1,
+            several_judged: judged.iter().any(|r| judged.first().is_some_and(|f| f.channel != r.channel)),
             has_references: judged.iter().chain(&further).any(|r| !r.reference.is_empty()),
             shared_rule: match judged.first() {
                 Some(first) if judged.iter().all(|r| r.rule == first.rule) => first.rule.clone(),
@@ -129,6 +137,7 @@ impl View {
             comparison: comparison::comparisons(record, words),
             explained: record.explained.as_ref().map(|e| Explained::new(e, lang)),
             by_channel: Matrix::new(&further),
+            judged_methods: methods_of(&judged),
             judged,
             further,
             footnotes,
@@ -158,6 +167,37 @@ impl View {
             phases: vec![],
         }
     }
+}
+
+/// Files of a recording that are named on the first page.
+const NAMED_FILES: usize = 3;
+
+/// The paths of the recording, or the first of many and their number.
+fn recordings(record: &RunRecord, words: Translator) -> String {
+    let paths: Vec<&str> = record.recording.iter().map(|f| f.path.as_str()).collect();
+    let shown = paths.iter().take(NAMED_FILES).copied().collect::<Vec<_>>().join(", ");
+    match paths.len().saturating_sub(NAMED_FILES) {
+        0 => shown,
+        more => {
+            words.with("report.and_more", &[("shown", &shown), ("more", &count(more as u64, words.lang))])
+        }
+    }
+}
+
+/// Each method with the quantities that were obtained by it, in the order of the rows.
+fn methods_of(rows: &[Row]) -> Vec<Field> {
+    let mut out: Vec<Field> = vec![];
+    for row in rows {
+        match out.iter_mut().find(|f| f.label == row.method) {
+            Some(known) if known.value.split("; ").any(|name| name == row.name) => {}
+            Some(known) => {
+                known.value.push_str("; ");
+                known.value.push_str(&row.name);
+            }
+            None => out.push(Field { label: row.method.clone(), value: row.name.clone() }),
+        }
+    }
+    out
 }
 
 /// Names of the conditions that are only declared, in alphabetical order.

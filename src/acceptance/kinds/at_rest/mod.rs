@@ -22,7 +22,7 @@ use crate::config::procedure::model::MeasurandSpec;
 use crate::estimate::{Estimate, Verdict};
 use crate::figure::Figure;
 use crate::i18n::Note;
-use crate::measurand::{self, GyroEvidence};
+use crate::measurand::GyroEvidence;
 use crate::noise::tau_grid::TauGrid;
 use crate::record::RunRecord;
 use crate::recording::Channel;
@@ -146,12 +146,9 @@ impl RestEvidence {
             return list;
         }
         if wanted("sigma_tau") {
-            let limit = |id: &str| reading.request.limits.limit(id, &gyro.channel).map(|l| &l.limit);
-            list.push(figures::sigma_tau::figure(
-                gyro,
-                limit(measurand::RUSSIAN_DRIFT_100S.id),
-                limit(measurand::BIAS_INSTABILITY_MINIMUM.id),
-            ));
+            let highest =
+                |id: &str| reading.request.limits.limit(id, &gyro.channel).and_then(|l| l.limit.max);
+            list.push(figures::sigma_tau::figure(gyro, &highest));
         }
         let optional = [
             ("allan_family", figures::allan_family::figure as fn(&GyroEvidence) -> Option<Figure>),

@@ -56,7 +56,11 @@ pub fn against(a: &Against<'_>) -> Option<Figure> {
         layers.push(line(points, style, legend));
         layers
     };
-    let mut layers: Vec<Layer> = shaded(a.places, &[a.domain]).collect();
+    let finite = a.column.iter().copied().filter(|v| v.is_finite());
+    let ends = finite.fold(None, |ends: Option<(f64, f64)>, v| {
+        Some(ends.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
+    });
+    let mut layers: Vec<Layer> = shaded(a.places, &[a.domain], ends, Scale::Linear).collect();
     layers.extend(curve(a.before, Style::Data, "figure.explain.before", true));
     if let Some(after) = a.after {
         layers.extend(curve(after, Style::SecondData, "figure.explain.after", true));

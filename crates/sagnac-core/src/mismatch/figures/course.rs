@@ -24,7 +24,10 @@ pub struct TimeSeries<'a> {
 /// Draws the residual with the contribution, and under it what is left.
 pub fn time_course(course: &TimeSeries<'_>) -> Figure {
     let (before, group) = over_time(course.time_s, course.before);
-    let span = |domains: &'static [Domain]| shaded(course.places, domains).collect::<Vec<Layer>>();
+    let ends = course.time_s.first().copied().zip(course.time_s.last().copied());
+    let span = |domains: &'static [Domain]| {
+        shaded(course.places, domains, ends, Scale::Linear).collect::<Vec<Layer>>()
+    };
     let mut upper = span(&[Domain::Time, Domain::Timestamps]);
     upper.push(line(before, Style::Data, "figure.explain.before"));
     if let Some(contribution) = course.contribution {
@@ -71,7 +74,7 @@ pub fn local_level(
     places: &[Place],
 ) -> Figure {
     let ends = before.first().zip(before.last()).map(|(a, b)| (a.0, b.0));
-    let mut layers: Vec<Layer> = shaded(places, &[Domain::Time]).collect();
+    let mut layers: Vec<Layer> = shaded(places, &[Domain::Time], ends, Scale::Linear).collect();
     if let Some((from, to)) = ends
         && values >= 1.0
     {
@@ -140,6 +143,17 @@ mod tests {
         let (first, last) = (drawn(&upper[2])[0].1, drawn(&upper[2])[833].1);
         assert_eq!((first, last), (0.0, 2.0));
         assert!(drawn(&figure.panels[1].layers[1]).iter().all(|p| (p.1 - 1.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_place_is_shaded_only_where_it_narrows() {
+        let points: Vec<(f64, f64)> = (0..=10).map(|i| (f64::from(i), 1.0)).collect();
+        let spans = |from: f64, to: f64| {
+            let place = Place { domain: Domain::Time, from, to };
+            let layers = &local_level(&points, None, 10.0, &[place]).panels[0].layers;
+            layers.iter().filter(|l| matches!(l, Layer::Span { .. })).count()
+        };
+        assert_eq!([spans(2.0, 5.0), spans(0.0, 7.9), spans(-5.0, 20.0), spans(0.5, 9.5)], [1, 1, 0, 0]);
     }
 
     #[test]

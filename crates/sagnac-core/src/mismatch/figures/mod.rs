@@ -23,9 +23,25 @@ fn line(points: Vec<(f64, f64)>, style: Style, legend: &str) -> Layer {
     Layer::Line { points, style, legend: legend.to_owned() }
 }
 
-/// The places of a domain, shaded.
-fn shaded(places: &[Place], domains: &[Domain]) -> impl Iterator<Item = Layer> {
-    let here = places.iter().filter(|p| domains.contains(&p.domain));
+/// Share of an axis from which on a place no longer narrows anything.
+const WIDE: f64 = 0.8;
+
+/// The places of a domain, shaded where they are narrower than the axis. `axis` holds its first and last value.
+fn shaded(
+    places: &[Place],
+    domains: &[Domain],
+    axis: Option<(f64, f64)>,
+    scale: Scale,
+) -> impl Iterator<Item = Layer> {
+    let along = move |v: f64| if scale == Scale::Log { v.max(f64::MIN_POSITIVE).ln() } else { v };
+    let narrows = move |p: &&Place| {
+        axis.is_none_or(|(first, last)| {
+            let (first, last) = (along(first), along(last));
+            let seen = along(p.to).min(last) - along(p.from).max(first);
+            seen < WIDE * (last - first)
+        })
+    };
+    let here = places.iter().filter(move |p| domains.contains(&p.domain)).filter(narrows);
     here.map(|p| Layer::Span {
         from: p.from,
         to: p.to,

@@ -45,7 +45,8 @@ pub fn spectrum(s: &Spectra<'_>) -> Option<Figure> {
         let at = |p: f64| chi_square_quantile(p, b.dof) / b.dof;
         (b.f, b.values[2] * at(0.025), b.values[2] * at(0.975))
     });
-    let mut layers: Vec<Layer> = shaded(s.places, &[Domain::Frequency]).collect();
+    let ends = bins.first().zip(bins.last()).map(|(a, b)| (a.f, b.f));
+    let mut layers: Vec<Layer> = shaded(s.places, &[Domain::Frequency], ends, Scale::Log).collect();
     layers.push(Layer::Band {
         points: band.collect(),
         style: Style::Muted,
@@ -66,7 +67,7 @@ pub fn spectrum(s: &Spectra<'_>) -> Option<Figure> {
         let at = |p: f64| chi_square_quantile(p, b.dof) / b.dof;
         (b.f, at(0.025), at(0.975))
     });
-    let mut below: Vec<Layer> = shaded(s.places, &[Domain::Frequency]).collect();
+    let mut below: Vec<Layer> = shaded(s.places, &[Domain::Frequency], ends, Scale::Log).collect();
     below.push(Layer::Band {
         points: correct.collect(),
         style: Style::Muted,
