@@ -166,12 +166,7 @@ fn options(args: &ExplainArgs) -> Result<Options, Note> {
     }
     let mut hide = vec![];
     for name in &args.hide {
-        let Some(column) = Column::ALL.into_iter().find(|c| c.name() == name) else {
-            let known = Column::ALL.map(Column::name).join(", ");
-            let note = Note::new("explain.error.column").with("given", name.as_str());
-            return Err(note.with("known", known));
-        };
-        hide.push(column);
+        hide.push(Column::of_name(name));
     }
     let mut without = vec![];
     for name in &args.without {

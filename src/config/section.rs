@@ -22,6 +22,7 @@ pub(crate) enum Entry {
     Date(NaiveDate),
     Word(&'static str),
     Words(Vec<&'static str>),
+    Names(Vec<String>),
     Unit(Unit),
     Column(ColumnRef),
     Taus(Taus),
@@ -48,6 +49,7 @@ pub(crate) struct Named {
 pub(crate) enum Given {
     Number(f64),
     List(Vec<f64>),
+    Text(String),
 }
 
 /// Averaging times asked for.
@@ -160,9 +162,9 @@ impl Section {
         }
     }
 
-    pub fn words(&self, key: &str) -> Option<&[&'static str]> {
+    pub fn names(&self, key: &str) -> Option<&[String]> {
         match self.entry(key) {
-            Some(Entry::Words(words)) => Some(words),
+            Some(Entry::Names(names)) => Some(names),
             _ => None,
         }
     }

@@ -134,6 +134,8 @@ pub enum Kind {
     Choice(&'static [Word]),
     /// A list of these words.
     Choices(&'static [Word]),
+    /// A list of names of columns, of which these words are known.
+    Columns(&'static [Word]),
     /// A number with its unit, in a text: `"20 degC"`.
     Quantity {
         /// Unit it is converted to.
@@ -189,6 +191,7 @@ impl Kind {
             Kind::Date => Note::new("keyed.kind.date"),
             Kind::Choice(words) => one_of(words),
             Kind::Choices(words) => Note::new("keyed.kind.list_of").with("words", in_quotes(words)),
+            Kind::Columns(words) => Note::new("keyed.kind.columns").with("words", in_quotes(words)),
             Kind::Quantity { unit, range, .. } => {
                 let shown = if unit == "1" { "%" } else { unit };
                 if range == Range::ANY {

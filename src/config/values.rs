@@ -51,6 +51,12 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
                 .collect();
             Some(Entry::Words(found))
         }
+        Kind::Columns(_) => {
+            let DeValue::Array(items) = value.toml else { return reader.wrong(value) };
+            let names =
+                items.iter().filter_map(|v| text(reader, value.with(v.get_ref(), &v.span()))).collect();
+            Some(Entry::Names(names))
+        }
         Kind::Quantity { unit, difference, range } => {
             quantity_in(reader, value, unit, difference, range).map(Entry::Number)
         }
@@ -113,7 +119,10 @@ fn named(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Vec<Named>> {
     for (name, value) in table.iter().take(MAX_NAMES) {
         let given = match number(value.get_ref()) {
             Some(number) => Some(Given::Number(number)),
-            None => list(value.get_ref()).map(Given::List),
+            None => match value.get_ref() {
+                DeValue::String(text) => Some(Given::Text(text.to_string())),
+                other => list(other).map(Given::List),
+            },
         };
         let Some(given) = given else {
             let message = Note::new("keyed_more.no_value").with("name", shorten(name.get_ref()));

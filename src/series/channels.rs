@@ -31,6 +31,7 @@ pub(super) struct FurtherColumn {
 
 fn role(column: Column) -> Role {
     match column {
+        Column::Other(_) => Role::Auxiliary,
         Column::Temperature => Role::Temperature,
         Column::TableRate => Role::TableRate,
         Column::TableAngle => Role::TableAngle,
@@ -41,6 +42,8 @@ fn role(column: Column) -> Role {
 
 fn unit(column: Column) -> &'static str {
     match column {
+        // As in its file: nothing is expected of it.
+        Column::Other(_) => "",
         Column::Temperature => "degC",
         Column::TableRate | Column::OuterRate => "deg/s",
         Column::TableAngle => "deg",
@@ -66,7 +69,7 @@ pub(super) fn select_channels(
         chosen.time = Some(chosen.take("time_s", i, source, Role::Time, unit));
     }
     rate(source, options, &mut chosen)?;
-    for column in Column::ALL {
+    for column in Column::KNOWN {
         let fits = |i: &usize| {
             source.columns().get(*i).is_some_and(|c| {
                 let guess = c.inferred();
@@ -82,7 +85,26 @@ pub(super) fn select_channels(
         let slot = chosen.take(column.name(), i, source, Role::Auxiliary, own);
         chosen.further.push(FurtherColumn { column, slot, conversion });
     }
+    others(source, &mut chosen);
     Ok(chosen)
+}
+
+/// Every further numeric column, as it stands in the file. Outputs of other gyros drive nothing: they feel what this one
+/// feels. A second time says nothing.
+fn others(source: &Source, chosen: &mut SeriesChannels) {
+    for (i, column) in source.columns().iter().enumerate() {
+        let guess = column.inferred();
+        let is_driver = !matches!(guess.role, Role::Time | Role::Counter) && !guess.role.is_gyro();
+        if !column.numeric || !is_driver || chosen.has(i) {
+            continue;
+        }
+        let column = Column::of_name(&column.name);
+        if chosen.further.iter().any(|f| f.column == column) {
+            continue;
+        }
+        let slot = chosen.take(column.name(), i, source, Role::Auxiliary, guess.unit);
+        chosen.further.push(FurtherColumn { column, slot, conversion: Affine::IDENTITY });
+    }
 }
 
 /// The columns that a procedure declares: its stamps, its first gyro channel, and the first of each further quantity.
@@ -110,11 +132,18 @@ fn declared(source: &Source, channels: &[Channel], chosen: &mut SeriesChannels) 
         ));
     };
     chosen.rate = take("rate_deg_h", rate, rate.role);
-    for column in Column::ALL {
+    for column in Column::KNOWN {
         let Some(channel) = first(&|r| r == role(column)) else { continue };
         let Ok(conversion) = channel.unit.affine_to(&parse(unit(column))?) else { continue };
         let slot = take(column.name(), channel, Role::Auxiliary);
         chosen.further.push(FurtherColumn { column, slot, conversion });
+    }
+    for channel in channels.iter().filter(|c| c.role == Role::Auxiliary) {
+        let column = Column::of_name(&channel.id);
+        if column.is_other() {
+            let slot = take(column.name(), channel, Role::Auxiliary);
+            chosen.further.push(FurtherColumn { column, slot, conversion: Affine::IDENTITY });
+        }
     }
     Ok(())
 }

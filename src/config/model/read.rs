@@ -54,8 +54,11 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> ModelFile {
     let quantization_lsb_arcsec = noise("quantization_lsb_arcsec");
     let columns = root
         .table("recording")
-        .and_then(|t| t.words("columns"))
-        .map(|words| Column::ALL.into_iter().filter(|c| words.contains(&c.name())).collect::<Vec<Column>>());
+        .and_then(|t| t.names("columns"))
+        .map(|names| {
+            let beside = names.iter().filter(|n| !["time_s", "rate_deg_h"].contains(&n.as_str()));
+            beside.map(|n| Column::of_name(n)).collect::<Vec<Column>>()
+        });
     let temperature = number("temperature", "coefficient_deg_h_per_degC").map(|coefficient| Temperature {
         coefficient_deg_h_per_degc: coefficient,
         reference_degc: number("temperature", "reference_degC").unwrap_or(20.0),
@@ -160,6 +163,9 @@ fn value(effect: &'static dyn Effect, named: &Named, reader: &mut Reader<'_>) ->
             }
             Some(Value::List(list.clone()))
         }
+        (Given::Text(text), None, None) if effect.text_params().contains(&named.name.as_str()) => {
+            Some(Value::Text(text.clone()))
+        }
         (_, Some(_), _) => {
             reader.error(
                 &named.span,
@@ -184,7 +190,8 @@ fn value(effect: &'static dyn Effect, named: &Named, reader: &mut Reader<'_>) ->
 }
 
 fn unknown(effect: &'static dyn Effect, named: &Named, reader: &mut Reader<'_>) {
-    let known: Vec<&str> = effect.params().iter().chain(effect.list_params()).map(|p| p.name).collect();
+    let numbers = effect.params().iter().chain(effect.list_params()).map(|p| p.name);
+    let known: Vec<&str> = numbers.chain(effect.text_params().iter().copied()).collect();
     let help = match nearest(&named.name, known.iter().copied()) {
         Some(near) => Note::new("keyed.help.did_you_mean").with("name", near),
         None if known.is_empty() => Note::new("model_file.help.no_parameters"),
@@ -215,7 +222,7 @@ fn drivers(root: &Section, reader: &mut Reader<'_>) -> Vec<Profile> {
         else {
             continue;
         };
-        let Some(column) = Column::ALL.into_iter().find(|c| c.name() == word) else { continue };
+        let Some(column) = Column::KNOWN.into_iter().find(|c| c.name() == word) else { continue };
         let place = |key: &str| section.span_of(key);
         if found.iter().any(|p| p.column == column) {
             let message = Note::new("model_file.driver_twice").with("column", word);

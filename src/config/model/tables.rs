@@ -68,7 +68,7 @@ static RECORDING: TableSpec = TableSpec {
         required("sample_rate_hz", Kind::Number(RATE), "10", "Nominal sample rate, Hz."),
         optional(
             "columns",
-            Kind::Choices(COLUMNS),
+            Kind::Columns(COLUMNS),
             "[\"time_s\", \"rate_deg_h\"]",
             "Columns that the recording has.",
         ),

@@ -79,13 +79,14 @@ pub fn write(claim: &Claim) -> String {
 fn effect(stated: &Stated, out: &mut String) {
     let _ = write!(out, "\n[[effect]]\nkind = {}\n[effect.parameters]\n", quoted(stated.effect.kind()));
     let (numbers, lists): (Vec<_>, Vec<_>) =
-        stated.values.iter().partition(|(_, value)| matches!(value, Value::Number(_)));
+        stated.values.iter().partition(|(_, value)| !matches!(value, Value::List(_)));
     let declared = |name: &str| stated.effect.params().iter().position(|p| p.name == name);
     let mut numbers = numbers;
     numbers.sort_by_key(|(name, _)| declared(name).unwrap_or(usize::MAX));
     for (name, value) in numbers.into_iter().chain(lists) {
         let text = match value {
             Value::Number(number) => float(*number),
+            Value::Text(text) => quoted(text),
             Value::List(list) => {
                 let lines =
                     list.chunks(PER_LINE).map(|c| c.iter().map(|v| float(*v)).collect::<Vec<_>>().join(", "));

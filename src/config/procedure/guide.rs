@@ -90,6 +90,7 @@ fn value(key: &KeySpec) -> String {
     let what = match key.kind {
         Kind::Choice(_) => "one of the words beside".to_owned(),
         Kind::Choices(_) => "a list of the words beside".to_owned(),
+        Kind::Columns(_) => "a list of names of columns".to_owned(),
         kind => kind.describe().say(Lang::En),
     };
     if key.example.is_empty() || matches!(key.kind, Kind::Format(_) | Kind::Flag) {
@@ -109,7 +110,7 @@ fn need(key: &KeySpec) -> String {
 
 fn meaning(key: &KeySpec) -> String {
     let words = match key.kind {
-        Kind::Choice(words) | Kind::Choices(words) => words,
+        Kind::Choice(words) | Kind::Choices(words) | Kind::Columns(words) => words,
         _ => return key.doc.to_owned(),
     };
     let list: Vec<String> = words.iter().map(|(word, meaning)| format!("`{word}`: {meaning}")).collect();

@@ -136,6 +136,7 @@ fn value(kind: Kind) -> Value {
         Kind::Date => json!({"type": "string", "format": "date"}),
         Kind::Choice(words) => one_of(words),
         Kind::Choices(words) => json!({"type": "array", "items": one_of(words)}),
+        Kind::Columns(_) => json!({"type": "array", "items": {"type": "string"}}),
         Kind::Quantity { .. } | Kind::QuantityBy(_) => quantity(),
         Kind::QuantityMap => {
             let properties: Map<String, Value> = available().map(|id| (id.to_owned(), quantity())).collect();

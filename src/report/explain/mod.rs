@@ -8,7 +8,7 @@ mod tables;
 
 pub use effect::{EffectView, EquivalentView, ParameterRow, StatedRow};
 pub use method::MethodView;
-pub use tables::{CandidateRow, FitRow, TestRow};
+pub use tables::{CandidateRow, ColumnRow, FitRow, TestRow};
 
 use super::number::{count, date_time, digits, duration};
 use super::translator::{Field, Translator};
@@ -85,6 +85,8 @@ pub struct ExplainView {
     pub tests: Vec<TestRow>,
     /// What was tried.
     pub candidates: Vec<CandidateRow>,
+    /// Columns of the recording.
+    pub columns: Vec<ColumnRow>,
     /// Causes.
     pub effects: Vec<EffectView>,
     /// The fit before and after.
@@ -143,6 +145,7 @@ impl ExplainView {
             alpha: digits(all.alpha, 1, lang),
             tests: tables::tests(all, words),
             candidates: tables::candidates(all, words),
+            columns: tables::columns(all, words),
             effects: effects.map(|(i, f)| EffectView::new(i + 1, f, all, words)).collect(),
             fit: tables::fit(all, words),
             fit_summary: tables::fit_summary(all, words),

@@ -16,6 +16,9 @@ pub fn phrase(finding: &Finding, explanation: &Explanation, words: Translator) -
     }
     let mut given: Vec<(&str, String)> =
         finding.parameters.iter().map(|(name, p)| (name.as_str(), value(name, p, words).whole)).collect();
+    let named = [("column", &finding.column), ("column2", &finding.column2)];
+    given.extend(named.into_iter().filter_map(|(key, name)| Some((key, name.clone()?))));
+    given.extend(finding.law.as_ref().map(|law| ("law", words.name("explain.law", law))));
     if let Some(name) = corrected(kind) {
         // What a claim does not state, it states to be nil.
         let claimed = explanation
@@ -79,6 +82,17 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Translator) 
 
 /// What remains when everything found has been added.
 fn rest(all: &Explanation, words: Translator) -> Vec<String> {
+    if let Some(rest) = &all.rest {
+        let shown: Vec<String> =
+            rest.places.iter().map(|p| place(p, all.recording.length_s, words)).collect();
+        let given = [
+            ("share", percent(rest.share, words.lang)),
+            ("p", chance(rest.p_value, words)),
+            ("where", shown.join(&words.t("explain.and"))),
+        ];
+        let given: Vec<(&str, &str)> = given.iter().map(|(key, text)| (*key, text.as_str())).collect();
+        return vec![words.with("explain.sentence.rest_small", &given)];
+    }
     let named: Vec<&Finding> = all.effects.iter().filter(|f| !f.is_unnamed()).collect();
     let after = all.family_p_value_after;
     let p = chance(after, words);

@@ -2,7 +2,7 @@
 
 use super::effect::capital;
 use super::print::{chance, difference, ends, plain, test, title, view};
-use crate::mismatch::finding::{Explanation, FitFigures, PlaceRecord};
+use crate::mismatch::finding::{ColumnRecord, Explanation, FitFigures, PlaceRecord};
 use crate::report::number::digits;
 use crate::report::translator::Translator;
 use serde::Serialize;
@@ -89,6 +89,30 @@ pub(super) fn candidates(all: &Explanation, words: Translator) -> Vec<CandidateR
             }
         })
         .collect()
+}
+
+/// What became of a recorded column.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ColumnRow {
+    /// Its name in the file.
+    pub name: String,
+    /// What became of it, in words.
+    pub status: String,
+    /// Limit of what a silent one could add to the rate.
+    pub limit: String,
+}
+
+/// The columns beside time and rate.
+pub(super) fn columns(all: &Explanation, words: Translator) -> Vec<ColumnRow> {
+    let row = |c: &ColumnRecord| ColumnRow {
+        name: c.name.clone(),
+        status: match c.reason {
+            Some(reason) => words.name("explain.columns", reason.id()),
+            None => words.name("explain.columns", c.status.id()),
+        },
+        limit: c.at_most_deg_h.map(|v| words.quantity(&digits(v, 2, words.lang), "deg/h")).unwrap_or_default(),
+    };
+    all.columns.iter().map(row).collect()
 }
 
 /// One figure of the fit.

@@ -68,6 +68,7 @@ pub const DOMAINS: &[&str] = &[
     "amplitude",
     "timestamps",
     "supply",
+    "driver",
 ];
 
 /// A parameter.
@@ -86,6 +87,9 @@ pub fn of_kind(kind: &str) -> Finding {
     Finding {
         kind: kind.into(),
         effect: None,
+        column: None,
+        column2: None,
+        law: None,
         equivalents: vec![],
         parameters: listed
             .iter()
@@ -115,6 +119,7 @@ pub fn consistent() -> Explanation {
         case: "case-000".into(),
         verdict: MismatchVerdict::Consistent,
         effects: vec![],
+        rest: None,
         fit: Fit { heldout_tau_s: 10.0, baseline: fit.clone(), augmented: fit },
         family_p_value: 0.432,
         family_p_value_after: 0.432,
@@ -136,6 +141,7 @@ pub fn consistent() -> Explanation {
             columns: vec!["temp_degC".into()],
             hidden: vec![],
         },
+        columns: vec![],
         experiments: vec![],
     }
 }
@@ -172,6 +178,7 @@ pub fn explained(effects: Vec<Finding>) -> Explanation {
             test("level", place("time", 5190.0, 5280.0), 2.2e-45, 0.61),
         ],
         effects,
+        rest: None,
         fit: Fit {
             heldout_tau_s: 10.0,
             baseline: figures(-1234.5, -620.1, 0.1412, 2500.9),

@@ -29,6 +29,8 @@ pub enum Domain {
     Timestamps,
     /// V.
     Supply,
+    /// A column without a role of its own, in the unit of its file; the finding names it.
+    Driver,
 }
 
 impl Domain {
@@ -45,6 +47,7 @@ impl Domain {
         Domain::Amplitude,
         Domain::Timestamps,
         Domain::Supply,
+        Domain::Driver,
     ];
 
     /// Its id in files.
@@ -61,6 +64,7 @@ impl Domain {
             Domain::Amplitude => "amplitude",
             Domain::Timestamps => "timestamps",
             Domain::Supply => "supply",
+            Domain::Driver => "driver",
         }
     }
 
@@ -75,6 +79,7 @@ impl Domain {
             Domain::Angle => "deg",
             Domain::Amplitude => "deg/h",
             Domain::Supply => "V",
+            Domain::Driver => "",
         }
     }
 

@@ -1,38 +1,7 @@
 //! What the gyro was exposed to: the columns of a recording on a uniform grid, and the mean that a claim expects of them.
 
+use super::Column;
 use crate::units::EARTH_RATE_DEG_H;
-
-/// A column beside time and rate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Column {
-    /// `temp_degC`
-    Temperature,
-    /// `table_rate_deg_s`
-    TableRate,
-    /// `table_angle_deg`
-    TableAngle,
-    /// `outer_rate_deg_s`
-    OuterRate,
-    /// `supply_v`
-    Supply,
-}
-
-impl Column {
-    /// All of them.
-    pub const ALL: [Column; 5] =
-        [Column::Temperature, Column::TableRate, Column::TableAngle, Column::OuterRate, Column::Supply];
-
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Column::Temperature => "temp_degC",
-            Column::TableRate => "table_rate_deg_s",
-            Column::TableAngle => "table_angle_deg",
-            Column::OuterRate => "outer_rate_deg_s",
-            Column::Supply => "supply_v",
-        }
-    }
-}
 
 /// Claimed dependence on temperature.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +34,17 @@ pub struct ClaimedMean {
     pub earth: Option<Earth>,
 }
 
+/// A column without a role of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OtherDriver {
+    /// Which.
+    pub column: Column,
+    /// Its values, in the unit of its file, one a sample.
+    pub values: Vec<f64>,
+    /// The same freed from the noise of its sensor as far as its spectrum tells them apart.
+    pub smooth: Vec<f64>,
+}
+
 /// The columns of a recording on a uniform grid.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Drivers {
@@ -88,6 +68,8 @@ pub struct Drivers {
     pub outer_rate: Option<Vec<f64>>,
     /// V.
     pub supply: Option<Vec<f64>>,
+    /// Columns without a role of their own, each in the unit of its file.
+    pub others: Vec<OtherDriver>,
     /// The mean that the claim expects.
     pub claim: ClaimedMean,
 }
@@ -123,7 +105,14 @@ impl Drivers {
             Column::TableAngle => self.table_angle.as_deref(),
             Column::OuterRate => self.outer_rate.as_deref(),
             Column::Supply => self.supply.as_deref(),
+            Column::Other(_) => self.others.iter().find(|o| o.column == column).map(|o| o.values.as_slice()),
         }
+    }
+
+    /// The columns that are there: those with a role of their own first.
+    pub fn columns(&self) -> impl Iterator<Item = Column> {
+        let known = Column::KNOWN.into_iter().filter(|c| self.column(*c).is_some());
+        known.chain(self.others.iter().map(|o| o.column))
     }
 
     /// A series for each sample from its time in seconds since the first.
@@ -166,6 +155,10 @@ impl Drivers {
             &mut self.supply,
         ];
         columns.into_iter().flatten().for_each(|c| c.truncate(samples));
+        for other in &mut self.others {
+            other.values.truncate(samples);
+            other.smooth.truncate(samples);
+        }
     }
 
     /// The same on averages over `m` samples; a last incomplete group is left out. Angles are not averaged: their
@@ -187,6 +180,15 @@ impl Drivers {
             table_angle: None,
             outer_rate: means(&self.outer_rate),
             supply: means(&self.supply),
+            others: self
+                .others
+                .iter()
+                .map(|o| OtherDriver {
+                    column: o.column,
+                    values: averages(&o.values, m),
+                    smooth: averages(&o.smooth, m),
+                })
+                .collect(),
             claim: self.claim,
         }
     }

@@ -124,6 +124,17 @@ pub trait MeanModel: Sync {
         vec![]
     }
 
+    /// Whether one shape is the same cause as an earlier one of the same effect, so that the two are not found beside each
+    /// other.
+    fn same_cause(&self, _earlier: &[f64], _nonlinear_parameters: &[f64]) -> bool {
+        false
+    }
+
+    /// Texts that a claim states beside the numbers and a finding reports, by name.
+    fn texts(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Vec<(&'static str, String)> {
+        vec![]
+    }
+
     /// The course of stated parameters, deg/h, one value a sample; `None` where a parameter or a column is missing.
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>>;
 

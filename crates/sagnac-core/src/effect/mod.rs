@@ -15,6 +15,7 @@
 #[macro_use]
 mod macros;
 
+mod column;
 mod domain;
 mod drivers;
 mod kinds;
@@ -24,8 +25,9 @@ mod param;
 mod shared;
 mod spectral;
 
+pub use column::{Column, OtherColumn};
 pub use domain::{Domain, Place};
-pub use drivers::{ClaimedMean, Column, Drivers, Earth, Temperature, averages};
+pub use drivers::{ClaimedMean, Drivers, Earth, OtherDriver, Temperature, averages};
 pub use kinds::{EFFECTS, find, parameter};
 pub use mean::{MeanModel, Nuisance, Regressors, Resolution, SearchContext, Starts};
 pub use model::{
@@ -33,6 +35,6 @@ pub use model::{
     LevelLaw, OutlierDetector, Outliers, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,
 };
 pub use model::{Effect, Family, Model, StatedByCourse, UNKNOWN, plausible, stateable};
-pub use param::{Param, Value, Values, list, number};
+pub use param::{Param, Value, Values, list, number, text};
 pub use shared::low_pass::LowPass;
 pub use spectral::{ModeBin, SpectralContext, Spectrum, SpectrumAct};

@@ -27,6 +27,15 @@ pub trait Effect: Sync {
     fn list_params(&self) -> &'static [Param] {
         &[]
     }
+    /// Texts that a claim may state beside the numbers, by name.
+    fn text_params(&self) -> &'static [&'static str] {
+        &[]
+    }
+    /// For a response that is described by terms: the kinds whose laws give the finding its name. Empty for an effect that
+    /// has a name of its own.
+    fn named_by_law(&self) -> &'static [&'static str] {
+        &[]
+    }
     /// Recorded columns without which it cannot be found.
     fn needs(&self) -> &'static [Column] {
         &[]
@@ -122,6 +131,7 @@ pub fn stateable(effect: &dyn Effect, values: Values) -> Values {
             Value::Number(v) => Value::Number(Some(v.clamp(p.lower, p.upper)).filter(|v| !v.is_nan())?),
             Value::List(list) if list.iter().any(|v| v.is_nan()) => return None,
             Value::List(list) => Value::List(list.iter().map(|v| v.clamp(p.lower, p.upper)).collect()),
+            text @ Value::Text(_) => text,
         };
         Some((name, value))
     };

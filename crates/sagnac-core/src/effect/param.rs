@@ -82,6 +82,8 @@ pub enum Value {
     Number(f64),
     /// A list, for courses that no few numbers describe.
     List(Vec<f64>),
+    /// A text, such as the name of a column.
+    Text(String),
 }
 
 /// Stated parameters by name.
@@ -91,6 +93,14 @@ pub type Values = BTreeMap<String, Value>;
 pub fn number(values: &Values, name: &str) -> Option<f64> {
     match values.get(name) {
         Some(Value::Number(x)) => Some(*x),
+        _ => None,
+    }
+}
+
+/// The text of a name; `None` where there is none.
+pub fn text<'a>(values: &'a Values, name: &str) -> Option<&'a str> {
+    match values.get(name) {
+        Some(Value::Text(x)) => Some(x),
         _ => None,
     }
 }

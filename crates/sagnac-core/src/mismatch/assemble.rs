@@ -1,6 +1,7 @@
 //! The result of an explanation, put together from its parts.
 
 use super::augmented::{augmented, nuisances};
+use super::columns;
 use super::contribution;
 use super::departures::{self, Departure};
 use super::draw::{self, Drawn};
@@ -8,7 +9,7 @@ use super::estimates;
 use super::experiment;
 use super::finding::{
     Candidate, Explanation, Finding, Fit, FitFigures, MismatchVerdict, ParameterValue, PlaceRecord,
-    RecordingFacts, Test,
+    RecordingFacts, Rest, Test,
 };
 use super::heldout::{Halves, HeldOut};
 use super::improvement;
@@ -22,7 +23,7 @@ use super::single_cause;
 use super::tried::{Candidate as Fitted, Tried};
 use crate::claim::{Claim, Stated};
 use crate::effect::{
-    Column, Detection, Domain, Effect, Family, Model, Place, SpectralContext, UNKNOWN, find, stateable,
+    Detection, Domain, Effect, Family, Model, Place, SpectralContext, UNKNOWN, find, stateable,
 };
 use std::collections::BTreeMap;
 
@@ -82,12 +83,14 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     found.named.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     let something = !found.named.is_empty();
     let principal = principal_places(&found.named, after);
-    let findings = causes(&found.named, problem, after, options);
+    let gained = best.fit.log_likelihood - base.fit.log_likelihood + local_gain;
+    let (findings, rest) = causes(&found.named, gained, problem, after, options);
+    let columns = columns::records(problem, best, &found.named);
     let added = contribution::correction(best, spectra);
     let stated = found
         .named
         .into_iter()
-        .map(|n| Stated { effect: n.effect, values: stateable(n.effect, n.estimated.stated) });
+        .map(|n| Stated { effect: n.stated_as, values: stateable(n.stated_as, n.estimated.stated) });
     let levelled = found.level.is_some();
     let augmented = augmented(problem, claim, best, stated.collect(), levelled, added.as_deref());
     let correction = with(added, found.taken.as_deref());
@@ -98,6 +101,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         case: problem.claim.case.clone(),
         verdict: verdict(&findings),
         effects: findings,
+        rest,
         fit: Fit {
             heldout_tau_s: halves.bin_s(),
             augmented: match something {
@@ -113,6 +117,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         tests: tests(before, after),
         nuisances: nuisances(problem, base, best),
         recording: facts(problem, recorded, options),
+        columns,
         experiments: experiment::deciding(&selection.chosen, best, spectra),
     };
     let drawn = Drawn {
@@ -149,10 +154,27 @@ fn principal_places(named: &[Named], after: &[Departure]) -> Vec<Place> {
     }
 }
 
-/// Every cause: what was named, what departs and has no name, and rows that are missing.
-fn causes(named: &[Named], problem: &Problem, after: &[Departure], options: &Options) -> Vec<Finding> {
+/// Part of the misfit below which what named effects leave is a rest and no cause of its own.
+const REST: f64 = 0.05;
+
+/// Every cause: what was named, what departs and has no name, and rows that are missing; and a small rest beside them.
+/// `gained` is the gain of log-likelihood of what was named.
+fn causes(
+    named: &[Named],
+    gained: f64,
+    problem: &Problem,
+    after: &[Departure],
+    options: &Options,
+) -> (Vec<Finding>, Option<Rest>) {
     let mut out = findings(named, options.max_effects);
-    if let Some(unknown) = unknown(after, named.is_empty(), options.alpha) {
+    let mut rest = None;
+    let all_named = !out.is_empty() && out.iter().all(|f| f.kind != UNKNOWN);
+    let departs = unknown(after, named.is_empty(), options.alpha);
+    // A departure of probability p is worth about −ln p of log-likelihood.
+    let share = |u: &Finding| 0.5 * u.delta_bic / (0.5 * u.delta_bic + gained.max(0.0)).max(1e-300);
+    if let Some(small) = departs.as_ref().filter(|u| all_named && share(u) < REST) {
+        rest = Some(Rest { p_value: small.p_value, share: share(small), places: small.places.clone() });
+    } else if let Some(unknown) = departs {
         // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
         if after.iter().any(|d| d.test == "comb" && d.below(DEPARTED, after.len())) {
             out.retain(|f| find(&f.kind).and_then(|e| e.family()) != Some(Family::Line));
@@ -161,7 +183,7 @@ fn causes(named: &[Named], problem: &Problem, after: &[Departure], options: &Opt
         out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     }
     out.extend(missing(problem, options));
-    out
+    (out, rest)
 }
 
 fn verdict(causes: &[Finding]) -> MismatchVerdict {
@@ -186,6 +208,9 @@ fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
                 out.push(Finding {
                     kind: UNKNOWN.to_owned(),
                     effect: None,
+                    column: None,
+                    column2: None,
+                    law: None,
                     equivalents: vec![],
                     parameters: BTreeMap::new(),
                     places: t.places.iter().map(record).collect(),
@@ -223,11 +248,17 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
         .into_iter()
         .chain(fitted.iter().copied())
         .chain(driver.filter(|driver| !fitted.contains(driver)))
-        .filter(|_| chosen.effect.in_format())
+        .filter(|_| chosen.effect.in_format() || chosen.law.is_some())
         .take(MOST_EQUIVALENTS)
         .collect();
+    let mut effect = chosen.effect;
+    if let Some(law) = &chosen.law {
+        effect = law.effect;
+        (estimated.reported, places) = by_law(law, chosen, estimated.reported, problem);
+    }
     Named {
-        effect: chosen.effect,
+        effect,
+        stated_as: chosen.effect,
         estimated,
         equivalents,
         places,
@@ -236,6 +267,23 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
         improvement: None,
         local_gain: 0.0,
     }
+}
+
+/// Parameters and places of a response as its leading law has them. The rest of the response is no noise that the claim knows,
+/// so flicker and random walk are free to stand for it while the intervals are found.
+fn by_law(
+    law: &Fitted,
+    chosen: &Chosen,
+    response: BTreeMap<String, ParameterValue>,
+    problem: &Problem,
+) -> (BTreeMap<String, ParameterValue>, Vec<Place>) {
+    let mut free = law.tried.clone();
+    free.hypothesis.noise.freed = [free.hypothesis.noise.freed[0], true, true];
+    let free = problem.refitted(&free);
+    let slot = Slot::Mean(free.hypothesis.courses.len().saturating_sub(1));
+    let mut reported = estimates::of(law.effect, slot, &free, &problem.spectra).reported;
+    reported.extend(response.into_iter().filter(|(name, _)| name == "rms_deg_h"));
+    (reported, places(law.effect, slot, &free, chosen, problem))
 }
 
 fn smallest_p(first: &[Fitted], before: &[Departure]) -> f64 {
@@ -277,9 +325,13 @@ fn record(place: &Place) -> PlaceRecord {
 
 fn finding(named: &Named) -> Finding {
     let own = !named.effect.in_format();
+    let text = |name: &str| named.estimated.texts.get(name).cloned();
     Finding {
         kind: named.effect.reported_kind().to_owned(),
         effect: own.then(|| named.effect.kind().to_owned()),
+        column: text("column"),
+        column2: text("column2"),
+        law: text("law"),
         equivalents: named.equivalents.iter().map(|e| (*e).to_owned()).collect(),
         // Of a course of no kind, what is told of its parts is no parameter of the format.
         parameters: if own { BTreeMap::new() } else { named.estimated.reported.clone() },
@@ -341,6 +393,9 @@ fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Findi
     Some(Finding {
         kind: UNKNOWN.to_owned(),
         effect: None,
+        column: None,
+        column2: None,
+        law: None,
         equivalents: vec![],
         parameters: BTreeMap::new(),
         places,
@@ -404,11 +459,7 @@ fn facts(problem: &Problem, recorded: Recorded, options: &Options) -> RecordingF
         missing: problem.grid.missing(),
         sample_interval_s: problem.grid.dt_s,
         length_s: recorded.length_s,
-        columns: Column::ALL
-            .iter()
-            .filter(|c| problem.drivers.column(**c).is_some())
-            .map(|c| c.name().to_owned())
-            .collect(),
+        columns: problem.drivers.columns().map(|c| c.name().to_owned()).collect(),
         hidden: options.hide.iter().map(|c| c.name().to_owned()).collect(),
     }
 }

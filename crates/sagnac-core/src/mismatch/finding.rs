@@ -16,6 +16,9 @@ pub struct Explanation {
     pub verdict: MismatchVerdict,
     /// One entry a cause, the principal first.
     pub effects: Vec<Finding>,
+    /// What the named effects leave, where it is more than chance and a small part of the misfit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest: Option<Rest>,
     /// Baseline against augmented.
     pub fit: Fit,
     /// Probability of so large a mismatch under a correct claim, everything that was looked at counted.
@@ -32,6 +35,9 @@ pub struct Explanation {
     pub nuisances: Vec<NuisanceValue>,
     /// What the recording is: rows, missing rows, sample interval, length.
     pub recording: RecordingFacts,
+    /// Every column beside time and rate, with its part in what was found.
+    #[serde(default)]
+    pub columns: Vec<ColumnRecord>,
     /// Experiments that would decide between equivalents, as keys of words.
     pub experiments: Vec<Experiment>,
 }
@@ -69,6 +75,15 @@ pub struct Finding {
     /// Effect of the catalogue, where `kind` is `unknown` because the format has no kind for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effect: Option<String>,
+    /// Column that it follows, for a kind that any column can drive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column: Option<String>,
+    /// Second column, where it follows a product.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column2: Option<String>,
+    /// Law by which it follows that column: `linear`, `rate`, `lag`, `curve`, `hysteresis` or `product`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<String>,
     /// Kinds that this recording cannot tell from it, at most three.
     pub equivalents: Vec<String>,
     /// Parameters by name.
@@ -122,6 +137,19 @@ pub struct PlaceRecord {
     pub from: f64,
     /// Upper end.
     pub to: f64,
+}
+
+/// What named effects leave: more than chance, and so small a part of the misfit that it is no cause of its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Rest {
+    /// Probability of as much by chance, all tests counted.
+    pub p_value: f64,
+    /// Its part of the misfit, in log-likelihood over the claim, 0 to 1.
+    pub share: f64,
+    /// Where it shows.
+    #[serde(rename = "where")]
+    pub places: Vec<PlaceRecord>,
 }
 
 /// Baseline and augmented.
@@ -222,6 +250,67 @@ impl RecordingFacts {
     /// Time that the samples cover, s: each is a mean over its interval, so the last one lasts as long as the others.
     pub fn duration_s(&self) -> f64 {
         self.length_s + self.sample_interval_s
+    }
+}
+
+/// What became of a recorded column.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ColumnRecord {
+    /// Its name.
+    pub name: String,
+    /// Its part in what was found.
+    pub status: ColumnStatus,
+    /// Why it cannot be used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<UnusableColumn>,
+    /// Of a silent column: one-sided 95 % limit of what is proportional to it, rms over the record, deg/h.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_most_deg_h: Option<f64>,
+}
+
+/// The part of a column in what was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum ColumnStatus {
+    /// Something that was found follows it.
+    Used,
+    /// It was tested and nothing follows it.
+    Silent,
+    /// It cannot drive anything.
+    Unusable,
+}
+
+/// Why a column cannot drive anything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum UnusableColumn {
+    /// It does not change.
+    Constant,
+    /// It is a straight line in time.
+    CountsTime,
+}
+
+impl ColumnStatus {
+    /// Its id in files.
+    pub fn id(self) -> &'static str {
+        match self {
+            ColumnStatus::Used => "used",
+            ColumnStatus::Silent => "silent",
+            ColumnStatus::Unusable => "unusable",
+        }
+    }
+}
+
+impl UnusableColumn {
+    /// Its id in files.
+    pub fn id(self) -> &'static str {
+        match self {
+            UnusableColumn::Constant => "constant",
+            UnusableColumn::CountsTime => "counts_time",
+        }
     }
 }
 

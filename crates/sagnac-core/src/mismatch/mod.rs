@@ -13,6 +13,7 @@
 //! | the fewest effects that explain the recording | `select` |
 //! | effects on single samples, by their detectors | `flat`, `samples`, `jumps` |
 //! | parameters with intervals, what effects add, what they improve | `estimates`, `contribution`, `heldout`, `improvement` |
+//! | what became of each column | `columns` |
 //! | causes, equivalents, the augmented claim, figures | `single_cause`, `experiment`, `augmented`, `draw`, `figures`, `assemble` |
 //! | all of it in order | `engine` |
 //! | a claim from a simulated recording, and what that recording shows itself | `identify`, `witness`, `taken` |
@@ -21,6 +22,7 @@ mod assemble;
 mod augmented;
 pub mod candidates;
 pub mod coarse;
+mod columns;
 mod contribution;
 pub mod departures;
 pub mod draw;
@@ -52,6 +54,7 @@ pub mod spectral_data;
 mod taken;
 mod terms;
 pub mod tried;
+mod usable;
 mod witness;
 
 pub use engine::explain;

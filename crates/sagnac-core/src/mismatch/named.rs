@@ -4,12 +4,14 @@ use super::estimates::Estimated;
 use super::finding::ParameterValue;
 use super::improvement::Improvement;
 use super::select::ENOUGH;
-use crate::effect::{Detection, Effect, Place};
+use crate::effect::{Detection, Effect, Place, Value};
 
 /// An effect that was named, however it was found.
 pub struct Named {
-    /// The effect.
+    /// The effect that gives it its name.
     pub effect: &'static dyn Effect,
+    /// The effect that a claim states it as: another one for a response that is named by its leading law.
+    pub stated_as: &'static dyn Effect,
     /// Parameters.
     pub estimated: Estimated,
     /// Kinds that would have served as well.
@@ -33,10 +35,16 @@ impl Named {
             let value = ParameterValue { value: r.value, unit: r.unit.to_owned(), ci95: r.ci95 };
             (r.name.to_owned(), value)
         };
+        let text = |(name, value): (&String, &Value)| match value {
+            Value::Text(text) => Some((name.clone(), text.clone())),
+            _ => None,
+        };
         Named {
             effect,
+            stated_as: effect,
             estimated: Estimated {
                 reported: found.reported.iter().map(value).collect(),
+                texts: found.stated.iter().filter_map(text).collect(),
                 stated: found.stated.clone(),
             },
             equivalents: vec![],

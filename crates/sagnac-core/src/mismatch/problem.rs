@@ -1,5 +1,6 @@
 //! Recording and claim brought together: residual, spectral data, and the claim's own fit.
 
+use super::finding::UnusableColumn;
 use super::hypothesis::{Hypothesis, fit};
 use super::impute;
 use super::noise_fit::Noise;
@@ -9,9 +10,10 @@ use super::spectral_data::{SpectralData, smoothed};
 use super::terms::CourseIn;
 use super::terms::SpectrumIn;
 use super::tried::{SpectralDataSet, Tried};
+use super::usable::unusable;
 use crate::claim::{Claim, Stated};
 use crate::effect::{
-    Column, Detector, Drivers, Effect, JumpDetector, Model, Nuisance, Param, Rows, Values, number,
+    Column, Detector, Drivers, Effect, JumpDetector, Model, Nuisance, OtherDriver, Param, Rows, Values, number,
 };
 use crate::noise::model::NoiseModel;
 use crate::numeric::cosine::inverse_dct2;
@@ -38,6 +40,8 @@ pub struct Problem {
     pub usable: Vec<bool>,
     /// Level of the noise that the claim states, of each sample over that of the record.
     pub level: Option<Vec<f64>>,
+    /// Columns without a role of their own that cannot drive anything, and why.
+    pub unusable: Vec<(Column, UnusableColumn)>,
     /// The grid that the values lie on.
     pub quantization_grid: Option<QuantizationGrid>,
     /// The filters, stated or found, for which the ends of the record were drawn.
@@ -88,6 +92,8 @@ impl Problem {
         impute::fill(&mut residual, &usable, &powers, SEED);
         let spectra = spectra(&drivers, &claim, &residual, &filters, grid_step_arcsec, rows);
         let level = level.map(|(level, _)| level);
+        let others = regular.columns.iter().filter(|(c, _)| c.is_other());
+        let unusable = others.filter_map(|(c, values)| Some((*c, unusable(values)?))).collect();
         Problem {
             grid: regular.grid.clone(),
             claim,
@@ -95,6 +101,7 @@ impl Problem {
             residual,
             usable,
             level,
+            unusable,
             quantization_grid,
             filters,
             spectra,
@@ -335,6 +342,12 @@ pub(super) fn drivers(regular: &Regular, claim: &Claim) -> Drivers {
         table_angle: column(Column::TableAngle),
         outer_rate: column(Column::OuterRate),
         supply: column(Column::Supply),
+        others: regular
+            .columns
+            .iter()
+            .filter(|(c, values)| c.is_other() && unusable(values).is_none())
+            .map(|(c, values)| OtherDriver { column: *c, smooth: smoothed(values), values: values.clone() })
+            .collect(),
         claim: claim.mean,
     }
 }

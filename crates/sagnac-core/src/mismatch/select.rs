@@ -43,6 +43,8 @@ pub struct Chosen {
     pub p_value: f64,
     /// What would have served as well, the best first.
     pub equivalents: Vec<Candidate>,
+    /// For a response that is described by terms: the kind whose law alone explains most, fitted in its place.
+    pub law: Option<Candidate>,
     /// What single samples say would have served as well.
     pub beside: Option<&'static str>,
     /// The hypothesis without it, fitted.
@@ -243,6 +245,20 @@ fn pruned(mut best: Tried, spectra: &SpectralDataSet, rows: usize) -> Tried {
     }
 }
 
+/// For a response that is described by terms: the kinds whose law alone explains a good part of what it explains, the best
+/// first. The others are its equivalents: the response has something of each.
+fn laws<'a>(effect: &dyn Effect, rivals: &'a [Candidate]) -> Vec<&'a Candidate> {
+    /// Share of the best law's gain from which another is no worse a name.
+    const NEAR: f64 = 0.7;
+    let worth = |c: &&Candidate| c.gain - 2.0 * c.parameters as f64;
+    let kinds = effect.named_by_law();
+    let mut laws: Vec<&Candidate> = rivals.iter().filter(|c| kinds.contains(&c.effect.kind())).collect();
+    laws.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    let best = laws.first().map_or(0.0, worth);
+    laws.retain(|c| worth(c) >= NEAR * best);
+    laws
+}
+
 fn chosen(
     best: &Tried,
     base: &Tried,
@@ -265,13 +281,14 @@ fn chosen(
             let near = |c: &Candidate| {
                 bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + ENOUGH
             };
-            let equivalents = rivals
-                .iter()
-                .filter(|c| c.effect.kind() != effect.kind() && c.effect.in_format())
-                .filter(|c| near(c))
-                .take(MOST_EQUIVALENTS)
-                .cloned()
-                .collect();
+            let laws = laws(effect, &rivals);
+            let equivalents = if laws.is_empty() {
+                let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind() && c.effect.in_format());
+                others.filter(|c| near(c)).take(MOST_EQUIVALENTS).cloned().collect()
+            } else {
+                laws.iter().skip(1).take(MOST_EQUIVALENTS).map(|c| (*c).clone()).collect()
+            };
+            let law = laws.first().map(|c| (*c).clone());
             let better = rivals
                 .iter()
                 .filter(|c| !single && passes(c, family, options.alpha))
@@ -280,7 +297,7 @@ fn chosen(
                 .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)))
                 .cloned();
             let delta_bic = without.bic(rows) - best.bic(rows);
-            Chosen { effect, slot, delta_bic, p_value, equivalents, beside: None, without, better }
+            Chosen { effect, slot, delta_bic, p_value, equivalents, law, beside: None, without, better }
         })
         .collect();
     out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));

@@ -119,7 +119,12 @@ pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem, options: &Opti
     let pair = [&named[first], &named[second]];
     let whole = Named {
         effect,
-        estimated: Estimated { reported: BTreeMap::from([("rms_deg_h".to_owned(), rms)]), stated },
+        stated_as: effect,
+        estimated: Estimated {
+            reported: BTreeMap::from([("rms_deg_h".to_owned(), rms)]),
+            stated,
+            ..Estimated::default()
+        },
         equivalents: vec![],
         places: hull(named, &[first, second]),
         delta_bic: pair.iter().map(|n| n.delta_bic).sum(),
@@ -176,6 +181,7 @@ mod tests {
         ]);
         Named {
             effect: find(kind).unwrap(),
+            stated_as: find(kind).unwrap(),
             estimated: Estimated { reported, ..Estimated::default() },
             equivalents: vec![],
             places: vec![Place { domain: Domain::Time, from: at - 1.0, to: at + 1.0 }],
@@ -188,7 +194,7 @@ mod tests {
 
     fn line(frequency_hz: f64) -> Named {
         let place = Place { domain: Domain::Frequency, from: frequency_hz, to: frequency_hz };
-        Named { effect: find("line").unwrap(), places: vec![place], ..jump("line", 0.0, 0.0) }
+        Named { effect: find("line").unwrap(), stated_as: find("line").unwrap(), places: vec![place], ..jump("line", 0.0, 0.0) }
     }
 
     #[test]

@@ -233,6 +233,9 @@ mod tests {
         let finding = |parameters: &[(&str, f64, f64)]| Finding {
             kind: String::new(),
             effect: None,
+            column: None,
+            column2: None,
+            law: None,
             equivalents: vec![],
             parameters: parameters
                 .iter()

@@ -2,7 +2,7 @@
 
 use super::seed::stream;
 use crate::claim::{Claim, Profile};
-use crate::effect::{Column, Drivers};
+use crate::effect::{Column, Drivers, OtherDriver};
 use crate::series::{Series, smooth};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -17,7 +17,7 @@ pub(super) struct Sensors {
 impl Sensors {
     pub fn new(profiles: &[Profile], seed: u64) -> Sensors {
         let own = |p: &Profile| {
-            let place = Column::ALL.iter().position(|c| *c == p.column).unwrap_or(0);
+            let place = Column::KNOWN.iter().position(|c| *c == p.column).unwrap_or(0);
             Xoshiro256PlusPlus::seed_from_u64(stream(seed, 100 + place as u64))
         };
         Sensors { sensors: profiles.iter().map(|p| (p.clone(), own(p))).collect() }
@@ -52,6 +52,10 @@ fn put(drivers: &mut Drivers, column: Column, values: Vec<f64>) {
         Column::TableAngle => &mut drivers.table_angle,
         Column::OuterRate => &mut drivers.outer_rate,
         Column::Supply => &mut drivers.supply,
+        Column::Other(_) => {
+            drivers.others.retain(|o| o.column != column);
+            return drivers.others.push(OtherDriver { column, smooth: smooth(&values), values });
+        }
     };
     *place = Some(values);
 }

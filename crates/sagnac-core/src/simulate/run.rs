@@ -220,7 +220,7 @@ impl<'a> Simulation<'a> {
 fn columns(over: &Over<'_>) -> Vec<Column> {
     match over {
         Over::Duration { drivers, .. } => {
-            Column::ALL.into_iter().filter(|c| drivers.iter().any(|p| p.column == *c)).collect()
+            Column::KNOWN.into_iter().filter(|c| drivers.iter().any(|p| p.column == *c)).collect()
         }
         Over::Like(series) => series.columns.keys().copied().collect(),
     }

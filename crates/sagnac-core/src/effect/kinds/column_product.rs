@@ -72,6 +72,7 @@ fn domain(factor: Factor) -> Domain {
         Factor::Of(OuterRate) => Domain::OuterRate,
         Factor::Of(Supply) => Domain::Supply,
         Factor::Of(Column::TableAngle) => Domain::Angle,
+        Factor::Of(Column::Other(_)) => Domain::Driver,
         Factor::Time => Domain::Time,
     }
 }

@@ -1,5 +1,6 @@
 //! Physics and searches that several effects use. None of it names an effect.
 
+pub(super) mod chance;
 pub(super) mod decay;
 pub(super) mod delay;
 pub(super) mod knots;
@@ -9,6 +10,7 @@ pub(super) mod noise_level;
 pub(super) mod polynomial;
 pub(super) mod power_law;
 pub(super) mod reach;
+pub(super) mod response;
 pub(super) mod search;
 pub(super) mod sinusoid;
 pub(super) mod step;

@@ -165,6 +165,13 @@ pub(super) fn try_course(
     if repeated && starts.points.iter().all(Vec::is_empty) {
         return None;
     }
+    let earlier = before.hypothesis.courses.iter().filter(|c| c.effect.kind() == effect.kind());
+    let is_found = |point: &Vec<f64>| {
+        earlier.clone().any(|c| course.same_cause(&c.nonlinear_parameters, point))
+    };
+    if starts.points.iter().all(is_found) && !starts.points.is_empty() && repeated {
+        return None;
+    }
     let local = LocalSearch::of(course, drivers);
     let (shape, gain) = best_shape(&starts.points, &local, &ShapeSearch::new(course, ground))?;
     let parts = course.regressors(&shape, drivers);

@@ -23,13 +23,14 @@ fn domain(column: Column) -> Domain {
         Column::TableAngle => Domain::Angle,
         Column::OuterRate => Domain::OuterRate,
         Column::Supply => Domain::Supply,
+        Column::Other(_) => Domain::Driver,
     }
 }
 
 /// Every test against columns.
 pub fn all(spectral: &SpectralData, white: &White) -> Vec<Departure> {
     let mut named: Vec<(Domain, Cow<'_, [f64]>)> = vec![];
-    for column in Column::ALL {
+    for column in spectral.drivers.columns() {
         let Some(values) = spectral.drivers.column(column) else { continue };
         let values =
             if column == Column::Temperature { smoothed(values).into() } else { Cow::Borrowed(values) };

@@ -77,6 +77,10 @@ pub(super) fn of_course(
     for (name, list) in course.lists(nonlinear_parameters, &coefficients, drivers) {
         out.stated.insert(name.to_owned(), Value::List(list));
     }
+    for (name, text) in course.texts(nonlinear_parameters, drivers) {
+        out.texts.insert(name.to_owned(), text.clone());
+        out.stated.insert(name.to_owned(), Value::Text(text));
+    }
     let deviation = deviations.last().copied().unwrap_or(f64::NAN).hypot(placed.nuisance_deviation(&series));
     if spread.is_finite() && deviation.is_finite() && spread > 0.0 {
         let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();

@@ -17,6 +17,8 @@ const OPEN: f64 = 100.0;
 pub struct Estimated {
     /// As reports give them.
     pub reported: BTreeMap<String, ParameterValue>,
+    /// What it says in words, such as the column that it follows.
+    pub texts: BTreeMap<String, String>,
     /// As the augmented claim states them.
     pub stated: Values,
 }

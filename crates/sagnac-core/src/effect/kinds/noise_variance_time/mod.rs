@@ -3,12 +3,10 @@
 mod forms;
 
 use crate::effect::shared::knots::Knots;
-use crate::effect::shared::variance::{between, by_value, contrast, fit, overdispersion, raised, thinned};
 use crate::effect::{
-    Column, Detector, Domain, Drivers, FlatResidual, Knot, Law, Level, LevelDetector, LevelLaw, Param, Place,
-    Samples, Value, Values, list, number,
+    Detector, Drivers, FlatResidual, Law, Level, LevelDetector, LevelLaw, Param, Samples, Value, Values, list,
+    number,
 };
-use crate::numeric::range::{Bounds, ends};
 
 pub struct NoiseVarianceTime;
 
@@ -20,7 +18,7 @@ const KNOT_RATIOS: &str = "knots_ratio";
 
 describe! {
     NoiseVarianceTime, "noise_variance_time", Samples in Time, needs [],
-    confusers ["outlier_bursts", "noise_variance_rate", "excess_arw"],
+    confusers ["outlier_bursts", "noise_variance_driver", "noise_variance_rate"],
     lists [
         Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX),
         Param::inner(KNOT_RATIOS, "", 0.0, 1e3)
@@ -47,84 +45,22 @@ impl Samples for NoiseVarianceTime {
     }
 }
 
-/// Knots that a claim states of a law which no short list of times describes.
-const STATED_KNOTS: usize = 256;
-
 impl LevelDetector for NoiseVarianceTime {
-    /// The best form over time, and one over each column but the rate, which is an effect of its own. Averages hold no
-    /// angles.
+    /// The best form over time.
     fn laws(&self, residual: &FlatResidual<'_>, samples: &[usize]) -> Vec<LevelLaw> {
-        let mut out: Vec<LevelLaw> = forms::over_time(residual, samples).into_iter().collect();
-        for column in Column::ALL {
-            let Some(values) = residual.drivers.column(column).filter(|v| ends(v).is_wide()) else {
-                continue;
-            };
-            out.extend(over_column(column, values, residual, samples));
-        }
-        out
+        forms::over_time(residual, samples).into_iter().collect()
     }
 
-    fn stated(&self, level: &Level, drivers: &Drivers) -> Values {
+    fn stated(&self, level: &Level, _drivers: &Drivers) -> Values {
         let knots = match &level.law {
-            Law::Time(knots) => knots.clone(),
-            _ => {
-                let step = (level.profile.len() / STATED_KNOTS).max(1);
-                let knot = |i: usize| Knot { at: drivers.time_s(i), value: level.profile[i] };
-                (0..level.profile.len()).step_by(step).map(knot).collect()
-            }
+            Law::Time(knots) => knots.as_slice(),
+            _ => &[],
         };
         Values::from([
             (KNOT_TIMES.to_owned(), Value::List(knots.iter().map(|k| k.at).collect())),
             (KNOT_RATIOS.to_owned(), Value::List(knots.iter().map(|k| k.value).collect())),
         ])
     }
-}
-
-/// The law over the values of a column that the level follows.
-fn over_column(
-    column: Column,
-    values: &[f64],
-    residual: &FlatResidual<'_>,
-    samples: &[usize],
-) -> Option<LevelLaw> {
-    let domain = match column {
-        Column::Temperature => Domain::Temperature,
-        Column::Supply => Domain::Supply,
-        Column::OuterRate => Domain::OuterRate,
-        _ => return None,
-    };
-    let (groups, means) = by_value(|i| values[i], residual, samples);
-    let Bounds { low, high } = ends(&means);
-    if !ends(&means).is_wide() {
-        return None;
-    }
-    let centred = |v: f64| (2.0 * v - low - high) / (high - low);
-    let x: Vec<f64> = means.iter().map(|v| centred(*v)).collect();
-    let square = |v: &f64| 1.5 * v * v - 0.5;
-    let orders = [vec![x.clone()], vec![x.clone(), x.iter().map(square).collect()]];
-    let rows = (samples.len() as f64).ln();
-    let fits = orders.into_iter().filter_map(|columns| Some((fit(&groups, &columns)?, columns)));
-    let (best, columns) = fits.max_by(|a, b| {
-        let score = |f: &f64, p: usize| 2.0 * f - p as f64 * rows;
-        score(&a.0.gain, a.1.len()).total_cmp(&score(&b.0.gain, b.1.len()))
-    })?;
-    let (ratio, ci95) = contrast(&best.log_squares, &best.covariance, &columns);
-    let knots: Vec<Knot> =
-        means.iter().zip(&best.log_squares).map(|(v, l)| Knot { at: *v, value: (0.5 * l).exp() }).collect();
-    let Bounds { low: from, high: to } = raised(&means, &best.log_squares);
-    let free = columns.len();
-    Some(LevelLaw {
-        profile: values.iter().map(|v| between(&knots, *v)).collect(),
-        law: Law::Column(column, thinned(&knots)),
-        gain: best.gain,
-        trials: 2.0,
-        free,
-        parameters: free,
-        dispersion: overdispersion(&groups, &best.log_squares, free + 1),
-        ratio,
-        ci95,
-        place: Place { domain, from, to },
-    })
 }
 
 #[cfg(test)]

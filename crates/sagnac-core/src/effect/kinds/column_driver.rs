@@ -1,0 +1,173 @@
+//! The bias follows a recorded column that has no kind of its own: its value, its rate of change, a delayed or curved
+//! function of it, or the direction from which a value was reached.
+
+use crate::effect::shared::chance::follows_by_chance;
+use crate::effect::shared::polynomial::sum;
+use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::response::{
+    self, CENTER, COEFFICIENTS_LIST, HALF_RANGE, ResponseLaw, SCALES_LIST, TERMS_LIST,
+};
+use crate::effect::{
+    Column, Domain, Drivers, MeanModel, OtherDriver, Param, Place, Regressors, SearchContext, Starts, Values,
+    text,
+};
+use crate::numeric::range::Bounds;
+
+pub struct ColumnDriver;
+
+static PARAMS: [Param; 3] = [
+    Param::reported("coefficient", "", -1e12, 1e12).signed(),
+    Param::inner(CENTER, "", -1e12, 1e12),
+    Param::inner(HALF_RANGE, "", 1e-12, 1e12),
+];
+
+/// Name of the text that says which column.
+const COLUMN: &str = "column";
+/// Name of the text that says by which law.
+const LAW: &str = "law";
+
+describe! {
+    ColumnDriver, "column_driver", Mean in Driver, needs [],
+    confusers ["unobserved_driver", "excess_rrw", "temp_response"],
+    lists [
+        Param::inner(TERMS_LIST, "", 1.0, 13.0),
+        Param::inner(SCALES_LIST, "", 0.0, 1e9),
+        Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
+    ],
+    with {
+        fn text_params(&self) -> &'static [&'static str] {
+            &[COLUMN, LAW]
+        }
+    }
+}
+
+/// What the nonlinear parameters stand for: a column, terms, a law.
+struct Meant<'a> {
+    driver: &'a OtherDriver,
+    mask: u32,
+    law: ResponseLaw,
+}
+
+fn meant<'a>(nonlinear_parameters: &[f64], drivers: &'a Drivers) -> Option<Meant<'a>> {
+    let [column, mask, law] = nonlinear_parameters else { return None };
+    let driver = drivers.others.get(*column as usize)?;
+    Some(Meant { driver, mask: *mask as u32, law: *ResponseLaw::ALL.get(*law as usize)? })
+}
+
+impl MeanModel for ColumnDriver {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        drivers.others.iter().any(|o| varies(Some(&o.smooth)))
+    }
+
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
+        let candidates = drivers.others.iter().enumerate().filter(|(_, o)| varies(Some(&o.smooth)));
+        let columns = candidates.clone().count() as f64;
+        let found = candidates.filter_map(|(i, other)| {
+            let found = response::search(&other.smooth, drivers, context)?;
+            (!follows_by_chance(&found, &other.smooth, drivers, context)).then_some((i, found))
+        });
+        let Some((i, best)) = found.max_by(|a, b| a.1.worth().total_cmp(&b.1.worth())) else {
+            return Starts { points: vec![], trials: columns.max(1.0) };
+        };
+        let law = ResponseLaw::ALL.iter().position(|l| *l == best.law).unwrap_or(0);
+        let point = vec![i as f64, f64::from(best.mask), law as f64];
+        Starts { points: vec![point], trials: best.trials * columns }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
+        vec![
+            Bounds::new(0.0, drivers.others.len().saturating_sub(1) as f64),
+            Bounds::new(0.0, f64::from(u32::MAX)),
+            Bounds::new(0.0, (ResponseLaw::ALL.len() - 1) as f64),
+        ]
+    }
+
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        meant(nonlinear_parameters, drivers).map_or_else(Regressors::default, |m| {
+            response::regressors(m.mask, &m.driver.smooth, drivers)
+        })
+    }
+
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let Some(m) = meant(nonlinear_parameters, drivers) else { return vec![f64::NAN; 3] };
+        let [center, half] = response::stated_range(&m.driver.smooth);
+        // A single term of a linear law or of a rate is a coefficient a unit of the column, or a unit of it an hour.
+        let single = m.mask.count_ones() == 1 && matches!(m.law, ResponseLaw::Linear | ResponseLaw::Rate);
+        let coefficient = coefficients.first().filter(|_| single).map_or(f64::NAN, |c| c / half);
+        vec![coefficient, center, half]
+    }
+
+    fn lists(
+        &self,
+        nonlinear_parameters: &[f64],
+        coefficients: &[f64],
+        drivers: &Drivers,
+    ) -> Vec<(&'static str, Vec<f64>)> {
+        meant(nonlinear_parameters, drivers)
+            .map_or_else(Vec::new, |m| response::stated_lists(m.mask, coefficients))
+    }
+
+    fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
+        meant(nonlinear_parameters, drivers).map_or_else(Vec::new, |m| {
+            vec![(COLUMN, m.driver.column.name().to_owned()), (LAW, m.law.id().to_owned())]
+        })
+    }
+
+    fn same_cause(&self, earlier: &[f64], nonlinear_parameters: &[f64]) -> bool {
+        earlier.first() == nonlinear_parameters.first()
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let column = Column::of_name(text(values, COLUMN)?);
+        let driver = drivers.others.iter().find(|o| o.column == column)?;
+        response::course(values, &driver.smooth, drivers)
+    }
+
+    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        response::initial_states(values, drivers)
+    }
+
+    fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let Some(m) = meant(nonlinear_parameters, drivers) else { return vec![] };
+        let course = sum(coefficients, &self.regressors(nonlinear_parameters, drivers).columns);
+        reach(Domain::Driver, &m.driver.smooth, &course)
+    }
+
+    fn whole(&self) -> &'static [usize] {
+        &[0, 1, 2]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    #[test]
+    fn a_stated_driver_is_found_by_the_name_of_its_column() {
+        let pressure: Vec<f64> = (0..50).map(|i| 1000.0 + f64::from(i)).collect();
+        let other = OtherDriver {
+            column: Column::of_name("pressure_hPa"),
+            values: pressure.clone(),
+            smooth: pressure,
+        };
+        let drivers =
+            Drivers { dt_s: 60.0, samples: 50, averaged: 1, others: vec![other], ..Drivers::default() };
+        let mut stated: Values = response::stated_lists(1, &[2.0])
+            .into_iter()
+            .map(|(n, l)| (n.to_owned(), Value::List(l)))
+            .collect();
+        stated.insert(CENTER.to_owned(), Value::Number(1000.0));
+        stated.insert(HALF_RANGE.to_owned(), Value::Number(50.0));
+        stated.insert(COLUMN.to_owned(), Value::Text("pressure_hPa".to_owned()));
+        // 2 deg/h for each 50 hPa.
+        let course = ColumnDriver.course(&stated, &drivers).unwrap();
+        assert!((course[25] - 1.0).abs() < 1e-12, "{}", course[25]);
+        let [coefficient, ..] = ColumnDriver.parameters(&[0.0, 1.0, 0.0], &[2.0], &drivers)[..] else {
+            panic!("no coefficient")
+        };
+        assert!((coefficient - 2.0 / 24.5).abs() < 1e-12);
+        stated.insert(COLUMN.to_owned(), Value::Text("humidity".to_owned()));
+        assert!(ColumnDriver.course(&stated, &drivers).is_none());
+    }
+}

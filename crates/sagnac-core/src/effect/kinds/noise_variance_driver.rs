@@ -1,0 +1,148 @@
+//! The level of the noise follows a recorded column.
+
+use crate::effect::shared::knots::Knots;
+use crate::effect::shared::variance::{between, by_value, contrast, fit, overdispersion, raised, thinned};
+use crate::effect::{
+    Column, Detector, Domain, Drivers, FlatResidual, Knot, Law, Level, LevelDetector, LevelLaw, Param, Place,
+    Samples, Value, Values, list, text,
+};
+use crate::numeric::range::{Bounds, ends};
+
+pub struct NoiseVarianceDriver;
+
+static PARAMS: [Param; 1] = [Param::reported("ratio", "", 1.0, 1e3)];
+
+/// Name of the text that says which column.
+const COLUMN: &str = "column";
+/// Scale at values of the column, against the claimed level.
+const KNOT_VALUES: &str = "knots_value";
+const KNOT_RATIOS: &str = "knots_ratio";
+
+describe! {
+    NoiseVarianceDriver, "noise_variance_driver", Samples in Driver, needs [],
+    confusers ["noise_variance_time", "outlier_bursts", "column_driver"],
+    lists [
+        Param::inner(KNOT_VALUES, "", f64::MIN, f64::MAX),
+        Param::inner(KNOT_RATIOS, "", 0.0, 1e3)
+    ],
+    with {
+        fn text_params(&self) -> &'static [&'static str] {
+            &[COLUMN]
+        }
+    }
+}
+
+impl Samples for NoiseVarianceDriver {
+    fn apply(&self, values: &Values, drivers: &Drivers, _seed: u64, rate: &mut [f64], _keep: &mut [bool]) {
+        let Some(column) = text(values, COLUMN).and_then(|name| drivers.column(Column::of_name(name))) else {
+            return;
+        };
+        if let Some(knots) = Knots::new(list(values, KNOT_VALUES), list(values, KNOT_RATIOS)) {
+            let at = |i: usize| column.get(i).map_or(1.0, |v| knots.at(*v).max(0.0));
+            crate::effect::shared::noise_level::scale(drivers, rate, at);
+        }
+    }
+
+    fn detector(&self) -> Detector {
+        Detector::Level(&NoiseVarianceDriver)
+    }
+}
+
+impl LevelDetector for NoiseVarianceDriver {
+    /// One law over each column.
+    fn laws(&self, residual: &FlatResidual<'_>, samples: &[usize]) -> Vec<LevelLaw> {
+        let one = |column: Column| {
+            let values = residual.drivers.column(column).filter(|v| ends(v).is_wide())?;
+            over_column(column, values, residual, samples)
+        };
+        let mut out: Vec<LevelLaw> = residual.drivers.columns().filter_map(one).collect();
+        let columns = out.len() as f64;
+        out.iter_mut().for_each(|law| law.trials *= columns);
+        out
+    }
+
+    fn stated(&self, level: &Level, _drivers: &Drivers) -> Values {
+        let Law::Column(column, knots) = &level.law else { return Values::new() };
+        let of = |part: fn(&Knot) -> f64| Value::List(knots.iter().map(part).collect());
+        Values::from([
+            (COLUMN.to_owned(), Value::Text(column.name().to_owned())),
+            (KNOT_VALUES.to_owned(), of(|k| k.at)),
+            (KNOT_RATIOS.to_owned(), of(|k| k.value)),
+        ])
+    }
+}
+
+/// The law over the values of a column that the level follows.
+fn over_column(
+    column: Column,
+    values: &[f64],
+    residual: &FlatResidual<'_>,
+    samples: &[usize],
+) -> Option<LevelLaw> {
+    let domain = match column {
+        Column::Temperature => Domain::Temperature,
+        Column::Supply => Domain::Supply,
+        Column::OuterRate => Domain::OuterRate,
+        Column::Other(_) => Domain::Driver,
+        // The input rate is an effect of its own, and averages hold no angles.
+        Column::TableRate | Column::TableAngle => return None,
+    };
+    let (groups, means) = by_value(|i| values[i], residual, samples);
+    let Bounds { low, high } = ends(&means);
+    if !ends(&means).is_wide() {
+        return None;
+    }
+    let centred = |v: f64| (2.0 * v - low - high) / (high - low);
+    let x: Vec<f64> = means.iter().map(|v| centred(*v)).collect();
+    let square = |v: &f64| 1.5 * v * v - 0.5;
+    let orders = [vec![x.clone()], vec![x.clone(), x.iter().map(square).collect()]];
+    let rows = (samples.len() as f64).ln();
+    let fits = orders.into_iter().filter_map(|columns| Some((fit(&groups, &columns)?, columns)));
+    let (best, columns) = fits.max_by(|a, b| {
+        let score = |f: &f64, p: usize| 2.0 * f - p as f64 * rows;
+        score(&a.0.gain, a.1.len()).total_cmp(&score(&b.0.gain, b.1.len()))
+    })?;
+    let (ratio, ci95) = contrast(&best.log_squares, &best.covariance, &columns);
+    let knots: Vec<Knot> =
+        means.iter().zip(&best.log_squares).map(|(v, l)| Knot { at: *v, value: (0.5 * l).exp() }).collect();
+    let Bounds { low: from, high: to } = raised(&means, &best.log_squares);
+    let free = columns.len();
+    Some(LevelLaw {
+        profile: values.iter().map(|v| between(&knots, *v)).collect(),
+        law: Law::Column(column, thinned(&knots)),
+        gain: best.gain,
+        trials: 2.0,
+        free,
+        parameters: free,
+        dispersion: overdispersion(&groups, &best.log_squares, free + 1),
+        ratio,
+        ci95,
+        place: Place { domain, from, to },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::OtherDriver;
+
+    #[test]
+    fn deviations_are_scaled_by_the_value_of_the_column() {
+        let values = vec![0.0, 5.0, 10.0];
+        let other =
+            OtherDriver { column: Column::of_name("humidity_pct"), smooth: values.clone(), values };
+        let drivers = Drivers { dt_s: 1.0, samples: 3, others: vec![other], ..Drivers::default() };
+        let stated = |column: &str| {
+            Values::from([
+                (COLUMN.to_owned(), Value::Text(column.to_owned())),
+                (KNOT_VALUES.to_owned(), Value::List(vec![0.0, 10.0])),
+                (KNOT_RATIOS.to_owned(), Value::List(vec![1.0, 3.0])),
+            ])
+        };
+        let mut rate = vec![1.0; 3];
+        NoiseVarianceDriver.apply(&stated("humidity_pct"), &drivers, 1, &mut rate, &mut [true; 3]);
+        assert_eq!(rate, [1.0, 2.0, 3.0]);
+        NoiseVarianceDriver.apply(&stated("field_uT"), &drivers, 1, &mut rate, &mut [true; 3]);
+        assert_eq!(rate, [1.0, 2.0, 3.0], "a column that is not there changes nothing");
+    }
+}

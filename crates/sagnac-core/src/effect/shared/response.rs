@@ -1,0 +1,482 @@
+//! A flexible response to the history of a recorded column: any smooth curve of its value, its rate of change, delays of
+//! several time constants, play of several widths. It decides *that* a column drives the rate and how much it explains,
+//! before anything is said of the law.
+//!
+//! The terms are chosen one by one by what they gain under the noise at hand (orthogonal matching pursuit, Pati, Rezaiifar
+//! and Krishnaprasad, Asilomar 1993), each for a price, so that a response of one law stays as cheap as that law.
+
+use super::decay::decay;
+use super::polynomial::Scale;
+use super::thermal::delayed;
+use crate::effect::{Drivers, Regressors, SearchContext, Values, list, number};
+use crate::numeric::cosine::dct2;
+
+/// Highest order of the curve.
+const ORDERS: usize = 6;
+/// Time constants of the delays, s: from what a housing does in a minute to what a day does.
+const DELAYS_S: [f64; 8] = [60.0, 150.0, 375.0, 940.0, 2350.0, 5900.0, 14_700.0, 36_700.0];
+/// Widths of the play, in halves of the column's range.
+const PLAYS: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
+/// Terms in all.
+const TERMS: usize = ORDERS + 1 + DELAYS_S.len() + PLAYS.len();
+/// Terms that a response has at most.
+const MAX_TERMS: usize = 6;
+/// Gain of log-likelihood that each term must bring: half the logarithm of some sixty modes that tell of a slow course, and
+/// what the best of several terms gains by chance.
+const PRICE: f64 = 4.0;
+/// Share of a term that must be left after the terms before it.
+const INDEPENDENT: f64 = 1e-4;
+
+/// Name of the list of terms in a claim.
+pub(in crate::effect) const TERMS_LIST: &str = "terms";
+/// Name of the list of their time constants, s, or widths of play; 0 for a term that has none.
+pub(in crate::effect) const SCALES_LIST: &str = "scales";
+/// Name of the list of their coefficients, deg/h.
+pub(in crate::effect) const COEFFICIENTS_LIST: &str = "coefficients_deg_h";
+/// Name of the middle of the column's range.
+pub(in crate::effect) const CENTER: &str = "center";
+/// Name of half of the column's range.
+pub(in crate::effect) const HALF_RANGE: &str = "half_range";
+
+/// One term of a response.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::effect) enum Term {
+    /// Legendre polynomial of the scaled column.
+    Curve { order: usize },
+    /// Rate of change of the scaled column, per hour.
+    Rate,
+    /// The scaled column behind a first-order delay, less the column itself.
+    Delay { time_constant_s: f64 },
+    /// State of a play operator, −1/2 on a falling to 1/2 on a rising branch.
+    Play { width: f64 },
+}
+
+impl Term {
+    /// The terms of the dictionary.
+    fn all() -> impl Iterator<Item = Term> {
+        let curves = (1..=ORDERS).map(|order| Term::Curve { order });
+        let delays = DELAYS_S.into_iter().map(|time_constant_s| Term::Delay { time_constant_s });
+        curves.chain([Term::Rate]).chain(delays).chain(PLAYS.into_iter().map(|width| Term::Play { width }))
+    }
+
+    /// Whether a record can tell of it: a delay is longer than a sample and shorter than the record.
+    fn resolved(self, drivers: &Drivers) -> bool {
+        match self {
+            Term::Delay { time_constant_s } => {
+                (drivers.dt_s..=0.5 * drivers.length_s()).contains(&time_constant_s)
+            }
+            _ => true,
+        }
+    }
+
+    /// What a claim states of it: the place of its law, with a time constant or a width.
+    fn stated(self) -> (f64, f64) {
+        match self {
+            Term::Curve { order } => (order as f64, 0.0),
+            Term::Rate => (11.0, 0.0),
+            Term::Delay { time_constant_s } => (12.0, time_constant_s),
+            Term::Play { width } => (13.0, width),
+        }
+    }
+
+    fn of_stated(term: f64, scale: f64) -> Option<Term> {
+        match term.round() as i64 {
+            order @ 1..=10 => Some(Term::Curve { order: order as usize }),
+            11 => Some(Term::Rate),
+            12 if scale > 0.0 => Some(Term::Delay { time_constant_s: scale }),
+            13 if scale > 0.0 => Some(Term::Play { width: scale }),
+            _ => None,
+        }
+    }
+
+    /// Its course for a coefficient of 1; `scaled` is the column in units of its range.
+    fn course(self, scaled: &[f64], drivers: &Drivers) -> Vec<f64> {
+        match self {
+            Term::Curve { order } => scaled.iter().map(|x| legendre(order, *x)).collect(),
+            Term::Rate => rate_per_hour(scaled, drivers.dt_s),
+            Term::Delay { time_constant_s } => {
+                let late = delayed(scaled, time_constant_s, drivers.dt_s);
+                late.iter().zip(scaled).map(|(d, x)| d - x).collect()
+            }
+            Term::Play { width } => play(scaled, width),
+        }
+    }
+
+    /// What is not known of it at the beginning of the record.
+    fn initial(self, drivers: &Drivers) -> Option<Vec<f64>> {
+        match self {
+            Term::Delay { time_constant_s } => Some(decay(time_constant_s, drivers)),
+            _ => None,
+        }
+    }
+}
+
+/// The law that a response follows mainly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ResponseLaw {
+    /// Proportional to the column.
+    Linear,
+    /// A curve of the column.
+    Curve,
+    /// Proportional to its rate of change.
+    Rate,
+    /// The delayed column.
+    Lag,
+    /// The direction from which a value was reached.
+    Hysteresis,
+}
+
+impl ResponseLaw {
+    /// All of them.
+    pub const ALL: [ResponseLaw; 5] = [
+        ResponseLaw::Linear,
+        ResponseLaw::Curve,
+        ResponseLaw::Rate,
+        ResponseLaw::Lag,
+        ResponseLaw::Hysteresis,
+    ];
+
+    /// Whether a term is what tells the law from the others.
+    fn has(self, term: &Term) -> bool {
+        match (self, term) {
+            (ResponseLaw::Linear, Term::Curve { order }) => *order == 1,
+            (ResponseLaw::Curve, Term::Curve { order }) => *order > 1,
+            (ResponseLaw::Rate, Term::Rate)
+            | (ResponseLaw::Lag, Term::Delay { .. })
+            | (ResponseLaw::Hysteresis, Term::Play { .. }) => true,
+            _ => false,
+        }
+    }
+
+    /// Its id in `explain.json`.
+    pub fn id(self) -> &'static str {
+        match self {
+            ResponseLaw::Linear => "linear",
+            ResponseLaw::Curve => "curve",
+            ResponseLaw::Rate => "rate",
+            ResponseLaw::Lag => "lag",
+            ResponseLaw::Hysteresis => "hysteresis",
+        }
+    }
+}
+
+/// A response that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::effect) struct ResponseFound {
+    /// One bit a term.
+    pub mask: u32,
+    /// The law that alone explains most.
+    pub law: ResponseLaw,
+    /// Gain of log-likelihood.
+    pub gain: f64,
+    /// Choices of as many terms.
+    pub trials: f64,
+}
+
+impl ResponseFound {
+    /// Gain less the price of its terms.
+    pub fn worth(&self) -> f64 {
+        self.gain - PRICE * f64::from(self.mask.count_ones())
+    }
+}
+
+/// A dictionary of terms in whitened modes.
+struct Dictionary {
+    terms: Vec<Term>,
+    modes: Vec<Vec<f64>>,
+    residual: Vec<f64>,
+}
+
+impl Dictionary {
+    fn new(values: &[f64], drivers: &Drivers, context: &SearchContext<'_>) -> Dictionary {
+        let roots: Vec<f64> = context.powers.iter().map(|p| 1.0 / p.sqrt()).collect();
+        let whitened = |modes: &[f64]| -> Vec<f64> {
+            modes.iter().zip(&roots).skip(1).map(|(x, r)| if r.is_finite() { x * r } else { 0.0 }).collect()
+        };
+        let scaled = scaled(values, Scale::of(values));
+        let terms: Vec<Term> = Term::all().collect();
+        let one = |term: &Term| {
+            if !term.resolved(drivers) {
+                return vec![];
+            }
+            let mut modes = whitened(&dct2(&term.course(&scaled, drivers)));
+            if let Some(initial) = term.initial(drivers) {
+                remove(&mut modes, &unit(whitened(&dct2(&initial))));
+            }
+            modes
+        };
+        let modes = terms.iter().map(one).collect();
+        Dictionary { terms, modes, residual: whitened(context.modes) }
+    }
+
+    /// Chooses terms among those allowed, one by one; each must gain the price.
+    fn pursue(&self, allowed: impl Fn(&Term) -> bool, most: usize) -> (u32, f64) {
+        let mut left: Vec<Option<Vec<f64>>> =
+            self.terms.iter().zip(&self.modes).map(|(t, m)| allowed(t).then(|| m.clone())).collect();
+        let sizes: Vec<f64> = self.modes.iter().map(|m| dot(m, m)).collect();
+        let mut residual = self.residual.clone();
+        let (mut mask, mut total) = (0u32, 0.0);
+        for _ in 0..most {
+            let gain = |(i, m): (usize, &Option<Vec<f64>>)| {
+                let m = m.as_ref()?;
+                let size = dot(m, m);
+                if !(size > INDEPENDENT * sizes[i] && size > 0.0) {
+                    return None;
+                }
+                Some((i, 0.5 * dot(m, &residual).powi(2) / size))
+            };
+            let best = left.iter().enumerate().filter_map(gain).max_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((i, gained)) = best.filter(|(_, g)| *g >= PRICE) else { break };
+            let Some(chosen) = left[i].take() else { break };
+            let direction = unit(chosen);
+            remove(&mut residual, &direction);
+            left.iter_mut().flatten().for_each(|m| remove(m, &direction));
+            mask |= 1 << i;
+            total += gained;
+        }
+        (mask, total)
+    }
+}
+
+/// The response to a column that gains most for its price; `None` where no term is worth it.
+pub(in crate::effect) fn search(
+    values: &[f64],
+    drivers: &Drivers,
+    context: &SearchContext<'_>,
+) -> Option<ResponseFound> {
+    let dictionary = Dictionary::new(values, drivers, context);
+    let (mask, gain) = dictionary.pursue(|_| true, MAX_TERMS);
+    if mask == 0 {
+        return None;
+    }
+    let chosen = mask.count_ones() as usize;
+    let trials = (0..chosen).map(|i| (TERMS - i) as f64 / (i + 1) as f64).product();
+    Some(ResponseFound { mask, law: leading_law(&dictionary), gain, trials })
+}
+
+/// The law that alone explains most for its price.
+fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
+    let worth = |law: ResponseLaw| {
+        let allowed = |t: &Term| match (law, t) {
+            (ResponseLaw::Linear, Term::Curve { order }) => *order == 1,
+            (ResponseLaw::Curve, Term::Curve { .. }) => true,
+            (ResponseLaw::Rate, Term::Rate) => true,
+            // A delayed column is the column and what the delay changes of it; a loop has a slope.
+            (ResponseLaw::Lag, Term::Delay { .. }) => true,
+            (ResponseLaw::Lag | ResponseLaw::Hysteresis, Term::Curve { order }) => *order == 1,
+            (ResponseLaw::Hysteresis, Term::Play { .. }) => true,
+            _ => false,
+        };
+        let most = match law {
+            ResponseLaw::Linear | ResponseLaw::Rate => 1,
+            ResponseLaw::Lag => 2,
+            ResponseLaw::Hysteresis => 3,
+            ResponseLaw::Curve => ORDERS,
+        };
+        let (mask, gain) = dictionary.pursue(allowed, most);
+        let own = |(i, t): (usize, &Term)| mask & (1 << i) != 0 && law.has(t);
+        let is_law = dictionary.terms.iter().enumerate().any(own);
+        if is_law { gain - PRICE * f64::from(mask.count_ones()) } else { 0.0 }
+    };
+    // Laws in the order of their simplicity: a later one has to be worth more by a term.
+    let mut best = (ResponseLaw::Linear, worth(ResponseLaw::Linear));
+    for law in ResponseLaw::ALL.into_iter().skip(1) {
+        let worth = worth(law);
+        if worth > best.1 + PRICE {
+            best = (law, worth);
+        }
+    }
+    best.0
+}
+
+/// The columns of a response.
+pub(in crate::effect) fn regressors(mask: u32, values: &[f64], drivers: &Drivers) -> Regressors {
+    let scaled = scaled(values, Scale::of(values));
+    let terms = terms(mask);
+    Regressors {
+        offset: None,
+        columns: terms.iter().map(|t| t.course(&scaled, drivers)).collect(),
+        nuisance: terms.iter().filter_map(|t| t.initial(drivers)).collect(),
+    }
+}
+
+/// What a claim states of a response.
+pub(in crate::effect) fn stated_lists(
+    mask: u32,
+    coefficients: &[f64],
+) -> Vec<(&'static str, Vec<f64>)> {
+    let (terms, scales) = terms(mask).into_iter().map(Term::stated).unzip();
+    vec![(TERMS_LIST, terms), (SCALES_LIST, scales), (COEFFICIENTS_LIST, coefficients.to_vec())]
+}
+
+/// Middle and half of the range of a column, as a claim states them.
+pub(in crate::effect) fn stated_range(values: &[f64]) -> [f64; 2] {
+    let Scale { center, half } = Scale::of(values);
+    [center, half]
+}
+
+/// The course of a stated response, deg/h; `None` where something is missing or lists are unlike.
+pub(in crate::effect) fn course(stated: &Values, values: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+    let scale = Scale { center: number(stated, CENTER)?, half: number(stated, HALF_RANGE)? };
+    let terms = stated_terms(stated)?;
+    let coefficients = list(stated, COEFFICIENTS_LIST);
+    if scale.half.is_nan() || scale.half <= 0.0 || terms.len() != coefficients.len() {
+        return None;
+    }
+    let scaled = scaled(values, scale);
+    let mut out = vec![0.0; values.len()];
+    for (term, coefficient) in terms.iter().zip(coefficients) {
+        out.iter_mut().zip(term.course(&scaled, drivers)).for_each(|(o, x)| *o += coefficient * x);
+    }
+    Some(out)
+}
+
+/// What is not known of a stated response at the beginning of the record.
+pub(in crate::effect) fn initial_states(stated: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+    stated_terms(stated).unwrap_or_default().iter().filter_map(|t| t.initial(drivers)).collect()
+}
+
+fn stated_terms(stated: &Values) -> Option<Vec<Term>> {
+    let (terms, scales) = (list(stated, TERMS_LIST), list(stated, SCALES_LIST));
+    if terms.is_empty() || terms.len() != scales.len() {
+        return None;
+    }
+    terms.iter().zip(scales).map(|(t, s)| Term::of_stated(*t, *s)).collect()
+}
+
+fn terms(mask: u32) -> Vec<Term> {
+    Term::all().enumerate().filter(|(i, _)| mask & (1 << i) != 0).map(|(_, term)| term).collect()
+}
+
+fn scaled(values: &[f64], scale: Scale) -> Vec<f64> {
+    values.iter().map(|v| scale.scaled(*v)).collect()
+}
+
+fn rate_per_hour(scaled: &[f64], dt_s: f64) -> Vec<f64> {
+    let n = scaled.len();
+    let at = |i: usize| {
+        let (a, b) = (i.saturating_sub(1), (i + 1).min(n - 1));
+        (scaled[b] - scaled[a]) / ((b - a).max(1) as f64 * dt_s) * 3600.0
+    };
+    (0..n).map(at).collect()
+}
+
+/// State of a play operator that begins in its middle.
+fn play(scaled: &[f64], width: f64) -> Vec<f64> {
+    let mut at = scaled.first().copied().unwrap_or(0.0);
+    let follow = |x: &f64| {
+        at = at.max(x - width).min(x + width);
+        0.5 * (x - at) / width
+    };
+    scaled.iter().map(follow).collect()
+}
+
+/// Legendre polynomial; beyond the range, where it would grow without bound, the line through its end.
+fn legendre(order: usize, x: f64) -> f64 {
+    let inside = x.clamp(-1.0, 1.0);
+    let (mut last, mut here) = (1.0, inside);
+    for k in 1..order {
+        let k = k as f64;
+        (last, here) = (here, ((2.0 * k + 1.0) * inside * here - k * last) / (k + 1.0));
+    }
+    // The slope at the ends is ± order (order + 1) / 2.
+    let slope = 0.5 * (order * (order + 1)) as f64;
+    let sign = if inside < 0.0 && order.is_multiple_of(2) { -1.0 } else { 1.0 };
+    here + sign * slope * (x - inside)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn unit(mut v: Vec<f64>) -> Vec<f64> {
+    let size = dot(&v, &v).sqrt();
+    if size > 0.0 {
+        v.iter_mut().for_each(|x| *x /= size);
+    }
+    v
+}
+
+fn remove(v: &mut [f64], direction: &[f64]) {
+    let share = dot(v, direction);
+    v.iter_mut().zip(direction).for_each(|(x, d)| *x -= share * d);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Value;
+
+    fn drivers(samples: usize) -> Drivers {
+        Drivers { dt_s: 10.0, samples, averaged: 1, ..Drivers::default() }
+    }
+
+    fn swing(samples: usize) -> Vec<f64> {
+        (0..samples).map(|i| 20.0 + 8.0 * (i as f64 / 150.0).sin() + 0.002 * i as f64).collect()
+    }
+
+    /// A draw of white noise of deviation 1 with what `added` says.
+    fn found(added: &[f64], values: &[f64]) -> Option<ResponseFound> {
+        let mut state = 7u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let noise: Vec<f64> = (0..values.len()).map(|_| (0..12).map(|_| uniform()).sum()).collect();
+        let residual: Vec<f64> = noise.iter().zip(added).map(|(n, a)| n + a).collect();
+        let modes = dct2(&residual);
+        let mut powers = vec![1.0; values.len()];
+        powers[0] = f64::INFINITY;
+        let context = SearchContext { score: &residual, modes: &modes, powers: &powers };
+        search(values, &drivers(values.len()), &context)
+    }
+
+    #[test]
+    fn each_law_is_found_by_its_own_shape() {
+        let values = swing(2000);
+        let n = values.len();
+        let x = scaled(&values, Scale::of(&values));
+        let made = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
+        // A kink is no polynomial; two layers are no single delay.
+        let kink = made(&|i| 2.0 * (x[i] - 0.3).max(0.0));
+        assert_eq!(found(&kink, &values).unwrap().law, ResponseLaw::Curve);
+        let rate = rate_per_hour(&x, 10.0);
+        assert_eq!(found(&made(&|i| 0.4 * rate[i]), &values).unwrap().law, ResponseLaw::Rate);
+        assert_eq!(found(&made(&|i| 0.5 * x[i]), &values).unwrap().law, ResponseLaw::Linear);
+        let state = play(&x, 0.15);
+        assert_eq!(found(&made(&|i| 1.2 * state[i]), &values).unwrap().law, ResponseLaw::Hysteresis);
+        assert!(found(&vec![0.0; n], &values).is_none(), "noise follows nothing");
+    }
+
+    #[test]
+    fn a_stated_response_has_the_course_that_was_fitted() {
+        let values = swing(500);
+        let drivers = drivers(500);
+        let mask = 0b10_0100_0100_0001;
+        let coefficients = [0.5, -0.2, 0.3, 1.5];
+        let [center, half] = stated_range(&values);
+        let mut stated: Values = stated_lists(mask, &coefficients)
+            .into_iter()
+            .map(|(name, list)| (name.to_owned(), Value::List(list)))
+            .collect();
+        stated.insert(CENTER.to_owned(), Value::Number(center));
+        stated.insert(HALF_RANGE.to_owned(), Value::Number(half));
+        let course = course(&stated, &values, &drivers).unwrap();
+        let columns = regressors(mask, &values, &drivers).columns;
+        assert_eq!(columns.len(), 4);
+        for (i, got) in course.iter().enumerate() {
+            let expected: f64 = coefficients.iter().zip(&columns).map(|(c, x)| c * x[i]).sum();
+            assert!((got - expected).abs() < 1e-12);
+        }
+        assert_eq!(initial_states(&stated, &drivers).len(), 1);
+        stated.remove(SCALES_LIST);
+        assert!(super::course(&stated, &values, &drivers).is_none());
+    }
+
+    #[test]
+    fn beyond_its_range_a_curve_goes_on_as_a_line() {
+        // P₂ = (3x² − 1)/2 has the slope 3 at 1.
+        assert!((legendre(2, 0.5) + 0.125).abs() < 1e-12 && (legendre(2, 1.5) - 2.5).abs() < 1e-12);
+        assert!((legendre(2, -1.5) - 2.5).abs() < 1e-12 && (legendre(3, -1.0) + 1.0).abs() < 1e-12);
+    }
+}
