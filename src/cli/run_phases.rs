@@ -20,7 +20,8 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let path = match args.recording.as_slice() {
         [one] if is_manifest(one) || one.extension().is_some_and(|e| e == "toml") => one,
         _ => {
-            let needed = error(Note::new("phases.needs_manifest").with("id", test.phased.identity.id.as_str()));
+            let needed =
+                error(Note::new("phases.needs_manifest").with("id", test.phased.identity.id.as_str()));
             return Err(format!("{needed}\n{}", test.phased.example_manifest()));
         }
     };

@@ -53,8 +53,10 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
         }
         Kind::Columns(_) => {
             let DeValue::Array(items) = value.toml else { return reader.wrong(value) };
-            let names =
-                items.iter().filter_map(|v| text(reader, value.with(v.get_ref(), &v.span()))).collect();
+            let names = items
+                .iter()
+                .filter_map(|v| text(reader, value.with(v.get_ref(), &v.span()), Blank::Refused))
+                .collect();
             Some(Entry::Names(names))
         }
         Kind::Quantity { unit, difference, range } => {

@@ -52,13 +52,10 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> ModelFile {
     let noise = |key: &str| number("noise", key).unwrap_or(0.0);
     let known = |key: &str| number("uncertainty", key).unwrap_or(0.0);
     let quantization_lsb_arcsec = noise("quantization_lsb_arcsec");
-    let columns = root
-        .table("recording")
-        .and_then(|t| t.names("columns"))
-        .map(|names| {
-            let beside = names.iter().filter(|n| !["time_s", "rate_deg_h"].contains(&n.as_str()));
-            beside.map(|n| Column::of_name(n)).collect::<Vec<Column>>()
-        });
+    let columns = root.table("recording").and_then(|t| t.names("columns")).map(|names| {
+        let beside = names.iter().filter(|n| !["time_s", "rate_deg_h"].contains(&n.as_str()));
+        beside.map(|n| Column::of_name(n)).collect::<Vec<Column>>()
+    });
     let temperature = number("temperature", "coefficient_deg_h_per_degC").map(|coefficient| Temperature {
         coefficient_deg_h_per_degc: coefficient,
         reference_degc: number("temperature", "reference_degC").unwrap_or(20.0),

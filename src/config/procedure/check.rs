@@ -158,8 +158,7 @@ fn nameless_instruments<'a>(procedures: impl IntoIterator<Item = &'a Loaded<Proc
         }
     }
     let list: Vec<Arg> = names.into_iter().map(|name| Arg::from(name.clone())).collect();
-    (!list.is_empty())
-        .then(|| Note::new("check.no_serial").with("names", Arg::Several(list, ", ".into())))
+    (!list.is_empty()).then(|| Note::new("check.no_serial").with("names", Arg::Several(list, ", ".into())))
 }
 
 /// What is worth knowing of a phase: what its own files say, and that no verdict can come from them.

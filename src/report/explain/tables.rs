@@ -110,7 +110,10 @@ pub(super) fn columns(all: &Explanation, words: Translator) -> Vec<ColumnRow> {
             Some(reason) => words.name("explain.columns", reason.id()),
             None => words.name("explain.columns", c.status.id()),
         },
-        limit: c.at_most_deg_h.map(|v| words.quantity(&digits(v, 2, words.lang), "deg/h")).unwrap_or_default(),
+        limit: c
+            .at_most_deg_h
+            .map(|v| words.quantity(&digits(v, 2, words.lang), "deg/h"))
+            .unwrap_or_default(),
     };
     all.columns.iter().map(row).collect()
 }

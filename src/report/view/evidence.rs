@@ -11,8 +11,7 @@ use crate::i18n::Arg;
 use crate::measurand;
 use crate::record::{
     ClauseRecord, ConditionStatus, ExcludedSpan, ExclusionRecord, InstrumentRecord, LineRecord,
-    MeasurandRecord, Message,
-    NoiseModelRecord, PowerRecord, RunRecord, WaiverRecord,
+    MeasurandRecord, Message, NoiseModelRecord, PowerRecord, RunRecord, WaiverRecord,
 };
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use crate::report::translator::{Field, Translator};

@@ -112,8 +112,7 @@ impl View {
         let words = Translator { lang };
         let mut footnotes = vec![];
         let (judged, further) = rows::rows(record, words, &mut footnotes);
-        let channels: BTreeSet<&str> =
-            record.measurands.iter().map(|m| m.channel.as_str()).collect();
+        let channels: BTreeSet<&str> = record.measurands.iter().map(|m| m.channel.as_str()).collect();
         View {
             title: record
                 .procedure

@@ -13,7 +13,8 @@ use super::tried::{SpectralDataSet, Tried};
 use super::usable::unusable;
 use crate::claim::{Claim, Stated};
 use crate::effect::{
-    Column, Detector, Drivers, Effect, JumpDetector, Model, Nuisance, OtherDriver, Param, Rows, Values, number,
+    Column, Detector, Drivers, Effect, JumpDetector, Model, Nuisance, OtherDriver, Param, Rows, Values,
+    number,
 };
 use crate::noise::model::NoiseModel;
 use crate::numeric::cosine::inverse_dct2;

@@ -283,7 +283,8 @@ fn chosen(
             };
             let laws = laws(effect, &rivals);
             let equivalents = if laws.is_empty() {
-                let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind() && c.effect.in_format());
+                let others =
+                    rivals.iter().filter(|c| c.effect.kind() != effect.kind() && c.effect.in_format());
                 others.filter(|c| near(c)).take(MOST_EQUIVALENTS).cloned().collect()
             } else {
                 laws.iter().skip(1).take(MOST_EQUIVALENTS).map(|c| (*c).clone()).collect()

@@ -194,7 +194,12 @@ mod tests {
 
     fn line(frequency_hz: f64) -> Named {
         let place = Place { domain: Domain::Frequency, from: frequency_hz, to: frequency_hz };
-        Named { effect: find("line").unwrap(), stated_as: find("line").unwrap(), places: vec![place], ..jump("line", 0.0, 0.0) }
+        Named {
+            effect: find("line").unwrap(),
+            stated_as: find("line").unwrap(),
+            places: vec![place],
+            ..jump("line", 0.0, 0.0)
+        }
     }
 
     #[test]

@@ -83,9 +83,8 @@ impl MeanModel for ColumnDriver {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        meant(nonlinear_parameters, drivers).map_or_else(Regressors::default, |m| {
-            response::regressors(m.mask, &m.driver.smooth, drivers)
-        })
+        meant(nonlinear_parameters, drivers)
+            .map_or_else(Regressors::default, |m| response::regressors(m.mask, &m.driver.smooth, drivers))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {

@@ -129,8 +129,7 @@ mod tests {
     #[test]
     fn deviations_are_scaled_by_the_value_of_the_column() {
         let values = vec![0.0, 5.0, 10.0];
-        let other =
-            OtherDriver { column: Column::of_name("humidity_pct"), smooth: values.clone(), values };
+        let other = OtherDriver { column: Column::of_name("humidity_pct"), smooth: values.clone(), values };
         let drivers = Drivers { dt_s: 1.0, samples: 3, others: vec![other], ..Drivers::default() };
         let stated = |column: &str| {
             Values::from([

@@ -2,9 +2,7 @@
 //! layers, hysteresis. The law that explains most gives the finding its name.
 
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::response::{
-    self, CENTER, COEFFICIENTS_LIST, HALF_RANGE, SCALES_LIST, TERMS_LIST,
-};
+use crate::effect::shared::response::{self, CENTER, COEFFICIENTS_LIST, HALF_RANGE, SCALES_LIST, TERMS_LIST};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values};
 use crate::numeric::range::Bounds;

@@ -52,8 +52,8 @@ pub(in crate::effect) fn follows_by_chance(
         }
     }
     let inflation = if dimensions > 0 { (power / dimensions as f64).max(1.0) } else { 1.0 };
-    let p_value = found.trials
-        * chi_square_tail(2.0 * found.gain / inflation, f64::from(found.mask.count_ones()));
+    let p_value =
+        found.trials * chi_square_tail(2.0 * found.gain / inflation, f64::from(found.mask.count_ones()));
     p_value > CHANCE
 }
 

@@ -301,10 +301,7 @@ pub(in crate::effect) fn regressors(mask: u32, values: &[f64], drivers: &Drivers
 }
 
 /// What a claim states of a response.
-pub(in crate::effect) fn stated_lists(
-    mask: u32,
-    coefficients: &[f64],
-) -> Vec<(&'static str, Vec<f64>)> {
+pub(in crate::effect) fn stated_lists(mask: u32, coefficients: &[f64]) -> Vec<(&'static str, Vec<f64>)> {
     let (terms, scales) = terms(mask).into_iter().map(Term::stated).unzip();
     vec![(TERMS_LIST, terms), (SCALES_LIST, scales), (COEFFICIENTS_LIST, coefficients.to_vec())]
 }

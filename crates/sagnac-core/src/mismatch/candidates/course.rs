@@ -166,9 +166,8 @@ pub(super) fn try_course(
         return None;
     }
     let earlier = before.hypothesis.courses.iter().filter(|c| c.effect.kind() == effect.kind());
-    let is_found = |point: &Vec<f64>| {
-        earlier.clone().any(|c| course.same_cause(&c.nonlinear_parameters, point))
-    };
+    let is_found =
+        |point: &Vec<f64>| earlier.clone().any(|c| course.same_cause(&c.nonlinear_parameters, point));
     if starts.points.iter().all(is_found) && !starts.points.is_empty() && repeated {
         return None;
     }

@@ -4,8 +4,8 @@ mod forms;
 
 use crate::effect::shared::knots::Knots;
 use crate::effect::{
-    Detector, Drivers, FlatResidual, Law, Level, LevelDetector, LevelLaw, Param, Samples, Value, Values, list,
-    number,
+    Detector, Drivers, FlatResidual, Law, Level, LevelDetector, LevelLaw, Param, Samples, Value, Values,
+    list, number,
 };
 
 pub struct NoiseVarianceTime;
