@@ -10,7 +10,7 @@ use crate::numeric::range::Bounds;
 pub struct TempResponse;
 
 static PARAMS: [Param; 2] =
-    [Param::inner(CENTER, "°C", -200.0, 300.0), Param::inner(HALF_RANGE, "°C", 1e-9, 500.0)];
+    [Param::inner(CENTER, "", -1e12, 1e12), Param::inner(HALF_RANGE, "", 1e-12, 1e12)];
 
 describe! {
     TempResponse, "temp_response", Mean in Temperature, needs [Temperature],

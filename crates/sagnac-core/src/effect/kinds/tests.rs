@@ -2,7 +2,9 @@
 //! parameters, and searches must find what is there.
 
 use super::*;
-use crate::effect::{ClaimedMean, Column, Drivers, Earth, Model, SearchContext, Temperature, Value, Values};
+use crate::effect::{
+    ClaimedMean, Column, Drivers, Earth, Model, OtherDriver, SearchContext, Temperature, Value, Values,
+};
 use crate::numeric::cosine::dct2;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -10,7 +12,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 /// Kinds of the contract, section 3, without `unknown`.
-const KINDS: [&str; 38] = [
+const KINDS: [&str; 41] = [
     "temp_linear",
     "temp_polynomial",
     "temp_rate",
@@ -46,6 +48,9 @@ const KINDS: [&str; 38] = [
     "saturation",
     "cross_axis",
     "supply_sensitivity",
+    "column_driver",
+    "noise_variance_driver",
+    "sf_driver",
     "dropped_samples",
     "time_offset",
     "clock_drift",
@@ -125,6 +130,14 @@ fn drivers() -> Drivers {
         table_angle: Some(table_angle),
         outer_rate: series(&|t| if t % 700.0 < 300.0 { 3.0 } else { -1.0 }),
         supply: series(&|t| 27.0 + 0.5 * (t / 41.0).sin()),
+        others: series(&|t| 1010.0 + 4.0 * (t / 390.0).sin() + 0.001 * t)
+            .map(|values| OtherDriver {
+                column: Column::of_name("pressure_hPa"),
+                smooth: values.clone(),
+                values,
+            })
+            .into_iter()
+            .collect(),
         claim: ClaimedMean {
             bias_deg_h: -3.0,
             temperature: Some(Temperature { coefficient_deg_h_per_degc: 0.02, reference_degc: 20.0 }),
@@ -175,6 +188,9 @@ fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "saturation" => (drivers(), vec![8.99]),
         "cross_axis" => (drivers(), vec![0.02]),
         "supply_sensitivity" => (drivers(), vec![0.05]),
+        "temp_response" => (drivers(), vec![25.0, 15.0]),
+        "column_driver" => (drivers(), vec![f64::NAN, 1010.0, 5.0]),
+        "sf_driver" => (drivers(), vec![20.0, 27.0]),
         "time_offset" => (drivers(), vec![3.21]),
         "clock_drift" => (drivers(), vec![-870.0]),
         "column_product" => (drivers(), vec![0.0, 25.0, 15.0, 27.0, 0.5]),
@@ -195,9 +211,21 @@ fn true_values(effect: &dyn Effect, numbers: &[f64]) -> Values {
         "temp_polynomial" => vec![("coefficients_deg_h", vec![0.01, 0.05, -0.03])],
         "column_product" => vec![("coefficients_deg_h", vec![0.03, 0.0, 0.01])],
         "column_curve" => vec![("coefficients_deg_h", vec![0.01, 0.03])],
+        // A curve, a delay and a play at once.
+        "temp_response" | "column_driver" => vec![
+            ("terms", vec![1.0, 2.0, 12.0, 13.0]),
+            ("scales", vec![0.0, 0.0, 375.0, 0.2]),
+            ("coefficients_deg_h", vec![0.02, -0.03, 0.04, 0.02]),
+        ],
         _ => vec![],
     };
-    values(effect, numbers, lists)
+    let column = match effect.kind() {
+        "column_driver" => Some("pressure_hPa"),
+        "sf_driver" => Some("supply_v"),
+        _ => None,
+    };
+    let texts = column.map(|name| ("column".to_owned(), Value::Text(name.to_owned())));
+    values(effect, numbers, lists).into_iter().chain(texts).collect()
 }
 
 /// Gain that the truth itself would have.
@@ -253,7 +281,10 @@ fn courses_come_back_from_their_parameters_and_searches_find_them() {
             let numbers = course.parameters(nonlinear_parameters, &coefficients, &drivers);
             assert_eq!(numbers.len(), effect.params().len(), "{kind}");
             let lists = course.lists(nonlinear_parameters, &coefficients, &drivers);
-            let again = course.course(&values(*effect, &numbers, lists), &drivers).unwrap();
+            let texts = course.texts(nonlinear_parameters, &drivers).into_iter();
+            let texts = texts.map(|(name, text)| (name.to_owned(), Value::Text(text)));
+            let stated = values(*effect, &numbers, lists).into_iter().chain(texts).collect();
+            let again = course.course(&stated, &drivers).unwrap();
             let size = fitted.iter().map(|x| x.abs()).fold(1e-12, f64::max);
             let apart = fitted.iter().zip(&again).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(apart < 1e-9 * size, "{kind}: {apart} of {size}");
@@ -281,6 +312,7 @@ fn nothing_applies_without_its_columns_and_nothing_breaks() {
         table_angle: Some(vec![30.0; 6000]),
         outer_rate: Some(vec![0.0; 6000]),
         supply: Some(vec![27.0; 6000]),
+        others: vec![],
         ..drivers()
     };
     let nothing = Drivers { dt_s: 1.0, ..Drivers::default() };

@@ -449,7 +449,8 @@ mod tests {
     fn a_stated_response_has_the_course_that_was_fitted() {
         let values = swing(500);
         let drivers = drivers(500);
-        let mask = 0b10_0100_0100_0001;
+        // First order, rate, the delay of 940 s, the second play.
+        let mask = 0b1_0000_0100_0100_0001;
         let coefficients = [0.5, -0.2, 0.3, 1.5];
         let [center, half] = stated_range(&values);
         let mut stated: Values = stated_lists(mask, &coefficients)

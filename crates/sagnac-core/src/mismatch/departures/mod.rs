@@ -8,6 +8,7 @@ mod columns;
 mod departure;
 mod lags;
 mod tiles;
+mod tracks;
 
 pub use departure::{Departure, White};
 
@@ -74,6 +75,7 @@ pub fn all(
     out.extend(levels(spectral, &white));
     out.extend(lags::all(spectral, &white));
     out.extend(tiles::all(spectral, &white.modes));
+    out.extend(tracks::all(spectral, &white));
     out.extend(
         off_lattice(spectral, &white, spectra.grid_step_arcsec)
             .and_then(|values| tails(spectral, &values, usable)),
