@@ -48,6 +48,9 @@ pub const KINDS: &[(&str, &[(&str, &str)])] = &[
     ("saturation", &[("limit_deg_s", "deg/s"), RMS]),
     ("cross_axis", &[("misalignment_mrad", "mrad"), RMS]),
     ("supply_sensitivity", &[("coefficient_deg_h_per_V", "deg/h/V"), RMS]),
+    ("column_driver", &[("coefficient", ""), RMS]),
+    ("noise_variance_driver", &[("ratio", "")]),
+    ("sf_driver", &[("coefficient_ppm", "ppm"), RMS]),
     ("dropped_samples", &[("missing_rows", "")]),
     ("time_offset", &[("lag_s", "s"), RMS]),
     ("clock_drift", &[("drift_ppm", "ppm"), RMS]),
@@ -84,12 +87,13 @@ pub fn place(domain: &str, from: f64, to: f64) -> PlaceRecord {
 /// A finding of a kind with all its parameters.
 pub fn of_kind(kind: &str) -> Finding {
     let listed = KINDS.iter().find(|k| k.0 == kind).map_or(&[][..], |k| k.1);
+    let follows_any = ["column_driver", "noise_variance_driver", "sf_driver"].contains(&kind);
     Finding {
         kind: kind.into(),
         effect: None,
-        column: None,
+        column: follows_any.then(|| "pressure_hPa".into()),
         column2: None,
-        law: None,
+        law: (kind == "column_driver").then(|| "lag".into()),
         equivalents: vec![],
         parameters: listed
             .iter()
