@@ -180,6 +180,7 @@ fn whatever_an_effect_was_fitted_to_its_claim_is_read_again() {
                 match values.get(p.name) {
                     Some(Value::Number(v)) => assert!((p.lower..=p.upper).contains(v), "{} {v}", p.name),
                     Some(Value::List(list)) => assert!(list.iter().all(|v| (p.lower..=p.upper).contains(v))),
+                    Some(Value::Text(text)) => panic!("{}: a text for a number, {text}", p.name),
                     None => assert!(odd.is_nan(), "{} {odd}", p.name),
                 }
             }
