@@ -27,7 +27,7 @@ pub struct InitArgs {
     recording: PathBuf,
     #[command(flatten)]
     columns: ColumnArgs,
-    /// Folder for the files; a file that is there is not replaced
+    /// Folder for the files; existing files are not replaced
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
 }
