@@ -70,7 +70,7 @@ enum Verb {
     /// Show what a recording contains and which tests it supports
     #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]
     Inspect(inspect::InspectArgs),
-    /// Write a procedure, limits and a CI example from what a recording holds
+    /// Write a procedure, limits and a CI example for a recording
     #[command(after_help = "Example:\n  sagnac init unit-0042.csv --out acceptance")]
     Init(init::InitArgs),
     /// Analyse the noise of a recording without a procedure
