@@ -310,7 +310,7 @@ fn a_serial_number_that_is_not_one_units_own_is_refused_by_name() {
     refused(
         dir.path(),
         &run(&["lot/x*.csv", "--serial-from", "unit-{serial}"]),
-        &["lot/x4.csv", "2 more of the kind"],
+        &["lot/x4.csv", "2 more like this"],
     );
     refused(dir.path(), &run(&["lot/b.csv", "--serial", "1"]), &["--serial", "--each"]);
     refused(dir.path(), &run(&["lot/b.csv", "--join"]), &["--join", "--each"]);

@@ -1,8 +1,10 @@
 //! The tutorial, carried out as it is written: every command, every output.
 
+#![cfg(unix)]
+
 mod support;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use support::{program, root};
 
 /// A block of the page: its language and its lines.
@@ -32,19 +34,24 @@ fn blocks(page: &str) -> Vec<Block> {
     out
 }
 
-fn standard_output(folder: &Path, command: &str) -> String {
-    let mut words = command.split_whitespace();
-    assert_eq!(words.next(), Some("sagnac"), "{command}");
-    let done = assert_cmd::Command::new(program())
+/// What a command prints: standard output, and where it could not do its work the error.
+fn printed(folder: &Path, command: &str) -> String {
+    let program = PathBuf::from(program());
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let places = program.parent().map(PathBuf::from).into_iter().chain(std::env::split_paths(&path));
+    let done = assert_cmd::Command::new("sh")
         .current_dir(folder)
-        .args(words)
+        .args(["-c", command])
+        .env("PATH", std::env::join_paths(places).unwrap())
         .env("LANG", "C.UTF-8")
         .env_remove("LC_ALL")
         .output()
         .unwrap();
-    assert_eq!(String::from_utf8_lossy(&done.stderr), "", "{command}");
+    let error = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code() == Some(2), error.contains("error: "), "{command}: {error}");
+    let text = String::from_utf8(done.stdout).unwrap() + &error;
     // Numbers and units are kept together by spaces of their own.
-    String::from_utf8(done.stdout).unwrap().replace(['\u{a0}', '\u{202f}', '\u{2009}'], " ")
+    text.replace(['\u{a0}', '\u{202f}', '\u{2009}'], " ")
 }
 
 #[test]
@@ -58,7 +65,7 @@ fn every_command_gives_the_output_on_the_page() {
     let (mut last, mut compared) = (String::new(), 0);
     for block in blocks(&page) {
         match block.language.as_str() {
-            "sh" => block.text.lines().for_each(|command| last = standard_output(folder.path(), command)),
+            "sh" => last = printed(folder.path(), &block.text),
             "text" => {
                 assert!(last.contains(&block.text), "on the page:\n{}\nprinted:\n{last}", block.text);
                 compared += 1;
@@ -66,7 +73,7 @@ fn every_command_gives_the_output_on_the_page() {
             other => panic!("a block of `{other}`"),
         }
     }
-    assert_eq!(compared, 7);
+    assert_eq!(compared, 11);
     let report = std::fs::read_to_string(folder.path().join("report/report.md")).unwrap();
     for value in ["0.1186", "10.64 °/h", "0.001994", "| 0.0043 | 0.0028 … 0.0058 |", "0.0133 °/h"] {
         assert!(report.contains(value), "{value} is not in the report");

@@ -12,7 +12,7 @@ use super::read::ReadArgs;
 use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::model::Procedure;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Note};
 use crate::ingest::{ReadOptions, open_recording};
 use crate::output::Kind;
 use crate::record::{RunKind, UnitUnderTest};
@@ -74,7 +74,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let (source, manifest) = (recording.source, recording.manifest);
     let channels = channels(&args.columns, named(args), &source).map_err(say)?;
     for note in unit_contradictions(&channels, &source) {
-        progress.beside(|| place::eprint_diagnostic(&format!("{}\n", note.say(lang))));
+        progress.beside(|| place::eprint_diagnostic(&place::warning(&note, lang)));
     }
     let use_stamps = channels.iter().any(|c| c.role == Role::Time);
     let declared = args.columns.sample_rate;

@@ -40,7 +40,7 @@ pub struct ExplainArgs {
     /// Probability of calling a correct claim a mismatch [default: 0.01]
     #[arg(long, value_name = "PROBABILITY")]
     alpha: Option<f64>,
-    /// Column to treat as not recorded, by its standard name (temp_degC); may be repeated
+    /// Column to treat as not recorded, by its standard name (temp_degC) or, if it has none, its own; may be repeated
     #[arg(long, value_name = "COLUMN")]
     hide: Vec<String>,
     /// Maximum number of effects to add to the claim [default: 3]

@@ -8,6 +8,7 @@ use super::{exit, place};
 use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::i18n::{Lang, Localize, Note};
+use crate::ingest::lot::stated_serial;
 use crate::ingest::{ReadOptions, Source, open_recording};
 use crate::measurand::{
     ANGLE_RANDOM_WALK, BIAS_INSTABILITY, QUANTIZATION, RATE_RAMP, RATE_RANDOM_WALK, RUSSIAN_ARW_10S,
@@ -27,7 +28,7 @@ pub struct InitArgs {
     recording: PathBuf,
     #[command(flatten)]
     columns: ColumnArgs,
-    /// Folder for the files; a file that is there is not replaced
+    /// Folder for the files; existing files are not replaced
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
 }
@@ -70,7 +71,8 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
         .with("procedure", shown[0].as_str())
         .with("limits", shown[1].as_str())
         .with("ci", shown[2].as_str())
-        .with("recording", place::for_shell(&args.recording.display().to_string()));
+        .with("recording", place::for_shell(&args.recording.display().to_string()))
+        .with("serial", place::for_shell(&serial_of(&source)));
     place::print(&format!("{}\n", note.say(lang)));
     Ok(exit::PASS)
 }
@@ -143,6 +145,8 @@ fn written(
             unit => toml_text(c.unit.text()),
         }).collect::<Vec<_>>(),
         unused => unused(channels, source),
+        serial => one_line(&serial_of(source)),
+        serial_text => toml_text(&serial_of(source)),
         sample_rate => sample_rate_hz.map(|hz| toml_text(&format!("{hz} Hz"))),
         duration => duration(usable_s, Lang::En),
         minimum_duration => toml_text(&minimum_duration(usable_s)),
@@ -206,6 +210,11 @@ fn unused(channels: &[Channel], source: &Source) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
+/// The serial number that the recording states, or else an example.
+fn serial_of(source: &Source) -> String {
+    stated_serial(source).unwrap_or_else(|| "SN-0001".to_owned())
+}
+
 /// A text for a comment: nothing in it ends the line.
 fn one_line(text: &str) -> String {
     crate::i18n::visible(text).into_owned()
@@ -231,7 +240,8 @@ fn ids_of(channels: &[Channel]) -> Vec<String> {
 fn id_of(text: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' };
     let id: String = text.chars().map(safe).collect();
-    let id: String = id.trim_start_matches(['_', '-', '.']).chars().take(64).collect();
+    let parts: Vec<&str> = id.split('_').filter(|part| !part.is_empty()).collect();
+    let id: String = parts.join("_").trim_start_matches(['-', '.']).chars().take(64).collect();
     if id.is_empty() { "unit".to_owned() } else { id }
 }
 
@@ -249,7 +259,7 @@ mod tests {
     #[test]
     fn any_text_gives_an_id() {
         assert_eq!(id_of("odd name"), "odd_name");
-        assert_eq!(id_of("_Ωz [deg/h]"), "z__deg_h_");
+        assert_eq!(id_of("_Ωz [deg/h]"), "z_deg_h");
         assert_eq!(id_of("Ω"), "unit");
         assert_eq!(id_of(&"a".repeat(100)).len(), 64);
     }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Whether several files are one recording.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub struct JoinArgs {
-    /// Read several files, or those of a pattern, in sequence as one recording
+    /// Read several files, or all that match a pattern, in sequence as one recording
     #[arg(long)]
     pub join: bool,
 }

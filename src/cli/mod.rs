@@ -59,7 +59,7 @@ struct Cli {
 enum Verb {
     /// Run a test procedure on a recording and write the acceptance report
     #[command(
-        after_help = "Example:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
+        after_help = "Examples:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
         --serial SN-0042 --operator \"A. Ivanova\" --out reports/SN-0042\n  \
         sagnac run static-bias 'lot-7/*.csv' --each --limits sample-unit --out reports/lot-7"
     )]
@@ -70,7 +70,7 @@ enum Verb {
     /// Show what a recording contains and which tests it supports
     #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]
     Inspect(inspect::InspectArgs),
-    /// Write a procedure, limits and a CI example from what a recording holds
+    /// Write a procedure, limits and a CI example for a recording
     #[command(after_help = "Example:\n  sagnac init unit-0042.csv --out acceptance")]
     Init(init::InitArgs),
     /// Analyse the noise of a recording without a procedure
@@ -105,12 +105,12 @@ enum Verb {
         sagnac explain recording.csv --simulation simulated.csv --hide temp_degC"
     )]
     Explain(explain::ExplainArgs),
-    /// List the procedures and limits that the program carries, print or save them
+    /// List, print or save the shipped procedures and limits
     #[command(
         after_help = "Examples:\n  sagnac procedures\n  sagnac procedures show static-bias > mine.toml"
     )]
     Procedures(procedures::ProceduresArgs),
-    /// Run a static test on a sample recording that the program carries
+    /// Run a static test on an embedded sample recording
     #[command(after_help = "Example:\n  sagnac demo --out sagnac-demo")]
     Demo(demo::DemoArgs),
     /// Print the completion script of a shell

@@ -50,7 +50,7 @@ pub struct OutputArgs {
         conflicts_with = "quiet"
     )]
     pub format: PrintFormat,
-    /// Print nothing but errors and the place of the report
+    /// Print only errors and the path of the report
     #[arg(long, short)]
     pub quiet: bool,
 }

@@ -21,7 +21,7 @@ enum What {
     },
     /// Write all shipped procedures and limits into a folder
     Save {
-        /// Folder, which is created; a file that is there is not replaced
+        /// Folder to create; existing files are not replaced
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },

@@ -41,13 +41,13 @@ pub struct RunArgs {
 /// Units instead of one recording.
 #[derive(Debug, Default, Args)]
 pub struct EachArgs {
-    /// Test every file, or every file of a pattern, as a unit of its own, and write an index over all
+    /// Test every file as a separate unit, and write an index of the lot
     #[arg(long, conflicts_with = "join")]
     pub each: bool,
-    /// Take serial numbers from file names: a name with {serial} in it, such as 'unit-{serial}_*', or {stem}
+    /// Take serial numbers from the file names, by a pattern such as 'unit-{serial}_*', or {stem} for the whole name
     #[arg(long, value_name = "PATTERN", requires = "each")]
     pub serial_from: Option<String>,
-    /// Units tested at the same time [default: as many as there are cores]
+    /// Number of units tested in parallel [default: number of cores]
     #[arg(long, value_name = "COUNT", requires = "each")]
     pub jobs: Option<NonZeroUsize>,
 }

@@ -1,7 +1,7 @@
 //! A lot: recordings that are units of their own, each with its serial number.
 
 use super::serial::{SerialPattern, plain, stem};
-use super::{ReadOptions, RecordingError, each_of, open_recording};
+use super::{ReadOptions, RecordingError, Source, each_of, open_recording};
 use crate::config::manifest;
 use crate::i18n::Note;
 use crate::record::SerialSource;
@@ -100,12 +100,18 @@ fn stated(recording: &Path, options: &ReadOptions) -> (String, SerialSource) {
     if let Some(serial) = of_manifest() {
         return (serial, SerialSource::Manifest);
     }
-    let numbers: Vec<&str> = opened.as_ref().map(|o| o.source.stated_serials()).unwrap_or_default();
-    let different: BTreeSet<String> = numbers.iter().map(|s| plain(s)).filter(|s| !s.is_empty()).collect();
-    match (different.len(), numbers.iter().find(|s| !plain(s).is_empty())) {
-        (1, Some(serial)) => (serial.trim().to_owned(), SerialSource::Recording),
-        _ => (stem(recording), SerialSource::FileName),
+    match opened.and_then(|o| stated_serial(&o.source)) {
+        Some(serial) => (serial, SerialSource::Recording),
+        None => (stem(recording), SerialSource::FileName),
     }
+}
+
+/// The serial number that a recording states in its header or metadata; `None` where it states none, or several.
+pub fn stated_serial(source: &Source) -> Option<String> {
+    let numbers = source.stated_serials();
+    let different: BTreeSet<String> = numbers.iter().map(|s| plain(s)).filter(|s| !s.is_empty()).collect();
+    let stated = numbers.iter().find(|s| !plain(s).is_empty()).filter(|_| different.len() == 1)?;
+    Some(stated.trim().to_owned())
 }
 
 /// What tells one serial number from another.

@@ -3,10 +3,11 @@
 use super::options::{SeriesError, SeriesOptions};
 use crate::effect::Column;
 use crate::i18n::Note;
-use crate::ingest::Source;
+use crate::ingest::{IngestErrorKind, Source};
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::{Affine, Unit};
 use sagnac_core::series::ReadFrom;
+use std::ops::ControlFlow;
 
 /// The channels that are read, and what each is.
 pub(super) struct SeriesChannels {
@@ -95,7 +96,7 @@ fn others(source: &Source, chosen: &mut SeriesChannels) {
     for (i, column) in source.columns().iter().enumerate() {
         let guess = column.inferred();
         let is_driver = !matches!(guess.role, Role::Time | Role::Counter) && !guess.role.is_gyro();
-        if !column.numeric || !is_driver || chosen.has(i) {
+        if !column.numeric || !is_driver || chosen.has(i) || !holds_numbers(source, i) {
             continue;
         }
         let column = Column::of_name(&column.name);
@@ -105,6 +106,13 @@ fn others(source: &Source, chosen: &mut SeriesChannels) {
         let slot = chosen.take(column.name(), i, source, Role::Auxiliary, guess.unit);
         chosen.further.push(FurtherColumn { column, slot, conversion: Affine::IDENTITY });
     }
+}
+
+/// False for a column of words, such as a status: a text file does not say which of its columns are numbers, so its first
+/// rows are read. Other errors are those of the reading that follows.
+fn holds_numbers(source: &Source, index: usize) -> bool {
+    let first_block = source.read(&[index], &mut |_| ControlFlow::Break(()));
+    !first_block.is_err_and(|e| e.kind() == IngestErrorKind::NotNumeric)
 }
 
 /// The columns that a procedure declares: its stamps, its first gyro channel, and the first of each further quantity.

@@ -50,6 +50,18 @@ fn the_columns_of_the_contract_arrive_in_their_units_to_the_bit() {
 }
 
 #[test]
+fn a_column_of_words_is_no_driver() {
+    let mut text = String::from("Time [s];Omega_Z [deg/h];Status;Pressure [hPa]\n");
+    for i in 0..300 {
+        let _ = writeln!(text, "{i};{},5;OK;{},25", 3 + i % 7, 1000 + i % 11);
+    }
+    let s = read(&text, &SeriesOptions::default()).unwrap();
+    let names: Vec<&str> = s.columns.keys().map(|c| c.name()).collect();
+    assert_eq!(names, ["Pressure [hPa]"]);
+    assert_eq!(s.rate_deg_h[1], 4.5);
+}
+
+#[test]
 fn rows_that_are_left_out_are_counted_and_gaps_keep_their_places() {
     let text = contract(500, |i, l| match i {
         40 => Some(format!("{},nan,20,0,0,0,5", 4.0)),

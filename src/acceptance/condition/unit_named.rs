@@ -28,7 +28,7 @@ impl Condition for UnitNamed {
         };
         let note =
             Note::new(key).with("stated", format!("`{stated}`")).with("given", given.unwrap_or_default());
-        let required = Note::new("unit_named.required").with("serial", given.unwrap_or("–"));
-        vec![record("unit_named", status, &[], Some(required), note)]
+        let required = given.map(|given| Note::new("unit_named.required").with("serial", given));
+        vec![record("unit_named", status, &[], required, note)]
     }
 }

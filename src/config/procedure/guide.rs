@@ -88,8 +88,8 @@ fn tables(spec: &'static TableSpec, list: bool) -> Vec<(&'static TableSpec, bool
 
 fn value(key: &KeySpec) -> String {
     let what = match key.kind {
-        Kind::Choice(_) => "one of the words beside".to_owned(),
-        Kind::Choices(_) => "a list of the words beside".to_owned(),
+        Kind::Choice(_) => "one of the words listed".to_owned(),
+        Kind::Choices(_) => "a list of the words listed".to_owned(),
         Kind::Columns(_) => "a list of names of columns".to_owned(),
         kind => kind.describe().say(Lang::En),
     };
