@@ -101,6 +101,7 @@ fn a_run_on_a_changing_recording_leaves_a_whole_result() {
     let path = dir.path().join("r.csv");
     let sound = recording(ROWS);
     let mut endings = [0; 4];
+    let mut earlier = None;
     for round in 0..12u64 {
         std::fs::write(&path, &sound).unwrap();
         let mut child = Command::new(program())
@@ -128,6 +129,11 @@ fn a_run_on_a_changing_recording_leaves_a_whole_result() {
         let out = dir.path().join("out");
         if out.exists() {
             let r = result(&out);
+            // A recording that went before it was opened costs no earlier result.
+            if earlier.as_ref() == Some(&r) {
+                continue;
+            }
+            earlier = Some(r.clone());
             let shown = names(&out);
             assert!(["report.html", "report.md", "result.json"].iter().all(|n| shown.iter().any(|s| s == n)));
             if r["verdict"] == "error" {

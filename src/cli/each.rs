@@ -108,7 +108,7 @@ impl UnitTest for PhasedUnits<'_> {
             serial(given(member), Some(&manifest)).map(|serial| (manifest, serial))
         });
         match checked {
-            Ok((manifest, serial)) => self.test.evaluate(&manifest, serial, progress),
+            Ok((manifest, serial)) => self.test.evaluate(&manifest, serial, progress).results,
             Err(why) => self.test.not_run(why, Some(member.serial.clone())),
         }
     }

@@ -86,19 +86,22 @@ impl<'a> PhasedTest<'a> {
         manifest: &Manifest,
         serial: Option<String>,
         progress: &mut Progress,
-    ) -> RunResults {
+    ) -> PhasesEvaluated {
         let unit = self.unit(serial);
         let mut done: Vec<Done<'_>> = Vec::new();
         let mut who = None;
+        let mut explained = vec![];
         for (phase, limits) in self.phased.phases.iter().zip(&self.limits) {
             let files = files(phase, manifest);
-            let outcome = (!files.is_empty())
-                .then(|| self.run(phase, limits, manifest, &files, (&unit, &mut who), progress));
+            let outcome = (!files.is_empty()).then(|| {
+                self.run(phase, limits, manifest, &files, (&unit, &mut who, &mut explained), progress)
+            });
             done.push(Done { phase, outcome });
         }
         let record = combine(&self.phased, &done, unit, who.unwrap_or_default());
         let phases = done.into_iter().map(|d| d.outcome).collect();
-        RunResults { outcome: Outcome { record, figures: vec![], tables: vec![] }, phases, explanation: None }
+        let outcome = Outcome { record, figures: vec![], tables: vec![] };
+        PhasesEvaluated { results: RunResults { outcome, phases, explanation: None }, explained }
     }
 
     /// The results where no phase could be run, with the reason.
@@ -128,14 +131,15 @@ impl<'a> PhasedTest<'a> {
         }
     }
 
-    /// Runs one phase on its files; `who` is told who evaluates, by the first.
+    /// Runs one phase on its files; `who` gets who evaluates, by the first, and `explained` the phase whose missing columns were
+    /// printed.
     fn run(
         &self,
         phase: &Phase,
         limits: &EffectiveLimits,
         manifest: &Manifest,
         files: &[ManifestFile],
-        (unit, who): (&UnitUnderTest, &mut Option<Session>),
+        (unit, who, explained): (&UnitUnderTest, &mut Option<Session>, &mut Vec<String>),
         progress: &mut Progress,
     ) -> Outcome {
         let options = manifest.options_over(&phase.procedure.value.recording.read);
@@ -161,11 +165,21 @@ impl<'a> PhasedTest<'a> {
         who.get_or_insert_with(|| session(&request));
         let lang = progress.lang();
         let label = format!("{}: {}", phase.title.say(lang), Note::new("cli.reading").say(lang));
-        match refused.or_else(|| missing_column(phase, &source, progress)) {
+        let missing = if refused.is_none() { missing_column(phase, &source, progress) } else { None };
+        explained.extend(missing.as_ref().map(|_| phase.id.clone()));
+        match refused.or(missing) {
             Some(e) => not_run(&request, &e.into()),
             None => with_progress(&request, &label, progress).unwrap_or_else(|e| not_run(&request, &e)),
         }
     }
+}
+
+/// What came of all phases.
+pub struct PhasesEvaluated {
+    /// Record, figures and tables.
+    pub results: RunResults,
+    /// Ids of the phases whose failure was printed with all its reasons.
+    pub explained: Vec<String>,
 }
 
 /// The first column that the recording of a phase lacks; all of them are printed.

@@ -2,7 +2,7 @@
 
 use super::finish::finish;
 use super::inputs::serial;
-use super::phased_test::{PhasedTest, belong};
+use super::phased_test::{PhasedTest, PhasesEvaluated, belong};
 use super::place;
 use super::printer::Printer;
 use super::run_args::RunArgs;
@@ -35,8 +35,8 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let mut progress = printer.progress();
     progress.stage("progress.inputs");
     let folder = test.inputs(&args.recording, args.serial.as_deref()).begin(&out, Kind::Result, lang)?;
-    let results = test.evaluate(&manifest, serial, &mut progress);
-    for phase in &results.outcome.record.phases {
+    let PhasesEvaluated { results, explained } = test.evaluate(&manifest, serial, &mut progress);
+    for phase in results.outcome.record.phases.iter().filter(|p| !explained.contains(&p.id)) {
         if let Some(why) = failure(phase) {
             let note = Note::new("phases.error").with("title", phase.title.clone()).with("why", why.clone());
             progress.beside(|| place::eprint_diagnostic(&place::error(&note, lang)));

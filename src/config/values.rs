@@ -51,12 +51,23 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
                 .collect();
             Some(Entry::Words(found))
         }
-        Kind::Columns(_) => {
+        Kind::Columns(words) => {
             let DeValue::Array(items) = value.toml else { return reader.wrong(value) };
-            let names = items
-                .iter()
-                .filter_map(|v| text(reader, value.with(v.get_ref(), &v.span()), Blank::Refused))
-                .collect();
+            // A name that is a known one but for its case is a slip, and no other column.
+            let slip = |name: &str| {
+                words.iter().any(|(known, _)| *known != name && known.eq_ignore_ascii_case(name))
+            };
+            let mut names = vec![];
+            for item in items {
+                let span = item.span();
+                let item = value.with(item.get_ref(), &span);
+                let Some(name) = text(reader, item, Blank::Refused) else { continue };
+                if slip(&name) {
+                    word(reader, item, words);
+                } else {
+                    names.push(name);
+                }
+            }
             Some(Entry::Names(names))
         }
         Kind::Quantity { unit, difference, range } => {
