@@ -26,6 +26,8 @@ mod spectral_line;
 pub mod static_bias;
 mod table_harmonics;
 mod temperature;
+#[cfg(test)]
+mod test_evidence;
 mod warm_up;
 
 use crate::rate_table::design::Extra;
