@@ -147,10 +147,7 @@ mod tests {
         let with_more = [
             Composite { lines: vec![line], ..white.clone() },
             Composite { markov: vec![process], ..white.clone() },
-            Composite {
-                quasi_periodic: vec![Damped { frequency_hz: 0.02, ..process }],
-                ..white.clone()
-            },
+            Composite { quasi_periodic: vec![Damped { frequency_hz: 0.02, ..process }], ..white.clone() },
         ];
         let mut gyro = with(&[]);
         gyro.identification.described.model = white;

@@ -42,8 +42,10 @@ mod tests {
 
     #[test]
     fn turns_about_another_axis_are_rows_named_by_both() {
-        let turns = Turns { table: vec![turned("x", "x", 1.0), turned("x", "y", -4e-4), turned("y", "x", 5e-4)] };
-        let rows = CROSS_AXIS.evaluate_known_input(&KnownInputEvidence { positions: &[], turns: Some(&turns) });
+        let turns =
+            Turns { table: vec![turned("x", "x", 1.0), turned("x", "y", -4e-4), turned("y", "x", 5e-4)] };
+        let rows =
+            CROSS_AXIS.evaluate_known_input(&KnownInputEvidence { positions: &[], turns: Some(&turns) });
         assert_eq!(rows.iter().map(|r| r.channel.as_str()).collect::<Vec<_>>(), ["x<-y", "y<-x"]);
         shows(&rows[0], -4e-4, "known_angles");
         assert_eq!(told(&rows[0], "known.turns", "axis"), &Arg::Text("y".into()));

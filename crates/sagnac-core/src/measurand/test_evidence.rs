@@ -12,6 +12,7 @@ use crate::rate_table::design::Extra;
 use crate::rate_table::scale_factor::{self, ScaleFactor};
 use crate::rate_table::steps::{Part, Step, Steps};
 use crate::rate_table::{Setup, TableRun};
+use crate::temperature::TemperatureTest;
 use nalgebra::{DMatrix, DVector};
 
 /// A gyro of which nothing was recorded, at a sample interval of 0.5 s: tests put in what they need.
@@ -33,7 +34,15 @@ pub fn point(m: u64, deviation: f64, edf: f64) -> BoundedPoint {
 
 /// Window means, as they are stated.
 pub fn windows(window_s: f64, samples: u64, n: u64, standard_deviation: f64) -> WindowStatistics {
-    WindowStatistics { window_s, samples, n, mean: 0.0, standard_deviation, means: None, per_stretch: vec![n] }
+    WindowStatistics {
+        window_s,
+        samples,
+        n,
+        mean: 0.0,
+        standard_deviation,
+        means: None,
+        per_stretch: vec![n],
+    }
 }
 
 /// A combination of many degrees of freedom.
@@ -94,7 +103,12 @@ pub fn steps(rates: &[f64], outputs: &[f64], cycle: usize) -> Steps {
 ///
 /// The means of the levels about the slope, and the coefficients of extras behind them, are those given, with their
 /// covariance; factor, bias, residuals of the levels and full scale are for the test to set.
-pub fn line(rates: &[f64], means: &[f64], extras: &[Extra], covariance: DMatrix<f64>) -> (Steps, ScaleFactor) {
+pub fn line(
+    rates: &[f64],
+    means: &[f64],
+    extras: &[Extra],
+    covariance: DMatrix<f64>,
+) -> (Steps, ScaleFactor) {
     let steps = steps(rates, rates, rates.len());
     let mut run = TableRun { steps: steps.clone(), ..TableRun::default() };
     run.blocks.gyros = vec!["g".into()];
@@ -102,6 +116,31 @@ pub fn line(rates: &[f64], means: &[f64], extras: &[Extra], covariance: DMatrix<
     line.response.fit = fitted(means, covariance);
     line.response.extras = extras.to_vec();
     (steps, line)
+}
+
+/// A test over temperature from −40 to 60 degC.
+pub fn asked() -> TemperatureTest {
+    TemperatureTest {
+        channel: String::new(),
+        command: None,
+        low_deg_c: -40.0,
+        high_deg_c: 60.0,
+        end_tolerance_deg_c: 1.0,
+        overshoot_deg_c: None,
+        ramp_rate_deg_c_h: None,
+        ramp_rate_tolerance: 0.1,
+        slowest_deg_c_h: 1.0,
+        fastest_deg_c_h: 100.0,
+        dwell_s: None,
+        dwell_drift_deg_c_h: 1.0,
+        ramps_each_way: 1,
+        sensor_uncertainty_deg_c: 0.1,
+        coverage_factor: 2.0,
+        zones_deg_c: vec![],
+        residual_average_s: 100.0,
+        highest_order: 3,
+        segments: vec![],
+    }
 }
 
 /// A diagonal covariance.
