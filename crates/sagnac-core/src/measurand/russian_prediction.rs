@@ -296,6 +296,20 @@ mod tests {
     }
 
     #[test]
+    fn a_walk_in_the_description_counts_at_the_length_of_the_windows() {
+        // E gains K² n τ/6 (τ in h) of 360 windows of 10 s, which the fit of N shares nothing of.
+        let (u, k) = (0.01 * N, 0.05);
+        let mut gyro = with(u);
+        gyro.identification.described.model.terms.k = k;
+        let described = &gyro.identification.described;
+        let scatter = 2.0 / WindowPrediction::of(described, 10.0, 360, 0.5).unwrap().scatter_dof;
+        let expected = 360.0 * N * N + k * k * 360.0 * 10.0 / 3600.0 / 6.0;
+        let relative = scatter + 4.0 * u * u / (N * N) - 4.0 * 720.0 * N * u * u / (N * expected);
+        let found = row(&RATIO_RUSSIAN_TO_ALLAN_ARW, &gyro);
+        within(chi_square(&found), 2.0 / relative, 1e-5);
+    }
+
+    #[test]
     fn a_ratio_to_n_needs_both_sides() {
         let mut gyro = with(0.01 * N);
         gyro.identification.angle_random_walk.value = None;

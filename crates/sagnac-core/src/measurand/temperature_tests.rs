@@ -295,6 +295,16 @@ fn where_no_lag_explains_the_record_too_the_value_is_that_without_one() {
 }
 
 #[test]
+fn a_lag_of_a_block_or_two_is_shown_where_it_is_told() {
+    // 20 s to 5 s: 0.5 % of its distribution lie below 7 s, which is less than a block and more than none.
+    let mut a = analysis();
+    a.posterior.lags = vec![profile((0.0, 31), (20.0, 5.0), 0.0)];
+    let found = row(&THERMAL_LAG, &a);
+    within(found.value.unwrap(), 20.0, 0.01);
+    assert_eq!(notes(&found), ["thermal.separation"]);
+}
+
+#[test]
 fn a_value_without_a_lag_stays_within_its_interval() {
     let mut a = analysis();
     // The shortest lag says 0.3, all that explain the record nearly 4 more.

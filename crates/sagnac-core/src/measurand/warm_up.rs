@@ -89,7 +89,8 @@ fn time(m: &Measurand, found: &WarmUpFindings, channel: &str) -> Estimate {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_evidence::{near, notes, number, shows, told, withholds};
+    use super::super::Options;
+    use super::super::test_evidence::{gyro, near, notes, number, shows, told, withholds};
     use super::*;
     use crate::estimate::Spread;
     use crate::temperature::read::Reading;
@@ -149,6 +150,11 @@ mod tests {
             let constants = Arg::Several(vec![Arg::figures(1.5, 3), Arg::figures(10.0, 3)], "; ".into());
             assert_eq!(told(row, "thermal.transient", "constants"), &constants);
         }
+        // A gyro at rest has the row where its warm-up was asked for.
+        let (mut gyro, options) = (gyro(), Options { remove_earth_rate: false });
+        assert!(WARM_UP_TIME.evaluate_gyro(&gyro, &options).is_empty());
+        gyro.warm_up = Some(found.clone());
+        assert_eq!(WARM_UP_TIME.evaluate_gyro(&gyro, &options), [time]);
         let declared = WarmUpFindings { start: Start::Declared, ..found };
         assert_eq!(notes(&row(&WARM_UP_TIME, &declared)), ["thermal.transient", "thermal_start.declared"]);
     }
