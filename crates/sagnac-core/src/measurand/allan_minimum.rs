@@ -80,3 +80,89 @@ pub fn readable(gyro: &GyroEvidence) -> Vec<&BoundedPoint> {
     let samples = gyro.digest.samples as f64;
     gyro.octaves.iter().filter(|p| p.point.m as f64 <= samples * LARGEST_SHARE).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{chi_square, gyro, near, notes, number, point, shows, withholds};
+    use super::*;
+    use crate::noise::composite::{Composite, Damped, Line};
+    use crate::noise::model::NoiseModel;
+
+    /// 1000 samples at 0.5 s: up to m = 200 is read.
+    fn with(octaves: &[BoundedPoint]) -> GyroEvidence {
+        let mut gyro = gyro();
+        gyro.digest.samples = 1000;
+        gyro.octaves = octaves.to_vec();
+        gyro
+    }
+
+    #[test]
+    fn the_minimum_is_the_smallest_positive_deviation_up_to_a_fifth_of_the_record() {
+        near(FLICKER_FLOOR, (2.0 * std::f64::consts::LN_2 / std::f64::consts::PI).sqrt());
+        let mut gyro = with(&[
+            point(1, 1.0, 900.0),
+            point(25, 0.0, 40.0),
+            point(100, 0.1, 12.5),
+            point(200, 0.15, 5.0),
+            point(201, 0.01, 3.0),
+        ]);
+        assert_eq!(readable(&gyro).iter().map(|p| p.point.m).collect::<Vec<_>>(), [1, 25, 100, 200]);
+        let row = minimum(&BIAS_INSTABILITY_MINIMUM, &gyro, 1.0);
+        shows(&row, 0.1, "overlapping_allan");
+        assert_eq!((row.channel.as_str(), chi_square(&row)), ("g", 12.5));
+        assert_eq!(notes(&row), ["note.minimum_at", "note.minimum_no_evidence"]);
+        near(number(&row, "note.minimum_at", "tau_s"), 50.0);
+        near(number(&row, "note.minimum_at", "edf"), 12.5);
+        // Where flicker is claimed, the minimum is evidence of it.
+        gyro.identification.bias_instability.value = Some(0.15);
+        let evaluated = BIAS_INSTABILITY_MINIMUM_SCALED.evaluate_gyro(&gyro, &OPTIONS);
+        shows(&evaluated[0], 0.1 / 0.664_282_470_3, "overlapping_allan");
+        assert_eq!(notes(&evaluated[0]), ["note.minimum_at"]);
+        shows(&BIAS_INSTABILITY_MINIMUM.evaluate_gyro(&gyro, &OPTIONS)[0], 0.1, "overlapping_allan");
+    }
+
+    const OPTIONS: super::super::Options = super::super::Options { remove_earth_rate: true };
+
+    #[test]
+    fn a_minimum_at_the_end_of_what_is_read_is_no_minimum_yet() {
+        let row = minimum(&BIAS_INSTABILITY_MINIMUM, &with(&[point(1, 1.0, 9.0), point(64, 0.1, 4.0)]), 1.0);
+        shows(&row, 0.1, "overlapping_allan");
+        assert_eq!(notes(&row), ["note.minimum_at", "note.minimum_at_end"]);
+    }
+
+    #[test]
+    fn without_a_point_there_is_no_minimum() {
+        for octaves in [vec![], vec![point(64, 0.0, 4.0)], vec![point(201, 0.1, 4.0)]] {
+            let row = minimum(&BIAS_INSTABILITY_MINIMUM, &with(&octaves), 1.0);
+            withholds(&row, None, "overlapping_allan");
+            assert_eq!(notes(&row), ["note.minimum_none"]);
+        }
+    }
+
+    #[test]
+    fn degrees_of_freedom_are_those_of_the_whole_description_where_it_gives_fewer() {
+        let white = Composite::from(NoiseModel { n: 0.01, ..Default::default() });
+        let process = Damped { rms_deg_h: 1.0, frequency_hz: 0.0, decay_time_s: 30.0 };
+        let line = Line { amplitude_deg_h: 1.0, frequency_hz: 0.01 };
+        let with_more = [
+            Composite { lines: vec![line], ..white.clone() },
+            Composite { markov: vec![process], ..white.clone() },
+            Composite { quasi_periodic: vec![Damped { frequency_hz: 0.02, ..process }], ..white.clone() },
+        ];
+        let mut gyro = with(&[]);
+        gyro.identification.described.model = white;
+        assert_eq!(minimum_edf(&gyro, &point(100, 0.1, 1e6)), 1e6);
+        for model in with_more {
+            gyro.identification.described.model = model.clone();
+            // 100 terms cannot have more than 100 degrees of freedom.
+            let few = minimum_edf(&gyro, &point(100, 0.1, 1e6));
+            assert!((1.0..=100.0).contains(&few), "{few}");
+            near(few, degrees_of_freedom(&model, &point(100, 0.1, 1e6).point, 0.5).max(1.0));
+            assert_eq!(minimum_edf(&gyro, &point(100, 0.1, 0.5)), 0.5);
+        }
+        // A description without power says nothing of them.
+        let silent = Line { amplitude_deg_h: 0.0, frequency_hz: 0.01 };
+        gyro.identification.described.model = Composite { lines: vec![silent], ..Composite::default() };
+        assert_eq!(minimum_edf(&gyro, &point(100, 0.1, 7.0)), 7.0);
+    }
+}

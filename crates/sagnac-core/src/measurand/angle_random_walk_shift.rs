@@ -26,3 +26,27 @@ fn row(m: &Measurand, change: &NoiseChange) -> Estimate {
         Note::new("compared.noise").with("without", Arg::figures(a.0, 4)).with("with", Arg::figures(b.0, 4)),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{near, normal, notes, number, shows, withholds};
+    use super::*;
+
+    #[test]
+    fn the_change_is_that_with_less_that_without_and_both_uncertainties_count() {
+        let change =
+            NoiseChange { channel: "g@1".into(), without: Some((0.004, 3e-5)), with: Some((0.0025, 4e-5)) };
+        let found = row(&ANGLE_RANDOM_WALK_SHIFT, &change);
+        shows(&found, -0.0015, "whittle");
+        near(normal(&found), 5e-5);
+        assert_eq!((found.channel.as_str(), found.unit), ("g@1", "deg/sqrt(h)"));
+        assert_eq!(number(&found, "compared.noise", "without"), 0.004);
+        assert_eq!(number(&found, "compared.noise", "with"), 0.0025);
+        for missing in [NoiseChange { without: None, ..change.clone() }, NoiseChange { with: None, ..change }]
+        {
+            let none = row(&ANGLE_RANDOM_WALK_SHIFT, &missing);
+            withholds(&none, None, "whittle");
+            assert_eq!(notes(&none), ["compared.noise_not_shown"]);
+        }
+    }
+}

@@ -124,3 +124,109 @@ fn shown_or_bounded(m: &Measurand, channel: &str, value: f64, spread: Spread, to
     let limit = spread.bound(value, 0.975).map(|value| UpperLimit { value, coverage: 0.95 });
     m.not_identifiable(channel, limit, METHOD).note(told).note(Note::new("runs.not_shown"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{combination, near, notes, number, shows, student, withholds};
+    use super::*;
+    use crate::influence::range::Range;
+    use crate::influence::repeatability::{OverTemperature, RunMean};
+
+    fn runs(count: usize) -> Repeatability {
+        let run = |i: usize| RunMean {
+            name: String::new(),
+            span_s: (0.0, 1.0),
+            row: 1,
+            bias: combination(i as f64, if i == 0 { 0.5 } else { 0.1 }),
+            temperature: f64::NAN,
+        };
+        let spread = Spread::Normal { standard_uncertainty: 0.1 };
+        Repeatability {
+            channel: "g".into(),
+            runs: (0..count).map(run).collect(),
+            mean: 0.0,
+            deviation: (0.4, spread.clone()),
+            plain: 0.45,
+            range: Range { value: 1.5, plain: 1.7, spread },
+            trend: None,
+            in_step: None,
+            temperature: None,
+        }
+    }
+
+    fn row(m: &Measurand, runs: &Repeatability) -> Estimate {
+        let mut rows = m.evaluate_runs(runs);
+        assert_eq!(rows.len(), 1);
+        rows.remove(0)
+    }
+
+    #[test]
+    fn a_deviation_and_a_range_that_are_clear_of_zero_are_stated() {
+        let found = row(&BIAS_REPEATABILITY, &runs(5));
+        shows(&found, 0.4, "means_of_runs");
+        assert_eq!(notes(&found), ["runs.repeatability"]);
+        // (0.25 + 4·0.01)/5 = 0.058. χ² of 4 degrees lies within 0.48442 and 11.1433 (tables).
+        near(number(&found, "runs.repeatability", "noise"), 0.058f64.sqrt());
+        near(number(&found, "runs.repeatability", "plain"), 0.45);
+        near(number(&found, "runs.repeatability", "n"), 5.0);
+        assert!((number(&found, "runs.repeatability", "low") - (4.0f64 / 11.143_287).sqrt()).abs() < 1e-6);
+        assert!((number(&found, "runs.repeatability", "high") - (4.0f64 / 0.484_419).sqrt()).abs() < 1e-5);
+        let found = row(&BIAS_REPEATABILITY_PEAK_TO_PEAK, &runs(5));
+        shows(&found, 1.5, "means_of_runs");
+        near(number(&found, "runs.range", "plain"), 1.7);
+    }
+
+    #[test]
+    fn an_interval_that_reaches_zero_gives_its_upper_end() {
+        let mut runs = runs(5);
+        // 0.19 − 1.96·0.1 < 0.
+        runs.deviation.0 = 0.19;
+        let found = row(&BIAS_REPEATABILITY, &runs);
+        withholds(&found, Some(0.19 + 1.959_963_984_540_054 * 0.1), "means_of_runs");
+        assert_eq!(notes(&found), ["runs.repeatability", "runs.not_shown"]);
+        runs.deviation = (0.3, Spread::Curve(vec![(-4.0, 0.0), (0.0, 0.0), (1.0, 0.5), (4.0, 0.5)]));
+        withholds(&row(&BIAS_REPEATABILITY, &runs), Some(0.5), "means_of_runs");
+        runs.deviation.1 = Spread::Unknown;
+        withholds(&row(&BIAS_REPEATABILITY, &runs), None, "means_of_runs");
+    }
+
+    #[test]
+    fn a_trend_says_whether_the_temperature_went_with_it() {
+        let mut runs = runs(4);
+        let m = &BIAS_REPEATABILITY_TREND;
+        assert_eq!(notes(&row(m, &runs)), ["runs.not_apart", "runs.trend_alone"]);
+        runs.trend = Some(Combination { value: -0.7, standard: 0.2, dof: 6.0 });
+        for (in_step, remark) in
+            [(None, Some("runs.trend_alone")), (Some(-0.7), Some("runs.in_step")), (Some(0.69), None)]
+        {
+            runs.in_step = in_step;
+            let found = row(m, &runs);
+            shows(&found, -0.7, "means_of_runs");
+            assert_eq!(student(&found), (0.2, 6.0));
+            assert_eq!(notes(&found)[1..], remark.into_iter().collect::<Vec<_>>()[..]);
+        }
+        let none = row(m, &self::runs(3));
+        withholds(&none, None, "means_of_runs");
+        assert_eq!(notes(&none), ["runs.no_line"]);
+    }
+
+    #[test]
+    fn what_goes_with_temperature_has_its_share_or_its_reason() {
+        let mut of_four = runs(4);
+        let m = &BIAS_REPEATABILITY_TEMPERATURE;
+        let slope = Combination { value: 0.03, standard: 0.01, dof: 3.0 };
+        of_four.temperature = Some(OverTemperature { slope, left: 0.2, share: 0.64, range: 12.0 });
+        let found = row(m, &of_four);
+        shows(&found, 0.03, "means_of_runs");
+        assert_eq!(student(&found), (0.01, 3.0));
+        for (name, value) in [("percent", 64.0), ("left", 0.2), ("range", 12.0)] {
+            near(number(&found, "runs.temperature", name), value);
+        }
+        of_four.temperature = None;
+        assert_eq!(notes(&row(m, &of_four)), ["runs.no_temperature"]);
+        of_four.in_step = Some(1.0);
+        assert_eq!(notes(&row(m, &of_four)), ["runs.not_apart", "runs.in_step"]);
+        assert_eq!(notes(&row(m, &runs(3))), ["runs.no_line"]);
+        assert_eq!(notes(&row(m, &runs(5))), ["runs.no_temperature"]);
+    }
+}

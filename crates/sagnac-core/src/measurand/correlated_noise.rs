@@ -97,3 +97,70 @@ fn strongest(
     }
     estimate.note(Note::new("correlated.others").with("others", Arg::Several(others, "; ".into())))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Options;
+    use super::super::test_evidence::{gyro, notes, shows, told, withholds};
+    use super::*;
+    use crate::estimate::Spread;
+
+    fn estimate(value: f64) -> Estimate {
+        let spread = Spread::Normal { standard_uncertainty: 0.1 * value };
+        Estimate::measured("any", "other", value, "any", spread, "joint")
+    }
+
+    fn row(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
+        let mut rows = m.evaluate_gyro(gyro, &Options { remove_earth_rate: false });
+        assert_eq!(rows.len(), 1);
+        rows.remove(0)
+    }
+
+    #[test]
+    fn the_strongest_process_is_stated_and_the_others_are_named() {
+        let mut gyro = gyro();
+        let process = |sigma, time| MarkovFound { sigma: estimate(sigma), correlation_time: estimate(time) };
+        gyro.identification.markov = vec![process(0.1, 500.0), process(0.3, 20.0), process(0.2, 90.0)];
+        let found = row(&MARKOV_SIGMA, &gyro);
+        shows(&found, 0.3, "joint");
+        assert_eq!((found.id, found.unit, found.channel.as_str()), ("markov_sigma", "deg/h", "g"));
+        let place = |sigma: f64, time_s: f64| {
+            Arg::from(Note::new("correlated.markov").with("sigma", sigma).with("time_s", time_s))
+        };
+        let others = Arg::Several(vec![place(0.1, 500.0), place(0.2, 90.0)], "; ".into());
+        assert_eq!(told(&found, "correlated.others", "others"), &others);
+        shows(&row(&MARKOV_CORRELATION_TIME, &gyro), 20.0, "joint");
+        gyro.identification.markov.truncate(1);
+        assert_eq!(notes(&row(&MARKOV_SIGMA, &gyro)), [""; 0]);
+    }
+
+    #[test]
+    fn a_quasi_periodic_disturbance_has_amplitude_frequency_and_coherence() {
+        let mut gyro = gyro();
+        let found = |amplitude, frequency, time| QuasiPeriodicFound {
+            amplitude: estimate(amplitude),
+            frequency: estimate(frequency),
+            coherence_time: estimate(time),
+        };
+        gyro.identification.quasi_periodic = vec![found(0.2, 0.05, 300.0), found(0.1, 0.01, 900.0)];
+        shows(&row(&QUASI_PERIODIC_AMPLITUDE, &gyro), 0.2, "joint");
+        shows(&row(&QUASI_PERIODIC_FREQUENCY, &gyro), 0.05, "joint");
+        let time = row(&QUASI_PERIODIC_COHERENCE_TIME, &gyro);
+        shows(&time, 300.0, "joint");
+        let place = Note::new("correlated.quasi_periodic").with("rms", 0.1).with("frequency_hz", 0.01);
+        let others = Arg::Several(vec![Arg::from(place)], "; ".into());
+        assert_eq!(told(&time, "correlated.others", "others"), &others);
+    }
+
+    #[test]
+    fn without_a_process_the_row_says_so() {
+        let gyro = gyro();
+        for (m, note) in
+            [(&MARKOV_SIGMA, "correlated.no_markov"), (&QUASI_PERIODIC_AMPLITUDE, "correlated.no_periodic")]
+        {
+            let none = row(m, &gyro);
+            withholds(&none, None, gyro.identification.method);
+            assert_eq!(notes(&none), [note]);
+        }
+    }
+}

@@ -458,3 +458,133 @@ impl Measurand {
         Estimate { id: self.id, unit: self.unit, ..estimate.clone() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{asked, gyro};
+    use super::*;
+
+    fn none(m: &Measurand, channel: &str) -> Vec<Estimate> {
+        vec![m.not_identifiable(channel, None, "test")]
+    }
+
+    fn plain() -> Measurand {
+        Measurand::at_rest("a", "deg/h", "doc", |m, gyro, _| none(m, &gyro.channel))
+    }
+
+    fn of_turns(m: &Measurand, _: &KnownInputEvidence<'_>) -> Vec<Estimate> {
+        none(m, "turned")
+    }
+
+    const INPUT: OfKnownInput =
+        OfKnownInput { positions: true, turns: Some(TurnAxis::Own), evaluate: of_turns };
+
+    #[test]
+    fn a_measurand_is_its_id() {
+        let other = Measurand::at_rest("b", "deg/h", "doc", |m, gyro, _| none(m, &gyro.channel));
+        assert!(plain() == plain().signed() && plain() != other);
+        assert_eq!(format!("{:?}", plain()), "Measurand(a)");
+    }
+
+    #[test]
+    fn the_site_is_needed_where_it_is_the_source_or_its_rate_is_removed() {
+        let (remove, keep) = (Options { remove_earth_rate: true }, Options { remove_earth_rate: false });
+        let with_option = plain().options(&[EARTH_RATE_OPTION]);
+        for (m, options, needed) in [
+            (plain(), remove, false),
+            (plain(), keep, false),
+            (plain().options(&["other"]), remove, false),
+            (with_option, remove, true),
+            (with_option, keep, false),
+            (plain().from_site(), keep, true),
+            (plain().from_site(), remove, true),
+        ] {
+            assert_eq!(m.needs_site(&options), needed, "{:?} {options:?}", m.options);
+        }
+    }
+
+    #[test]
+    fn builders_set_what_they_name() {
+        let m = plain().needs_stillness().drift().signed().also_called(&["x"]).power(PowerModel::Mean);
+        assert!(m.needs_stillness && m.drift && m.signed && !m.from_site);
+        assert_eq!(
+            (m.other_names, m.power, m.id, m.unit, m.doc),
+            (&["x"][..], Some(PowerModel::Mean), "a", "deg/h", "doc")
+        );
+        let m = plain().formulas(&["y = x"], "a book");
+        assert_eq!((m.formulas, m.source), (&["y = x"][..], "a book"));
+        assert!(
+            !plain().needs_stillness && !plain().drift && !plain().signed && plain().from_site().from_site
+        );
+    }
+
+    #[test]
+    fn each_test_evaluates_its_own_measurands_and_no_others() {
+        let options = Options { remove_earth_rate: false };
+        let temperature = Measurand::over_temperature("t", "deg/h", "doc", |m, channel, _| none(m, channel));
+        let warm_up = Measurand::of_warm_up("w", "s", "doc", |m, channel, _| none(m, channel));
+        let runs = Measurand::of_runs("r", "deg/h", "doc", |m, runs| none(m, &runs.channel));
+        let steps = Measurand::of_steps("s", "ppm", "doc", Stimulus::SmallRates, |m, e| none(m, &e.channel));
+        let known = Measurand::of_known_input("k", "1", "doc", INPUT);
+        let influence = Measurand::of_influence("i", "deg/h", "doc", None, |m, c| none(m, &c.bias.channel));
+        let tests = [
+            (plain(), Test::Static),
+            (temperature, Test::Temperature),
+            (warm_up, Test::WarmUp),
+            (steps, Test::RateTable),
+            (known, Test::RateTable),
+            (runs, Test::Repeatability),
+            (influence, Test::Comparison),
+        ];
+        let mut gyro = gyro();
+        for (m, test) in tests {
+            assert_eq!(m.test(), test);
+            assert_eq!(m.evaluate_gyro(&gyro, &options).len(), usize::from(test == Test::Static));
+        }
+        let found = Findings::nothing(&asked());
+        gyro.over_temperature = Some(found.clone());
+        for (m, test) in tests {
+            let is_own = test == Test::Temperature;
+            assert_eq!(m.evaluate_temperature("c", &found).len(), usize::from(is_own));
+            let both = usize::from(is_own || test == Test::Static);
+            assert_eq!(m.evaluate_gyro(&gyro, &options).len(), both);
+        }
+        assert_eq!(temperature.evaluate_gyro(&gyro, &options)[0].channel, "g");
+        assert_eq!(temperature.evaluate_temperature("c", &found)[0].channel, "c");
+        let nothing = KnownInputEvidence { positions: &[], turns: None };
+        let (setup, list) = (crate::rate_table::Setup::default(), crate::rate_table::steps::Steps::default());
+        let table = TableEvidence::new(0, "g", &setup, &list);
+        for (m, _) in tests {
+            assert_eq!(m.by_known_input().is_some(), m.id == "k");
+            assert_eq!(m.evaluate_known_input(&nothing).len(), usize::from(m.id == "k"));
+            assert_eq!(m.by_steps().map(|s| s.stimulus), (m.id == "s").then_some(Stimulus::SmallRates));
+            assert_eq!(m.evaluate_steps(&table).len(), usize::from(m.id == "s"));
+        }
+    }
+
+    #[test]
+    fn a_measurand_of_steps_may_have_extras_and_a_known_input() {
+        let m = Measurand::of_steps("s", "ppm", "doc", Stimulus::Rates, |m, e| none(m, &e.channel))
+            .extras(&[Extra::Approach])
+            .or_known_input(INPUT);
+        assert_eq!(m.by_steps().map(|s| s.extras), Some(&[Extra::Approach][..]));
+        assert_eq!(m.by_known_input().map(|k| (k.positions, k.turns)), Some((true, Some(TurnAxis::Own))));
+        // Neither means anything for another test.
+        let rest = plain().extras(&[Extra::Approach]).or_known_input(INPUT);
+        assert!(rest.by_steps().is_none() && rest.by_known_input().is_none());
+    }
+
+    #[test]
+    fn rows_carry_id_and_unit_of_their_measurand() {
+        let spread = Spread::Normal { standard_uncertainty: 0.1 };
+        let row = plain().measured("c", 1.5, spread.clone(), "how");
+        assert_eq!((row.id, row.channel.as_str(), row.value, row.unit), ("a", "c", Some(1.5), "deg/h"));
+        assert_eq!((row.spread.clone(), row.method), (spread, "how"));
+        let other = Measurand::at_rest("b", "s", "doc", |m, gyro, _| none(m, &gyro.channel));
+        let named = other.named(&row);
+        assert_eq!((named.id, named.unit, named.value, named.channel.as_str()), ("b", "s", Some(1.5), "c"));
+        let limit = UpperLimit { value: 2.0, coverage: 0.95 };
+        let none = plain().not_identifiable("c", Some(limit), "how");
+        assert_eq!((none.id, none.value, none.upper_limit, none.unit), ("a", None, Some(limit), "deg/h"));
+    }
+}

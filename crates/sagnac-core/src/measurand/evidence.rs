@@ -237,3 +237,91 @@ pub struct ComparisonEvidence<'a> {
     /// Change of N at every level; empty where it was not asked for.
     pub noise: &'a [NoiseChange],
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{gyro, near, steps, windows};
+    use super::*;
+    use crate::noise::digest::{DigestPlan, RateAccumulator};
+    use crate::noise::tau_grid::TauGrid;
+
+    #[test]
+    fn a_record_leaves_its_lengths_blocks_and_deviations() {
+        // −1 and 1 in turns: σ(τ0) = √2, and means of two are all 0. A gap after 600 samples of 0.5 s.
+        let samples: Vec<f64> = (0..1000).map(|i| if i % 2 == 0 { -1.0 } else { 1.0 }).collect();
+        let of = |taus: TauGrid| {
+            let mut accumulator = RateAccumulator::new(DigestPlan { taus, ..DigestPlan::new(0.5) });
+            accumulator.push(&samples[..600], 0, false);
+            accumulator.push(&samples[600..], 700, false);
+            GyroEvidence::identify("g".into(), accumulator.finish(), 0.5, 0.01, None)
+        };
+        let gyro = of(TauGrid::Octave);
+        assert_eq!((gyro.channel.as_str(), gyro.tau0_s, gyro.several), ("g", 0.5, false));
+        near(gyro.longest_stretch_s, 300.0);
+        near(gyro.usable_s(), 500.0);
+        let ms: Vec<u64> = gyro.octaves.iter().map(|p| p.point.m).collect();
+        assert_eq!(ms[..4], [1, 2, 4, 8]);
+        near(gyro.octaves[0].point.deviation, 2f64.sqrt());
+        assert_eq!(gyro.octaves[1].point.deviation, 0.0);
+        assert_eq!(gyro.sigma_tau, gyro.octaves);
+        assert!(std::ptr::eq(gyro.blocks(), &raw const gyro.digest.blocks));
+        assert!(std::ptr::eq(gyro.spectrum(), &raw const gyro.digest.welch.spectrum));
+        assert!(!gyro.blocks().mean.is_empty() && !gyro.spectrum().density.is_empty());
+        // Octaves are there whatever the grid.
+        let other = of(TauGrid::List(vec![1.5]));
+        assert_eq!(other.sigma_tau.iter().map(|p| p.point.m).collect::<Vec<_>>(), [3]);
+        assert_eq!(other.octaves.len(), gyro.octaves.len());
+    }
+
+    #[test]
+    fn noise_of_a_point_is_what_rules_at_its_averaging_time() {
+        use crate::noise::data::NoiseType;
+        use crate::noise::model::NoiseModel;
+        let mut accumulator = RateAccumulator::new(DigestPlan::new(0.5));
+        accumulator.push(&(0..2000).map(|i| f64::from(i % 7)).collect::<Vec<f64>>(), 0, false);
+        let digest = accumulator.finish();
+        // 3600 N²/τ = K²τ/10800 at τ = √(3600·10800)·N/K: 100 s.
+        let k = (3600.0 * 10_800.0f64).sqrt() * 1e-3 / 100.0;
+        let model = Composite::from(NoiseModel { n: 1e-3, k, ..Default::default() });
+        for p in allan_points(&digest.deviations, &model, 0.5) {
+            let expected = if 0.5 * (p.point.m as f64) < 100.0 {
+                NoiseType::AngleRandomWalk
+            } else {
+                NoiseType::RateRandomWalk
+            };
+            assert_eq!(p.noise, expected, "{}", p.point.m);
+        }
+    }
+
+    #[test]
+    fn windows_need_two_means_and_whole_samples() {
+        let mut gyro = gyro();
+        gyro.digest.windows =
+            vec![windows(100.0, 200, 2, 0.3), windows(10.0, 20, 1, 0.4), windows(1.0, 3, 9, 0.5)];
+        assert_eq!(gyro.windows(100.0).map(|w| w.standard_deviation), Some(0.3));
+        assert!(gyro.windows(10.0).is_none() && gyro.windows(1.0).is_none() && gyro.windows(50.0).is_none());
+        assert!(gyro.samples_fit(100.0) && gyro.samples_fit(10.0) && !gyro.samples_fit(1.0));
+        assert_eq!(gyro.drift_100s(), Some(0.3));
+        for (deviation, expected) in [(0.0, None), (f64::NAN, None), (f64::INFINITY, None), (2.5, Some(2.5))]
+        {
+            gyro.digest.windows[0].standard_deviation = deviation;
+            assert_eq!(gyro.drift_100s(), expected);
+        }
+    }
+
+    #[test]
+    fn figures_name_the_channel_where_there_are_several() {
+        let mut gyro = gyro();
+        assert_eq!((gyro.figure_id("psd"), gyro.figure_channel()), ("psd".into(), String::new()));
+        gyro.several = true;
+        assert_eq!((gyro.figure_id("psd"), gyro.figure_channel()), ("psd_g".into(), "g".into()));
+    }
+
+    #[test]
+    fn full_scale_is_stated_or_the_largest_rate() {
+        let (mut setup, steps) = (Setup::default(), steps(&[-300.0, 0.0, 200.0], &[0.0; 3], 3));
+        assert_eq!(TableEvidence::new(0, "g", &setup, &steps).full_scale_deg_h(), 300.0);
+        setup.full_scale_deg_h = Some(500.0);
+        assert_eq!(TableEvidence::new(0, "g", &setup, &steps).full_scale_deg_h(), 500.0);
+    }
+}

@@ -110,3 +110,134 @@ fn remarks(found: &Comparison) -> Vec<Note> {
     notes.extend(found.disturbing().map(|other| other.note("compared.in_step")));
     notes
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{combination, near, notes, number, shows, student, withholds};
+    use super::*;
+    use crate::influence::comparison::{IntervalMean, Shift};
+    use crate::influence::nuisance::{Following, Nuisance};
+    use crate::influence::setup::ComparisonTest;
+
+    fn following(temperature: bool, shifts: [f64; 2], by_chance: f64) -> Following {
+        let what = Nuisance { channel: "beside".into(), unit: "degC", temperature };
+        Following { what, shifts: shifts.to_vec(), per_drive: vec![0.5, -2.0], by_chance }
+    }
+
+    fn interval(off: bool) -> IntervalMean {
+        IntervalMean {
+            name: String::new(),
+            span_s: (0.0, 1.0),
+            row: 1,
+            level: 0.0,
+            axis: String::new(),
+            off,
+            mean: combination(0.0, 1.0),
+            temperature: f64::NAN,
+        }
+    }
+
+    fn compared(influence: Influence) -> Comparison {
+        let test = ComparisonTest {
+            influence,
+            reference: 0.0,
+            settling_s: 0.0,
+            minimum_interval_s: 1.0,
+            alternations: 1,
+            level_uncertainty: 0.02,
+            temperature_difference_deg_c: 1.0,
+            temperature_coefficient: Some(0.06),
+            declared: false,
+            temperature: None,
+            intervals: vec![],
+        };
+        let shift =
+            |axis: &str, level, value| Shift { axis: axis.into(), level, change: combination(value, 0.03) };
+        Comparison {
+            channel: "g".into(),
+            test,
+            axes: vec!["x".into(), "y".into()],
+            per_unit: vec![combination(-2.0, 0.03), combination(0.5, 0.04)],
+            shifts: vec![shift("x", 2.0, -4.0), shift("y", 1.0, 0.5)],
+            intervals: vec![interval(true), interval(false), interval(true), interval(false), interval(true)],
+            line: None,
+            drift: true,
+            scatter: false,
+            temperature: Some(following(true, [0.3, -0.6], 0.5)),
+            others: vec![],
+        }
+    }
+
+    fn rows(m: &Measurand, bias: &Comparison) -> Vec<Estimate> {
+        m.evaluate_comparison(&ComparisonEvidence { bias, noise: &[] })
+    }
+
+    #[test]
+    fn a_sensitivity_has_a_row_an_axis_with_level_and_temperature() {
+        for (m, influence, degree) in [
+            (&MAGNETIC_SENSITIVITY, Influence::MagneticField, 1.0),
+            (&SUPPLY_SENSITIVITY, Influence::Supply, 1.0),
+            (&VIBRATION_SENSITIVITY, Influence::Vibration, 2.0),
+        ] {
+            let found = rows(m, &compared(influence));
+            assert_eq!(found.iter().map(|r| r.channel.as_str()).collect::<Vec<_>>(), ["g@x", "g@y"]);
+            shows(&found[0], -2.0, "alternating_intervals");
+            shows(&found[1], 0.5, "alternating_intervals");
+            // 2 % of the level, twice for its square; 0.06 deg/h/degC of the degrees per unit, evenly.
+            let level = 0.02 * degree;
+            let u = |random: f64, value: f64, degrees: f64| {
+                (random * random + (level * value).powi(2) + (0.06 * degrees).powi(2) / 3.0).sqrt()
+            };
+            near(student(&found[0]).0, u(0.03, 2.0, 0.5));
+            near(student(&found[1]).0, u(0.04, 0.5, 2.0));
+            assert_eq!(notes(&found[0]), ["compared.intervals"]);
+            assert_eq!(number(&found[0], "compared.intervals", "without"), 3.0);
+            assert_eq!(number(&found[0], "compared.intervals", "with"), 2.0);
+            for other in [&MAGNETIC_SENSITIVITY, &SUPPLY_SENSITIVITY, &VIBRATION_SENSITIVITY] {
+                assert_eq!(rows(other, &compared(influence)).is_empty(), other != m);
+            }
+        }
+    }
+
+    #[test]
+    fn a_shift_has_a_row_a_level_without_the_uncertainty_of_the_level() {
+        let mut found = compared(Influence::Vibration);
+        let shifts = rows(&BIAS_SHIFT, &found);
+        assert_eq!(shifts.iter().map(|r| r.channel.as_str()).collect::<Vec<_>>(), ["g@x:2", "g@y:1"]);
+        shows(&shifts[0], -4.0, "alternating_intervals");
+        near(student(&shifts[0]).0, (9e-4f64 + (0.06f64 * 0.3).powi(2) / 3.0).sqrt());
+        near(student(&shifts[1]).0, (9e-4f64 + (0.06f64 * 0.6).powi(2) / 3.0).sqrt());
+        // Without a coefficient or a temperature only the scatter is left.
+        found.test.temperature_coefficient = None;
+        near(student(&rows(&BIAS_SHIFT, &found)[0]).0, 0.03);
+        found.temperature = None;
+        near(student(&rows(&BIAS_SHIFT, &found)[1]).0, 0.03);
+    }
+
+    #[test]
+    fn remarks_say_what_went_with_the_levels() {
+        let mut found = compared(Influence::Supply);
+        (found.drift, found.scatter) = (false, true);
+        assert_eq!(notes(&rows(&BIAS_SHIFT, &found)[0]), ["compared.intervals_no_drift", "compared.scatter"]);
+        (found.drift, found.scatter) = (true, false);
+        // A temperature that follows within what is allowed: from −0.8 to 0.1.
+        found.temperature = Some(following(true, [0.1, -0.8], 1e-6));
+        let row = &rows(&BIAS_SHIFT, &found)[0];
+        assert_eq!(notes(row), ["compared.intervals", "compared.allowed_for"]);
+        near(number(row, "compared.allowed_for", "difference"), 0.9);
+        near(number(row, "compared.allowed_for", "coefficient"), 0.06);
+        found.test.temperature_coefficient = None;
+        let row = &rows(&BIAS_SHIFT, &found)[0];
+        near(number(row, "compared.not_allowed_for", "difference"), 0.9);
+        // Beyond what is allowed nothing is stated.
+        found.temperature = Some(following(true, [0.4, -0.8], 1e-6));
+        let row = &rows(&BIAS_SHIFT, &found)[0];
+        withholds(row, None, "alternating_intervals");
+        near(number(row, "compared.warmer", "difference"), 1.2);
+        found.temperature = None;
+        found.others = vec![following(false, [0.1, 0.0], 0.5), following(false, [0.1, 0.0], 1e-6)];
+        let row = &rows(&BIAS_SHIFT, &found)[0];
+        withholds(row, None, "alternating_intervals");
+        assert_eq!(notes(row), ["compared.intervals", "compared.in_step"]);
+    }
+}

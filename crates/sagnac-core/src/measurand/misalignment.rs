@@ -36,3 +36,29 @@ fn tilt(m: &Measurand, e: &TableEvidence<'_>, axis: usize) -> Vec<Estimate> {
         Err(why) => m.not_identifiable(&e.channel, None, METHOD).note(why.clone()),
     }]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{combination, near, notes, on_table, shows, student, withholds};
+    use super::*;
+    use crate::message::Note;
+    use crate::rate_table::Setup;
+    use crate::rate_table::alignment::Alignment;
+    use crate::rate_table::steps::Steps;
+
+    #[test]
+    fn tilts_are_in_mrad_with_the_calibration_of_the_table() {
+        let (setup, steps) = (Setup { rate_uncertainty: 4e-3, ..Setup::default() }, Steps::default());
+        let tilts = [Ok(combination(-2e-3, 6e-6)), Err(Note::new("known.no_outer_turns"))];
+        let alignment = Some(Alignment { channel: "g".into(), tilts, factor: None });
+        let e = TableEvidence { alignment, ..on_table(&setup, &steps, None) };
+        let rows = MISALIGNMENT_X.evaluate_steps(&e);
+        shows(&rows[0], -2.0, "outer_axis_turns");
+        // 4 parts in a thousand of 2 mrad beside 0.006 mrad.
+        near(student(&rows[0]).0, 0.01);
+        let rows = MISALIGNMENT_Y.evaluate_steps(&e);
+        withholds(&rows[0], None, "outer_axis_turns");
+        assert_eq!(notes(&rows[0]), ["known.no_outer_turns"]);
+        assert!(MISALIGNMENT_X.evaluate_steps(&on_table(&setup, &steps, None)).is_empty());
+    }
+}

@@ -26,6 +26,8 @@ mod spectral_line;
 pub mod static_bias;
 mod table_harmonics;
 mod temperature;
+#[cfg(test)]
+mod test_evidence;
 mod warm_up;
 
 use crate::rate_table::design::Extra;
@@ -200,5 +202,14 @@ mod tests {
         ] {
             assert_eq!(find(id).unwrap().unit, unit);
         }
+    }
+
+    #[test]
+    fn the_model_of_a_table_holds_what_the_measurands_wanted_need() {
+        assert!(table_extras(&|_| false).is_empty());
+        assert_eq!(table_extras(&|m| m.id == "table_harmonic_2"), [Extra::Cosine(2), Extra::Sine(2)]);
+        let two = table_extras(&|m| m.id == "scale_factor_hysteresis" || m.id == "table_harmonic_1");
+        assert_eq!(two, [Extra::Approach, Extra::Cosine(1), Extra::Sine(1)]);
+        assert!(find("none").is_none() && with_word("none").is_empty());
     }
 }

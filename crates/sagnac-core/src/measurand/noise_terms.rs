@@ -61,3 +61,39 @@ pub static QUANTIZATION: Measurand =
     .also_called(&["q", "qn"])
     .power(PowerModel::NoiseTerm(NoiseType::Quantization))
     .needs_stillness();
+
+#[cfg(test)]
+mod tests {
+    use super::super::Options;
+    use super::super::test_evidence::{gyro, shows};
+    use super::*;
+    use crate::estimate::{Estimate, Spread};
+
+    #[test]
+    fn every_term_is_its_own_estimate_under_its_own_name() {
+        let mut gyro = gyro();
+        for (value, estimate) in (1..).zip(gyro.identification.estimates_mut()) {
+            estimate.value = Some(f64::from(value));
+        }
+        let all = [
+            (&ANGLE_RANDOM_WALK, 1.0),
+            (&ANGLE_RANDOM_WALK_WHITE, 1.0),
+            (&BIAS_INSTABILITY, 2.0),
+            (&RATE_RANDOM_WALK, 3.0),
+            (&RATE_RAMP, 4.0),
+            (&QUANTIZATION, 5.0),
+        ];
+        let row =
+            |m: &Measurand, gyro: &_| m.evaluate_gyro(gyro, &Options { remove_earth_rate: false }).remove(0);
+        for (m, value) in all {
+            let found = row(m, &gyro);
+            shows(&found, value, gyro.identification.method);
+            assert_eq!((found.id, found.unit), (m.id, m.unit));
+        }
+        // Where a process is white beside the white noise, N is the level that is read.
+        let level = Estimate::measured("angle_random_walk", "g", 7.0, "deg/sqrt(h)", Spread::Unknown, "read");
+        gyro.identification.white_plateau = Some(level);
+        shows(&row(&ANGLE_RANDOM_WALK, &gyro), 7.0, "read");
+        shows(&row(&ANGLE_RANDOM_WALK_WHITE, &gyro), 1.0, gyro.identification.method);
+    }
+}

@@ -101,3 +101,81 @@ pub fn degrees_of_freedom(gyro: &GyroEvidence, windows: &WindowStatistics) -> f6
         .unwrap_or(white)
         .max(1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Options;
+    use super::super::test_evidence::{
+        chi_square, gyro, near, notes, number, shows, windows, withholds, within,
+    };
+    use super::*;
+    use crate::estimate::UpperLimit;
+    use crate::noise::model::NoiseModel;
+
+    fn with(of_100: (u64, u64), of_10: (u64, u64)) -> GyroEvidence {
+        let mut gyro = gyro();
+        gyro.digest.windows =
+            vec![windows(100.0, of_100.0, of_100.1, 0.012), windows(10.0, of_10.0, of_10.1, 0.03)];
+        gyro.identification.allowed = NoiseModel { n: 0.002, ..Default::default() }.into();
+        gyro
+    }
+
+    fn row(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
+        m.evaluate_gyro(gyro, &Options { remove_earth_rate: false }).remove(0)
+    }
+
+    #[test]
+    fn every_figure_is_its_factor_times_the_deviation_of_means() {
+        let gyro = with((200, 37), (20, 360));
+        for (m, value, dof) in [
+            (&RUSSIAN_DRIFT_100S, 0.012, 36.0),
+            (&RUSSIAN_DRIFT_100S_3SIGMA, 0.036, 36.0),
+            (&RUSSIAN_SIGMA_10S, 0.03, 359.0),
+            // σ√10/60 = 0.03·3.16228/60.
+            (&RUSSIAN_ARW_10S, 0.001_581_138_830_084_189_8, 359.0),
+        ] {
+            let found = row(m, &gyro);
+            shows(&found, value, "standard_deviation_of_means");
+            // White noise leaves n − 1.
+            within(chi_square(&found), dof, 1e-6);
+            assert_eq!(notes(&found), ["note.russian_windows"]);
+        }
+        let found = row(&RUSSIAN_DRIFT_100S, &gyro);
+        near(number(&found, "note.russian_windows", "n"), 37.0);
+        near(number(&found, "note.russian_windows", "window_s"), 100.0);
+        near(number(&found, "note.russian_windows", "hours"), 3700.0 / 3600.0);
+    }
+
+    #[test]
+    fn windows_of_another_length_are_named_or_refused() {
+        // 101.5 s for 100 s is within 2 %; 100.1 s within 0.1 %.
+        let found = row(&RUSSIAN_DRIFT_100S, &with((203, 37), (20, 360)));
+        near(number(&found, "note.russian_window_rounded", "exact_s"), 101.5);
+        let found = row(&RUSSIAN_DRIFT_100S, &with((197, 37), (20, 360)));
+        near(number(&found, "note.russian_window_rounded", "exact_s"), 98.5);
+        let unfit = row(&RUSSIAN_DRIFT_100S, &with((206, 37), (20, 360)));
+        withholds(&unfit, None, "standard_deviation_of_means");
+        near(number(&unfit, "note.russian_window_unfit", "interval_s"), 0.5);
+        let short = row(&RUSSIAN_SIGMA_10S, &with((200, 37), (20, 1)));
+        withholds(&short, None, "standard_deviation_of_means");
+        assert_eq!(notes(&short), ["note.russian_too_short"]);
+    }
+
+    #[test]
+    fn a_walk_that_is_not_shown_counts_with_a_share_of_its_limit() {
+        let mut gyro = with((200, 37), (20, 360));
+        let of = |gyro: &GyroEvidence| degrees_of_freedom(gyro, &gyro.digest.windows[0]);
+        // A ramp shifts the value and scatters nothing.
+        gyro.identification.allowed.terms.r = 1.0;
+        within(of(&gyro), 36.0, 1e-6);
+        gyro.identification.rate_random_walk.upper_limit = Some(UpperLimit { value: 0.05, coverage: 0.95 });
+        let unseen = of(&gyro);
+        assert!(unseen < 10.0, "{unseen}");
+        gyro.identification.rate_random_walk.upper_limit = None;
+        gyro.identification.allowed.terms.k = 0.03;
+        near(of(&gyro), unseen);
+        // A walk in the description that is larger already stays.
+        gyro.identification.rate_random_walk.upper_limit = Some(UpperLimit { value: 0.04, coverage: 0.95 });
+        near(of(&gyro), unseen);
+    }
+}

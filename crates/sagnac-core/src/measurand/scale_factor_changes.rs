@@ -97,3 +97,91 @@ fn temperature_sensitivity(m: &Measurand, line: &ScaleFactor, e: &TableEvidence<
     m.measured(&line.channel, slope.value, spread(&slope, 1.0, &[reading]), METHOD)
         .note(Note::new("on_table.temperature_range").with("range", Arg::figures(range, 3)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{
+        chi_square, diagonal, line, near, notes, number, on_table, shows, steps, student, withholds,
+    };
+    use super::*;
+    use crate::rate_table::Setup;
+    use crate::rate_table::scale_factor::StepResidual;
+
+    fn row(m: &Measurand, setup: &Setup, steps: &Steps, line: &ScaleFactor) -> Estimate {
+        let mut rows = m.evaluate_steps(&on_table(setup, steps, Some(line.clone())));
+        assert_eq!(rows.len(), 1);
+        rows.remove(0)
+    }
+
+    /// A factor of −2 and a full scale of 125 deg/h: 1 deg/h is −4000 ppm of full scale.
+    fn found(extras: &[Extra], coefficients: &[f64], variances: &[f64]) -> (Steps, ScaleFactor) {
+        let means = [&[0.0; 3], coefficients].concat();
+        let covariance = diagonal(&[&[0.0; 3], variances].concat());
+        let (steps, mut line) = line(&[-100.0, 0.0, 100.0], &means, extras, covariance);
+        (line.factor, line.full_scale, line.bias) = (-2.0, 125.0, 5.0);
+        line.response.temperature_range = 40.0;
+        (steps, line)
+    }
+
+    /// Residuals of steps in cycles: slopes of so many 1e-3 about that of the line, by the rates of each cycle.
+    fn residuals(steps: &Steps, slopes: &[f64]) -> Vec<StepResidual> {
+        let one = |(i, s): (usize, &crate::rate_table::steps::Step)| StepResidual {
+            step: i,
+            residual: 1e-3 * slopes[s.cycle] * s.rate + s.cycle as f64,
+            standard: 0.1,
+        };
+        steps.list.iter().enumerate().map(one).collect()
+    }
+
+    #[test]
+    fn repeatability_is_the_deviation_of_the_slopes_of_cycles() {
+        let (_, mut line) = found(&[], &[], &[]);
+        let setup = Setup::default();
+        let steps_of = |cycles: usize| {
+            let rates: Vec<f64> = (0..3 * cycles).map(|i| [-100.0, 20.0, 100.0][i % 3]).collect();
+            steps(&rates, &rates, 3)
+        };
+        let three = steps_of(3);
+        line.steps = residuals(&three, &[3.0, 1.0, 2.0]);
+        let found = row(&SCALE_FACTOR_REPEATABILITY, &setup, &three, &line);
+        // 1e-3 of a factor of 2.
+        shows(&found, 500.0, "cycle_scatter");
+        assert_eq!((chi_square(&found), number(&found, "on_table.cycles", "n")), (2.0, 3.0));
+        let two = steps_of(2);
+        line.steps = residuals(&two, &[3.0, 1.0]);
+        shows(&row(&SCALE_FACTOR_REPEATABILITY, &setup, &two, &line), 500.0 * 2f64.sqrt(), "cycle_scatter");
+        let one = steps_of(1);
+        line.steps = residuals(&one, &[3.0]);
+        let none = row(&SCALE_FACTOR_REPEATABILITY, &setup, &one, &line);
+        withholds(&none, None, "cycle_scatter");
+        assert_eq!(notes(&none), ["on_table.one_cycle"]);
+    }
+
+    #[test]
+    fn hysteresis_is_twice_the_coefficient_of_the_approach() {
+        let setup = Setup::default();
+        let (steps, line) = found(&[Extra::Approach], &[0.02], &[9e-6]);
+        let shown = row(&SCALE_FACTOR_HYSTERESIS, &setup, &steps, &line);
+        shows(&shown, -160.0, METHOD);
+        near(student(&shown).0, 24.0);
+        let (steps, line) = found(&[], &[], &[]);
+        let none = row(&SCALE_FACTOR_HYSTERESIS, &setup, &steps, &line);
+        withholds(&none, None, METHOD);
+        assert_eq!(notes(&none), ["on_table.one_approach"]);
+    }
+
+    #[test]
+    fn the_sensitivity_to_temperature_has_the_reading_of_both_ends() {
+        let setup = Setup { temperature_uncertainty_deg_c: 0.5, ..Setup::default() };
+        let (steps, line) = found(&[Extra::ScaleOverTemperature], &[-8.0], &[0.01]);
+        let shown = row(&SCALE_FACTOR_TEMPERATURE_SENSITIVITY, &setup, &steps, &line);
+        shows(&shown, -8.0, METHOD);
+        // √2·0.5/40 of 8 is √0.02.
+        near(student(&shown).0, 0.03f64.sqrt());
+        near(number(&shown, "on_table.temperature_range", "range"), 40.0);
+        let (steps, line) = found(&[], &[], &[]);
+        let none = row(&SCALE_FACTOR_TEMPERATURE_SENSITIVITY, &setup, &steps, &line);
+        withholds(&none, None, METHOD);
+        assert_eq!(notes(&none), ["on_table.no_temperature_range"]);
+    }
+}

@@ -181,3 +181,134 @@ fn slopes_differ(line: &ScaleFactor) -> Option<Combination> {
     let weights: Vec<f64> = (0..levels.len()).map(|i| h[(1, i)] - h[(2, i)]).collect();
     Some(line.response.of_levels(&weights))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{
+        curve, diagonal, line, near, notes, on_table, shows, student, told, withholds,
+    };
+    use super::*;
+    use crate::message::Arg;
+    use crate::rate_table::Setup;
+
+    /// A line through these rates with a factor of −1.25 and a full scale of 200 deg/h: 1 deg/h is −4000 ppm of full scale.
+    /// Means of the levels have a variance of 0.01.
+    fn found(rates: &[f64], means: &[f64]) -> ScaleFactor {
+        let (_, mut line) = line(rates, means, &[], diagonal(&vec![0.01; rates.len()]));
+        (line.factor, line.full_scale) = (-1.25, 200.0);
+        line
+    }
+
+    const RATES: [f64; 5] = [-200.0, -100.0, 0.0, 100.0, 200.0];
+
+    fn row(m: &Measurand, line: &ScaleFactor) -> Estimate {
+        let (setup, steps) = (Setup::default(), crate::rate_table::steps::Steps::default());
+        assert!(m.evaluate_steps(&on_table(&setup, &steps, None)).is_empty());
+        let mut rows = m.evaluate_steps(&on_table(&setup, &steps, Some(line.clone())));
+        assert_eq!(rows.len(), 1);
+        rows.remove(0)
+    }
+
+    fn largest_of(by_chance: f64) -> Largest {
+        Largest { at: 3, value: 0.4, curve: vec![(-2.0, 0.2), (0.0, 0.4), (2.0, 0.6)], by_chance }
+    }
+
+    #[test]
+    fn the_largest_residual_is_stated_where_chance_does_not_explain_it() {
+        let mut line = found(&RATES, &[0.0; 5]);
+        let per_hour = |rate: f64| line_note(rate);
+        line.largest = Some(largest_of(0.01));
+        let shown = row(&SCALE_FACTOR_NONLINEARITY, &line);
+        shows(&shown, 1600.0, METHOD);
+        assert_eq!(curve(&shown)[0], (-2.0, 800.0));
+        near(curve(&shown)[2].1, 2400.0);
+        assert_eq!(told(&shown, "on_table.largest_at", "rate"), &per_hour(100.0));
+        // By chance in one test of fifty: 0.4 + 0.2·1.645/2 at most.
+        line.largest = Some(largest_of(0.02));
+        withholds(&row(&SCALE_FACTOR_NONLINEARITY, &line), Some(4000.0 * 0.564_485_362_695_147_2), METHOD);
+        line.largest = None;
+        let none = row(&SCALE_FACTOR_NONLINEARITY, &line);
+        withholds(&none, None, METHOD);
+        assert_eq!(notes(&none), ["on_table.few_levels", "on_table.largest_at"]);
+    }
+
+    fn line_note(rate: f64) -> Arg {
+        crate::units::RateUnit::up_to(200.0).figures(rate, 4)
+    }
+
+    #[test]
+    fn the_largest_residual_of_the_rate_is_relative_to_the_factor_alone() {
+        let mut line = found(&RATES, &[0.0; 5]);
+        line.largest_of_rate = Some((Largest { value: 2e-3, ..largest_of(0.005) }, -200.0));
+        let shown = row(&SCALE_FACTOR_NONLINEARITY_OF_RATE, &line);
+        shows(&shown, 1600.0, METHOD);
+        assert_eq!(told(&shown, "on_table.largest_at", "rate"), &line_note(-200.0));
+    }
+
+    #[test]
+    fn the_rms_of_the_residuals_has_the_noise_taken_out() {
+        let mut line = found(&RATES, &[0.0; 5]);
+        let levels = |of: [f64; 5], u: f64| of.map(|r| (r, u)).to_vec();
+        (line.levels, line.covariance) = (levels([3.0, -1.0, 2.0, 0.0, -4.0], 0.2), diagonal(&[0.04; 5]));
+        line.covariance[(0, 1)] = 0.01;
+        line.covariance[(1, 0)] = 0.01;
+        // Mean square 6 less 0.04; Var Σr² = 4 rᵀCr + 2 ΣC² with rᵀCr = 0.04·30 − 2·0.03.
+        let standard = (4.0f64 * 1.14 + 2.0 * (5.0 * 0.0016 + 2.0 * 1e-4)).sqrt() / 5.0;
+        let shown = row(&SCALE_FACTOR_RESIDUAL, &line);
+        shows(&shown, 4000.0 * 5.96f64.sqrt(), METHOD);
+        let points = curve(&shown);
+        assert_eq!((points.len(), points[0].0, points[24].0), (25, -3.0, 3.0));
+        near(points[0].1, 4000.0 * (5.96 - 3.0 * standard).sqrt());
+        near(points[16].1, 4000.0 * (5.96 + standard).sqrt());
+        // Not clear of zero: 0.8 − 0.5 with a deviation of √(4·0.5·4 + 2·5·0.25)/5.
+        (line.levels, line.covariance) =
+            (levels([1.0, -1.0, 1.0, -1.0, 0.0], 0.5f64.sqrt()), diagonal(&[0.5; 5]));
+        let limit = 4000.0 * (0.3 + 1.645 * 10.5f64.sqrt() / 5.0).sqrt();
+        withholds(&row(&SCALE_FACTOR_RESIDUAL, &line), Some(limit), METHOD);
+        // Less than its noise: √(2·5·0.25)/5 above nothing.
+        line.levels = levels([0.0; 5], 0.5f64.sqrt());
+        let limit = 4000.0 * (1.645 * 2.5f64.sqrt() / 5.0).sqrt();
+        withholds(&row(&SCALE_FACTOR_RESIDUAL, &line), Some(limit), METHOD);
+    }
+
+    #[test]
+    fn terms_of_a_polynomial_are_those_at_full_scale() {
+        // 0.1 + 0.2 x + 0.7 x² − 0.3 x³ of full scale.
+        let x = [-1.0f64, -0.5, 0.0, 0.5, 1.0];
+        let line = found(&RATES, &x.map(|x| 0.1 + 0.2 * x + 0.7 * x * x - 0.3 * x.powi(3)));
+        let (odd, even) = (row(&SCALE_FACTOR_ODD, &line), row(&SCALE_FACTOR_EVEN, &line));
+        shows(&even, -2800.0, METHOD);
+        shows(&odd, 1200.0, METHOD);
+        // Σx² = 2.5, Σx⁴ = 2.125, Σx⁶ = 2.03125: variances 5/(5·2.125 − 2.5²) and 2.5/(2.5·2.03125 − 2.125²) of a level's.
+        near(student(&even).0, 400.0 * (5.0f64 / 4.375).sqrt());
+        near(student(&odd).0, 400.0 * (2.5f64 / 0.5625).sqrt());
+        let four = found(&RATES[..4], &[0.0; 4]);
+        let none = row(&SCALE_FACTOR_ODD, &four);
+        withholds(&none, None, METHOD);
+        assert_eq!(notes(&none), ["on_table.few_levels"]);
+    }
+
+    #[test]
+    fn asymmetry_is_the_difference_of_the_slopes_of_both_signs() {
+        // 3e-3 of positive rates and 1e-3 of negative ones beyond the line, over a factor of −1.25.
+        let means = RATES.map(|r| 2.0 + if r > 0.0 { 3e-3 * r } else { 1e-3 * r });
+        let shown = row(&SCALE_FACTOR_ASYMMETRY, &found(&RATES, &means));
+        shows(&shown, -1600.0, METHOD);
+        // Half the difference is the slope over |x|, Σ(|x| − 120)² = 28000.
+        near(student(&shown).0, 8e5 * (4.0f64 * 0.01 / 28_000.0).sqrt());
+        // Three levels with one of each sign are enough.
+        shows(
+            &row(&SCALE_FACTOR_ASYMMETRY, &found(&[-100.0, 0.0, 50.0], &[-0.1, 0.0, 0.2])),
+            -2400.0,
+            METHOD,
+        );
+        for rates in
+            [[100.0, 150.0, 200.0], [-200.0, -150.0, -100.0], [-1e-5, 100.0, 200.0], [-200.0, -100.0, 1e-5]]
+        {
+            let none = row(&SCALE_FACTOR_ASYMMETRY, &found(&rates, &[0.0; 3]));
+            withholds(&none, None, METHOD);
+            assert_eq!(notes(&none), ["on_table.one_sign"]);
+        }
+        withholds(&row(&SCALE_FACTOR_ASYMMETRY, &found(&[-100.0, 100.0], &[0.0; 2])), None, METHOD);
+    }
+}

@@ -76,3 +76,85 @@ pub(super) fn temperature_sensitivity(m: &Measurand, e: &TableEvidence<'_>) -> E
             .note(Note::new("on_table.temperature_range").with("range", Arg::figures(range, 3)))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_evidence::{
+        chi_square, diagonal, fitted, near, normal, notes, number, on_table, shows, steps, student, withholds,
+    };
+    use super::super::{SCALE_FACTOR_RESIDUAL, SCALE_FACTOR_TEMPERATURE_SENSITIVITY};
+    use super::*;
+    use crate::rate_table::Setup;
+    use crate::rate_table::steps::Steps;
+
+    /// Seconds of arc in a radian: 1 deg/h is 1/206264.8… rad/s.
+    const ARCSEC: f64 = 648_000.0 / std::f64::consts::PI;
+
+    fn sine(slope: f64) -> Sine {
+        let covariance = diagonal(&[0.0, 1e-6, 0.0, 0.0, 0.0, 2.45 * 2.45, 0.0, 0.0]);
+        Sine {
+            fit: fitted(&[0.0, slope, 0.0, 0.0, 0.0, 49.0, 0.0, 0.0], covariance),
+            kappa: 2e-5,
+            kappa_standard: 1e-8,
+            slope,
+            mean_slope: slope,
+            rms: 3.0,
+            rms_of_line: 9.0,
+            dof: 20.0,
+            temperature_range: 40.0,
+            rows: vec![],
+        }
+    }
+
+    fn setup() -> Setup {
+        Setup { sine: true, temperature_uncertainty_deg_c: 0.4, ..Setup::default() }
+    }
+
+    fn with<'a>(setup: &'a Setup, steps: &'a Steps, sine: Option<Sine>) -> TableEvidence<'a> {
+        TableEvidence { sine, ..on_table(setup, steps, None) }
+    }
+
+    #[test]
+    fn phase_per_rate_is_that_of_a_radian_a_second() {
+        let (setup, steps) = (setup(), Steps::default());
+        let rows = SINE_RESPONSE.evaluate_steps(&with(&setup, &steps, Some(sine(0.98))));
+        shows(&rows[0], 2e-5 * ARCSEC, "sine_response");
+        near(normal(&rows[0]), 1e-8 * ARCSEC);
+        let none = SINE_RESPONSE.evaluate_steps(&with(&setup, &steps, None));
+        withholds(&none[0], None, "sine_response");
+        assert_eq!(notes(&none[0]), ["on_table.no_sine"]);
+        let straight = Setup { sine: false, ..setup };
+        assert!(SINE_RESPONSE.evaluate_steps(&with(&straight, &steps, Some(sine(0.98)))).is_empty());
+    }
+
+    #[test]
+    fn what_the_sine_leaves_is_a_part_of_full_scale() {
+        let steps = steps(&[-600.0, 200.0, 500.0], &[0.0; 3], 3);
+        for (full_scale_deg_h, expected) in [(Some(12_000.0), 250.0), (None, 5000.0)] {
+            let setup = Setup { full_scale_deg_h, ..setup() };
+            let row = &SCALE_FACTOR_RESIDUAL.evaluate_steps(&with(&setup, &steps, Some(sine(0.98))))[0];
+            shows(row, expected, "sine_response");
+            assert_eq!(chi_square(row), 20.0);
+            // In mrad/s.
+            near(number(row, "on_table.sine_left", "rms"), 3000.0 / ARCSEC);
+            near(number(row, "on_table.sine_left", "line"), 9000.0 / ARCSEC);
+        }
+    }
+
+    #[test]
+    fn the_gain_over_temperature_is_relative_to_the_slope() {
+        let (setup, steps) = (setup(), Steps::default());
+        for sign in [1.0, -1.0] {
+            let e = with(&setup, &steps, Some(sine(sign * 0.98)));
+            let row = &SCALE_FACTOR_TEMPERATURE_SENSITIVITY.evaluate_steps(&e)[0];
+            shows(row, sign * 50.0, "sine_response");
+            // 2.45/0.98 of the fit, and √2·0.4/40 of 50 from both ends of the range.
+            near(student(row).0, (2.5f64 * 2.5 + 0.5).sqrt());
+            near(number(row, "on_table.temperature_range", "range"), 40.0);
+        }
+        let e = with(&setup, &steps, Some(Sine { temperature_range: 0.0, ..sine(0.98) }));
+        let none = &SCALE_FACTOR_TEMPERATURE_SENSITIVITY.evaluate_steps(&e)[0];
+        withholds(none, None, "sine_response");
+        assert_eq!(notes(none), ["on_table.no_temperature_range"]);
+    }
+}

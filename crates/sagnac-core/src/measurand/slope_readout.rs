@@ -127,4 +127,120 @@ mod tests {
         });
         assert!((after.low - 0.8 * before.low).abs() < 1e-3 && (after.high - before.high).abs() < 1e-3);
     }
+
+    use super::super::Options;
+    use super::super::test_evidence::{
+        chi_square, curve, gyro, near, notes, number, point, shows, withholds, within,
+    };
+    use crate::noise::composite::{Composite, Damped};
+    use crate::noise::identification::Plateau;
+    use crate::noise::model::NoiseModel;
+
+    const N: f64 = 0.002;
+
+    /// 10 000 samples at 0.5 s, of which m up to 1000 is read: octaves of a deviation.
+    fn with(deviation: impl Fn(f64) -> f64) -> GyroEvidence {
+        let mut gyro = gyro();
+        gyro.digest.samples = 10_000;
+        gyro.octaves = (0..10).map(|k| 1 << k).map(|m| point(m, deviation(0.5 * m as f64), 1000.0)).collect();
+        gyro
+    }
+
+    fn white(tau_s: f64) -> f64 {
+        60.0 * N / tau_s.sqrt()
+    }
+
+    fn row(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
+        m.evaluate_gyro(gyro, &Options { remove_earth_rate: false }).remove(0)
+    }
+
+    #[test]
+    fn n_is_read_at_an_hour_from_the_points_that_can_be_read() {
+        let mut gyro = with(white);
+        // On the same line and beyond a tenth of the record, or without a deviation or degrees of freedom.
+        gyro.octaves.push(point(1001, white(500.5), 1000.0));
+        gyro.octaves.insert(0, point(1, 0.0, 1000.0));
+        gyro.octaves.push(point(700, white(350.0), 0.0));
+        let found = row(&ANGLE_RANDOM_WALK_READOUT, &gyro);
+        shows(&found, N, "slope_readout");
+        let expected = [
+            ("slope", -0.5),
+            ("tolerance", 0.15),
+            ("n", 10.0),
+            ("from_s", 0.5),
+            ("to_s", 256.0),
+            ("at_s", 3600.0),
+        ];
+        for (name, value) in expected {
+            near(number(&found, "readout.line", name), value);
+        }
+        assert_eq!(notes(&found), ["readout.line"]);
+        // Ten points of 1000 degrees each, neighbours correlated by 0.52ᵈ.
+        let correlated: f64 =
+            (0..10).flat_map(|i: i32| (0..10).map(move |j: i32| 0.52f64.powi((i - j).abs()))).sum();
+        within(chi_square(&found), 100.0 * 1000.0 / correlated, 1e-9);
+        let none = row(&RATE_RANDOM_WALK_READOUT, &gyro);
+        withholds(&none, None, "slope_readout");
+        near(number(&none, "readout.no_slope", "slope"), 0.5);
+        near(number(&none, "readout.no_slope", "tolerance"), 0.15);
+    }
+
+    #[test]
+    fn every_term_has_its_slope_and_its_reading_time() {
+        // σ = K√(τ/3), R τ/√2 (τ in h) and Q√3/τ (τ in s).
+        let k = row(&RATE_RANDOM_WALK_READOUT, &with(|t| 0.3 * (t / 10_800.0).sqrt()));
+        shows(&k, 0.3, "slope_readout");
+        shows(&row(&RATE_RAMP_READOUT, &with(|t| 0.2 * t / 3600.0 / 2f64.sqrt())), 0.2, "slope_readout");
+        shows(&row(&QUANTIZATION_READOUT, &with(|t| 5.0 * 3f64.sqrt() / t)), 5.0, "slope_readout");
+    }
+
+    #[test]
+    fn what_other_terms_put_into_a_reading_is_told() {
+        let mut gyro = with(white);
+        let k = 0.5;
+        gyro.identification.described.model = NoiseModel { n: N, k, ..Default::default() }.into();
+        // N²·3600/τ of that and K²τ/10800, its root over the ten octaves.
+        let share = |t: f64| {
+            let own = 3600.0 * N * N / t;
+            (own / (own + k * k * t / 10_800.0)).sqrt()
+        };
+        let own = (0..10).map(|i| share(0.5 * 2f64.powi(i))).sum::<f64>() / 10.0;
+        assert!((0.2..0.9).contains(&own), "{own}");
+        let found = row(&ANGLE_RANDOM_WALK_READOUT, &gyro);
+        shows(&found, N, "slope_readout");
+        within(number(&found, "readout.others", "percent"), 100.0 * (1.0 - own), 1e-9);
+        let plain = Spread::ChiSquare {
+            dof: {
+                let bare = row(&ANGLE_RANDOM_WALK_READOUT, &with(white));
+                chi_square(&bare)
+            },
+        };
+        let points = curve(&found);
+        assert_eq!(points.len(), 81);
+        for (at, z, part) in [(0, -4.0, own), (30, -1.0, own), (40, 0.0, 1.0), (80, 4.0, 1.0)] {
+            assert!((points[at].0 - z).abs() < 1e-9);
+            within(points[at].1, part * plain.bound(N, normal_probability(z)).unwrap(), 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_process_that_is_white_on_the_line_belongs_to_n_and_to_nothing_else() {
+        let process = Damped { rms_deg_h: 0.3, frequency_hz: 0.0, decay_time_s: 0.05 };
+        let terms = NoiseModel { n: N, k: 0.5, ..Default::default() };
+        let model =
+            Composite { markov: vec![process], ..Composite::from(NoiseModel { n: N, ..Default::default() }) };
+        let mut gyro = with(|t| 0.3 * (t / 10_800.0).sqrt());
+        gyro.identification.plateau = Plateau::of(&model, 0.5, 5000.0);
+        assert!(gyro.identification.plateau.is_some());
+        let taus: Vec<f64> = gyro.octaves.iter().map(|p| 0.5 * p.point.m as f64).collect();
+        gyro.identification.described.model = model;
+        near(own_part(&gyro, NoiseType::AngleRandomWalk, taus.iter()), 1.0);
+        gyro.identification.described.model = terms.into();
+        let share = |t: f64| {
+            let own = 0.25 * t / 10_800.0;
+            (own / (own + 3600.0 * N * N / t)).sqrt()
+        };
+        let expected = taus.iter().map(|t| share(*t)).sum::<f64>() / 10.0;
+        within(own_part(&gyro, NoiseType::RateRandomWalk, taus.iter()), expected, 1e-9);
+    }
 }

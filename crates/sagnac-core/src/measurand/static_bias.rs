@@ -74,3 +74,75 @@ fn evaluate(m: &Measurand, gyro: &GyroEvidence, options: &Options) -> Vec<Estima
         .with("longest_h", 1.0 / (3600.0 * u.lowest_hz));
     vec![m.measured(&gyro.channel, value, spread, "mean").note(earth).note(longest)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::evidence::Earth;
+    use super::super::test_evidence::{gyro, near, notes, number, shows, student, within};
+    use super::*;
+    use crate::noise::model::NoiseModel;
+    use crate::noise::static_bias::flicker_bracket;
+
+    /// An hour of 12.5 deg/h.
+    fn hour(noise: NoiseModel) -> GyroEvidence {
+        let mut gyro = gyro();
+        (gyro.digest.samples, gyro.digest.mean) = (7200, 12.5);
+        gyro.identification.allowed = noise.into();
+        gyro.identification.supported = noise;
+        gyro.earth = Some(Earth { rate_deg_h: 12.0, uncertainty_deg_h: 0.004 });
+        gyro
+    }
+
+    fn row(gyro: &GyroEvidence, remove_earth_rate: bool) -> Estimate {
+        STATIC_BIAS.evaluate_gyro(gyro, &Options { remove_earth_rate }).remove(0)
+    }
+
+    #[test]
+    fn the_mean_is_stated_with_or_without_the_earth_rate() {
+        // N²/T + K²T/3 over one hour: 9e-6 + 4e-6/3.
+        let gyro = hour(NoiseModel { n: 0.003, k: 0.002, ..Default::default() });
+        let kept = row(&gyro, false);
+        shows(&kept, 12.5, "mean");
+        let own = 9e-6 + 4e-6 / 3.0;
+        within(student(&kept).0, f64::sqrt(own), 1e-12);
+        assert_eq!(
+            (student(&kept).1, notes(&kept)),
+            (5.0, vec!["note.earth_rate_kept", "note.bias_uncertainty"])
+        );
+        let removed = row(&gyro, true);
+        shows(&removed, 0.5, "mean");
+        within(student(&removed).0, f64::sqrt(own + 1.6e-5), 1e-12);
+        near(number(&removed, "note.earth_rate_removed", "rate"), 12.0);
+        near(number(&removed, "note.bias_uncertainty", "u"), f64::sqrt(own + 1.6e-5));
+        // Flicker is counted from 1/(2πT): periods up to 2π hours.
+        near(number(&removed, "note.bias_uncertainty", "longest_h"), 2.0 * std::f64::consts::PI);
+        near(uncertainty(&gyro, false).standard(), f64::sqrt(own));
+        let unknown = GyroEvidence { earth: None, ..gyro };
+        shows(&row(&unknown, true), 12.5, "mean");
+    }
+
+    #[test]
+    fn degrees_of_freedom_follow_from_what_is_known_of_every_term() {
+        let noise = NoiseModel { n: 0.003, b: 0.001, k: 0.002, q: 5.0, r: 0.0 };
+        let mut gyro = hour(noise);
+        let known = [1e-4f64, 2e-4, 4e-4, 1.5, 0.0];
+        for (i, u) in known.iter().enumerate() {
+            gyro.identification.covariance[i][i] = u * u;
+        }
+        assert_eq!(student(&row(&gyro, false)).1, LEAST_DOF);
+        gyro.identification.claimed = vec![NoiseType::RateRandomWalk];
+        // Parts N²/T, B²/π·bracket(1), K²T/3 and 2Q²/T² (T in s) of the squared uncertainty; each goes with the square of
+        // its coefficient, so that its deviation is 2·part·u(c)/c.
+        let bracket = flicker_bracket(1.0);
+        let parts = [9e-6, 1e-6 / std::f64::consts::PI * bracket, 4e-6 / 3.0, 50.0 / 3600f64.powi(2)];
+        let relative = [1.0 / 30.0, 0.2, 0.2, 0.3];
+        let variance: f64 = parts.iter().zip(relative).map(|(p, u): (&f64, f64)| (2.0 * p * u).powi(2)).sum();
+        let total: f64 = parts.iter().sum();
+        within(student(&row(&gyro, false)).1, 2.0 * total * total / variance, 1e-9);
+        // Poorly known, it has the least; so it has where nothing is known.
+        gyro.identification.covariance[2][2] = 1.0;
+        assert_eq!(student(&row(&gyro, false)).1, LEAST_DOF);
+        gyro.identification.covariance = [[0.0; 5]; 5];
+        assert_eq!(student(&row(&gyro, false)).1, LEAST_DOF);
+    }
+}

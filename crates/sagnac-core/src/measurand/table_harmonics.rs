@@ -59,3 +59,62 @@ fn harmonic(m: &Measurand, line: &ScaleFactor, order: u8) -> Estimate {
     m.measured(&line.channel, amplitude, spread(&random, 1.0, &[]), METHOD)
         .note(Note::new("on_table.phase").with("phase", Arg::figures(phase, 3)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::evidence::TableEvidence;
+    use super::super::test_evidence::{line, near, notes, number, on_table, shows, student, withholds};
+    use super::*;
+    use crate::rate_table::Setup;
+    use nalgebra::DMatrix;
+
+    /// Cosine and sine of 3 and 4 deg/h times a size, with standard uncertainties of 0.2 and 0.3 and a covariance of 0.012.
+    fn found(size: f64, order: u8) -> ScaleFactor {
+        let mut covariance = DMatrix::zeros(5, 5);
+        (covariance[(3, 3)], covariance[(4, 4)]) = (0.04, 0.09);
+        (covariance[(3, 4)], covariance[(4, 3)]) = (0.012, 0.012);
+        let extras = [Extra::Cosine(order), Extra::Sine(order)];
+        line(&[-100.0, 0.0, 100.0], &[0.0, 0.0, 0.0, 3.0 * size, 4.0 * size], &extras, covariance).1
+    }
+
+    #[test]
+    fn an_amplitude_is_the_root_of_both_squares_with_its_phase() {
+        let row = harmonic(&TABLE_HARMONIC_1, &found(1.0, 1), 1);
+        shows(&row, 5.0, "table_harmonic");
+        // Var √(c² + s²) = (9·0.04 + 16·0.09 + 2·12·0.012)/25.
+        near(student(&row).0, (2.088f64 / 25.0).sqrt());
+        // An angle of the 3-4-5 triangle.
+        near(number(&row, "on_table.phase", "phase"), 53.130_102_354_155_98);
+        let row = harmonic(&TABLE_HARMONIC_2, &found(-1.0, 2), 2);
+        near(number(&row, "on_table.phase", "phase"), 53.130_102_354_155_98 - 180.0);
+    }
+
+    #[test]
+    fn an_amplitude_that_chance_gives_once_in_a_hundred_tests_is_bounded() {
+        // The square of the distance from none is (c, s) C⁻¹ (c, s)ᵀ = (9·0.09 + 16·0.04 − 2·12·0.012)/(0.0036 − 0.000144)
+        // times the square of the size; chance leaves more than 2 ln 100 in one test of a hundred.
+        let square = 1.162 / 0.003_456;
+        let limit = 2.0 * 100f64.ln();
+        for (share, is_shown) in [(0.995, false), (1.005, true)] {
+            let size = (share * limit / square).sqrt();
+            let row = harmonic(&TABLE_HARMONIC_1, &found(size, 1), 1);
+            if is_shown {
+                shows(&row, 5.0 * size, "table_harmonic");
+            } else {
+                withholds(&row, Some(5.0 * size + 1.645 * 0.065f64.sqrt()), "table_harmonic");
+            }
+        }
+    }
+
+    #[test]
+    fn each_order_has_its_own_terms() {
+        let (setup, line) = (Setup::default(), found(1.0, 2));
+        let steps = crate::rate_table::steps::Steps::default();
+        let e: TableEvidence<'_> = on_table(&setup, &steps, Some(line));
+        shows(&TABLE_HARMONIC_2.evaluate_steps(&e)[0], 5.0, "table_harmonic");
+        let none = &TABLE_HARMONIC_1.evaluate_steps(&e)[0];
+        withholds(none, None, "table_harmonic");
+        assert_eq!(notes(none), ["on_table.no_harmonic"]);
+        assert!(TABLE_HARMONIC_1.evaluate_steps(&on_table(&setup, &steps, None)).is_empty());
+    }
+}

@@ -479,3 +479,7 @@ fn inseparable(a: &Analysis) -> Note {
         .with("rate", Arg::figures(r, 3))
         .with("other", Arg::figures(other, 2))
 }
+
+#[cfg(test)]
+#[path = "temperature_tests.rs"]
+mod tests;

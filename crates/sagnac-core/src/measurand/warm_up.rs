@@ -86,3 +86,138 @@ fn time(m: &Measurand, found: &WarmUpFindings, channel: &str) -> Estimate {
     }
     m.measured(channel, r.value, r.spread.clone(), METHOD).note(described(found))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Options;
+    use super::super::test_evidence::{gyro, near, notes, number, shows, told, withholds};
+    use super::*;
+    use crate::estimate::Spread;
+    use crate::temperature::read::Reading;
+    use crate::temperature::warm_up::Settled;
+    use crate::temperature::{StartAsked, WarmUpTest};
+
+    /// Normal with a standard deviation of 10 s; its 95 % bounds lie 16.45 s to either side.
+    fn reading(value: f64) -> Reading {
+        let points = vec![(-2.0, value - 20.0), (0.0, value), (2.0, value + 20.0)];
+        Reading { value, spread: Spread::Curve(points) }
+    }
+
+    const BOUND: f64 = 16.448_536_269_514_72;
+
+    fn found(start: Start, time_s: f64) -> WarmUpFindings {
+        WarmUpFindings {
+            test: WarmUpTest { band_deg_h: 0.05, final_share: 0.2, start: StartAsked::Nothing },
+            start,
+            time: reading(time_s),
+            always_inside: false,
+            transient: reading(-3.0),
+            time_constants_s: vec![90.0, 600.0],
+            length_s: 5400.0,
+            blocks: vec![],
+            modelled: vec![],
+            final_deg_h: 0.0,
+            too_short: false,
+            settled: Settled { remaining: reading(0.0), at_most_deg_h: 0.05, at_least_s: 700.0 },
+        }
+    }
+
+    fn row(m: &Measurand, found: &WarmUpFindings) -> Estimate {
+        let mut rows = m.evaluate_warm_up("g", found);
+        assert_eq!(rows.len(), 1);
+        rows.remove(0)
+    }
+
+    #[track_caller]
+    fn at_least(row: &Estimate, expected: Option<f64>) {
+        assert_eq!((row.value, row.lower_limit.is_some()), (None, expected.is_some()), "{row:?}");
+        if let (Some(limit), Some(expected)) = (row.lower_limit, expected) {
+            near(limit.value, expected);
+            assert_eq!(limit.coverage, 0.95);
+        }
+    }
+
+    #[test]
+    fn from_a_start_that_is_shown_time_and_transient_are_stated() {
+        let found = found(Start::Shown(0.0), 300.0);
+        let time = row(&WARM_UP_TIME, &found);
+        shows(&time, 300.0, "decays_gls");
+        let transient = row(&TURN_ON_TRANSIENT, &found);
+        shows(&transient, -3.0, "decays_gls");
+        for row in [&time, &transient] {
+            assert_eq!(notes(row), ["thermal.transient"]);
+            // In minutes.
+            let constants = Arg::Several(vec![Arg::figures(1.5, 3), Arg::figures(10.0, 3)], "; ".into());
+            assert_eq!(told(row, "thermal.transient", "constants"), &constants);
+        }
+        // A gyro at rest has the row where its warm-up was asked for.
+        let (mut gyro, options) = (gyro(), Options { remove_earth_rate: false });
+        assert!(WARM_UP_TIME.evaluate_gyro(&gyro, &options).is_empty());
+        gyro.warm_up = Some(found.clone());
+        assert_eq!(WARM_UP_TIME.evaluate_gyro(&gyro, &options), [time]);
+        let declared = WarmUpFindings { start: Start::Declared, ..found };
+        assert_eq!(notes(&row(&WARM_UP_TIME, &declared)), ["thermal.transient", "thermal_start.declared"]);
+    }
+
+    #[test]
+    fn from_an_unknown_start_the_time_is_at_least_what_is_seen() {
+        for (why, note) in [
+            (Missing::NotAsked, "thermal_start.not_asked"),
+            (Missing::NoValues, "thermal_start.no_values"),
+            (Missing::OnAtFirst, "thermal_start.on_at_first"),
+            (Missing::NoRise, "thermal_start.no_rise"),
+            (Missing::WarmAtFirst(31.0, 20.0), "thermal_start.warm_at_first"),
+            (Missing::Late(45.0), "thermal_start.late"),
+        ] {
+            let found = found(Start::NotShown(why), 300.0);
+            let time = row(&WARM_UP_TIME, &found);
+            at_least(&time, Some(300.0 - BOUND));
+            assert_eq!(notes(&time), ["thermal.transient", note]);
+            at_least(&row(&TURN_ON_TRANSIENT, &found), None);
+            match why {
+                Missing::WarmAtFirst(first, cold) => {
+                    assert_eq!(number(&time, note, "first"), first);
+                    assert_eq!(number(&time, note, "cold"), cold);
+                }
+                Missing::Late(late_s) => assert_eq!(number(&time, note, "late"), late_s),
+                _ => {}
+            }
+        }
+        // A bound of nothing is none.
+        let start = Start::NotShown(Missing::NotAsked);
+        at_least(&row(&WARM_UP_TIME, &found(start, 10.0)), None);
+        let mut flat = found(start, 10.0);
+        flat.time.spread = Spread::Curve(vec![(-2.0, 0.0), (0.0, 0.0), (2.0, 20.0)]);
+        at_least(&row(&WARM_UP_TIME, &flat), None);
+        // What the record shows of its end counts in the same way.
+        let short = WarmUpFindings { too_short: true, ..found(start, 300.0) };
+        at_least(&row(&WARM_UP_TIME, &short), Some(700.0));
+    }
+
+    #[test]
+    fn a_record_that_ends_too_early_gives_a_lower_limit() {
+        let start = Start::Shown(0.0);
+        let mut short = WarmUpFindings { too_short: true, ..found(start, 300.0) };
+        let time = row(&WARM_UP_TIME, &short);
+        at_least(&time, Some(700.0));
+        assert_eq!(notes(&time), ["thermal.warm_up_too_short"]);
+        near(number(&time, "thermal.warm_up_too_short", "hours"), 1.5);
+        short.settled.at_least_s = 0.0;
+        at_least(&row(&WARM_UP_TIME, &short), None);
+        let mut drifting = found(start, 300.0);
+        drifting.settled.at_most_deg_h = 0.051;
+        let time = row(&WARM_UP_TIME, &drifting);
+        at_least(&time, Some(700.0));
+        near(number(&time, "thermal.not_settled", "hours"), 1.5);
+        near(number(&time, "thermal.not_settled", "band"), 0.05);
+    }
+
+    #[test]
+    fn a_unit_that_is_warm_at_once_has_an_upper_limit() {
+        for value in [0.0, -5.0] {
+            let time = row(&WARM_UP_TIME, &found(Start::Shown(0.0), value));
+            withholds(&time, Some(value + BOUND), "decays_gls");
+            assert_eq!(notes(&time), ["thermal.warm_at_once"]);
+        }
+    }
+}
