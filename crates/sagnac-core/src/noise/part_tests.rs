@@ -47,8 +47,12 @@ fn parts(recording: &Recording, cuts: &[usize]) -> Vec<(PartStart, Recording)> {
             for (first, samples) in recording {
                 let from = bound[0].clamp(before, before + samples.len()) - before;
                 let to = bound[1].clamp(before, before + samples.len()) - before;
+                let here = PartStart { first_index: first + from as u64, samples_before: from as u64 };
+                if (1..samples.len()).contains(&from) {
+                    // A part without samples also starts where the cut is.
+                    start.get_or_insert(here);
+                }
                 if from < to {
-                    let here = PartStart { first_index: first + from as u64, samples_before: from as u64 };
                     start.get_or_insert(here);
                     pieces.push((first + from as u64, samples[from..to].to_vec()));
                 }
@@ -169,6 +173,7 @@ fn cuts_beside_windows_and_gaps_and_parts_of_a_few_samples() {
         // Empty parts; cuts at the gaps and one sample beside them, at ends of blocks, segments and windows.
         check(&recording, &[0, 0, 5000, 5003, 9103], dense);
         check(&recording, &[1, 2, 3, 4999, 5001, 5002, 5004, 9102], dense);
+        check(&recording, &[2000, 2000, 2000, 7000, 7000], dense);
         check(&recording, &[64, 256, 1000, 1024, 1025, 4096, 4097], dense);
         check(&recording, &(0..400).map(|k| 1000 + 11 * k).collect::<Vec<_>>(), dense);
     }
