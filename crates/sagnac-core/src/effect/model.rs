@@ -463,4 +463,41 @@ mod tests {
         let of = |kind: &str| crate::effect::find(kind).unwrap().reported_kind();
         assert_eq!((of("line"), of("drifting_line")), ("line", UNKNOWN));
     }
+
+    #[test]
+    fn only_effects_on_samples_are_found_in_samples() {
+        let of = |kind: &str| crate::effect::find(kind).unwrap().detector();
+        assert!(matches!(of("outlier_bursts"), Some(Detector::Outliers(_))));
+        assert!(matches!(of("noise_variance_time"), Some(Detector::Level(_))));
+        assert!(matches!(of("random_telegraph"), Some(Detector::Jumps(_))));
+        assert!(of("line").is_none() && of("excess_arw").is_none());
+        assert!(crate::effect::find("noise_variance_rate").unwrap().sets_level());
+        assert!(!crate::effect::find("outlier_bursts").unwrap().sets_level());
+    }
+
+    #[test]
+    fn samples_count_inside_of_both_ends_where_their_rows_do() {
+        let drivers = Drivers::default();
+        let usable = [true, true, true, false, true, true, true];
+        let residual = FlatResidual {
+            white: vec![0.0; 7],
+            flat: vec![0.0; 7],
+            per_deg_h: 1.0,
+            ends: 2,
+            usable: &usable,
+            drivers: &drivers,
+            rounding_step: 0.0,
+        };
+        let counted: Vec<usize> = (0..9).filter(|i| residual.counts(*i)).collect();
+        assert_eq!(counted, [2, 4]);
+    }
+
+    #[test]
+    fn an_effect_of_numbers_alone_states_no_lists_and_no_texts() {
+        let Model::Mean(mean) = crate::effect::find("bias_step").unwrap().model() else { panic!("a mean") };
+        let drivers = Drivers::default();
+        assert!(mean.texts(&[1.0], &drivers).is_empty());
+        assert!(mean.lists(&[1.0], &[1.0], &drivers).is_empty());
+        assert!(!mean.same_cause(&[1.0], &[1.0]));
+    }
 }

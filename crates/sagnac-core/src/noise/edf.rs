@@ -296,4 +296,18 @@ mod tests {
         two.add(10);
         assert!(edf(Estimator::Allan, &point, &two, Flicker, PhaseModel::IntegratedRate) == got);
     }
+
+    /// SP 1065 table 7 and section 5.2.11: degrees of freedom b·T/τ − c, and 1 − a·τ/T.
+    #[test]
+    fn the_total_deviation_has_the_published_constants() {
+        for (noise, edf, bias) in [
+            (AngleRandomWalk, 15.0, 1.0),
+            (Flicker, 11.48, 1.0 - 0.480_898_346_962_987_8 / 10.0),
+            (RateRandomWalk, 8.94, 0.925),
+        ] {
+            assert!((total_edf(10.0, noise) - edf).abs() < 1e-12, "{noise:?}");
+            assert!((total_bias(10.0, noise) - bias).abs() < 1e-15, "{noise:?}");
+        }
+        assert_eq!((total_edf(1.0, RateRandomWalk), total_bias(1.5, NoiseType::RateRamp)), (1.0, 0.5));
+    }
 }

@@ -401,4 +401,24 @@ mod tests {
         let needed = bias.needed_duration_h.unwrap();
         assert!((needed / (0.004 * (1.644854 + 0.841621) / 0.005_f64).powi(2) - 1.0).abs() < 0.06);
     }
+
+    #[test]
+    fn the_needed_duration_is_enough_and_nine_tenths_of_it_are_not() {
+        // At other intervals than a second, so that hours and samples differ.
+        let background = NoiseModel { n: 0.0023, ..Default::default() };
+        for tau0_s in [0.5, 4.0] {
+            let at = |hours: f64| {
+                let samples = (hours * 3600.0 / tau0_s) as u64;
+                decision_power(NoiseType::AngleRandomWalk, 0.003, &background, samples, tau0_s, 0.05).unwrap()
+            };
+            let needed = at(1.0).needed_duration_h.unwrap();
+            assert!(at(needed).is_enough() && !at(0.9 * needed).is_enough(), "{tau0_s}: {needed} h");
+        }
+        let none = |limit, samples, tau0_s| {
+            decision_power(NoiseType::AngleRandomWalk, limit, &background, samples, tau0_s, 0.05).is_none()
+        };
+        assert!(
+            none(0.0, 3600, 1.0) && none(0.003, 63, 1.0) && none(0.003, 3600, 0.0) && !none(0.003, 64, 1.0)
+        );
+    }
 }

@@ -138,3 +138,15 @@ fn odd_spectra_are_no_trouble() {
     };
     assert!(find_lines(&flat, 1.0, 0.01).lines.is_empty());
 }
+
+#[test]
+fn the_floor_of_nearest_bins_of_a_level_spectrum_is_its_level() {
+    // Mean over median of a mean of 50 is 1 + 1/150, and 20 bins are outside of the lobe.
+    let (floor, spread) = nearest(&[2.0; 400], 200, 50.0);
+    assert!((floor / 2.0 - 151.0 / 150.0).abs() < 1e-4, "{floor}");
+    assert!((spread * 20.0 - 1.0).abs() < 0.01, "{spread}");
+    // The bins of a line do not count.
+    let mut density = vec![2.0; 400];
+    density[200 - LOBE..=200 + LOBE].fill(1e6);
+    assert_eq!(nearest(&density, 200, 50.0), (floor, spread));
+}

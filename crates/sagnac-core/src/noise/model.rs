@@ -349,4 +349,20 @@ mod tests {
         assert_eq!(model.dominant(1e6), NoiseType::RateRamp);
         assert_eq!(NoiseModel::default().dominant(1.0), NoiseType::AngleRandomWalk);
     }
+
+    #[test]
+    fn stated_densities_are_those_of_the_samples_far_below_their_rate() {
+        // 3600; 1/(2πf); 1/(3600 (2πf)²) at f = 1/(2π).
+        let at = |term| claimed_unit_density(term, 0.5 / PI);
+        assert_eq!(at(NoiseType::AngleRandomWalk), Some(3600.0));
+        assert!((at(NoiseType::Flicker).unwrap() - 1.0).abs() < 1e-15);
+        assert!((at(NoiseType::RateRandomWalk).unwrap() * 3600.0 - 1.0).abs() < 1e-15);
+        assert_eq!((at(NoiseType::Quantization), at(NoiseType::RateRamp)), (None, None));
+        for term in [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk] {
+            for f in [1e-5, 1e-4] {
+                let ratio = unit_density(term, f, 1.0) / claimed_unit_density(term, f).unwrap();
+                assert!((ratio - 1.0).abs() < 1e-3, "{term:?} {f}: {ratio}");
+            }
+        }
+    }
 }

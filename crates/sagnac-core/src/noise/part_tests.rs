@@ -172,6 +172,7 @@ fn cuts_beside_windows_and_gaps_and_parts_of_a_few_samples() {
         // Empty parts; cuts at the gaps and one sample beside them, at ends of blocks, segments and windows.
         check(&recording, &[0, 0, 5000, 5003, 9103], dense);
         check(&recording, &[331, 331, 5001, 5001], dense);
+        check(&recording, &[2000, 2000, 2000, 7000, 7000], dense);
         check(&recording, &[1, 2, 3, 4999, 5001, 5002, 5004, 9102], dense);
         check(&recording, &[64, 256, 1000, 1024, 1025, 4096, 4097], dense);
         check(&recording, &(0..400).map(|k| 1000 + 11 * k).collect::<Vec<_>>(), dense);

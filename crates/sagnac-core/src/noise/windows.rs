@@ -383,4 +383,30 @@ mod tests {
         assert!((s.standard_deviation - 0.5f64.sqrt()).abs() < 1e-15);
         assert!(WindowMeans::new(3.0, 1.0).finish().standard_deviation.is_nan());
     }
+
+    #[test]
+    fn windows_of_whole_samples_fit_within_two_percent() {
+        let of = |samples: u64| WindowStatistics {
+            window_s: 50.0,
+            samples,
+            n: 0,
+            mean: f64::NAN,
+            standard_deviation: f64::NAN,
+            means: None,
+            per_stretch: vec![],
+        };
+        assert_eq!(of(101).exact_s(0.5), 50.5);
+        let fitting = [97, 99, 100, 101, 103].into_iter().filter(|n| of(*n).fits(0.5));
+        assert_eq!(fitting.collect::<Vec<u64>>(), [99, 100, 101]);
+    }
+
+    #[test]
+    fn degrees_of_freedom_depend_on_the_length_of_the_window() {
+        // White noise and a walk: the same windows in tens of the unit of time.
+        let variance = |t: f64| 1.0 / t - 0.01 * t;
+        let ten = edf_of_window_std(36, 10.0, variance).unwrap();
+        let unit = edf_of_window_std(36, 1.0, |t| variance(10.0 * t)).unwrap();
+        assert!((ten / unit - 1.0).abs() < 1e-12, "{ten} {unit}");
+        assert!(ten < 0.9 * edf_of_window_std(36, 1.0, variance).unwrap());
+    }
 }

@@ -171,4 +171,27 @@ mod tests {
         subtract(&mut data, &[1.0, 0.5], 2.0);
         assert_eq!(data, [-1.0, 1.0]);
     }
+
+    #[test]
+    fn several_columns_added_against_other_data_solve_as_if_at_once() {
+        let square: [f64; 4] = [0.0, 1.0, 4.0, 9.0];
+        let (data, powers) = ([1.0, -2.0, 4.0, 0.5], [0.5, 1.0, 2.0, 4.0]);
+        let left = [0.3, 1.0, -2.0, 2.5];
+        let first: [(&[f64], f64); 1] = [(&ONES, 2.0)];
+        let all: [(&[f64], f64); 3] = [(&ONES, 2.0), (&LINE, f64::INFINITY), (&square, f64::INFINITY)];
+        let begun = Normal::new(&first, &data, &powers);
+        for (fixed, data) in [(false, &data), (true, &left)] {
+            let later = begun.with(&first, &[&LINE, &square], data, fixed, &powers).solve();
+            let at_once = Normal::new(&all, data, &powers).solve();
+            assert!(later.0.iter().zip(&at_once.0).all(|(a, b)| (a - b).abs() < 1e-9), "{fixed}: {later:?}");
+            assert!((later.1 - at_once.1).amax() < 1e-9 && (later.2 - at_once.2).abs() < 1e-9, "{fixed}");
+        }
+    }
+
+    #[test]
+    fn sums_end_with_the_shortest_of_the_series() {
+        // 1·2/4 + 3·4/2 in one sum each, and five terms over the four sums.
+        assert_eq!(inner(&[1.0, 3.0], &[2.0, 4.0, 9.0], &[4.0, 2.0, 1.0]), 6.5);
+        assert_eq!(inner(&[1.0, 2.0, 3.0, 4.0, 5.0], &[2.0; 5], &[1.0, 2.0, 1.0, 4.0, 5.0]), 14.0);
+    }
 }

@@ -422,4 +422,70 @@ mod tests {
         let (_, at) = coordinate_ascent(start, (0.1, 20.0), (&[1.3, 1.1, 1.02, 1.005], 40), value);
         assert!((at[0] / 1f64.exp() - 1.0).abs() < 0.01 && at[1] == 20.0, "{at:?}");
     }
+
+    #[test]
+    fn the_peak_of_a_parabola_lies_between_its_points() {
+        // −(x − 1.3)² at 0, 1, 2.
+        let values = [-1.69, -0.09, -0.49];
+        assert!((parabolic_peak(&values, 1) - 0.3).abs() < 1e-12);
+        // No neighbour, no bend downwards, and a top beyond half a step.
+        assert_eq!([0, 2, 3].map(|at| parabolic_peak(&values, at)), [0.0; 3]);
+        assert_eq!(parabolic_peak(&[1.0, 0.0, 1.0], 1), 0.0);
+        assert_eq!((parabolic_peak(&[0.0, 2.0, 3.5], 1), parabolic_peak(&[3.5, 2.0, 0.0], 1)), (0.5, -0.5));
+    }
+
+    #[test]
+    fn where_both_ways_gain_the_division_is_made() {
+        let value = |x: &[f64]| Some(x[0].ln().abs());
+        let (gain, at) = coordinate_ascent((0.0, vec![1.0]), (0.25, 8.0), (&[2.0], 1), value);
+        assert_eq!((gain, at[0]), (2f64.ln(), 0.5));
+        // As many moves as there are, then no further than the bound.
+        let (_, at) = coordinate_ascent((0.0, vec![1.0]), (0.25, 8.0), (&[2.0], 40), value);
+        assert_eq!(at[0], 0.25);
+    }
+
+    /// Where a pattern search from `start` looks, in order.
+    fn looks(start: f64, bounds: Bounds, first: &[Option<f64>], limits: (usize, f64)) -> Vec<f64> {
+        let seen = std::cell::RefCell::new(vec![]);
+        pattern_search(&[start], &[bounds], first, limits, |x| {
+            seen.borrow_mut().push(x[0]);
+            -(x[0] - start).powi(2)
+        });
+        seen.into_inner()
+    }
+
+    #[test]
+    fn the_first_steps_follow_the_bounds() {
+        let near = |seen: Vec<f64>, wanted: [f64; 3]| {
+            assert!(seen.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12), "{seen:?} {wanted:?}");
+        };
+        // A hundredth of the bounds; on a logarithmic scale 0.35 where they are more than a factor of 20 apart.
+        near(looks(5.0, Bounds::new(1.0, 11.0), &[], (2, 0.0)), [5.0, 5.1, 4.9]);
+        near(looks(0.0, Bounds::new(-5.0, 5.0), &[None], (2, 0.0)), [0.0, 0.1, -0.1]);
+        let factor = 0.35f64.exp();
+        near(looks(5.0, Bounds::new(1.0, 100.0), &[], (2, 0.0)), [5.0, 5.0 * factor, 5.0 / factor]);
+        // A step that is given, and one larger than the bounds.
+        near(looks(0.0, Bounds::new(-5.0, 5.0), &[Some(0.5)], (2, 0.0)), [0.0, 0.5, -0.5]);
+        near(looks(0.0, Bounds::new(-1.0, 1.0), &[Some(9.0)], (2, 0.0)), [0.0, 1.0, -1.0]);
+    }
+
+    #[test]
+    fn a_pattern_search_ends_with_its_evaluations_its_finest_step_or_a_flat_top() {
+        // From the top three looks a pass: two sides and the middle of the parabola. A pass that has begun is finished.
+        let bounds = Bounds::new(-5.0, 5.0);
+        assert_eq!(looks(0.0, bounds, &[], (10, 0.0)).len(), 10);
+        assert_eq!(looks(0.0, bounds, &[], (11, 0.0)).len(), 13);
+        // Steps of 0.3 times the last down to a hundred-thousandth of the first: 0.3^10 < 1e-5 < 0.3^9.
+        assert_eq!(looks(0.0, bounds, &[], (1000, 0.0)).len(), 31);
+        // Both sides lose 0.01, then 0.0009.
+        assert_eq!(looks(0.0, bounds, &[], (1000, 0.001)).len(), 7);
+    }
+
+    #[test]
+    fn a_search_without_a_gain_goes_to_the_top_of_the_parabola() {
+        // Neither 0.1 to the left nor to the right gains; the top is between.
+        let (at, gain) =
+            pattern_search(&[0.0], &[Bounds::new(-5.0, 5.0)], &[], (3, 0.0), |x| -(x[0] - 0.04).powi(2));
+        assert!((at[0] - 0.04).abs() < 1e-12 && gain.abs() < 1e-20, "{at:?} {gain}");
+    }
 }

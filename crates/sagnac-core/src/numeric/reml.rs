@@ -393,4 +393,48 @@ mod tests {
         assert!((2.0 * found.log_likelihood - 6.0 - fitted.twice_log_likelihood).abs() < 1e-6);
         assert!(scaled(&y.rows(0, 2).into_owned(), &x.rows(0, 2).into_owned(), &shape).is_none());
     }
+
+    #[test]
+    fn columns_of_another_size_give_the_same_fit_once_rescaled() {
+        let x = DMatrix::from_fn(6, 2, |i, j| if j == 0 { 1.0 } else { i as f64 });
+        let y = DVector::from_vec(vec![1.0, -1.0, 1.0, -1.0, 1.0, -1.0]);
+        let sizes = [2.0, 0.5];
+        let divided = DMatrix::from_fn(6, 2, |i, j| x[(i, j)] / sizes[j]);
+        let of = |x: &DMatrix<f64>| fit(&y, x, &DMatrix::zeros(6, 6), &[DMatrix::identity(6, 6)]).unwrap();
+        let (plain, back) = (of(&x), of(&divided).rescaled(&sizes));
+        assert!((&back.coefficients - &plain.coefficients).amax() < 1e-9);
+        assert!((&back.covariance - &plain.covariance).amax() < 1e-7);
+        assert!((&back.weights - &plain.weights).amax() < 1e-9);
+        let (a, b) = (back.coefficient(1), plain.coefficient(1));
+        assert!((a.standard - b.standard).abs() < 1e-7 && (a.dof - b.dof).abs() < 1e-5);
+        // What the line −3/17.5 (x − 2.5) leaves, and the weights (x − 2.5)/17.5 of its slope.
+        for i in 0..6 {
+            let from_middle = i as f64 - 2.5;
+            assert!((plain.residuals[i] - (y[i] + 3.0 / 17.5 * from_middle)).abs() < 1e-9);
+            assert!((plain.weights[(1, i)] - from_middle / 17.5).abs() < 1e-9);
+        }
+        // A sum of both coefficients: variances 35/12 + 2.5² over 17.5, and 1/17.5, covariance −2.5/17.5.
+        let level = plain.variance_components[0];
+        let sum = plain.combine(&DVector::from_vec(vec![1.0, 1.0]));
+        assert!((sum.value - (plain.coefficients[0] + plain.coefficients[1])).abs() < 1e-12);
+        let expected = level * (1.0 / 6.0 + (6.25 + 1.0 - 5.0) / 17.5);
+        assert!((sum.standard - expected.sqrt()).abs() < 1e-6, "{}", sum.standard);
+    }
+
+    #[test]
+    fn what_cannot_be_fitted_gives_none_and_a_known_covariance_is_taken_as_it_is() {
+        let x = DMatrix::from_fn(4, 1, |_, _| 1.0);
+        let y = DVector::from_vec(vec![3.0, 1.0, 2.0, 6.0]);
+        let known = DMatrix::identity(4, 4) * 2.0;
+        let plain = fit(&y, &x, &known, &[]).unwrap();
+        // The mean with variance 2/4, exactly known; −4 ln 2 − ln(4/2) − Σ(y − 3)²/2.
+        let mean = plain.coefficient(0);
+        assert!((mean.value - 3.0).abs() < 1e-12 && (mean.standard - 0.5f64.sqrt()).abs() < 1e-12);
+        assert_eq!(mean.dof, 1e9);
+        assert!((plain.twice_log_likelihood - (-5.0 * 2f64.ln() - 7.0)).abs() < 1e-12);
+        assert!(fit(&y, &DMatrix::from_fn(4, 4, |i, j| f64::from(u8::from(i == j))), &known, &[]).is_none());
+        assert!(fit(&y, &DMatrix::from_fn(4, 2, |_, _| 1.0), &known, &[]).is_none());
+        assert!(fit(&y, &x, &DMatrix::identity(3, 3), &[]).is_none());
+        assert!(fit(&y.rows(0, 3).into_owned(), &x, &known, &[]).is_none());
+    }
 }

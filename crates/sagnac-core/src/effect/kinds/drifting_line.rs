@@ -187,4 +187,16 @@ mod tests {
             assert!((found[1] - drift).abs() < 1.5 * step(&drivers), "{found:?}");
         }
     }
+
+    #[test]
+    fn the_shortest_record_is_searched_and_a_shorter_one_is_not() {
+        for (n, lines) in [(FEWEST, 1), (FEWEST - 1, 0)] {
+            let drivers = Drivers { dt_s: 1.0, samples: n, averaged: 1, ..Drivers::default() };
+            let score: Vec<f64> = (0..n).map(|i| (0.9 * i as f64).sin()).collect();
+            let context = SearchContext { score: &score, modes: &score, powers: &vec![1.0; n] };
+            let starts = DriftingLine.starts(&drivers, &context);
+            assert_eq!((starts.points.len(), DriftingLine.applies(&drivers)), (lines, lines == 1), "{n}");
+            assert_eq!(starts.trials > 1.0, lines == 1);
+        }
+    }
 }

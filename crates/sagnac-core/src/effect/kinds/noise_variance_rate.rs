@@ -179,4 +179,36 @@ mod tests {
             assert!((got - expected).abs() < 1e-9);
         }
     }
+
+    #[test]
+    fn a_residual_that_follows_the_law_gives_it_back_with_its_place() {
+        // Ten sizes of the rate with sixteen samples each; the deviation doubles at the largest.
+        let rate: Vec<f64> =
+            (0..160).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 } * (i / 16) as f64).collect();
+        let power = |r: f64| 1.0 + 3.0 * (r / 9.0).powi(2);
+        let drivers =
+            Drivers { dt_s: 1.0, samples: 160, table_rate: Some(rate.clone()), ..Drivers::default() };
+        let residual = FlatResidual {
+            white: vec![],
+            flat: rate.iter().map(|r| 0.5 * power(*r).sqrt()).collect(),
+            per_deg_h: 1.0,
+            ends: 0,
+            usable: &[],
+            drivers: &drivers,
+            rounding_step: 0.0,
+        };
+        let samples: Vec<usize> = (0..160).collect();
+        let [law] = &NoiseVarianceRate.laws(&residual, &samples)[..] else { panic!("one law") };
+        assert!((law.ratio / 2.0 - 1.0).abs() < 1e-4);
+        assert!(matches!(law.law, Law::Rate { exponent: 2, .. }), "{:?}", law.law);
+        for (profile, r) in law.profile.iter().zip(&rate) {
+            assert!((profile - power(*r).sqrt()).abs() < 1e-3);
+        }
+        // Half of the way in variance is at 1/√2 of the largest rate; squares without scatter are not overdispersed.
+        assert!((law.place.from - 9.0 * 0.5f64.sqrt()).abs() < 1e-12 && law.place.to == 9.0);
+        assert_eq!((law.place.domain, law.dispersion), (Domain::InputRate, 1.0));
+        // A table at one size of rate tells nothing.
+        let steady = Drivers { table_rate: Some(vec![3.0; 160]), ..drivers.clone() };
+        assert!(NoiseVarianceRate.laws(&FlatResidual { drivers: &steady, ..residual }, &samples).is_empty());
+    }
 }

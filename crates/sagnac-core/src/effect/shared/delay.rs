@@ -296,4 +296,51 @@ mod tests {
         assert_eq!(regressors(&wave, |_| -20.0).nuisance.len(), MAX_COLUMNS);
         assert!(regressors(&wave, |_| 0.0).nuisance.is_empty());
     }
+
+    #[test]
+    fn a_few_lost_samples_get_a_column_each_and_many_get_polynomials() {
+        let few = ends_out(&[true, true, false, false, true]);
+        assert_eq!(few, [[1.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0]]);
+        // Chebyshev's 1, u, 2u² − 1, ... at the middles of 16 equal parts of −1 to 1.
+        let lost: Vec<bool> = (0..20).map(|i| i >= 4).collect();
+        let many = ends_out(&lost);
+        assert_eq!(many.len(), MAX_COLUMNS);
+        for j in 0..16 {
+            let u = (2 * j + 1) as f64 / 16.0 - 1.0;
+            for (column, expected) in many.iter().zip([1.0, u, 2.0 * u * u - 1.0, 4.0 * u * u * u - 3.0 * u])
+            {
+                assert!((column[4 + j] - expected).abs() < 1e-12, "{j}: {column:?}");
+            }
+        }
+        assert!(many.iter().all(|c| c[..4] == [0.0; 4]));
+    }
+
+    #[test]
+    fn the_coefficient_beside_a_constant_and_a_mean_is_exact_for_what_they_make_up() {
+        let mut sums = Sums::default();
+        for (m, c) in [(0.0, 1.0), (1.0, 0.5), (3.0, 2.0), (4.0, -1.0), (2.0, 4.0)] {
+            sums.add(m, c, 5.0 + 2.0 * m - 3.0 * c);
+        }
+        assert!((sums.coefficient().unwrap() + 3.0).abs() < 1e-12);
+        // A mean that stays leaves the column alone; a column that is the mean has nothing of its own.
+        let (mut still, mut same) = (Sums::default(), Sums::default());
+        for c in [1.0, 2.0, 4.0] {
+            still.add(7.0, c, 1.0 + 0.5 * c);
+            same.add(c, 2.0 * c, c);
+        }
+        assert!((still.coefficient().unwrap() - 0.5).abs() < 1e-12);
+        assert_eq!((same.coefficient(), Sums::default().coefficient()), (None, None));
+    }
+
+    #[test]
+    fn a_mean_moves_with_the_rate_or_with_the_angle_to_the_north() {
+        let of = |rate: Option<Vec<f64>>, angle: Option<Vec<f64>>, samples: usize| {
+            moves(&Drivers { samples, table_rate: rate, table_angle: angle, ..Drivers::default() })
+        };
+        let turning = || Some((0..32).map(f64::from).collect::<Vec<_>>());
+        assert!(of(turning(), None, 32) && !of(turning(), None, 31));
+        assert!(!of(Some(vec![3.0; 32]), None, 32));
+        // The angle tells nothing as long as the claim has no Earth rate.
+        assert!(!of(None, turning(), 32));
+    }
 }

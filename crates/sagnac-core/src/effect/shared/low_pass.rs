@@ -205,4 +205,52 @@ mod tests {
             assert!((2.0 * sum / count / filter.power(x) - 1.0).abs() < 2e-3, "{x}");
         }
     }
+
+    #[test]
+    fn the_memory_is_that_of_the_largest_pole() {
+        // exp(−0.7): 12/0.7 = 17.1 samples; alone, beside a smaller one, and as the size of a pair.
+        let (p, q) = ((-0.7f64).exp(), 0.2);
+        assert_eq!(memory([-p, 0.0]), 18);
+        assert_eq!(memory([-(p + q), p * q]), 18);
+        assert_eq!(memory([-2.0 * p * 0.5f64.cos(), p * p]), 18);
+        assert_eq!(memory([0.0, 0.0]), 2);
+        // A pole at 1 never forgets.
+        assert_eq!(memory([-1.0, 0.0]), 1_000_000_000);
+    }
+
+    #[test]
+    fn ideal_filters_have_the_poles_of_the_continuous_ones_and_what_corrects_them() {
+        let cutoff = 0.05;
+        let w = TAU * cutoff;
+        let first = LowPass::ideal(cutoff, 1);
+        assert!((first.back[0] + (-w).exp()).abs() < 1e-15 && first.back[1] == 0.0);
+        let second = LowPass::ideal(cutoff, 2);
+        let (r, turn) = ((-w / SQRT_2).exp(), w / SQRT_2);
+        assert!(
+            (second.back[0] + 2.0 * r * turn.cos()).abs() < 1e-15 && (second.back[1] - r * r).abs() < 1e-15
+        );
+        assert!((second.forward[0] - (1.0 - 2.0 * r * turn.cos() + r * r)).abs() < 1e-15);
+        // At half of the cutoff 1/(1 + 1/16) is wanted of the second order, 1/(1 + 1/4) of the first.
+        for (filter, wanted) in [(first, 0.8), (second, 16.0 / 17.0)] {
+            assert!((filter.power(0.5 * cutoff) - wanted).abs() < 1e-12);
+            let correction = filter.correction(0.5 * cutoff).unwrap();
+            assert!((filter.recursion(0.5 * cutoff) * correction - wanted).abs() < 1e-12);
+            assert_eq!(filter.counted_memory(), 0);
+        }
+        assert!((second.correction(0.0).unwrap() - 1.0).abs() < 1e-9);
+        assert!(LowPass::bilinear(cutoff).correction(0.1).is_none());
+    }
+
+    #[test]
+    fn the_covariance_of_smoothed_noise_falls_by_its_pole() {
+        let filter = LowPass::smoothing(0.1);
+        let pole = -filter.back[0];
+        let covariance = filter.autocovariance();
+        // (1 − a)/(1 + a) aʰ.
+        for (h, r) in covariance.iter().enumerate().take(8) {
+            assert!((r - (1.0 - pole) / (1.0 + pole) * pole.powi(h as i32)).abs() < 1e-9, "{h}: {r}");
+        }
+        assert!(LowPass::smoothing(1e-4).autocovariance().is_empty());
+        assert_eq!(LowPass::smoothing(0.1).counted_memory(), filter.memory);
+    }
 }

@@ -159,4 +159,12 @@ mod tests {
             assert!((x - (0.3 * y.cos() - 1.1 * y.sin())).abs() < 1e-12);
         }
     }
+
+    #[test]
+    fn a_mean_over_next_to_no_cycle_loses_a_sixth_of_the_square_of_its_angle() {
+        // π·2e-7: the square over 6 is 6.58e-14, some hundred roundings.
+        let lost = (PI * 2e-7).powi(2) / 6.0;
+        assert!((1.0 - averaged(2e-7) - lost).abs() < 2e-16, "{:e}", 1.0 - averaged(2e-7));
+        assert_eq!(averaged(0.0), 1.0);
+    }
 }

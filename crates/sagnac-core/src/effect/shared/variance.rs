@@ -224,4 +224,38 @@ mod tests {
         let raised = raised(&[1.0, 2.0, 3.0, 4.0], &[0.0, 1.9, 2.0, 4.0]);
         assert_eq!(raised, Bounds::new(3.0, 4.0));
     }
+
+    #[test]
+    fn samples_of_like_values_are_grouped_with_their_mean_square() {
+        // Forty values in falling order: groups of 16, 16 and 8 from the smallest up.
+        let drivers = crate::effect::Drivers::default();
+        let flat: Vec<f64> = (0..40).map(|i| if i >= 24 { 2.0 } else { -1.0 }).collect();
+        let residual = FlatResidual {
+            white: vec![],
+            flat,
+            per_deg_h: 1.0,
+            ends: 0,
+            usable: &[],
+            drivers: &drivers,
+            rounding_step: 0.0,
+        };
+        let samples: Vec<usize> = (0..40).collect();
+        let (groups, values) = by_value(|i| (40 - i) as f64, &residual, &samples);
+        let told: Vec<(f64, f64)> = groups.iter().map(|g| (g.square, g.dof)).collect();
+        assert_eq!(told, [(4.0, 16.0), (1.0, 16.0), (1.0, 8.0)]);
+        assert_eq!(values, [8.5, 24.5, 36.5]);
+    }
+
+    #[test]
+    fn a_ratio_with_its_interval_counts_every_coefficient() {
+        // Columns move by 2 and −1: variance 4·0.01 + 0.04 − 2·2·0.005 of ln g².
+        let covariance = DMatrix::from_row_slice(3, 3, &[1.0, 0.3, 0.2, 0.3, 0.01, 0.005, 0.2, 0.005, 0.04]);
+        let columns = [vec![0.0, 1.0, 2.0], vec![1.0, 3.0, 0.0]];
+        let (ratio, ci95) = contrast(&[0.0, 1.0, 4.0], &covariance, &columns);
+        let half = 0.5 * 1.959_964 * (0.04f64 + 0.04 - 0.02).sqrt();
+        assert!((ratio.ln() - 2.0).abs() < 1e-12);
+        assert!((ci95[0].ln() - 2.0 + half).abs() < 1e-12 && (ci95[1].ln() - 2.0 - half).abs() < 1e-12);
+        // An interval of the largest over the smallest does not reach below 1.
+        assert_eq!(contrast(&[0.0, 0.1, 0.1], &covariance, &columns).1[0], 1.0);
+    }
 }

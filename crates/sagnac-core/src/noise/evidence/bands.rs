@@ -227,4 +227,36 @@ mod tests {
         // A fifth of the half width at the centre; 4 % of the frequency far away.
         assert!(widest(0.995, 1.005) < 0.0021 && widest(1.6, 2.0) > 0.05);
     }
+
+    #[test]
+    fn a_bin_of_a_piece_is_a_mode_of_a_transform_or_one_of_a_periodogram() {
+        let piece = Piece { tau_s: 2.0, step_hz: 0.001, blocks: 250, filling: 1.5 };
+        let mode = piece.bin(30.0);
+        assert!((mode.frequency_hz - 0.03).abs() < 1e-15);
+        assert_eq!((mode.tau_s, mode.filling, mode.mode, mode.blocks, mode.segment), (2.0, 1.5, 30, 250, 0));
+        // A periodogram with a step of 0.001 Hz of means over 2 s has segments of 500.
+        let bin = Piece { blocks: 0, ..piece }.bin(30.0);
+        assert_eq!((bin.mode, bin.blocks, bin.segment), (0, 0, 500));
+    }
+
+    /// A density that is the square of the index of the bin.
+    struct Square;
+
+    impl Spectral for Square {
+        fn density(&self, bin: &Bin) -> f64 {
+            (bin.frequency_hz / 0.001).powi(2)
+        }
+    }
+
+    #[test]
+    fn a_windowed_bin_sees_a_third_of_the_bend_between_its_neighbours() {
+        let piece = Piece { tau_s: 2.0, step_hz: 0.001, blocks: 0, filling: 1.0 };
+        // i² + ((i + 1)² − 2i² + (i − 1)²)/6 = i² + 1/3; the first bins, the last one and modes are as they are.
+        for (index, more) in [(1.0, 0.0), (2.0, 1.0), (30.0, 1.0), (249.0, 1.0), (250.0, 0.0)] {
+            let got = piece.expectation(&Square, index) - index * index;
+            assert!((got - more / 3.0).abs() < 1e-6, "{index}: {got}");
+        }
+        let mode = Piece { blocks: 250, ..piece };
+        assert!((mode.expectation(&Square, 30.0) - 900.0).abs() < 1e-9);
+    }
 }

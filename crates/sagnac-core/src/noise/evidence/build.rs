@@ -347,3 +347,34 @@ impl Evidence {
         evidence
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mask_hides_what_is_near_its_line_folded_back() {
+        let mask = Mask { frequency_hz: 0.7, half_width_hz: 0.01, windowed_half_width_hz: 0.03 };
+        let hidden = |tau_s: f64, windowed: bool| -> Vec<i32> {
+            (0..1000).filter(|i| mask.hides(0.001 * f64::from(*i), 0.0025, tau_s, windowed)).collect()
+        };
+        // At 0.7 Hz within 0.0125, and within 0.0325 of a periodogram.
+        assert_eq!(hidden(0.1, false), (688..=712).collect::<Vec<_>>());
+        assert_eq!(hidden(0.1, true), (668..=732).collect::<Vec<_>>());
+        // Means over 1 s show it at 0.3 Hz, over 4 s, 2.8 turns, at 0.05 Hz.
+        assert_eq!(hidden(1.0, false), (288..=312).collect::<Vec<_>>());
+        assert_eq!(hidden(4.0, false), (38..=62).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn modes_of_a_ramp_are_those_of_its_transform() {
+        for (blocks, tau_s) in [(8usize, 2.0), (15, 0.5)] {
+            let ramp: Vec<f64> = (0..blocks).map(|i| i as f64 * tau_s / 3600.0).collect();
+            let transform = crate::numeric::cosine::dct2(&ramp);
+            let modes = ramp_modes(blocks, tau_s);
+            for (k, (a, b)) in modes.iter().zip(&transform).enumerate().skip(1) {
+                assert!((a - b).abs() < 1e-15, "{k}: {a} {b}");
+            }
+        }
+    }
+}

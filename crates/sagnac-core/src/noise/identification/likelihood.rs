@@ -132,4 +132,14 @@ mod tests {
         assert!((start - 3.0).abs() < 1e-7, "{start}");
         assert_eq!(starting_variance(bands.iter(), [0.0; 3].into_iter()), 0.0);
     }
+
+    #[test]
+    fn a_band_without_power_counts_as_a_billionth_of_the_mean() {
+        let bands =
+            [(1.0, 0.0), (3.0, 2.0)].map(|(dof, power)| BandPower { dof, power, cross: 0.0, ramp: 0.0 });
+        // The mean is (0 + 3·2)/4; 4 degrees of freedom over 1/1.5e-9 and 3/2.
+        let start = starting_variance(bands.iter(), [1.0, 1.0].into_iter());
+        let expected = 4.0 / (1.0 / 1.5e-9 + 1.5);
+        assert!((start / expected - 1.0).abs() < 1e-8, "{start:e} {expected:e}");
+    }
 }

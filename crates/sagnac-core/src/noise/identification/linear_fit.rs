@@ -314,4 +314,13 @@ mod tests {
         assert!(Likelihood::new(&Evidence::default()).is_none());
         assert!(Likelihood::new(&evidence(&NoiseModel::default())).is_none());
     }
+
+    #[test]
+    fn the_square_of_a_coefficient_is_known_to_the_root_of_two_over_the_samples() {
+        let model = NoiseModel { n: 0.002, ..NoiseModel::default() };
+        let likelihood = Likelihood::new(&evidence(&model)).unwrap();
+        let point = likelihood.maximise(&[true, false, false, false, false], None, None).unwrap();
+        let sigma = likelihood.variance_sigma(&point, 0);
+        assert!((sigma / (0.002f64.powi(2) * (2.0f64 / 36_000.0).sqrt()) - 1.0).abs() < 0.01, "{sigma:e}");
+    }
 }

@@ -114,4 +114,38 @@ mod tests {
         }
         assert!((kurtosis_score(0.26, 1000.0) - 1.645).abs() < 0.05, "{}", kurtosis_score(0.26, 1000.0));
     }
+
+    #[test]
+    fn moments_and_far_values_of_a_hundred_by_hand() {
+        let of_values = |values: Vec<f64>| {
+            let modes = values.len();
+            super::of(&Whitened {
+                step_s: 1.0,
+                values,
+                modes,
+                share: 1.0,
+                means: vec![],
+                from_s: 0.0,
+                jump: None,
+            })
+        };
+        let mut values: Vec<f64> = (0..98).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        values.extend([8.0, -2.0]);
+        // Second, third and fourth moments 1.66, 5.04 and 42.1; 8 lies beyond four deviations of 1.29.
+        let found = of_values(values).unwrap();
+        assert!((found.skewness - 5.04 / 1.66f64.powf(1.5)).abs() < 1e-12);
+        assert!((found.excess_kurtosis - (42.1 / (1.66 * 1.66) - 3.0)).abs() < 1e-12);
+        assert_eq!((found.values, found.beyond), (100, 1));
+        // A normal law has 6.334e-5 there: at least one of a hundred with 1 − exp(−0.006334), counted twice.
+        assert!((found.expected_beyond / 0.006_334_2 - 1.0).abs() < 1e-4);
+        assert!((found.p_values[2] / (2.0 * -(-found.expected_beyond).exp_m1()) - 1.0).abs() < 1e-9);
+        assert!((judge(&found).departure.excess - (1.0 / found.expected_beyond - 1.0)).abs() < 1e-9);
+        let even: Vec<f64> = (0..100).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let found = of_values(even).unwrap();
+        assert_eq!(
+            (found.beyond, found.skewness, found.excess_kurtosis, found.p_values[2]),
+            (0, 0.0, -2.0, 1.0)
+        );
+        assert!(of_values(vec![1.0; 63]).is_none() && of_values(vec![0.0; 100]).is_none());
+    }
 }

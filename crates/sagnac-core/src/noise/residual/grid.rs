@@ -181,4 +181,22 @@ mod tests {
         // The weight sin⁴(πfτ)/(πfτ)² is largest near 0.37/τ and has a heavy tail.
         assert!(mean > 0.3 / 64.0 && mean < 2.0 / 64.0, "{mean}");
     }
+
+    #[test]
+    fn shares_are_those_of_an_integral_over_each_band() {
+        let grid = Grid::new(&white(), 10_000.0, 1.0);
+        for m in [4.0, 300.0] {
+            let weight = |e: &[f64], s: f64| {
+                let of = |i: u32| e[0] + (e[1] - e[0]) * (f64::from(i) + 0.5) / 2000.0;
+                let mean = (0..2000).map(|i| (PI * of(i) * m).sin().powi(4)).sum::<f64>() / 2000.0;
+                s * (e[1] - e[0]) * mean / (PI * 0.5 * (e[0] + e[1])).sin().powi(2)
+            };
+            let weights: Vec<f64> =
+                grid.edges.windows(2).zip(&grid.density).map(|(e, s)| weight(e, *s)).collect();
+            let total: f64 = weights.iter().sum();
+            for (got, expected) in grid.allan_shares(m, 1.0).iter().zip(&weights) {
+                assert!((got - expected / total).abs() < 3e-5, "{m}: {got} {}", expected / total);
+            }
+        }
+    }
 }

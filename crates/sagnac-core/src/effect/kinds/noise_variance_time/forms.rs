@@ -241,4 +241,50 @@ mod tests {
         assert_eq!(Form::Step(32).counts(64), (1, 2, 64.0));
         assert_eq!(Form::Line.columns(4), [[-0.75, -0.25, 0.25, 0.75]]);
     }
+
+    #[test]
+    fn a_step_of_the_level_is_placed_between_its_samples() {
+        let drivers =
+            crate::effect::Drivers { dt_s: 2.0, start_s: 100.0, samples: 1024, ..Default::default() };
+        let residual = FlatResidual {
+            white: vec![],
+            flat: (0..1024).map(|i| if i < 512 { 1.0 } else { -2.0 }).collect(),
+            per_deg_h: 1.0,
+            ends: 0,
+            usable: &[],
+            drivers: &drivers,
+            rounding_step: 0.0,
+        };
+        let samples: Vec<usize> = (0..1024).collect();
+        let law = over_time(&residual, &samples).unwrap();
+        let Law::Time(knots) = &law.law else { panic!("a law over time") };
+        // Sample 512 lies at 1124 s, the one before at 1122 s; the last at 2146 s.
+        let wanted = [(99.0, 1.0), (1122.5, 1.0), (1123.5, 2.0), (2146.0, 2.0)];
+        assert_eq!(knots.len(), 4);
+        for (knot, (at, value)) in knots.iter().zip(wanted) {
+            assert!((knot.at - at).abs() < 1e-9 && (knot.value - value).abs() < 1e-4, "{knot:?}");
+        }
+        assert!((law.profile[511] - 1.0).abs() < 1e-4 && (law.profile[512] - 2.0).abs() < 1e-4);
+        assert!((law.ratio - 2.0).abs() < 1e-4 && law.dispersion == 1.0);
+        assert_eq!((law.free, law.parameters, law.trials), (1, 2, 64.0));
+        // ½ (1024 ln 2.5 − 512 ln 4).
+        assert!((law.gain - (512.0 * 2.5f64.ln() - 256.0 * 4f64.ln())).abs() < 1e-4, "{}", law.gain);
+        assert!((law.place.from - 1123.0).abs() < 1e-9 && (law.place.to - 2146.0).abs() < 1e-9);
+        // Every other row alone: the same levels from half of the values.
+        let half: Vec<usize> = (0..1024).step_by(2).collect();
+        assert!((over_time(&residual, &half).unwrap().ratio - 2.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_level_of_nothing_on_one_side_is_no_change() {
+        // Against groups of zero any level would gain without end: the change that is found keeps one group of the rest.
+        let dead = changes(&groups(|i| f64::from(u8::from(i >= 20))));
+        assert_eq!(dead.first(), Some(&Form::Step(21)));
+        let hole = changes(&groups(|i| f64::from(u8::from(!(20..30).contains(&i)))));
+        assert!(!hole.contains(&Form::Stretch(20, 30)), "{hole:?}");
+        // A side of fewer samples than 48 is none either.
+        let few: Vec<Group> =
+            (0..64).map(|i| Group { square: if i < 60 { 1.0 } else { 9.0 }, dof: 8.0 }).collect();
+        assert_eq!(changes(&few).first(), Some(&Form::Step(58)));
+    }
 }

@@ -364,4 +364,121 @@ mod tests {
         let scan = Scan { sums: cumulated(squares.iter().copied()), others: 1e9, trials: 1.0 };
         assert_eq!(merged(&scan, vec![(20, 10), (50, 5)], 60), [(20, 10), (50, 5)]);
     }
+
+    #[test]
+    fn a_window_of_one_sample_grows_to_its_group() {
+        let mut squares = vec![1.0; 60];
+        squares[20..30].fill(16.0);
+        let scan = Scan { sums: cumulated(squares.iter().copied()), others: 1e9, trials: 1.0 };
+        for m in [1, 2, 4] {
+            assert_eq!(trimmed(&scan, 24, m, &[false; 60]), (20, 10), "{m}");
+        }
+        // Samples that another group has are not taken, and the ends of the record are not passed.
+        let mut taken = [false; 60];
+        taken[..22].fill(true);
+        assert_eq!(trimmed(&scan, 24, 2, &taken), (22, 8));
+        let all = Scan { sums: cumulated([16.0; 5].into_iter()), others: 1e9, trials: 1.0 };
+        assert_eq!(trimmed(&all, 2, 1, &[false; 5]), (0, 5));
+    }
+
+    /// Sizes of normal deviates in any order: quantiles of equal steps, in every stretch from all over the range.
+    fn deviates(n: usize) -> Vec<f64> {
+        let at = |i: usize| ((i * 2473) % n) as f64 + 0.5;
+        (0..n).map(|i| crate::estimate::normal_quantile(at(i) / n as f64)).collect()
+    }
+
+    fn residual<'a>(flat: Vec<f64>, usable: &'a [bool], drivers: &'a Drivers) -> FlatResidual<'a> {
+        FlatResidual {
+            white: flat.clone(),
+            flat,
+            per_deg_h: 1.0,
+            ends: 0,
+            usable,
+            drivers,
+            rounding_step: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_burst_is_found_with_its_samples_and_noise_has_none() {
+        let (usable, drivers) = (vec![true; 4000], Drivers::default());
+        assert!(bursts(&residual(deviates(4000), &usable, &drivers)).is_none());
+        let mut flat = deviates(4000);
+        for (k, x) in flat[1503..1515].iter_mut().enumerate() {
+            *x = if k % 2 == 0 { 6.0 } else { -6.0 };
+        }
+        let found = bursts(&residual(flat, &usable, &drivers)).unwrap();
+        assert_eq!(
+            (&found.groups[..], &found.samples[..]),
+            (&[(1503, 12)][..], &(1503..1515).collect::<Vec<_>>()[..])
+        );
+        assert!((found.deviation - 6.0).abs() < 1e-12 && found.parameters == 3 && found.p_value < 1e-20);
+        // ½ k (q − 1 − ln q), with q of 36 over the square of the level beside the burst.
+        assert!((found.gain / (6.0 * (35.0 - 36f64.ln())) - 1.0).abs() < 0.15, "{}", found.gain);
+        assert!(bursts(&residual(deviates(39), &usable, &drivers)).is_none());
+    }
+
+    #[test]
+    fn squares_are_over_the_louder_of_both_sides() {
+        let (n, usable, drivers) = (6000, vec![true; 6000], Drivers::default());
+        let flat: Vec<f64> = (0..n).map(|i| if i < 3000 { 1.0 } else { -3.0 }).collect();
+        let (found, dof) = squares(&residual(flat, &usable, &drivers));
+        // The median over a half of 1000 samples is the size itself; 150 samples beside the place are left out.
+        let own = NORMAL_MEDIAN * NORMAL_MEDIAN;
+        for i in [10, 1000, 1500, 3100, 4500, 5990] {
+            assert!((found[i] / own - 1.0).abs() < 1e-12, "{i}: {}", found[i]);
+        }
+        assert!((found[2900] * 9.0 / own - 1.0).abs() < 1e-12, "the louder side: {}", found[2900]);
+        assert!((dof - EFFICIENCY * 1000.0).abs() < 1e-9);
+        let counted: Vec<bool> = (0..n).map(|i| i != 77).collect();
+        assert_eq!(squares(&residual(vec![5.0; n], &counted, &drivers)).0[77], 1.0);
+    }
+
+    #[test]
+    fn noise_that_grows_with_the_rate_of_the_table_is_levelled_first() {
+        let n = 6000;
+        let rate: Vec<f64> = (0..n).map(|i| if i % 750 < 375 { 0.0 } else { 10.0 }).collect();
+        let flat: Vec<f64> = rate.iter().map(|r| 1.0 + r).collect();
+        let (usable, drivers) = (vec![true; n], Drivers { table_rate: Some(rate), ..Drivers::default() });
+        let (found, dof) = squares(&residual(flat, &usable, &drivers));
+        // Sizes over their own median over the normal one are 0.674 everywhere, and those over theirs again.
+        let own = NORMAL_MEDIAN * NORMAL_MEDIAN;
+        assert!(found.iter().all(|s| (s / own - 1.0).abs() < 1e-12));
+        // 1/dof = 8/(0.3675·6000) + 1/(0.3675·1000).
+        assert!((dof - EFFICIENCY * 6000.0 / 14.0).abs() < 1e-9, "{dof}");
+    }
+
+    #[test]
+    fn a_hump_is_smooth_and_a_burst_of_both_signs_is_not() {
+        let drivers = Drivers::default();
+        let of = |inside: &dyn Fn(usize) -> f64, m: usize| {
+            let flat: Vec<f64> =
+                (0..60).map(|i| if i < 20 || i >= 20 + m { 1.0 } else { inside(i) }).collect();
+            let scan = Scan { sums: cumulated(flat.iter().map(|e| e * e)), others: 1e9, trials: 1.0 };
+            is_smooth(&(20, m), &scan, &residual(flat, &[], &drivers))
+        };
+        assert!(of(&|_| 5.0, 20) && of(&|i| 0.5 * (i as f64 - 19.0), 20));
+        assert!(!of(&|i| if i % 2 == 0 { 5.0 } else { -5.0 }, 20));
+        // Fewer than eight samples do not tell.
+        assert!(of(&|_| 5.0, 8) && !of(&|_| 5.0, 7));
+    }
+
+    #[test]
+    fn groups_at_the_turns_of_the_table_are_left_out_where_all_are_there() {
+        let rate: Vec<f64> = (0..2000).map(|i| if i / 250 % 2 == 0 { 0.0 } else { 10.0 }).collect();
+        let table = Drivers { table_rate: Some(rate.clone()), ..Drivers::default() };
+        let outer = Drivers { outer_rate: Some(rate), ..Drivers::default() };
+        let at = |offset: usize| (1..8).map(|k| (250 * k + offset, 4)).collect::<Vec<_>>();
+        for drivers in [table, outer] {
+            // The change lies before sample 250; three samples beside a group are counted to it.
+            assert!(unmoved(&drivers, at(0)).is_empty());
+            assert!(unmoved(&drivers, at(2)).is_empty());
+            assert_eq!(unmoved(&drivers, at(100)), at(100));
+            // A single one among many is chance: 10 of 2000 places for each of seven changes.
+            let mut mixed = at(100);
+            mixed.push((250, 4));
+            assert_eq!(unmoved(&drivers, mixed.clone()), mixed);
+        }
+        assert_eq!(unmoved(&Drivers::default(), at(0)), at(0));
+    }
 }

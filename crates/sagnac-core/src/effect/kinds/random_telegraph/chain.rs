@@ -282,4 +282,16 @@ mod tests {
         let all = fair.log_likelihood(&values);
         assert!((0.0..0.1).contains(&(all - jumps - stays - noise)), "{all}");
     }
+
+    #[test]
+    fn levels_are_known_as_two_means_and_the_dwell_as_its_count_of_changes() {
+        let ripple = |i: usize| if i.is_multiple_of(2) { 0.2 } else { -0.2 };
+        let values: Vec<f64> = (0..900).map(|i| f64::from(u8::from(i / 90 % 2 == 1)) + ripple(i)).collect();
+        let start = Chain { levels: [0.1, 0.9], variance: 0.04, change: [0.01, 0.01] };
+        let chain = (0..60).fold(start, |c, _| c.improved(&values, 1e-4));
+        let Deviations { apart, log_dwell } = chain.deviations(&values).unwrap();
+        // Two means of 450 values of variance 0.04; half of the mean of five changes up and four down.
+        assert!((apart / (2.0 * 0.04f64 / 450.0).sqrt() - 1.0).abs() < 0.02, "{apart}");
+        assert!((log_dwell / (0.25f64 * (1.0 / 5.0 + 1.0 / 4.0)).sqrt() - 1.0).abs() < 0.2, "{log_dwell}");
+    }
 }

@@ -416,4 +416,92 @@ mod tests {
         );
         assert!(!ground.coloured() && ground.white == 0.25);
     }
+
+    /// A background of unit white noise under `residual`, whose first modes are `slow` times as strong.
+    fn background<'a>(residual: &[f64], slow: &[f64], drivers: &'a crate::effect::Drivers) -> Background<'a> {
+        let mut modes = dct2(residual);
+        modes[0] = 0.0;
+        let mut powers = vec![1.0; residual.len()];
+        powers[0] = f64::INFINITY;
+        powers[1..=slow.len()].copy_from_slice(slow);
+        Background { drivers, modes, powers, columns: vec![], lost: 0.25, grid_step_arcsec: None }
+    }
+
+    #[test]
+    fn jumps_in_white_noise_are_found_with_their_size_and_noise_alone_has_none() {
+        use rand::SeedableRng;
+        use rand_distr::{Distribution, StandardNormal};
+        let n = 4096;
+        let drivers = crate::effect::Drivers { dt_s: 0.5, samples: n, ..Default::default() };
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(11);
+        let noise: Vec<f64> = (0..n).map(|_| StandardNormal.sample(&mut rng)).collect();
+        assert!(telegraph(&background(&noise, &[], &drivers), &|| 0.0).is_none());
+        // Dwells of 40 to 200 samples, 97.5 in the mean, between levels four deviations apart.
+        let mut path: Vec<bool> = vec![];
+        for (k, dwell) in [40, 130, 70, 55, 200, 90].into_iter().cycle().enumerate() {
+            if path.len() >= n {
+                break;
+            }
+            path.extend(vec![k % 2 == 1; dwell]);
+        }
+        path.truncate(n);
+        let residual: Vec<f64> =
+            path.iter().zip(&noise).map(|(p, e)| e + 4.0 * f64::from(u8::from(*p))).collect();
+        let mut background = background(&residual, &[], &drivers);
+        let found = telegraph(&background, &|| 3.0).unwrap();
+        assert!((found.amplitude_deg_h - 4.0).abs() < 0.15, "{}", found.amplitude_deg_h);
+        assert!(found.amplitude_ci95[0] < 4.0 && 4.0 < found.amplitude_ci95[1], "{:?}", found.amplitude_ci95);
+        assert!((found.mean_dwell_s / 48.75 - 1.0).abs() < 0.1, "{}", found.mean_dwell_s);
+        assert!(found.dwell_ci95[0] < 48.75 && 48.75 < found.dwell_ci95[1], "{:?}", found.dwell_ci95);
+        let share = path.iter().filter(|p| **p).count() as f64 / n as f64;
+        let off = found.path.iter().zip(&path).filter(|(f, p)| (**f > 0.0) != **p).count();
+        let middle = found.course.iter().sum::<f64>() / n as f64;
+        assert!(off < 20 && middle.abs() < 1e-9, "{off} {middle}");
+        assert!((found.path.iter().copied().fold(0.0, f64::max) - (1.0 - share)).abs() < 0.01);
+        // Half of the square of half the difference for each sample, less what the path costs.
+        assert!(found.gain > 1000.0 && found.gain < 0.5 * 4.0 * n as f64, "{}", found.gain);
+        assert!(found.chance < 1e-200 && found.p_value == found.chance && found.rival_gain == 3.0);
+        // A process that gains as much leaves nothing for jumps; steps of the output are two levels as well.
+        assert_eq!(telegraph(&background, &|| 1e9).unwrap().p_value, 1.0);
+        background.grid_step_arcsec = Some(0.5 * 3.9);
+        assert!(telegraph(&background, &|| 3.0).is_none());
+        background.grid_step_arcsec = Some(0.5 * 1.9);
+        assert!(telegraph(&background, &|| 3.0).is_some());
+    }
+
+    #[test]
+    fn the_evidence_of_a_chain_is_its_likelihood_over_that_of_white_noise() {
+        let drivers = crate::effect::Drivers { dt_s: 1.0, samples: 64, ..Default::default() };
+        let residual: Vec<f64> = (0..64).map(|i| if i / 16 % 2 == 0 { -1.0 } else { 1.0 }).collect();
+        let chain = Chain { levels: [-1.0, 1.0], variance: 9.0, change: [0.05, 0.05] };
+        for slow in [&[][..], &[4.0, 2.0, 3.0]] {
+            let background = background(&residual, slow, &drivers);
+            let ground = Ground::new(&background);
+            assert_eq!((ground.white, ground.coloured()), (1.0, !slow.is_empty()));
+            // The best slow noise without a path costs what it takes out of the white noise: only the chain is left.
+            let beside = ground.background(&[0.0; 64]);
+            let values: Vec<f64> = residual.iter().zip(&beside).map(|(r, b)| r - b).collect();
+            let flat: f64 = values.iter().map(|v| -0.5 * (v * v + std::f64::consts::TAU.ln())).sum();
+            let expected = Chain { variance: 1.0, ..chain }.log_likelihood(&values) - flat - 0.25;
+            let got = ground.evidence(&chain, &beside, 1);
+            assert!((got - expected).abs() < 1e-9, "{got} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_drift_is_the_slow_share_of_the_slowest_modes() {
+        let drivers = crate::effect::Drivers { dt_s: 1.0, samples: 256, ..Default::default() };
+        let residual: Vec<f64> = (0..256).map(|i| ((i * i * 31) % 17) as f64).collect();
+        let background = background(&residual, &[4.0, 2.0, 4.0, 1.25, 4.0], &drivers);
+        let ground = Ground::new(&background);
+        // 256/64 modes for single samples, half of them for averages of two.
+        for (m, last) in [(1, 4), (2, 2)] {
+            let shares = [0.0, 0.75, 0.5, 0.75, 0.2];
+            let mut modes = vec![0.0; 256];
+            (1..=last).for_each(|k| modes[k] = shares[k] * background.modes[k]);
+            for (got, expected) in ground.drift(m).iter().zip(inverse_dct2(&modes)) {
+                assert!((got - expected).abs() < 1e-12, "{m}");
+            }
+        }
+    }
 }

@@ -209,4 +209,18 @@ mod tests {
         let course = RandomTelegraph.stated_course(&values, &drivers).unwrap();
         assert_eq!(course, [-1.0, -1.0, 0.5, 1.0, 0.0, -1.0]);
     }
+
+    #[test]
+    fn the_dwell_is_counted_in_seconds_whatever_the_sampling() {
+        let drivers = Drivers { dt_s: 0.25, samples: 400_000, ..Drivers::default() };
+        let mut rate = vec![0.0; drivers.samples];
+        let values = Values::from([
+            ("amplitude_deg_h".to_owned(), Value::Number(2.0)),
+            ("mean_dwell_s".to_owned(), Value::Number(20.0)),
+        ]);
+        RandomTelegraph.apply(&values, &drivers, 5, &mut rate, &mut []);
+        // exp(−2·5/20) after 5 s, 20 samples; 10 000 correlation times.
+        let got = rate.iter().zip(&rate[20..]).map(|(a, b)| a * b).sum::<f64>() / 399_980.0;
+        assert!((got - (-0.5f64).exp()).abs() < 0.04, "{got}");
+    }
 }
