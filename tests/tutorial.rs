@@ -48,8 +48,8 @@ fn printed(folder: &Path, command: &str) -> String {
         .output()
         .unwrap();
     let error = String::from_utf8(done.stderr).unwrap();
-    assert_eq!(done.status.code() == Some(2), error.contains("error: "), "{command}: {error}");
     let text = String::from_utf8(done.stdout).unwrap() + &error;
+    assert_eq!(done.status.code() == Some(2), text.contains("error: "), "{command}: {text}");
     // Numbers and units are kept together by spaces of their own.
     text.replace(['\u{a0}', '\u{202f}', '\u{2009}'], " ")
 }
