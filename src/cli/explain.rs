@@ -94,6 +94,12 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
         .begin(&out, Kind::Explanation, lang)?;
 
     let recording = read(args, &args.recording, &mut progress, lang)?;
+    if let Some(given) = options.hide.iter().find(|c| c.is_other() && !recording.columns.contains_key(c)) {
+        let others = recording.columns.keys().copied().filter(|c| c.is_other());
+        let known: Vec<&str> = Column::KNOWN.into_iter().chain(others).map(Column::name).collect();
+        let note = Note::new("explain.error.column").with("given", given.name());
+        return Err(say(note.with("known", known.join(", "))));
+    }
     let mut notes = recording.remarks();
     let (claim, outcome, named, identified) = match (stated, args.simulation.as_deref()) {
         (Some(claim), _) => {

@@ -168,5 +168,5 @@ pub const CASES: &[Case] = &[
     ("temperature_column_empty", all(Invalid("temperature", "has no usable values"))),
     ("empty_column_added", all(Same)),
     ("header_says_deg_s", all(Refused("did you mean `rate_deg_s`?"))),
-    ("header_says_deg_s_column_by_position", all(Invalid("units", "column `rate_deg_s` states deg/s"))),
+    ("header_says_deg_s_column_by_position", all(Invalid("units", "Column `rate_deg_s` states deg/s"))),
 ];

@@ -132,10 +132,6 @@ impl MeanModel for ColumnDriver {
         reach(Domain::Driver, &m.driver.smooth, &course)
     }
 
-    fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
-        response::odds(meant(nonlinear_parameters, drivers).map_or(0, |m| m.mask), drivers)
-    }
-
     fn whole(&self) -> &'static [usize] {
         &[0, 1, 2]
     }

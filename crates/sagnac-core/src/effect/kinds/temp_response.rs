@@ -85,10 +85,6 @@ impl MeanModel for TempResponse {
         reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &course)
     }
 
-    fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
-        response::odds(mask(nonlinear_parameters), drivers)
-    }
-
     fn whole(&self) -> &'static [usize] {
         &[0]
     }

@@ -289,17 +289,6 @@ fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
     best.0
 }
 
-/// Modes that tell of a slow course: a parameter of it is worth the logarithm of so many, not of all rows.
-const TELLING_MODES: f64 = 64.0;
-
-/// Logarithm of the odds that make up for what a criterion by rows charges the terms of a response above their worth.
-pub(in crate::effect) fn odds(mask: u32, drivers: &Drivers) -> f64 {
-    let terms = terms(mask);
-    let parameters = terms.len() + terms.iter().filter(|t| matches!(t, Term::Delay { .. })).count();
-    let rows = (drivers.samples * drivers.averaged.max(1)) as f64;
-    0.5 * parameters as f64 * (rows / TELLING_MODES).ln().max(0.0)
-}
-
 /// The columns of a response.
 pub(in crate::effect) fn regressors(mask: u32, values: &[f64], drivers: &Drivers) -> Regressors {
     let scaled = scaled(values, Scale::of(values));
@@ -480,13 +469,6 @@ mod tests {
         assert_eq!(initial_states(&stated, &drivers).len(), 1);
         stated.remove(SCALES_LIST);
         assert!(super::course(&stated, &values, &drivers).is_none());
-    }
-
-    #[test]
-    fn a_delay_counts_with_its_state_before_the_record() {
-        // First order and the delay of 60 s: three parameters, each charged ln(6400) for ln(64).
-        let drivers = Drivers { samples: 640, averaged: 10, ..Drivers::default() };
-        assert!((odds(0b1000_0001, &drivers) - 1.5 * 100f64.ln()).abs() < 1e-12);
     }
 
     #[test]
