@@ -123,7 +123,7 @@ fn saved_procedures_are_the_shipped_ones_and_replace_nothing() {
     std::fs::write(at.join("mine/static-bias.toml"), "mine").unwrap();
     let refused = printed(at, "80", &[], &save);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8(refused.stderr).unwrap().contains("other content"));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("different content"));
     assert_eq!(std::fs::read_to_string(at.join("mine/static-bias.toml")).unwrap(), "mine");
 }
 

@@ -84,6 +84,8 @@ const OPEN: &[&str] = &[
     "convention",
     "table_doc",
     "option_value",
+    "explain.columns",
+    "explain.law",
     "explain.test",
     "stated",
     "goodness.view",
@@ -94,7 +96,15 @@ const OPEN: &[&str] = &[
 const HELP: &str = "help";
 
 /// Dotted names in the sources that only look like keys: tables of procedures.
-const NO_KEYS: &[&str] = &["measurand.options", "explain.test", "explain.view", "unit.rec"];
+const NO_KEYS: &[&str] = &[
+    "measurand.options",
+    "explain.columns",
+    "explain.law",
+    "explain.test",
+    "explain.view",
+    "note.withheld",
+    "unit.rec",
+];
 
 fn sources(folder: &Path, out: &mut Vec<String>) {
     for entry in std::fs::read_dir(folder).unwrap() {
