@@ -133,7 +133,7 @@ mod tests {
         for (bins, lobe) in [
             (5.25, 1.5 * 25.0 / (0.900_316_316_157_106_f64 / 0.9375).powi(2)),
             (4.75, 1.5 * 25.0 / (0.900_316_316_157_106_f64 / 0.9375).powi(2)),
-            (5.5, 1.5 * 25.0 / (0.636_619_772_367_581_4_f64 / 0.75).powi(2)),
+            (5.5, 1.5 * 25.0 / (std::f64::consts::FRAC_2_PI / 0.75).powi(2)),
         ] {
             let found = row(&LINE_AMPLITUDE, &with(vec![line(bins, 2.0, 26.0)]));
             within(normal(&found), ((4.0 * lobe + 9.0) / 40.0).sqrt() / lobe, 1e-9);
