@@ -380,6 +380,8 @@ fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Findi
     let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTED };
     let mut departed: Vec<&Departure> = after.iter().filter(|d| d.below(bound, after.len())).collect();
     departed.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    // A track is the narrowest place of what other tests see whole: theirs come first.
+    departed.sort_by_key(|d| d.test == "track");
     let worst = departed.first()?;
     let mut places: Vec<PlaceRecord> = vec![];
     for place in departed.iter().flat_map(|d| [Some(d.place), d.beside]).flatten() {
