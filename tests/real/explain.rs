@@ -83,9 +83,13 @@ fn ring_laser(more: &[&str]) -> Option<Value> {
 #[test]
 fn a_ring_laser_unit_is_told_where_its_lines_are() {
     let Some(report) = ring_laser(&[]) else { return };
-    // Quantisation and lines at 9.195, 19.08, 20.7 and 29.93 Hz.
+    // Quantisation and lines at 9.195, 19.08, 20.7 and 29.93 Hz: the strongest is named, and the small rest is placed.
     let spans = places(&report, "frequency");
-    assert!(spans.iter().any(|(from, to)| *from < 9.3 && *to > 29.8), "{spans:?}");
+    assert!(spans.iter().any(|(from, to)| *from < 29.95 && *to > 29.93), "{spans:?}");
+    let rest = report["rest"]["where"].as_array().expect("a rest");
+    let lines = rest.iter().filter(|p| p["domain"] == "frequency");
+    let ends = lines.map(|p| (p["from"].as_f64().unwrap(), p["to"].as_f64().unwrap()));
+    assert!(ends.into_iter().any(|(from, to)| from < 20.75 && to > 20.65), "{rest:?}");
     assert!(heldout_gain(&report) > 1000.0);
 }
 
