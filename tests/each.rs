@@ -268,7 +268,11 @@ fn a_lot_is_rendered_anew_in_another_language() {
         assert!(found || name == "index.md", "{name}: {word}");
     }
     let said = each(dir.path(), &NAMED, &["--out", "o", "--lang", "ru"]);
-    assert!(said.out.contains("Источник заводских номеров: ") && said.out.contains("изделий: 4"), "{}", said.out);
+    assert!(
+        said.out.contains("Источник заводских номеров: ") && said.out.contains("изделий: 4"),
+        "{}",
+        said.out
+    );
 }
 
 /// Refused before anything runs: exit code 2, nothing printed, nothing written.
@@ -290,7 +294,12 @@ fn a_serial_number_that_is_not_one_units_own_is_refused_by_name() {
     refused(
         dir.path(),
         &run(&["lot/*.csv"]),
-        &["2 recordings have", "SN-1002, sn 1002: lot/b.csv, lot/e.csv", "--serial-from '{stem}'", "manifest"],
+        &[
+            "2 recordings have",
+            "SN-1002, sn 1002: lot/b.csv, lot/e.csv",
+            "--serial-from '{stem}'",
+            "manifest",
+        ],
     );
     refused(dir.path(), &run(&["lot/b.csv", "lot/b.csv"]), &["2 recordings have", "lot/b.csv, lot/b.csv"]);
     refused(dir.path(), &run(&["lot/b.csv", "none.csv"]), &["none.csv"]);
